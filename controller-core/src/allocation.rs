@@ -12,10 +12,10 @@
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
 //! - [`mixer`]: wrench to rotor thrusts; what does not fit is given up, yaw first, then thrust, roll and pitch last;
 //! - [`minimum_norm`]: its first step, B+ w, which is all that a certified flight needs;
-//! - `attainable` (internal): the polytope as half-spaces, arranged for the three questions the mixer asks, and for
+//! - `attainable` (internal): the polytope as half-spaces, arranged for the mixer's three queries, and for
 //!   [`greatest_torques`];
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
-//! - [`support`]: which thrusts a whole set of wrenches can ask of each rotor: the certificate's last link.
+//! - [`support`]: the demand of a whole set of wrenches on each rotor: the certificate's last link.
 
 mod attainable;
 pub mod curve;

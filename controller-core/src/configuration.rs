@@ -1,4 +1,4 @@
-//! What the certificate judges.
+//! A configuration: the input of the certificate.
 
 use crate::allocation::Rotors;
 use crate::error::{ParameterError, Reason, require, require_positive};

@@ -36,7 +36,7 @@ pub enum Reason {
     NotIncreasing,
     /// A heading direction that is not a unit vector, or a derivative not tangent to the circle.
     NotOnCircle,
-    /// Geometry that cannot produce the wrench asked of it.
+    /// Geometry that cannot produce the commanded wrench.
     DoesNotSpan,
     /// An option of a law other than the one that flies.
     OtherLaw,

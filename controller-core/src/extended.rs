@@ -7,7 +7,7 @@
 //! | module | what | derived in `docs/extended-law.md` |
 //! |---|---|---|
 //! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; a capped approach speed | 1 |
-//! | [`force`] | an estimate of the force the model does not know | 2 |
+//! | [`force`] | an estimate of the unmodelled force | 2 |
 //! | [`turning`] | the thrust direction turns as fast as the vehicle can follow | 3 |
 //! | [`budget`] | how fast that is: the thrust and torque at hand | 4 |
 //! | [`heading`] | the desired frame may lag in heading, so that yaw never needs more torque than it has | 5 |

@@ -1,6 +1,6 @@
 //! The reference governor: any stream of setpoints in, a reference inside Omega_r out.
 //!
-//! The certificate covers references inside its [`ReferenceBounds`]; people send steps. In between, once per tick:
+//! The certificate covers references inside its [`ReferenceBounds`]; operators send steps. In between, once per tick:
 //!
 //! ```text
 //! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> two moving averages --\
@@ -10,7 +10,7 @@
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
-//! - `averages`: the first two, of the command, in integers: a head that keeps the bounds whatever is asked;
+//! - `averages`: the first two, of the command, in integers: a head that keeps the bounds under any setpoint;
 //! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the
 //!   bounds;
 //! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time,

@@ -35,7 +35,7 @@ impl Heading {
         Ok(Self { direction: direction / length, rate, acceleration })
     }
 
-    /// From a direction that another heading gave, taken bit for bit: whoever stores headings as numbers gets the same
+    /// From a direction that another heading gave, taken bit for bit: headings stored as numbers give the same
     /// one back.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The law that flies: the paper's or the extended one, as the configuration says.
+//! The law that flies: the paper's or the extended one, by its configuration.
 
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Diagnostics};
@@ -76,8 +76,8 @@ impl Law {
         }
     }
 
-    /// The delivered thrust over the commanded thrust, by the law's estimate: divide a wrench by it before the rotors
-    /// are asked for it.
+    /// The delivered thrust over the commanded thrust, by the law's estimate: divide a wrench by it before it is
+    /// allocated to rotors.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {

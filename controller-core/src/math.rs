@@ -19,7 +19,7 @@ pub use libm::{atan, exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, 
 use nalgebra::Vector3;
 
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the
-/// target's ABI tells (stable compilers do not tell its feature `vfp2`).
+/// target's ABI shows (stable compilers hide its feature `vfp2`).
 #[inline(always)]
 #[must_use]
 pub fn sqrt(x: f32) -> f32 {

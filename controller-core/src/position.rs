@@ -58,7 +58,7 @@ pub struct FilterTransition {
 }
 
 impl FilterTransition {
-    /// The longest period, s: the slowest tick the link's simulators may ask for.
+    /// The longest period, s: the slowest tick of the link's simulators.
     pub const LONGEST_PERIOD: f32 = 0.1;
 
     /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].

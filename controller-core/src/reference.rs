@@ -1,4 +1,4 @@
-//! What the vehicle is asked to do: the reference r(t) of the paper's Section III, and its bounds Omega_r.
+//! The reference r(t) of the paper's Section III, and its bounds Omega_r.
 //!
 //! The law needs the position to its fourth derivative (snap) and the heading to its second; Assumption 1 needs bounds
 //! on all of them. Each kind of reference states its own bounds, rigorously:
@@ -68,7 +68,7 @@ impl Reference {
 }
 
 constants! {
-    /// Omega_r of Assumption 1: how hard a reference may ask the vehicle to move.
+    /// Omega_r of Assumption 1: the bounds of a reference's derivatives.
     pub struct ReferenceBounds {
         /// K_v12, m/s: horizontal speed, Euclidean. Only a law that feeds drag forward depends on it.
         reference_bounds.horizontal_speed: Range::BOUND, FIXED;

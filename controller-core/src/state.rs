@@ -1,4 +1,4 @@
-//! What goes into a control tick and what comes out: the vehicle's state and the wrench.
+//! Input and output of a control tick: the vehicle's state and the wrench.
 
 use crate::error::InputError;
 use nalgebra::{Quaternion, Vector3};

@@ -1,4 +1,4 @@
-//! What an operator may change of a configuration that was built: figures of the vehicle, and factors on gains.
+//! The operator's changes to a built configuration: figures of the vehicle, and factors on gains.
 //!
 //! | what | changes | its sampled loops |
 //! |---|---|---|
@@ -155,7 +155,7 @@ pub struct Figures {
     pub thrust_max: f32,
     /// Limit of the torque about each body axis, N m.
     pub torque_max: Vector3<f32>,
-    /// What references may ask for.
+    /// The bounds of references.
     pub bounds: ReferenceBounds,
     /// Least and greatest thrust of each rotor, N; zeros without rotors.
     pub rotor_thrust: [f32; 2],

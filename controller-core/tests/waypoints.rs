@@ -318,7 +318,7 @@ fn very_unequal_segments_stay_within_their_bounds_and_smooth() {
         ];
         let waypoints = Waypoints::new(&points).unwrap();
         let bounds = waypoints.bounds();
-        // Nothing in this path asks for more than a few m/s^2; a solver that lost its digits would.
+        // This path needs no more than a few m/s^2; a solver that lost its digits would.
         assert!(bounds.horizontal_acceleration < 3.0 && bounds.snap < 30.0, "{bounds:?}");
         for i in 0..20_000 {
             assert!(bounds.contain(&waypoints.at(i * 1_000), 0.0));

@@ -55,7 +55,7 @@ mod tests {
     fn a_panic_while_reporting_is_not_reported_again() {
         let (acts, ending) = (RefCell::new(Vec::new()), Ending::new());
         let stop = |frames| acts.borrow_mut().push(format!("stop {frames}"));
-        let reported_again = || panic!("said again");
+        let reported_again = || panic!("reported again");
         // As on a board: a panic in there comes back to the same acts, and a restart follows them.
         ending.act(stop, || ending.act(stop, reported_again));
         assert_eq!(*acts.borrow(), ["stop 10", "stop 200"]);

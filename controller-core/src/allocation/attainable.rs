@@ -145,7 +145,7 @@ impl<const N: usize> Slabs<N> {
         Self(collected(slabs.iter().map(|(_, slab)| *slab)))
     }
 
-    /// The least and greatest s with `wrench` - s d in the zonotope; if there is none, nearly so.
+    /// The least and greatest s with `wrench` - s d in the zonotope; if it misses the zonotope, nearly so.
     pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
         self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
             let at = slab.normal.dot(wrench);

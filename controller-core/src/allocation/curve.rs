@@ -15,7 +15,7 @@
 //! recent reading it is one: no compensation.
 //!
 //! A full command is all there is: below the nominal voltage the greatest thrust falls to f_max phi(V / V_0), and a
-//! certificate for the end of the battery must be asked for with that thrust as the rotors' maximum.
+//! certificate for the end of the battery must be made with that thrust as the rotors' maximum.
 
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
@@ -59,7 +59,7 @@ impl ThrustCurve {
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
         let fraction = (thrust / self.thrust_max).clamp(0.0, 1.0);
         let root = math::sqrt(self.linear * self.linear + 4.0 * (1.0 - self.linear) * fraction);
-        // False for nothing asked for, where a = 0 divides zero by zero, and for a NaN.
+        // False for a command of zero, where a = 0 divides zero by zero, and for a NaN.
         if fraction > 0.0 { (2.0 * fraction / (self.linear + root) * ratio).min(1.0) } else { 0.0 }
     }
 

@@ -43,7 +43,7 @@ impl Actuator {
     }
 }
 
-/// What the rotors are asked to do, and what comes of it.
+/// The rotors' command, and the wrench it delivers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Delivered {
     /// Thrust of each rotor, N, within its range.

@@ -20,8 +20,8 @@
 //! hence a point of the roll-pitch polygon; step 2 takes the polygon's nearest point. All this holds up to rounding,
 //! which [`Mixer::wrench`] shows.
 //!
-//! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle is as its
-//! scenario says never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
+//! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle matches its
+//! scenario never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
 
 use super::attainable::{PAIRS, Polygon, Slabs, generators};
 use super::collected;
@@ -38,7 +38,7 @@ const TRIPLES: usize = 56;
 /// Triples of the seven rotors after the first.
 const TRIPLES_AFTER_FIRST: usize = 35;
 
-/// What the rotors are asked to do, and what comes of it.
+/// The rotors' command, and the wrench it delivers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Allocation {
     /// Thrust of each rotor, N, within its range.
@@ -182,7 +182,7 @@ impl Mixer {
             }
         }
         self.minimum_norm.clip(&mut thrusts);
-        // Rounding so far is of the size of the wrench asked for; what remains is of the size of the error.
+        // Rounding so far is of the size of the commanded wrench; what remains is of the size of the error.
         let missing = wrench - self.minimum_norm.sum(&thrusts);
         for (thrust, correction) in thrusts.iter_mut().zip(&self.minimum_norm.preferred(&missing)) {
             *thrust += correction;

@@ -1,4 +1,4 @@
-//! What a whole set of wrenches asks of each rotor: the certificate's last link, from the law to the rotors.
+//! The demand of a whole set of wrenches on each rotor: the certificate's last link, from the law to the rotors.
 //!
 //! The law's thrust lies in [T_lo, T_hi] and its torque in a sum of sets C = C_1 + C_2 + … (each saturated feedback and
 //! each feedforward term is one). The mixer's first step gives rotor i the thrust f_i = b_T T + b_tau . tau, with
@@ -9,7 +9,7 @@
 //! h(d) = max { d . tau : tau in C } = h_1(d) + h_2(d) + …
 //! ```
 //!
-//! h is the *support function* of C. A radial saturation is a ball, h = r |d|: bounding it by a box would ask for up to
+//! h is the *support function* of C. A radial saturation is a ball, h = r |d|: bounding it by a box would demand up to
 //! sqrt(3) times as much.
 //!
 //! | [`Shape`] | set | h(d) |
@@ -179,7 +179,7 @@ pub struct RotorDemand {
 }
 
 impl RotorDemand {
-    /// What `commands` ask of `rotor`, whose thrust is `row` of B+ times the wrench.
+    /// The demand of `commands` on `rotor`, whose thrust is `row` of B+ times the wrench.
     #[must_use]
     pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
         Self {
@@ -190,14 +190,14 @@ impl RotorDemand {
         }
     }
 
-    /// Whether the rotor can give all that is asked of it.
+    /// Whether the rotor's range covers its demand.
     #[must_use]
     pub fn fits(&self) -> bool {
         self.least >= self.available_min && self.greatest <= self.available_max
     }
 }
 
-/// What `commands` ask of each rotor, in the rotors' order.
+/// The demand of `commands` on each rotor, in the rotors' order.
 #[must_use]
 pub fn demands(rotors: &Rotors, commands: &Commands) -> Vec<RotorDemand, ROTORS_MAX> {
     let all = rotors.iter().zip(rotors.pseudo_inverse());

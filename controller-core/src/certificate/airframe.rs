@@ -33,7 +33,7 @@ fn of(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> Result<
 
 /// The widest bounds of references that `law` certifies on `airframe`, `least` in any case: a share of
 /// [`defaults::reference_bounds`], lessened in steps of a tenth. If not even a hundredth certifies it is all of them,
-/// so that the certificate says why.
+/// so that the certificate names the reason.
 #[must_use]
 pub fn flyable(airframe: &Airframe, law: ExtendedLaw, least: &ReferenceBounds) -> ReferenceBounds {
     let most = defaults::reference_bounds(airframe, &law.parameters);

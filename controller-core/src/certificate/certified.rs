@@ -30,7 +30,7 @@ impl Certified {
     /// Certifies `configuration`.
     ///
     /// # Errors
-    /// [`Refused`] says which inequality fails and by how much.
+    /// [`Refused`] names the inequality that fails, and by how much.
     #[allow(clippy::result_large_err)] // as above, and it happens once, on the ground
     pub fn new(configuration: Configuration) -> Result<Self, Refused> {
         let certificate = Certificate::new(&configuration).map_err(Refused::Undefined)?;

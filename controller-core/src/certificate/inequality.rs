@@ -35,7 +35,7 @@ impl Inequality {
         self.required < self.available || (!self.strict && self.required == self.available)
     }
 
-    /// The part of what is available that is left over; negative where the inequality fails.
+    /// The margin as a share of what is available; negative where the inequality fails.
     #[must_use]
     pub fn margin(&self) -> f64 {
         if self.available > 0.0 { 1.0 - self.required / self.available } else { f64::NEG_INFINITY }

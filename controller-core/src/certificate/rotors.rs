@@ -12,7 +12,7 @@
 //! rotor i over thrust interval and torque set are support functions in the direction of its row of the inverse
 //! ([`crate::allocation::support`]): no box around a ball is paid for.
 //!
-//! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may ask for
+//! Margins count from hover: a rotor has the room between its hovering thrust and its limit; what the law may command
 //! beyond hovering is required of it.
 
 use super::form::{ARITHMETIC_ALLOWANCE, Form};
@@ -35,7 +35,7 @@ const NAMES: [(&str, &str); ROTORS_MAX] = [
     ("R rotor 8 least", "R rotor 8 greatest"),
 ];
 
-/// What the law asks of one rotor.
+/// The law's demand on one rotor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorReport {
     /// Its extremes, and what it has.

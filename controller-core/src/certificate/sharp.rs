@@ -85,7 +85,7 @@ impl DesiredRates {
     }
 }
 
-/// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: what |omega_d'| <= a and |omega_d| <= v can ask for in any body frame.
+/// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: the bound under |omega_d'| <= a and |omega_d| <= v in any body frame.
 #[must_use]
 pub fn feedforward_torque(inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Vector3<f64> {
     let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).abs();
@@ -232,7 +232,7 @@ impl Tilt {
 }
 
 /// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which
-/// an upper bound already says that they change nothing.
+/// an upper bound shows that they change nothing.
 fn acceleration_square(
     tilt: &Tilt,
     linear: &[Parts; ANGLE_CELLS],

@@ -1,4 +1,4 @@
-//! Every constant from a vehicle's numbers. Section 14 of `docs/extended-law.md` says why each formula is what it is.
+//! Every constant from a vehicle's numbers. Section 14 of `docs/extended-law.md` derives each formula.
 //!
 //! With T the rotors' lag and the delay together, h the period, J the mean moment of inertia of the tilt, and the
 //! rotors' attainable torque and thrust:

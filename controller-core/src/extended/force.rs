@@ -1,4 +1,4 @@
-//! An estimate of the force that the model does not know, per mass: wind, drag, errors of mass and thrust. Section 2 of
+//! An estimate of the unmodelled force, per mass: wind, drag, errors of mass and thrust. Section 2 of
 //! `docs/extended-law.md`.
 //!
 //! | here | equation |

@@ -115,7 +115,7 @@ impl Extended {
     /// of it at most, up to ten times the thrust that hovers.
     pub const FLOOR_MARGIN_LEAST: f32 = 1e-5;
 
-    /// Checks every constant, and that the vehicle can never be asked to push down.
+    /// Checks every constant, and that the command never pushes down.
     ///
     /// # Errors
     /// Names the first field that is out of its range.

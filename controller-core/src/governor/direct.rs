@@ -20,7 +20,7 @@
 //! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
 //!
 //! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at
-//! rest in the middle of a circle, shrinks without changing direction, and asks for next to no acceleration of its own.
+//! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own.
 //! l begins at what the error allows, and grows as it shrinks.
 
 use super::envelope::{Envelope, Moving, WayOut};
@@ -32,7 +32,7 @@ use nalgebra::Vector3;
 const FEASIBLE: f32 = 0.9995;
 const RETREATING: f32 = 0.98;
 
-/// The share of the bounds, less the stream's part, that feedback may ask for, and the least that is counted on.
+/// The share of the bounds, less the stream's part, that feedback may command, and the least that is counted on.
 const FEEDBACK: f32 = 0.25;
 const LEAST_LEFT: f32 = 0.01;
 
@@ -44,7 +44,7 @@ const SLACKEST: f32 = 0.4;
 const STIFFEST: f32 = 0.2;
 const GROWTH: f32 = 0.12;
 
-/// The stiffness, over the rate of a turning stream, at which an error that turns with it asks for no more than it
+/// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it
 /// leaves.
 const TURNING: f32 = 0.8;
 
@@ -253,7 +253,7 @@ impl Direct {
         self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
     }
 
-    /// The acceleration that feedback may ask for, m/s^2: a share of the rest beside a head whose error turns with the
+    /// The acceleration that feedback may command, m/s^2: a share of the rest beside a head whose error turns with the
     /// stream.
     fn room(&self, sought: &Sought) -> f32 {
         let Point { acceleration, jerk, snap, rate, .. } = &sought.point;

@@ -2,7 +2,7 @@
 //!
 //! Between the head and the knot lie the last average, N_3 ticks, and the spline. The head's acceleration is known, as
 //! integers; its velocity and place follow from the knot's by the time between, (N_3 + 1)/2 ticks, with an acceleration
-//! that changes evenly. They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is asked for that much more.
+//! that changes evenly. They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is commanded that much more.
 
 use super::direct::Sought;
 use super::envelope::{Bounds, Cylinder, Envelope, Moving};

@@ -1,4 +1,4 @@
-//! What the governor makes for, as the last setpoint has it.
+//! The governor's goal, by the last setpoint.
 
 use super::stream::Stream;
 use nalgebra::Vector3;
@@ -34,7 +34,7 @@ impl Goal {
     ) -> Stream {
         match last.filter(|last| last.is_point() && held == [true; 3]) {
             None => Stream::new(velocity, acceleration),
-            // Two in a tick: how far apart, nobody knows.
+            // Two in a tick: the time between them is unknown.
             Some(last) if time == 0.0 => Stream { velocity, acceleration, ..last.stream },
             Some(last) => last.stream.followed_by(velocity, acceleration, time),
         }

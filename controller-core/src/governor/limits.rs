@@ -1,4 +1,4 @@
-//! What the governor is asked to keep to beside the bounds of the reference, and its ranges.
+//! The governor's own limits, beside the bounds of the reference, and their ranges.
 
 /// Ticks of commands remembered: what the three averages may span together.
 pub(super) const HISTORY: usize = 512;

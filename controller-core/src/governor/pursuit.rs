@@ -3,12 +3,12 @@
 //!
 //! Wanted velocity: w = feed + |e|-directed approach, cut to the speed limits. Commanded acceleration: w - u, scaled
 //! (not cut by component) into the cylinder C. "How long" is measured by C itself, ||y|| = max(|y_12|/A_12, |y_3|/A_3),
-//! so one number says both how hard a step is and how much of C it uses, and everything along one direction is the
+//! so one number gives both the size of a step and its use of C, and everything along one direction is the
 //! scalar problem of [`super::braking`]: from rest the path is the straight segment to the target, run without
 //! overshoot and ended on the exact point.
 //!
-//! The bounds do not depend on any of this: alpha in C is all the windows ask for. From a state in motion, arrival is
-//! by feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then
+//! The bounds do not depend on any of this: the windows need no more than alpha in C. From a state in motion, arrival
+//! is by feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then
 //! persists; when the target is passed at speed the same law brakes and returns. That every such pursuit ends is shown
 //! by test (at worst 1.4 times as late as stopping first would) and by the campaign in `tests/governor_campaign.rs`,
 //! not proven.

@@ -1,4 +1,4 @@
-//! What may be asked of the governor.
+//! The governor's setpoints.
 
 use crate::error::InputError;
 use crate::reference::DERIVATIVE_RANGE;
@@ -38,7 +38,7 @@ pub enum Motion {
 /// Which way to point. World frame, counter-clockwise from x seen from above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Turn {
-    /// As asked before: an angle on the way is still turned to, a rate still runs out.
+    /// As commanded before: an angle on the way is still turned to, a rate still runs out.
     Keep,
     /// Turn to an angle, the shorter way round; any real number of radians is an angle.
     Angle {

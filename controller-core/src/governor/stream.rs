@@ -1,5 +1,5 @@
-//! A stream of positions, velocities and accelerations between two setpoints: where its point is by now, and what it
-//! does.
+//! A stream of positions, velocities and accelerations between two setpoints: its present point and
+//! motion.
 //!
 //! The turning model: what of the acceleration is across the horizontal velocity goes round with it, at w = (v x a)_3 /
 //! |v|^2; what is along it or vertical changes at the rate c, and c is what turning leaves unexplained of the last
@@ -15,7 +15,7 @@ use crate::math;
 use crate::reference::phase::swing;
 use nalgebra::Vector3;
 
-/// Turns slower than this, rad/s, are none to within single precision.
+/// Turns slower than this, rad/s, are zero to within single precision.
 const SLOWEST: f32 = 1e-2;
 
 /// Speeds squared below this, m^2/s^2, have no direction to turn.

@@ -166,7 +166,7 @@ impl Turning {
         self.part -= units * self.length as i64;
     }
 
-    /// Whether nothing turns and `goal` asks for nothing else.
+    /// Whether nothing turns and `goal` is at rest too.
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
         let behind = self.commanded.wrapping_sub(self.place).wrapping_mul(self.length as i64) - self.part;
         let still = self.rate == 0 && behind == 0 && self.first == 0 && self.second == 0;

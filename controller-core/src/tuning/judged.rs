@@ -1,7 +1,7 @@
 //! Which factors on the gains have sampled loops that are stable, with margin: judged beforehand, for every choice
 //! there is.
 //!
-//! Judging a loop takes an analysis that no board does (`docs/sampled-loop.md`). So whoever builds a configuration does
+//! Judging a loop takes an analysis that no board does (`docs/sampled-loop.md`). So the build of a configuration does
 //! it for each choice of [`Factors`], and what is kept is one bit a choice. The loops about the horizontal axes, and
 //! about yaw, depend on four factors, the loop along the vertical on two; under the paper's law, which has no gains of
 //! its own for the vertical, on the four.
@@ -34,7 +34,7 @@ impl JudgedLoops {
         Self { across, vertical }
     };
 
-    /// What somebody has judged before: as [`Self::bits`] gave it.
+    /// An earlier judgement, as [`Self::bits`] gave it.
     #[must_use]
     pub const fn from_bits(across: [u8; ACROSS_BYTES], vertical: [u8; VERTICAL_BYTES]) -> Self {
         Self { across, vertical }
@@ -46,8 +46,8 @@ impl JudgedLoops {
         (&self.across, &self.vertical)
     }
 
-    /// Asks `across` about every choice of the first four factors, and `vertical` about every choice of the other two;
-    /// the factors that are not asked about are as built.
+    /// Calls `across` for every choice of the first four factors, and `vertical` for every choice of the other two;
+    /// the factors that are not varied are as built.
     #[must_use]
     pub fn judge(mut across: impl FnMut(&Factors) -> bool, mut vertical: impl FnMut(&Factors) -> bool) -> Self {
         let mut judged = Self { across: [0; _], vertical: [0; _] };

@@ -15,7 +15,7 @@ use firmware::shared::Asked;
 use flight::{Mode, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 
-/// A vehicle at rest: what its accelerometer says at a time, us, what its battery's, and whether its motors' frames go
+/// A vehicle at rest: its accelerometer's force at a time, us, its battery's voltage, and whether its motors' frames go
 /// out.
 struct Vehicle {
     force: fn(u64) -> Option<Vector3<f32>>,
@@ -60,7 +60,7 @@ fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, n
     }
 }
 
-/// Each of these is asked for at its time, us, of four seconds: the mode then, and what was said since the first of
+/// Each of these is requested at its time, us, of four seconds: the mode then, and the texts since the first of
 /// them.
 fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mode, Vec<String>) {
     let clock = Simulated::default();
@@ -68,30 +68,30 @@ fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mod
     let mut control = Control::new(shared.for_control(), pilot, outputs);
     let mut flow = Flow::new(shared.for_samples(), &ImuParameters::BMI088, &Calibration::NONE).unwrap();
     let mut frames = Frames(&clock, vehicle.frames);
-    let mut said = Vec::new();
+    let mut seen = Vec::new();
     clock.run(4_000_000, control.run(&clock, &mut frames, &mut Patient), |now| {
         sense(shared, &mut flow, vehicle, now);
         let words = texts(shared);
-        said.extend(words.into_iter().filter(|_| now > requests[0].0));
+        seen.extend(words.into_iter().filter(|_| now > requests[0].0));
         if let Some(&(_, request)) = requests.iter().find(|(at, _)| *at == now) {
             shared.request(Asked { request, order: None, setpoints: None });
         }
     });
-    (shared.report.get().unwrap().value.mode, said)
+    (shared.report.get().unwrap().value.mode, seen)
 }
 
 /// Asked to arm after three seconds.
 const ARM: [(u64, Request); 1] = [(3_000_000, Request::Arm)];
 
-/// It does not arm, and says this.
+/// It does not arm, and announces this.
 fn refuses(shared: &Local, vehicle: &Vehicle, words: &str) {
-    let (mode, said) = asked(shared, vehicle, &ARM);
-    assert!(!mode.is_armed() && said.iter().any(|said| said == words), "{mode:?} {said:?}");
+    let (mode, texts) = asked(shared, vehicle, &ARM);
+    assert!(!mode.is_armed() && texts.iter().any(|text| text == words), "{mode:?} {texts:?}");
 }
 
 fn arms(shared: &Local, vehicle: &Vehicle) {
-    let (mode, said) = asked(shared, vehicle, &ARM);
-    assert_eq!(mode, Mode::Idling, "{said:?}");
+    let (mode, texts) = asked(shared, vehicle, &ARM);
+    assert_eq!(mode, Mode::Idling, "{texts:?}");
 }
 
 #[test]
@@ -131,11 +131,11 @@ fn a_battery_that_is_to_be_watched_does_not_arm_unless_it_is_measured() {
 fn a_battery_reading_that_ends_in_flight_is_reported_once_and_changes_nothing() {
     let wish = [(2_000_000, Request::Arm), (2_100_000, Request::TakeOff(None))];
     let words = "Battery: no reading for 1 s, nothing watches it";
-    let told = |said: &[String]| said.iter().filter(|said| *said == words).count();
+    let count = |texts: &[String]| texts.iter().filter(|text| *text == words).count();
     let until = |time| (time < 2_300_000).then_some(12.0);
     for (shared, times) in [(watching(Name::BatteryLow), 1), (Local::new(), 0)] {
-        let (mode, said) = asked(&shared, &Vehicle { voltage: until, ..WELL }, &wish);
-        assert_eq!((mode, told(&said)), (Mode::TakingOff, times), "{said:?}");
+        let (mode, texts) = asked(&shared, &Vehicle { voltage: until, ..WELL }, &wish);
+        assert_eq!((mode, count(&texts)), (Mode::TakingOff, times), "{texts:?}");
     }
 }
 

@@ -75,7 +75,7 @@ fn logs(card: &Simulation) -> Vec<(String, Parsed)> {
     files.map(|(name, bytes)| (name, parsed(&bytes))).collect()
 }
 
-/// Whether SYS_STATUS says that there is a log, and that it is well.
+/// Whether SYS_STATUS reports a log, and a healthy one.
 fn bits(shared: &Local, now: u64) -> (bool, bool) {
     let status = vehicle::status(None, None, Traffic::default(), shared.card.health(now));
     let bit = MavSysStatusSensor::MAV_SYS_STATUS_LOGGING;

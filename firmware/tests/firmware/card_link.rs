@@ -73,7 +73,7 @@ impl Bench {
             each(now, self.shared);
             assert!(self.tasks.as_mut().poll(&mut context).is_pending(), "a task ended");
             self.clock.0.set(self.clock.0.get() + 1_000);
-            // The status task's, which nobody plays here.
+            // The status task's, which does not run here.
             while self.shared.log.take().is_some() {}
         }
         RefCell::new(self.written.take())
@@ -106,7 +106,7 @@ impl Bench {
 }
 
 /// The texts of what went out.
-fn said(written: &RefCell<Vec<u8>>) -> Vec<String> {
+fn texts_in(written: &RefCell<Vec<u8>>) -> Vec<String> {
     let texts: Vec<STATUSTEXT_DATA> = sent(written);
     texts.iter().map(|text| text.text.to_str().unwrap().to_owned()).collect()
 }
@@ -139,7 +139,7 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
     assert!(SECTOR as u32 * 90 < sizes[0] && sizes[0] < sizes[1] && sizes[1] < files["LOG00002.ULG"].len() as u32);
     let all = [(0, 3, 2, sizes[0]), (1, 3, 2, sizes[1]), (2, 3, 2, sizes[2])];
     assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))), all);
-    // What was lost is asked for again; what is beyond the end tells where that is.
+    // A lost part is requested again; a request beyond the end returns the end.
     assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(1, 1), 0))), all[1..2]);
     assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(9, 20), 0))), all[2..]);
 
@@ -162,7 +162,7 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
     }
     let beyond = bench.asked(SECOND, |fed| fed.message(&part(3, 0, 90), 0));
     assert!(sent::<LOG_DATA_DATA>(&beyond).is_empty());
-    assert_eq!(said(&beyond), ["Log 3: not found"]);
+    assert_eq!(texts_in(&beyond), ["Log 3: not found"]);
 
     let begun = bench.asked(SECOND, |fed| {
         fed.message(&part(1, 0, u32::MAX), 0);
@@ -172,7 +172,7 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
 
     // Erasing takes the recording and no file.
     let erased = bench.asked(SECOND, |fed| fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 0));
-    assert_eq!(said(&erased), ["Log: files stay on the card; delete them there"]);
+    assert_eq!(texts_in(&erased), ["Log: files stay on the card; delete them there"]);
     assert!(bench.files() == files);
     assert_eq!(
         entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))),
@@ -213,19 +213,19 @@ fn nothing_is_served_while_armed_and_arming_ends_what_was_under_way() {
     report(bench.shared, mode(begin), begin);
     Fed::new(bench.shared).message(&part(1, 0, u32::MAX), begin);
     let before = bench.run(SECOND, |_, _| ());
-    assert!(sent::<LOG_DATA_DATA>(&before).len() > 400 && said(&before).is_empty());
+    assert!(sent::<LOG_DATA_DATA>(&before).len() > 400 && texts_in(&before).is_empty());
     let ended = bench.run(500_000, |now, shared| report(shared, mode(now), now));
     assert!(sent::<LOG_DATA_DATA>(&ended).is_empty());
-    assert_eq!(said(&ended), ["Log: not while armed"]);
+    assert_eq!(texts_in(&ended), ["Log: not while armed"]);
     let mut fed = Fed::new(bench.shared);
     fed.message(&list(0, u16::MAX), 0);
     fed.message(&part(1, 0, 90), SECOND);
     fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 2 * SECOND);
     let refused = bench.run(500_000, |now, shared| report(shared, mode(now), now));
     assert!(sent::<LOG_DATA_DATA>(&refused).is_empty());
-    assert_eq!(said(&refused), ["Log: not while armed"; 3]);
+    assert_eq!(texts_in(&refused), ["Log: not while armed"; 3]);
     assert_eq!(entries(&refused), [(0, 0, 0, 0)]);
-    // Asked for before the flight is over on the card: served then. The flight is there, whole.
+    // Requested before the flight is over on the card: served then. The flight is there, whole.
     bench.run(SECOND + 500_000, |now, shared| report(shared, mode(now), now));
     let listed = bench.asked(4 * SECOND, |fed| fed.message(&list(2, 2), 0));
     assert_eq!(entries(&listed).iter().map(|entry| entry.0).collect::<Vec<_>>(), [2]);
@@ -242,17 +242,17 @@ fn a_card_that_falls_silent_or_goes_ends_the_download_in_words() {
     Fed::new(&shared).message(&part(0, 0, 90), 0);
     let mut patient = true;
     clock.run(ANSWER_WITHIN + 2 * SECOND, link, |now| {
-        patient &= now > ANSWER_WITHIN || said(&written).is_empty();
+        patient &= now > ANSWER_WITHIN || texts_in(&written).is_empty();
     });
     assert!(patient);
-    assert_eq!(said(&written), ["Log: the card does not answer"]);
+    assert_eq!(texts_in(&written), ["Log: the card does not answer"]);
 
     let mut bench = Bench::flown();
     Fed::new(bench.shared).message(&part(1, 0, u32::MAX), 0);
     bench.run(200_000, |_, _| ());
     bench.card.medium.borrow_mut().is_absent = true;
     let gone = bench.run(SECOND, |_, _| ());
-    assert_eq!(said(&gone), ["Log 1: cannot be read"]);
+    assert_eq!(texts_in(&gone), ["Log 1: cannot be read"]);
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn what_the_card_offered_is_not_taken_for_the_recorders_when_the_card_goes() {
     Fed::new(bench.shared).message(&part(0, 0, u32::MAX), 0);
     bench.run(50_000, |_, _| ());
     let sent_after = bench.run(SECOND, |now, shared| shared.card.set(CardState::Failed, now));
-    assert_eq!(said(&sent_after), ["Log: the card has come or gone, list again"]);
+    assert_eq!(texts_in(&sent_after), ["Log: the card has come or gone, list again"]);
     assert!(sent::<LOG_DATA_DATA>(&sent_after).len() < 20);
 }
 
@@ -272,7 +272,7 @@ fn an_unreadable_file_is_reported_and_the_next_flight_is_logged() {
     bench.card.medium.borrow_mut().worn = Some(worn);
     let failed = bench.asked(SECOND, |fed| fed.message(&part(0, 0, u32::MAX), 0));
     assert!(sent::<LOG_DATA_DATA>(&failed).len() < 60);
-    assert_eq!(said(&failed), ["Log 0: cannot be read"]);
+    assert_eq!(texts_in(&failed), ["Log 0: cannot be read"]);
     assert!(!bench.fetched(1).is_empty());
     let begin = bench.clock.0.get();
     let armed = begin + SECOND..begin + 2 * SECOND;

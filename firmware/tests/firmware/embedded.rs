@@ -1,4 +1,4 @@
-//! What the build embeds is what the file says, to the bit; and it embeds nothing that cannot be flown.
+//! The embedded scenario equals the file, to the bit; and only what can be flown is embedded.
 
 #[path = "../../build/embed.rs"]
 mod embed;

@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 /// When the answer to that command is true, us: the vehicle has moved on by a period.
 const ANSWER: u64 = COMMANDED + PERIOD;
 
-/// What is shared after the simulator has said `bytes`, 5 ms after its command.
-fn said(hil: &Hil, bytes: Vec<u8>) -> Local {
+/// The shared values after the simulator has sent `bytes`, 5 ms after its command.
+fn received(hil: &Hil, bytes: Vec<u8>) -> Local {
     let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
     clock.0.set(COMMANDED + 5_000);
     line.borrow_mut().push_back(Delivery::Bytes(bytes));
@@ -25,7 +25,7 @@ fn said(hil: &Hil, bytes: Vec<u8>) -> Local {
 fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
     let hil = commanded();
     assert!(hil.active() && hil.awaiting());
-    let shared = said(&hil, [v2(1, &odometry(ANSWER)), v2(2, &sensor(ANSWER))].concat());
+    let shared = received(&hil, [v2(1, &odometry(ANSWER)), v2(2, &sensor(ANSWER))].concat());
     let (imu, pose) = (shared.imu.get().unwrap(), newest(&shared).unwrap());
     assert_eq!((imu.time, pose.time), (ANSWER, ANSWER));
     assert_eq!(imu.value.angular_velocity, Vector3::new(0.5, -0.25, -0.125));
@@ -42,17 +42,17 @@ fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
 #[test]
 fn neither_a_pose_nor_a_sample_within_the_period_ends_the_exchange() {
     let hil = commanded();
-    let shared = said(&hil, [v2(1, &odometry(ANSWER)), v2(2, &sensor(ANSWER - 1))].concat());
+    let shared = received(&hil, [v2(1, &odometry(ANSWER)), v2(2, &sensor(ANSWER - 1))].concat());
     assert!(newest(&shared).is_some() && shared.imu.get().is_some());
     assert!(hil.awaiting());
 }
 
 #[test]
 fn no_answer_is_fresher_than_the_last_command_makes_it() {
-    // A microsecond later than it can be; a second to come; whatever a clock of its own says.
+    // A microsecond later than it can be; a second to come; a clock of its own.
     for time in [ANSWER + 1, ANSWER + 1_000_000, u64::MAX - PERIOD, u64::MAX - 1, u64::MAX] {
         let hil = commanded();
-        let shared = said(&hil, [v2(1, &odometry(time)), v2(2, &sensor(time))].concat());
+        let shared = received(&hil, [v2(1, &odometry(time)), v2(2, &sensor(time))].concat());
         assert!(shared.imu.get().is_none() && newest(&shared).is_none(), "{time}");
         assert!(hil.awaiting());
     }
@@ -63,7 +63,7 @@ fn a_late_answer_keeps_its_own_time_and_is_not_the_one_awaited() {
     let hil = Hil::new();
     command(&hil, COMMANDED - PERIOD);
     command(&hil, COMMANDED);
-    let shared = said(&hil, [v2(1, &odometry(COMMANDED - 2 * PERIOD)), v2(2, &sensor(COMMANDED))].concat());
+    let shared = received(&hil, [v2(1, &odometry(COMMANDED - 2 * PERIOD)), v2(2, &sensor(COMMANDED))].concat());
     assert_eq!(shared.imu.get().unwrap().time, COMMANDED);
     assert_eq!(newest(&shared).unwrap().time, COMMANDED - 2 * PERIOD);
     assert!(hil.awaiting());
@@ -75,13 +75,13 @@ fn no_field_of_an_answer_may_be_nan_or_infinite() {
         // Accelerometer and gyro; what is behind them (magnetometer, barometer) is not used.
         for field in 0..13 {
             let hil = commanded();
-            let shared = said(&hil, patched(&sensor(ANSWER), 8 + 4 * field, value));
+            let shared = received(&hil, patched(&sensor(ANSWER), 8 + 4 * field, value));
             assert_eq!(shared.imu.get().is_none(), field < 6, "HIL_SENSOR field {field}: {value}");
             assert_eq!(hil.awaiting(), field < 6);
         }
         // Position, attitude, velocity, body rates.
         for field in 0..13 {
-            let shared = said(&commanded(), patched(&odometry(ANSWER), 8 + 4 * field, value));
+            let shared = received(&commanded(), patched(&odometry(ANSWER), 8 + 4 * field, value));
             assert!(newest(&shared).is_none(), "ODOMETRY field {field}: {value}");
         }
     }
@@ -99,7 +99,7 @@ fn a_simulator_that_does_not_know_a_rate_or_a_force_has_not_answered() {
         Field::HIL_SENSOR_UPDATED_ZGYRO,
     ] {
         let fields_updated = Field::all().difference(unknown);
-        let shared = said(&commanded(), v2(1, &HIL_SENSOR_DATA { fields_updated, ..sensor(ANSWER) }));
+        let shared = received(&commanded(), v2(1, &HIL_SENSOR_DATA { fields_updated, ..sensor(ANSWER) }));
         assert!(shared.imu.get().is_none(), "{unknown:?}");
     }
 }
@@ -111,14 +111,14 @@ fn a_pose_in_other_frames_or_without_a_rotation_is_refused() {
         ODOMETRY_DATA { child_frame_id: MavFrame::MAV_FRAME_LOCAL_FRD, ..odometry(ANSWER) },
         ODOMETRY_DATA { q: [0.0; 4], ..odometry(ANSWER) },
     ] {
-        assert!(newest(&said(&commanded(), v2(1, &wrong))).is_none(), "{wrong:?}");
+        assert!(newest(&received(&commanded(), v2(1, &wrong))).is_none(), "{wrong:?}");
     }
 }
 
 #[test]
 fn sensors_of_a_simulator_without_a_command_do_not_count() {
     let hil = Hil::new();
-    let shared = said(&hil, [v2(1, &odometry(0)), v2(2, &sensor(0))].concat());
+    let shared = received(&hil, [v2(1, &odometry(0)), v2(2, &sensor(0))].concat());
     assert!(shared.imu.get().is_none() && newest(&shared).is_none());
     assert!(!hil.active());
 }

@@ -28,7 +28,7 @@ fn motion(time: u64) -> ImuSample {
 }
 
 /// The simulator's word on that motion at `time`.
-fn told(time: u64) -> Vec<u8> {
+fn sensor_at(time: u64) -> Vec<u8> {
     let ImuSample { angular_velocity, specific_force } = motion(time);
     let (gyro, force) = (frames::body(&angular_velocity), frames::body(&specific_force));
     let rates = HIL_SENSOR_DATA { xgyro: gyro.x, ygyro: gyro.y, zgyro: gyro.z, ..sensor(time) };
@@ -51,7 +51,7 @@ fn drain(shared: &Local, increments: &mut Vec<Increment>) {
     increments.extend(std::iter::from_fn(|| shared.increments.take()));
 }
 
-/// What control gets from a simulator that says `answer` to the command of a time.
+/// What control gets from a simulator that sends `answer` to the command of a time.
 fn simulated(answer: impl Fn(u64) -> Vec<u8>) -> Got {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
     let mut increments = Vec::new();
@@ -106,7 +106,7 @@ fn real() -> Got {
 
 #[test]
 fn ten_samples_a_tick_are_integrated_and_filtered_as_a_sensors() {
-    let (simulated, real) = (simulated(|now| times(now).flat_map(told).collect()), real());
+    let (simulated, real) = (simulated(|now| times(now).flat_map(sensor_at).collect()), real());
     assert_eq!(real.newest.time, (TICKS + 1) * PERIOD);
     assert_eq!(simulated.increments, real.increments);
     assert_eq!(simulated.newest, real.newest);
@@ -117,14 +117,14 @@ fn ten_samples_a_tick_are_integrated_and_filtered_as_a_sensors() {
 
 #[test]
 fn repeated_out_of_order_and_future_samples_change_nothing() {
-    let clean = simulated(|now| times(now).flat_map(told).collect());
-    let twice = |time: u64| [told(time), told(time)].concat();
+    let clean = simulated(|now| times(now).flat_map(sensor_at).collect());
+    let twice = |time: u64| [sensor_at(time), sensor_at(time)].concat();
     let repeated = simulated(|now| times(now).flat_map(twice).collect());
     // The third comes again behind the fifth, then one of the period before, as old as that command.
     let behind = |time: u64, now: u64| match (time - now) / SAMPLE {
-        5 => [told(time), told(time - 2 * SAMPLE)].concat(),
-        7 => [told(time), told(now - 4 * SAMPLE), told(now)].concat(),
-        _ => told(time),
+        5 => [sensor_at(time), sensor_at(time - 2 * SAMPLE)].concat(),
+        7 => [sensor_at(time), sensor_at(now - 4 * SAMPLE), sensor_at(now)].concat(),
+        _ => sensor_at(time),
     };
     let overtaken = simulated(|now| times(now).flat_map(|time| behind(time, now)).collect());
     for got in [repeated, overtaken] {
@@ -133,8 +133,8 @@ fn repeated_out_of_order_and_future_samples_change_nothing() {
         assert_eq!(got.texts, ["IMU: samples out of order"]);
     }
     // A microsecond beyond the period, and a period: not taken in the first place.
-    let early = |now: u64| [told(now + PERIOD + 1), told(now + 2 * PERIOD)].concat();
-    let hasty = simulated(|now| early(now).into_iter().chain(times(now).flat_map(told)).collect());
+    let early = |now: u64| [sensor_at(now + PERIOD + 1), sensor_at(now + 2 * PERIOD)].concat();
+    let hasty = simulated(|now| early(now).into_iter().chain(times(now).flat_map(sensor_at)).collect());
     assert_eq!((hasty.increments, hasty.newest), (clean.increments, clean.newest));
     assert_eq!(hasty.texts, [""; 0]);
 }

@@ -1,4 +1,4 @@
-//! The IMU task on a sensor that faults, hangs or says what is no number.
+//! The IMU task on a sensor that faults, hangs or returns NaN or infinity.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
@@ -8,19 +8,19 @@ use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::imu::{PATIENCE, run};
 use nalgebra::Vector3;
 
-/// What a sensor says a millisecond after it is asked.
+/// A sensor's answer a millisecond after it is read.
 #[derive(Clone, Copy)]
-enum Says {
+enum Answer {
     Sample,
     Number(usize, f32),
     Fault,
     Nothing,
 }
 
-/// A sensor that says one thing before a time, us, another up to a second one, and samples afterwards.
+/// A sensor that samples, has `trouble` between two times, us, and samples afterwards.
 struct Sensor<'a> {
     clock: &'a Simulated,
-    trouble: Says,
+    trouble: Answer,
     from: u64,
     to: u64,
 }
@@ -32,12 +32,12 @@ impl Imu for Sensor<'_> {
         // A sensor that works is noisy.
         let jitter = (now / 1_000 % 7) as f32 * 1e-4;
         let (mut angular_velocity, mut specific_force) = (Vector3::repeat(jitter), Vector3::new(0.0, jitter, 9.8));
-        match if (self.from..self.to).contains(&now) { self.trouble } else { Says::Sample } {
-            Says::Sample => {}
-            Says::Number(index @ 0..3, value) => angular_velocity[index] = value,
-            Says::Number(index, value) => specific_force[index - 3] = value,
-            Says::Fault => return Err(Fault),
-            Says::Nothing => pending().await,
+        match if (self.from..self.to).contains(&now) { self.trouble } else { Answer::Sample } {
+            Answer::Sample => {}
+            Answer::Number(index @ 0..3, value) => angular_velocity[index] = value,
+            Answer::Number(index, value) => specific_force[index - 3] = value,
+            Answer::Fault => return Err(Fault),
+            Answer::Nothing => pending().await,
         }
         Ok(RawImu { time: now, angular_velocity, specific_force: Some(specific_force) })
     }
@@ -51,8 +51,8 @@ impl Imu for Sensor<'_> {
     }
 }
 
-/// The newest sample's times, once a millisecond, and what was said, with a sensor in trouble from 50 to 350 ms.
-fn sampled(trouble: Says) -> (Vec<u64>, Vec<String>) {
+/// The newest sample's times, once a millisecond, and the texts, with a sensor in trouble from 50 to 350 ms.
+fn sampled(trouble: Answer) -> (Vec<u64>, Vec<String>) {
     let (clock, shared) = (Simulated::default(), Local::new());
     let mut sensor = Sensor { clock: &clock, trouble, from: 50_000, to: 350_000 };
     let mut times = Vec::new();
@@ -68,8 +68,9 @@ fn sampled(trouble: Says) -> (Vec<u64>, Vec<String>) {
 
 #[test]
 fn every_fault_leaves_the_last_sample_to_age_and_is_reported_once() {
-    let numbers = (0..6).flat_map(|index| [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(|n| Says::Number(index, n)));
-    for trouble in numbers.chain([Says::Fault, Says::Nothing]) {
+    let numbers =
+        (0..6).flat_map(|index| [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(|n| Answer::Number(index, n)));
+    for trouble in numbers.chain([Answer::Fault, Answer::Nothing]) {
         let (times, texts) = sampled(trouble);
         assert!(times.iter().all(|time| !(50_000..350_000).contains(time)));
         assert!(times.contains(&49_000));
@@ -82,7 +83,7 @@ fn every_fault_leaves_the_last_sample_to_age_and_is_reported_once() {
 
 #[test]
 fn samples_carry_the_time_they_were_read() {
-    let (times, texts) = sampled(Says::Sample);
+    let (times, texts) = sampled(Answer::Sample);
     assert!(times.windows(2).all(|pair| pair[1] - pair[0] <= 1_000));
     assert!(times.len() > 990 && texts.is_empty());
 }

@@ -27,7 +27,7 @@ fn drain(shared: &Local) -> Vec<Increment> {
     std::iter::from_fn(|| shared.increments.take()).collect()
 }
 
-/// What control got of two seconds, draining 100 times a second, while `each` has its say; and what was said.
+/// What control got of two seconds, draining 100 times a second, while `each` acts; and the texts.
 fn flown(body: &Body, mut sensor: impl Imu, each: impl Fn(u64)) -> (Vec<Increment>, Vec<String>) {
     let shared = Local::new();
     let mut increments = Vec::new();
@@ -103,7 +103,7 @@ fn a_fault_is_reported_once_when_it_sets_in_and_again_when_it_comes_back() {
             body.first.set(if fails { does } else { Does::Well });
         });
         assert_eq!(texts, [words, words]);
-        // Without a force the gyro goes on; a gyro that is stuck is none.
+        // Without a force the gyro goes on; a stuck gyro counts as missing.
         assert_eq!(gaps(&increments), if matches!(does, Does::Stuck) { 2 } else { 0 }, "{words}");
         let stuck = increments.iter().filter(|one| (150_000..390_000).contains(&one.start)).count();
         assert_eq!(stuck == 0, matches!(does, Does::Stuck), "{words}: {stuck}");

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 /// Every way in which a word can be left behind.
 const TORN: [Torn; 3] = [Torn::Bits, Torn::Unreadable, Torn::Blank];
 
-/// The journal that a boot finds, and the newest value; 0 where there is none.
+/// The journal that a boot finds, and the newest value; 0 without one.
 fn opened<const WORD: usize>(chip: &RefCell<Chip>) -> (Journal<Words<'_, WORD>>, f32) {
     let mut words = [0; 5];
     let (mut journal, _) = Journal::open(Words(chip));
@@ -15,7 +15,7 @@ fn opened<const WORD: usize>(chip: &RefCell<Chip>) -> (Journal<Words<'_, WORD>>,
     (journal, f32::from_bits(words[4]))
 }
 
-/// Boots, saves a value in no more than two attempts, and says whether that went well.
+/// Boots, and saves a value in no more than two attempts; whether that succeeded.
 fn saved<const WORD: usize>(chip: &RefCell<Chip>, value: f32) -> bool {
     let (mut journal, _) = opened::<WORD>(chip);
     let words = [-1.0, 1.0, 2.0, 3.0, value].map(f32::to_bits);

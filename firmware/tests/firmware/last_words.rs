@@ -1,4 +1,4 @@
-//! Why the vehicle restarted, kept over the reset and told.
+//! Why the vehicle restarted, kept over the reset and reported.
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
@@ -9,7 +9,7 @@ use flight::Mode;
 
 const FAULT: &str = "fault at 0x08012344 from 0x08012001, CFSR 0x00008200, HFSR 0x40000000, BFAR 0x00000004";
 
-fn told() -> (Local, RestartReport) {
+fn restarted() -> (Local, RestartReport) {
     let shared = Local::new();
     shared.last_words.put(LastWords::new(FAULT), 0);
     (shared, RestartReport::default())
@@ -38,35 +38,35 @@ fn words_without_room_are_cut_at_whole_characters() {
 
 #[test]
 fn the_first_ground_station_receives_why_the_vehicle_restarted() {
-    let (shared, mut teller) = told();
-    teller.tick(shared.for_status(), 0);
+    let (shared, mut reporter) = restarted();
+    reporter.tick(shared.for_status(), 0);
     let first = texts(&shared);
     assert_eq!(first.concat(), format!("Restarted: {FAULT}"));
     assert!(first.iter().all(|line| line.len() <= 50));
-    teller.tick(shared.for_status(), 50_000);
+    reporter.tick(shared.for_status(), 50_000);
     assert!(texts(&shared).is_empty());
     shared.ground_station.put((), 100_000);
-    teller.tick(shared.for_status(), 100_000);
+    reporter.tick(shared.for_status(), 100_000);
     assert_eq!(texts(&shared), first);
-    teller.tick(shared.for_status(), 150_000);
+    reporter.tick(shared.for_status(), 150_000);
     assert!(texts(&shared).is_empty());
 }
 
 #[test]
 fn the_card_is_reported_once_it_is_ready() {
-    let (shared, mut teller) = told();
-    teller.tick(shared.for_status(), 0);
+    let (shared, mut reporter) = restarted();
+    reporter.tick(shared.for_status(), 0);
     assert!(shared.card_events.take().is_none());
     shared.card.set(CardState::Ready, 3_000_000);
-    teller.tick(shared.for_status(), 3_000_000);
+    reporter.tick(shared.for_status(), 3_000_000);
     assert!(shared.card_events.take().is_some());
 }
 
 #[test]
 fn it_is_repeated_until_the_vehicle_arms() {
-    let (shared, mut teller) = told();
+    let (shared, mut reporter) = restarted();
     let mut count = |time| {
-        teller.tick(shared.for_status(), time);
+        reporter.tick(shared.for_status(), time);
         texts(&shared).len()
     };
     assert_eq!([count(0), count(AGAIN - 1), count(AGAIN), count(AGAIN + 1)], [2, 0, 2, 0]);
@@ -87,7 +87,7 @@ fn the_status_task_reports_it() {
             None
         }
     }
-    let ((shared, _), clock) = (told(), Simulated::default());
+    let ((shared, _), clock) = (restarted(), Simulated::default());
     clock.run(1_000_000, firmware::status::run(Dark, Dark, &clock, shared.for_status()), |_| ());
     assert_eq!(texts(&shared).concat(), format!("Restarted: {FAULT}"));
 }

@@ -193,7 +193,7 @@ fn no_parameter_of_a_command_may_be_nan_where_it_is_used() {
     }
 }
 
-/// What control is asked for by a message, if anything.
+/// The request of a message to control, if any.
 fn asked(message: &COMMAND_LONG_DATA) -> Option<Request> {
     let shared = Local::new();
     Fed::new(&shared).message(message, 0);
@@ -309,7 +309,7 @@ fn a_line_that_echoes_does_not_command() {
 
 #[test]
 fn only_a_ground_stations_heartbeat_counts_as_its_presence() {
-    for (mavtype, heard) in [
+    for (mavtype, counts) in [
         (MavType::MAV_TYPE_GCS, true),
         (MavType::MAV_TYPE_ONBOARD_CONTROLLER, false),
         (MavType::MAV_TYPE_QUADROTOR, false),
@@ -317,7 +317,7 @@ fn only_a_ground_stations_heartbeat_counts_as_its_presence() {
         let shared = Local::new();
         let autopilot = MavAutopilot::MAV_AUTOPILOT_INVALID;
         Fed::new(&shared).message(&HEARTBEAT_DATA { mavtype, autopilot, ..Default::default() }, 1234);
-        assert_eq!(shared.ground_station.get().map(|heard| heard.time), heard.then_some(1234));
+        assert_eq!(shared.ground_station.get().map(|last| last.time), counts.then_some(1234));
     }
 }
 
@@ -350,7 +350,7 @@ fn a_refused_station_does_not_keep_another_from_stopping_the_motors() {
     let mut fed = Fed::new(&shared);
     let mut desk = desk(&shared, |tick, now| {
         match tick {
-            // Too early: nobody may arm yet.
+            // Too early to arm.
             20 => fed.bytes(&from(255, 1, &arm()), now),
             // A radio does, later.
             250 => shared.request(Asked { request: Request::Arm, order: None, setpoints: None }),

@@ -94,7 +94,7 @@ fn the_latest_of_a_kind_wins_and_the_one_before_it_is_answered() {
     let rejected = Reply::Command(order.answered(MavResult::MAV_RESULT_TEMPORARILY_REJECTED));
     assert_eq!(answers(&shared), std::slice::from_ref(&rejected));
     assert_eq!(requests(&shared), [Request::TakeOff(Some(5.0))]);
-    // What is asked for again is one; what another takes the place of is not done.
+    // A repeated request is one; a replaced one is not done.
     [2.0, 2.0, 3.0].iter().for_each(|height| fed.message(&take_off(*height), 0));
     let [asked] = asked(&shared)[..] else { panic!() };
     assert_eq!(asked.request, Request::TakeOff(Some(3.0)));
@@ -200,7 +200,7 @@ fn equal_bytes_are_acknowledged_with_the_result_of_the_first_and_never_of_anothe
     let nonsense = v2(1, &mode(1.0, 0.0));
     let set_mode = MavCmd::MAV_CMD_DO_SET_MODE as u16;
     assert_eq!(acknowledged(&[(3_000_000, nonsense.clone()), (3_040_000, nonsense)]), [(set_mode, denied); 2]);
-    // Armed, disarmed, and the first frame once more: it does not arm, and is not said to.
+    // Armed, disarmed, and the first frame once more: it does not arm, and is not acknowledged so.
     let (armed, disarmed) = (v2(1, &arm()), v2(2, &command(ARM_DISARM, [0.0; 5])));
     let frames = [(3_000_000, armed.clone()), (3_050_000, disarmed), (3_100_000, armed)];
     let results: Vec<_> = acknowledged(&frames).into_iter().map(|(_, result)| result).collect();
@@ -275,8 +275,8 @@ fn of_two_streams_of_setpoints_one_is_flown_and_the_other_refused() {
     assert!(shared.setpoint.take().is_some());
 }
 
-/// What becomes of OFFBOARD, asked for by a sender in an armed vehicle on the ground while others stream, each its own
-/// place: whether it is granted, whose are taken afterwards, and what is said.
+/// OFFBOARD, requested by a sender of an armed vehicle on the ground while others stream, each its own place: whether
+/// it is granted, whose setpoints are taken afterwards, and the texts.
 fn offboard(asker: (u8, u8), streams: &[(u8, u8)]) -> (bool, Vec<f32>, Vec<String>) {
     let shared = Local::new();
     let (mut fed, mut desk) = (Fed::new(&shared), Desk::new(&shared));
@@ -328,7 +328,7 @@ fn a_refused_request_does_not_take_over_a_flight_by_setpoints() {
     let mut fed = Fed::new(&shared);
     let setpoint_owner = Some((255, 190));
     shared.setpoint_owner.set(setpoint_owner);
-    // Somebody else streams, and asks; until control has granted it nothing changes.
+    // Another sender streams, and requests; until control has granted it nothing changes.
     fed.bytes(&from(9, 9, 1, &target(9.0)), 1_000);
     fed.bytes(&from(9, 9, 2, &mode(6.0, 0.0)), 2_000);
     let [asked] = asked(&shared)[..] else { panic!() };

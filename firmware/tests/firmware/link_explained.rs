@@ -67,7 +67,7 @@ fn a_message_that_is_not_flown_is_reported_once() {
     for count in 0..1_000 {
         fed.message(&MANUAL_CONTROL_DATA { target: 1, ..Default::default() }, count * 20_000);
         fed.message(&SET_ATTITUDE_TARGET_DATA { target_system: 1, ..Default::default() }, count * 20_000);
-        // For somebody else.
+        // For another system.
         fed.message(&MANUAL_CONTROL_DATA { target: 7, ..Default::default() }, count * 20_000);
     }
     assert_eq!(texts(&shared), ["Not flown: MANUAL_CONTROL", "Not flown: SET_ATTITUDE_TARGET"]);
@@ -76,7 +76,7 @@ fn a_message_that_is_not_flown_is_reported_once() {
 #[test]
 #[expect(deprecated, reason = "superseded messages: clients still send them")]
 fn an_unused_message_is_reported_once() {
-    fn said<D: MessageData>(ours: &D, anothers: Option<&D>) {
+    fn reported_once<D: MessageData>(ours: &D, anothers: Option<&D>) {
         let shared = Local::new();
         let mut fed = Fed::new(&shared);
         anothers.iter().for_each(|message| fed.message(*message, 0));
@@ -85,17 +85,17 @@ fn an_unused_message_is_reported_once() {
         assert_eq!(texts(&shared), [format!("Not used: {}", D::NAME)]);
     }
     let home = SET_HOME_POSITION_DATA { target_system: 1, ..Default::default() };
-    said(&home, Some(&SET_HOME_POSITION_DATA { target_system: 7, ..Default::default() }));
+    reported_once(&home, Some(&SET_HOME_POSITION_DATA { target_system: 7, ..Default::default() }));
     let request = MISSION_REQUEST_INT_DATA { target_system: 1, ..Default::default() };
-    said(&request, Some(&MISSION_REQUEST_INT_DATA { target_system: 7, ..Default::default() }));
+    reported_once(&request, Some(&MISSION_REQUEST_INT_DATA { target_system: 7, ..Default::default() }));
     let current = MISSION_SET_CURRENT_DATA { target_system: 1, ..Default::default() };
-    said(&current, Some(&MISSION_SET_CURRENT_DATA { target_system: 7, ..Default::default() }));
+    reported_once(&current, Some(&MISSION_SET_CURRENT_DATA { target_system: 7, ..Default::default() }));
     let part = MISSION_WRITE_PARTIAL_LIST_DATA { target_system: 1, ..Default::default() };
-    said(&part, Some(&MISSION_WRITE_PARTIAL_LIST_DATA { target_system: 7, ..Default::default() }));
+    reported_once(&part, Some(&MISSION_WRITE_PARTIAL_LIST_DATA { target_system: 7, ..Default::default() }));
     let stream = REQUEST_DATA_STREAM_DATA { target_system: 1, ..Default::default() };
-    said(&stream, Some(&REQUEST_DATA_STREAM_DATA { target_system: 7, ..Default::default() }));
-    said(&VISION_SPEED_ESTIMATE_DATA { x: 1.0, ..Default::default() }, None);
-    said(&GPS_INPUT_DATA::DEFAULT, None);
+    reported_once(&stream, Some(&REQUEST_DATA_STREAM_DATA { target_system: 7, ..Default::default() }));
+    reported_once(&VISION_SPEED_ESTIMATE_DATA { x: 1.0, ..Default::default() }, None);
+    reported_once(&GPS_INPUT_DATA::DEFAULT, None);
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn the_frame_and_the_place_of_a_take_off_are_honoured_or_refused() {
     ] {
         assert_eq!(asked(&message), None, "{message:?}");
     }
-    // COMMAND_LONG says the place in degrees, and the height above where it stands.
+    // COMMAND_LONG has the place in degrees, and the height above where it stands.
     let long = |param5, param6| {
         let command = MavCmd::MAV_CMD_NAV_TAKEOFF;
         asked(&COMMAND_LONG_DATA { command, target_system: 1, param5, param6, param7: 3.0, ..Default::default() })

@@ -72,7 +72,7 @@ fn a_truncated_frame_costs_itself_and_what_lies_where_its_payload_should() {
         // The frames behind it may only come out once enough bytes show that the first was broken.
         let frames = [v2(3, &odometry()), v2(4, &odometry()), v2(5, &odometry())].concat();
         let found = parsed(&[&whole[..length], &next, &frames].concat());
-        // From within a header nothing says how long the frame was to be.
+        // Within a header the frame's length is unknown.
         let next_whole = if (1..10).contains(&length) { 5 } else { 3 };
         assert!(found.contains(&(ODOMETRY_DATA::ID, next_whole)), "{length}: {found:?}");
         let reaches_beyond = length + next.len() > whole.len();

@@ -61,8 +61,8 @@ fn parameters_are_read_by_name_by_index_and_all_together() {
         fed.message(&read(index as i16, ""), 0);
         assert_eq!(replies(&shared), [Reply::Parameter(row.parameter), Reply::Parameter(row.parameter)]);
     }
-    for nobody in [read(-1, "K_P"), read(PARAMETERS.len() as i16, ""), read(i16::MIN, "")] {
-        fed.message(&nobody, 0);
+    for missing in [read(-1, "K_P"), read(PARAMETERS.len() as i16, ""), read(i16::MIN, "")] {
+        fed.message(&missing, 0);
     }
     fed.message(&set("K_P", 1.0), 0);
     assert!(replies(&shared).is_empty());

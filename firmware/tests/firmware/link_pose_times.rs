@@ -121,16 +121,16 @@ fn timesync_of_another_clock_does_not_count_and_a_measured_delay_does() {
 }
 
 /// A sender that answers TIMESYNC once a second, the first time more quickly than ever again; a pose each 10 ms for as
-/// long as there are `ticks`; what its clock says of a true time and how late its poses are is `line`'s to say. What
+/// long as there are `ticks`; `line` gives its clock at a true time and the delay of its poses. What
 /// became of each.
 fn synchronised(shared: &Local, ticks: u64, line: impl Fn(u64) -> (u64, u64)) -> Vec<(u64, Option<u64>)> {
     let mut fed = Fed::new(shared);
     let mut answered = 0;
     let truths = (0..ticks).map(|count| 1_000_000 + 10_000 * count);
     let stamps = truths.map(|truth| {
-        let (says, late) = line(truth);
+        let (stamp, late) = line(truth);
         let arrived = truth + late;
-        fed.message(&odometry(says), arrived);
+        fed.message(&odometry(stamp), arrived);
         let stamp = newest(shared).map(|pose| pose.time);
         if arrived >= answered + 1_000_000 {
             let way = if answered == 0 { 500 } else { 3_000 };

@@ -40,7 +40,7 @@ fn unknown_commands_are_answered_as_unsupported() {
 
 #[test]
 fn messages_are_sent_on_request_and_at_requested_rates() {
-    let tell = |command: MavCmd, first: f32, second: f32| {
+    let reply_to = |command: MavCmd, first: f32, second: f32| {
         let shared = Local::new();
         Fed::new(&shared).message(&crate::support::receiver::command(command, [first, second, 0.0, 0.0, 0.0]), 0);
         let replies = replies(&shared);
@@ -60,14 +60,14 @@ fn messages_are_sent_on_request_and_at_requested_rates() {
         // Whoever sends it answers.
         assert_eq!(replies(&shared), [Reply::Requested(kind, ordered(command))]);
     }
-    assert_eq!(tell(request, 435.0, 0.0).0.len(), 4);
-    assert_eq!(tell(request, 435.0, 2.0), (vec![Reply::Mode(2)], accepted));
-    assert_eq!(tell(request, 435.0, 9.0), (vec![], MavResult::MAV_RESULT_DENIED));
+    assert_eq!(reply_to(request, 435.0, 0.0).0.len(), 4);
+    assert_eq!(reply_to(request, 435.0, 2.0), (vec![Reply::Mode(2)], accepted));
+    assert_eq!(reply_to(request, 435.0, 9.0), (vec![], MavResult::MAV_RESULT_DENIED));
     let odometry = Reply::Interval { kind: Kind::Odometry, interval: 20_000 };
-    assert_eq!(tell(interval, 331.0, 20_000.0), (vec![odometry], accepted));
-    assert_eq!(tell(interval, 331.0, f32::NAN), (vec![], MavResult::MAV_RESULT_DENIED));
+    assert_eq!(reply_to(interval, 331.0, 20_000.0), (vec![odometry], accepted));
+    assert_eq!(reply_to(interval, 331.0, f32::NAN), (vec![], MavResult::MAV_RESULT_DENIED));
     for number in [9_999.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert_eq!(tell(request, number, 0.0), (vec![], unsupported), "{number}");
+        assert_eq!(reply_to(request, number, 0.0), (vec![], unsupported), "{number}");
     }
 }
 
@@ -196,15 +196,15 @@ fn the_time_is_sent_fifty_times_a_second_at_most() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     // A thousand questions in a second, and an answer among them.
-    let told: usize = (0..1_000)
+    let count: usize = (0..1_000)
         .map(|question| {
             fed.message(&TIMESYNC_DATA { tc1: 0, ts1: 7 + question }, question as u64 * 1_000);
-            let told = replies(&shared);
-            assert!(told.iter().all(|reply| *reply == Reply::TimeSync { asked: 7 + question }), "{told:?}");
-            told.len()
+            let sent = replies(&shared);
+            assert!(sent.iter().all(|reply| *reply == Reply::TimeSync { asked: 7 + question }), "{sent:?}");
+            sent.len()
         })
         .sum();
-    assert!((45..=50).contains(&told), "{told}");
+    assert!((45..=50).contains(&count), "{count}");
     fed.message(&TIMESYNC_DATA { tc1: 5, ts1: 7 }, 2_000_000);
     assert!(replies(&shared).is_empty());
 }

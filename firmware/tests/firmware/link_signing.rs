@@ -37,7 +37,7 @@ const STOP: &str = "fd20010002ffbe4c0000000000000098a546000000000000000000000000
 /// The stamp of the first.
 const FIRST: Stamp = 0x01_0203_0405;
 
-/// What the vehicle 1, component 1 says, on link 0.
+/// Frames of vehicle 1, component 1, on link 0.
 const OWN: [&str; 2] = [
     "fd09010000010100000000000000020000030364be00050403020100d20754b034b3",
     "fd0d0100010101fd0000045369676e696e673a206f6666ba4a00060403020100a9be29c924e1",
@@ -90,7 +90,7 @@ impl Sender {
     }
 }
 
-/// What a vehicle with this state of signing says to a frame.
+/// The verdict of a vehicle with this state of signing on a frame.
 fn judged(signing: &Signing<NoopRawMutex>, frame: &[u8], now: u64) -> Result<(), Refusal> {
     let (mut parser, mut verdict) = (Parser::new(), None);
     parser.feed(frame, now, &mut |frame| verdict = Some(signing.judge(frame, true)));
@@ -154,7 +154,7 @@ fn a_frame_that_is_not_signed_is_refused_in_words_as_the_parameter_says() {
         assert_eq!(texts(&shared), ["Refused: not signed"]);
         assert_eq!(shared.replies.take(), None);
     }
-    // Without a key nothing is, whatever the parameter says.
+    // Without a key nothing is, whatever the parameter.
     let shared = Local::new();
     Fed::new(&shared).bytes(&v2(1, &disarm()), NOW);
     assert!(is_stopped(&shared));
@@ -227,14 +227,14 @@ fn a_stream_that_was_forgotten_cannot_be_replayed() {
     let signing = Signing::new();
     signing.set(key(), FIRST, 0);
     let mut first = Sender::new(100, key(), FIRST);
-    let heard = first.say(&disarm(), 0);
-    assert_eq!(judged(&signing, &heard, 0), Ok(()));
+    let frames = first.say(&disarm(), 0);
+    assert_eq!(judged(&signing, &frames, 0), Ok(()));
     // As many others as there is room for, all ahead of it.
     for system in 0..STREAMS as u32 {
         let mut other = Sender::new(system + 1, key(), FIRST + 10);
         assert_eq!(judged(&signing, &other.say(&disarm(), 0), 0), Ok(()), "{system}");
     }
-    assert_eq!(judged(&signing, &heard, 0), Err(Refusal::Replayed));
+    assert_eq!(judged(&signing, &frames, 0), Err(Refusal::Replayed));
     // It goes on where it was.
     assert_eq!(judged(&signing, &first.say(&disarm(), 0), 0), Ok(()));
 }
@@ -387,18 +387,18 @@ fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
     // lasts as long as what was kept before it.
     let flight = AHEAD * 10 - 1_000_000;
     for _ in 0..2 {
-        let heard: Vec<_> = (0..=4).map(|part| station.say(&disarm(), part * flight / 4)).collect();
-        for (part, frame) in heard.iter().enumerate() {
+        let frames: Vec<_> = (0..=4).map(|part| station.say(&disarm(), part * flight / 4)).collect();
+        for (part, frame) in frames.iter().enumerate() {
             assert_eq!(judged(&vehicle.signing, frame, part as u64 * flight / 4), Ok(()));
         }
         vehicle = Local::new();
         let clock = Simulated::default();
         let mut storage = Storage::load(Words::<32>(&chip), vehicle.for_storage());
         clock.run(100_000, storage.keep(&clock, vehicle.for_storage()), |_| ());
-        for frame in &heard {
+        for frame in &frames {
             assert_eq!(judged(&vehicle.signing, frame, 0), Err(Refusal::Replayed));
         }
-        // The station hears the vehicle's stamps and goes on from there, on a clock that begins anew.
+        // The station receives the vehicle's stamps and goes on from there, on a clock that begins anew.
         let mut said = MAVLinkV2MessageRaw::new();
         said.serialize_message_data(MavHeader { system_id: 1, component_id: 1, sequence: 0 }, &HEARTBEAT_DATA::DEFAULT);
         vehicle.signing.sign(&mut said, 0);
@@ -453,7 +453,7 @@ fn signing_that_was_turned_off_stays_off_after_a_restart() {
     assert!(is_stopped(&again));
 }
 
-/// A frame with this stamp, whatever it is, of a system that says nothing else.
+/// A frame with this stamp, whatever it is, of a system that sends nothing else.
 fn stamped(system: u32, stamp: Stamp) -> Vec<u8> {
     Sender::new(system, key(), 0).say(&HEARTBEAT_DATA::DEFAULT, stamp * 10)
 }
@@ -473,7 +473,7 @@ fn one_stamp_far_ahead_blocks_no_other_sender() {
     for (system, stamp) in [(7, now + year + 1), (8, now + 2 * year), (8, LATEST - 1)] {
         assert_eq!(judged(&signing, &stamped(system, stamp), 0), Err(Refusal::Ahead));
     }
-    // And those whose clock is right are heard.
+    // And those whose clock is right are accepted.
     assert_eq!(judged(&signing, &stamped(9, now + 1), 0), Ok(()));
     assert_eq!(judged(&signing, &stamped(7, now + 2), 0), Ok(()));
     assert_eq!(judged(&signing, &stamped(9, now + year), 0), Ok(()));
@@ -481,7 +481,7 @@ fn one_stamp_far_ahead_blocks_no_other_sender() {
     signing.set(Key::new([9; 32]), Stamp::MAX, 0);
     let mut sender = Sender::new(9, Key::new([9; 32]), FIRST);
     assert_eq!(judged(&signing, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
-    // After a start somebody may set it once more.
+    // After a start it may be set once more.
     let started = Signing::<NoopRawMutex>::new();
     started.restore(&signing.unkept(0).unwrap());
     let mut sender = Sender::new(9, Key::new([9; 32]), FIRST + 9 * year);

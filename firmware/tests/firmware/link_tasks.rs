@@ -201,7 +201,7 @@ fn commands_are_answered_with_number_and_result() {
     shared.answer(&asked((255, 190)), Ok(()));
     shared.answer(&asked((7, 1)), Err(Refusal::PosesUnsettled));
     shared.answer(&asked((0, 0)), Ok(()));
-    // Nobody on the link.
+    // Not from the link.
     shared.answer(&Asked { request: Request::Arm, order: None, setpoints: None }, Ok(()));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
     shared.replies.put(Reply::Command(by(other as u16, (254, 0)).answered(result))).unwrap();
@@ -253,7 +253,7 @@ fn a_message_for_an_idle_line_goes_out_at_once() {
     ];
     for (say, message) in say {
         let shared = Local::new();
-        // The next heartbeat is due at a second; telemetry has nothing to tell.
+        // The next heartbeat is due at a second; telemetry has no value to send.
         shared.parameters.set(Name::TelemetryRate, 10.0).unwrap();
         let written = transmitted(&shared, 460_000, |now| {
             if now == 455_000 {
@@ -311,8 +311,8 @@ fn too_many_events_lose_the_last_ones_and_their_number_is_reported() {
     }
     let texts: Vec<STATUSTEXT_DATA> = sent(&transmitted(&shared, 2_000_000, |_| ()));
     let texts: Vec<_> = texts.iter().map(|text| text.text.to_str().unwrap()).collect();
-    let told: Vec<_> = texts.iter().filter(|text| text.ends_with("lost")).collect();
-    assert_eq!(told, [&"3 events lost"]);
+    let lost: Vec<_> = texts.iter().filter(|text| text.ends_with("lost")).collect();
+    assert_eq!(lost, [&"3 events lost"]);
     let rest: Vec<_> = texts.iter().filter(|text| !text.ends_with("lost")).copied().collect();
     assert_eq!(rest, ["0", "1", "2", "3", "4", "5", "6", "7"]);
 }

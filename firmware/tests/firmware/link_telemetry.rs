@@ -1,4 +1,4 @@
-//! Telemetry out: what each message says of a vehicle whose state is known.
+//! Telemetry out: each message of a vehicle whose state is known.
 
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
@@ -138,7 +138,7 @@ fn sensors_are_healthy_only_while_they_are() {
     let unreached = Report { motors_fail: true, ..report() };
     assert!(bits(Some(&well)).contains(motors) && !bits(Some(&unreached)).contains(motors));
     assert!(bits(Some(&unreached)).contains(Sensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION));
-    // It may be armed where it says so.
+    // It may be armed where it reports so.
     for (mode, ready, armable) in [(Mode::Ready, true, true), (Mode::Checks, false, false), (Mode::Flying, false, true)]
     {
         let report = Report { mode, ready, ..report() };
@@ -163,7 +163,7 @@ fn a_position_is_not_controlled_without_a_pose() {
 #[test]
 fn ground_and_air_are_distinguished() {
     for (mode, is_airborne, landed) in [
-        // Nobody knows yet, or any more.
+        // Unknown yet, or stale.
         (Mode::Boot, false, MavLandedState::MAV_LANDED_STATE_UNDEFINED),
         (Mode::Stopped, false, MavLandedState::MAV_LANDED_STATE_UNDEFINED),
         (Mode::Ready, false, MavLandedState::MAV_LANDED_STATE_ON_GROUND),

@@ -1,4 +1,4 @@
-//! The link on one of two lines: which, when it moves, and that nothing of the other is heard.
+//! The link on one of two lines: which, when it moves, and that the other's input is ignored.
 
 use crate::support::line::{Live, Outgoing};
 use crate::support::receiver::{Local, report, texts};
@@ -83,8 +83,8 @@ fn the_link_is_on_the_serial_line_until_the_port_is_opened_and_again_when_it_is_
     });
     let (serial, port) = bench.heartbeats();
     assert!((19..=21).contains(&serial) && (9..=11).contains(&port), "{serial} {port}");
-    // What came over the port while it was closed waits in this bench's line, not in a port's; it is all heard in the
-    // end.
+    // What came over the port while it was closed waits in this bench's line, not in a port's; all of it is received in
+    // the end.
     assert!((39..=61).contains(&bench.frames()), "{}", bench.frames());
 }
 

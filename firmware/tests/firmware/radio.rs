@@ -81,7 +81,7 @@ fn bytes_in_pieces_with_noise_between_them_become_switches() {
     clock.run(300_000, receive(Incoming(&line), &clock, shared.for_radio()), |_| ());
     assert!(shared.killed.get().unwrap().value);
     assert!(shared.ground_station.get().is_some());
-    // One with a wrong checksum is none.
+    // One with a wrong checksum does not count.
     let (shared, line) = (Local::new(), Line::default());
     let mut wrong = frame(&channels(LOW, LOW, HIGH));
     *wrong.last_mut().unwrap() ^= 1;
@@ -122,7 +122,7 @@ fn the_kill_switch_keeps_its_last_received_position() {
     assert!(!shared.killed.get().unwrap().value);
 }
 
-/// What sticks (right, forward, up, yaw; -1 to 1) put down as a setpoint in a mode, and what they ask for.
+/// What sticks (right, forward, up, yaw; -1 to 1) put down as a setpoint in a mode, and their request.
 fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>, Vec<Request>) {
     let shared = Local::new();
     report(&shared, mode, is_airborne);
@@ -147,7 +147,7 @@ fn sticks_command_velocities_relative_to_the_heading() {
     // To the right of it is world x; to the right is clockwise from above.
     assert!((velocity.x - 3.0).abs() < 0.01 && velocity.y.abs() < 0.01 && velocity.z < -0.4, "{velocity}");
     assert!((rate + 1.0).abs() < 0.01, "{rate}");
-    // A hand that trembles asks for nothing.
+    // A trembling hand stays in the dead zone.
     let (setpoint, _) = steered(Mode::Flying, true, [0.05, -0.05, 0.05, 0.05]);
     let zero = Setpoint { motion: Motion::Velocity(Vector3::zeros()), turn: Turn::Rate(0.0) };
     assert_eq!(setpoint, Some(zero));
@@ -195,7 +195,7 @@ fn while_the_sticks_fly_no_other_source_does() {
     fed.message(&target, 100_000);
     assert!(shared.setpoint.get().is_none());
     assert!(texts(&shared).contains(&"Setpoint refused: the sticks fly".to_owned()));
-    // Not even when it is silent, unless somebody asks to.
+    // Not even when it is silent, unless a client requests it.
     fed.message(&target, 2_000_000);
     assert!(shared.setpoint.get().is_none());
     fed.message(&offboard(), 2_500_000);
@@ -216,13 +216,13 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
     fed.message(&offboard(), SILENCE);
     fed.message(&target(), SILENCE + 100_000);
     assert!(shared.setpoint.get().is_none());
-    // Heard again, its switch says who flies.
+    // Received again, its switch selects who flies.
     radio.take(&AT_REST, 10_000_000);
     fed.message(&target(), 10_000_000);
     assert!(shared.setpoint.get().is_some());
 }
 
-/// What is asked for once a radio with its switch `flies` has fallen silent in a mode.
+/// The requests after a radio with its switch `flies` has fallen silent in a mode.
 fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
@@ -241,7 +241,7 @@ fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
         assert_eq!(requests_in_silence(mode, HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
         assert_eq!(requests_in_silence(mode, LOW), [], "{mode:?}");
     }
-    // Whatever the link asks for meanwhile.
+    // Whatever the link requests meanwhile.
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     radio.take(&channels(HIGH, HIGH, LOW), 0);
@@ -259,12 +259,12 @@ fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
     let mut desk = Desk::new(&shared);
     let (mut radio, mut fed) = (Radio::new(shared.for_radio()), Fed::new(&shared));
     let companion = SET_POSITION_TARGET_LOCAL_NED_DATA { x: 40.0, z: -20.0, ..target() };
-    let mut fly = |desk: &mut Desk<'_>, ticks: Range<u64>, heard: bool| {
+    let mut fly = |desk: &mut Desk<'_>, ticks: Range<u64>, is_received: bool| {
         for tick in ticks {
             let now = desk.now;
             shared.ground_station.put((), now);
             fed.message(&companion, now);
-            if heard {
+            if is_received {
                 let mut channels = channels(if tick < 220 { LOW } else { HIGH }, HIGH, LOW);
                 channels[2] = if (230..236).contains(&tick) { 1400 } else { MIDDLE };
                 radio.take(&channels, now);
@@ -281,7 +281,7 @@ fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
     assert!(!report.mode.is_armed(), "{:?}", texts(&shared));
     let report = fly(&mut desk, 460..800, false);
     assert!(!report.mode.is_armed() && shared.setpoint.take().is_none(), "{:?}", texts(&shared));
-    // It may if somebody asks for that.
+    // It may if a client requests it.
     fed.message(&companion, desk.now);
     fed.message(&offboard(), desk.now);
     assert!(shared.setpoint.take().is_some());

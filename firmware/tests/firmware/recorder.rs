@@ -95,7 +95,7 @@ fn a_ground_station_lists_it_fetches_it_and_erases_it() {
     assert_eq!(shared.recorder.read(0, &mut whole), whole.len());
     assert_eq!(file, whole);
 
-    // A gap is asked for again, and what nobody wants any more ends.
+    // A gap is requested again, and a download ends on request.
     fed.message(&part(180, 100), 0);
     let parts: Vec<LOG_DATA_DATA> = sent(&transmitted(&shared, 50_000));
     assert_eq!(parts.iter().map(|part| (part.ofs, part.count)).collect::<Vec<_>>(), [(180, 90), (270, 10)]);

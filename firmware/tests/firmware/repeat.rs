@@ -8,7 +8,7 @@ use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors};
 use firmware::repeat::{Repeated, Repeater, run};
 
-/// Pins that note each frame with its time, us, and fail or hang when they are told to.
+/// Pins that note each frame with its time, us, and fail or hang on demand.
 struct Pins<'a> {
     clock: &'a Simulated,
     frames: &'a RefCell<Vec<(u64, MotorCommand)>>,
@@ -95,21 +95,21 @@ fn nothing_is_sent_before_the_first_command() {
 fn control_receives_the_fault_of_a_frame_that_failed_or_hung() {
     for wrong in [Does::Fail, Does::Hang] {
         let does = Cell::new(wrong);
-        let heard = RefCell::new(Vec::new());
+        let results = RefCell::new(Vec::new());
         let sent = frames(30_000, &does, |clock, repeated| {
-            let (does, heard) = (&does, &heard);
+            let (does, results) = (&does, &results);
             async move {
                 let mut repeater = Repeater { repeated, clock };
                 let written = repeater.write(command(0.2)).await;
-                heard.borrow_mut().push(written);
+                results.borrow_mut().push(written);
                 does.set(Does::Well);
                 clock.until(10_000).await;
                 let written = repeater.write(command(0.3)).await;
-                heard.borrow_mut().push(written);
+                results.borrow_mut().push(written);
                 clock.until(u64::MAX).await;
             }
         });
-        assert_eq!(heard.into_inner(), [Err(Fault), Ok(())]);
+        assert_eq!(results.into_inner(), [Err(Fault), Ok(())]);
         assert!(sent.iter().any(|(_, sent)| *sent == command(0.3)));
     }
 }

@@ -12,7 +12,7 @@ use std::cell::Cell;
 
 const RESTART: MavCmd = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN;
 
-/// Asks with this first parameter; the answer, what was said, and whether a restart is under way.
+/// A command with this first parameter: the answer, the texts, and whether a restart is under way.
 fn asked(shared: &Local, first: f32) -> (MavResult, Vec<String>, bool) {
     Fed::new(shared).message(&command(RESTART, [first, 0.0, 0.0, 0.0, 0.0]), 0);
     let [Reply::Command(Acknowledgement { order, result })] = replies(shared)[..] else { panic!("no answer") };
@@ -61,8 +61,8 @@ fn other_restarts_are_unsupported_in_words() {
         (2.0, "Restart: parameter 1 is 1 or 3, nothing else"),
         (f32::NAN, "Restart: parameter 1 is 1 or 3, nothing else"),
     ] {
-        let said = (MavResult::MAV_RESULT_UNSUPPORTED, vec![words.to_owned()], false);
-        assert_eq!(asked(&restartable(Mode::Ready), first), said);
+        let expected = (MavResult::MAV_RESULT_UNSUPPORTED, vec![words.to_owned()], false);
+        assert_eq!(asked(&restartable(Mode::Ready), first), expected);
     }
     let shared = restartable(Mode::Ready);
     shared.has_bootloader.lower();
@@ -114,7 +114,7 @@ impl Restart for Machine<'_> {
     }
 }
 
-/// When it restarts, and into what, if this is asked for at half a second, in this mode from then on.
+/// When it restarts, and into what, if this is commanded at half a second, in this mode from then on.
 fn restarted(mode: Mode, first: f32) -> (Option<(u64, bool)>, Vec<String>) {
     let (clock, shared, time) = (Simulated::default(), Local::new(), Cell::new(None));
     let mut machine = Machine(&clock, &time, &shared);

@@ -85,7 +85,7 @@ fn texts_are_cut_at_whole_characters() {
     let long = "x".repeat(TEXT_MAX - 1);
     assert_eq!(Text::new(format_args!("{long}äb")).as_str(), long);
     assert_eq!(Text::new(format_args!("{long}ab")).as_str(), format!("{long}a"));
-    // Nothing is said behind a gap.
+    // Nothing is sent behind a gap.
     assert_eq!(Text::new(format_args!("{long}{}{}", 'ä', 'b')).as_str(), long);
 }
 
@@ -97,7 +97,7 @@ fn every_event_fits_its_text_and_matters_as_it_should() {
         assert_eq!(words(&event), reason.to_string());
         assert_eq!(event.severity() == Severity::Critical, reason.is_own_doing(), "{reason}");
     }
-    // What it was told to, or recovers from, is none of its own doing; what it stops or lands for is.
+    // Commanded transitions and recoveries are information; a stop or landing by itself is critical.
     let own = [Reason::ImuLost, Reason::PoseLost, Reason::GroundStationLost, Reason::BatteryLow, Reason::Crashed];
     let others = [Reason::Armed, Reason::Disarmed, Reason::Landed, Reason::PoseRegained, Reason::TakenOff];
     assert!(own.iter().all(|reason| reason.is_own_doing()) && !others.iter().any(|reason| reason.is_own_doing()));

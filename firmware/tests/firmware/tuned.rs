@@ -34,8 +34,8 @@ fn set(name: Name, param_value: f32) -> PARAM_SET_DATA {
     PARAM_SET_DATA { param_value, target_system: 1, target_component: 1, param_id: name.row().name.into(), param_type }
 }
 
-/// Sets a parameter by a message; what is said of it.
-fn said(shared: &Local, name: Name, value: f32) -> Vec<String> {
+/// Sets a parameter by a message; the texts about it.
+fn texts_of_setting(shared: &Local, name: Name, value: f32) -> Vec<String> {
     Fed::new(shared).message(&set(name, value), 0);
     assert_eq!(replies(shared), [Reply::Parameter(name)]);
     assert!(!shared.is_busy());
@@ -63,8 +63,11 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
     let shared = Local::new();
     let mut storage = Storage::load(Words::<4>(&chip), shared.for_storage());
     assert_eq!(boot_on(&shared), None);
-    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
-    assert_eq!(said(&shared, Name::GainAttitude, 90.0), ["GAIN_ATT_P: may be flown, from the next boot on"]);
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(
+        texts_of_setting(&shared, Name::GainAttitude, 90.0),
+        ["GAIN_ATT_P: may be flown, from the next boot on"]
+    );
     let clock = Simulated::default();
     clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
 
@@ -83,8 +86,8 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
     assert_eq!(flown.vehicle().mass, 0.4);
     assert_ne!(flown.law(), built.configuration.law());
     // Back as it was built: nothing is left to be kept.
-    said(&again, Name::Mass, built.configuration.vehicle().mass);
-    said(&again, Name::GainAttitude, 100.0);
+    texts_of_setting(&again, Name::Mass, built.configuration.vehicle().mass);
+    texts_of_setting(&again, Name::GainAttitude, 100.0);
     assert_eq!(again.parameters.set_by_hand().count(), 0);
 }
 
@@ -92,26 +95,29 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
 fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_reported() {
     let shared = booted();
     let before = shared.parameters.get(Name::RotorThrustMax);
-    let words = said(&shared, Name::RotorThrustMax, 3.2);
+    let words = texts_of_setting(&shared, Name::RotorThrustMax, 3.2);
     assert_eq!(words[0], "ROT_THR_MAX: refused, cannot be flown");
     assert!(words[1].starts_with("A1 thrust against force down: needs 9."), "{words:?}");
     assert_eq!(shared.parameters.get(Name::RotorThrustMax), before);
     // What one value does not allow, another may make possible.
-    assert_eq!(said(&shared, Name::Mass, 0.53)[0], "MASS: refused, cannot be flown");
-    assert_eq!(said(&shared, Name::RotorThrustMax, 4.5), ["ROT_THR_MAX: may be flown, from the next boot on"]);
-    assert_eq!(said(&shared, Name::Mass, 0.53), ["MASS: may be flown, from the next boot on"]);
-    assert_eq!(said(&shared, Name::RotorThrustMax, before)[0], "ROT_THR_MAX: refused, cannot be flown");
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.53)[0], "MASS: refused, cannot be flown");
+    assert_eq!(
+        texts_of_setting(&shared, Name::RotorThrustMax, 4.5),
+        ["ROT_THR_MAX: may be flown, from the next boot on"]
+    );
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.53), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(texts_of_setting(&shared, Name::RotorThrustMax, before)[0], "ROT_THR_MAX: refused, cannot be flown");
 }
 
 #[test]
 fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
     let shared = booted();
-    let words = said(&shared, Name::ThrustMax, 4.0);
+    let words = texts_of_setting(&shared, Name::ThrustMax, 4.0);
     assert_eq!(words[0], "THR_MAX: refused, cannot be flown");
     assert!(words[1].starts_with("limits.thrust_max: must be above 4.5"), "{words:?}");
-    assert_eq!(said(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70 to 130 % by 10"]);
-    assert_eq!(said(&shared, Name::Mass, f32::NAN), ["MASS: allowed are 0.01 to 100.00 kg"]);
-    assert_eq!(said(&shared, Name::TunedOn, 1.0), ["CFG_ID: is read-only"]);
+    assert_eq!(texts_of_setting(&shared, Name::GainRate, 95.0), ["GAIN_ATT_D: allowed are 70 to 130 % by 10"]);
+    assert_eq!(texts_of_setting(&shared, Name::Mass, f32::NAN), ["MASS: allowed are 0.01 to 100.00 kg"]);
+    assert_eq!(texts_of_setting(&shared, Name::TunedOn, 1.0), ["CFG_ID: is read-only"]);
     assert_eq!(shared.parameters.set_by_hand().count(), 0);
 }
 
@@ -121,15 +127,15 @@ fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certifica
     let configuration = configuration::embedded().unwrap();
     let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7 };
     boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap();
-    let words = said(&shared, Name::GainRate, 110.0);
+    let words = texts_of_setting(&shared, Name::GainRate, 110.0);
     assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
-    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.4), ["MASS: may be flown, from the next boot on"]);
 }
 
 #[test]
 fn before_anything_is_built_there_is_nothing_to_tune() {
     let shared = Local::new();
-    assert_eq!(said(&shared, Name::Mass, 0.4), ["MASS: not yet"]);
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.4), ["MASS: not yet"]);
 }
 
 #[test]
@@ -137,7 +143,7 @@ fn nothing_is_certified_while_a_motor_turns() {
     for mode in Mode::ALL {
         let shared = booted();
         report(&shared, mode, 0);
-        let words = said(&shared, Name::Mass, 0.4);
+        let words = texts_of_setting(&shared, Name::Mass, 0.4);
         let turns = mode.is_armed() || mode == Mode::MotorTest;
         assert_eq!(shared.parameters.get(Name::Mass) != 0.4, turns, "{mode:?}: {words:?}");
     }
@@ -186,7 +192,10 @@ fn stored_values_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
     assert_eq!(grounded, Some(Grounded::Inequality("A1 thrust against force down")));
     assert_eq!(texts, ["MASS 0.46: cannot be flown", "ROT_THR_MAX 3.2: cannot be flown"]);
     // It can be mended from the ground.
-    assert_eq!(said(&shared, Name::RotorThrustMax, 3.6), ["ROT_THR_MAX: may be flown, from the next boot on"]);
+    assert_eq!(
+        texts_of_setting(&shared, Name::RotorThrustMax, 3.6),
+        ["ROT_THR_MAX: may be flown, from the next boot on"]
+    );
     let (grounded, texts, _) = booted_with(configuration::IDENTITY, &[(Name::ThrustMax, 4.0)]);
     assert_eq!(grounded, Some(Grounded::Parameter("limits.thrust_max")));
     assert_eq!(texts, ["THR_MAX 4: cannot be flown"]);

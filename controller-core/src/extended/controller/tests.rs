@@ -62,8 +62,8 @@ fn rotors_that_deliver_more_than_commanded_show_no_force_once_their_scale_is_kno
     assert!(controller.estimates().force.norm() < 1e-4 && controller.thrust_scale() == 1.1);
 }
 
-/// On rotors that deliver `truth` of what is commanded, level, under a constant `force` along the vertical: its states
-/// from a start 2 m too high, while its scale never gets worse.
+/// On rotors of thrust scale `truth`, level, under a constant `force` along the vertical: the state after a start 2 m
+/// too high, while the scale's error never grows.
 fn risen(controller: &mut Controller, truth: f32, force: f32, ticks: u32) -> State {
     let (mut state, h) = (resting(Vector3::new(0.0, 0.0, 2.0)), 0.01);
     for tick in 0..ticks {
@@ -224,8 +224,8 @@ fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
     assert!((uneven.torque.z / steady.torque.z - 1.0).abs() < 0.02, "{} and {}", uneven.torque.z, steady.torque.z);
 }
 
-/// What the law asks of `craft` with every constant by its formula, along states that jump, checked against the bounds
-/// and the rotors; whether the craft is certified at rest, without which nothing is promised.
+/// The law's commands for `craft` with every constant by its formula, along states that jump, checked against the
+/// bounds and the rotors; whether the craft is certified at rest, without which no bound holds.
 fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random) -> bool {
     let p = craft.constants(&NOTHING_GIVEN);
     let configuration = craft.configuration(&p, ReferenceBounds::REST);

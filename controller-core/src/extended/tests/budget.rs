@@ -121,7 +121,7 @@ fn the_frame_turns_slower_where_feedback_or_tilt_or_little_thrust_take_the_budge
     let spent = turning.acceleration(40.0, p.m_all, 0.0);
     let leaking = turning.acceleration(40.0, p.m_all, 1.0);
     assert!(spent < free && leaking < spent && leaking > 0.9 * p.turn_reserve, "{free} {spent} {leaking}");
-    // The thrust floor meets the thrust where alpha is none.
+    // The thrust floor meets the thrust where alpha is zero.
     let floor = (budget.floor / (0.95 * f64::from(craft.vehicle.mass))) as f32;
     assert!(turning.acceleration(floor, 0.0, 0.0).abs() < 1e-2 && turning.acceleration(0.0, 0.0, 0.0) < 0.0);
 }

@@ -56,9 +56,8 @@ fn a_bias_is_believed_up_to_its_level() {
     assert!((bias.estimate(&average) - expected).norm() < 1e-6);
 }
 
-/// The learner, from its first interval on, under a constant `force` where the rotors deliver `truth` of what is
-/// commanded; `commanded` is what a tick commands. Gives how far off the scale is at first, at last, and the most by
-/// which an interval made it worse.
+/// The learner, from its first interval on, under a constant `force`, with the thrust scale `truth`; `commanded` is a
+/// tick's command. Returns the error of the scale at first, at last, and its greatest growth in an interval.
 fn learnt(truth: f32, force: Vector3<f32>, ticks: u32, mut commanded: impl FnMut(u32) -> Vector3<f32>) -> [f32; 3] {
     let p = ExtendedParameters { scale_least: 0.5, scale_greatest: 2.0, ..example::parameters() };
     let scale = ThrustScale::new(&p, 0.01);

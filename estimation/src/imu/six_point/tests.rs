@@ -8,7 +8,7 @@ fn rest(force: &Vector3<f64>) -> Rest {
     Rest { angular_velocity: Vector3::zeros(), specific_force: force.map(|x| x as f32) }
 }
 
-/// What an accelerometer with these errors rest_at where `up` is up.
+/// The means of an accelerometer with these errors at rest, where `up` is up.
 fn rest_at(up: &Vector3<f64>, offset: &Vector3<f64>, scale: &Vector3<f64>) -> Rest {
     rest(&((up * 9.81).component_div(scale) + offset))
 }

@@ -1,4 +1,4 @@
-//! Inertial sensors that feel what the test says, each in its own wrong way.
+//! Inertial sensors that measure the test's motion, each with its own errors.
 
 use super::Simulated;
 use core::cell::Cell;
@@ -29,7 +29,7 @@ pub const RIGHT: Wrong = Wrong {
 pub enum Does {
     Well,
     Faults,
-    /// Its gyro says the same thing over and over.
+    /// Its gyro repeats one value.
     Stuck,
     /// Its accelerometer does not answer.
     Forceless,

@@ -166,7 +166,7 @@ pub fn files(image: &mut Image, sectors: u32) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// What a file of ULog says.
+/// The content of a ULog file.
 #[derive(Debug, Default, PartialEq)]
 pub struct Parsed {
     /// The time in its head.
@@ -175,7 +175,7 @@ pub struct Parsed {
     pub ticks: Vec<u64>,
     /// Its records.
     pub records: Vec<Vec<u8>>,
-    /// What people were told, with levels and times.
+    /// The texts, with levels and times.
     pub texts: Vec<(char, u64, String)>,
     /// Gaps, ms.
     pub gaps: Vec<u16>,

@@ -27,9 +27,9 @@ pub struct Chip {
     pub bytes: Vec<u8>,
     /// Every call ends in a fault.
     pub fails: bool,
-    /// What is programmed does not stick, and the flash does not say so.
+    /// What is programmed does not stick, and the flash does not report it.
     pub worn: bool,
-    /// Records that it was told to program.
+    /// Records that it was commanded to program.
     pub writes: usize,
     /// Words that it may still program or erase before the power fails; then nothing changes any more.
     pub power: usize,

@@ -1,4 +1,4 @@
-//! A vehicle on a desk: it never moves, whatever its motors are told, and its sensors and poses say so.
+//! A vehicle on a desk: it never moves, whatever the motors' command, and its sensors and poses show that.
 
 use super::receiver::Local;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;

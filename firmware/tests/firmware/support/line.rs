@@ -43,7 +43,7 @@ impl Read for Incoming<'_> {
     }
 }
 
-/// A line that delivers what is put into it while somebody waits.
+/// A line that delivers what is put into it while a task waits.
 #[derive(Clone, Default)]
 pub struct Live(Rc<RefCell<VecDeque<u8>>>);
 

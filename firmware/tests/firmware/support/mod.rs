@@ -69,7 +69,7 @@ pub fn extended<D: MessageData>(message: &D, extensions: &[u8]) -> Vec<u8> {
     v2_of_payload(9, D::ID, D::EXTRA_CRC, &payload[..end])
 }
 
-/// Time that passes when the test says so, us.
+/// Time that the test advances, us.
 #[derive(Default)]
 pub struct Simulated(pub Cell<u64>);
 

@@ -66,7 +66,7 @@ pub fn command(command: MavCmd, parameters: [f32; 5]) -> COMMAND_LONG_DATA {
     COMMAND_LONG_DATA { param1, param2, param3, param4, param5, command, target_system: 1, ..Default::default() }
 }
 
-/// The same, as whoever answers it knows it: the ground station's, in [`whichever`] frame.
+/// The same, as its answer identifies it: the ground station's, in [`whichever`] frame.
 pub const fn ordered(command: MavCmd) -> Order {
     Order { command: command as u16, sender: (GROUND.system_id as u8, GROUND.component_id), frame: 0 }
 }
@@ -76,7 +76,7 @@ pub const fn whichever(order: Order) -> Order {
     Order { frame: 0, ..order }
 }
 
-/// A reply, whichever frame asked for it.
+/// A reply, whichever frame requested it.
 fn answering_whichever(reply: Reply) -> Reply {
     match reply {
         Reply::Command(Acknowledgement { order, result }) => Reply::Command(whichever(order).answered(result)),

@@ -13,7 +13,7 @@ pub type Hil = hil::Hil<NoopRawMutex>;
 /// When the simulator got its command, us; it answers a few milliseconds later, of the period that follows.
 pub const COMMANDED: u64 = 40_000;
 
-/// Pins that remember what they were told.
+/// Pins that record their commands.
 #[derive(Default)]
 pub struct Pins(pub Vec<MotorCommand>);
 
@@ -61,7 +61,7 @@ pub fn sensor(time_usec: u64) -> HIL_SENSOR_DATA {
     }
 }
 
-/// What the pose source says of `time_usec`.
+/// The pose source's message of `time_usec`.
 pub fn odometry(time_usec: u64) -> ODOMETRY_DATA {
     ODOMETRY_DATA {
         time_usec,
