@@ -9,7 +9,7 @@ mod embed;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// What flies if nobody chooses: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
+/// The default scenario: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
 const DEFAULT: &str = "vehicles/study.toml";
 
 /// Boards and the files that describe their memory, from this package's folder.
@@ -56,7 +56,7 @@ fn scenario(target: &Path) -> Result<(), String> {
     fs::write(target, embedded.source).map_err(|error| format!("{}: {error}", target.display()))
 }
 
-/// Puts the board's memory map where ../memory.x finds it, and asks for the scripts of the runtime and of defmt.
+/// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.
 fn link(out: &Path) -> Result<(), String> {
     let active = |(board, _): &&(&str, &str)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some();
     let boards: Vec<_> = MEMORY.iter().filter(active).collect();
@@ -75,8 +75,8 @@ fn link(out: &Path) -> Result<(), String> {
         Ok(other) => return Err(format!("BOOTLOADER: found {other:?}, allowed is \"kept\", or nothing at all")),
     };
     fs::copy(memory, out.join("board-memory.x")).map_err(|error| format!("{memory}: {error}"))?;
-    // The runtime asks every board with interrupts of its own for this file; those of the emulated boards need no
-    // names.
+    // The runtime requires of every board with interrupts of its own for this file; those of the emulated boards need
+    // no names.
     if env::var_os("CARGO_FEATURE_MPS2").is_some() {
         fs::write(out.join("device.x"), "").map_err(|error| format!("device.x: {error}"))?;
     }

@@ -37,7 +37,7 @@
 //! Without poses the state goes on by IMU alone, without a timeout; [`health`](Estimator::health) reports the age of
 //! the last pose and the uncertainty. A pose stream that jumps, turns or drifts against the IMU
 //! is not followed. Its poses are refused, with the reason, until they are again where coasting may have led;
-//! [`Estimator::adopt`] follows it all the same: on the ground, say.
+//! [`Estimator::adopt`] follows it all the same, as on the ground.
 //!
 //! Every step is bounded: an increment costs one step of the nominal state; a pose the increments since the last pose,
 //! with covariance, and those since its own time, without.
@@ -212,7 +212,7 @@ impl Estimator {
 
     /// The poses since lift-off may have lied: what they taught of the gyro, and of the accelerometer along body z,
     /// beyond what a sensor changes by in a flight, is what it was on the ground. There gravity and rest show both;
-    /// across, the accelerometer's bias is told from a lean in flight only.
+    /// across, flight alone separates the accelerometer's bias from a tilt.
     pub fn distrust(&mut self) {
         let (Some(filter), Some((gyro, accelerometer))) = (&mut self.filter, self.grounded) else { return };
         let nominal = &mut filter.nominal;
@@ -228,7 +228,7 @@ impl Estimator {
     /// Takes a pose that was true at its time stamp and arrives at `now`, us.
     ///
     /// # Errors
-    /// Says why it is not believed; the state is as it was.
+    /// The reason for a refusal; the state is as it was.
     pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Taken, Rejected> {
         let verdict = self.stream.admit(pose, now).and_then(|()| self.take_in_time(pose));
         self.statistics.record(verdict, pose.time);

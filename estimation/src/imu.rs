@@ -23,8 +23,8 @@
 //! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
 //! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is
-//! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment says so, for
-//! the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
+//! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged,
+//! for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
 //! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
 //! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!

@@ -11,7 +11,7 @@
 //! | accelerometer | 1600 Hz, 145 Hz bandwidth (fourfold oversampling), +-24 g in 16 bits |
 //! | bus | SPI mode 0 or 3, at most 10 MHz |
 //!
-//! Every sample asks both devices who they are before it believes their numbers: a bus stuck high or low would
+//! Every sample reads both chip identities before it accepts their numbers: a bus stuck high or low would
 //! otherwise read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
 //! [`Fault`]; an accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a
 //! device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a
@@ -172,7 +172,7 @@ impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
     }
 }
 
-/// The two devices on their bus, the pin that says when, and the clock that bounds every wait.
+/// The two devices on their bus, the data-ready pin, and the clock that bounds every wait.
 pub struct Bmi088<B, S, P, C> {
     bus: B,
     /// Chip selects of accelerometer and gyroscope.

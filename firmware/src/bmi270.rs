@@ -14,7 +14,7 @@
 //! The gyroscope's x feels its z a little; the device knows how much, and the data sheet leaves the correction to the
 //! reader: omega_x = x - zx z / 512, zx being a signed number of 7 bits.
 //!
-//! Every sample asks the device who it is. Every wait is bounded. What does not come in time is a [`Fault`]; after
+//! Every sample reads the chip's identity. Every wait is bounded. What does not come in time is a [`Fault`]; after
 //! [`RESTART_AFTER`] in a row the next call powers the sensor up anew, which takes about 90 ms.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
@@ -78,7 +78,7 @@ const CROSS_SENSITIVITY: u8 = 0x1E;
 
 /// It wakes up listening to I2C, and again after its reset; the first rise of its chip select turns it to SPI. A reset
 /// takes 2 ms. Then: PWR_CONF without power save, which the file needs; INIT_CTRL 0, INIT_ADDR 0, INIT_DATA the file,
-/// INIT_CTRL 1; INTERNAL_STATUS says within 20 ms that the file runs. Settings: ACC_CONF, ACC_RANGE, GYR_CONF,
+/// INIT_CTRL 1; INTERNAL_STATUS reports within 20 ms that the file runs. Settings: ACC_CONF, ACC_RANGE, GYR_CONF,
 /// GYR_RANGE, INT1 as push-pull and active high, not latched, data-ready to INT1; PWR_CTRL on, after which the
 /// gyroscope takes 45 ms.
 const POWER_UP: [Step; 19] = [
@@ -138,7 +138,7 @@ impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
     }
 }
 
-/// The device, the pin that says when, and the clock that bounds every wait.
+/// The device, the data-ready pin, and the clock that bounds every wait.
 pub struct Bmi270<B, S, P, C> {
     bus: B,
     select: S,
@@ -164,7 +164,7 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi270<B, S, P, C> {
         Port { bus: &mut self.bus, select: &mut self.select, clock: &self.clock }
     }
 
-    /// Powers it up, if it is not, and says what the gyroscope's x feels of its z.
+    /// Powers it up, if it is not, and reads the gyroscope's cross-sensitivity of x to z.
     async fn ready(&mut self) -> Result<f32, Fault> {
         if let Some(known) = self.cross_sensitivity {
             return Ok(known);

@@ -22,7 +22,7 @@
 //!   of all. A card that is missing, full, removed, worn out or formatted for something else is reported in words,
 //!   tried again every [`RETRY`], and does not prevent arming.
 //! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
-//!   that was there before: [`log`] and [`volume`] say why.
+//!   that was there before: [`log`] and [`volume`] explain why.
 
 pub mod copy;
 pub mod geometry;

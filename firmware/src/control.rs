@@ -15,7 +15,7 @@ use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{Asked, ControlView, Event, INCREMENTS, POSES, Queue, Report, Take, Timing};
+use crate::shared::{ControlView, Event, INCREMENTS, POSES, Queue, QueuedRequest, Report, Take, Timing};
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -64,7 +64,7 @@ struct Reported {
 }
 
 impl<'a, M: RawMutex> Control<'a, M> {
-    /// A task that flies as `pilot` says, with motors that turn as `outputs` says.
+    /// A task that flies by `pilot`, with `outputs` for the motors.
     pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
         Self {
             shared,
@@ -113,7 +113,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander().put(order.map(|order| order.sender), now);
         }
-        if !outcome.wants_setpoints {
+        if !outcome.setpoints_requested {
             self.shared.setpoint_owner().set(None);
         }
         self.announce_outcome(&outcome, asked);
@@ -141,7 +141,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     /// What is not measured.
-    fn inputs(&mut self, now: u64, asked: Option<Asked>) -> Inputs<'static> {
+    fn inputs(&mut self, now: u64, asked: Option<QueuedRequest>) -> Inputs<'static> {
         // The simulator takes over at a stop: an arm command from before must not turn the motors once more.
         let handed_over = self.shared.hil().is_raised() && !mem::replace(&mut self.simulated, true);
         Inputs {
@@ -177,7 +177,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     }
 
     /// Answers, transitions and refusals.
-    fn announce_outcome(&mut self, outcome: &Outcome, asked: Option<Asked>) {
+    fn announce_outcome(&mut self, outcome: &Outcome, asked: Option<QueuedRequest>) {
         if let (Some(asked), Some(result)) = (asked, outcome.answer) {
             self.shared.answer(&asked, result);
         }

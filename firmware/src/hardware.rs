@@ -164,7 +164,7 @@ pub trait Battery {
     fn voltage(&mut self) -> impl Future<Output = Option<f32>>;
 }
 
-/// A light for people.
+/// A status light.
 pub trait Light {
     /// On or off.
     fn set(&mut self, on: bool);

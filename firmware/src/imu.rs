@@ -48,7 +48,7 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
     let (mut unit, mut is_healthy, mut is_polled) = (imu.unit(), true, false);
     loop {
         calibrator.poll(clock.now());
-        let standby = if calibrator.wants_standby() { start_standby(clock, imu).await } else { None };
+        let standby = if calibrator.needs_standby() { start_standby(clock, imu).await } else { None };
         let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         if imu.unit() != unit {
             unit = imu.unit();

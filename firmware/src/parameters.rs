@@ -49,7 +49,7 @@ pub struct Parameters<M: RawMutex> {
 
 /// Why a value was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum NotTaken {
+pub enum ValueRefusal {
     /// The table does not allow it for this parameter.
     OutOfRange(Name),
     /// This parameter is read-only.
@@ -60,7 +60,7 @@ pub enum NotTaken {
     Unfit(Name, Unfit),
 }
 
-impl fmt::Display for NotTaken {
+impl fmt::Display for ValueRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfRange(Name::MotorOrder) => f.write_str("MOT_ORDER: each of the digits 1 to 4, once"),
@@ -118,7 +118,7 @@ impl<M: RawMutex> Parameters<M> {
         self.values.each_ref().map(|value| f32::from_bits(value.load(Ordering::Relaxed)))
     }
 
-    /// The present value; what was built, where that is a row of the configuration that nobody set.
+    /// The present value; what was built, where that is a row of the configuration that was not set.
     #[must_use]
     pub fn get(&self, name: Name) -> f32 {
         let value = self.raw(name);
@@ -135,14 +135,14 @@ impl<M: RawMutex> Parameters<M> {
     /// long, with all others as they are; it counts from the next boot.
     ///
     /// # Errors
-    /// [`NotTaken`] for a value outside the table's range, not finite, between its steps, or with which the vehicle
+    /// [`ValueRefusal`] for a value outside the table's range, not finite, between its steps, or with which the vehicle
     /// could not fly.
-    pub fn set(&self, name: Name, value: f32) -> Result<(), NotTaken> {
+    pub fn set(&self, name: Name, value: f32) -> Result<(), ValueRefusal> {
         if name == Name::TunedOn {
-            return Err(NotTaken::ReadOnly(name));
+            return Err(ValueRefusal::ReadOnly(name));
         }
         if !name.row().allows(value) {
-            return Err(NotTaken::OutOfRange(name));
+            return Err(ValueRefusal::OutOfRange(name));
         }
         let value = if name.is_tuned() { self.judged(name, value)? } else { value };
         self.put(name, value);
@@ -151,21 +151,21 @@ impl<M: RawMutex> Parameters<M> {
     }
 
     /// What is kept for a value of the configuration, if the vehicle could fly with it.
-    fn judged(&self, name: Name, value: f32) -> Result<f32, NotTaken> {
-        let built = self.built().ok_or(NotTaken::NothingBuilt(name))?;
+    fn judged(&self, name: Name, value: f32) -> Result<f32, ValueRefusal> {
+        let built = self.built().ok_or(ValueRefusal::NothingBuilt(name))?;
         let value = if built.value(name) == Some(value) { f32::NAN } else { value };
         built
             .judge(|other| if other == name { value } else { self.raw(other) })
-            .map_err(|unfit| NotTaken::Unfit(name, unfit))?;
+            .map_err(|unfit| ValueRefusal::Unfit(name, unfit))?;
         self.put(Name::TunedOn, built.identity as f32);
         Ok(value)
     }
 
     /// As [`Self::set`], for a value that comes from storage and needs no saving. Boot judges it.
-    fn restore(&self, name: Name, value: f32) -> Result<(), NotTaken> {
+    fn restore(&self, name: Name, value: f32) -> Result<(), ValueRefusal> {
         let is_as_built = name.is_tuned() && value.is_nan();
         if !is_as_built && !name.row().allows(value) {
-            return Err(NotTaken::OutOfRange(name));
+            return Err(ValueRefusal::OutOfRange(name));
         }
         self.put(name, value);
         Ok(())

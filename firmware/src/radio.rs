@@ -20,7 +20,7 @@
 pub mod sticks;
 
 use crate::hardware::Clock;
-use crate::shared::{Asked, Event, RadioView, Severity};
+use crate::shared::{Event, QueuedRequest, RadioView, Severity};
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
@@ -200,6 +200,6 @@ impl<'a, M: RawMutex> Radio<'a, M> {
     }
 
     fn ask(&self, request: Request) {
-        self.shared.request(Asked { request, order: None, setpoints: None });
+        self.shared.request(QueuedRequest { request, order: None, setpoints: None });
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! first ── answers with [`TAKE_OVER_AFTER`] faults in a row ──────────────┐
-//!       ── its gyro or accelerometer says the same over and over ─────────┼──> second, for good
+//!       ── its gyro or accelerometer repeats one value ───────────────────┼──> second, for good
 //!       ── its accelerometer does not answer for [`SILENT_AFTER`] samples ┘
 //! ```
 //!

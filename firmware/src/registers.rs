@@ -57,7 +57,7 @@ impl<'a, S: OutputPin> Selected<'a, S> {
 
 impl<S: OutputPin> Drop for Selected<'_, S> {
     fn drop(&mut self) {
-        // A pin that cannot rise shows at the next access: its device does not say who it is.
+        // A pin that cannot rise shows at the next access: its device does not identify itself.
         let _ = self.0.set_high();
     }
 }

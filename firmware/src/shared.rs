@@ -5,8 +5,8 @@
 //! that its task has to do with, and what comes from that method can be [read](Read), [written](Write) or
 //! [taken](Take), and no more than that. Every view can [announce](Values::announce) an event to the operator.
 //!
-//! The tables in this file say which task may do what, and the views are made of them: [`Values`] shows for each value
-//! who writes and who reads it, and each view what its task can do.
+//! The tables in this file define which task may do what, and the views are made of them: [`Values`] shows for each
+//! value who writes and who reads it, and each view what its task can do.
 //!
 //! ```compile_fail,E0599
 //! # use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -43,7 +43,7 @@ pub use flag::Flag;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
 pub use queue::{Full, Queue};
-pub use reply::{Asked, Calibration, MissionList, Ping, Procedure, Reply};
+pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
 pub use report::{Report, Timing, Traffic};
 pub use requests::{REQUESTS, Requests};
 pub use setpoint_owner::SetpointOwner;
@@ -214,11 +214,11 @@ offers! {
     [M: RawMutex] SamplesView<'_, M> { fn increment(increment: Increment); }
     [M: RawMutex] ControlView<'_, M> {
         fn pass(now: u64);
-        fn answer(asked: &Asked, result: Result<(), Refusal>);
+        fn answer(asked: &QueuedRequest, result: Result<(), Refusal>);
         fn is_busy() -> bool;
     }
     [M: RawMutex] ReceiveView<'_, M> {
-        fn request(asked: Asked);
+        fn request(asked: QueuedRequest);
         fn request_disarm();
         fn reply(reply: Reply);
         fn set_signing(key: Option<Key>, stamp: Stamp, now: u64);
@@ -226,7 +226,7 @@ offers! {
         fn is_turning() -> bool;
     }
     [M: RawMutex] TransmitView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
-    [M: RawMutex] RadioView<'_, M> { fn request(asked: Asked); }
+    [M: RawMutex] RadioView<'_, M> { fn request(asked: QueuedRequest); }
     [M: RawMutex] ImuView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
     [M: RawMutex] StatusView<'_, M> { fn is_armed() -> bool; }
     [M: RawMutex] PortView<'_, M> { fn is_turning() -> bool; }
@@ -245,7 +245,7 @@ impl<M: RawMutex> Values<M> {
 
     /// Sends a request to control, in place of the link's or the radio's last of that kind. That one is answered:
     /// as this is, if it is the same.
-    pub fn request(&self, asked: Asked) {
+    pub fn request(&self, asked: QueuedRequest) {
         match (self.requests.put(asked), asked.order) {
             (Some((order, true)), Some(of)) => self.reply(Reply::Likewise { order, of: of.frame }),
             (Some((order, _)), _) => self.acknowledge(order, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
@@ -265,7 +265,7 @@ impl<M: RawMutex> Values<M> {
     /// Answers a request that came by a command, and announces a refusal; setpoints that are granted are flown from now
     /// on. An answer that finds no room is dropped: its
     /// sender repeats its command.
-    pub fn answer(&self, asked: &Asked, result: Result<(), Refusal>) {
+    pub fn answer(&self, asked: &QueuedRequest, result: Result<(), Refusal>) {
         match result {
             Err(refusal) => self.announce(Event::Refused(refusal)),
             Ok(()) if matches!(asked.request, Request::FlySetpoints) => self.setpoint_owner.set(asked.setpoints),

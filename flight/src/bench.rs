@@ -14,7 +14,7 @@ use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
 
 /// How long a setting takes, us: the tone of a beep, which is the longest.
-const SETTING_LASTS: u64 = 300_000;
+const SETTING_DURATION: u64 = 300_000;
 
 /// When a direction is saved, us after its command.
 const SAVED_AFTER: u64 = 5 * PERIOD;
@@ -34,7 +34,7 @@ impl Bench {
     pub fn check(&self, rotors: usize) -> Result<(), Refusal> {
         let (rotor, level, duration) = match *self {
             Self::Turning(MotorTest { rotor, level, duration }) => (rotor, level, duration),
-            Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_LASTS),
+            Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_DURATION),
         };
         // Written so that NaN is refused.
         match () {
@@ -50,7 +50,7 @@ impl Bench {
         elapsed
             >= match self {
                 Self::Turning(test) => test.duration,
-                Self::Setting(_) => SETTING_LASTS,
+                Self::Setting(_) => SETTING_DURATION,
             }
     }
 

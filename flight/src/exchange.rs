@@ -116,7 +116,7 @@ pub struct Outcome {
     /// for.
     pub setpoint: Option<Result<(), Refusal>>,
     /// Whether setpoints are flown, or will be once they come.
-    pub wants_setpoints: bool,
+    pub setpoints_requested: bool,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
     /// The estimate's health.

@@ -8,8 +8,8 @@
 //! - `condition`: what a transition can depend on;
 //! - `table`: the rows.
 //!
-//! A failure in flight ends in the mildest way that working sensors allow: holding, with an estimate and a link that may
-//! come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
+//! A failure in flight ends in the mildest way that working sensors allow: holding, with an estimate and a link that
+//! may come back; landing, with an estimate; descending, with an IMU; stopped motors with neither. Flying again takes a
 //! new arm request, with every check made anew.
 
 mod condition;
@@ -56,7 +56,7 @@ pub const IDLING_MAX: u64 = 10_000_000;
 
 /// How long a request for setpoints is kept while disarmed, us: a client requests them and arms within a second or two.
 /// An operator who arms later may not know of the request.
-pub const SETPOINTS_WANTED_MAX: u64 = 5_000_000;
+pub const SETPOINTS_REQUEST_MAX: u64 = 5_000_000;
 
 /// How long a battery must be low before the vehicle lands, us: it sags under a burst of thrust.
 pub const BATTERY_DEBOUNCE: u64 = 3_000_000;
@@ -93,7 +93,7 @@ pub struct Transition {
     pub reason: Reason,
 }
 
-/// What the table says in `mode` under `conditions`: a transition, or none where the mode stays.
+/// The table's transition in `mode` under `conditions`; none where the mode stays.
 #[must_use]
 pub fn transition(mode: Mode, conditions: Conditions) -> Option<Transition> {
     TABLE

@@ -5,12 +5,12 @@
 //!
 //! | what happens in flight | doubt |
 //! |---|---|
-//! | poses are refused for what they say | for as long as that lasts |
+//! | poses are refused for their values | for as long as that lasts |
 //! | poses are believed, and turn as the gyro's bias cannot explain | for as long as that lasts |
 //! | the estimate is reset to where the body was found again | [`REFOUND`] more |
 //! | the sender's frame moves | [`MOVED`] more |
 //! | poses that were lost are flown again | [`REGAINED`] more; [`RESUMED`] where a landing resumes |
-//! | poses are believed | [`FORGOTTEN`] of that time less |
+//! | poses are believed | [`DOUBT_DECAY`] of that time less |
 //!
 //! At [`DOUBT_MAX`] the source is given up until the vehicle is disarmed.
 
@@ -25,11 +25,11 @@ const MOVED: f32 = 0.3;
 const REGAINED: f32 = 1.1;
 const RESUMED: f32 = 1.6;
 
-/// What a second of belief takes from the doubt, s.
-const FORGOTTEN: f32 = 0.03;
+/// The decay of doubt in a second of believed poses, s.
+const DOUBT_DECAY: f32 = 0.03;
 
 /// The longest time that one pose accounts for, us.
-const SPEAKS_FOR: u64 = 100_000;
+const POSE_INTERVAL_MAX: u64 = 100_000;
 
 /// The evidence against a source of poses.
 #[derive(Debug, Default, PartialEq)]
@@ -39,7 +39,7 @@ pub(super) struct Trust {
     /// When the last poses were judged, us.
     judged: u64,
     is_given_up: bool,
-    /// From when on poses have been refused for what they say, and until when, us; none once one is believed.
+    /// From when on poses have been refused for their values, and until when, us; none once one is believed.
     refused: Option<(u64, u64)>,
 }
 
@@ -48,19 +48,19 @@ impl Trust {
     /// turn as the vehicle does not, and are no better than refused.
     pub fn judge(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
-        let seconds = now.saturating_sub(self.judged).min(SPEAKS_FOR) as f32 * 1e-6;
+        let seconds = now.saturating_sub(self.judged).min(POSE_INTERVAL_MAX) as f32 * 1e-6;
         self.judged = now;
         self.doubt(match pose {
             Err(rejected) if rejected.is_lie() => seconds,
             Ok(Taken::Refound) => REFOUND,
             Ok(Taken::Rebased) => MOVED,
-            Ok(taken) if taken.is_believed() && plausible => -FORGOTTEN * seconds,
+            Ok(taken) if taken.is_believed() && plausible => -DOUBT_DECAY * seconds,
             Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
         });
     }
 
-    /// Notes a pose that is refused for what it says, or believed.
+    /// Notes a pose that is refused for its values, or believed.
     pub fn note(&mut self, pose: Result<Taken, Rejected>, now: u64) {
         match pose {
             Ok(taken) if taken.is_believed() => self.refused = None,

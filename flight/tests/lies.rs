@@ -1,6 +1,6 @@
 //! Poses that lie in flight. Whatever the lie, the vehicle does what it does in silence: it goes on by IMU for a
-//! second, levels for another, and stops, and says why the poses are not believed. Where the sender says that its frame
-//! has moved, or where a lost body is found again, it flies on and does not lurch.
+//! second, levels for another, and stops, and reports why the poses are not believed. Where the sender reports that its
+//! frame has moved, or where a lost body is found again, it flies on and does not lurch.
 
 use crate::support::{Body, Flight, PoseSource, SPOOLING, displaced, go_to};
 use controller_core::prelude::*;
@@ -38,7 +38,7 @@ fn ends_as_in_silence(mut flight: Flight, source: PoseSource, late: u64, reasons
     let (ticks, outcome) = flight.until(Reason::PoseLost, silence + late + 1);
     assert!((silence..=silence + late).contains(&ticks), "{reasons:?}: levelled after {ticks} ticks");
     let Some(Err(rejected)) = outcome.pose else { panic!("{reasons:?}: {:?}", outcome.pose) };
-    assert!(reasons.contains(&rejected), "{rejected:?} is none of {reasons:?}");
+    assert!(reasons.contains(&rejected), "{rejected:?} is not in {reasons:?}");
     assert_eq!(outcome.health.jumps, 0);
     let drift = (outcome.estimated.unwrap().state.position.cast::<f64>() - flight.body.position).norm();
     // It comes down by the IMU alone, however long the poses go on.

@@ -78,7 +78,7 @@ fn without_a_pose_and_without_a_ground_it_stops_in_the_end() {
     flight.until(Reason::PoseLost, 120);
     let (ticks, outcome) = flight.until(Reason::DescendingOver, 3_100);
     assert_eq!((ticks, outcome.output, outcome.mode), (3_000, Output::Stop, Mode::Stopped));
-    // And stays so until somebody disarms it.
+    // And stays so until it is disarmed.
     flight.inputs.request = Some(Request::Arm);
     assert_eq!(flight.tick().answer, Some(Err(Refusal::Stopped)));
     flight.inputs.request = Some(Request::Disarm);
@@ -101,7 +101,7 @@ fn a_pose_regained_within_the_second_is_flown_from_and_the_vehicle_brakes_and_ho
     assert_eq!(last.reference.velocity, Vector3::zeros());
     assert!(last.position_error.norm() < 0.02, "{}", last.position_error);
     assert!(flight.body.velocity.norm() < 0.02);
-    // And takes setpoints again, when somebody says so.
+    // And takes setpoints again, on request.
     flight.inputs.setpoint = Some(go_to(0.0, 0.0, 2.0));
     assert_eq!(flight.tick().setpoint, None);
     flight.inputs.request = Some(Request::FlySetpoints);

@@ -98,7 +98,7 @@ fn what_cannot_be_done_in_the_air_is_refused_there() {
     }
 }
 
-/// It never arms, says why, and tests motors nevertheless.
+/// It never arms, reports why, and tests motors nevertheless.
 fn is_grounded(mut pilot: Pilot, grounded: Grounded) {
     assert_eq!(pilot.grounded(), Some(grounded));
     at_rest(NOW - PERIOD).to(&mut pilot);

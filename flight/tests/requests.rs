@@ -3,7 +3,7 @@
 use crate::support::{Flight, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::rules::SETPOINTS_WANTED_MAX;
+use flight::rules::SETPOINTS_REQUEST_MAX;
 use flight::{Battery, Mode, Outcome, Output, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
 
 /// Outside the fence.
@@ -141,7 +141,7 @@ fn any_other_request_cancels_setpoints_requested_on_the_ground() {
 #[test]
 fn setpoints_requested_on_the_ground_stay_requested_for_five_seconds() {
     for (waited, mode) in
-        [(SETPOINTS_WANTED_MAX / PERIOD - 1, Mode::Flying), (SETPOINTS_WANTED_MAX / PERIOD, Mode::Idling)]
+        [(SETPOINTS_REQUEST_MAX / PERIOD - 1, Mode::Flying), (SETPOINTS_REQUEST_MAX / PERIOD, Mode::Idling)]
     {
         let mut flight = Flight::settled();
         assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Ok(())));

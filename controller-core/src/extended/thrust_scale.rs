@@ -16,7 +16,7 @@ use super::parameters::ExtendedParameters;
 use crate::math;
 use nalgebra::Vector3;
 
-/// c_0, m/s^2: variations below it say little about the scale.
+/// c_0, m/s^2: variations below it carry little information about the scale.
 const LEAST_VARIATION: f64 = 2.0;
 
 /// Bandwidth of the slow averages, 1/s.

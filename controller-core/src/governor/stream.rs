@@ -1,8 +1,8 @@
 //! A stream of positions, velocities and accelerations between two setpoints: its present point and
 //! motion.
 //!
-//! The turning model: what of the acceleration is across the horizontal velocity goes round with it, at w = (v x a)_3 /
-//! |v|^2; what is along it or vertical changes at the rate c, and c is what turning leaves unexplained of the last
+//! The turning model: the acceleration across the horizontal velocity turns with it, at w = (v x a)_3 /
+//! |v|^2; the rest changes at the rate c, and c is what turning leaves unexplained of the last
 //! change of acceleration. With a = a_w + a_c in that sense, R(w t) the turn about the vertical and J a quarter turn,
 //!
 //! ```text

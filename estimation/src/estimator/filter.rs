@@ -2,7 +2,7 @@
 //!
 //! - `Filter::advance`: the horizon moves on through what the IMU did.
 //! - `Filter::test` and `Filter::fuse`: a pose that was true at the horizon is weighed, and taken into account.
-//! - `Filter::rebase`: the pose source says that its frame has moved.
+//! - `Filter::rebase`: the pose source reports a move of its frame.
 //!
 //! Normalised innovations squared (NIS) are r' S^-1 r of a residual r whose covariance is S: for a filter and a pose
 //! that are what they say, chi-square distributed with three degrees of freedom, 3 on average, and above [`GATE`] once

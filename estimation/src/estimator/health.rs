@@ -2,7 +2,7 @@
 //!
 //! Uncertainties are those at the horizon, which is as far back as the last pose, or as the history goes where none
 //! comes. Means of NIS run over the last 50 poses that were weighed (an exponential average, each NIS cut at
-//! [`NIS_MAX`]); a filter whose sensors are what its settings say has 3.
+//! [`NIS_MAX`]); a filter whose sensors match its settings has 3.
 
 use super::filter::Filter;
 use super::history::EXTRAPOLATION_MAX;

@@ -1,4 +1,4 @@
-//! A pose as the estimator takes it: where the vehicle was, how sure the sender is, and what it says about its own
+//! A pose as the estimator takes it: where the vehicle was, the sender's deviations, and its report on its own
 //! stream.
 
 use crate::measurement::Pose;

@@ -1,4 +1,4 @@
-//! The driver against a sensor that behaves as the data sheet says, or fails in every way it can.
+//! The driver against a sensor that follows the data sheet, or fails in every way it can.
 
 mod bench;
 

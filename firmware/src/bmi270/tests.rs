@@ -1,4 +1,4 @@
-//! The driver against a device that behaves as the data sheet says, or fails.
+//! The driver against a device that follows the data sheet, or fails.
 
 use super::*;
 use crate::bench::{Jumping, Pin};
@@ -16,7 +16,7 @@ struct Chip {
     clock: Jumping,
     /// It ignores the bus until its chip select has risen once.
     asleep: bool,
-    /// What was written into it, and whether it was told to run that.
+    /// What was written into it, and whether it was started.
     file: Vec<u8>,
     written: Vec<(u64, u8, u8)>,
     stuck: Option<u8>,

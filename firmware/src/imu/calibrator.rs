@@ -8,7 +8,7 @@
 //! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
 //! | all zero | ends what is under way |
 //!
-//! Whether it stood still is [`standstill`](estimation::imu::standstill)'s to say. The sensor that stands by is
+//! [`standstill`](estimation::imu::standstill) decides whether it stood still. The sensor that stands by is
 //! calibrated along with the other, from its own samples. What comes out is applied at once, and kept in the
 //! parameters. Six sides and the single one forget the level that was found with other offsets: level afterwards.
 //!
@@ -113,7 +113,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
 
     /// Whether samples of the sensor that stands by are wanted. One that has failed is not read again: it takes its
     /// time.
-    pub fn wants_standby(&self) -> bool {
+    pub fn needs_standby(&self) -> bool {
         self.job.as_ref().is_some_and(|job| job.standby != Some(Err(Fault)))
     }
 
@@ -145,7 +145,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         }
     }
 
-    /// Takes a sample of the sensor that `unit` is, and one of the sensor that stands by, if there is one. Says whether
+    /// Takes a sample of the sensor that `unit` is, and one of the sensor that stands by, if there is one; whether
     /// calibrations have changed.
     pub fn take(&mut self, unit: Unit, sample: &RawImu, standby: Option<Result<RawImu, Fault>>) -> bool {
         let Some(job) = &mut self.job else { return false };
@@ -227,7 +227,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
         true
     }
 
-    /// Adds a side, and says how far that is; whether all six are there.
+    /// Adds a side, and reports progress; whether all six are there.
     fn add_sides(shared: ImuView<'_, M>, job: &mut Job, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
         for (index, (findings, rest)) in job.findings.iter_mut().zip(rests).enumerate() {
             let Some(rest) = rest else { continue };

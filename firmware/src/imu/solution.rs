@@ -20,7 +20,7 @@ pub enum Problem {
     NotLevel(NotLevel),
     /// The six sides do not make one.
     Sides(SixPointError),
-    /// One side says more than an offset can be.
+    /// The offset by one side is too large.
     Offset,
 }
 
@@ -37,7 +37,7 @@ impl Display for Problem {
 /// What corrects a sensor that stood still so, `sides` being the six it has stood on.
 ///
 /// # Errors
-/// Says what is implausible.
+/// Names what is implausible.
 pub fn solve(
     procedure: Procedure,
     before: &Calibration,

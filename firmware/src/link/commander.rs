@@ -1,9 +1,9 @@
 //! Who commands: the station that armed the vehicle, a system and a component, while it is armed and received.
 //!
 //! No other station may disarm it, not even by force; every station may request everything else. Where no ground
-//! station armed it but a companion computer, a ground station may as well: the operator overrides a program. A station that has been silent for [`SILENCE`] commands no more: any other may then stop the motors,
-//! as any station may where a radio armed it. Control decides who armed, since many may have asked. A heartbeat shows
-//! who is a ground station.
+//! station armed it but a companion computer, a ground station may as well: the operator overrides a program. A station
+//! that has been silent for [`SILENCE`] commands no more: any other may then stop the motors, as any station may where
+//! a radio armed it. Control decides who armed, since many may have asked. A heartbeat shows who is a ground station.
 
 use super::command::Call;
 use flight::Stamped;
@@ -38,7 +38,7 @@ impl Commander {
     }
 
     /// Notes a ground station's heartbeat.
-    pub fn meet(&mut self, station: Sender) {
+    pub fn add_ground_station(&mut self, station: Sender) {
         if self.is_ground_station(station) {
             return;
         }

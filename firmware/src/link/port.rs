@@ -10,7 +10,7 @@ use crate::shared::{self, Event, Flag, PortView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::{Error, ErrorKind, ErrorType, Read, Write};
 
-/// How often somebody looks whether the port is open, us.
+/// The interval of polls whether the port is open, us.
 pub const LOOK: u64 = 100_000;
 
 /// One direction of the link, on whichever line it is.

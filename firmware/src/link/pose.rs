@@ -9,7 +9,7 @@
 //! A pose's time is its sender's, on the vehicle's clock: see [`SenderClock`]. A sender without a clock (its times are
 //! zero) has its poses stamped as they arrive. What a pose takes at least, from the camera to here, is known where its
 //! sender answers TIMESYNC by the clock that stamps its poses ([`TimeSync`]); where it does not, parameter POSE_DELAY
-//! says it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was overtaken,
+//! gives it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was overtaken,
 //! and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look

@@ -146,13 +146,13 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             return;
         }
         if self.is_genuine(frame) {
-            self.obey(frame);
+            self.dispatch(frame);
         }
     }
 
     /// Acts on a frame that counts. Never inlined: what it calls would not be inlined any more, 600 bytes more.
     #[inline(never)]
-    fn obey(&mut self, frame: &Frame<'_>) {
+    fn dispatch(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
         self.commander.receive(sender, self.shared.commander().get(), frame.time);
         match frame.message {
@@ -213,7 +213,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     fn heartbeat(&mut self, frame: &Frame<'_>, message: &HEARTBEAT_DATA) {
         if message.mavtype == MavType::MAV_TYPE_GCS {
             self.shared.ground_station().put((), frame.time);
-            self.commander.meet((frame.header.system, frame.header.component));
+            self.commander.add_ground_station((frame.header.system, frame.header.component));
         }
     }
 

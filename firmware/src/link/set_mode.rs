@@ -1,4 +1,4 @@
-//! SET_MODE: what older clients say for DO_SET_MODE.
+//! SET_MODE: older clients' DO_SET_MODE.
 
 use super::frame::Frame;
 
@@ -19,7 +19,7 @@ impl SetMode {
     /// The message's number.
     pub const ID: u32 = 11;
 
-    /// What a message of that number says.
+    /// The fields of a message of that number.
     #[must_use]
     pub fn of(frame: &Frame<'_>) -> Self {
         // Zeros at the end are cut off.

@@ -8,7 +8,7 @@
 //! | position on some axes, velocity on the others, or both | go there on those, move like that on these |
 //! | anything else: acceleration alone or with some axes only, nothing on an axis, forces | refused |
 //!
-//! The heading is kept, turned to, or turned at a rate, as its two bits say. Fields that the mask ignores are not
+//! The heading is kept, turned to, or turned at a rate, by its two bits. Fields that the mask ignores are not
 //! read. The governor checks ranges.
 //!
 //! | frame | position | velocity, acceleration | yaw |

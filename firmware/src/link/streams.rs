@@ -97,7 +97,7 @@ impl Schedule {
         running.map(|stream| stream.due).min().unwrap_or(u64::MAX)
     }
 
-    /// Sends a message every `interval` us from now on, as SET_MESSAGE_INTERVAL says it: 0 is the table's rate, below
+    /// Sends a message every `interval` us from now on, in SET_MESSAGE_INTERVAL's terms: 0 is the table's rate, below
     /// that never.
     pub fn ask(&mut self, kind: Kind, interval: i64, now: u64) {
         for stream in self.0.iter_mut().filter(|stream| stream.kind == kind) {

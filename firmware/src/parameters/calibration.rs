@@ -4,7 +4,7 @@
 //! divided by its z: two numbers, and no rounding can make them anything but a rotation.
 
 use super::table::{Name, PARAMETERS};
-use super::{NotTaken, Parameters};
+use super::{Parameters, ValueRefusal};
 use crate::hardware::Unit;
 use crate::shared::Write;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -42,12 +42,12 @@ pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Ca
 /// Keeps what corrects the samples of `unit`.
 ///
 /// # Errors
-/// [`NotTaken`] names the first row that the table does not allow; those before it are changed.
+/// [`ValueRefusal`] names the first row that the table does not allow; those before it are changed.
 pub fn store<M: RawMutex>(
     parameters: Write<'_, Parameters<M>>,
     unit: Unit,
     calibration: &Calibration,
-) -> Result<(), NotTaken> {
+) -> Result<(), ValueRefusal> {
     let Calibration { gyro_bias, offset, scale, level } = calibration;
     // L takes up to e3, so its last row is up.
     let (x, y, z) = (level.m31, level.m32, level.m33);

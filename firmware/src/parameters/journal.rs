@@ -91,7 +91,7 @@ impl<F: Flash> Journal<F> {
     /// Reads a kind's newest record over as many of `words` as it holds.
     ///
     /// # Errors
-    /// [`Fault`] if there is none.
+    /// [`Fault`] without such a record.
     pub fn read(&mut self, kind: Kind, words: &mut [u32]) -> Result<(), Fault> {
         let record = self.flash.read(self.newest[kind as usize].ok_or(Fault)?)?;
         let stored = record[VALUES..VALUES_END].iter().take(record[1] as usize);

@@ -15,7 +15,7 @@ const ACROSS: f32 = 3.0;
 const VERTICAL: f32 = 1.0;
 const TURNING: f32 = 1.0;
 
-/// How far up a stick begins a flight, and how far down it asks to land.
+/// How far up a stick begins a flight, and how far down it requests a landing.
 const BEGINS: f32 = 0.3;
 const LANDS: f32 = -0.95;
 
@@ -45,13 +45,13 @@ impl Sticks {
         self.up > BEGINS
     }
 
-    /// Whether they ask to land: all the way down.
+    /// Whether they request a landing: all the way down.
     #[must_use]
     pub fn land(&self) -> bool {
         self.up < LANDS
     }
 
-    /// What they ask of a vehicle in this state; none where it points straight up or down.
+    /// Their setpoint for a vehicle in this state; none where it points straight up or down.
     #[must_use]
     pub fn setpoint(&self, state: &State) -> Option<Setpoint> {
         // Ahead, left, up.

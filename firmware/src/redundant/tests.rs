@@ -7,7 +7,7 @@ use core::task::{Context, Poll, Waker};
 use embassy_futures::block_on;
 use nalgebra::Vector3;
 
-/// What a sensor says.
+/// A sensor's answer.
 #[derive(Clone, Copy, PartialEq)]
 enum Says {
     Samples,

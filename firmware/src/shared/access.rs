@@ -8,14 +8,14 @@ use super::flag::Flag;
 use super::latest::Latest;
 use super::library::{Answer, Library, Question};
 use super::queue::{Full, Queue};
-use super::reply::Asked;
+use super::reply::QueuedRequest;
 use super::requests::Requests;
 use super::setpoint_owner::SetpointOwner;
 use super::table::offers;
 use crate::link::frame::Frame;
 use crate::link::signing::{Refusal, Signing};
 use crate::parameters::table::Name;
-use crate::parameters::{NotTaken, Parameters};
+use crate::parameters::{Parameters, ValueRefusal};
 use crate::recorder::Recorder;
 use crate::recorder::follow::{Followed, Follower};
 use crate::recorder::tick::Tick;
@@ -73,12 +73,12 @@ offers! {
     [] Write<'_, SetpointOwner> { fn set(sender: Option<(u8, u8)>); }
     [M: RawMutex, T, const ROOM: usize] Write<'_, Queue<M, T, ROOM>> { fn put(value: T) -> Result<(), Full>; }
     [M: RawMutex, T, const ROOM: usize] Take<'_, Queue<M, T, ROOM>> { fn take() -> Option<T>; }
-    [M: RawMutex] Take<'_, Requests<M>> { fn take() -> Option<Asked>; }
+    [M: RawMutex] Take<'_, Requests<M>> { fn take() -> Option<QueuedRequest>; }
     [M: RawMutex] Write<'_, Signal<M, ()>> { fn signal(what: ()); }
     [M: RawMutex] Take<'_, Signal<M, ()>> { fn wait() -> impl Future<Output = ()>; }
     [M: RawMutex] Read<'_, Parameters<M>> { fn get(name: Name) -> f32; fn flight_settings() -> FlightSettings; }
     [M: RawMutex] Write<'_, Parameters<M>> {
-        fn set(name: Name, value: f32) -> Result<(), NotTaken>;
+        fn set(name: Name, value: f32) -> Result<(), ValueRefusal>;
         fn get(name: Name) -> f32;
     }
     [M: RawMutex] Read<'_, Signing<M>> {

@@ -79,7 +79,7 @@ impl<M: RawMutex> Library<M> {
         Self { question: Latest::new(), answers: Queue::new() }
     }
 
-    /// The link asks, at `now`, us.
+    /// The link's question, at `now`, us.
     pub fn ask(&self, question: Question, now: u64) {
         let _ = self.answers.take();
         self.question.put(question, now);

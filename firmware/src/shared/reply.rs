@@ -13,7 +13,7 @@ pub type Ping = mavlink::dialects::common::PING_DATA;
 
 /// A request to control, to be answered.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Asked {
+pub struct QueuedRequest {
     /// What for.
     pub request: Request,
     /// The command it came by, if it came over the link.

@@ -5,7 +5,7 @@
 //! link makes some. So landing, disarming and the pilot's switches always have room, and none waits for more than the
 //! others, [`REQUESTS`] ticks.
 
-use super::reply::Asked;
+use super::reply::QueuedRequest;
 use crate::link::acknowledgement::Order;
 use core::cell::RefCell;
 use core::mem::discriminant;
@@ -18,7 +18,7 @@ use heapless::Deque;
 pub const REQUESTS: usize = 8;
 
 /// Requests in the order of their coming.
-pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<Asked, REQUESTS>>>);
+pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<QueuedRequest, REQUESTS>>>);
 
 impl<M: RawMutex> Requests<M> {
     /// None.
@@ -29,8 +29,8 @@ impl<M: RawMutex> Requests<M> {
 
     /// Puts a request behind the others and takes away the one of its kind, or else a lesser one where there is no
     /// room: the command by which that came, to be answered, and whether it was the same.
-    pub(super) fn put(&self, asked: Asked) -> Option<(Order, bool)> {
-        let way = |asked: &Asked| (kind(&asked.request), asked.order.is_some());
+    pub(super) fn put(&self, asked: QueuedRequest) -> Option<(Order, bool)> {
+        let way = |asked: &QueuedRequest| (kind(&asked.request), asked.order.is_some());
         self.0.lock(|waiting| {
             let mut waiting = waiting.try_borrow_mut().ok()?;
             let alike = waiting.iter().position(|other| way(other) == way(&asked));
@@ -44,13 +44,13 @@ impl<M: RawMutex> Requests<M> {
 
     /// Takes the first one.
     #[must_use]
-    pub fn take(&self) -> Option<Asked> {
+    pub fn take(&self) -> Option<QueuedRequest> {
         self.0.lock(|waiting| waiting.try_borrow_mut().ok()?.pop_front())
     }
 }
 
 /// Takes the one at a place, by handing all of them round: nothing here may panic in control's tick.
-fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
+fn remove(waiting: &mut Deque<QueuedRequest, REQUESTS>, place: usize) -> Option<QueuedRequest> {
     let mut removed = None;
     for index in 0..waiting.len() {
         let asked = waiting.pop_front()?;
@@ -65,12 +65,12 @@ fn remove(waiting: &mut Deque<Asked, REQUESTS>, place: usize) -> Option<Asked> {
 }
 
 /// Whether it makes room for others.
-fn is_lesser(asked: &Asked) -> bool {
+fn is_lesser(asked: &QueuedRequest) -> bool {
     asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
 }
 
 /// Whether two requests are equal, of the kinds that clients repeat: not points and motors.
-fn is_same(one: &Asked, other: &Asked) -> bool {
+fn is_same(one: &QueuedRequest, other: &QueuedRequest) -> bool {
     let is_alike = match (&one.request, &other.request) {
         (Request::TakeOff(one), Request::TakeOff(other)) => one == other,
         (Request::GoTo(_) | Request::MotorTest(_) | Request::MotorSetting(_), _) => false,

@@ -11,7 +11,7 @@ use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::imu::Flow;
 use firmware::parameters::table::Name;
-use firmware::shared::Asked;
+use firmware::shared::QueuedRequest;
 use flight::{Mode, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 
@@ -74,13 +74,13 @@ fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mod
         let words = texts(shared);
         seen.extend(words.into_iter().filter(|_| now > requests[0].0));
         if let Some(&(_, request)) = requests.iter().find(|(at, _)| *at == now) {
-            shared.request(Asked { request, order: None, setpoints: None });
+            shared.request(QueuedRequest { request, order: None, setpoints: None });
         }
     });
     (shared.report.get().unwrap().value.mode, seen)
 }
 
-/// Asked to arm after three seconds.
+/// QueuedRequest to arm after three seconds.
 const ARM: [(u64, Request); 1] = [(3_000_000, Request::Arm)];
 
 /// It does not arm, and announces this.

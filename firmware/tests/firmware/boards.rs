@@ -1,4 +1,4 @@
-//! What the boards' sources must say, where nothing that runs on a desk can show it.
+//! Requirements on the boards' sources that no test on a desk can run.
 
 use std::path::Path;
 

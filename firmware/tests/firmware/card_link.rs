@@ -79,13 +79,13 @@ impl Bench {
         RefCell::new(self.written.take())
     }
 
-    /// As a client asks: once; what went out then.
+    /// A client's request, sent once; the bytes that went out.
     fn asked(&mut self, duration: u64, ask: impl FnOnce(&mut Fed<'_>)) -> RefCell<Vec<u8>> {
         ask(&mut Fed::new(self.shared));
         self.run(duration, |_, _| ())
     }
 
-    /// A whole file, by a client that asks once for all of it.
+    /// A whole file, by a client that requests all of it at once.
     fn fetched(&mut self, id: u16) -> Vec<u8> {
         let parts: Vec<LOG_DATA_DATA> = sent(&self.asked(4 * SECOND, |fed| fed.message(&part(id, 0, u32::MAX), 0)));
         let mut file = vec![];

@@ -11,7 +11,7 @@ use firmware::hardware::{Clock, Fault, Imu, MotorCommand, Motors, RawImu, Watchd
 use firmware::hil::SelectedMotors;
 use firmware::imu;
 use firmware::link::acknowledgement::Acknowledgement;
-use firmware::shared::{Asked, Flag, Reply};
+use firmware::shared::{Flag, QueuedRequest, Reply};
 use flight::{ImuSample, MotorTest, Request};
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
@@ -120,7 +120,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
         Fed::new(&shared).message(&odometry(0), now);
         if now == asked {
             let order = ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM);
-            shared.request(Asked { request, order: Some(order), setpoints: None });
+            shared.request(QueuedRequest { request, order: Some(order), setpoints: None });
         }
         if now == 45_000 {
             shared.hil.raise();

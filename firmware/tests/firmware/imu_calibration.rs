@@ -1,4 +1,4 @@
-//! Calibration: by itself after boot, and asked for; applied, kept, answered in words.
+//! Calibration: by itself after boot, and on request; applied, kept, answered in words.
 
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
@@ -15,7 +15,7 @@ use flight::Mode;
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavResult};
 use nalgebra::Vector3;
 
-/// Whoever asks: system and component.
+/// The client: system and component.
 const ASKER: Order = ordered(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION);
 
 /// Two sensors as wrong as data sheets allow.
@@ -299,7 +299,7 @@ fn stored_rows_and_calibration_are_the_same_thing() {
         assert!((again.level - loaded.level).norm() < 1e-6);
         assert_eq!((again.offset, again.scale, again.gyro_bias), (loaded.offset, loaded.scale, loaded.gyro_bias));
     }
-    // Rows that nobody found that way: no level at all beats a wrong one.
+    // Invalid rows: no level at all beats a wrong one.
     shared.parameters.set(Name::Imu2LevelX, 0.09).unwrap();
     shared.parameters.set(Name::Imu2LevelY, 0.09).unwrap();
     let loaded = calibration::load((&shared.parameters).into(), Unit::Second);

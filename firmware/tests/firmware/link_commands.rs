@@ -6,7 +6,7 @@ use crate::support::receiver::{
 };
 use crate::support::{patched, v1, v2, v2_of_payload};
 use firmware::parameters::table::Name;
-use firmware::shared::{Asked, Reply};
+use firmware::shared::{QueuedRequest, Reply};
 use flight::{Mode, MotorSetting, MotorTest, Request, Setting};
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavResult, MavType};
@@ -26,7 +26,7 @@ fn an_arm_command_becomes_a_request_that_control_answers() {
     for bytes in [v1(1, &arm()), v2(1, &arm())] {
         let shared = Local::new();
         Fed::new(&shared).bytes(&bytes, 0);
-        let Asked { request, order, setpoints } = shared.requests.take().unwrap();
+        let QueuedRequest { request, order, setpoints } = shared.requests.take().unwrap();
         assert_eq!((request, order.map(whichever), setpoints), (Request::Arm, Some(ordered(ARM_DISARM)), None));
         assert!(replies(&shared).is_empty() && !shared.disarm.is_raised());
     }
@@ -117,7 +117,7 @@ fn a_client_that_repeats_a_command_with_its_count_is_answered() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
     (0..3).for_each(|confirmation| fed.message(&COMMAND_LONG_DATA { confirmation, ..arm() }, 1_000));
-    // Asked once, to be answered three times.
+    // QueuedRequest once, to be answered three times.
     assert_eq!((requests(&shared), replies(&shared).len()), (1, 2));
 }
 
@@ -326,7 +326,7 @@ fn from(system: u8, sequence: u8, message: &COMMAND_LONG_DATA) -> Vec<u8> {
     crate::support::from(system, 190, sequence, message)
 }
 
-/// A vehicle on a desk, in the mode that it is in after `ask` had its say in each of three seconds' ticks.
+/// A vehicle on a desk, in the mode that it is in after `ask` ran in each of three seconds' ticks.
 fn desk<'a>(shared: &'a Local, mut ask: impl FnMut(u64, u64)) -> Desk<'a> {
     let mut desk = Desk::new(shared);
     for tick in 0..300 {
@@ -353,7 +353,7 @@ fn a_refused_station_does_not_keep_another_from_stopping_the_motors() {
             // Too early to arm.
             20 => fed.bytes(&from(255, 1, &arm()), now),
             // A radio does, later.
-            250 => shared.request(Asked { request: Request::Arm, order: None, setpoints: None }),
+            250 => shared.request(QueuedRequest { request: Request::Arm, order: None, setpoints: None }),
             _ => {}
         }
         fed.bytes(&from(255, tick as u8, &command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [0.0; 5])), now);

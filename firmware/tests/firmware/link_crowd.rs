@@ -10,7 +10,7 @@ use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
-use firmware::shared::{Asked, REQUESTS, Reply};
+use firmware::shared::{QueuedRequest, REQUESTS, Reply};
 use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
@@ -32,7 +32,7 @@ fn take_off(param7: f32) -> COMMAND_LONG_DATA {
     COMMAND_LONG_DATA { param7, ..command(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0; 5]) }
 }
 
-fn asked(shared: &Local) -> Vec<Asked> {
+fn asked(shared: &Local) -> Vec<QueuedRequest> {
     std::iter::from_fn(|| shared.requests.take()).collect()
 }
 
@@ -69,7 +69,7 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     let mut fed = Fed::new(&shared);
     lesser().iter().for_each(|message| fed.message(message, 0));
     for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
-        shared.request(Asked { request, order: None, setpoints: None });
+        shared.request(QueuedRequest { request, order: None, setpoints: None });
     }
     let asked = std::iter::from_fn(|| shared.requests.take()).collect::<Vec<_>>();
     let by_radio = asked.iter().filter(|asked| asked.order.is_none()).count();
@@ -78,7 +78,7 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     let urgent = [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5])];
     urgent.iter().for_each(|message| fed.message(message, 0));
     for request in [Request::Arm, Request::Disarm, Request::Hold, Request::FlySetpoints, Request::Land] {
-        shared.request(Asked { request, order: None, setpoints: None });
+        shared.request(QueuedRequest { request, order: None, setpoints: None });
     }
     lesser().iter().for_each(|message| fed.message(message, 0));
     assert_eq!(requests(&shared)[..2], [Request::Land, Request::Disarm]);
@@ -270,7 +270,7 @@ fn of_two_streams_of_setpoints_one_is_flown_and_the_other_refused() {
     assert_eq!(flown.len(), 50);
     let words = texts(&shared);
     assert_eq!(words, vec!["Setpoint refused: another sender's are flown"; 2]);
-    // Whose falls silent for a second has no say any more.
+    // A stream that falls silent for a second no longer counts.
     fed.bytes(&from(250, 2, 101, &target(9.0)), 2_980_000);
     assert!(shared.setpoint.take().is_some());
 }

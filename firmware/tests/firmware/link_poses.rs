@@ -75,7 +75,7 @@ fn frames_that_are_not_converted_are_refused_in_words() {
 #[test]
 fn no_field_that_is_used_may_be_nan_or_infinite() {
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
-        // Position, attitude, velocity, body rates; the covariances behind them say NaN for unknown.
+        // Position, attitude, velocity, body rates; the covariances behind them are NaN for unknown.
         for field in 0..13 {
             let shared = Local::new();
             Fed::new(&shared).bytes(&patched(&odometry(1), 8 + 4 * field, value), 0);
@@ -161,7 +161,7 @@ fn one_source_is_listened_to_at_a_time() {
     assert_eq!(texts(&shared), ["Pose refused: another source is in use"]);
 }
 
-/// What the sender says of an ODOMETRY message besides the pose.
+/// The fields of an ODOMETRY message besides the pose.
 fn sent(message: ODOMETRY_DATA, extensions: [u8; 3]) -> PoseMeasurement {
     let shared = Local::new();
     Fed::new(&shared).bytes(&extended(&message, &extensions), 0);

@@ -57,7 +57,7 @@ fn messages_are_sent_on_request_and_at_requested_rates() {
         let shared = Local::new();
         let asked = crate::support::receiver::command(command, [number, 0.0, 0.0, 0.0, 0.0]);
         Fed::new(&shared).message(&asked, 0);
-        // Whoever sends it answers.
+        // The sending half answers.
         assert_eq!(replies(&shared), [Reply::Requested(kind, ordered(command))]);
     }
     assert_eq!(reply_to(request, 435.0, 0.0).0.len(), 4);
@@ -101,7 +101,7 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
         assert!((position - Vector3::new(-20.0, 10.0, 3.0)).norm() < 0.02, "{position}");
         assert_eq!(turned, turn);
     }
-    // A yaw that counts from where the vehicle points is none from north.
+    // A yaw relative to the vehicle's heading is not one from north.
     let relative = |yaw: f32| COMMAND_INT_DATA { param2: 3.0, ..goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, yaw) };
     for yaw in [0.0, f32::NAN] {
         let turn = asked(&relative(yaw)).map(|request| matches!(request, Request::GoTo(to) if to.turn == Turn::Keep));
@@ -158,7 +158,7 @@ fn fence_and_rally_points_are_answered_as_what_they_are() {
 
 #[test]
 fn a_request_for_a_file_is_refused_and_an_answer_is_left_alone() {
-    // Open a file for reading (4), an acknowledgement (128), a refusal (129); to us, to all, to somebody else.
+    // Open a file for reading (4), an acknowledgement (128), a refusal (129); to us, to all, to another system.
     for (operation, target, answers) in [(4, 1, 1), (4, 0, 1), (127, 1, 1), (4, 7, 0), (128, 1, 0), (129, 1, 0)] {
         let mut message = FILE_TRANSFER_PROTOCOL_DATA { target_system: target, ..Default::default() };
         message.payload[..4].copy_from_slice(&[0xFF, 0x01, 3, operation]);

@@ -91,7 +91,7 @@ fn setpoints_of_the_body_may_mix_height_and_velocity_across_but_not_ahead_and_ac
     let [ahead, down] = [0b1, 0b100].map(Mask::from_bits_retain);
     let [va, vr, vd] = [0b1_000, 0b10_000, 0b100_000].map(Mask::from_bits_retain);
     let Motion::Mixed { position, velocity } =
-        asked_of_it(target(only(down | va | vr)), MavFrame::MAV_FRAME_BODY_FRD).motion
+        setpoint_of(target(only(down | va | vr)), MavFrame::MAV_FRAME_BODY_FRD).motion
     else {
         panic!()
     };
@@ -158,8 +158,8 @@ fn leaning_north() -> State {
     }
 }
 
-/// What a message in a frame asks of the vehicle that leans and points north.
-fn asked_of_it(message: SET_POSITION_TARGET_LOCAL_NED_DATA, coordinate_frame: MavFrame) -> Setpoint {
+/// The setpoint of a message in a frame, for a vehicle that leans and points north.
+fn setpoint_of(message: SET_POSITION_TARGET_LOCAL_NED_DATA, coordinate_frame: MavFrame) -> Setpoint {
     let shared = Local::new();
     shared.report.put(Report { mode: Mode::Flying, state: Some(leaning_north()), ..Report::NONE }, 0);
     Fed::new(&shared).message(&SET_POSITION_TARGET_LOCAL_NED_DATA { coordinate_frame, ..message }, 0);
@@ -171,18 +171,18 @@ fn asked_of_it(message: SET_POSITION_TARGET_LOCAL_NED_DATA, coordinate_frame: Ma
 fn setpoints_of_the_body_are_ahead_right_and_down_however_it_leans() {
     let ahead = SET_POSITION_TARGET_LOCAL_NED_DATA { x: 5.0, y: 1.0, z: -2.0, ..target(only(POSITION)) };
     for frame in [MavFrame::MAV_FRAME_BODY_NED, MavFrame::MAV_FRAME_BODY_OFFSET_NED, MavFrame::MAV_FRAME_BODY_FRD] {
-        let Motion::Position(position) = asked_of_it(ahead.clone(), frame).motion else { panic!() };
+        let Motion::Position(position) = setpoint_of(ahead.clone(), frame).motion else { panic!() };
         // 5 m north, 1 m east, 2 m up from where it is.
         assert!((position - Vector3::new(11.0, 25.0, 5.0)).norm() < 1e-4, "{position}");
     }
-    let Motion::Position(position) = asked_of_it(ahead, MavFrame::MAV_FRAME_LOCAL_OFFSET_NED).motion else { panic!() };
+    let Motion::Position(position) = setpoint_of(ahead, MavFrame::MAV_FRAME_LOCAL_OFFSET_NED).motion else { panic!() };
     assert!((position - Vector3::new(11.0, 25.0, 5.0)).norm() < 1e-4, "{position}");
     let moving = SET_POSITION_TARGET_LOCAL_NED_DATA { vx: 0.0, vy: 1.0, vz: 0.5, ..target(only(VELOCITY)) };
-    let Motion::Velocity(velocity) = asked_of_it(moving, MavFrame::MAV_FRAME_BODY_NED).motion else { panic!() };
+    let Motion::Velocity(velocity) = setpoint_of(moving, MavFrame::MAV_FRAME_BODY_NED).motion else { panic!() };
     assert!((velocity - Vector3::new(1.0, 0.0, -0.5)).norm() < 1e-4, "{velocity}");
     // A yaw of the body's is from where it points; to the right, east, where the law's heading is zero.
     let turning = SET_POSITION_TARGET_LOCAL_NED_DATA { yaw: FRAC_PI_2, ..target(only(VELOCITY.union(YAW))) };
-    let Turn::Angle { angle, .. } = asked_of_it(turning, MavFrame::MAV_FRAME_BODY_NED).turn else { panic!() };
+    let Turn::Angle { angle, .. } = setpoint_of(turning, MavFrame::MAV_FRAME_BODY_NED).turn else { panic!() };
     assert!(angle.abs() < 1e-4, "{angle}");
 }
 

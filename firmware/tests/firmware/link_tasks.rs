@@ -14,7 +14,7 @@ use firmware::link::receive::receive;
 use firmware::link::telemetry::kind::Kind;
 use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
-use firmware::shared::{Asked, Event, MissionList, Ping, Reply, Report, Severity, Timing, Traffic};
+use firmware::shared::{Event, MissionList, Ping, QueuedRequest, Reply, Report, Severity, Timing, Traffic};
 use flight::{Mode, Refusal, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
@@ -197,12 +197,13 @@ fn commands_are_answered_with_number_and_result() {
     let shared = Local::new();
     let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
     let by = |command: u16, sender: (u8, u8)| Order { command, sender, frame: 0 };
-    let asked = |sender| Asked { request: Request::Arm, order: Some(by(command as u16, sender)), setpoints: None };
+    let asked =
+        |sender| QueuedRequest { request: Request::Arm, order: Some(by(command as u16, sender)), setpoints: None };
     shared.answer(&asked((255, 190)), Ok(()));
     shared.answer(&asked((7, 1)), Err(Refusal::PosesUnsettled));
     shared.answer(&asked((0, 0)), Ok(()));
     // Not from the link.
-    shared.answer(&Asked { request: Request::Arm, order: None, setpoints: None }, Ok(()));
+    shared.answer(&QueuedRequest { request: Request::Arm, order: None, setpoints: None }, Ok(()));
     let (other, result) = (MavCmd::MAV_CMD_NAV_TAKEOFF, MavResult::MAV_RESULT_UNSUPPORTED);
     shared.replies.put(Reply::Command(by(other as u16, (254, 0)).answered(result))).unwrap();
     shared.replies.put(Reply::Command(by(65_000, (1, 191)).answered(result))).unwrap();
@@ -240,8 +241,11 @@ fn what_is_requested_is_accepted_where_there_is_anything_to_send() {
     assert_eq!(results, [later, MavResult::MAV_RESULT_ACCEPTED, later]);
 }
 
-const ARM: Asked =
-    Asked { request: Request::Arm, order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)), setpoints: None };
+const ARM: QueuedRequest = QueuedRequest {
+    request: Request::Arm,
+    order: Some(ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)),
+    setpoints: None,
+};
 
 #[test]
 fn a_message_for_an_idle_line_goes_out_at_once() {

@@ -21,7 +21,7 @@ const LOW: u16 = 172;
 const MIDDLE: u16 = 992;
 const HIGH: u16 = 1811;
 
-/// Sticks at rest; armed, flown by and killed as switches say.
+/// Sticks at rest; armed, flown by and killed by switches.
 fn channels(arm: u16, flies: u16, kill: u16) -> [u16; 16] {
     let mut channels = [MIDDLE; 16];
     channels[4..7].copy_from_slice(&[arm, flies, kill]);
@@ -173,7 +173,7 @@ fn in_the_air_sticks_take_over_when_they_are_moved_and_land_when_all_the_way_dow
     assert!(steered(Mode::Landing, true, [0.0, 0.4, 0.0, 0.0]).1.is_empty());
 }
 
-/// A setpoint from the link, and what asks to fly such.
+/// A setpoint from the link, and the request to fly such.
 fn target() -> SET_POSITION_TARGET_LOCAL_NED_DATA {
     SET_POSITION_TARGET_LOCAL_NED_DATA {
         type_mask: PositionTargetTypemask::from_bits_retain(0b1101_1111_1000),

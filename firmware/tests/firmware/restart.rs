@@ -81,7 +81,7 @@ fn what_is_refused_leaves_alone_what_was_accepted() {
         let words = vec!["Restart: another one is under way".to_owned()];
         assert_eq!(asked(&shared, refused), (MavResult::MAV_RESULT_TEMPORARILY_REJECTED, words, true));
         assert_eq!(shared.into_bootloader.is_raised(), accepted == 3.0);
-        // Asked again, it is as if it were asked once.
+        // QueuedRequest again, it is as if it were asked once.
         assert_eq!(asked(&shared, accepted), (MavResult::MAV_RESULT_ACCEPTED, vec![], true));
     }
     let shared = restartable(Mode::Ready);

@@ -10,7 +10,7 @@ use firmware::control::Control;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::parameters::tuned::Built;
-use firmware::shared::{Asked, Flag, Reply};
+use firmware::shared::{Flag, QueuedRequest, Reply};
 use firmware::{boot, configuration};
 use flight::{Grounded, Mode, Request};
 use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
@@ -160,7 +160,7 @@ fn arming_is_refused_while_a_procedure_runs() {
             for end in [now - 5_000, now] {
                 shared.increment(increment(end));
             }
-            shared.request(Asked { request: Request::Arm, order: None, setpoints: None });
+            shared.request(QueuedRequest { request: Request::Arm, order: None, setpoints: None });
             control.tick(now);
             texts(&shared)
         };

@@ -13,8 +13,8 @@ impl Chain<'_> {
 
     /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 if it estimates nothing.
     ///
-    /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone says little: the vertical force d_z
-    /// takes up a steady lack of thrust.
+    /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone is not enough: the vertical force
+    /// d_z takes up a steady lack of thrust.
     pub fn delivered_share(&self) -> f32 {
         self.law.thrust_scale() * self.gravity / (self.gravity - self.vertical_force())
     }

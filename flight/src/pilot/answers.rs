@@ -8,7 +8,7 @@ use crate::exchange::{Battery, Inputs};
 use crate::permission::{self, Start, require};
 use crate::refusal::Refusal;
 use crate::request::Request;
-use crate::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_WANTED_MAX};
+use crate::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_REQUEST_MAX};
 use crate::watch::Seen;
 use controller_core::allocation::geometry::ROTORS_MIN;
 use controller_core::governor::Setpoint;
@@ -41,7 +41,7 @@ impl<'m> Pilot<'m> {
         let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
         let stops = inputs.disarm || inputs.killed;
         let since = self.wanted_since.filter(|_| goes_on && !stops);
-        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_WANTED_MAX;
+        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_REQUEST_MAX;
         self.wanted_since = since.filter(|since| self.mode.is_armed() || is_recent(since));
     }
 

@@ -51,7 +51,7 @@ impl Pilot<'_> {
             is_airborne: self.is_airborne(),
             may_fall: self.fall.may_fall(),
             setpoint,
-            wants_setpoints: self.mode == Mode::Flying || self.wanted_since.is_some(),
+            setpoints_requested: self.mode == Mode::Flying || self.wanted_since.is_some(),
             estimated: estimate.state,
             health: estimate.health,
             pose: estimate.pose,

@@ -51,8 +51,8 @@ estimation::listed! {
         PosesGivenUp,
         /// A landing has lasted for longer than its height explains.
         LandingOver,
-        /// Going down by the IMU alone, the vehicle does not do what is commanded, as far as the IMU says: one of them
-        /// is wrong.
+        /// Going down by the IMU alone, the vehicle's motion by the IMU contradicts the command: one of them is
+        /// wrong.
         ImuDoubtful,
         /// Poses are believed again, and the governor has started from the estimate.
         PoseRegained,

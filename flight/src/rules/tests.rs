@@ -92,7 +92,7 @@ fn every_mode_is_reached_from_boot_and_motors_begin_to_turn_by_permission_only()
         assert!(permissions.contains(&row.condition), "{row:?}");
         assert!(matches!(row.to, Mode::Idling | Mode::MotorTest), "{row:?}");
     }
-    // Nor does a motor test lead into flight, or stopping in the air, without somebody who has looked.
+    // Nor does a motor test lead into flight, or stopping in the air, without an inspection.
     assert!(TABLE.iter().all(|row| row.from != Mode::MotorTest || row.to == Mode::Checks));
     assert!(
         TABLE.iter().all(|row| row.from != Mode::Stopped || row.to == row.from || row.condition == Condition::Disarmed)
@@ -111,7 +111,7 @@ fn no_armed_mode_outlives_its_imu_its_thrusts_or_but_for_going_down_its_estimate
                 assert!(is_stopped(next(mode, conditions.with(Condition::ThrustsRefused, true))), "{mode:?}");
             }
             let after = next(mode, conditions.with(Condition::EstimateLost, true));
-            // Nothing is lost and regained at once; the pilot never says so.
+            // Nothing is lost and regained at once; the pilot never reports both.
             assert!(mode == Mode::Descending || after == Mode::Descending || is_stopped(after), "{mode:?} {after:?}");
         }
     }

@@ -179,7 +179,7 @@ pub struct Flight {
     pub present: Present,
     /// The next tick's requests; handed over once.
     pub inputs: Handed,
-    /// What poses say; the truth, at first.
+    /// The source of poses; the truth, at first.
     pub source: PoseSource,
     /// What becomes of the IMU's increments.
     pub imu: Box<dyn FnMut(&mut Increment)>,
@@ -287,7 +287,7 @@ impl Flight {
         outcome
     }
 
-    /// The motion between two times, us, and what the IMU says of it.
+    /// The motion between two times, us, and the IMU's increments of it.
     fn move_on(&mut self, wrench: &Wrench, start: u64, end: u64) -> Increment {
         let vehicle = *self.certified.configuration().vehicle();
         let (before, seconds) = (self.body, (end - start) as f64 * 1e-6);

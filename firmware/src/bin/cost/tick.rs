@@ -18,7 +18,7 @@ use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Sett
 use firmware::control::Control;
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
-use firmware::shared::{Asked, SamplesView, Shared};
+use firmware::shared::{QueuedRequest, SamplesView, Shared};
 use flight::{FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
@@ -67,7 +67,7 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
             _ => None,
         };
         if let Some(request) = asked {
-            link.request(Asked { request, order: None, setpoints: None });
+            link.request(QueuedRequest { request, order: None, setpoints: None });
         }
         let circling = number.checked_sub(STANDING + RISING);
         if number > STANDING && number % 10 == 0 {

@@ -1,4 +1,4 @@
-//! A register file that behaves as the data sheet says, a bus and pins around it, and a clock that jumps.
+//! A register file that follows the data sheet, a bus and pins around it, and a clock that jumps.
 
 use super::super::*;
 pub use crate::bench::{Jumping, Pin};
@@ -9,7 +9,7 @@ use embassy_futures::block_on;
 use embedded_hal_async::spi::{ErrorKind, ErrorType};
 use std::rc::Rc;
 
-/// One write that a device heard.
+/// One write that a device received.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Written {
     pub time: u64,
@@ -45,7 +45,7 @@ impl Part {
     pub fn new(clock: &Jumping, dummy: usize, reset: u8, id: u8) -> Self {
         let mut values = [0; 128];
         values[usize::from(CHIP_ID)] = id;
-        // The accelerometer is suspended until it is told otherwise.
+        // The accelerometer is suspended until it is set otherwise.
         values[0x7C] = 0x03;
         let clock = clock.clone();
         let asleep = dummy > 0;

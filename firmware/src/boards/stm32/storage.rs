@@ -7,7 +7,7 @@
 //!
 //! The registers are driven here and not by Embassy: its driver waits for the flash without end, and on the H743 leaves
 //! the flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part
-//! says what is its own: addresses, registers, and how a record that may be torn is read.
+//! adds its own: addresses, registers, and how a record that may be torn is read.
 
 use super::watchdog::Patience;
 use crate::hardware::{Fault, Flash, Record};

@@ -8,7 +8,7 @@ use crate::link::frame::Frame;
 use crate::link::origin::Origin;
 use crate::link::set_mode::SetMode;
 use crate::link::telemetry::vehicle;
-use crate::shared::{Asked, Calibration, Event, Reply, Severity};
+use crate::shared::{Calibration, Event, QueuedRequest, Reply, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Request;
 use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
@@ -108,7 +108,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 } else {
                     None
                 };
-                self.shared.request(Asked { request, order: Some(order), setpoints });
+                self.shared.request(QueuedRequest { request, order: Some(order), setpoints });
                 return None;
             }
             Action::ForceDisarm => self.shared.request_disarm(),

@@ -3,7 +3,7 @@
 
 use super::Receiver;
 use crate::link::frame::Frame;
-use crate::parameters::NotTaken;
+use crate::parameters::ValueRefusal;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Reply, Severity};
 use core::fmt::Display;
@@ -74,7 +74,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 Ok(()) => {}
                 Err(error) => {
                     warn(&error);
-                    if let NotTaken::Unfit(_, unfit) = error {
+                    if let ValueRefusal::Unfit(_, unfit) = error {
                         warn(&unfit);
                     }
                 }

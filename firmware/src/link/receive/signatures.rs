@@ -14,7 +14,7 @@ use mavlink::dialects::common::{HEARTBEAT_DATA, RADIO_STATUS_DATA, SETUP_SIGNING
 
 impl<M: RawMutex> Receiver<'_, M> {
     /// Whether a frame counts. One that does not is counted as refused, and reported; but not radios' own words and
-    /// heartbeats, which go on whatever anybody says.
+    /// heartbeats, which go on regardless.
     #[inline(never)]
     pub(super) fn is_genuine(&mut self, frame: &Frame<'_>) -> bool {
         let shared = self.shared;

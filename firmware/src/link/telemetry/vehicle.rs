@@ -116,7 +116,7 @@ pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
 /// what the line lost, and whether flights are logged, if there is a card.
 ///
 /// Clients know sensors that this vehicle has not, and wait for them. What a magnetometer is there for, a heading, and
-/// what GPS is there for, a place, comes from the poses here; so both bits say, like that of a vision system, whether
+/// what GPS is there for, a place, comes from the poses here; so both bits show, like that of a vision system, whether
 /// poses are believed.
 #[must_use]
 pub fn status(

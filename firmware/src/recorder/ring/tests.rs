@@ -1,6 +1,6 @@
 use super::*;
 
-/// A record that says its number in every byte.
+/// A record with its number in every byte.
 fn record(number: usize) -> [u8; tick::SIZE] {
     [number as u8; tick::SIZE]
 }
@@ -63,7 +63,7 @@ fn a_write_that_a_reset_cuts_short_loses_no_more_than_itself_and_the_oldest() {
         let survivors = if records >= slots { old[1..].to_vec() } else { old.clone() };
         let changed = (0..slots).find(|&slot| before[slot] != after[slot]).unwrap();
         for written in 0..=SLOT {
-            // The first bytes, the last bytes, and every third: nobody knows the order in which memory is written.
+            // The first bytes, the last bytes, and every third: the order in which memory is written is unknown.
             let orders: [&dyn Fn(usize) -> bool; 3] =
                 [&|byte| byte < written, &|byte| byte >= SLOT - written, &|byte| byte % 3 == 0 && byte < written];
             for is_written in orders {

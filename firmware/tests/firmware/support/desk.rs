@@ -24,7 +24,7 @@ impl<'a> Desk<'a> {
         Self { shared, control: Control::new(shared.for_control(), pilot, outputs), now: 0 }
     }
 
-    /// One tick on, with what the IMU and a camera say of a vehicle at rest.
+    /// One tick on, with the IMU's and a camera's measurements of a vehicle at rest.
     pub fn tick(&mut self) -> MotorCommand {
         let zero = Vector3::zeros();
         for start in [self.now, self.now + PERIOD / 2] {

@@ -84,7 +84,7 @@ impl Clock for Simulated {
 }
 
 impl Simulated {
-    /// Polls `task` once a millisecond for `duration` (us), after `each` has had its say. The task must not end.
+    /// Polls `task` once a millisecond for `duration` (us), after `each` has run. The task must not end.
     pub fn run<F: Future>(&self, duration: u64, task: F, mut each: impl FnMut(u64)) {
         let mut task = pin!(task);
         let mut context = Context::from_waker(Waker::noop());

@@ -45,7 +45,7 @@ pub fn command(hil: &Hil, time: u64) {
         .unwrap();
 }
 
-/// What the sensors say at `time_usec`.
+/// The sensors' message at `time_usec`.
 pub fn sensor(time_usec: u64) -> HIL_SENSOR_DATA {
     HIL_SENSOR_DATA {
         time_usec,

@@ -1,7 +1,7 @@
 //! The H743's flash: two banks, programmed by words of 32 bytes that each have an error-correcting code.
 //!
 //! A word that power failed on while it was programmed or erased has the wrong code. Reading it raises a bus fault,
-//! which would restart the chip at every boot: so records are read with faults masked, and the flash's own flag says
+//! which would restart the chip at every boot: so records are read with faults masked, and the flash's own flag shows
 //! whether to believe them.
 
 use crate::hardware::Fault;
