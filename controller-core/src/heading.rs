@@ -35,8 +35,8 @@ impl Heading {
         Ok(Self { direction: direction / length, rate, acceleration })
     }
 
-    /// From a direction that another heading gave, taken bit for bit: headings stored as numbers give the same
-    /// one back.
+    /// From a direction that another heading gave, taken bit for bit: headings stored as numbers give the same one
+    /// back.
     ///
     /// # Errors
     /// As [`Self::new`]'s, and [`Reason::NotOnCircle`] already if |direction| differs from one by more than its own

@@ -35,9 +35,9 @@
 //! ```
 //!
 //! Without poses the state goes on by IMU alone, without a timeout; [`health`](Estimator::health) reports the age of
-//! the last pose and the uncertainty. A pose stream that jumps, turns or drifts against the IMU
-//! is not followed. Its poses are refused, with the reason, until they are again where coasting may have led;
-//! [`Estimator::adopt`] follows it all the same, as on the ground.
+//! the last pose and the uncertainty. A pose stream that jumps, turns or drifts against the IMU is not followed. Its
+//! poses are refused, with the reason, until they are again where coasting may have led; [`Estimator::adopt`] follows
+//! it all the same, as on the ground.
 //!
 //! Every step is bounded: an increment costs one step of the nominal state; a pose the increments since the last pose,
 //! with covariance, and those since its own time, without.
@@ -161,8 +161,7 @@ impl Estimator {
     }
 
     /// Takes what the IMU did, which begins where the last increment ended. After a gap, or an invalid increment,
-    /// everything begins anew, with the biases as they were: no state carries over a time
-    /// without measurements.
+    /// everything begins anew, with the biases as they were: no state carries over a time without measurements.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
         if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {

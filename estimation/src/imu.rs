@@ -22,11 +22,11 @@
 //! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
 //! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
-//! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is
-//! over sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged,
-//! for the estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without
-//! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
-//! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
+//! sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged, for the
+//! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without samples
+//! are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does the
+//! estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
@@ -191,8 +191,8 @@ impl Conditioner {
     }
 
     /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that
-    /// one answered; the last specific force counts on where it did not. A sample that is not finite, or not later
-    /// than the last, is left out.
+    /// one answered; the last specific force counts on where it did not. A sample that is not finite, or not later than
+    /// the last, is left out.
     pub fn sample(
         &mut self,
         time: u64,

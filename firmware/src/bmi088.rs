@@ -11,8 +11,8 @@
 //! | accelerometer | 1600 Hz, 145 Hz bandwidth (fourfold oversampling), +-24 g in 16 bits |
 //! | bus | SPI mode 0 or 3, at most 10 MHz |
 //!
-//! Every sample reads both chip identities before it accepts their numbers: a bus stuck high or low would
-//! otherwise read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
+//! Every sample reads both chip identities before it accepts their numbers: a bus stuck high or low would otherwise
+//! read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
 //! [`Fault`]; an accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a
 //! device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a
 //! step between two samples, they do not.

@@ -5,11 +5,10 @@
 //!                                                            '-> watchdog fed, if all of it was in time
 //! ```
 //!
-//! The task decides nothing about flight: [`flight`] does. It keeps time: ticks are due a period
-//! apart, counted from the first one. A tick that has not written its command when the next is due has been missed; the
-//! ticks it overran are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided
-//! in time, the stop command included: a vehicle whose motors do not receive it, or that has no time left, is
-//! reset.
+//! The task decides nothing about flight: [`flight`] does. It keeps time: ticks are due a period apart, counted from
+//! the first one. A tick that has not written its command when the next is due has been missed; the ticks it overran
+//! are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided in time, the stop
+//! command included: a vehicle whose motors do not receive it, or that has no time left, is reset.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};

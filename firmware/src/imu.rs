@@ -8,9 +8,9 @@
 //! ```
 //!
 //! A sensor that falls silent or answers nonsense leaves the last sample to age; the flight rules decide from its age.
-//! While a simulator stands in for the sensors, these do not count. The first fault after good samples,
-//! and the first good sample after faults, are events; so is a second sensor that takes over, and one that does not
-//! answer on the ground.
+//! While a simulator stands in for the sensors, these do not count. The first fault after good samples, and the first
+//! good sample after faults, are events; so is a second sensor that takes over, and one that does not answer on the
+//! ground.
 
 mod calibrator;
 mod flow;
@@ -97,8 +97,7 @@ fn finite(sample: RawImu) -> Result<RawImu, Fault> {
     if numbers { Ok(sample) } else { Err(Fault) }
 }
 
-/// A task whose sensor's parameters are invalid: it reports that, and delivers nothing. Nothing arms without
-/// samples.
+/// A task whose sensor's parameters are invalid: it reports that, and delivers nothing. Nothing arms without samples.
 pub async fn refuse<M: RawMutex>(shared: SamplesView<'_, M>, clock: &impl Clock, error: &ParameterError) -> ! {
     shared.announce(Event::new(Severity::Critical, error));
     loop {

@@ -2,8 +2,8 @@
 //!
 //! A rotor's thrust follows the square of its speed. A speed controller that holds its command's speed makes it a
 //! square of the command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and
-//! `docs/thrust-stand.md` describes how a is measured. A full command is the scenario's greatest thrust, at the
-//! voltage where it was measured.
+//! `docs/thrust-stand.md` describes how a is measured. A full command is the scenario's greatest thrust, at the voltage
+//! where it was measured.
 
 use crate::hardware::{MOTORS, MotorCommand};
 use controller_core::allocation::curve::Battery;

@@ -3,9 +3,8 @@
 //! They change only while disarmed. What the certificate depends on is certified when it is set, and refused if that
 //! fails; it counts from the next boot, which certifies it again.
 //!
-//! [`table`] lists them, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], `flight` and
-//! [`tuned`] are what rows mean together: the inertial sensors', those of the flight rules, and those of the
-//! configuration.
+//! [`table`] lists them, [`storage`] keeps it over a reboot in a [`journal`]; [`calibration`], `flight` and [`tuned`]
+//! are what rows mean together: the inertial sensors', those of the flight rules, and those of the configuration.
 
 pub mod calibration;
 mod flight;

@@ -1,5 +1,4 @@
-//! The operator's radio transmitter: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000
-//! baud).
+//! The operator's radio transmitter: an ExpressLRS or Crossfire receiver on a line of its own (CRSF, 420,000 baud).
 //!
 //! | channel | what | low | middle | high |
 //! |---|---|---|---|---|

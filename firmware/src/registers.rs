@@ -1,10 +1,10 @@
 //! Registers of a sensor behind SPI, and the way from power to measuring through them.
 //!
 //! An [`exchange`] is bounded in time, and its chip select is high afterwards however it ends. A power-up is a table of
-//! [`Step`]s. [`PowerUp`] does one of them at a time, when its time has come, so that a task with other work
-//! meanwhile does it. A setting is written, read back a millisecond later, and written again if it did not stick, up to
-//! [`TRIES`] times: the BMI088's accelerometer is known to need that. Everything before a setting that failed for good
-//! is done again by the next attempt.
+//! [`Step`]s. [`PowerUp`] does one of them at a time, when its time has come, so that a task with other work meanwhile
+//! does it. A setting is written, read back a millisecond later, and written again if it did not stick, up to [`TRIES`]
+//! times: the BMI088's accelerometer is known to need that. Everything before a setting that failed for good is done
+//! again by the next attempt.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault};

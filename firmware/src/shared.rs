@@ -1,9 +1,9 @@
 //! The values that tasks exchange, and each task's access to them.
 //!
-//! Every value has the time it was taken, and every reader sets its greatest age. A task has no reference to
-//! the [values](Values) but a view of them: [`ControlView`] is the control task's. A view has a method for each value
-//! that its task has to do with, and what comes from that method can be [read](Read), [written](Write) or
-//! [taken](Take), and no more than that. Every view can [announce](Values::announce) an event to the operator.
+//! Every value has the time it was taken, and every reader sets its greatest age. A task has no reference to the
+//! [values](Values) but a view of them: [`ControlView`] is the control task's. A view has a method for each value that
+//! its task has to do with, and what comes from that method can be [read](Read), [written](Write) or [taken](Take), and
+//! no more than that. Every view can [announce](Values::announce) an event to the operator.
 //!
 //! The tables in this file define which task may do what, and the views are made of them: [`Values`] shows for each
 //! value who writes and who reads it, and each view what its task can do.
@@ -141,8 +141,8 @@ values! {
     pub disarm: Flag { Take: ControlView }
     /// Whether the kill switch was on in the radio's last frame: latched through silence.
     pub killed: Latest<M, bool> { Write: RadioView; Read: ControlView }
-    /// Whether a radio's sticks fly, by its switch. Latched through silence until a client on the link
-    /// requests to fly setpoints.
+    /// Whether a radio's sticks fly, by its switch. Latched through silence until a client on the link requests to fly
+    /// setpoints.
     pub sticks: Latest<M, bool> { Write: RadioView, ReceiveView }
     /// What the last control tick did. More views read from it whether the vehicle [is armed](Values::is_armed) or a
     /// motor [turns](Values::is_turning).
@@ -243,8 +243,8 @@ impl<M: RawMutex> Values<M> {
         }
     }
 
-    /// Sends a request to control, in place of the link's or the radio's last of that kind. That one is answered:
-    /// as this is, if it is the same.
+    /// Sends a request to control, in place of the link's or the radio's last of that kind. That one is answered: as
+    /// this is, if it is the same.
     pub fn request(&self, asked: QueuedRequest) {
         match (self.requests.put(asked), asked.order) {
             (Some((order, true)), Some(of)) => self.reply(Reply::Likewise { order, of: of.frame }),
@@ -263,8 +263,7 @@ impl<M: RawMutex> Values<M> {
     }
 
     /// Answers a request that came by a command, and announces a refusal; setpoints that are granted are flown from now
-    /// on. An answer that finds no room is dropped: its
-    /// sender repeats its command.
+    /// on. An answer that finds no room is dropped: its sender repeats its command.
     pub fn answer(&self, asked: &QueuedRequest, result: Result<(), Refusal>) {
         match result {
             Err(refusal) => self.announce(Event::Refused(refusal)),

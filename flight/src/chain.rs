@@ -184,8 +184,8 @@ impl<'m> Chain<'m> {
         (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
     }
 
-    /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be called each
-    /// tick. Both at once would brake as slowly as the vertical bounds have it.
+    /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be called each tick.
+    /// Both at once would brake as slowly as the vertical bounds have it.
     pub fn come_down(&mut self, speed: f32, may_brake: bool) {
         if may_brake && self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
             return self.governor.stop();

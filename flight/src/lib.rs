@@ -3,8 +3,8 @@
 //! - [`rules`]: the flight rules, a table of modes and transitions, with their timeouts;
 //! - [`reason`]: reasons in words, for every transition; `refusal`: for every refusal;
 //! - [`pilot`]: [`Pilot`], which composes rules, governor, law and allocation into one tick;
-//! - `permission`: what arming and turning a motor need; `motor`, `bench`: the requests for one motor
-//!   while no other turns, and their output;
+//! - `permission`: what arming and turning a motor need; `motor`, `bench`: the requests for one motor while no other
+//!   turns, and their output;
 //! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: the [estimator](estimation::estimator)'s state in a tick, and how long it has been healthy;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;

@@ -65,8 +65,8 @@ pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
-/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and a
-/// ground station on the link.
+/// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and a ground
+/// station on the link.
 pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
     let faults = estimate.health.faults;
     // Without an IMU nothing else can be well.

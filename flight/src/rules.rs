@@ -1,8 +1,8 @@
 //! The flight rules: a table of modes and transitions, and every time limit they use.
 //!
 //! Once a tick, the rows of the present mode are read from top to bottom and the first whose condition holds is taken:
-//! at most one transition a tick, and the order of the rows is the order of precedence. [`Condition`]
-//! defines the conditions; [`super::pilot`] evaluates them, and carries out a mode. Nothing else changes the mode.
+//! at most one transition a tick, and the order of the rows is the order of precedence. [`Condition`] defines the
+//! conditions; [`super::pilot`] evaluates them, and carries out a mode. Nothing else changes the mode.
 //!
 //! - [`mode`](Mode): what the vehicle is doing, with the diagram of the modes;
 //! - `condition`: what a transition can depend on;
@@ -27,9 +27,9 @@ use estimation::estimator::EXTRAPOLATION_MAX;
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
 pub const COASTING_MAX: u64 = 1_000_000;
 
-/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of
-/// its own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without
-/// rates the attitude is unknown.
+/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of its
+/// own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without rates
+/// the attitude is unknown.
 pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
 
 /// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.

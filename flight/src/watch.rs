@@ -7,15 +7,15 @@
 //!   Rotors that deliver 8 % more than commanded would look the same: with the law's thrust scale and force they do
 //!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
 //!   false speed.
-//! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the
-//!   ground's, or the vehicle does not come upright, or turns on.
+//! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the ground's,
+//!   or the vehicle does not come upright, or turns on.
 //! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a
 //!   vehicle turns or falls.
 //! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
 //!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
 //!
-//! Rotors out of balance vibrate a standing vehicle: its motion and force are therefore
-//! [low-passed](super::low_pass). A jerk is over too soon for that.
+//! Rotors out of balance vibrate a standing vehicle: its motion and force are therefore [low-passed](super::low_pass).
+//! A jerk is over too soon for that.
 
 use super::chain::{Chain, Flown};
 use super::debounce::Debounce;

@@ -1,5 +1,5 @@
-//! One motor on the bench: turned slowly, or its controller given a word, while nothing else turns; and what is
-//! refused there.
+//! One motor on the bench: turned slowly, or its controller given a word, while nothing else turns; and what is refused
+//! there.
 
 use crate::support::{Flight, Handed, at_rest, pilot};
 use flight::{Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word};

@@ -10,10 +10,10 @@
 //! | omega_d | (R_z(-chi) (w*_1, w*_2), W) |
 //! | omega_d' | (R_z(-chi) (w*_1', w*_2') + chi' (omega_d2, -omega_d1), W') |
 //!
-//! The thrust's direction does not depend on chi. Exact heading under a changing tilt can need more yaw torque than
-//! a vehicle has; here yaw needs at most J_33 A and a gyroscopic term, and the heading catches up. For small
-//! chi, 2 c_1 sin(chi/2) is c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2),
-//! which only then changes at once.
+//! The thrust's direction does not depend on chi. Exact heading under a changing tilt can need more yaw torque than a
+//! vehicle has; here yaw needs at most J_33 A and a gyroscopic term, and the heading catches up. For small chi, 2 c_1
+//! sin(chi/2) is c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2), which only
+//! then changes at once.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude_reference::AngularMotion;

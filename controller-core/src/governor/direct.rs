@@ -20,8 +20,8 @@
 //! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
 //!
 //! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at
-//! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own.
-//! l begins at what the error allows, and grows as it shrinks.
+//! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own. l
+//! begins at what the error allows, and grows as it shrinks.
 
 use super::envelope::{Envelope, Moving, WayOut};
 use super::stream::{Point, quarter};
@@ -44,8 +44,7 @@ const SLACKEST: f32 = 0.4;
 const STIFFEST: f32 = 0.2;
 const GROWTH: f32 = 0.12;
 
-/// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it
-/// leaves.
+/// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it leaves.
 const TURNING: f32 = 0.8;
 
 /// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too

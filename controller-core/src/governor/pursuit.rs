@@ -3,9 +3,9 @@
 //!
 //! Wanted velocity: w = feed + |e|-directed approach, cut to the speed limits. Commanded acceleration: w - u, scaled
 //! (not cut by component) into the cylinder C. "How long" is measured by C itself, ||y|| = max(|y_12|/A_12, |y_3|/A_3),
-//! so one number gives both the size of a step and its use of C, and everything along one direction is the
-//! scalar problem of [`super::braking`]: from rest the path is the straight segment to the target, run without
-//! overshoot and ended on the exact point.
+//! so one number gives both the size of a step and its use of C, and everything along one direction is the scalar
+//! problem of [`super::braking`]: from rest the path is the straight segment to the target, run without overshoot and
+//! ended on the exact point.
 //!
 //! The bounds do not depend on any of this: the windows need no more than alpha in C. From a state in motion, arrival
 //! is by feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then

@@ -1,5 +1,4 @@
-//! A stream of positions, velocities and accelerations between two setpoints: its present point and
-//! motion.
+//! A stream of positions, velocities and accelerations between two setpoints: its present point and motion.
 //!
 //! The turning model: the acceleration across the horizontal velocity turns with it, at w = (v x a)_3 /
 //! |v|^2; the rest changes at the rate c, and c is what turning leaves unexplained of the last

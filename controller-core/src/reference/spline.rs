@@ -133,8 +133,8 @@ fn equations(span: &Span, free_start: bool, free_end: bool) -> [Column; COLUMNS]
 
 /// Householder reflections that leave the unknowns' columns upper triangular.
 ///
-/// The row with the largest entry goes on top first: without it, the heavy equations of a short segment would drown
-/// the lighter ones (Powell and Reid).
+/// The row with the largest entry goes on top first: without it, the heavy equations of a short segment would drown the
+/// lighter ones (Powell and Reid).
 fn triangularise(columns: &mut [Column; COLUMNS]) {
     let mut remaining = columns.as_mut_slice();
     for step in 0..UNKNOWNS {

@@ -6,8 +6,8 @@
 //! turns the shorter way round, an exact half turn counter-clockwise, as smoothly as the position moves.
 //!
 //! World frame; m, s, rad. Bounds come from the polynomials' convex hulls (`reference::bernstein`), so they hold at
-//! every instant, not only at sampled ones; they are tight within 1e-3 unless a segment's control points
-//! lie a hundred times further out than its curve does.
+//! every instant, not only at sampled ones; they are tight within 1e-3 unless a segment's control points lie a hundred
+//! times further out than its curve does.
 //!
 //! Such a path may swing out between points, most of all where legs differ much in duration, because bending a long one
 //! costs little. [`Waypoints::inside`] takes another one that never does (`reference::inside`), at the cost of more

@@ -46,8 +46,8 @@ impl JudgedLoops {
         (&self.across, &self.vertical)
     }
 
-    /// Calls `across` for every choice of the first four factors, and `vertical` for every choice of the other two;
-    /// the factors that are not varied are as built.
+    /// Calls `across` for every choice of the first four factors, and `vertical` for every choice of the other two; the
+    /// factors that are not varied are as built.
     #[must_use]
     pub fn judge(mut across: impl FnMut(&Factors) -> bool, mut vertical: impl FnMut(&Factors) -> bool) -> Self {
         let mut judged = Self { across: [0; _], vertical: [0; _] };

@@ -1,5 +1,4 @@
-//! A pose as the estimator takes it: where the vehicle was, the sender's deviations, and its report on its own
-//! stream.
+//! A pose as the estimator takes it: where the vehicle was, the sender's deviations, and its report on its own stream.
 
 use crate::measurement::Pose;
 use nalgebra::{Quaternion, Vector3};

@@ -1,9 +1,9 @@
 //! The present force and velocity from the last increments, without the rotors' vibration.
 //!
-//! Rotors out of balance vibrate the IMU at 70 to 130 Hz, by 1.2 to 2.3 mm/s for each m/s^2. That is a true
-//! motion, but a law that samples it at 100 Hz sees an alias. So the law gets the mean of three velocities: v_0 at
-//! the end of the last increment, v_1 and v_2 one and two increments before. That mean is 5 ms late, and the last
-//! increment A = 2 to 8 ms old: the low-passed force f_slow carries the velocity on to the present.
+//! Rotors out of balance vibrate the IMU at 70 to 130 Hz, by 1.2 to 2.3 mm/s for each m/s^2. That is a true motion, but
+//! a law that samples it at 100 Hz sees an alias. So the law gets the mean of three velocities: v_0 at the end of the
+//! last increment, v_1 and v_2 one and two increments before. That mean is 5 ms late, and the last increment A = 2 to 8
+//! ms old: the low-passed force f_slow carries the velocity on to the present.
 //!
 //! ```text
 //! v_smooth = (v_0 + 2 v_1 + v_2) / 4 + (H + A) (R f_slow - g e3) = v_0 - R (D - H f_slow) + A (R f_slow - g e3)
@@ -19,10 +19,9 @@
 //! | 100 Hz | 0 | 0 | 0.03 |
 //! | 130 Hz | 0.21 | 0.20 | 0.03 |
 //!
-//! f must not carry the velocity on: in 6 ms it adds as much as the vibration itself. Where the thrust changes
-//! within a twentieth of a second, v_smooth is up to 12 ms late along it; across, R is that of now. The vertical loops
-//! bear five times as much. All d are turned into the frame at the end of the last increment, to first order in the
-//! turn.
+//! f must not carry the velocity on: in 6 ms it adds as much as the vibration itself. Where the thrust changes within a
+//! twentieth of a second, v_smooth is up to 12 ms late along it; across, R is that of now. The vertical loops bear five
+//! times as much. All d are turned into the frame at the end of the last increment, to first order in the turn.
 
 use super::history::Increment;
 use nalgebra::Vector3;

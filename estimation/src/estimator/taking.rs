@@ -197,8 +197,8 @@ impl Estimator {
         self.differs(increment, RATE, ACCELERATION)
     }
 
-    /// Whether an increment differs from that of perfect rest. In the air a real sensor has its noise; a simulated
-    /// one without noise may repeat itself as its poses do.
+    /// Whether an increment differs from that of perfect rest. In the air a real sensor has its noise; a simulated one
+    /// without noise may repeat itself as its poses do.
     pub(super) fn stirs(&self, increment: &Increment) -> bool {
         /// rad/s: less than a BMI088's noise over 5 ms.
         const RATE: f32 = 0.002;

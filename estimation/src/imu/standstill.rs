@@ -78,8 +78,8 @@ pub struct Standstill {
 }
 
 impl Standstill {
-    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, returns their means,
-    /// and begins anew.
+    /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`SAMPLES`] of them, returns their means, and
+    /// begins anew.
     pub fn take(&mut self, rate: &Vector3<f32>, force: &Vector3<f32>) -> Option<Result<Rest, Moved>> {
         let first = *self.first.get_or_insert(Rest { angular_velocity: *rate, specific_force: *force });
         let (rate, force) = (rate - first.angular_velocity, force - first.specific_force);

@@ -2,9 +2,9 @@
 //!
 //! A bootloader may hand over from a task of its own operating system: on that task's stack, with its interrupts armed
 //! and at its priorities, its memory protection on, the tightly coupled memories off, and the saving of floating-point
-//! registers off. A thread that stays on that stack overwrites memory that has another owner now; an interrupt that
-//! no code handles is a fault; one whose floats are not saved has them overwritten by a more urgent one; and one that
-//! is more urgent than control delays it. `docs/boards.md` has the table of what each bootloader leaves.
+//! registers off. A thread that stays on that stack overwrites memory that has another owner now; an interrupt that no
+//! code handles is a fault; one whose floats are not saved has them overwritten by a more urgent one; and one that is
+//! more urgent than control delays it. `docs/boards.md` has the table of what each bootloader leaves.
 //!
 //! [`begin_anew`] alone takes the core's peripherals and hands them on: who needs them has them from there, and cannot
 //! find them gone. `.ci/emulated handover` spoils all of it, starts the image again, and looks.

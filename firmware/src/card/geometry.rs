@@ -1,8 +1,8 @@
 //! Where a card's file system has its parts, and whether it is one that can be written to.
 //!
-//! The file system's library trusts a card's boot sector. Invalid values (sizes of zero, tables beyond
-//! the card's end) are found here, before it reads it. A card has a partition table, and in its first partition
-//! FAT16 or FAT32 in sectors of 512 bytes.
+//! The file system's library trusts a card's boot sector. Invalid values (sizes of zero, tables beyond the card's end)
+//! are found here, before it reads it. A card has a partition table, and in its first partition FAT16 or FAT32 in
+//! sectors of 512 bytes.
 
 use crate::hardware::SECTOR;
 use core::ops::Range;

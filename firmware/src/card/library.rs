@@ -1,5 +1,4 @@
-//! The card's files, read over the link: counted, measured, read a chunk at a time, between two looks for
-//! records.
+//! The card's files, read over the link: counted, measured, read a chunk at a time, between two looks for records.
 //!
 //! Offered are the newest [`OFFERED`] files, in the order of their numbers, and behind them the flight recorder's
 //! recording. What a number stands for is settled when they are counted. Files are opened for reading only. One that

@@ -1,8 +1,8 @@
 //! The card's file system: numbered files in its root directory, over the `embedded-sdmmc` crate.
 //!
-//! Each step declares what it may write, and any other write fails: a new file's name never makes the root
-//! directory longer (the crate links a directory's new part before it clears it, so a cut in between would fill it with
-//! what was there before), and a record's sector goes nowhere but among the data.
+//! Each step declares what it may write, and any other write fails: a new file's name never makes the root directory
+//! longer (the crate links a directory's new part before it clears it, so a cut in between would fill it with what was
+//! there before), and a record's sector goes nowhere but among the data.
 //!
 //! Nothing is ever deleted, and a number is never given again while its file is there. The clock is not known: files
 //! are of 1980.

@@ -8,9 +8,9 @@
 //! | parameter 5 = 4 | the accelerometer's offsets alone, taken from a second of the vehicle standing level |
 //! | all zero | ends what is under way |
 //!
-//! [`standstill`](estimation::imu::standstill) decides whether it stood still. The sensor that stands by is
-//! calibrated along with the other, from its own samples. What comes out is applied at once, and kept in the
-//! parameters. Six sides and the single one forget the level that was found with other offsets: level afterwards.
+//! [`standstill`](estimation::imu::standstill) decides whether it stood still. The sensor that stands by is calibrated
+//! along with the other, from its own samples. What comes out is applied at once, and kept in the parameters. Six sides
+//! and the single one forget the level that was found with other offsets: level afterwards.
 //!
 //! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. A
 //! calibration without a request is done in silence, again and again until it stood still for once.

@@ -242,8 +242,8 @@ const fn unsupported(words: &'static str) -> Action {
     Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
 }
 
-/// The test of one motor that a command requests. The flight rules refuse what is too much or too long; negative
-/// times become zero, which is refused as well.
+/// The test of one motor that a command requests. The flight rules refuse what is too much or too long; negative times
+/// become zero, which is refused as well.
 fn motor_test(call: &Call) -> Action {
     let [number, unit, throttle, seconds, count, ..] = call.parameters;
     let in_percent = unit == MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32 as f32;
@@ -313,8 +313,8 @@ fn calibration(call: &Call) -> Action {
 /// The answer to clients with other numbers, such as ArduPilot's.
 const NO_MODE: Action = Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only");
 
-/// PX4's clients send the custom mode, and echo the heartbeat's flags. Without one, the HIL flag requests a
-/// simulator and the guided flag for flight by setpoints.
+/// PX4's clients send the custom mode, and echo the heartbeat's flags. Without one, the HIL flag requests a simulator
+/// and the guided flag for flight by setpoints.
 fn set_mode(call: &Call, armed: bool) -> Action {
     let [base, main, sub, ..] = call.parameters;
     if !(0.0..=255.0).contains(&base) {

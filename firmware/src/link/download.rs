@@ -2,8 +2,7 @@
 //!
 //! Where a card is ready its task answers ([`Library`](crate::shared::Library)): a file is requested chunk by chunk,
 //! the next one while the last goes out. After [`ANSWER_WITHIN`] without an answer the download ends. Elsewhere there
-//! is the flight recorder's recording, which is in memory. Nothing goes out while the
-//! vehicle is armed.
+//! is the flight recorder's recording, which is in memory. Nothing goes out while the vehicle is armed.
 
 use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, TransmitView};
 use core::fmt::Display;

@@ -1,9 +1,9 @@
 //! Two lines, one link: the serial line, or a computer's USB port while a program there has it open.
 //!
-//! One at a time. So there is one receiver, which holds the commander, and one place where answers go; input on
-//! the other line is ignored, poses included. The link moves when the port is opened or closed, never
-//! while a motor turns: who flies over one line keeps it, and a cable that is pulled is a ground station that falls
-//! silent. Every move is reported, on the line that it leads to.
+//! One at a time. So there is one receiver, which holds the commander, and one place where answers go; input on the
+//! other line is ignored, poses included. The link moves when the port is opened or closed, never while a motor turns:
+//! who flies over one line keeps it, and a cable that is pulled is a ground station that falls silent. Every move is
+//! reported, on the line that it leads to.
 
 use crate::hardware::{Clock, Port};
 use crate::shared::{self, Event, Flag, PortView, Severity};

@@ -13,10 +13,10 @@
 //! and is dropped.
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
-//! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count.
-//! Velocities and body rates must be finite too, though the IMU's are flown. Of the covariance the greatest variances
-//! of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender left it
-//! out). Infinite ones mean that the sender has no pose, and are refused.
+//! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count. Velocities and body rates
+//! must be finite too, though the IMU's are flown. Of the covariance the greatest variances of position and of attitude
+//! count, where they are positive (NaN means unknown, and zero that the sender left it out). Infinite ones mean that
+//! the sender has no pose, and are refused.
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};
@@ -209,8 +209,8 @@ impl Poses {
 }
 
 impl Source {
-    /// What a message of `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps
-    /// the messages.
+    /// What a message of `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps the
+    /// messages.
     fn delay(&self, time: u64) -> Option<u64> {
         let clock = self.clock.as_ref().filter(|_| time != 0)?;
         let Offset { value, error } = self.sync.offset(self.arrived)?;
@@ -220,8 +220,8 @@ impl Source {
         plausible.then(|| u64::try_from(delay).unwrap_or(0))
     }
 
-    /// Whether a message of `time` that arrived at `arrived`, us, is too late by TIMESYNC. A time that
-    /// does not advance is not late: it is no new one, or its clock was set.
+    /// Whether a message of `time` that arrived at `arrived`, us, is too late by TIMESYNC. A time that does not advance
+    /// is not late: it is no new one, or its clock was set.
     fn is_late(&self, time: u64, arrived: u64) -> bool {
         let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
         let known = self.sync.recent(arrived).filter(|_| self.synchronised && goes_on && time != 0);

@@ -1,15 +1,15 @@
 //! A sender's clock against the vehicle's: when a message was true, and whether its time is a new one.
 //!
 //! A message that arrives at a (the vehicle's clock) with the time s (the sender's) was true at s + o, where o is the
-//! clocks' offset. Every arrival is late by the line's delay: a - s = o + delay. So the least a - s seen is nearest
-//! to o:
+//! clocks' offset. Every arrival is late by the line's delay: a - s = o + delay. So the least a - s seen is nearest to
+//! o:
 //!
 //! ```text
 //! o_k = min(a_k - s_k, o_(k-1) + drift (a_k - a_(k-1)))      drift: 200 ppm, more than two quartz clocks part
 //! ```
 //!
-//! The least delay is not observable that way and stays part of o: [`super::time_sync`] may give it, or a
-//! measurement. A message is never stamped later than it arrived.
+//! The least delay is not observable that way and stays part of o: [`super::time_sync`] may give it, or a measurement.
+//! A message is never stamped later than it arrived.
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
 //! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
@@ -89,8 +89,8 @@ impl SenderClock {
         time > self.last.0
     }
 
-    /// When a message of `time` that arrived at `arrived` was true, us of the vehicle's clock; none if its time
-    /// is not a new one.
+    /// When a message of `time` that arrived at `arrived` was true, us of the vehicle's clock; none if its time is not
+    /// a new one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
         let parted = arrived.saturating_sub(self.last.1) / DRIFT;
         let drifted = self.offset + i128::from(parted);

@@ -8,8 +8,8 @@
 //! | position on some axes, velocity on the others, or both | go there on those, move like that on these |
 //! | anything else: acceleration alone or with some axes only, nothing on an axis, forces | refused |
 //!
-//! The heading is kept, turned to, or turned at a rate, by its two bits. Fields that the mask ignores are not
-//! read. The governor checks ranges.
+//! The heading is kept, turned to, or turned at a rate, by its two bits. Fields that the mask ignores are not read. The
+//! governor checks ranges.
 //!
 //! | frame | position | velocity, acceleration | yaw |
 //! |---|---|---|---|
@@ -17,8 +17,8 @@
 //! | LOCAL_OFFSET_NED | from where the vehicle is | north, east, down | from where it points |
 //! | BODY_NED, BODY_OFFSET_NED, BODY_FRD | from where it is, ahead, right, down | ahead, right, down | from where it points |
 //!
-//! Ahead is where the vehicle points, level: its tilt does not matter. Axes that turn with the vehicle are not
-//! the world's: there a setpoint ahead needs one across too.
+//! Ahead is where the vehicle points, level: its tilt does not matter. Axes that turn with the vehicle are not the
+//! world's: there a setpoint ahead needs one across too.
 
 use crate::frames;
 use controller_core::governor::{Motion, Setpoint, Turn};

@@ -68,8 +68,7 @@ impl TimeSync {
         Self { best: Some((Offset { value, error: ANSWER_MAX }, now)), ..Self::default() }
     }
 
-    /// Takes an answer that arrived at `arrived`, us. One to a question of the future, or of long ago, says
-    /// nothing.
+    /// Takes an answer that arrived at `arrived`, us. One to a question of the future, or of long ago, says nothing.
     pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
         let asked = u64::try_from(message.ts1 / 1_000).ok();
         let Some(took) = asked.and_then(|asked| arrived.checked_sub(asked)).filter(|&took| took <= ANSWER_MAX) else {

@@ -49,8 +49,8 @@ struct Owed {
 /// No command has this number.
 const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
-/// Transmits for ever: in turn a message that is due and one that was requested, so that neither keeps the other
-/// from being sent, however slow the line.
+/// Transmits for ever: in turn a message that is due and one that was requested, so that neither keeps the other from
+/// being sent, however slow the line.
 pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: TransmitView<'_, M>) -> ! {
     let mut speaker = Speaker::new(shared, clock.now());
     loop {

@@ -1,8 +1,8 @@
 //! Following a recording while it is made: every record once, in order, and how many were overwritten before they were
 //! read.
 //!
-//! The ring is the queue between control, which never waits, and a reader: it may fall behind by as many records
-//! as the ring holds.
+//! The ring is the queue between control, which never waits, and a reader: it may fall behind by as many records as the
+//! ring holds.
 
 use super::ring::Ring;
 use super::tick;

@@ -1,5 +1,4 @@
-//! The link's questions about logs, and the answers: the card's task reads its files, the link never waits
-//! for it.
+//! The link's questions about logs, and the answers: the card's task reads its files, the link never waits for it.
 //!
 //! One question is open at a time, and a new one replaces it. An answer names its question, so that a late one is known
 //! for what it is.

@@ -1,9 +1,9 @@
 //! Requests that wait for control, which takes one a tick.
 //!
 //! Of each kind the latest waits, one of the link and one of the pilot's radio: a client that repeats one keeps another
-//! out. An equal request that waits is answered with it. Where there is no room, a lesser one of the
-//! link makes some. So landing, disarming and the pilot's switches always have room, and none waits for more than the
-//! others, [`REQUESTS`] ticks.
+//! out. An equal request that waits is answered with it. Where there is no room, a lesser one of the link makes some.
+//! So landing, disarming and the pilot's switches always have room, and none waits for more than the others,
+//! [`REQUESTS`] ticks.
 
 use super::reply::QueuedRequest;
 use crate::link::acknowledgement::Order;

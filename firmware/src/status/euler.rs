@@ -1,5 +1,5 @@
-//! Euler angles for reading. Approximate (`micromath`): good to 1 degree (2 near the vertical), and used nowhere
-//! in flight.
+//! Euler angles for reading. Approximate (`micromath`): good to 1 degree (2 near the vertical), and used nowhere in
+//! flight.
 
 use micromath::F32Ext;
 use nalgebra::Quaternion;

@@ -60,8 +60,7 @@ fn sense(shared: &Local, flow: &mut Flow<'_, NoopRawMutex>, vehicle: &Vehicle, n
     }
 }
 
-/// Each of these is requested at its time, us, of four seconds: the mode then, and the texts since the first of
-/// them.
+/// Each of these is requested at its time, us, of four seconds: the mode then, and the texts since the first of them.
 fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mode, Vec<String>) {
     let clock = Simulated::default();
     let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();

@@ -121,8 +121,7 @@ fn timesync_of_another_clock_does_not_count_and_a_measured_delay_does() {
 }
 
 /// A sender that answers TIMESYNC once a second, the first time more quickly than ever again; a pose each 10 ms for as
-/// long as there are `ticks`; `line` gives its clock at a true time and the delay of its poses. What
-/// became of each.
+/// long as there are `ticks`; `line` gives its clock at a true time and the delay of its poses. What became of each.
 fn synchronised(shared: &Local, ticks: u64, line: impl Fn(u64) -> (u64, u64)) -> Vec<(u64, Option<u64>)> {
     let mut fed = Fed::new(shared);
     let mut answered = 0;

@@ -51,8 +51,7 @@ estimation::listed! {
         PosesGivenUp,
         /// A landing has lasted for longer than its height explains.
         LandingOver,
-        /// Going down by the IMU alone, the vehicle's motion by the IMU contradicts the command: one of them is
-        /// wrong.
+        /// Going down by the IMU alone, the vehicle's motion by the IMU contradicts the command: one of them is wrong.
         ImuDoubtful,
         /// Poses are believed again, and the governor has started from the estimate.
         PoseRegained,

@@ -13,8 +13,7 @@ use cortex_m::interrupt;
 /// Sleeps while `awake` is false; it is checked again after every interrupt.
 pub fn idle(awake: impl Fn() -> bool) -> ! {
     loop {
-        // With interrupts held back, `awake` cannot change before the processor sleeps; it wakes up all the
-        // same.
+        // With interrupts held back, `awake` cannot change before the processor sleeps; it wakes up all the same.
         interrupt::free(|_| {
             if !awake() {
                 asm::wfi();

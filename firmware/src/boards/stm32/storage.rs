@@ -49,8 +49,7 @@ fn words(place: usize) -> Result<*mut u32, Fault> {
     if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
-/// Waits for the flash, and checks its error flags. Counts instead of reading the clock, which may stand
-/// still.
+/// Waits for the flash, and checks its error flags. Counts instead of reading the clock, which may stand still.
 fn done() -> Result<(), Fault> {
     let is_done = (0..chip::POLLS).any(|_| !chip::is_busy());
     if is_done && !chip::has_failed() { Ok(()) } else { Err(Fault) }

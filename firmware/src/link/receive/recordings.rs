@@ -22,8 +22,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         if !self.is_addressed(message.target_system, message.target_component) {
             return;
         }
-        // A client that gets an empty list stops; one that wants a part and gets nothing repeats its request, and
-        // gets it after landing.
+        // A client that gets an empty list stops; one that wants a part and gets nothing repeats its request, and gets
+        // it after landing.
         let list = Reply::Logs { first: message.start, last: message.end };
         self.shared.reply(if self.may_read(frame) { list } else { Reply::NoLogs });
     }
