@@ -1,6 +1,6 @@
 //! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
 //! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the columns of log.csv,
-//! and the scenario examples. The front page stays short.
+//! the scenario examples and refusals. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
@@ -192,5 +192,39 @@ fn every_example_of_a_scenario_section_can_be_used() {
         let file =
             kept.fold("name = \"example\"\nduration = 1\n".to_owned() + reference, |file, section| file + section);
         Scenario::parse(&file, "docs/scenario-file.md").unwrap_or_else(|error| panic!("{error}\n{file}"));
+    }
+}
+
+/// Each refusal of docs/scenario-file.md: what of the paper's file, with the page's rotors, to replace by what.
+const REFUSALS: [(&str, &str); 13] = [
+    ("mass = 0.460", "mas = 0.460"),
+    ("inertia = [2.24e-3, 2.9e-3, 5.3e-3]", "inertia = [0.0347563, 0.0458929, 0.0977]"),
+    ("inertia = [2.24e-3, 2.9e-3, 5.3e-3]", "inertia = [[2e-3, 1e-4, 0.0], [1e-4, 3e-3, 0.0], [0.0, 0.0, 5e-3]]"),
+    ("thrust_max = 7.0", "thrust_max = 4.5"),
+    ("m_p = 2.0", "m_p = 9.7"),
+    ("rate = 100.0", "rate = 300.0"),
+    ("rate = 100.0", "rate = 400.0"),
+    ("position = [5.0, 5.0, 10.0]", "position = [5.0, 5.0]"),
+    ("speed = [0.0, 1500.0]", "speed = [100.0, 400.0]"),
+    ("speed = [0.0, 1500.0]", "speed = [0.0, 1500.0]\nthrust_max = 7.0"),
+    ("spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]", "spin = [\"cw\", \"ccw\"]"),
+    ("[reference]", "[reference_bounds]\nhorizontal_acceleration = 0.1\n\n[reference]"),
+    ("mass = 0.460", "mass = heavy"),
+];
+
+#[test]
+fn files_are_refused_as_the_page_shows() {
+    let page = read("docs/scenario-file.md");
+    let rotors = page.split("```").find(|block| block.starts_with("toml\n[rotors]")).unwrap();
+    let whole = read("scenarios/paper.toml") + rotors.trim_start_matches("toml");
+    let (_, shown) = page.split_once("```\nerror: ").unwrap();
+    let (shown, _) = shown.split_once("\n```").unwrap();
+    let shown: Vec<&str> = shown.split("\nerror: ").collect();
+    assert_eq!(shown.len(), REFUSALS.len());
+    for (shown, (right, wrong)) in shown.into_iter().zip(REFUSALS) {
+        assert!(whole.contains(right), "{right}");
+        let said = Scenario::parse(&whole.replacen(right, wrong, 1), "mine.toml").err().unwrap().to_string();
+        let same = shown.strip_suffix('…').map_or(said == shown, |start| said.starts_with(start));
+        assert!(same, "{said}\nis shown as\n{shown}");
     }
 }
