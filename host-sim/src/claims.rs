@@ -128,10 +128,10 @@ fn loops(verdict: &Verdict) -> Claim {
     let least = margins.fold((f64::INFINITY, f64::INFINITY), |(gain, delay), margins| {
         (margins.gain_up.min(gain), margins.delay.min(delay))
     });
-    let spare = |gain: f64, delay: f64| format!("gain {}, delay {} ms", short(gain), short(1e3 * delay));
+    let spare = |gain: f64, delay: f64| format!("{}, {} ms", short(gain), short(1e3 * delay));
     let lacking = verdict.lacking();
     Claim {
-        claim: "sampled loops, least margins".to_owned(),
+        claim: "sampled loops, gain and delay margins".to_owned(),
         required: format!(">= {}", spare(gain, delay)),
         flown: lacking.map_or_else(|| spare(least.0, least.1), |lack| lack.to_string()),
         holds: Some(lacking.is_none()),

@@ -51,18 +51,18 @@ impl Kind {
 /// The table, and whether all margins are left in the worst corner.
 ///
 /// # Errors
-/// If the identified vehicle is none that could fly, or `original` is no scenario.
-pub fn report(original: &str, name: &str, told: &Quantities) -> Result<(String, bool), String> {
+/// If the identified vehicle cannot fly, or `original` is no scenario.
+pub fn report(original: &str, name: &str, identified: &Quantities) -> Result<(String, bool), String> {
     let model = Scenario::parse(original, name).map_err(|error| error.to_string())?;
     let step = model.timing.step();
     let of = |values: &Values| -> Result<Vec<Margin>, String> {
         let text = rewritten(original, "identified", values, step)?;
         margins(&Scenario::parse(&text, "identified").map_err(|error| error.to_string())?)
     };
-    let (file, values) = (margins(&model)?, Values::of(told));
+    let (file, values) = (margins(&model)?, Values::of(identified));
     let identified = of(&values)?;
     let mut worst: Vec<f64> = identified.iter().map(|margin| margin.value).collect();
-    for (quantity, set) in ends(told) {
+    for (quantity, set) in ends(identified) {
         let moved = quantity.interval.map(|end| {
             let mut values = values;
             set(&mut values, end);
@@ -118,20 +118,20 @@ fn margins(scenario: &Scenario) -> Result<Vec<Margin>, String> {
 type Set = fn(&mut Values, f64);
 
 /// What the certificate and the loops depend on.
-fn ends(told: &Quantities) -> [(Quantity, Set); 9] {
+fn ends(identified: &Quantities) -> [(Quantity, Set); 9] {
     [
-        (told.mass, |values, end| values.mass = end),
-        (told.thrust_scale, |values, end| values.thrust_scale = end),
-        (told.inertia[0], |values, end| values.inertia[0] = end),
-        (told.inertia[1], |values, end| values.inertia[1] = end),
-        (told.inertia[2], |values, end| values.inertia[2] = end),
+        (identified.mass, |values, end| values.mass = end),
+        (identified.thrust_scale, |values, end| values.thrust_scale = end),
+        (identified.inertia[0], |values, end| values.inertia[0] = end),
+        (identified.inertia[1], |values, end| values.inertia[1] = end),
+        (identified.inertia[2], |values, end| values.inertia[2] = end),
         // The whole is known better than its parts: a longer lag is a shorter delay.
-        (told.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
-        (told.lag, |values, end| {
+        (identified.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
+        (identified.lag, |values, end| {
             let whole = values.lag + values.delay;
             (values.lag, values.delay) = (end, (whole - end).max(0.0));
         }),
-        (told.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
-        (told.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
+        (identified.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
+        (identified.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
     ]
 }
