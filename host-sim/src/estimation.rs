@@ -91,7 +91,7 @@ impl Estimation {
             self.estimator.imu(&increment);
         }
         while let Some(Stamped { value, time }) = self.instruments.arrived() {
-            // What became of it, the estimator's health says.
+            // The estimator's health shows what became of it.
             let _ = self.estimator.pose(&Stamped { value: PoseMeasurement::new(&value), time }, self.clock);
         }
     }
@@ -100,7 +100,7 @@ impl Estimation {
     ///
     /// # Errors
     /// [`NoEstimate`].
-    pub fn told(&mut self) -> Result<(State, bool), NoEstimate> {
+    pub fn state(&mut self) -> Result<(State, bool), NoEstimate> {
         let newest = self.conditioner.newest();
         let estimated = newest.and_then(|newest| self.estimator.state(self.clock, &newest.value.angular_velocity));
         let Some(estimated) = estimated else {

@@ -45,13 +45,13 @@ pub struct Tick {
     pub time_us: u64,
     /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
-    /// What the law was told of it, where there are sensors or an estimator.
+    /// The measured or estimated state that the law got, where there are sensors or an estimator.
     pub measured: Option<Box<State>>,
     /// What surrounded the vehicle at that moment.
     pub surroundings: Surroundings,
-    /// What was asked for.
+    /// The reference.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust
+    /// What the law commanded, before the plant clipped it. The rotors get it divided by the estimated thrust
     /// scale.
     pub wrench: Wrench,
     /// What the law went through.
@@ -73,7 +73,7 @@ pub struct Brief {
     pub time_us: u64,
     /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
-    /// What was asked for.
+    /// The reference.
     pub reference: Reference,
     /// What the law commanded, as in [`Tick::wrench`].
     pub wrench: Wrench,
@@ -137,7 +137,7 @@ pub fn law(scenario: &Scenario) -> Result<Law, ParameterError> {
 
 impl Flight {
     /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a
-    /// millisecond; whoever flies one scenario many times clones the start.
+    /// millisecond; to fly one scenario many times, clone the start.
     ///
     /// # Errors
     /// As [`law`]'s.
@@ -201,13 +201,13 @@ impl Flight {
     /// [`FlightError`] with the time; the flight cannot go on after it.
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
-        let (told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
+        let (measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
             self.advance(Controller::step)?;
         let estimates = self.controller.estimates();
         Ok(Tick {
             time_us,
             state,
-            measured: told.map(Box::new),
+            measured: measured.map(Box::new),
             surroundings,
             reference,
             wrench,
@@ -229,8 +229,8 @@ impl Flight {
         Ok(brief)
     }
 
-    /// A control tick with the law asked by `step`: what it was told where that is not the state, the tick, and what
-    /// `step` says of it.
+    /// A control tick with the law called by `step`: the measured state where that is not the true one, the tick, and
+    /// what `step` returns besides.
     #[inline(always)]
     fn advance<D>(
         &mut self,
@@ -238,8 +238,8 @@ impl Flight {
     ) -> Result<(Option<State>, Brief, D), FlightError> {
         let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
         let reference = self.trajectory.at(time_us);
-        let told = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
-        let answer = step(&mut self.controller, &told.unwrap_or_else(|| state.measured()), &reference);
+        let measured = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
+        let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &reference);
         let (wrench, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
         let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
@@ -248,7 +248,7 @@ impl Flight {
             self.controller.hold_estimates();
         }
         self.tick += 1;
-        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
+        Ok((measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
     }
 
     #[inline]
@@ -267,11 +267,11 @@ impl Flight {
         let Some(estimation) = &mut self.estimation else {
             return Ok(self.sensors.as_mut().map(|sensors| sensors.measure(state)));
         };
-        let (told, jumped) = estimation.told()?;
+        let (measured, jumped) = estimation.state()?;
         if jumped {
             self.controller.hold_estimates();
         }
-        Ok(Some(told))
+        Ok(Some(measured))
     }
 
     /// The vehicle's motion until the next tick, under a wrench that is asked of the rotors.

@@ -90,7 +90,7 @@ pub struct Outcome {
 }
 
 /// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and
-/// report.md into `directory`; and flight.mcap if it is asked for; if not, that of an older flight goes.
+/// report.md into `directory`; and flight.mcap if `mcap`; otherwise an older flight's is removed.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing
 /// of an older flight in the same directory is touched.

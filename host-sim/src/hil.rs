@@ -115,12 +115,12 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Clients that are served meanwhile, and where what they may want to know is shown.
+/// Clients that are served meanwhile, and where their vehicle's status is shown.
 pub struct Clients<'a> {
     /// Their line to the flight controller.
     pub relay: Relay,
     /// Takes lines to show: a status each second of the desk's time, and the vehicle's texts.
-    pub tell: &'a mut dyn FnMut(&str),
+    pub show: &'a mut dyn FnMut(&str),
 }
 
 /// Time between lines of status, by the desk's clock.
@@ -183,12 +183,12 @@ pub fn serve(
             speed.get_or_insert_with(|| Speed::new(factor)).wait(pace.ticks() * scenario.timing.period_us);
         }
         port.answer(&answer).map_err(HilError::Port)?;
-        if let Some(Clients { relay, tell }) = &mut clients {
-            relay.texts().iter().for_each(|text| tell(&format!("{time:9.2} s  \"{text}\"")));
+        if let Some(Clients { relay, show }) = &mut clients {
+            relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
             if shown.elapsed() >= STATUS {
                 shown = Instant::now();
                 let [x, y, z]: [f64; 3] = moved.state.position.into();
-                tell(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
+                show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
             }
         }
         if let Some(progress) = &mut progress {

@@ -2,11 +2,11 @@
 //!
 //! The first 40 columns are a contract with other tools; what stands to their right may grow: by what the law estimates
 //! (m/s^2, N m), by the rotors' thrusts (N, after lag, in still air, numbered from 1), by the wind (m/s, world), by the
-//! battery's voltage (V) and current (A), by what the law was told of the state. Angles in rad, the rest in SI units;
+//! battery's voltage (V) and current (A), by the measured state that the law got. Angles in rad, the rest in SI units;
 //! each number has the digits that give its bits back.
 //!
 //! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of
-//! the state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
+//! the state that it got, `measured_…` where there are sensors, `est_…` where there is an estimator.
 
 use crate::flight::Tick;
 use scenario::number::Number;
@@ -95,12 +95,12 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     if let Some((voltage, current)) = tick.surroundings.battery {
         doubles(out, &[voltage, current])?;
     }
-    if let Some(told) = &tick.measured {
-        let q = &told.attitude;
-        singles(out, told.position.as_slice())?;
-        singles(out, told.velocity.as_slice())?;
+    if let Some(measured) = &tick.measured {
+        let q = &measured.attitude;
+        singles(out, measured.position.as_slice())?;
+        singles(out, measured.velocity.as_slice())?;
         singles(out, &[q.w, q.i, q.j, q.k])?;
-        singles(out, told.angular_velocity.as_slice())?;
+        singles(out, measured.angular_velocity.as_slice())?;
     }
     writeln!(out)
 }

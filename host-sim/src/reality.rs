@@ -121,7 +121,7 @@ impl RealVehicle {
         }
     }
 
-    /// The same vehicle before its motors are told anything: no rotor turns.
+    /// The same vehicle before the first command: no rotor turns.
     #[must_use]
     pub fn switched_off(mut self) -> Self {
         self.propulsion.stop();

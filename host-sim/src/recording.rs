@@ -2,7 +2,7 @@
 //!
 //! | topic | schema | what |
 //! |---|---|---|
-//! | /vehicle, /reference, /told | foxglove.PoseInFrame | where it is; where it is to be; where the law was told that it is |
+//! | /vehicle, /reference, /told | foxglove.PoseInFrame | true pose; reference; the measured pose that the law got |
 //! | /tf | foxglove.FrameTransform | world to body |
 //! | /scene | foxglove.SceneUpdate, once | arms and nose, in the body's frame |
 //! | /law | host_sim.Law | wrench, errors, saturated feedback |

@@ -165,7 +165,7 @@ impl Restart for Desk {
         self.0.set(true);
     }
 
-    /// There is none, and nobody asks for it.
+    /// Never called: there is no bootloader.
     fn start_bootloader(&mut self) {
         self.restart();
     }
@@ -314,7 +314,7 @@ fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'st
     let _ = spawner.spawn_local(async move { drop(task.await) });
 }
 
-/// Runs a session until its duration is over or somebody interrupts; `tell` gets lines to show.
+/// Runs a session until its duration is over or a signal comes; `show` gets lines to print.
 ///
 /// # Errors
 /// [`SitlError`].
@@ -322,14 +322,14 @@ pub fn run(
     scenario: &Scenario,
     session: &Session,
     interrupt: &Interrupt,
-    mut tell: impl FnMut(&str),
+    mut show: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
     let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
-    warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
+    warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
-    tell(&format!(
+    show(&format!(
         "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
         scenario.name
     ));
@@ -352,13 +352,13 @@ pub fn run(
             break Err(SitlError::Diverged(next as f64 * 1e-6));
         }
         for (time, text) in sitl.texts.take() {
-            tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+            show(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
             record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
         record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
         if shown.elapsed() >= STATUS {
             shown += STATUS;
-            tell(&sitl.status());
+            show(&sitl.status());
         }
     };
     // Also of a session that ended badly: what led to it is in there.

@@ -74,7 +74,7 @@ impl WholeFile {
     /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.
     ///
     /// # Errors
-    /// As [`Self::create`]'s. A device or a pipe is not tried: whoever reads it would take the trial for the end.
+    /// As [`Self::create`]'s. A device or a pipe is not tried: its reader would take the trial for the end.
     pub fn try_name(path: &Path) -> io::Result<()> {
         if is_special(path) { Ok(()) } else { Self::create(path).map(drop) }
     }

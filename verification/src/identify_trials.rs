@@ -117,26 +117,26 @@ impl Trial {
 
     /// The name of each quantity, its estimate, and its true value.
     #[must_use]
-    pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, Quantity, f64)> {
+    pub fn truths(&self, identified: &Quantities) -> Vec<(&'static str, Quantity, f64)> {
         let t = &self.truths;
         let mut truths = vec![
-            ("mass", told.mass, t.mass),
-            ("thrust scale", told.thrust_scale, t.thrust_scale),
-            ("inertia x", told.inertia[0], t.inertia[0]),
-            ("inertia y", told.inertia[1], t.inertia[1]),
-            ("inertia z", told.inertia[2], t.inertia[2]),
-            ("lag and delay", told.whole_delay, t.lag + t.delay - RATES_YOUNGER),
-            ("lag", told.lag, t.lag),
+            ("mass", identified.mass, t.mass),
+            ("thrust scale", identified.thrust_scale, t.thrust_scale),
+            ("inertia x", identified.inertia[0], t.inertia[0]),
+            ("inertia y", identified.inertia[1], t.inertia[1]),
+            ("inertia z", identified.inertia[2], t.inertia[2]),
+            ("lag and delay", identified.whole_delay, t.lag + t.delay - RATES_YOUNGER),
+            ("lag", identified.lag, t.lag),
             // No estimate is below zero.
-            ("delay", told.delay, (t.delay - RATES_YOUNGER).max(0.0)),
-            ("centre of mass x", told.centre_of_mass[0], t.centre[0]),
-            ("centre of mass y", told.centre_of_mass[1], t.centre[1]),
-            ("drag x", told.drag[0], t.drag[0]),
-            ("drag y", told.drag[1], t.drag[1]),
-            ("drag z", told.drag[2], t.drag[2]),
+            ("delay", identified.delay, (t.delay - RATES_YOUNGER).max(0.0)),
+            ("centre of mass x", identified.centre_of_mass[0], t.centre[0]),
+            ("centre of mass y", identified.centre_of_mass[1], t.centre[1]),
+            ("drag x", identified.drag[0], t.drag[0]),
+            ("drag y", identified.drag[1], t.drag[1]),
+            ("drag z", identified.drag[2], t.drag[2]),
         ];
         if self.drag == Drag::AtHubs {
-            truths.truncate(truths.len() - told.drag.len());
+            truths.truncate(truths.len() - identified.drag.len());
         }
         truths
     }

@@ -110,7 +110,7 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
     });
 }
 
-/// What the controller is told.
+/// The sensors' circumstances.
 fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
     let (gyro, position, attitude, delay) = (drawn.part(), drawn.part(), drawn.part(), drawn.part());
     let seed = drawn.seed();

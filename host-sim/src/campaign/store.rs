@@ -13,7 +13,7 @@
 //! that is not the one that was written.
 //!
 //! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there
-//! is touched. Whoever writes into a directory holds a [lock](crate::directory_lock) on it.
+//! is touched. A writer holds a [lock](crate::directory_lock) on it.
 
 use super::CampaignError;
 use super::batches;

@@ -169,7 +169,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
     aligned(&std::iter::once(head).chain(figures.iter().map(row)).collect::<Vec<_>>())
 }
 
-/// A figure, or that there is none.
+/// A figure, or "none".
 fn seen(value: f64) -> String {
     if value.is_finite() { short(value) } else { "never".to_owned() }
 }

@@ -57,7 +57,7 @@ fn air(thrown: &Scenario) -> Vec<String> {
     lines
 }
 
-/// What the controller is told.
+/// The sensors' circumstances.
 fn senses(thrown: &Scenario) -> Vec<String> {
     let reality = &thrown.reality;
     if let Some(estimator) = &reality.estimator {
@@ -120,7 +120,7 @@ mod tests {
         ] {
             assert!(written.contains(&format!("\n#   {expected}")), "{expected} is not in:\n{written}");
         }
-        // A file with comments above it: whoever flies it flies the file.
+        // Comments above the file's text: it can be flown as it is.
         assert_eq!(Scenario::parse(&written, "h").unwrap().initial, scenario.initial);
     }
 

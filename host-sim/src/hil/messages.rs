@@ -1,6 +1,6 @@
 //! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
 
-use super::answer::{Answer, ToldPose};
+use super::answer::{Answer, MeasuredPose};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
@@ -71,8 +71,8 @@ impl Encoder {
     }
 
     /// Appends a pose as an ODOMETRY.
-    fn odometry(&mut self, pose: &Stamped<ToldPose>, bytes: &mut Vec<u8>) {
-        let Stamped { value: ToldPose { position, attitude, motion, deviations }, time } = pose;
+    fn odometry(&mut self, pose: &Stamped<MeasuredPose>, bytes: &mut Vec<u8>) {
+        let Stamped { value: MeasuredPose { position, attitude, motion, deviations }, time } = pose;
         let position = frames::world(position);
         let q = frames::attitude(attitude);
         let (velocity, rates) = motion.unwrap_or_default();

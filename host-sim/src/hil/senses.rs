@@ -7,7 +7,7 @@
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 
-use super::answer::{Answer, ToldPose};
+use super::answer::{Answer, MeasuredPose};
 use super::vehicle::Moved;
 use crate::instruments::{Instruments, SAMPLE};
 use flight::{ImuSample, Stamped};
@@ -54,7 +54,7 @@ impl Senses {
             answer.samples.push(Stamped { value: instruments.sample(state, time), time });
             while let Some(Stamped { value: pose, time }) = instruments.arrived() {
                 let (position, attitude) = (pose.position(), pose.attitude());
-                let value = ToldPose { position, attitude, motion: None, deviations: Some(*deviations) };
+                let value = MeasuredPose { position, attitude, motion: None, deviations: Some(*deviations) };
                 answer.poses.push(Stamped { value, time });
             }
         }
@@ -67,7 +67,7 @@ fn exact(time: u64, moved: &Moved) -> Answer {
     let state: &BodyState = &moved.state;
     let measured = state.measured();
     let velocity = UnitQuaternion::new_unchecked(state.attitude).inverse() * state.velocity;
-    let pose = ToldPose {
+    let pose = MeasuredPose {
         position: measured.position,
         attitude: measured.attitude,
         motion: Some((velocity.map(|component| component as f32), measured.angular_velocity)),

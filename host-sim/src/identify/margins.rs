@@ -52,17 +52,17 @@ impl Kind {
 ///
 /// # Errors
 /// If the identified vehicle cannot fly, or `original` is no scenario.
-pub fn report(original: &str, name: &str, identified: &Quantities) -> Result<(String, bool), String> {
+pub fn report(original: &str, name: &str, quantities: &Quantities) -> Result<(String, bool), String> {
     let model = Scenario::parse(original, name).map_err(|error| error.to_string())?;
     let step = model.timing.step();
     let of = |values: &Values| -> Result<Vec<Margin>, String> {
         let text = rewritten(original, "identified", values, step)?;
         margins(&Scenario::parse(&text, "identified").map_err(|error| error.to_string())?)
     };
-    let (file, values) = (margins(&model)?, Values::of(identified));
+    let (file, values) = (margins(&model)?, Values::of(quantities));
     let identified = of(&values)?;
     let mut worst: Vec<f64> = identified.iter().map(|margin| margin.value).collect();
-    for (quantity, set) in ends(identified) {
+    for (quantity, set) in ends(quantities) {
         let moved = quantity.interval.map(|end| {
             let mut values = values;
             set(&mut values, end);
@@ -118,20 +118,20 @@ fn margins(scenario: &Scenario) -> Result<Vec<Margin>, String> {
 type Set = fn(&mut Values, f64);
 
 /// What the certificate and the loops depend on.
-fn ends(identified: &Quantities) -> [(Quantity, Set); 9] {
+fn ends(quantities: &Quantities) -> [(Quantity, Set); 9] {
     [
-        (identified.mass, |values, end| values.mass = end),
-        (identified.thrust_scale, |values, end| values.thrust_scale = end),
-        (identified.inertia[0], |values, end| values.inertia[0] = end),
-        (identified.inertia[1], |values, end| values.inertia[1] = end),
-        (identified.inertia[2], |values, end| values.inertia[2] = end),
+        (quantities.mass, |values, end| values.mass = end),
+        (quantities.thrust_scale, |values, end| values.thrust_scale = end),
+        (quantities.inertia[0], |values, end| values.inertia[0] = end),
+        (quantities.inertia[1], |values, end| values.inertia[1] = end),
+        (quantities.inertia[2], |values, end| values.inertia[2] = end),
         // The whole is known better than its parts: a longer lag is a shorter delay.
-        (identified.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
-        (identified.lag, |values, end| {
+        (quantities.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
+        (quantities.lag, |values, end| {
             let whole = values.lag + values.delay;
             (values.lag, values.delay) = (end, (whole - end).max(0.0));
         }),
-        (identified.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
-        (identified.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
+        (quantities.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
+        (quantities.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
     ]
 }

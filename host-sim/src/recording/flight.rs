@@ -19,8 +19,8 @@ impl<W: Write> Recording<W> {
         let (now, s, d) = (tick.time_us, &tick.state, &tick.diagnostics);
         self.truth(now, s)?;
         self.message("/reference", now, &pose(now, &tick.reference.position.cast(), &d.desired_attitude.cast()))?;
-        if let Some(told) = &tick.measured {
-            self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;
+        if let Some(measured) = &tick.measured {
+            self.message("/told", now, &pose(now, &measured.position.cast(), &measured.attitude.cast()))?;
         }
         let law = json!({
             "thrust": tick.wrench.thrust,

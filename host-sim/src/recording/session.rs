@@ -40,19 +40,19 @@ impl<W: Write> Recording<W> {
         self.truth(now, truth)?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;
         let Some(report) = report else { return Ok(()) };
-        if let Some(told) = &report.state {
-            self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;
+        if let Some(measured) = &report.state {
+            self.message("/told", now, &pose(now, &measured.position.cast(), &measured.attitude.cast()))?;
         }
         if let Some(reference) = &report.reference {
             let ahead = reference.heading.direction();
             let level = attitude_from_euler(0.0, 0.0, f64::from(ahead.y).atan2(f64::from(ahead.x)));
             self.message("/reference", now, &pose(now, &reference.position.cast(), &level))?;
         }
-        if let (Some(wrench), Some(reference), Some(told)) = (&report.wrench, &report.reference, &report.state) {
+        if let (Some(wrench), Some(reference), Some(measured)) = (&report.wrench, &report.reference, &report.state) {
             let law = json!({
                 "thrust": wrench.thrust,
                 "torque": vector(&wrench.torque.cast()),
-                "position_error": (told.position - reference.position).norm(),
+                "position_error": (measured.position - reference.position).norm(),
             });
             self.message("/law", now, &law)?;
         }

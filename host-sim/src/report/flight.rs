@@ -132,7 +132,7 @@ fn about_plots(ticks_per_row: u64) -> String {
              positions and attitudes are samples. Every tick is in log.csv."
         ),
     };
-    format!("{rows} Dashed lines are what was asked for; thin lines across are bounds.")
+    format!("{rows} Dashed lines are references; thin lines across are bounds.")
 }
 
 fn claims_table(claims: &[Claim]) -> Table {

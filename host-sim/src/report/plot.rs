@@ -1,4 +1,4 @@
-//! Curves over time and what bounds them, with a table of their extremes for whoever reads rather than looks.
+//! Curves over time with their bounds, and a table of their extremes for readers who cannot see them.
 
 use super::prose::{Cell, Table};
 use super::track::Track;

@@ -128,7 +128,7 @@ pub fn facts(facts: &[Fact]) -> String {
     format!("<dl class=\"facts\">{list}</dl>\n")
 }
 
-/// A text as it stands, folded away until it is asked for.
+/// A text as it stands, folded until the reader opens it.
 #[must_use]
 pub fn listing(name: &str, text: &str) -> String {
     format!("<details><summary>{}</summary><pre tabindex=\"0\">{}</pre></details>\n", escaped(name), escaped(text))

@@ -72,7 +72,7 @@ pub const PACES: [Pace; 18] = [
     Pace::Kept,
 ];
 
-/// Greatest tilt asked for, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
+/// Greatest commanded tilt, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
 /// `MC_YAWRATE_MAX`.
 const TILT_MAX: f64 = 0.785;
 const RATES_MAX: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
@@ -132,7 +132,7 @@ impl Cascade {
         }
     }
 
-    /// The force per mass asked for, m/s^2, world: position and velocity loop with their limits.
+    /// The commanded force per mass, m/s^2, world: position and velocity loop with their limits.
     fn force(&mut self, seen: &Seen, wanted: &Wanted) -> Vector3<f64> {
         let towards = self.k_p.component_mul(&(wanted.position - seen.position));
         let across = limited(wanted.velocity.xy() + towards.xy(), self.v_across);

@@ -4,7 +4,7 @@
 //! L. Martins, C. Cardeira, P. Oliveira: *Global trajectory tracking for quadrotors: An MRP-based hybrid strategy with
 //! input saturation*, Automatica 162, 2024, after A. R. Teel: *Global stabilization and restricted tracking for
 //! multiple integrators with bounded controls*, Systems & Control Letters 18, 1992. The article's own formula was not
-//! at hand: what is here is the structure that its abstract and the paper's Section I tell of, in the paper's
+//! at hand: what is here is the structure that its abstract and the paper's Section I describe, in the paper's
 //! saturation.
 //!
 //! ```text

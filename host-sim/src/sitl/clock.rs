@@ -25,7 +25,7 @@ struct Inner {
 }
 
 impl SimClock {
-    /// Jumps to the earliest time waited for, but not beyond `end`; false if there is none before it.
+    /// Jumps to the earliest time waited for, but not beyond `end`; false if no time is due before it.
     fn advance(&self, end: u64) -> bool {
         let mut waiting = self.0.waiting.borrow_mut();
         let Some((&(time, _), _)) = waiting.first_key_value().filter(|((time, _), _)| *time <= end) else {

@@ -7,14 +7,14 @@
 //!
 //! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
 //! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
-//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: nothing but the client is heard.
+//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: only the client sends poses.
 //! The world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too
 //! late.
 
 use super::clock::SimClock;
 use super::faults::{Faults, Part};
 use super::line::Line;
-use crate::hil::answer::{Answer, ToldPose};
+use crate::hil::answer::{Answer, MeasuredPose};
 use crate::hil::messages::Encoder;
 use crate::instruments::{Instruments, SAMPLE};
 use crate::plant::Diverged;
@@ -158,8 +158,8 @@ impl World {
         self.0.body.borrow().encoder.signing.set(Some(key), stamp, 0);
     }
 
-    /// The camera hears a frame of the vehicle, and signs what it sends later with later stamps.
-    pub fn hear(&self, frame: &Frame<'_>) {
+    /// The camera receives a frame of the vehicle, and signs later frames with later stamps.
+    pub fn receive(&self, frame: &Frame<'_>) {
         self.0.body.borrow().encoder.signing.follow(frame, 0);
     }
 
@@ -217,10 +217,10 @@ impl Body {
                 continue;
             }
             let (position, attitude) = (pose.position(), pose.attitude());
-            let told = ToldPose { position, attitude, motion: None, deviations: Some(self.deviations) };
+            let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
             let answer =
-                Answer { poses: vec![Stamped { value: told, time: time + CAMERA_AHEAD }], samples: Vec::new() };
+                Answer { poses: vec![Stamped { value, time: time + CAMERA_AHEAD }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }
@@ -287,7 +287,7 @@ impl Battery for World {
     }
 }
 
-/// Nobody sees it.
+/// Invisible.
 impl Light for World {
     fn set(&mut self, _: bool) {}
 }
