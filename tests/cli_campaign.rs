@@ -28,7 +28,7 @@ fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
     let text = stdout(&flown);
     assert_eq!((status(&flown), stderr(&flown)), (0, String::new()), "{text}");
     assert!(text.starts_with("hummingbird: 20 flights of 2 s from seed 0, plant step 5 ms\n"), "{text}");
-    assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 asked"), "{text}");
+    assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 commanded"), "{text}");
     assert!(text.contains("slowest: ") && !text.contains("failing: "), "{text}");
     assert_eq!(files(&directory.join("out")), COMPLETE);
     assert!(text.starts_with(&fs::read_to_string(directory.join("out/summary.txt")).unwrap()));

@@ -1,4 +1,4 @@
-//! What the program can be asked on its command line, in clap's terms, and what of it is refused.
+//! The command line, in clap's terms, and its checks.
 
 mod campaign;
 mod compare;

@@ -274,15 +274,15 @@ impl Flight {
         Ok(Some(measured))
     }
 
-    /// The vehicle's motion until the next tick, under a wrench that is asked of the rotors.
+    /// The vehicle's motion until the next tick, under a wrench commanded of the rotors.
     #[inline]
-    fn hold(&mut self, asked: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
+    fn hold(&mut self, commanded: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
-            return self.vehicle.hold(asked, self.steps_per_tick);
+            return self.vehicle.hold(commanded, self.steps_per_tick);
         };
         let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
         for _ in 0..samples {
-            let (cut, arrived) = self.vehicle.hold(asked, self.steps_per_tick / samples)?;
+            let (cut, arrived) = self.vehicle.hold(commanded, self.steps_per_tick / samples)?;
             clipped |= cut;
             if !arrived.is_empty() {
                 thrusts = arrived;

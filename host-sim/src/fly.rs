@@ -27,7 +27,7 @@ const TICKS_PER_SHOW: u64 = 5000;
 /// The recording's name.
 const RECORDING: &str = "flight.mcap";
 
-/// What is written after the flight; whether that can be is asked before.
+/// The files written after the flight; whether they can be written is checked before.
 const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
 
 /// Why a flight left no report.

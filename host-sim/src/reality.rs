@@ -8,7 +8,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`body`] | the rigid body, by the classical Runge-Kutta method of fourth order |
-//! | [`propulsion`] | from the thrusts asked of the rotors to the speeds they turn with |
+//! | [`propulsion`] | from the rotors' commanded thrusts to their speeds |
 //! | [`battery`] | the voltage the motors have |
 //! | [`air`] | forces and moments of rotors and frame in moving air |
 //! | [`wind`], [`dryden`] | how the air moves |
@@ -186,7 +186,7 @@ impl RealVehicle {
         self.state = *state;
     }
 
-    /// The last touch of the ground since this was asked; a vehicle that hops touches it more than once.
+    /// The last touch of the ground since the last call; a vehicle that hops touches it more than once.
     pub fn take_touchdown(&mut self) -> Option<Touchdown> {
         self.touchdown.take()
     }

@@ -35,7 +35,7 @@ fn ours() -> PyResult<Arc<ThreadPool>> {
         return Ok(Arc::clone(pool));
     }
     let pool = Arc::new(made()?);
-    // The parent's is not taken down: its threads are not here to be told.
+    // The parent's pool is not shut down: its threads do not exist in this process.
     std::mem::forget(ours.replace((process, Arc::clone(&pool))));
     Ok(pool)
 }

@@ -1,7 +1,7 @@
 //! Scenarios: text that was read, and what it says. A changed scenario is a changed text, read anew.
 
 use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, array, of_asked, of_body, vector};
+use crate::rows::{REFERENCE, array, of_reference, of_body, vector};
 use controller_core::allocation::Rotor;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -191,7 +191,7 @@ impl Scenario {
                     format!("must be from 0 to {:e} s, found {time}", GREATEST_TIME / 1e6),
                 ));
             }
-            Ok(of_asked(&self.read.trajectory.at(micros as u64)))
+            Ok(of_reference(&self.read.trajectory.at(micros as u64)))
         };
         array(py, vector(times, "times")?.into_iter().map(at).collect::<PyResult<Vec<_>>>()?)
     }
@@ -206,7 +206,7 @@ impl Scenario {
     }
 }
 
-/// The longest time of a reference, us: beyond it a double no longer tells microseconds apart.
+/// The longest time of a reference, us: beyond it a double no longer resolves microseconds.
 const GREATEST_TIME: f64 = 9e15;
 
 /// Sets what stands at a dotted path, or with `None` takes it away; sections that are missing come into being.

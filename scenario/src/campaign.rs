@@ -52,7 +52,7 @@ pub struct Campaign {
 pub struct Ranges {
     /// Of each flight, s.
     pub duration: f64,
-    /// What the vehicle is asked to do.
+    /// The vehicle's task.
     pub reference: Asked,
     /// Whether attitudes are drawn, of all attitudes alike; otherwise flights start in the file's.
     pub attitude: bool,
@@ -76,7 +76,7 @@ pub struct Ranges {
     pub model: ModelRanges,
 }
 
-/// What a vehicle is asked to do.
+/// A vehicle's task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     /// The file's reference.
@@ -147,7 +147,7 @@ fn greatest_rate(timing: &Timing) -> f64 {
 /// Degrees.
 const ATTITUDE_NOISE_DEG: f64 = 0.2;
 
-/// The wind that a law is asked to bear where the file says nothing, m/s: 5, or less where the estimate of forces
+/// The default wind, m/s: 5, or less where the estimate of forces
 /// cannot hold against it. A wind of 1 m/s pushes with about 0.5 m/s^2, and four fifths of the estimate's level are
 /// taken. The paper's law, which estimates nothing and gives way to every constant force, gets none.
 #[must_use]
@@ -160,7 +160,7 @@ pub fn default_wind(configuration: &Configuration) -> f64 {
     }
 }
 
-/// Reads `[campaign]`; the defaults where there is none.
+/// Reads `[campaign]`; the defaults if it is missing.
 ///
 /// # Errors
 /// Names the field that is refused, or the section that it cannot stand beside.
@@ -193,8 +193,8 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         "rotor_scales",
     ])?;
     let measured = NOISE.into_iter().find(|key| section.has(key));
-    let told = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
-    if let (Some(key), Some(other)) = (measured, told) {
+    let source = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
+    if let (Some(key), Some(other)) = (measured, source) {
         let problem = format!("[{other}] says what is measured: leave that section or this key out");
         return Err(FieldError::new(section.path_of(key), problem));
     }

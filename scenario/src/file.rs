@@ -23,7 +23,7 @@ use toml::Table;
 /// The paper's Section VI, built in.
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
-/// What the firmware flies if nobody chooses, built in.
+/// The firmware's default vehicle, built in.
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
 
 /// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
@@ -62,7 +62,7 @@ pub struct Scenario {
     pub reality: Reality,
     /// Where it starts.
     pub initial: BodyState,
-    /// What it is asked to do, as the file says it.
+    /// The reference, as in the file.
     pub reference: ReferenceKind,
     /// How far it may stray from that once it is there, m.
     pub tolerance: f64,

@@ -5,11 +5,11 @@
 //! | [`[truth]`](truth) | mass, inertia, centre of mass, what the rotors deliver | |
 //! | [`[drag]`](drag) | what the air does to frame and rotors | |
 //! | [`[wind]`](wind) | how the air moves | `[drag]` |
-//! | [`[disturbance]`](disturbance) | a force and a torque that nobody explains | |
+//! | [`[disturbance]`](disturbance) | an unmodelled force and torque | |
 //! | [`[battery]`](battery) | a voltage that sags and runs down | `[rotors]` |
 //! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
 //! | [`[ground]`](ground) | something to stand on | |
-//! | [`[sensors]`](sensors) | what the controller is told of the state | |
+//! | [`[sensors]`](sensors) | noise, bias and delay of the measured state | |
 //! | [`[estimator]`](estimator) | an IMU and late poses, from which the core's estimator makes the state | no `[sensors]` |
 //!
 //! All may be left out. The certificate, the controller and the boards know nothing of them: they are what a flight is

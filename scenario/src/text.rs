@@ -23,7 +23,7 @@ const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/threa
 /// Opens a file for reading. Opening a pipe waits until somebody writes to it, and reading a device may never end.
 ///
 /// # Errors
-/// If there is none, or it is [none to read](regular).
+/// If the file is missing, or is [not a regular file](regular).
 pub fn open(path: &Path) -> io::Result<File> {
     regular(path)?;
     File::open(path)

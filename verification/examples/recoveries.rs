@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     row("settled within 0.2 m after", "s", |outcome| outcome.settled.unwrap_or(f64::INFINITY));
     let count = |what: fn(&Outcome) -> bool| flown.iter().filter(|outcome| what(outcome)).count();
     println!("not settled at the end: {}", count(|outcome| outcome.settled.is_none()));
-    println!("with a rotor asked for more than it has: {}", count(|outcome| outcome.clipped > 0));
+    println!("with a rotor commanded more than it has: {}", count(|outcome| outcome.clipped > 0));
     println!("with a command beyond its certified bound: {}", count(|outcome| outcome.beyond > 0));
     Ok(())
 }

@@ -145,14 +145,14 @@ impl Shares {
             *greatest = greatest.max(torque / proven);
             within &= torque <= proven * raised;
         }
-        for (rotor, (greatest, asked)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
-            let asked = f64::from(*asked);
+        for (rotor, (greatest, commanded)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
+            let commanded = f64::from(*commanded);
             let Some(proven) = certificate.rotor(rotor) else {
                 within = false;
                 continue;
             };
-            *greatest = greatest.max(asked / proven.greatest);
-            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&asked);
+            *greatest = greatest.max(commanded / proven.greatest);
+            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&commanded);
         }
         within
     }

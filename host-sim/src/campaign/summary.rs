@@ -136,7 +136,7 @@ impl fmt::Display for Summary {
         }
         writeln!(
             f,
-            "{} of {} recover and track; {} went beyond a certified bound{}; {} asked a rotor for more than it has\n",
+            "{} of {} recover and track; {} went beyond a certified bound{}; {} commanded a rotor beyond its limits\n",
             self.tracking,
             self.flights,
             self.beyond,

@@ -33,7 +33,7 @@ pub struct Scene {
     /// Its name in tables.
     pub name: &'static str,
     /// The task, in a sentence.
-    pub asked: &'static str,
+    pub task: &'static str,
     /// The scenario to fly.
     pub scenario: Scenario,
 }
@@ -75,5 +75,5 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
         ("weak rotors", "1 m step with rotors that deliver 60 %", really(at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
         ("heavy", "upside down with 1.6 times the mass", really(upside_down, 1.6, 1.0)),
     ];
-    Ok(scenes.map(|(name, asked, scenario)| Scene { name, asked, scenario }).into())
+    Ok(scenes.map(|(name, task, scenario)| Scene { name, task, scenario }).into())
 }

@@ -65,9 +65,9 @@ impl Encoder {
         answer.samples.iter().for_each(|sample| self.sensor(sample, bytes));
     }
 
-    /// Appends the answer, at `now`, us, to a TIMESYNC that was asked at `asked` of its sender's clock.
-    pub fn time_sync(&mut self, asked: i64, now: u64, bytes: &mut Vec<u8>) {
-        self.append(&time_sync::answer(asked, now), bytes);
+    /// Appends the answer, at `now`, us, to a TIMESYNC sent at `sent` of its sender's clock.
+    pub fn time_sync(&mut self, sent: i64, now: u64, bytes: &mut Vec<u8>) {
+        self.append(&time_sync::answer(sent, now), bytes);
     }
 
     /// Appends a pose as an ODOMETRY.

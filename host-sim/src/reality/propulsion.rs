@@ -1,4 +1,4 @@
-//! From the thrusts asked of the rotors to the speeds they turn with.
+//! From the rotors' commanded thrusts to their speeds.
 //!
 //! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u =
 //! w_c / w_max. What a real one settles at, and how it gets there:
@@ -105,10 +105,10 @@ impl Propulsion {
 
     /// Asks a vehicle without rotors for a wrench. Returns whether the limits cut it.
     pub fn command_directly(&mut self, wrench: &Wrench) -> bool {
-        let asked = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
-        let torque = asked.1.zip_map(&self.limits.1, |value, limit| value.clamp(-limit, limit));
-        self.direct = (asked.0.clamp(0.0, self.limits.0), torque);
-        self.direct != asked
+        let commanded = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
+        let torque = commanded.1.zip_map(&self.limits.1, |value, limit| value.clamp(-limit, limit));
+        self.direct = (commanded.0.clamp(0.0, self.limits.0), torque);
+        self.direct != commanded
     }
 
     /// The speeds of this moment, rad/s; zero where there is no rotor.

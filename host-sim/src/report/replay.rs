@@ -1,4 +1,4 @@
-//! Vehicles that move in space: body and rotors, thrust, where each was asked to be.
+//! Vehicles that move in space: body and rotors, thrust, and their references.
 //!
 //! A body's track has the columns of log.csv: `px … pz`, `qw … qz` (body to world), `thrust`; `pdx … pdz` and `yaw_d`
 //! (degrees) for the reference; `rotor_1 …` where there are rotors. World z up, body x forward, y left, z up; metres,

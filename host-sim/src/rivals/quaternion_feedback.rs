@@ -51,9 +51,9 @@ impl QuaternionFeedback {
         choose: impl FnOnce(Quaternion<f64>) -> Quaternion<f64>,
     ) -> Commanded {
         let needed = wanted.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
-        let asked = (seen.position - wanted.position) * self.k_p + (seen.velocity - wanted.velocity) * self.k_v;
-        let share = self.level / (self.level * self.level + asked.norm_squared()).sqrt();
-        let force = needed.0[0] - asked * share;
+        let commanded = (seen.position - wanted.position) * self.k_p + (seen.velocity - wanted.velocity) * self.k_v;
+        let share = self.level / (self.level * self.level + commanded.norm_squared()).sqrt();
+        let force = needed.0[0] - commanded * share;
         let (force_jet, heading) = (Jet::constant(force), Jet::constant(wanted.heading.0[0]));
         let desired: UnitQuaternion<f64> = Frame::new(&force_jet, &heading, HeadingRule::Horizontal).attitude;
         let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);

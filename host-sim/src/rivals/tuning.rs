@@ -1,7 +1,7 @@
 //! The search for a rival's gains: by the trials and the cost that ours are found by ([`crate::tune::trials`]), and the
 //! same search.
 //!
-//! Less is asked of rivals than of ours: no certificate, no margins of sampled loops, no flight without a clipped
+//! Rivals have fewer requirements than ours: no certificate, no margins of sampled loops, no flight without a clipped
 //! command, no vanishing offset in a gust. What stays is that every trial on every model is flown to its end, and that
 //! the recovery from upside down ends in time on the file's own model. A law that meets only the first of these is
 //! taken all the same, and its cost says so: what does not end counts as long as its trial.

@@ -72,7 +72,7 @@ struct Body {
     now: u64,
     /// Thrusts on their way, N, with the times at which they act, us.
     waiting: VecDeque<(u64, [f32; MOTORS])>,
-    /// Thrusts that are asked of the rotors, N.
+    /// The rotors' commanded thrusts, N.
     acting: [f32; MOTORS],
     sample: ImuSample,
     encoder: Encoder,
@@ -163,14 +163,14 @@ impl World {
         self.0.body.borrow().encoder.signing.follow(frame, 0);
     }
 
-    /// The camera's answer to a TIMESYNC that the vehicle asked at `asked` of its clock.
-    pub fn answer_time_sync(&self, asked: i64) {
+    /// The camera's answer to a TIMESYNC that the vehicle sent at `sent` of its clock.
+    pub fn answer_time_sync(&self, sent: i64) {
         let mut bytes = Vec::new();
         let mut body = self.0.body.borrow_mut();
         if body.source == PoseSource::Link {
             return;
         }
-        body.encoder.time_sync(asked, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
+        body.encoder.time_sync(sent, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
         body.line.push(&bytes);
     }
 

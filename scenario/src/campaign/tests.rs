@@ -78,9 +78,9 @@ fn what_cannot_be_is_refused_by_name() {
 
 #[test]
 fn nobody_is_asked_to_bear_wind_that_its_law_gives_way_to_or_to_hurry() {
-    let asked = |campaign: Campaign| (campaign.ranges.wind, campaign.ranges.duration);
-    assert_eq!(asked(parse(crate::PAPER, "").unwrap()), (0.0, 180.0));
-    assert_eq!(asked(hummingbird("").unwrap()), (5.0, 60.0));
+    let drawn = |campaign: Campaign| (campaign.ranges.wind, campaign.ranges.duration);
+    assert_eq!(drawn(parse(crate::PAPER, "").unwrap()), (0.0, 180.0));
+    assert_eq!(drawn(hummingbird("").unwrap()), (5.0, 60.0));
     let extended = include_str!("../../../scenarios/paper-extended.toml");
     let weak = extended.replace("[control]", "[estimates]\nforce_across = 0.3\n\n[control]");
     assert!((parse(&weak, "").unwrap().ranges.wind - 0.48).abs() < 1e-6);

@@ -76,7 +76,7 @@ impl Estimator {
     /// What the estimator believes of its sensors, for a vehicle under `gravity`, m/s^2.
     #[must_use]
     pub fn believed(&self, gravity: f32) -> EstimatorParameters {
-        /// The least that single precision tells from zero with room to spare.
+        /// The least that single precision separates from zero, with room to spare.
         const LEAST: f64 = 1e-4;
         EstimatorParameters {
             position_noise: self.position_noise.max(LEAST) as f32,
@@ -87,7 +87,7 @@ impl Estimator {
     }
 }
 
-/// By how much the body rates that the law is told are late at most, s: [`ImuParameters::rates_late`].
+/// The greatest delay of the law's body rates, s: [`ImuParameters::rates_late`].
 #[must_use]
 pub fn rates_delay() -> f64 {
     ImuParameters::BMI088.rates_late().into()

@@ -225,7 +225,7 @@ impl Law {
         lag * memory.acting + whole + broken_delay * commanded(whole_delay)
     }
 
-    /// The velocity that the law is told.
+    /// The measured velocity that the law gets.
     fn tracked(&self, memory: &mut Memory, velocity: f64, position: f64) -> f64 {
         let Some(tracker) = &self.tracker else {
             return velocity;

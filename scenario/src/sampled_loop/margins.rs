@@ -8,7 +8,7 @@
 //!
 //! Two kinds of crossings no step leads to. A fraction of a sample may make one that was not there without it. And at
 //! the Nyquist frequency there is no phase to take: the response is real, and further delay carries it along the axis.
-//! So the eigenvalues themselves are asked, up to two samples of further delay.
+//! So the eigenvalues themselves decide, up to two samples of further delay.
 //!
 //! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at
 //! more closely: it may cross twice between neighbours.

@@ -7,7 +7,7 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
-/// What the vehicle has, which may be far from what is ever commanded.
+/// The vehicle's limit, which may be far from every command.
 const LIMIT: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
@@ -26,7 +26,7 @@ pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> V
     plots
 }
 
-/// Where it is, how it stands, and how far that is from what was asked.
+/// Position and attitude, and their errors from the reference.
 fn motion(scenario: &Scenario) -> Vec<Plot> {
     let published = |value| if scenario.is_papers() { vec![ink(value, "published, steady state")] } else { vec![] };
     vec![
@@ -37,7 +37,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
         Plot::new(
             "Yaw",
             "°",
-            vec![Curve::new("yaw", "yaw", Color::Blue), Curve::new("yaw_d", "asked", Color::Ink).dashed()],
+            vec![Curve::new("yaw", "yaw", Color::Blue), Curve::new("yaw_d", "reference", Color::Ink).dashed()],
         ),
         Plot::new("Tilt of the thrust axis", "°", vec![Curve::new("tilt", "tilt", Color::Blue)]),
         Plot::new("Attitude error (MRP)", "", vec![Curve::new("mrp_error", "|ϑ|", Color::Blue)])
@@ -53,7 +53,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
     ]
 }
 
-/// What the law commands, within what is proven and what the vehicle has.
+/// The law's commands, with the proven bounds and the vehicle's limits.
 fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     let limits = scenario.configuration.limits();
     let mut thrust = interval(certificate.thrust(), "proven", Color::Ink);
@@ -86,7 +86,7 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     plots
 }
 
-/// What the law goes through on its way: filters and saturated feedbacks.
+/// The law's filters and saturated feedbacks.
 fn inside(scenario: &Scenario) -> Vec<Plot> {
     let gains = scenario.configuration.gains();
     let level =
@@ -148,9 +148,9 @@ fn axes(columns: [&str; 3]) -> Vec<Curve> {
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
 }
 
-/// What was asked of them.
+/// The reference's components.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
-    let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
+    let named = columns.into_iter().zip(["x reference", "y reference", "z reference"]).enumerate();
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
 }
 
