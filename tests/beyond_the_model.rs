@@ -90,7 +90,7 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
 /// The tick of arming: the estimate takes a second and a half to prove itself.
 const ARMED: u64 = 200;
 
-/// When it is told to fly.
+/// When the take-off is commanded.
 const FLOWN: u64 = ARMED + 1;
 
 /// The tick in which something lifts the vehicle off.

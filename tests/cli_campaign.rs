@@ -79,7 +79,7 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
     assert_eq!(row("height_lost"), (heights[0] - lowest).max(0.0));
     let error = ["x", "y", "z"].map(|axis| {
         let (is, wanted) = (column(&format!("p{axis}")), column(&format!("pd{axis}")));
-        // What was asked for is logged in single precision.
+        // The reference is logged in single precision.
         is[99] - f64::from(wanted[99] as f32)
     });
     assert!((row("final_error") - error.iter().map(|e| e * e).sum::<f64>().sqrt()).abs() < 1e-12);

@@ -203,7 +203,7 @@ fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_wants_to_be_asked_for()
         assert!(message.contains(words), "{words}: {message}");
     }
     assert_eq!(files(&directory), ["month.toml"]);
-    // Asked for, it is flown, and says the same on the way.
+    // With --large-log it is flown, with the same message.
     let mut child = spawn(&directory, &["fly", "month.toml", "--out", "out", "--large-log"]);
     wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
     interrupt(&mut child, "TERM");

@@ -1,4 +1,4 @@
-//! Verdicts that tell the truth: a loop that cannot hold still, a flight that does not arrive.
+//! Verdicts: a loop that cannot hold still, a flight that does not arrive.
 
 use crate::support::binary;
 use crate::support::binary::{PAPER, files, host_sim, status, stderr, stdout, with};
@@ -197,7 +197,7 @@ fn a_key_without_an_end_is_refused_at_once() {
 #[test]
 fn what_is_no_file_is_refused_and_neither_waited_for_nor_read_to_exhaustion() {
     let directory = directory("endless");
-    // Nobody writes to it.
+    // No process writes to it.
     assert!(std::process::Command::new("mkfifo").arg(directory.join("pipe")).status().unwrap().success());
     for source in ["/dev/zero", "pipe"] {
         let alone =

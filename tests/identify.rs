@@ -128,7 +128,11 @@ fn a_hover_is_refused_with_what_to_fly_instead() {
         assert!(missing.iter().any(|said| said.starts_with(line) && said.contains(words)), "{line}: {missing:?}");
     }
     let short = FlightLog { moments: log.moments[..500].to_vec(), ..log };
-    assert!(observability::unexcited(&short)[0].starts_with("the flight: 5 s"), "{:?}", observability::unexcited(&short));
+    assert!(
+        observability::unexcited(&short)[0].starts_with("the flight: 5 s"),
+        "{:?}",
+        observability::unexcited(&short)
+    );
 }
 
 #[test]

@@ -5,10 +5,10 @@ mod compare;
 mod identify;
 mod sessions;
 
+use crate::terminal::WIDTH_MAX;
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Args, Parser, Subcommand};
 pub use compare::{CompareArguments, GainsWanted};
-use crate::terminal::WIDTH_MAX;
 use host_sim::tune::effort::Effort;
 use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use identify::IDENTIFY_HELP;

@@ -1,7 +1,7 @@
 //! Scenarios: text that was read, and what it says. A changed scenario is a changed text, read anew.
 
 use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, array, of_reference, of_body, vector};
+use crate::rows::{REFERENCE, array, of_body, of_reference, vector};
 use controller_core::allocation::Rotor;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;

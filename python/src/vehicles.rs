@@ -9,7 +9,7 @@
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, numbers};
 use crate::refused::{refused, refused_field};
-use crate::rows::{STATE, array, body, of_reference, of_body, of_measured, rows, wrench_rows};
+use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, wrench_rows};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::state::Wrench;

@@ -5,7 +5,7 @@
 //! alone; stop the motors. Of two failures the more severe answer must be given, each by its own time, and no answer
 //! may be given that is more severe than the more severe of the two allows.
 //!
-//! These are read off `docs/firmware.md` and the limits in it. The rules' table is not asked.
+//! These are read off `docs/firmware.md` and the limits in it. The rules' table is not read.
 
 use super::failure::Failure;
 use super::phase::Phase;
@@ -71,7 +71,7 @@ const NOTHING: Answer = Answer {
 const NO_POSES: Answer =
     Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NOTHING };
 
-/// Something outside pushes: the vehicle may go where it likes, and without a pose the IMU cannot tell it from a lie.
+/// Something outside pushes: the vehicle may go where it likes, and without a pose the push is not observable apart from a lie.
 const PUSHED: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NOTHING };
 
 /// Nothing can be flown any more, at once.

@@ -36,7 +36,9 @@ fn the_documented_flight_identifies_lag_and_delay_under_any_noise() {
 fn what_the_air_does_at_the_hubs_is_not_taken_for_inertia() {
     // RotorPy's drag. Without a model of it the three are 2.7, 3.6 and -4.2 % off; with it about z 1.4 %, as yaw
     // accelerates little.
-    for (of_one, truth) in identified("").inertia_over_scale.iter().zip(&parse(MANOEUVRE).configuration.vehicle().inertia) {
+    for (of_one, truth) in
+        identified("").inertia_over_scale.iter().zip(&parse(MANOEUVRE).configuration.vehicle().inertia)
+    {
         let truth = f64::from(*truth);
         assert!(of_one.holds(truth) && (of_one.value / truth - 1.0).abs() < 0.016, "{of_one:?}, truly {truth}");
     }
@@ -72,8 +74,5 @@ fn thrust_without_a_command_identifies_no_vehicle() {
     log.moments.iter_mut().for_each(|moment| moment.commanded.thrust = 0.0);
     let identified = identify(&log, &parse(MANOEUVRE), &Bench::default()).unwrap();
     let refused = observability::unobservable(&identified);
-    assert!(
-        refused[0].starts_with("thrust scale: must be from 0.3 to 3, found"),
-        "{refused:?}"
-    );
+    assert!(refused[0].starts_with("thrust scale: must be from 0.3 to 3, found"), "{refused:?}");
 }

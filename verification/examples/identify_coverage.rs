@@ -41,14 +41,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     ] {
         let flown = |seed| run(file, seed, drag, delay);
         let identified: Vec<Result<Identified, String>> = (1..=runs).into_par_iter().map(flown).collect();
-        for (seed, refused) in
-            identified.iter().enumerate().filter_map(|(index, identified)| Some((index + 1, identified.as_ref().err()?)))
+        for (seed, refused) in identified
+            .iter()
+            .enumerate()
+            .filter_map(|(index, identified)| Some((index + 1, identified.as_ref().err()?)))
         {
             println!("{name}, run {seed}: {refused}");
         }
         let identified: Vec<Identified> = identified.into_iter().flatten().collect();
-        let all = identified.iter().filter(|run| run.iter().all(|(_, identified, truth)| identified.holds(*truth))).count();
-        println!("{name}: {} of {runs} runs identified, {all} of them with every true value within its interval", identified.len());
+        let all =
+            identified.iter().filter(|run| run.iter().all(|(_, identified, truth)| identified.holds(*truth))).count();
+        println!(
+            "{name}: {} of {runs} runs identified, {all} of them with every true value within its interval",
+            identified.len()
+        );
         println!(
             "{:18} {:>12} {:>12} {:>12} {:>12} {:>7}",
             "", "uncertainty", "rms error", "mean error", "rms ratio", "missed"

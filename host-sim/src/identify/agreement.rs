@@ -19,7 +19,7 @@ const NORMAL: f64 = 3.291;
 const ONE_SIDED: f64 = 3.090;
 
 /// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two
-/// say something of the same, nothing tells which of them errs.
+/// say something of the same, it does not show which of them errs.
 const ALIKE: f64 = 0.9;
 
 /// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.

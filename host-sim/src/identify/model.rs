@@ -89,7 +89,8 @@ impl<'a> Model<'a> {
     /// # Errors
     /// If the file has no rotors, or its allocation refuses a wrench of the log.
     pub fn new(log: &'a FlightLog, configuration: &Configuration) -> Result<Self, String> {
-        let rotors = configuration.rotors().ok_or("rotors: is missing; the log's commands need a model of the rotors")?;
+        let rotors =
+            configuration.rotors().ok_or("rotors: is missing; the log's commands need a model of the rotors")?;
         let vehicle = configuration.vehicle();
         Ok(Self {
             log,

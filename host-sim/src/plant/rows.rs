@@ -109,7 +109,8 @@ fn advance<S: Simd>(
             attitude: Vectors([number(6), number(7), number(8), number(9)]),
             angular_velocity: Vectors([number(10), number(11), number(12)]),
         };
-        let moved = moving.advanced(unit, body, commanded(0), Vectors([commanded(1), commanded(2), commanded(3)]), steps);
+        let moved =
+            moving.advanced(unit, body, commanded(0), Vectors([commanded(1), commanded(2), commanded(3)]), steps);
         for axis in 0..3 {
             states[axis][register] = moved.position[axis].numbers();
             states[3 + axis][register] = moved.velocity[axis].numbers();

@@ -37,7 +37,7 @@ pub enum Scale {
 pub enum Line {
     /// Without gaps.
     Solid,
-    /// In dashes: a reference rather than flown; or one of many laws, so that not colour alone tells them
+    /// In dashes: a reference, or one of many laws, so that not colour alone separates them
     /// apart.
     Dashed,
     /// In dots: a second such pattern.

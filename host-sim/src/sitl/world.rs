@@ -219,8 +219,7 @@ impl Body {
             let (position, attitude) = (pose.position(), pose.attitude());
             let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer =
-                Answer { poses: vec![Stamped { value, time: time + CAMERA_AHEAD }], samples: Vec::new() };
+            let answer = Answer { poses: vec![Stamped { value, time: time + CAMERA_AHEAD }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }

@@ -97,7 +97,9 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
     assert!(waiting.len() < 1000);
     let address = Address::Connect(address.to_string());
     let started = Instant::now();
-    let Err(PortError::NoConnection(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else { panic!("found") };
+    let Err(PortError::NoConnection(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
+        panic!("found")
+    };
     let interrupt = Interrupt::default();
     let asking = interrupt.clone();
     let user = std::thread::spawn(move || {

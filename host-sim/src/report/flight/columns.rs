@@ -111,7 +111,9 @@ fn measured(columns: &mut Columns) {
         ("measured_rate", |measured, state| (measured.angular_velocity.cast::<f64>() - state.angular_velocity).norm()),
     ];
     for (name, distance) in distances {
-        add(columns, name, move |tick| tick.measured.as_deref().map_or(f64::NAN, |measured| distance(measured, &tick.state)));
+        add(columns, name, move |tick| {
+            tick.measured.as_deref().map_or(f64::NAN, |measured| distance(measured, &tick.state))
+        });
     }
 }
 
