@@ -186,35 +186,35 @@ fn fly(configuration: &Configuration, plan: &Plan, rng: &mut ChaCha8Rng, shown: 
         net: Net { acted: 0.0, caught: false },
         wanted: 0.0,
     };
-    let mut desired = reference(rng, configuration);
-    let mut body = Body::resting(desired.position.cast(), random::attitude(rng).cast());
+    let mut goal = reference(rng, configuration);
+    let mut body = Body::resting(goal.position.cast(), random::attitude(rng).cast());
     let (delivered, off, mut wind) = (rng.random_range(0.7..1.2), random::vector(rng, 0.02), Vector3::zeros());
     for number in 0..plan.ticks {
         if rng.random_bool(plan.thrown) {
-            desired = reference(rng, configuration);
+            goal = reference(rng, configuration);
             wind = random::vector(rng, 4.0).cast::<f64>();
         }
         if rng.random_bool(plan.thrown) {
             body.attitude = random::attitude(rng).cast();
             body.angular_velocity = random::vector(rng, 10.0).cast();
             body.velocity = random::vector(rng, 8.0).cast();
-            body.position = (desired.position + random::vector(rng, 10.0)).cast();
+            body.position = (goal.position + random::vector(rng, 10.0)).cast();
         }
         if rng.random_bool(0.5 * plan.thrown) {
             controller.hold_estimates();
             hidden.held = settling;
         }
         let state = body.state();
-        let before = tick(controller.memory(), &hidden, &state, &desired);
+        let before = tick(controller.memory(), &hidden, &state, &goal);
         let answer = oracle.evaluate(&before);
-        let (wrench, diagnostics) = controller.step(&state, &desired).unwrap();
+        let (wrench, diagnostics) = controller.step(&state, &goal).unwrap();
         let desired = [diagnostics.desired_angular_velocity, diagnostics.desired_angular_acceleration];
         let core = of_core(controller.memory(), &wrench, desired, &answer);
         let mut wanted = 0.0;
         if (plan.compared)(&before.net) {
             let scales = Scales {
-                far: f64::from(state.position.norm() + desired.position.norm()),
-                fast: f64::from(state.velocity.norm() + desired.velocity.norm()),
+                far: f64::from(state.position.norm() + goal.position.norm()),
+                fast: f64::from(state.velocity.norm() + goal.velocity.norm()),
                 wanted: hidden.wanted,
             };
             let allowed = tolerances(&oracle, &before, &answer, &scales);

@@ -53,8 +53,8 @@ impl WholeFile {
     pub fn alone(path: &Path) -> io::Result<Self> {
         let file = Self::create(path)?;
         let Some((temporary, path)) = &file.names else { return Ok(file) };
-        // The lock is on what grows: it ends with the program and leaves nothing behind. Where a file system has no
-        // locks, there is none.
+        // The lock is on what grows: it ends with the program and leaves nothing behind. A file
+        // system without locks gets none.
         let _ = file.writer.get_ref().lock();
         let directory = temporary.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let locked = |found: PathBuf| {

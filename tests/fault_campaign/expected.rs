@@ -102,7 +102,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
         // It takes a while until a drift is more than noise.
         Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
-        // On the ground they may be of a simulated vehicle that stands still. Whoever stops a take-off then stops the
+        // On the ground they may be of a simulated vehicle that stands still. Stopping a take-off then stops the
         // motors of a vehicle that is believed to stand, and may be some centimetres up.
         Failure::PoseFreezes if phase == Phase::Spooling => {
             Answer { in_flight: &[(Descend, 3.6)], idling: None, forbids_arming: false, is_gentle: false, ..NO_POSES }

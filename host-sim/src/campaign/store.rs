@@ -88,7 +88,7 @@ impl Store {
     /// A campaign, or a shard of one, that is complete.
     ///
     /// # Errors
-    /// If there is none, or it is still under way.
+    /// If the campaign is missing or incomplete.
     pub fn complete(directory: &Path) -> Result<(Self, Vec<RecordBatch>), CampaignError> {
         let manifest = Manifest::of(directory)?.ok_or_else(|| {
             CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST}", directory.display()))

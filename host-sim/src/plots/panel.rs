@@ -37,8 +37,7 @@ pub enum Scale {
 pub enum Line {
     /// Without gaps.
     Solid,
-    /// In dashes: a reference, or one of many laws, so that not colour alone separates them
-    /// apart.
+    /// In dashes: a reference, or one of many laws, so that not colour alone separates them.
     Dashed,
     /// In dots: a second such pattern.
     Dotted,
