@@ -1,5 +1,5 @@
-//! Poses that lie: random faults of a pose source in any phase of a flight, flown in closed loop by the whole pilot on a
-//! simulated vehicle; each flight is held to the limits that an operator may rely on.
+//! Poses that lie: random faults of a pose source in any phase of a flight, flown in closed loop by the whole pilot on
+//! a simulated vehicle; each flight is held to the limits that an operator may rely on.
 //!
 //! - `lie`: what a source says instead of the truth; `flight`: one flight, to the ground.
 //!

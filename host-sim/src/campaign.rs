@@ -1,8 +1,8 @@
 //! Many flights at once, on all cores.
 //!
 //! A campaign is a number of flights in circumstances that differ: where they start, what the vehicle really is, how
-//! the air moves, how noisy the sensors are, which reference it flies. Each flight's circumstances come from its number alone,
-//! so a campaign gives the same again whatever the number of cores, and any of its flights can be flown again by
+//! the air moves, how noisy the sensors are, which reference it flies. Each flight's circumstances come from its number
+//! alone, so a campaign gives the same again whatever the number of cores, and any of its flights can be flown again by
 //! itself.
 //!
 //! | module | what it holds |

@@ -1,4 +1,4 @@
-//! What flies a simulated vehicle: our law, or a rival to compare it with.
+//! The controller of a simulated vehicle: our law, or a rival to compare it with.
 
 use crate::rivals::pilot::RivalPilot;
 use controller_core::controller::Diagnostics;

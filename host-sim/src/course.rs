@@ -1,7 +1,6 @@
 //! The figures of a flight, of the true motion: height lost, overshoot, settling time, activity of the rotors.
 //!
-//! With x the position, x_d the reference's, at the ticks k = 0 …
-//! n - 1:
+//! With x the position, x_d the reference's, at the ticks k = 0 … n - 1:
 //!
 //! | figure | |
 //! |---|---|

@@ -6,8 +6,8 @@
 //! every tick          Estimator::state -> law
 //! ```
 //!
-//! Before a flight begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates,
-//! by an invisible hand: the estimator begins to work in motion, too.
+//! Before a flight the vehicle moves into its start for [`ALIGNING`], at constant velocity and body rates, without
+//! forces: so the estimator aligns in motion, too.
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;

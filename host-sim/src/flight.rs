@@ -1,7 +1,7 @@
 //! A closed-loop flight: plant, reference and controller, one control tick at a time.
 //!
-//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors or its estimator make
-//! of it, and the reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
+//! At each tick the law gets the vehicle's state in single precision, true, measured or estimated, and the reference;
+//! its wrench is held until the next tick. Time is integer microseconds.
 
 use crate::actuators::ActuationError;
 use crate::controller::Controller;
@@ -51,8 +51,7 @@ pub struct Tick {
     pub surroundings: Surroundings,
     /// The reference.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it. The rotors get it divided by the estimated thrust
-    /// scale.
+    /// What the law commanded, before the plant clipped it. The rotors get it divided by the estimated thrust scale.
     pub wrench: Wrench,
     /// What the law went through.
     pub diagnostics: Diagnostics,

@@ -1,4 +1,4 @@
-//! Something to stand on.
+//! Level ground: standing, touching down, lifting off.
 //!
 //! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, friction and the legs'
 //! spread hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for

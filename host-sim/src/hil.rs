@@ -7,10 +7,9 @@
 //!
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs,
 //! the flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far
-//! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is
-//! [`senses`]' to say. Time is the other side's own: how regular its commands are by its clock is watched and reported
-//! ([`pace`]). A session may be held to a speed, for MAVLink clients that live in this desk's time and come by
-//! [`relay`].
+//! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. The measurements are
+//! [`senses`]'. Time is the other side's own: [`pace`] reports how regular its commands are by its clock. A session may
+//! be held to a speed, for MAVLink clients in real time ([`relay`]).
 
 pub mod answer;
 pub mod messages;

@@ -6,14 +6,14 @@
 //! | [`low_passes`] | the low-passes of its body rates, and of the gyro's noise |
 //! | [`impulses`] | impulses of the model's rotors between ticks, with a lag and a delay |
 //! | [`model`] | the rigid body that is fitted to the log |
-//! | [`hubs`] | what the air does at the rotors |
+//! | [`hubs`] | the air's forces at the rotors' hubs |
 //! | [`noise`] | the residuals, whitened |
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
 //! | [`agreement`] | whether the two can be of one vehicle |
 //! | [`observability`] | what is not observable in a log, and what to fly for it |
-//! | [`output`], [`margins`] | the scenario with these numbers; what the uncertainty eats of its certificate |
+//! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
 //! | [`command`] | all of it, from files to a report |
 
 pub mod agreement;

@@ -1,4 +1,4 @@
-//! The controller alone, lock-step over text: for simulators that others wrote.
+//! The controller alone, lock-step over text, for other simulators.
 //!
 //! One line of 33 numbers in, one line of 4 numbers out, flushed, until the input ends:
 //!

@@ -10,7 +10,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`body`] | what the equations need to know of a vehicle |
+//! | [`body`] | the vehicle's numbers in the equations |
 //! | [`motion`] | the equations and the method, for any number of vehicles side by side |
 //! | [`lanes`] | numbers of several vehicles in one register |
 //! | [`rows`] | many vehicles that move at the same time |

@@ -1,5 +1,5 @@
-//! A vehicle as it really is, in air that moves: what flies in place of [`crate::plant`] and [`crate::actuators`] where
-//! the scenario says more than its model ([`scenario::reality`]).
+//! The true vehicle in moving air: it replaces [`crate::plant`] and [`crate::actuators`] where the scenario has more
+//! than its model ([`scenario::reality`]).
 //!
 //! ```text
 //! wrench -> (delay) -> allocation -> motors (battery, failure) -> rotor speeds -> thrusts, drag -> body -> ground

@@ -1,4 +1,4 @@
-//! MCAP: a flight, or a session with the firmware, for [Foxglove](https://foxglove.dev) and whatever else reads MCAP.
+//! MCAP: a flight, or a session with the firmware, for [Foxglove](https://foxglove.dev) and other readers of MCAP.
 //!
 //! | topic | schema | what |
 //! |---|---|---|
@@ -8,7 +8,7 @@
 //! | /law | host_sim.Law | wrench, errors, saturated feedback |
 //! | /rotors | host_sim.Rotors | thrust of each, N, after lag |
 //! | /estimates | host_sim.Estimates | force, torque and thrust scale, where the law estimates |
-//! | /state, /log | host_sim.State, foxglove.Log | what the firmware is doing, and says: sessions of `sitl` only |
+//! | /state, /log | host_sim.State, foxglove.Log | the firmware's mode and texts: sessions of `sitl` only |
 //!
 //! A [flight] is recorded with all but the last two, a [session] with all but /estimates. Frames are the law's: world z
 //! up, body x ahead, y left, z up; SI units. Messages are JSON, one of each for every control tick, at the vehicle's

@@ -9,11 +9,11 @@
 //! |---|---|
 //! | [`clock`], [`mod@line`] | time that moves when every task waits; bytes in memory |
 //! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
-//! | [`port`], `voice` | clients on UDP; what the vehicle says |
-//! | [`pace`] | the vehicle's time against everybody else's |
-//! | [`faults`] | what is to fail, and when |
-//! | [`flash`] | where parameters are kept |
-//! | [`key`] | what frames are signed with |
+//! | [`port`], `voice` | clients on UDP; the vehicle's frames to them |
+//! | [`pace`] | the vehicle's time against real time |
+//! | [`faults`] | simulated faults and their times |
+//! | [`flash`] | the parameters' memory |
+//! | [`key`] | the key that signs frames |
 //! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here

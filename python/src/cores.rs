@@ -1,6 +1,7 @@
 //! The threads that work is shared out to.
 //!
-//! Not rayon's own: a process that was forked, as multiprocessing does, has none of its parent's threads, and would wait for them for ever.
+//! Not rayon's own: a process that was forked, as multiprocessing does, has none of its parent's threads, and would
+//! wait for them for ever.
 
 use crate::refused::failed;
 use pyo3::prelude::*;
@@ -18,7 +19,8 @@ pub fn shared<T: Send>(work: impl FnOnce() -> T + Send) -> PyResult<T> {
     Ok(ours()?.install(work))
 }
 
-/// Does long work on threads of its own: on shared ones it could not end before other work that one of them took up meanwhile.
+/// Does long work on threads of its own: on shared ones it could not end before other work that one of them took up
+/// meanwhile.
 ///
 /// # Errors
 /// If the machine gives no threads.

@@ -62,8 +62,9 @@ impl Governor {
 
     /// Replaces the setpoint, world frame.
     ///
-    /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
-    /// position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the last one.
+    /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving
+    /// point. A position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw:
+    /// keep the last one.
     #[pyo3(signature = (position=None, velocity=None, acceleration=None, *, yaw=None, yaw_rate=None))]
     fn accept(
         &mut self,

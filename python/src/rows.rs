@@ -190,8 +190,8 @@ fn or_zero(argument: Option<&Bound<'_, PyAny>>, field: &str) -> PyResult<Vector3
     argument.map_or(Ok(Vector3::zeros()), |array| Ok(row::<3>(array, field)?.into()))
 }
 
-/// A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin, level,
-/// facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll).
+/// A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin,
+/// level, facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll).
 #[pyfunction]
 #[pyo3(signature = (position=None, velocity=None, attitude=None, angular_velocity=None, *, euler=None))]
 pub fn state<'py>(

@@ -1,10 +1,10 @@
 //! Rows of simulated vehicles under wrenches that somebody else decides on: what environments are made of.
 //!
-//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the scenario has
-//! any. A row whose motion is no longer finite goes no further until it is put somewhere.
+//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the
+//! scenario has any. A row whose motion is no longer finite goes no further until it is put somewhere.
 //!
-//! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's vector registers
-//! ([`host_sim::plant::rows`]), to the bits that each has alone.
+//! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's
+//! vector registers ([`host_sim::plant::rows`]), to the bits that each has alone.
 
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, numbers};
@@ -194,8 +194,8 @@ impl VehicleRows {
         Ok(())
     }
 
-    /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
-    /// rows' motion is no longer finite, each (rows,).
+    /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and
+    /// which rows' motion is no longer finite, each (rows,).
     #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
     fn step<'py>(
         &mut self,

@@ -100,8 +100,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
     loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
 }
 
-/// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the
-/// other's.
+/// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
     let Timing { period, rotor_lag, delay_samples } = timing(scenario);

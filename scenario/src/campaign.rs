@@ -1,5 +1,4 @@
-//! `[campaign]`: how far the circumstances of a campaign's flights may differ. `host-sim campaign` flies them; nothing
-//! else looks.
+//! `[campaign]`: how far the circumstances of a campaign's flights may differ. Only `host-sim campaign` reads it.
 //!
 //! ```toml
 //! [campaign]

@@ -1,14 +1,14 @@
-//! What a vehicle and the air around it really are, where the model that the controller was given leaves it out.
+//! The true vehicle and the air around it, where they differ from the controller's model.
 //!
 //! | section | what it holds | needs |
 //! |---|---|---|
-//! | [`[truth]`](truth) | mass, inertia, centre of mass, what the rotors deliver | |
-//! | [`[drag]`](drag) | what the air does to frame and rotors | |
+//! | [`[truth]`](truth) | mass, inertia, centre of mass, thrust scale | |
+//! | [`[drag]`](drag) | drag of frame and rotors | |
 //! | [`[wind]`](wind) | how the air moves | `[drag]` |
 //! | [`[disturbance]`](disturbance) | an unmodelled force and torque | |
 //! | [`[battery]`](battery) | a voltage that sags and runs down | `[rotors]` |
 //! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
-//! | [`[ground]`](ground) | something to stand on | |
+//! | [`[ground]`](ground) | level ground | |
 //! | [`[sensors]`](sensors) | noise, bias and delay of the measured state | |
 //! | [`[estimator]`](estimator) | an IMU and late poses, from which the core's estimator makes the state | no `[sensors]` |
 //!

@@ -1,4 +1,4 @@
-//! `[reference]`: the vehicle's trajectory, one per `kind`. Left out: to hover where it
+//! `[reference]`: the vehicle's trajectory, one per `kind`. Left out: hover where the flight
 //! starts, or 1 m above the origin if `[initial]` does not say where that is, facing world x.
 
 use crate::initial::read_position;

@@ -29,7 +29,7 @@ BOARD_SPEED = 0.5
 # How many times as long as for a vehicle in real time anything may take by this desk's clock.
 STRETCH = 8.0 if EMULATED else 1.0
 
-# So that a client that counts by this desk's clock receives a heartbeat each second, of a board that is ten times as slow.
+# So that a client on this desk's clock receives a heartbeat each second from a board that is ten times as slow.
 BOARD_HEARTBEAT = 100_000  # us
 
 # The longest wait for the emulator or for the simulator to come or go, s.

@@ -136,7 +136,9 @@ def request_standard_modes(station):
 
     done = lambda: modes and len(modes) == next(iter(modes.values())).number_modes
     began = time.monotonic()
-    result = station.command("REQUEST_MESSAGE AVAILABLE_MODES, all", m.MAV_CMD_REQUEST_MESSAGE, AVAILABLE_MODES, received=note)
+    result = station.command(
+        "REQUEST_MESSAGE AVAILABLE_MODES, all", m.MAV_CMD_REQUEST_MESSAGE, AVAILABLE_MODES, received=note
+    )
     assert result == m.MAV_RESULT_ACCEPTED, result
     station.wait(lambda message: note(message) or done(), MESSAGE_AFTER_ACK) if not done() else None
     names = [modes[index].mode_name for index in sorted(modes)]
@@ -164,7 +166,8 @@ def request_parameters(station):
         else:
             found[message.param_index] = message.param_id
         message = station.wait(value, LIST_SILENCE) if len(found) + len(LOST) < count else None
-    station.show("  the rest of the list", 1, began, count and f"{len(found)} of {count} taken, {len(LOST)} lost on purpose")
+    taken = count and f"{len(found)} of {count} taken, {len(LOST)} lost on purpose"
+    station.show("  the rest of the list", 1, began, taken)
     # Its patience, before it reads what it misses.
     assert station.wait(lambda one: value(one) and one.param_index not in found, LIST_SILENCE) is None
     for index in sorted(set(range(count)) - set(found))[:LIST_BATCH]:

@@ -71,7 +71,8 @@ const NOTHING: Answer = Answer {
 const NO_POSES: Answer =
     Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NOTHING };
 
-/// Something outside pushes: the vehicle may go where it likes, and without a pose the push is not observable apart from a lie.
+/// Something outside pushes: the vehicle may go where it likes, and without a pose the push is not observable apart
+/// from a lie.
 const PUSHED: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NOTHING };
 
 /// Nothing can be flown any more, at once.

@@ -1,4 +1,4 @@
-//! What one flight of a campaign showed, against what its certificate has proven.
+//! The figures of one flight of a campaign, and their shares of the certified bounds.
 //!
 //! | figure | |
 //! |---|---|

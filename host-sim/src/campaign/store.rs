@@ -12,8 +12,8 @@
 //! chunks that were finished are there when it goes on. A part that cannot be read is flown again, and so is a result
 //! that is not the one that was written.
 //!
-//! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there
-//! is touched. A writer holds a [lock](crate::directory_lock) on it.
+//! The manifest comes first: a directory without it is no campaign's, and no file there is touched. A writer holds a
+//! [lock](crate::directory_lock) on it.
 
 use super::CampaignError;
 use super::batches;

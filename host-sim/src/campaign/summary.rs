@@ -1,4 +1,4 @@
-//! What a campaign showed: how many flights recover and track, quantiles, bounds, and the worst flights by number.
+//! A campaign's summary: how many flights recover and track, quantiles, bounds, and the worst flights by number.
 
 use super::draw::timing;
 use super::manifest::Manifest;

@@ -1,8 +1,8 @@
 //! What a flight of a campaign has in place of its scenario file: as comments above the file's text, in the file's own
 //! terms.
 //!
-//! The circumstances are drawn anew from seed and number wherever they are needed ([`super::draw`]); this is for who
-//! reads the report of one flight. Every number is written as it is, to the last bit.
+//! The circumstances are drawn anew from seed and number wherever they are needed ([`super::draw`]); this is for the
+//! reader of one flight's report. Every number is written as it is, to the last bit.
 
 use nalgebra::Vector3;
 use scenario::Scenario;

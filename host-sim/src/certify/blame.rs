@@ -45,8 +45,8 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
     let (axis, relief) = weak_axis(&terms, &torque_part(&towards));
     let verdict = if margin(worst) >= 0.0 { "with a margin of" } else { "too much by" };
     Ok(format!(
-        "rotor {}: commanded {commanded:.3} N, {end} available {available:.3} N, {verdict} {:.3} N; most of it from {blame} \
-         ({blamed:.3} N); the weak axis is {axis} ({relief:.3} N)\n",
+        "rotor {}: commanded {commanded:.3} N, {end} available {available:.3} N, {verdict} {:.3} N; most of it from \
+         {blame} ({blamed:.3} N); the weak axis is {axis} ({relief:.3} N)\n",
         worst + 1,
         margin(worst).abs(),
     ))

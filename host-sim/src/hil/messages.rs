@@ -1,4 +1,4 @@
-//! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
+//! The session's messages in MAVLink's frames: the flight controller's commands, and their answers.
 
 use super::answer::{Answer, MeasuredPose};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;

@@ -5,9 +5,8 @@
 //!         <-- a frame a datagram --
 //! ```
 //!
-//! Frames go on as they are, both ways; nothing is added. What is said on the way, texts and whether the vehicle is
-//! ready, is kept to be shown. It runs on a thread of its own: clients are served however long the simulator waits for
-//! a command.
+//! Frames go on as they are, both ways; nothing is added. Texts and the vehicle's state are kept to be shown. It runs
+//! on a thread of its own, so that clients are served while the simulator waits for a command.
 
 use super::port::{Address, PortError, connected};
 use crate::interrupt::Interrupt;

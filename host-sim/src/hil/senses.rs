@@ -1,9 +1,9 @@
-//! What the vehicle's sensors say of the period that a command began.
+//! The sensors' measurements of the period that a command began.
 //!
 //! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses
 //! that arrive within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are
 //! true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end.
-//! `[sensors]` is not for here: it describes the measurements of a law without an estimator.
+//! `[sensors]` is not used: it describes the measurements of a law without an estimator.
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 

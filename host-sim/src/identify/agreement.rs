@@ -1,7 +1,7 @@
 //! Whether bench and flight can be of one vehicle.
 //!
-//! Put together they leave something over: of each bench entry its distance from what all the rest says, and of the
-//! flight its own. Squared, over their variances and summed, that is chi-square with as many degrees of freedom as
+//! Combined they leave residuals: of each bench entry its distance from the fit to all others, and of the flight its
+//! own. Squared, over their variances and summed, they are chi-square with as many degrees of freedom as
 //! there are statements more than unknowns. Beyond what chance leaves in 999 of 1,000 no combination is worth its
 //! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
 //! all numbers, with tight intervals around the wrong values.

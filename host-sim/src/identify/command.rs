@@ -171,7 +171,8 @@ fn remarks(identified: &Quantities, bench: &Bench) -> String {
          the centre of mass is from the file's; other steady torques count as part of it\n"
     );
     if !identified.mass_is_measured {
-        text += "the mass was TAKEN FROM THE FILE: only thrust scale over mass and inertia over thrust scale are observable in flight; weigh it (--bench)\n";
+        text += "the mass was TAKEN FROM THE FILE: only thrust scale over mass and inertia over thrust scale are \
+                 observable in flight; weigh it (--bench)\n";
     }
     if let Some(curve) = bench.curve {
         text += &format!("thrust curve a = {}: set the parameter THR_CURVE\n", short(curve));

@@ -12,8 +12,9 @@
 //! reflection 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it
 //! afterwards.
 //!
-//! Body rates behind [`LowPasses`] are the integral of torques behind the same filters, which are linear. So torques are
-//! filtered here, and S is without the filters' delay. Counted as a delay alone, their shape would be taken for lag.
+//! Body rates behind [`LowPasses`] are the integral of torques behind the same filters, which are linear. So torques
+//! are filtered here, and S is without the filters' delay. Counted as a delay alone, their shape would be taken for
+//! lag.
 
 use super::flight_log::FlightLog;
 use super::low_passes::LowPasses;

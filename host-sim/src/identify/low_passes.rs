@@ -1,10 +1,10 @@
 //! The low-passes of a log's body rates: the gyro's own and the firmware's, at the IMU's rate.
 //!
 //! All of it is linear, so the model's torques are passed through the same two ([`super::impulses`]). The gyro's noise
-//! went through them as well. It was white before; afterwards samples next to each other go together by a sixteenth. A
-//! law that answers one sample acts before the next, where commands are not late: what is left of a rate would then go
-//! along with what the model's rotors do, and of a vehicle that acts at once the lag would come out a third of a
-//! millisecond too small. So each sample is replaced by its innovation, the sample less its prediction:
+//! went through them as well. It was white before; afterwards neighbouring samples correlate by 1/16. Without a delay
+//! the law answers one sample before the next: the residual of a rate would then correlate with the model's rotors, and
+//! the lag of a vehicle without delay would come out a third of a millisecond too small. So each sample is replaced by
+//! its innovation, the sample less its prediction:
 //!
 //! ```text
 //! rho_j = sum h_i h_i+jN / sum h_i^2                      h: response to an impulse, N samples of the IMU to a tick

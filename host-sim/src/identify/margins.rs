@@ -1,4 +1,4 @@
-//! What the uncertainty of a vehicle's numbers eats of its certificate and of its sampled loops.
+//! The margins of certificate and sampled loops within the uncertainty of a vehicle's numbers.
 //!
 //! Every margin three times: with the file's numbers, with those identified, and in the worst corner of the intervals,
 //! linearised: from the identified margin, what it loses from one end or the other of each interval alone, all of it

@@ -13,10 +13,10 @@
 //!
 //! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever
 //! share of it drag has: in h it is held while the unknowns move, since torques show no more of drag or thrust than
-//! forces do. beta, and e about z alone, are what rotors in the air and unequal rotors may add: found, not
-//! reported. So are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is
-//! a centre of mass beside the origin: the two are not observable apart near hover. A steady vertical force is thrust: none
-//! is supposed.
+//! forces do. beta, and e about z alone, are what rotors in the air and unequal rotors may add: found, not reported. So
+//! are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is a centre of
+//! mass beside the origin: the two are not observable apart near hover. A steady vertical force is thrust: none is
+//! supposed.
 //!
 //! Both sides are integrated from tick to tick, never differentiated. The residual is the measured state less the
 //! integral.
@@ -75,8 +75,9 @@ pub struct Model<'a> {
     first: usize,
 }
 
-/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that it
-/// does not matter for an observable quantity; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are great.
+/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that it does not
+/// matter for an observable quantity; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are
+/// great.
 #[must_use]
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];

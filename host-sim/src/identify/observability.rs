@@ -44,7 +44,8 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
         let found = deviation(&|at| log.moments[at].angular_velocity[axis]);
         if found < TURNING {
             missing.push(format!(
-                "{what}: body rates of {} rad/s (root mean square), at least {TURNING} are needed: fly quick steps {fly}",
+                "{what}: body rates of {} rad/s (root mean square), at least {TURNING} are needed: fly quick \
+                 steps {fly}",
                 short(found)
             ));
         }
@@ -59,7 +60,8 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
             let fly =
                 if axis == 2 { "climb and sink by a metre or more" } else { "fly there and back by a metre or more" };
             missing.push(format!(
-                "drag {name}: speeds of {} m/s along the body's {name} (root mean square), at least {least} are needed: {fly}",
+                "drag {name}: speeds of {} m/s along the body's {name} (root mean square), at least {least} are \
+                 needed: {fly}",
                 short(found)
             ));
         }

@@ -1,8 +1,8 @@
 //! The scenario with a vehicle's own numbers: the original text, comments kept.
 //!
-//! Replaced are mass, inertia, what the rotors deliver (thrust and drag coefficient alike, or the thrusts that stand
-//! for them), lag, the delay, rounded to whole plant steps, `drag`, as linear drag in place of all its keys, and the
-//! rotors' positions, which count from the centre of mass.
+//! Replaced are mass, inertia, the rotors' thrust and drag coefficients (or the thrusts that stand for them), lag, the
+//! delay, rounded to whole plant steps, `drag`, as linear drag in place of all its keys, and the rotors' positions,
+//! which count from the centre of mass.
 
 use super::quantities::{Quantities, Quantity};
 use toml_edit::{Array, DocumentMut, Item, Table, value};

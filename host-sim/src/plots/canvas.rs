@@ -1,4 +1,4 @@
-//! What every figure is drawn on: an SVG, finer than the drawing library's whole pixels.
+//! The canvas of every figure: an SVG, finer than the drawing library's whole pixels.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

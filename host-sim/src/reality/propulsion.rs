@@ -12,7 +12,7 @@
 //!
 //! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's
 //! equation is linear with w_s held over a plant step, so the speeds are exact at the beginning, the middle and the end
-//! of the step: what the body's method asks for. It is today's lag of `[rotors]`, which the body otherwise feels at the
+//! of the step, as the body's method needs. It is the lag of `[rotors]`, which the body otherwise feels at the
 //! middle of each step only.
 //!
 //! Sources: the first-order lag, R. Mahony, V. Kumar, P. Corke, *Multirotor Aerial Vehicles*, IEEE RAM 19(3), 2012; the

@@ -1,4 +1,4 @@
-//! What a tick of a simulated flight adds to its recording.
+//! The messages of one tick of a simulated flight.
 
 use super::drawing::{pose, vector};
 use super::schemas::ESTIMATES;

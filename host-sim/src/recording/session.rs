@@ -1,4 +1,4 @@
-//! What a session with the firmware adds to its recording: what the vehicle does, what it believes, and what it says.
+//! The messages of a session with the firmware: the true vehicle, its estimate, and its texts.
 
 use super::drawing::{pose, stamp, vector};
 use super::schemas::{LOG, STATE};

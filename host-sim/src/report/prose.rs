@@ -1,4 +1,4 @@
-//! What is read rather than looked at: sentences, facts, tables with verdicts, listings.
+//! The page's text: sentences, facts, tables with verdicts, listings.
 
 use super::text::escaped;
 use std::fmt::Write;

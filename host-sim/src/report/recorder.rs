@@ -1,4 +1,4 @@
-//! A track gathered tick by tick, so long as it may be.
+//! A track gathered tick by tick, of any length.
 //!
 //! Up to [`MOST_ROWS`] ticks each row is a tick. Of a longer flight two rows stand for a stretch of ticks: a column of
 //! *extremes* keeps the least and the greatest value of the stretch, in order of time, so that no peak is lost; a

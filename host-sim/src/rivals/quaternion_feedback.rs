@@ -1,13 +1,14 @@
-//! What the continuous and the memoryless law share: quaternion feedback under a saturated position loop.
+//! Quaternion feedback under a saturated position loop, common to the continuous and the memoryless law.
 //!
 //! ```text
 //! u = -s(k_p p~ + k_v v~) + g e3 + p_d'',  T = m u . R e3
 //! tau = J (w_ref' - 2 k_q q_v - k_w (w - w_ref)) + w x J w
 //! ```
 //!
-//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part: which of the two is all that
-//! the two laws differ in. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis: *Quaternion
-//! feedback regulator for spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12, 1989.
+//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part; the two laws differ only in
+//! which of the two they take. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis:
+//! *Quaternion feedback regulator for spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12,
+//! 1989.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;

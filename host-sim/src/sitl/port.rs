@@ -1,6 +1,7 @@
 //! The clients: MAVLink over UDP on this machine's loopback, a frame a datagram.
 //!
-//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`. Nothing from outside this machine gets in.
+//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
+//! Nothing from outside this machine gets in.
 
 use std::fmt;
 use std::io;

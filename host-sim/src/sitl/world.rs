@@ -7,9 +7,8 @@
 //!
 //! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
 //! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
-//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: only the client sends poses.
-//! The world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too
-//! late.
+//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: only the client sends poses. The
+//! world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too late.
 
 use super::clock::SimClock;
 use super::faults::{Faults, Part};

@@ -1,11 +1,11 @@
-//! `[truth]`: what the vehicle really is, where it differs from the model its controller was given.
+//! `[truth]`: the true vehicle, where it differs from its controller's model.
 //!
 //! ```toml
 //! [truth]
 //! mass = 0.55                          # kg;            left out: vehicle.mass
 //! inertia = [3.9e-3, 3.9e-3, 7.5e-3]   # kg m^2, about the true centre of mass; left out: vehicle.inertia
 //! centre_of_mass = [0.005, 0.0, 0.0]   # m, body, from the model's; left out: zero
-//! thrust_scale = 0.8                   # what every rotor delivers of its thrust and drag torque; left out: 1
+//! thrust_scale = 0.8                   # scale of every rotor's thrust and drag torque; left out: 1
 //! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
 //! thrust_curve = 0.3                   # a of the thrust a u + (1 - a) u^2 of a motor command u; left out: 0
 //! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
