@@ -249,9 +249,9 @@ for the ground station):
     -serial tcp:127.0.0.1:5761,server=on,wait=off,nodelay=on \\
     -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
   cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
-The two stay in lock-step however slow they are. For clients that live in the desk's time (MAVSDK,
-MAVProxy and so on), add
---ground 127.0.0.1:5761 to have the second serial port on UDP 14540 and 14550, and --speed to keep the vehicle's time steady.
+The two stay in lock-step however slow they are. For clients in real time (MAVSDK, MAVProxy and so
+on), add --ground 127.0.0.1:5761 to have the second serial port on UDP 14540 and 14550, and --speed
+to keep the vehicle's time steady.
 
 With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600 Such a
 line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too
@@ -284,7 +284,7 @@ A line of status each second, and every text of the vehicle's, go to standard ou
 status is 0 after --duration, 129, 130 or 143 when interrupted, 2 for what cannot be used.";
 
 impl TuneArguments {
-    /// What gains must meet.
+    /// The requirements on gains.
     ///
     /// # Errors
     /// Names the argument that asks for something impossible, or for less than what may fly.

@@ -11,7 +11,7 @@ use std::{fs, io};
 #[derive(Debug)]
 pub struct DirectoryLock {
     _directory: Option<File>,
-    /// What was missing, the innermost first.
+    /// The missing directories, the innermost first.
     made: Vec<PathBuf>,
 }
 

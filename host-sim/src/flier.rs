@@ -11,7 +11,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 
-/// What our law is called beside others.
+/// Our law's name beside others.
 pub const OURS: &str = "ours";
 
 /// Which law.

@@ -38,7 +38,7 @@ pub struct Flight {
     tick: u64,
 }
 
-/// What happened at one control tick.
+/// One control tick.
 #[derive(Debug, Clone)]
 pub struct Tick {
     /// Time since the start, us.
@@ -47,15 +47,15 @@ pub struct Tick {
     pub state: BodyState,
     /// The measured or estimated state that the law got, where there are sensors or an estimator.
     pub measured: Option<Box<State>>,
-    /// What surrounded the vehicle at that moment.
+    /// Wind and battery at that moment.
     pub surroundings: Surroundings,
     /// The reference.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it. The rotors get it divided by the estimated thrust scale.
+    /// The law's command before clipping. The rotors get it divided by the estimated thrust scale.
     pub wrench: Wrench,
-    /// What the law went through.
+    /// The law's intermediate values.
     pub diagnostics: Diagnostics,
-    /// What the law has estimated, if it estimates anything.
+    /// The law's estimates, if it has any.
     pub estimates: Option<Estimates>,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
@@ -74,7 +74,7 @@ pub struct Brief {
     pub state: BodyState,
     /// The reference.
     pub reference: Reference,
-    /// What the law commanded, as in [`Tick::wrench`].
+    /// The law's command, as in [`Tick::wrench`].
     pub wrench: Wrench,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
@@ -84,7 +84,7 @@ pub struct Brief {
     pub standing: bool,
 }
 
-/// What a law answers, with what it says of it.
+/// A law's wrench, and its diagnostics.
 type Answer<D> = Result<(Wrench, D), InputError>;
 
 /// A flight that could not go on.

@@ -80,12 +80,12 @@ impl From<PlotError> for FlyError {
     }
 }
 
-/// What came of a flight.
+/// The outcome of a flight.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Whether its configuration may fly for real, in a sentence.
     pub certification: String,
-    /// What was claimed, and whether it holds.
+    /// The claims, with their verdicts.
     pub claims: Vec<Claim>,
 }
 

@@ -68,7 +68,7 @@ impl fmt::Display for HilError {
     }
 }
 
-/// What a session was.
+/// A session's summary.
 #[derive(Debug, Clone)]
 pub struct Summary {
     /// How regular the commands were.
@@ -79,11 +79,11 @@ pub struct Summary {
     pub touchdowns: Vec<(f64, f64, f64)>,
     /// How long it took from the first command on.
     pub took: Duration,
-    /// What ended it.
+    /// Its end.
     pub end: End,
 }
 
-/// What ends a session.
+/// The end of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// Its duration was over.

@@ -18,7 +18,7 @@ const HEADER: &str = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,y
 mrp_x,mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,s_omega,\
 qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 
-/// What a law that estimates adds: force, m/s^2; torque, N m; thrust scale.
+/// Columns of a law that estimates: force, m/s^2; torque, N m; thrust scale.
 const ESTIMATES: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
 
 /// The header row for a vehicle with so many rotors, under a law that estimates or not.
@@ -28,7 +28,7 @@ pub fn header(rotors: usize, estimates: bool) -> String {
     (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
-/// What the header row gains by what the scenario says of reality.
+/// The header row's columns of `[wind]`, `[battery]` and measurements.
 #[must_use]
 pub fn reality_header(reality: &Reality) -> String {
     [

@@ -59,7 +59,7 @@ impl Plant {
         Self { body: Body::new(vehicle, limits, step), state }
     }
 
-    /// What moves.
+    /// The vehicle's numbers.
     #[must_use]
     pub fn body(&self) -> &Body {
         &self.body

@@ -47,7 +47,7 @@ use scenario::reality::truth::Truth;
 use std::collections::VecDeque;
 use wind::{MovingAir, first_step};
 
-/// What surrounds a vehicle at an instant.
+/// Wind and battery at an instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Surroundings {
     /// Velocity of the air, m/s, world; none where the scenario has no wind.
@@ -151,7 +151,7 @@ impl RealVehicle {
         self.air.thrusts(&self.propulsion.speeds())
     }
 
-    /// What surrounds it at this moment.
+    /// Wind and battery at this moment.
     #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         Surroundings {

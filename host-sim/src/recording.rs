@@ -34,7 +34,7 @@ use std::io::{self, Write};
 /// A topic, and what its messages look like.
 pub type Topic = (&'static str, Schema);
 
-/// What every recording has.
+/// The topics of every recording.
 const COMMON: [Topic; 7] = [
     ("/vehicle", POSE_IN_FRAME),
     ("/reference", POSE_IN_FRAME),

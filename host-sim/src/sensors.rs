@@ -59,7 +59,7 @@ pub struct Sensors {
     velocity: Vector3<f64>,
     /// The true velocity at the last tick, m/s: the accelerometer's.
     true_velocity: Vector3<f64>,
-    /// What was measured and is still under way.
+    /// Measurements still under way.
     late: VecDeque<State>,
 }
 

@@ -75,7 +75,7 @@ const STATUS: Duration = Duration::from_secs(1);
 /// How a session is run.
 #[derive(Debug, Clone)]
 pub struct Session {
-    /// What errors call the scenario: its file.
+    /// The scenario's name in errors: its file.
     pub file: String,
     /// Where the clients are.
     pub ports: Ports,
@@ -85,11 +85,11 @@ pub struct Session {
     pub duration: Option<f64>,
     /// Where its poses come from.
     pub poses: PoseSource,
-    /// What fails.
+    /// The faults.
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,
-    /// What frames are signed with.
+    /// The key that signs frames.
     pub signing_key: Option<Key>,
     /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
     pub recording: Option<(PathBuf, String)>,
@@ -118,7 +118,7 @@ impl fmt::Display for SitlError {
 pub struct Summary {
     /// Vehicle time, s.
     pub time: f64,
-    /// What the vehicle was doing; none before its first tick.
+    /// The vehicle's mode; none before its first tick.
     pub mode: Option<Mode>,
     /// Where it really was, m.
     pub position: [f64; 3],
@@ -155,7 +155,7 @@ pub struct Sitl {
     restart: Rc<Cell<bool>>,
 }
 
-/// What starts the firmware anew, once its tasks have come to rest.
+/// Restarts the firmware, once its tasks have come to rest.
 struct Desk(Rc<Cell<bool>>);
 
 impl Restart for Desk {
@@ -274,7 +274,7 @@ impl Sitl {
         }
     }
 
-    /// What there is to be seen of it.
+    /// Its state, for a line of status.
     fn moment(&self) -> Moment {
         Moment {
             now: self.clock.now(),

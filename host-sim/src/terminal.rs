@@ -13,7 +13,7 @@ use textwrap::WordSplitter;
 const CLAIMS_FAIL: u8 = 1;
 /// Input that cannot be used, or output that cannot be written.
 pub const BAD_INPUT: u8 = 2;
-/// What a signal's number is added to, as shells do.
+/// The status of signal 0, as shells have it.
 const INTERRUPTED: u8 = 128;
 
 /// Writes to standard output, whole. A reader that has gone away changes no verdict.
@@ -55,13 +55,13 @@ fn folded(text: &str, width: usize) -> String {
     text.split('\n').map(fold).collect::<Vec<_>>().join("\n")
 }
 
-/// What fails in red, unless NO_COLOR says otherwise.
+/// Failures in red, unless NO_COLOR is set.
 fn coloured(text: &str) -> String {
     let red = |word: &str| console::style(word).red().bold().to_string();
     ["FAILS", "NOT", "UNSTABLE"].iter().fold(text.to_owned(), |text, word| text.replace(word, &red(word)))
 }
 
-/// What a scenario is read from, once: a pipe cannot be read twice.
+/// A scenario's text, read once: a pipe cannot be read twice.
 pub fn text_of(file: Option<&Path>) -> Result<String, String> {
     let read = |file: &Path| {
         scenario::text::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))

@@ -42,7 +42,7 @@ pub struct Campaign {
     pub flights: u64,
     /// Seed of all draws.
     pub seed: u64,
-    /// What is drawn.
+    /// The ranges of the draws.
     pub ranges: Ranges,
 }
 
@@ -52,7 +52,7 @@ pub struct Ranges {
     /// Of each flight, s.
     pub duration: f64,
     /// The vehicle's task.
-    pub reference: Asked,
+    pub reference: Task,
     /// Whether attitudes are drawn, of all attitudes alike; otherwise flights start in the file's.
     pub attitude: bool,
     /// Greatest distance from the reference's first point, m.
@@ -69,15 +69,15 @@ pub struct Ranges {
     pub gust: f64,
     /// Wind at 20 feet, m/s.
     pub turbulence: f64,
-    /// What is measured.
+    /// The sensors' errors.
     pub noise: NoiseRanges,
-    /// What the model has wrong.
+    /// The model's errors.
     pub model: ModelRanges,
 }
 
 /// A vehicle's task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
+pub enum Task {
     /// The file's reference.
     File,
     /// To hover at the origin.
@@ -122,7 +122,7 @@ impl Campaign {
         let noise = NoiseRanges { gyro: 0.01, position: 2e-3, attitude: ATTITUDE_NOISE_DEG.to_radians(), delay: 0.0 };
         let ranges = Ranges {
             duration: if configuration.paper().is_some() { 180.0 } else { 60.0 },
-            reference: Asked::InTurn,
+            reference: Task::InTurn,
             attitude: true,
             offset: 10.0,
             velocity: 5.0,
@@ -138,7 +138,7 @@ impl Campaign {
     }
 }
 
-/// What the plant can follow, rad/s.
+/// The greatest body rate that the plant can follow, rad/s.
 fn greatest_rate(timing: &Timing) -> f64 {
     GREATEST_TURN_PER_STEP / timing.step()
 }
@@ -217,7 +217,7 @@ const LEAST_DURATION: f64 = 1.0;
 /// The most flights of a campaign.
 pub const MOST_FLIGHTS: f64 = 1e8;
 
-/// What takes the place of `[sensors]`.
+/// The keys that a file with `[sensors]` may not have.
 const NOISE: [&str; 4] = ["gyro_noise", "position_noise", "attitude_noise_deg", "pose_delay"];
 
 fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<Ranges, FieldError> {
@@ -253,7 +253,7 @@ fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<R
     })
 }
 
-const REFERENCES: [(&str, Asked); 3] = [("in-turn", Asked::InTurn), ("file", Asked::File), ("hover", Asked::Hover)];
+const REFERENCES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];
 
 fn read_choice<T: Copy, const N: usize>(
     section: &Section,

@@ -26,7 +26,7 @@ pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 /// The firmware's default vehicle, built in.
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
 
-/// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
+/// The keys of a scenario file's top level, beside [`reality::SECTIONS`].
 const MODEL_SECTIONS: [&str; 14] = [
     "name",
     "duration",
@@ -58,7 +58,7 @@ pub struct Scenario {
     pub rotor_lag: f64,
     /// From a tick to the moment its wrench acts, plant steps.
     pub delay_steps: u64,
-    /// What vehicle, air and sensors really are, where the model leaves it out.
+    /// The true vehicle, air and sensors, beyond the model.
     pub reality: Reality,
     /// Where it starts.
     pub initial: BodyState,

@@ -43,7 +43,7 @@ use wind::Wind;
 pub const SECTIONS: [&str; 9] =
     ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors", "estimator"];
 
-/// What the file says beyond the model. By default nothing: the vehicle is the model, in still vacuum, its state known.
+/// The file's reality beyond the model. By default none: the vehicle is the model, in still vacuum, its state known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reality {
     /// `[truth]`.

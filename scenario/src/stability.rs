@@ -16,7 +16,7 @@ pub struct LoopMargin {
 }
 
 impl LoopMargin {
-    /// What must be there to fly.
+    /// The least margin to fly.
     ///
     /// *Gain, 1.5*: a loop's gain is proportional to the rotors' thrust coefficient and to one over the inertia. Data
     /// sheets, air density and a fresh or a worn propeller move the first by a fifth, an estimate of the inertia is
@@ -27,7 +27,7 @@ impl LoopMargin {
     /// tick's own work, the frame to the motor controllers and their next step take most of another.
     pub const LEAST: Self = Self { gain: 1.5, delay: 2e-3 };
 
-    /// What `report`'s loop lacks most of this margin; none if it has all of it.
+    /// The greatest shortfall of `report`'s loop from this margin; none if it has all of it.
     #[must_use]
     pub fn lacking(&self, report: &LoopReport) -> Option<Lack> {
         let axis = report.axis;
@@ -45,7 +45,7 @@ impl LoopMargin {
         (missed > 0.0).then_some(Lack { axis, missed, what })
     }
 
-    /// What the first of `reports` that lacks something lacks; an unstable loop counts before any that is only weak.
+    /// The shortfall of the first of `reports` that has one; an unstable loop counts before a weak one.
     #[must_use]
     pub fn first_lacking(&self, reports: &[LoopReport]) -> Option<Lack> {
         let unstable = reports.iter().filter(|report| report.margins.is_none());
@@ -60,11 +60,11 @@ pub struct Lack {
     pub axis: Axis,
     /// By how much it misses, relative to the requirement; above zero.
     pub missed: f64,
-    /// What it lacks.
+    /// Its shortfall.
     pub what: Shortfall,
 }
 
-/// What a loop lacks.
+/// A loop's shortfall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shortfall {
     /// It is unstable as it is.

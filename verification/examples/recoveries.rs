@@ -11,15 +11,15 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
 use scenario::Scenario;
-use scenario::campaign::{Asked, ModelRanges, NoiseRanges, Ranges};
+use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;
 use std::path::Path;
 use verification::campaign::fly_all;
 
-/// What is drawn.
+/// The ranges of the draws.
 const RANGES: Ranges = Ranges {
     duration: 60.0,
-    reference: Asked::InTurn,
+    reference: Task::InTurn,
     attitude: true,
     offset: 10.0,
     velocity: 5.0,

@@ -38,7 +38,7 @@ use shown::widened;
 pub use shown::{Hour, Hours, Obeyed, TIMED};
 use std::fmt;
 
-/// What is to be flown.
+/// The plan of a long flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
     /// Hours.
@@ -83,7 +83,7 @@ impl From<PilotedError> for Ended {
     }
 }
 
-/// What is done to vehicle and poses at the moment.
+/// The current disturbance of vehicle and poses.
 #[derive(Debug, Clone, Copy, Default)]
 struct World {
     /// N, world.
@@ -184,7 +184,7 @@ struct Campaign<'m> {
     shown: Hours,
 }
 
-/// What is remembered within a mission.
+/// The state within a mission.
 #[derive(Default)]
 struct Course {
     /// The transitions taken so far.
@@ -235,7 +235,7 @@ impl Campaign<'_> {
         self.world.push = Vector3::new(from.cos(), from.sin(), 0.0) * force;
     }
 
-    /// What is done to the poses in this tick.
+    /// Withholds or moves the poses in this tick.
     fn meddle(&mut self, script: &Script, tick: u64) {
         self.world.poses = !script.is_dark(tick);
         if script.moves_frame(tick) {

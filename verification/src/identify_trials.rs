@@ -21,11 +21,11 @@ pub const MANOEUVRE: &str = include_str!("../../scenarios/identify.toml");
 /// s: the last sample of the IMU came now, not a millisecond ago.
 pub const RATES_YOUNGER: f64 = 0.001;
 
-/// What RotorPy says of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
+/// RotorPy's coefficients of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
 const AT_HUBS: [(&str, f64); 3] =
     [("rotor_across", 1.19e-4), ("rotor_along", 2.32e-4), ("translational_lift", 3.39e-3)];
 
-/// What a trial's scale is good for: a standard uncertainty of so much of the mass.
+/// The standard uncertainty of a trial's scale, as a part of the mass.
 const SCALE: f64 = 1e-3;
 
 /// How the air pulls at a vehicle.
@@ -43,7 +43,7 @@ pub enum Drag {
 pub struct Trial {
     /// The file, with the truth in it.
     pub text: String,
-    /// What it left.
+    /// Its log.
     pub log: String,
     /// Its mass on a scale.
     pub bench: Bench,

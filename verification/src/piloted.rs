@@ -51,20 +51,20 @@ impl Place {
 
 /// Faults between the sensors and the pilot, and forces on the vehicle.
 pub trait Meddler {
-    /// What becomes of the vehicle a millisecond on, at `time`, us, before its sensors look.
+    /// Acts on the vehicle each millisecond, at `time`, us, before its sensors measure.
     fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
 
-    /// What the IMU feels at `time`, us, of what the body does.
+    /// The IMU's input at `time`, us, from the body's motion.
     fn feel(&mut self, felt: Felt, _time: u64) -> Felt {
         felt
     }
 
-    /// What becomes of an IMU's sample that was taken at `time`, us; none: it does not come.
+    /// An IMU's sample of `time`, us, as it arrives; none: it is lost.
     fn sample(&mut self, sample: ImuSample, _time: u64) -> Option<ImuSample> {
         Some(sample)
     }
 
-    /// What becomes of a pose that arrives at `now`, us.
+    /// A pose that arrives at `now`, us, as it is delivered; none: it is lost.
     fn pose(&mut self, pose: Stamped<Pose>, _now: u64) -> Option<Stamped<PoseMeasurement>> {
         Some(Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
     }

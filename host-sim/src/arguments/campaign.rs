@@ -81,7 +81,7 @@ The exit status is 1 if a flight does not track, a command goes beyond its certi
 scenario is not certified. Nothing is certified of another law: its status is 1 if a flight does not
 track.";
 
-/// What --law may be.
+/// The values of --law.
 fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)))
 }

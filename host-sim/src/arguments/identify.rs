@@ -20,7 +20,7 @@ pub struct IdentifyArguments {
     pub out: Option<PathBuf>,
 }
 
-/// What `identify --help` ends with.
+/// The end of `identify --help`.
 pub const IDENTIFY_HELP: &str = "\
 `identify` finds thrust scale over mass, inertia over thrust scale, rotor lag and delay, centre of
 mass (x, y) and linear drag. Each has a standard uncertainty, and an interval of 3.515 of them to

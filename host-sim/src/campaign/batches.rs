@@ -15,7 +15,7 @@ use std::panic;
 use std::path::Path;
 use std::sync::Once;
 
-/// What an Arrow file ends with.
+/// The last bytes of an Arrow file.
 const MAGIC: &[u8] = b"ARROW1";
 /// Bytes of a SHA-256.
 const DIGEST: usize = 32;

@@ -23,7 +23,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What is to be flown.
+/// The orders of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orders {
     /// Flights of the whole campaign.
@@ -54,19 +54,19 @@ impl Source {
         }
     }
 
-    /// What is flown.
+    /// The scenario.
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// What it was read from.
+    /// Its text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What errors call that.
+    /// Its name in errors.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file

@@ -24,7 +24,7 @@ pub const NEAR: f64 = 0.2;
 /// Room for the rounding of a wrench's components against a bound, relative; for a rotor that may stand still, N.
 const ROUNDING: f64 = 1e-6;
 
-/// What one flight showed.
+/// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
     /// Start minus lowest height, m.

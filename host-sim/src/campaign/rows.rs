@@ -42,11 +42,11 @@ pub struct Row {
     pub start: BodyState,
     /// Steady wind and gust, m/s, world.
     pub wind: [Vector3<f64>; 2],
-    /// What it showed.
+    /// Its figures.
     pub outcome: Outcome,
 }
 
-/// What the metadata calls the law.
+/// The law's key in the metadata.
 const LAW: &str = "law";
 
 impl Row {

@@ -33,12 +33,12 @@ use std::path::{Path, PathBuf};
 pub const RESULT: &str = "campaign.arrow";
 /// The scenario's.
 pub const SCENARIO: &str = "scenario.toml";
-/// What they showed.
+/// The summary.
 pub const SUMMARY: &str = "summary.txt";
 /// The same as a page.
 pub const REPORT: &str = "report.html";
 const PARTS: &str = "parts";
-/// What a campaign writes over, or removes, besides its manifest.
+/// Files that a campaign overwrites or removes, besides its manifest.
 const OWN: [&str; 5] = [SCENARIO, PARTS, RESULT, SUMMARY, REPORT];
 
 /// A directory and what it is to hold.
@@ -103,7 +103,7 @@ impl Store {
         Ok((store, flown))
     }
 
-    /// What it is to hold.
+    /// Its manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest

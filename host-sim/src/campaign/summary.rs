@@ -16,10 +16,10 @@ use std::fmt;
 /// How many of the worst are listed.
 const LISTED: usize = 5;
 
-/// What a campaign showed.
+/// A campaign's summary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// What was flown, in a line.
+    /// The campaign, in a line.
     pub title: String,
     /// Flights.
     pub flights: u64,

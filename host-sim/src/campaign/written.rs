@@ -78,7 +78,7 @@ fn senses(thrown: &Scenario) -> Vec<String> {
     ]
 }
 
-/// What the vehicle really is, where that was drawn or the file says it.
+/// The true vehicle, as far as it was drawn or the file has it.
 fn truth(thrown: &Scenario) -> Vec<String> {
     let Some(truth) = &thrown.reality.truth else { return vec![] };
     vec![

@@ -52,7 +52,7 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
     ))
 }
 
-/// What displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
+/// The term that displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
 fn cause(form: &Form, terms: &[TorqueTerm], towards: &Vector4<f64>, available: f64) -> (&'static str, f64) {
     let share = 0.5 * towards.x * (form.thrust.least + form.thrust.greatest);
     let beyond = share - available * towards.x.signum();

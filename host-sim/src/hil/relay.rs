@@ -90,7 +90,7 @@ impl Relay {
         std::mem::take(&mut locked(&self.received).texts)
     }
 
-    /// What the last heartbeat says of the vehicle.
+    /// The vehicle's state by its last heartbeat.
     #[must_use]
     pub fn state(&self) -> &'static str {
         match locked(&self.received).state {
@@ -160,7 +160,7 @@ fn follow(frame: &Frame<'_>, received: &Mutex<Received>) {
 /// Cuts a stream into frames of version 2, bytes and all; other bytes are left out.
 struct Frames {
     parser: Parser,
-    /// What has come since the last frame's end, or the end of it.
+    /// The bytes since the last frame's end, or the newest of them.
     bytes: Vec<u8>,
 }
 

@@ -44,7 +44,7 @@ impl Senses {
         if self.instruments.is_some() { self.period / SAMPLE } else { 1 }
     }
 
-    /// What they say of a motion that a command of time `command`, us, began.
+    /// The measurements of a motion that a command of time `command`, us, began.
     pub fn answer(&mut self, command: u64, moved: &Moved) -> Answer {
         let Some((instruments, deviations)) = &mut self.instruments else {
             return exact(command + self.period, moved);
@@ -62,7 +62,7 @@ impl Senses {
     }
 }
 
-/// What perfect sensors say at the end of a motion, at `time`, us.
+/// Exact measurements at the end of a motion, at `time`, us.
 fn exact(time: u64, moved: &Moved) -> Answer {
     let state: &BodyState = &moved.state;
     let measured = state.measured();

@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 /// Height of the ground, m.
 const GROUND: f64 = 0.0;
 
-/// What a command led to.
+/// The motion under a command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
     /// Where the vehicle is a period later.

@@ -3,7 +3,7 @@
 //! On whitened residuals e with their slopes J ([`super::noise`]), the noise fitted again on the way, each step solves
 //!
 //! ```text
-//! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton       velocities: Z = J of the *reference's* flight
+//! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton     velocities: Z = J of the *reference's* flight
 //! ```
 //!
 //! Gusts move the vehicle, and the law answers them: thrust and speed then go along with what is left, and least
@@ -157,7 +157,7 @@ fn scaled_inverse(matrix: &Covariance) -> Option<Covariance> {
     Some(Covariance::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// What one of [`BLOCKS`] parts of the log says.
+/// The equations of one of [`BLOCKS`] parts of the log.
 #[derive(Debug, Clone, Default)]
 struct Block {
     /// Its part of A.

@@ -80,7 +80,7 @@ impl Commands {
         })
     }
 
-    /// What the rotors gave from each tick to the next, with the whole delay S and u, the squared lag.
+    /// The rotors' impulses from each tick to the next, with the whole delay S and u, the squared lag.
     #[must_use]
     pub fn impulses(&self, whole: f64, squared: f64) -> Vec<Impulse> {
         if squared >= 0.0 {

@@ -19,10 +19,10 @@ struct Margin {
     value: f64,
 }
 
-/// What a margin counts.
+/// The kind of a margin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// What an inequality leaves, as a part of what is available.
+    /// An inequality's margin, as a part of what is available.
     Inequality,
     /// By which factor the gain of a loop may be wrong.
     Gain,
@@ -117,7 +117,7 @@ fn margins(scenario: &Scenario) -> Result<Vec<Margin>, String> {
 /// Sets one number of a vehicle.
 type Set = fn(&mut Values, f64);
 
-/// What the certificate and the loops depend on.
+/// The quantities that the certificate and the loops depend on.
 fn ends(quantities: &Quantities) -> [(Quantity, Set); 9] {
     [
         (quantities.mass, |values, end| values.mass = end),

@@ -228,7 +228,7 @@ fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
     now.attitude.inverse_transform_vector(&((now.velocity + next.velocity) * 0.5 - wind))
 }
 
-/// What an accelerometer at the centre of mass feels over a sample, m/s, body.
+/// The specific force at the centre of mass over a sample, m/s, body.
 #[derive(Debug, Clone, Copy)]
 pub struct Felt {
     /// R' (v_c' + g e3).

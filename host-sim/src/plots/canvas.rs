@@ -6,7 +6,7 @@ use plotters::prelude::*;
 /// The drawing library counts in whole pixels: drawn so many times larger and shown smaller, curves are smooth.
 pub const FINE: i32 = 8;
 
-/// What drawing on a backend comes to.
+/// The result of drawing on a backend.
 pub type DrawingResult<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 /// A figure could not be drawn.

@@ -31,7 +31,7 @@ use nalgebra::{Vector3, Vector4};
 use scenario::reality::Reality;
 use scenario::reality::failure::Failure;
 
-/// What drives the body at one instant.
+/// The propulsion's action on the body at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Delivered {
     /// Thrust, N, and torque, N m, as commanded.
@@ -49,7 +49,7 @@ pub enum Delivered {
 #[derive(Debug, Clone)]
 struct Motors {
     rotors: Rotors,
-    /// What is left of a speed error at each stage of a plant step.
+    /// The share of a speed error that remains at each stage of a plant step.
     decay: [f64; 3],
     /// a.
     curve: f64,
@@ -62,7 +62,7 @@ struct Motors {
     battery: Option<BatteryState>,
 }
 
-/// What moves a vehicle.
+/// A vehicle's propulsion.
 #[derive(Debug, Clone)]
 pub struct Propulsion {
     motors: Option<Motors>,

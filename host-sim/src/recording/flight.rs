@@ -7,7 +7,7 @@ use crate::flight::Tick;
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a flight is recorded as beside what every recording has.
+/// The topics of a flight besides the common ones.
 pub const TOPICS: &[Topic] = &[("/estimates", ESTIMATES)];
 
 impl<W: Write> Recording<W> {

@@ -8,7 +8,7 @@ use scenario::body::{BodyState, attitude_from_euler};
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a session is recorded as beside what every recording has.
+/// The topics of a session besides the common ones.
 pub const TOPICS: &[Topic] = &[("/state", STATE), ("/log", LOG)];
 
 /// Foxglove's level of information.
@@ -21,9 +21,9 @@ pub struct Moment {
     pub now: u64,
     /// Where it really is.
     pub truth: BodyState,
-    /// What its rotors really give, N.
+    /// Its rotors' true thrusts, N.
     pub rotors: Vec<f64>,
-    /// What the last control tick did, once there was one.
+    /// The report of the last control tick, if any.
     pub report: Option<Report>,
     /// The battery as it is measured, V, if it is.
     pub voltage: Option<f32>,

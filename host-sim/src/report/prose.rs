@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// A quantity with its value, as a reader meets it first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fact {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its value with its unit.
     pub value: String,
@@ -74,7 +74,7 @@ pub fn verdict_words(verdict: Option<bool>) -> (&'static str, &'static str) {
 /// A table: its first column heads the rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
-    /// What it shows.
+    /// Its title.
     pub caption: String,
     /// One name for each column.
     pub head: Vec<String>,

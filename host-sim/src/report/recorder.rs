@@ -12,7 +12,7 @@ use crate::plots::record::nearest_turn;
 /// Rows a track may have: the paper's 40 s at 100 Hz, whole.
 pub const MOST_ROWS: u64 = 4000;
 
-/// What a column is read from.
+/// The source of a column.
 pub struct Instant<'a> {
     /// The tick.
     pub tick: &'a Tick,
@@ -25,7 +25,7 @@ pub struct Instant<'a> {
 /// Reads a value.
 pub type Read = Box<dyn Fn(&Instant) -> f64>;
 
-/// What a long flight keeps of a column.
+/// The values that a long flight keeps of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
     /// Values of one instant, across columns.

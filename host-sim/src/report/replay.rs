@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 pub struct Body {
     /// Which of the page's tracks moves it.
     pub track: usize,
-    /// What it is called, where there are several.
+    /// Its name, where there are several.
     pub label: String,
     /// The colour of its path.
     pub color: Color,
@@ -30,7 +30,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// What the page's program reads.
+    /// Its data for the page's program.
     #[must_use]
     pub fn json(&self) -> Value {
         let bodies = self

@@ -53,7 +53,7 @@ pub struct Wanted {
     pub heading: Jet,
 }
 
-/// What a rival commands.
+/// A rival's command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commanded {
     /// N, along body z; negative is clipped.

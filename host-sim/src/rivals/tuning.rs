@@ -151,7 +151,7 @@ pub fn expected(scenario: &Scenario, effort: &Effort) -> Duration {
     one.mul_f64((SEARCHED.len() * of_each) as f64 / threads as f64)
 }
 
-/// What is judged of each rival, one after the other: starts, the first population, and the generations.
+/// The steps of each rival's search: starts, the first population, and the generations.
 fn rounds(effort: &Effort) -> u64 {
     2 + u64::from(effort.generations)
 }

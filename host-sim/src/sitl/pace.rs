@@ -11,7 +11,7 @@ const SLICE: f64 = 1_000.0;
 /// The most that is caught up with.
 const LAG_MAX: Duration = Duration::from_millis(200);
 
-/// What the two clocks have to do with each other.
+/// The relation of the two clocks.
 #[derive(Debug)]
 pub struct Pace {
     speed: f64,

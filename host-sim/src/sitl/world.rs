@@ -60,7 +60,7 @@ struct Body {
     vehicle: RealVehicle,
     instruments: Instruments,
     source: PoseSource,
-    /// What the poses say their deviations are, m and rad.
+    /// The poses' stated deviations, m and rad.
     deviations: (f32, f32),
     /// Plant steps in a millisecond.
     steps: u32,
@@ -138,7 +138,7 @@ impl World {
         *self.0.body.borrow().vehicle.state()
     }
 
-    /// What its rotors really give, N.
+    /// Its rotors' true thrusts, N.
     #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         self.0.body.borrow().vehicle.thrusts()

@@ -35,7 +35,7 @@ fn every_key_is_read() {
     let model = ModelRanges { mass: 0.12, inertia: 0.13, centre_of_mass: 0.14, thrust_scale: 0.15, rotor_scales: 0.16 };
     let expected = Ranges {
         duration: 9.0,
-        reference: Asked::Hover,
+        reference: Task::Hover,
         attitude: false,
         offset: 1.0,
         velocity: 2.0,

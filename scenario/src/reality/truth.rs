@@ -21,7 +21,7 @@ use controller_core::error::ParameterError;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-/// What the vehicle really is.
+/// The true vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// kg.
@@ -30,7 +30,7 @@ pub struct Truth {
     pub inertia: Vector3<f64>,
     /// The true centre of mass, m, body, from the model's.
     pub centre_of_mass: Vector3<f64>,
-    /// What every rotor delivers of its thrust and drag torque at the speed it turns with.
+    /// The scale of every rotor's thrust and drag torque at its speed.
     pub thrust_scale: f64,
     /// The same for each rotor, besides; empty for 1.
     pub rotor_scales: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// What the model says.
+    /// The model itself.
     #[must_use]
     pub fn of_model(vehicle: &Vehicle) -> Self {
         Self {

@@ -18,9 +18,9 @@ pub(super) const INVERSE_FACTORIAL: [f64; INTEGRATORS + 2] = [1.0, 1.0, 0.5, 1.0
 /// Entry m is for y_m (y_0 = a) at the end of a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LagResponse {
-    /// What a unit of `a` at the start leaves in y_m.
+    /// The effect of a unit of `a` at the start on y_m.
     pub free: [f64; INTEGRATORS + 1],
-    /// What a unit of held input adds to y_m.
+    /// The effect of a unit of held input on y_m.
     pub forced: [f64; INTEGRATORS + 1],
 }
 

@@ -108,7 +108,7 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
     if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
-/// What of `margin`, samples, the eigenvalues bear out.
+/// The part of `margin`, samples, that the eigenvalues confirm.
 fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
     /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist
     /// frequency is farthest along the axis.

@@ -71,7 +71,7 @@ impl Script {
         }
     }
 
-    /// What was chosen for this mission: which height, and which speed.
+    /// This mission's take-off height and landing speed.
     pub fn choice(&self) -> (usize, usize) {
         self.choice
     }

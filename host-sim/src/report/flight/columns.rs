@@ -47,7 +47,7 @@ pub fn columns(scenario: &Scenario) -> Columns {
     columns
 }
 
-/// What belongs together at one instant: where the vehicle is and is to be.
+/// Values of one instant: the vehicle's pose and its reference.
 fn samples(columns: &mut Columns) {
     let from = columns.len();
     three(columns, ["px", "py", "pz"], |tick| tick.state.position);

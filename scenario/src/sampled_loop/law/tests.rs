@@ -58,7 +58,7 @@ fn motion(axis: Axis, k: usize, period: f64) -> [f64; 4] {
     [reach * p, reach * v, 3e-5 * angle, 3e-5 * rate]
 }
 
-/// What the flown law commands in the motion times `sign`: acceleration or angular acceleration.
+/// The flown law's command in the motion times `sign`: acceleration or angular acceleration.
 fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
     let vehicle = scenario.configuration.vehicle();
     let period = scenario.timing.period();
@@ -88,7 +88,7 @@ fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
     (0..TICKS).map(tick).collect()
 }
 
-/// What the compensator commands in the motion.
+/// The compensator's command in the motion.
 fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
     let gravity = f64::from(scenario.configuration.vehicle().gravity);
     let period = scenario.timing.period();
