@@ -40,6 +40,25 @@ fn assert_not_written(output: &Output, words: &str) {
 }
 
 #[test]
+fn what_a_pipe_receives_fits_a_hundred_columns() {
+    let directory = directory("columns");
+    let commands = ["fly", "certify", "tune", "identify", "campaign", "merge", "compare", "law", "hil", "sitl"];
+    let mut printed = vec![stdout(&host_sim(&directory, &["--help"]))];
+    printed.extend(commands.map(|command| stdout(&host_sim(&directory, &[command, "--help"]))));
+    for (name, text) in [
+        ("extended.toml", include_str!("../vehicles/hummingbird.toml")),
+        ("paper.toml", include_str!("../vehicles/hummingbird-paper-law.toml")),
+    ] {
+        std::fs::write(directory.join(name), text).unwrap();
+        printed.push(stdout(&host_sim(&directory, &["certify", name])));
+    }
+    for text in printed {
+        let long = text.lines().find(|line| line.chars().count() > 100);
+        assert!(!text.is_empty() && long.is_none(), "{long:?}");
+    }
+}
+
+#[test]
 fn a_report_that_standard_output_does_not_take_exits_with_2() {
     let directory = directory("stdout");
     std::fs::write(directory.join("brief.toml"), brief()).unwrap();

@@ -253,9 +253,10 @@ The two stay in lock-step however slow they are. For clients in real time (MAVSD
 on), add --ground 127.0.0.1:5761 to have the second serial port on UDP 14540 and 14550, and --speed
 to keep the vehicle's time steady.
 
-With a board, bridge its serial port: socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600 Such a
-line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972, too
-many for a period of 10 ms.
+With a board, bridge its serial port:
+  socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
+Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972,
+too many for a period of 10 ms.
 
 Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is
 then 129, 130 or 143.";
