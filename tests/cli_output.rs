@@ -212,7 +212,7 @@ fn a_reader_that_goes_away_changes_no_verdict() {
 }
 
 #[test]
-fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_wants_to_be_asked_for() {
+fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_needs_large_log() {
     let directory = directory("large");
     std::fs::write(directory.join("month.toml"), with(PAPER, "duration", "duration = 2592000")).unwrap();
     let output = host_sim(&directory, &["fly", "month.toml", "--out", "out"]);

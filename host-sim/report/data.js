@@ -94,10 +94,10 @@ function color(name) {
 }
 
 /** Announces to a screen reader, once the keys have come to rest. */
-let telling = 0;
+let announcing = 0;
 function announce(text) {
-  clearTimeout(telling);
-  telling = setTimeout(() => (document.getElementById("live").textContent = text), 400);
+  clearTimeout(announcing);
+  announcing = setTimeout(() => (document.getElementById("live").textContent = text), 400);
 }
 
 /** What is drawn again whenever colours change: another scheme, or paper. */

@@ -39,7 +39,7 @@ pub enum CampaignError {
     Output(String),
     /// The flights do not fit their columns.
     Rows(ArrowError),
-    /// Somebody sent this signal. What was finished is kept.
+    /// Interrupted by this signal. What was finished is kept.
     Interrupted(u8),
 }
 

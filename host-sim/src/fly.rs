@@ -43,7 +43,7 @@ pub enum FlyError {
     Undefined(&'static str),
     /// A figure could not be drawn.
     Plot(PlotError),
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 

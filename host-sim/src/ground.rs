@@ -83,7 +83,7 @@ impl Ground {
         !matches!(self.stance, Stance::Air)
     }
 
-    /// Somebody's hands take hold of it: if it was on one foot, off that.
+    /// An outside force takes hold of it: off its foot, if it was on one.
     pub fn take_off_foot(&mut self) {
         if let Stance::Rocking(_) = self.stance {
             self.stance = Stance::Air;

@@ -90,7 +90,7 @@ pub enum End {
     Over,
     /// The other side went.
     Left,
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 
@@ -126,7 +126,7 @@ pub struct Clients<'a> {
 const STATUS: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
-/// somebody interrupts.
+/// a signal comes.
 ///
 /// # Errors
 /// [`HilError`].

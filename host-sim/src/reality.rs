@@ -173,7 +173,7 @@ impl RealVehicle {
         self.disturbance = Some((nothing, 0, force));
     }
 
-    /// Moves its origin as somebody's hands do.
+    /// Moves its origin by an outside force.
     pub fn place(&mut self, state: &BodyState) {
         if let Some(ground) = &mut self.ground {
             ground.take_off_foot();

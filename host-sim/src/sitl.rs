@@ -81,7 +81,7 @@ pub struct Session {
     pub ports: Ports,
     /// How many times as fast as the desk's the vehicle's time passes.
     pub speed: f64,
-    /// Vehicle time after which it ends, s; none: when somebody interrupts.
+    /// Vehicle time after which it ends, s; none: at a signal.
     pub duration: Option<f64>,
     /// Where its poses come from.
     pub poses: PoseSource,

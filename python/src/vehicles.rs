@@ -1,4 +1,4 @@
-//! Rows of simulated vehicles under wrenches that somebody else decides on: what environments are made of.
+//! Rows of simulated vehicles under given wrenches, for environments.
 //!
 //! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the
 //! scenario has any. A row whose motion is no longer finite goes no further until it is put somewhere.
@@ -123,7 +123,7 @@ impl Stretch {
     }
 }
 
-/// Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on.
+/// Rows of the vehicle that a flight of the scenario simulates, under given wrenches.
 #[pyclass(module = "saturated_hybrid")]
 pub struct VehicleRows {
     scenario: scenario::Scenario,

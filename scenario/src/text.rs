@@ -20,7 +20,7 @@ pub fn read(path: &Path) -> io::Result<String> {
 /// Where what the program was started with is, a pipe or a device as well: standard input, and a shell's `<(...)`.
 const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
 
-/// Opens a file for reading. Opening a pipe waits until somebody writes to it, and reading a device may never end.
+/// Opens a file for reading. Opening a pipe waits until a writer opens it, and reading a device may never end.
 ///
 /// # Errors
 /// If the file is missing, or is [not a regular file](regular).

@@ -54,7 +54,7 @@ impl Store {
     /// Begins a campaign in `directory`, or goes on with the same one.
     ///
     /// # Errors
-    /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot
+    /// If it holds another campaign or other files of these names, if another program is at work in it, or if it cannot
     /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
         let lock = DirectoryLock::take(directory).map_err(unwritable(directory))?;

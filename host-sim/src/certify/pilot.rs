@@ -48,7 +48,7 @@ fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     let idle =
         ExtendedParameters { turn_rate: 0.0, yaw_rate: 0.0, yaw_acceleration: 0.0, w: 0.0, m_omega_z: 0.0, ..unbiased };
     let [full, unbiased, idle] = [p, &unbiased, &idle].map(|parameters| budget(configuration, parameters));
-    let names = ["torque about roll and pitch", "torque about yaw", "the rotors' range"];
+    let names = ["roll and pitch torque", "yaw torque", "the rotors' range"];
     let rows = names.iter().zip(full.rows.iter().zip(unbiased.rows.iter().zip(&idle.rows)));
     let of_tilt = rows.filter(|(_, (row, _))| row.tilt > 0.0);
     let left = |row: &Row| row.room / row.tilt;
@@ -66,5 +66,5 @@ fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     ];
     let shares: Vec<String> =
         parts.iter().map(|(name, part)| format!("{name} {}", percent(part / idle.room))).collect();
-    format!("{name}: {}\n", shares.join(", "))
+    format!("of {name}: {}\n", shares.join(", "))
 }

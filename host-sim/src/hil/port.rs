@@ -9,7 +9,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
-/// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
+/// Pause between attempts to connect or accept, and between checks for a signal.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// The longest attempt to connect: the system itself would try for minutes where no answer comes at all. Long enough
@@ -36,7 +36,7 @@ pub enum PortError {
     Silent(Duration),
     /// The connection broke.
     Broken(io::Error),
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn clients_and_the_line_hear_each_other_and_what_is_said_is_kept() {
+    fn clients_and_the_line_receive_each_others_frames_and_texts_are_kept() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
         let ((offboard, first), (ground, second)) = (client(), client());

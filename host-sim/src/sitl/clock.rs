@@ -1,4 +1,4 @@
-//! Time that stands still until everybody waits for it, and the executor that makes it move.
+//! Time that stands still until every task waits for it, and the executor that moves it.
 //!
 //! All tasks share one thread. They run until none can go on; then the clock jumps to the earliest moment that any of
 //! them waits for. Minutes of flight take as long as their computations, and every run is the same.

@@ -1,4 +1,4 @@
-//! The vehicle's time against everybody else's.
+//! The vehicle's time against real time.
 //!
 //! Time passes in slices of a millisecond of the desk's. A desk that is too slow, or was asleep, does not catch up with
 //! more than `LAG_MAX`: clients would see a vehicle that leaps.

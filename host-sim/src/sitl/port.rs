@@ -91,7 +91,7 @@ impl Port {
         }
     }
 
-    /// Sends one frame to everybody. What does not go out is lost, as on any radio.
+    /// Sends one frame to every address. What does not go out is lost, as on any radio.
     pub fn send(&mut self, frame: &[u8]) {
         self.clients.retain(|(_, last)| last.elapsed() < REMEMBERED);
         let others = self.clients.iter().map(|(address, _)| *address);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn both_addresses_hear_everything_and_whoever_speaks_is_answered() {
+    fn both_addresses_receive_everything_and_each_sender_is_answered() {
         let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
         let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
         port.send(b"one");

@@ -493,7 +493,7 @@ def tune(
 
 @final
 class VehicleRows:
-    """Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on."""
+    """Rows of the vehicle that a flight of the scenario simulates, under given wrenches."""
 
     def __new__(cls, scenario: Scenario, rows: int) -> Self: ...
     def __len__(self) -> int: ...

@@ -77,7 +77,7 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
-fn nobody_is_asked_to_bear_wind_that_its_law_gives_way_to_or_to_hurry() {
+fn default_wind_and_duration_are_within_the_laws_abilities() {
     let drawn = |campaign: Campaign| (campaign.ranges.wind, campaign.ranges.duration);
     assert_eq!(drawn(parse(crate::PAPER, "").unwrap()), (0.0, 180.0));
     assert_eq!(drawn(hummingbird("").unwrap()), (5.0, 60.0));

@@ -67,7 +67,7 @@ pub struct Hours {
     pub missions: u64,
     /// How often the frame of the poses has moved.
     pub moves: u64,
-    /// How often somebody had to ask again, because a pose of the last second was not believed.
+    /// How often a request was repeated, because a pose of the last second was not believed.
     pub refusals: u64,
     /// Every transition but those between checks and ready, with its tick since the beginning.
     pub taken: Vec<(u64, Reason)>,

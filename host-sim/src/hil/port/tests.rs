@@ -75,12 +75,12 @@ fn a_silent_side_is_given_up_and_one_that_goes_is_no_error() {
 }
 
 #[test]
-fn nobody_is_waited_for_without_end() {
+fn no_connection_is_waited_for_without_end() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     for address in [Address::Connect(free.clone()), Address::Listen(free)] {
         let started = Instant::now();
         let Err(PortError::NoConnection(who, waited, _)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
-            panic!("somebody is there")
+            panic!("connected")
         };
         assert_eq!((who, waited), (address, PATIENCE));
         assert!(started.elapsed() < LONG);
@@ -139,7 +139,7 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
 }
 
 /// Everything that a board receives in a session with sensors at 1 kHz, whose commands come a little irregularly.
-fn heard_in_a_noisy_session() -> Vec<u8> {
+fn received_in_a_noisy_session() -> Vec<u8> {
     const TICKS: u64 = 20;
     let (mut port, mut board) = connected(LONG);
     let study = std::fs::read_to_string("../vehicles/study.toml").unwrap();
@@ -168,8 +168,8 @@ fn heard_in_a_noisy_session() -> Vec<u8> {
 
 #[test]
 fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_its_poses_are() {
-    let bytes = heard_in_a_noisy_session();
-    assert_eq!(bytes, heard_in_a_noisy_session());
+    let bytes = received_in_a_noisy_session();
+    assert_eq!(bytes, received_in_a_noisy_session());
     let (mut parser, mut poses, mut samples) = (Parser::new(), 0, 0);
     for byte in bytes {
         let Some(frame) = parser.push(byte, 0) else { continue };

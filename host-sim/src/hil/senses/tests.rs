@@ -35,7 +35,7 @@ fn answers(sensors: &str, ticks: u64, velocity: f64) -> Vec<Answer> {
 }
 
 #[test]
-fn without_a_section_one_exact_sample_and_pose_tell_the_periods_end() {
+fn without_a_section_one_exact_sample_and_pose_are_of_the_periods_end() {
     for (tick, answer) in (0..).zip(answers("", 3, 2.0)) {
         let [pose] = answer.poses[..] else { panic!("{answer:?}") };
         let [sample] = answer.samples[..] else { panic!("{answer:?}") };
