@@ -90,7 +90,7 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
 /// The tick of arming: the estimate takes a second and a half to prove itself.
 const ARMED: u64 = 200;
 
-/// When it is told to fly.
+/// When the take-off is commanded.
 const FLOWN: u64 = ARMED + 1;
 
 /// The tick in which something lifts the vehicle off.
@@ -113,7 +113,7 @@ fn lifted(tick: u64) -> (f32, f32) {
 }
 
 /// What a pilot asks of the rotors over what the law asks for, from tick `from` to `to`, with a setpoint far below.
-fn asked_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
+fn commanded_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
     let mut share = f32::NAN;
     for tick in from..=to {
         let now = tick * PERIOD;
@@ -156,9 +156,9 @@ fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
     let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory);
-    let standing = asked_of_the_rotors(&mut pilot, 1, LIFTED);
+    let standing = commanded_of_the_rotors(&mut pilot, 1, LIFTED);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
     // Twelve centimetres higher it learns from how it was moved, to whatever end: that was no thrust.
-    let flying = asked_of_the_rotors(&mut pilot, LIFTED + 1, LIFTED + 120);
+    let flying = commanded_of_the_rotors(&mut pilot, LIFTED + 1, LIFTED + 120);
     assert!((flying - 1.0).abs() > 0.01, "{}", 1.0 / flying);
 }

@@ -12,7 +12,7 @@ fn directory(test: &str) -> PathBuf {
 }
 
 #[test]
-fn a_recording_is_written_beside_the_log_when_it_is_asked_for() {
+fn a_recording_is_written_beside_the_log_with_mcap() {
     let directory = directory("recording");
     let run = host_sim(&directory, &["fly", "--mcap", "--out", "out"]);
     assert_eq!(status(&run), 0, "{}", stderr(&run));

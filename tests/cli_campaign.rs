@@ -28,7 +28,7 @@ fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
     let text = stdout(&flown);
     assert_eq!((status(&flown), stderr(&flown)), (0, String::new()), "{text}");
     assert!(text.starts_with("hummingbird: 20 flights of 2 s from seed 0, plant step 5 ms\n"), "{text}");
-    assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 asked"), "{text}");
+    assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 commanded"), "{text}");
     assert!(text.contains("slowest: ") && !text.contains("failing: "), "{text}");
     assert_eq!(files(&directory.join("out")), COMPLETE);
     assert!(text.starts_with(&fs::read_to_string(directory.join("out/summary.txt")).unwrap()));
@@ -79,7 +79,7 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
     assert_eq!(row("height_lost"), (heights[0] - lowest).max(0.0));
     let error = ["x", "y", "z"].map(|axis| {
         let (is, wanted) = (column(&format!("p{axis}")), column(&format!("pd{axis}")));
-        // What was asked for is logged in single precision.
+        // The reference is logged in single precision.
         is[99] - f64::from(wanted[99] as f32)
     });
     assert!((row("final_error") - error.iter().map(|e| e * e).sum::<f64>().sqrt()).abs() < 1e-12);

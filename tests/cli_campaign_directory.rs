@@ -1,4 +1,4 @@
-//! A campaign's directory as users find it: changed by hand, damaged, or in use by somebody else.
+//! A campaign's directory as users find it: changed by hand, damaged, or in use by another program.
 
 use crate::support::binary;
 use crate::support::binary::{files, host_sim, status, stderr};

@@ -97,7 +97,7 @@ fn tune_writes_a_scenario_that_certifies_and_can_be_flown() {
     std::fs::write(directory.join("start.toml"), PAPER).unwrap();
     let output = host_sim(&directory, &[&search("start.toml", "mine.toml", "1")[..], &["--widen"]].concat());
     assert_eq!(status(&output), 0, "{}", stderr(&output));
-    // On a busy machine it takes long enough to tell how far it is.
+    // On a busy machine it takes long enough to show progress.
     assert!(stderr(&output).lines().all(|line| line.starts_with("tuning: ")), "{}", stderr(&output));
     let text = stdout(&output);
     for words in ["upside down: height lost", "before", "mine: CERTIFIED", "times as demanding"] {

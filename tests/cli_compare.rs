@@ -150,7 +150,7 @@ fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
             assert!(!directory.join("out").exists(), "{to}");
         }
     }
-    // A campaign of another vehicle is told that there are no gains for it, and how to find some.
+    // A campaign of another vehicle is refused: there are no gains for it. The message says how to find some.
     heavier(&directory);
     let refused = host_sim(&directory, &["campaign", "heavier.toml", "--law", "lee", "--flights", "1"]);
     let message = stderr(&refused);
@@ -197,7 +197,7 @@ fn a_vehicle_without_gains_has_them_searched_and_kept_for_the_next_time() {
     let thrown = ["campaign", "heavier.toml", "--law", "lee", "--gains", "out/gains.toml", "--flights", "1"];
     assert!(status(&host_sim(&directory, &thrown)) < 2);
 
-    // They are not those of another vehicle: nobody is to take them for what flew.
+    // Gains of another vehicle are not shown as those that flew.
     let refused = host_sim(&directory, &["compare", "h.toml", "--flights", "1", "--out", "out"]);
     let message = stderr(&refused);
     assert!(status(&refused) == 2 && message.contains("out/gains.toml: holds other gains"), "{message}");
@@ -301,7 +301,7 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
     let tracking = floats(&indi, "settled").iter().filter(|settled| settled.is_finite()).count();
     let (beyond, clipped) = (ever("beyond"), ever("clipped"));
     let counted = format!(
-        "{tracking} of 6 recover and track; {beyond} went beyond a certified bound of ours; {clipped} asked a rotor"
+        "{tracking} of 6 recover and track; {beyond} went beyond a certified bound of ours; {clipped} commanded a rotor"
     );
     assert!(beyond > 0 && indi_text.contains(&counted), "{counted}: {indi_text}");
     assert_eq!((indi_status, tracking), (0, 6), "{indi_text}");
@@ -349,7 +349,7 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
 fn shards_and_single_flights_of_another_law_are_those_of_its_campaign() {
     let directory = directory("shards", "[campaign]\nduration = 1.0\nseed = 4\n");
     let fly = |more: &[&str]| host_sim(&directory, &[&["campaign", "h.toml", "--law", "lee"], more].concat());
-    // Nobody recovers in a second.
+    // No law recovers in a second.
     assert_eq!(status(&fly(&["--flights", "70"])), 1);
     let whole = directory.join("campaigns/hummingbird-lee");
     for (part, out) in [("1/2", "one"), ("2/2", "two")] {

@@ -41,7 +41,7 @@ fn a_flight_becomes_a_scenario_of_the_vehicle_that_flew() {
         "{text}"
     );
     assert!(greatest - least < 0.2 * found, "{text}");
-    // Body rates are told a millisecond sooner than the sampled loops count.
+    // Body rates come a millisecond sooner than the sampled loops count.
     assert!((mine.rotor_lag + mine.delay() - 0.007).abs() < 2e-3, "{text}");
 }
 
@@ -56,7 +56,7 @@ fn a_hover_is_refused_in_words_and_nothing_is_written() {
     let output = host_sim(&directory, &asked);
     let said = stderr(&output);
     assert_eq!((status(&output), stdout(&output)), (1, String::new()), "{said}");
-    assert!(said.starts_with("error: log.csv: cannot tell\n") && said.contains("fly there and back"), "{said}");
+    assert!(said.starts_with("error: log.csv: not identifiable\n") && said.contains("fly there and back"), "{said}");
     assert!(!files(&directory).contains(&"mine.toml".to_owned()));
 }
 
@@ -119,7 +119,7 @@ fn what_cannot_be_read_is_named_with_its_place() {
 #[test]
 fn no_file_that_was_read_is_written_over_and_what_cannot_be_written_shows_before_the_fit() {
     let directory = directory("out");
-    // No flight: whoever gets as far as the fit says so, with another status.
+    // No flight: the fit would refuse it with another status.
     let log = "t,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,thrust,tau_x,tau_y,tau_z\n\
                0,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n0.01,0,0,0,1,0,0,0,0,0,0,0,0,0,5,0,0,0\n";
     let bench = "[weighing]\nmass = [0.5]\nuncertainty = 0.001\n";

@@ -40,6 +40,25 @@ fn assert_not_written(output: &Output, words: &str) {
 }
 
 #[test]
+fn what_a_pipe_receives_fits_a_hundred_columns() {
+    let directory = directory("columns");
+    let commands = ["fly", "certify", "tune", "identify", "campaign", "merge", "compare", "law", "hil", "sitl"];
+    let mut printed = vec![stdout(&host_sim(&directory, &["--help"]))];
+    printed.extend(commands.map(|command| stdout(&host_sim(&directory, &[command, "--help"]))));
+    for (name, text) in [
+        ("extended.toml", include_str!("../vehicles/hummingbird.toml")),
+        ("paper.toml", include_str!("../vehicles/hummingbird-paper-law.toml")),
+    ] {
+        std::fs::write(directory.join(name), text).unwrap();
+        printed.push(stdout(&host_sim(&directory, &["certify", name])));
+    }
+    for text in printed {
+        let long = text.lines().find(|line| line.chars().count() > 100);
+        assert!(!text.is_empty() && long.is_none(), "{long:?}");
+    }
+}
+
+#[test]
 fn a_report_that_standard_output_does_not_take_exits_with_2() {
     let directory = directory("stdout");
     std::fs::write(directory.join("brief.toml"), brief()).unwrap();
@@ -193,7 +212,7 @@ fn a_reader_that_goes_away_changes_no_verdict() {
 }
 
 #[test]
-fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_wants_to_be_asked_for() {
+fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_needs_large_log() {
     let directory = directory("large");
     std::fs::write(directory.join("month.toml"), with(PAPER, "duration", "duration = 2592000")).unwrap();
     let output = host_sim(&directory, &["fly", "month.toml", "--out", "out"]);
@@ -203,7 +222,7 @@ fn a_log_beyond_a_gigabyte_says_so_before_the_flight_and_wants_to_be_asked_for()
         assert!(message.contains(words), "{words}: {message}");
     }
     assert_eq!(files(&directory), ["month.toml"]);
-    // Asked for, it is flown, and says the same on the way.
+    // With --large-log it is flown, with the same message.
     let mut child = spawn(&directory, &["fly", "month.toml", "--out", "out", "--large-log"]);
     wait_for(|| directory.join("out").exists() && !files(&directory.join("out")).is_empty());
     interrupt(&mut child, "TERM");

@@ -63,7 +63,7 @@ fn a_campaign_begins_beside_other_files_and_after_an_end_before_its_manifest_was
     let campaign = ["campaign", "h.toml", "--flights", "2", "--out", "project"];
     let flown = host_sim(&directory, &campaign);
     assert_eq!(status(&flown), 0, "{}", stderr(&flown));
-    // What somebody puts into a directory that is the campaign's stays as well.
+    // Other files in a campaign's directory stay as well.
     for name in ["drawing.step", "000000.arrow", "000007.arrow"] {
         write(&directory, &format!("project/parts/{name}"), "mine");
     }

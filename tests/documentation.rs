@@ -184,8 +184,7 @@ fn every_example_of_a_scenario_section_can_be_used() {
     assert_eq!((references.len(), sections.len()), (3, 17));
     for reference in references {
         let harmonic = reference.contains("\"harmonic\"");
-        // The bounds stand beside the harmonic reference there.
-        // A file is told of the state by one of the two.
+        // The bounds stand beside the harmonic reference there. A file has one of the two.
         let other = if harmonic { "[sensors]" } else { "[estimator]" };
         let kept = sections.iter().filter(|section| !section.starts_with(other));
         let kept = kept.filter(|section| harmonic || !section.starts_with("[reference_bounds]"));

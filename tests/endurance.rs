@@ -37,7 +37,7 @@ fn what_time_it_is_makes_no_difference_to_the_last_bit() {
     let others: [u64; 6] = [1 << 31, (1 << 31) * 1_000, (1 << 32) * 1_000, (1 << 32) * 10_000, 1 << 53, 1 << 63];
     starts.extend(others.map(|overflow| before(overflow, lost)));
     for (start, other) in starts.par_iter().map(|start| (start, flown(plan(*start)))).collect::<Vec<_>>() {
-        // What is printed of a number tells it from any other.
+        // Printed numbers identify their bits.
         assert_eq!(format!("{first:?}"), format!("{other:?}"), "{start}");
     }
     assert_eq!(first.taken.len(), 11);

@@ -49,9 +49,9 @@ fn fly(mut scenario: Scenario, estimator: Option<Estimator>) -> Shown {
             continue;
         }
         let error = (position - tick.reference.position.map(f64::from)).norm();
-        let told = tick.measured.map_or(position, |told| told.position.map(f64::from));
+        let measured = tick.measured.map_or(position, |measured| measured.position.map(f64::from));
         squares += error * error;
-        misses += (told - position).norm_squared();
+        misses += (measured - position).norm_squared();
         count += 1.0;
         shown.greatest = shown.greatest.max(error);
     }

@@ -2,7 +2,7 @@
 //! but ask for a motion outside the bounds: it throws the vehicle about, spins it, pushes and turns it harder than any
 //! level, lets the rotors deliver what it likes.
 //!
-//! No rotor may be asked for more than it has, or less, not by one unit in the last place; no torque may be beyond its
+//! No rotor may be commanded beyond its limits, not by one unit in the last place; no torque may be beyond its
 //! bound. And the adversary has to come near the ends, or it would be no test of them: in the middle of every flight it
 //! looks for the state that asks for the most. `cargo test -p host-sim extended_adversary -- --nocapture` prints
 //! found / bound of every row.
@@ -97,12 +97,12 @@ impl World {
         self.certified.configuration()
     }
 
-    /// The rotors' thrusts as they are asked for.
+    /// The rotors' commanded thrusts.
     fn thrusts(&self, wrench: &Wrench, scale: f32) -> Vec<f32> {
         let Some((flown, mixer)) = &self.allocation else { return Vec::new() };
-        let asked = wrench.scaled(1.0 / scale);
-        let (ours, mixed) = (flown.allocate(&asked).unwrap(), mixer.allocate(&asked).unwrap());
-        assert!(!ours.clipped && mixed.is_exact(), "a rotor is asked for what it has not: {wrench:?}, scale {scale}");
+        let commanded = wrench.scaled(1.0 / scale);
+        let (ours, mixed) = (flown.allocate(&commanded).unwrap(), mixer.allocate(&commanded).unwrap());
+        assert!(!ours.clipped && mixed.is_exact(), "a rotor is commanded beyond its limits: {wrench:?}, scale {scale}");
         for (thrust, rotor) in ours.thrusts.iter().zip(self.configuration().rotors().unwrap().iter()) {
             assert!(*thrust >= rotor.thrust_min && *thrust <= rotor.thrust_max);
         }

@@ -68,7 +68,7 @@ fn reference(rng: &mut ChaCha8Rng, configuration: &Configuration) -> Reference {
     }
 }
 
-/// What the core cannot be asked for.
+/// State that the core does not expose.
 struct Hidden {
     last: Option<Last>,
     held: u32,
@@ -186,35 +186,35 @@ fn fly(configuration: &Configuration, plan: &Plan, rng: &mut ChaCha8Rng, shown: 
         net: Net { acted: 0.0, caught: false },
         wanted: 0.0,
     };
-    let mut asked = reference(rng, configuration);
-    let mut body = Body::resting(asked.position.cast(), random::attitude(rng).cast());
+    let mut goal = reference(rng, configuration);
+    let mut body = Body::resting(goal.position.cast(), random::attitude(rng).cast());
     let (delivered, off, mut wind) = (rng.random_range(0.7..1.2), random::vector(rng, 0.02), Vector3::zeros());
     for number in 0..plan.ticks {
         if rng.random_bool(plan.thrown) {
-            asked = reference(rng, configuration);
+            goal = reference(rng, configuration);
             wind = random::vector(rng, 4.0).cast::<f64>();
         }
         if rng.random_bool(plan.thrown) {
             body.attitude = random::attitude(rng).cast();
             body.angular_velocity = random::vector(rng, 10.0).cast();
             body.velocity = random::vector(rng, 8.0).cast();
-            body.position = (asked.position + random::vector(rng, 10.0)).cast();
+            body.position = (goal.position + random::vector(rng, 10.0)).cast();
         }
         if rng.random_bool(0.5 * plan.thrown) {
             controller.hold_estimates();
             hidden.held = settling;
         }
         let state = body.state();
-        let before = tick(controller.memory(), &hidden, &state, &asked);
+        let before = tick(controller.memory(), &hidden, &state, &goal);
         let answer = oracle.evaluate(&before);
-        let (wrench, diagnostics) = controller.step(&state, &asked).unwrap();
+        let (wrench, diagnostics) = controller.step(&state, &goal).unwrap();
         let desired = [diagnostics.desired_angular_velocity, diagnostics.desired_angular_acceleration];
         let core = of_core(controller.memory(), &wrench, desired, &answer);
         let mut wanted = 0.0;
         if (plan.compared)(&before.net) {
             let scales = Scales {
-                far: f64::from(state.position.norm() + asked.position.norm()),
-                fast: f64::from(state.velocity.norm() + asked.velocity.norm()),
+                far: f64::from(state.position.norm() + goal.position.norm()),
+                fast: f64::from(state.velocity.norm() + goal.velocity.norm()),
                 wanted: hidden.wanted,
             };
             let allowed = tolerances(&oracle, &before, &answer, &scales);
@@ -278,7 +278,7 @@ fn every_tick_of_random_flights_agrees_with_the_plain_transcription() {
     for (name, ticks) in BRANCHES.iter().zip(taken) {
         println!("{name:20} {ticks} ticks of 6000");
     }
-    println!("the lift switched {switches} times; {either} ticks were too near to a jump to tell");
+    println!("the lift switched {switches} times; {either} ticks were too near to a jump to compare");
     assert!(switches > 10 && either < 5, "{switches} switches, {either} at one");
     // |u| stays below what cuts it: the ceiling is the adversary's.
     assert!(taken[..8].iter().chain(&taken[9..]).all(|ticks| *ticks > 20), "{taken:?}");

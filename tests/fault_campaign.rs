@@ -81,7 +81,7 @@ fn vehicle(name: &str) -> Vehicle {
     Vehicle { certified: Certified::new(configuration).unwrap(), scenario, settings: SETTINGS, refused }
 }
 
-/// The same vehicle, asked to follow references that its torques are not enough for.
+/// The same vehicle, with references that its torques are not enough for.
 fn too_agile(configuration: &Configuration) -> Configuration {
     let bounds = *configuration.bounds();
     configuration.with_bounds(ReferenceBounds { snap: 50.0 * bounds.snap, ..bounds }).unwrap()

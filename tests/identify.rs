@@ -1,4 +1,4 @@
-//! Identification against vehicles whose numbers are known, and against logs that cannot tell.
+//! Identification against vehicles whose numbers are known, and of logs in which they are not observable.
 
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
@@ -12,7 +12,7 @@ use host_sim::actuators::rotors::SpinningRotors;
 use host_sim::identify::flight_log::{FlightLog, Source};
 use host_sim::identify::impulses::Commands;
 use host_sim::identify::quantities::COVERAGE;
-use host_sim::identify::{identify, telling, ulog};
+use host_sim::identify::{identify, observability, ulog};
 use nalgebra::{Quaternion, Vector3};
 use rayon::prelude::*;
 use scenario::{STUDY, Scenario};
@@ -36,7 +36,7 @@ fn hover() -> String {
 
 #[test]
 fn four_vehicles_are_found_within_what_is_stated() {
-    // Vehicles that are told rightly. How many of a hundred are not, the example `identify_coverage` counts.
+    // The example `identify_coverage` counts how many of a hundred vehicles are identified correctly.
     each_is_found(
         Drag::Whole,
         0.05,
@@ -63,18 +63,18 @@ fn vehicles_that_act_without_delay_are_found_within_what_is_stated() {
 }
 
 #[test]
-fn lags_of_vehicles_that_act_without_delay_are_told_neither_too_great_nor_too_small() {
-    // A tick's gyro noise is in the command that acts before the next tick tells of it.
+fn lags_of_vehicles_that_act_without_delay_are_identified_neither_too_great_nor_too_small() {
+    // A tick's gyro noise is in the command that acts before the next tick.
     const VEHICLES: u64 = 12;
     let scenario = parse(HUMMINGBIRD);
     let off = |seed| {
         let trial = Trial::flown(HUMMINGBIRD, seed, Drag::Whole, Some(0.0)).unwrap();
-        let told = identify(&FlightLog::from_csv(&trial.log).unwrap(), &scenario, &trial.bench).unwrap();
-        let (_, lag, truth) = trial.truths(&told).into_iter().find(|(name, ..)| *name == "lag").unwrap();
+        let identified = identify(&FlightLog::from_csv(&trial.log).unwrap(), &scenario, &trial.bench).unwrap();
+        let (_, lag, truth) = trial.truths(&identified).into_iter().find(|(name, ..)| *name == "lag").unwrap();
         lag.value - truth
     };
     let mean = (1..=VEHICLES).into_par_iter().map(off).sum::<f64>() / VEHICLES as f64;
-    // Each is known to 0.24 ms. None is told greater than lag and delay together, which makes 0.12 ms.
+    // Each is known to 0.24 ms. None is greater than lag and delay together, which makes 0.12 ms.
     assert!(mean.abs() < 2e-4, "{mean}");
 }
 
@@ -83,20 +83,20 @@ fn each_is_found<const N: usize>(drag: Drag, known: f64, runs: [(&str, u64, Opti
     runs.into_par_iter().for_each(|(file, seed, delay)| {
         let trial = Trial::flown(file, seed, drag, delay).unwrap();
         let log = FlightLog::from_csv(&trial.log).unwrap();
-        assert_eq!((log.source, telling::unmoved(&log)), (Source::Estimator, vec![]));
-        let told = identify(&log, &parse(file), &trial.bench).unwrap();
-        assert_eq!(telling::unknown(&told), Vec::<String>::new());
-        for (name, quantity, truth) in trial.truths(&told) {
+        assert_eq!((log.source, observability::unexcited(&log)), (Source::Estimator, vec![]));
+        let identified = identify(&log, &parse(file), &trial.bench).unwrap();
+        assert_eq!(observability::unobservable(&identified), Vec::<String>::new());
+        for (name, quantity, truth) in trial.truths(&identified) {
             assert!(quantity.holds(truth), "{seed}: {name}: {quantity:?}, truly {truth}");
         }
         // An interval that says nothing is no knowledge.
-        let j = &told.inertia[0];
+        let j = &identified.inertia[0];
         assert!(COVERAGE * j.uncertainty < known * j.value, "{j:?}");
     });
 }
 
 #[test]
-fn no_truth_is_read_where_the_vehicle_was_told_something_else() {
+fn no_truth_is_read_where_the_vehicle_flew_on_an_estimate() {
     let text = fly(&hover().replace("duration = 40.0", "duration = 1.0")).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
     let poisoned: Vec<String> = rows
@@ -115,9 +115,9 @@ fn no_truth_is_read_where_the_vehicle_was_told_something_else() {
 }
 
 #[test]
-fn a_hover_cannot_tell_and_is_told_what_to_fly() {
+fn a_hover_is_refused_with_what_to_fly_instead() {
     let log = FlightLog::from_csv(&fly(&hover()).unwrap()).unwrap();
-    let missing = telling::unmoved(&log);
+    let missing = observability::unexcited(&log);
     for (line, words) in [
         ("inertia x, centre of mass y", "to the left and to the right"),
         ("inertia y, centre of mass x", "forwards and backwards"),
@@ -128,7 +128,11 @@ fn a_hover_cannot_tell_and_is_told_what_to_fly() {
         assert!(missing.iter().any(|said| said.starts_with(line) && said.contains(words)), "{line}: {missing:?}");
     }
     let short = FlightLog { moments: log.moments[..500].to_vec(), ..log };
-    assert!(telling::unmoved(&short)[0].starts_with("the flight: 5 s"), "{:?}", telling::unmoved(&short));
+    assert!(
+        observability::unexcited(&short)[0].starts_with("the flight: 5 s"),
+        "{:?}",
+        observability::unexcited(&short)
+    );
 }
 
 #[test]
@@ -139,14 +143,14 @@ fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
     let rotors = scenario.configuration.rotors().unwrap();
     let mut log = log;
     for (index, moment) in log.moments.iter_mut().enumerate() {
-        moment.asked.thrust = 5.0 + (index % 7) as f32 * 0.2;
-        moment.asked.torque = Vector3::new(0.01, -0.02, 0.005) * (index % 5) as f32;
+        moment.commanded.thrust = 5.0 + (index % 7) as f32 * 0.2;
+        moment.commanded.torque = Vector3::new(0.01, -0.02, 0.005) * (index % 5) as f32;
     }
     let (lag, delay) = (0.013, 0.0143);
     let impulses = Commands::new(&log, rotors).unwrap().impulses(lag + delay, lag * lag);
     let mixer = controller_core::allocation::Mixer::new(rotors);
     let mut spinning = SpinningRotors::hovering(rotors, lag, 5.0, STEP);
-    let thrusts: Vec<_> = log.moments.iter().map(|moment| mixer.allocate(&moment.asked).unwrap().thrusts).collect();
+    let thrusts: Vec<_> = log.moments.iter().map(|moment| mixer.allocate(&moment.commanded).unwrap().thrusts).collect();
     let (steps, late) = ((log.period / STEP).round() as usize, (delay / STEP).round() as usize);
     // The gyro's, at 1 kHz.
     let (mut own, mut ours) = (LowPass::new(116.0, 500.0, 1e3), LowPass::new(60.0, 100.0, 1e3));
@@ -202,7 +206,7 @@ fn the_recorders_file_says_what_log_csv_says() {
             is_airborne: index >= 50,
             state: (index != 80).then_some(state),
             reference: Some(reference),
-            wrench: Some(moment.asked.scaled(0.9)),
+            wrench: Some(moment.commanded.scaled(0.9)),
             thrust_scale: Some(0.9),
             pose_age: None,
             missed: 0,
@@ -221,8 +225,8 @@ fn the_recorders_file_says_what_log_csv_says() {
         assert!((read.reference_velocity - expected.reference_velocity).norm() < 1e-6);
         assert!((read.velocity - expected.velocity).norm() < 1e-6 && (read.time - expected.time).abs() < 1e-9);
         assert!(read.attitude.angle_to(&expected.attitude) < 1e-5);
-        assert!((read.asked.thrust - expected.asked.thrust).abs() < 1e-5);
-        assert!((read.asked.torque - expected.asked.torque).norm() < 1e-6);
+        assert!((read.commanded.thrust - expected.commanded.thrust).abs() < 1e-5);
+        assert!((read.commanded.torque - expected.commanded.torque).norm() < 1e-6);
     }
     // Cut short anywhere it is an error, the beginning of the same flight, or the 30 ticks before the gap.
     for end in (0..file.len()).step_by(97) {
@@ -232,5 +236,5 @@ fn the_recorders_file_says_what_log_csv_says() {
         }
     }
     // A flight so short says nothing of a vehicle.
-    assert!(telling::unmoved(&ulog::read(&file[..file.len() / 2]).unwrap())[0].starts_with("the flight: "));
+    assert!(observability::unexcited(&ulog::read(&file[..file.len() / 2]).unwrap())[0].starts_with("the flight: "));
 }

@@ -173,7 +173,7 @@ fn desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight() {
     println!(
         "omega_d to {fastest:.2} rad/s, worst {worst_rate:.1e}; omega_d' to {hardest:.2} rad/s^2, worst {worst_acceleration:.1e}"
     );
-    assert!(fastest > 0.5 && hardest > 5.0, "the flights are too gentle to tell");
+    assert!(fastest > 0.5 && hardest > 5.0, "the flights are too gentle for this test");
     assert!(worst_rate < 5e-4, "omega_d is {worst_rate:e} rad/s off");
     assert!(worst_acceleration < 0.06, "omega_d' is {worst_acceleration:e} rad/s^2 off");
 }

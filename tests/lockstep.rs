@@ -46,7 +46,7 @@ fn it_arms_goes_up_by_a_setpoint_hovers_steps_and_is_disarmed_by_force_alone() {
     flight.station.arm(false);
     flight.pass(0.1);
     assert_eq!(flight.station.acknowledged(), Some(MavResult::MAV_RESULT_DENIED));
-    assert!(flight.station.heard("Refused: in the air; land, or disarm by force").is_some());
+    assert!(flight.station.received("Refused: in the air; land, or disarm by force").is_some());
     assert_eq!(flight.report().mode, Mode::Flying);
     flight.station.disarm_by_force();
     flight.pass(0.02);
@@ -89,7 +89,7 @@ fn it_takes_off_by_a_command_holds_and_lands_by_a_command() {
 }
 
 #[test]
-fn armed_and_told_nothing_it_disarms_after_ten_seconds() {
+fn armed_without_a_request_it_disarms_after_ten_seconds() {
     let mut flight = Flight::boot();
     flight.pass(2.0);
     flight.station.arm(true);
@@ -142,7 +142,7 @@ fn a_pose_back_after_half_a_second_is_held_on() {
     flight.pass(10.0);
     assert_eq!(flight.report().mode, Mode::Holding);
     assert!(flight.distance([0.0, 0.0, 1.0]) < 0.5, "{}", flight.world.pose().position);
-    assert!(flight.station.heard("Pose regained: braking to hold position").is_some());
+    assert!(flight.station.received("Pose regained: braking to hold position").is_some());
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn a_ground_station_that_vanishes_leaves_the_vehicle_holding_its_position() {
     flight.station.beat(false);
     flight.pass(4.0);
     assert_eq!(flight.report().mode, Mode::Holding);
-    assert!(flight.station.heard("Ground station lost: holding position").is_some());
+    assert!(flight.station.received("Ground station lost: holding position").is_some());
     flight.pass(6.0);
     let held = flight.world.pose().position;
     flight.pass(60.0);
@@ -167,7 +167,7 @@ fn a_ground_station_that_vanishes_leaves_the_vehicle_holding_its_position() {
     assert!((flight.world.pose().position - held).norm() < 0.02, "{held} {}", flight.world.pose().position);
     flight.station.fly_setpoints();
     flight.pass(0.1);
-    assert!(flight.station.heard("Refused: no usable setpoint in the last second").is_some());
+    assert!(flight.station.received("Refused: no usable setpoint in the last second").is_some());
     flight.station.go_to([0.0, 0.0, 1.0]);
     flight.station.fly_setpoints();
     flight.pass(10.0);
@@ -200,7 +200,7 @@ fn setpoints_that_move_must_be_renewed() {
     assert!(flight.world.pose().position.x > 1.0, "{}", flight.world.pose().position);
     flight.pass(0.7);
     assert_eq!(flight.report().mode, Mode::Holding);
-    assert!(flight.station.heard("Setpoints lost: holding position").is_some());
+    assert!(flight.station.received("Setpoints lost: holding position").is_some());
     flight.pass(8.0);
     assert!(flight.world.pose().velocity.norm() < 0.01, "{}", flight.world.pose().velocity);
 }

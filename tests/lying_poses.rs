@@ -1,5 +1,5 @@
-//! Poses that lie: random sources of poses in any phase of a flight, flown in closed loop by the core's whole pilot on
-//! a simulated vehicle; and each flight held to what an operator may count on.
+//! Poses that lie: random faults of a pose source in any phase of a flight, flown in closed loop by the whole pilot on
+//! a simulated vehicle; each flight is held to the limits that an operator may rely on.
 //!
 //! - `lie`: what a source says instead of the truth; `flight`: one flight, to the ground.
 //!
@@ -21,7 +21,7 @@ use scenario::Scenario;
 /// Flights in each test run.
 const FLIGHTS: u64 = 300;
 
-/// What an operator may count on: s, m.
+/// The limits that an operator may rely on: s, m.
 const DOWN_WITHIN: f64 = 30.0;
 const OFF_WITHIN: f64 = 3.0;
 const OFF_MEDIAN: f64 = 1.0;
@@ -34,18 +34,18 @@ fn fly_all(cases: Vec<Case>) -> Vec<Flown> {
     cases.into_par_iter().map(|case| fly(&scenario, &certified, &case)).collect()
 }
 
-/// What must not be, in words.
+/// The limit that a flight breaks, in words.
 fn complaint(flown: &Flown) -> Option<String> {
     let Flown { down_after, off_after, rose, out, .. } = *flown;
     let (Some(down_after), Some(off_after)) = (down_after, off_after) else {
         return flown.flew.then(|| "never down with its motors off".to_owned());
     };
-    let can_be_told = !flown.case.lies.iter().any(Lie::is_beyond_telling);
+    let detectable = !flown.case.lies.iter().any(Lie::is_undetectable);
     let wrong = [
         (down_after > DOWN_WITHIN, format!("down after {down_after:.1} s")),
         (off_after > OFF_WITHIN, format!("motors off {off_after:.1} s after touchdown")),
-        (can_be_told && rose > ROSE_MAX, format!("rose {rose:.2} m")),
-        (can_be_told && out > OUT_MAX, format!("{out:.1} m out of its box")),
+        (detectable && rose > ROSE_MAX, format!("rose {rose:.2} m")),
+        (detectable && out > OUT_MAX, format!("{out:.1} m out of its box")),
     ];
     wrong.into_iter().find(|(is_wrong, _)| *is_wrong).map(|(_, words)| words)
 }
@@ -103,7 +103,7 @@ fn whatever_poses_say_a_flight_ends_on_the_ground_with_motors_off() {
 }
 
 /// Flies one lie from a phase on, for so long until LAND, with some seeds.
-fn told(lie: Lie, begins: Begins, land_after: f64) -> Vec<Flown> {
+fn flights(lie: Lie, begins: Begins, land_after: f64) -> Vec<Flown> {
     let case = |seed| Case { begins, lies: vec![lie], ends_after: None, land_after, seed };
     let flown = fly_all((0..4).map(case).collect());
     print(lie.name(), &flown);
@@ -119,20 +119,20 @@ fn took(flown: &Flown, reason: Reason) -> usize {
 fn a_heading_that_is_wrong_at_the_source_is_given_up() {
     for degrees in [45.0_f32, 60.0, 75.0, -60.0] {
         for begins in [Begins::AtBoot, Begins::Holding] {
-            told(Lie::HeadingOff(degrees.to_radians()), begins, 15.0);
+            flights(Lie::HeadingOff(degrees.to_radians()), begins, 15.0);
         }
     }
 }
 
 #[test]
-fn a_heading_that_drifts_is_told_by_the_gyro() {
+fn a_heading_that_drifts_is_detected_by_the_gyro() {
     for degrees in [1.0_f32, 2.0, 3.0, 5.0] {
         for begins in [Begins::Holding, Begins::Moving] {
-            let flown = told(Lie::HeadingDrifts(degrees.to_radians()), begins, 60.0);
-            let is_told = |flown: &Flown| {
+            let flown = flights(Lie::HeadingDrifts(degrees.to_radians()), begins, 60.0);
+            let is_detected = |flown: &Flown| {
                 [Reason::PosesGivenUp, Reason::PoseLost, Reason::FenceBreached].iter().any(|why| took(flown, *why) > 0)
             };
-            assert!(flown.iter().all(is_told), "{degrees} degrees a second: {flown:?}");
+            assert!(flown.iter().all(is_detected), "{degrees} degrees a second: {flown:?}");
         }
     }
 }
@@ -141,7 +141,7 @@ fn a_heading_that_drifts_is_told_by_the_gyro() {
 fn poses_that_come_and_go_make_a_landing_resume_once_at_most() {
     for every in [1.1, 1.3, 1.6, 2.0, 2.8] {
         for begins in [Begins::Holding, Begins::Landing] {
-            let flown = told(Lie::Comes { for_seconds: 0.03, every }, begins, 10.0);
+            let flown = flights(Lie::Comes { for_seconds: 0.03, every }, begins, 10.0);
             assert!(flown.iter().all(|flown| took(flown, Reason::LandingResumed) <= 1), "{flown:?}");
         }
     }
@@ -150,14 +150,14 @@ fn poses_that_come_and_go_make_a_landing_resume_once_at_most() {
 #[test]
 fn a_landing_on_noisy_poses_does_not_rise() {
     for noise in [0.02, 0.05, 0.1] {
-        told(Lie::Noisy(noise, 1e-3), Begins::Landing, 10.0);
+        flights(Lie::Noisy(noise, 1e-3), Begins::Landing, 10.0);
     }
 }
 
 #[test]
 fn a_source_that_claims_to_be_exact_is_flown_like_any_other() {
     for claim in [1e-3, 1e-4, 1e-5, 0.0] {
-        for flown in told(Lie::Claims(claim, claim), Begins::AtBoot, 20.0) {
+        for flown in flights(Lie::Claims(claim, claim), Begins::AtBoot, 20.0) {
             let reasons: Vec<_> =
                 flown.path.iter().map(|(_, reason)| *reason).filter(|why| why.is_own_doing()).collect();
             assert!(flown.flew && reasons.is_empty(), "{claim}: {reasons:?}");
@@ -165,9 +165,9 @@ fn a_source_that_claims_to_be_exact_is_flown_like_any_other() {
     }
 }
 
-/// No test: what nothing on board can tell, and how far it leads in 30 s of holding.
+/// Prints only: how far undetectable lies lead in 30 s of holding.
 #[test]
-fn how_far_lies_lead_that_nothing_on_board_can_tell() {
+fn how_far_undetectable_lies_lead() {
     let drift = |speed: f32| Lie::Drifts(Vector3::new(speed, 0.0, 0.0));
     for (lie, begins) in [
         (drift(0.01), Begins::Holding),

@@ -7,7 +7,7 @@
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | the laws beside it, at half a turn | [`half_turn`] |
 //! | a vehicle's numbers from a flight and a bench | [`identify`] |
-//! | the state it is told | [`estimator`], [`estimated_flights`] |
+//! | the estimated state | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |

@@ -41,7 +41,7 @@ impl Subject {
     fn fly(&self, scenario: &Scenario) -> Course {
         let flight = Flight::certified(scenario, &self.certified).unwrap();
         let course = Course::over(scenario, flight, NEAR).unwrap();
-        assert_eq!(course.clipped, 0, "{}: a rotor was asked for more than it has", scenario.name);
+        assert_eq!(course.clipped, 0, "{}: a rotor was commanded beyond its limits", scenario.name);
         course
     }
 

@@ -60,7 +60,7 @@ fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_con
         );
         let (height, latest) = if lift < 2.0 { REQUIRED_WEAK } else { REQUIRED };
         assert!(height_lost < height && settled < latest, "{name}: {height_lost} m, {settled} s");
-        assert_eq!(clipped, 0, "{name}: a rotor was asked for more than it has");
+        assert_eq!(clipped, 0, "{name}: a rotor was commanded beyond its limits");
     }
 }
 

@@ -78,12 +78,12 @@ fn drag_and_wind_cost_the_papers_law_what_they_should() {
 fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
     let (head, tail) = EXTENDED.split_once("[drag]").unwrap();
     let still = format!("{head}[initial]{}", tail.split_once("[initial]").unwrap().1);
-    let told = |bandwidth: f64| {
+    let measured = |bandwidth: f64| {
         let sections = format!("[sensors]\nvelocity = \"alpha-beta\"\nvelocity_bandwidth = {bandwidth:?}\n");
         hovering_as(&still, 60.0, "position = [0.0, 0.0, 1.5]\neuler_deg = [0.2, 0.0, 0.0]", &sections)
     };
     let radius = |bandwidth: f64| {
-        let loops = told(bandwidth).loops().unwrap();
+        let loops = measured(bandwidth).loops().unwrap();
         loops.reports().map(|report| report.spectral_radius).into_iter().fold(0.0, f64::max)
     };
     let (mut slow, mut quick) = (1.0_f64, 1000.0);
@@ -93,7 +93,7 @@ fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
         if radius(middle) > 1.0 { slow = middle } else { quick = middle }
     }
     println!("slowest filter, rad/s: {quick:.1}");
-    let [lost, kept] = [0.9, 1.1].map(|share| course(&told(share * quick)).end_error);
+    let [lost, kept] = [0.9, 1.1].map(|share| course(&measured(share * quick)).end_error);
     // What oscillates is held by the law's levels.
     assert!(lost > 1e-3 && kept < 1e-4, "{quick} rad/s: {lost} and {kept} m");
 }
@@ -185,7 +185,7 @@ fn a_logged_flight_says_what_it_was_flown_in() {
         };
         for row in &rows[1..] {
             assert_eq!((value(row, "wind_x"), value(row, "wind_z")), (beyond.then_some(1.5), beyond.then_some(-0.5)));
-            let bias = value(row, "measured_wx").zip(value(row, "wx")).map(|(told, truly)| told - truly);
+            let bias = value(row, "measured_wx").zip(value(row, "wx")).map(|(measured, truly)| measured - truly);
             assert!(bias.map_or(!beyond, |bias| (bias - 0.25).abs() < 1e-6), "{bias:?}");
         }
         let report = std::fs::read_to_string(folder.join(file).join("report.md")).unwrap();

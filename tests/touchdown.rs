@@ -9,7 +9,7 @@ use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
 use scenario::reality::estimator::Estimator;
-use verification::piloted::{Nobody, PilotedVehicle, Place};
+use verification::piloted::{PilotedVehicle, Place, Undisturbed};
 
 /// When it gets which command, and until when it is watched, ticks.
 const ARM: u64 = 200;
@@ -43,7 +43,7 @@ fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
             _ => None,
         };
         let given = Inputs { request, ground_station: Some(vehicle.now() + PERIOD), ..Inputs::default() };
-        let (outcome, _) = vehicle.tick(&given, &mut Nobody).unwrap();
+        let (outcome, _) = vehicle.tick(&given, &mut Undisturbed).unwrap();
         assert!(!matches!(outcome.answer, Some(Err(_))), "{name}, draw {draw}, tick {tick}: {:?}", outcome.answer);
         let touchdown = vehicle.vehicle_mut().take_touchdown().filter(|touchdown| touchdown.speed > 0.1);
         touched = touched.or(touchdown.map(|_| tick));

@@ -36,7 +36,7 @@ const FASTER: f64 = 0.004;
 /// The height of the hover, m.
 const HEIGHT: f64 = 1.5;
 
-/// What happens when, in ticks: arming, take-off; from when on it hovers, and to when; what then is asked for or lost.
+/// What happens when, in ticks: arming, take-off; from when on it hovers, and to when; what is then requested or lost.
 const ARM: u64 = 200;
 const TAKE_OFF: u64 = 260;
 const HOVER: std::ops::Range<u64> = 1_500..3_000;
@@ -229,7 +229,7 @@ fn a_shaken_vehicle_hovers_lands_and_comes_down_blind() {
 
 #[test]
 fn at_whatever_speed_the_rotors_turn_their_shaking_is_no_slow_motion() {
-    // Of 75 Hz in hover: 66 to 269 Hz, with 100 and 200 Hz, which a tick cannot tell from no motion, among them.
+    // Of 75 Hz in hover: 66 to 269 Hz, with 100 and 200 Hz, which alias to no motion at the ticks, among them.
     for name in ["hummingbird", "study"] {
         for faster in [0.88, 0.95, 1.07, 1.2, 1.3, 1.335, 1.345, 1.4, 1.5, 1.65, 1.8, 2.2, 2.68, 2.7, 3.1, 3.6] {
             let flown = fly(name, 2e-5 / (faster * faster), faster, false);

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let campaigns = step::longest(&scenario);
     let moved = distance(&campaigns, &step::of(&scenario, 5e-4)?)?;
 
-    // What is asked for and not reached is said, and no reason to stop a build: a machine may have others to serve.
+    // A limit that is not reached is printed and stops no build: the machine may be busy.
     let best = measured(&scenario, "a file's plant step of 1 ms", REQUIRED)?;
     measured(&campaigns, "a campaign's of 5 ms", REQUIRED_OF_CAMPAIGNS)?;
     println!("a campaign's plant step moves the flight by {moved:.2e} m: {}", word(moved < NEAR));

@@ -8,7 +8,7 @@ function decode(text) {
   return new Float32Array(bytes.buffer);
 }
 
-/** Columns over evenly spaced times; a column is decoded when it is first asked for. */
+/** Columns over evenly spaced times; a column is decoded when it is first read. */
 class Track {
   constructor({ name, start, step, columns }) {
     Object.assign(this, { name, start, step, columns });
@@ -93,11 +93,11 @@ function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-/** Tells a screen reader, once the keys have come to rest. */
-let telling = 0;
-function tell(text) {
-  clearTimeout(telling);
-  telling = setTimeout(() => (document.getElementById("live").textContent = text), 400);
+/** Announces to a screen reader, once the keys have come to rest. */
+let announcing = 0;
+function announce(text) {
+  clearTimeout(announcing);
+  announcing = setTimeout(() => (document.getElementById("live").textContent = text), 400);
 }
 
 /** What is drawn again whenever colours change: another scheme, or paper. */

@@ -26,7 +26,7 @@ class Spread {
       event.preventDefault();
       const { chart } = this;
       this.read(chart.at(chart.x(this.at ?? this.least) + 6 * way));
-      tell(`${measure(this.at, this.unit)}: ${this.shown().map(({ label, reading }) => `${label} ${reading.textContent}`).join(", ")}`);
+      announce(`${measure(this.at, this.unit)}: ${this.shown().map(({ label, reading }) => `${label} ${reading.textContent}`).join(", ")}`);
     });
   }
 

@@ -266,7 +266,7 @@ class Plot {
     action();
     const readings = this.curves.filter(({ on }) => on).map(({ label, source, column }) =>
       `${label} ${measure(source.value(column, clock.time), this.unit)}`);
-    tell(`${this.title}, ${short(clock.time)} s: ${readings.join(", ")}. Shown: ${short(view.from)} to ${short(view.to)} s.`);
+    announce(`${this.title}, ${short(clock.time)} s: ${readings.join(", ")}. Shown: ${short(view.from)} to ${short(view.to)} s.`);
   }
 }
 

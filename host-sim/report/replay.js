@@ -219,7 +219,7 @@ class Replay {
       if (!action) return;
       event.preventDefault();
       action();
-      tell(`${short(clock.time)} s: ${this.reading.map((value) => `${value.previousSibling.textContent} ${value.textContent}`).join(", ")}`);
+      announce(`${short(clock.time)} s: ${this.reading.map((value) => `${value.previousSibling.textContent} ${value.textContent}`).join(", ")}`);
     });
   }
 

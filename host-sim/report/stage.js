@@ -5,7 +5,7 @@ class Stage {
     Object.assign(this, { canvas, camera, shape, floor, hoverThrust, scale: 1 });
   }
 
-  /** Bodies in their poses, so many times as large as life, each with its path, and the path that was asked for. */
+  /** Bodies in their poses, so many times as large as life, each with its path, and the reference path. */
   draw(bodies, poses, paths, asked, scale) {
     const { canvas, camera } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];

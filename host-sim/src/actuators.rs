@@ -1,6 +1,6 @@
-//! What stands between the law's wrench and the body.
+//! The actuators: delay, allocation and rotors between the law's wrench and the body.
 //!
-//! Without `[rotors]` and `[sampling]` nothing does: the wrench acts at once, clipped to the limits. With them,
+//! Without `[rotors]` and `[sampling]` the wrench acts at once, clipped to the limits. With them,
 //!
 //! ```text
 //! wrench -> (delay) -> allocation -> rotor speeds, first-order lag, limits -> thrusts f_i = k_eta speed_i^2 -> B f

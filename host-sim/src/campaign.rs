@@ -1,14 +1,14 @@
 //! Many flights at once, on all cores.
 //!
 //! A campaign is a number of flights in circumstances that differ: where they start, what the vehicle really is, how
-//! the air moves, how noisy the sensors are, what is asked for. Each flight's circumstances come from its number alone,
-//! so a campaign gives the same again whatever the number of cores, and any of its flights can be flown again by
+//! the air moves, how noisy the sensors are, which reference it flies. Each flight's circumstances come from its number
+//! alone, so a campaign gives the same again whatever the number of cores, and any of its flights can be flown again by
 //! itself.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`draw`], [`throw`] | the circumstances of a flight, from seed and number; that flight under a law |
-//! | [`written`] | those circumstances for who reads the report of one flight |
+//! | [`written`] | those circumstances in the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
 //! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
@@ -39,7 +39,7 @@ pub enum CampaignError {
     Output(String),
     /// The flights do not fit their columns.
     Rows(ArrowError),
-    /// Somebody sent this signal. What was finished is kept.
+    /// Interrupted by this signal. What was finished is kept.
     Interrupted(u8),
 }
 

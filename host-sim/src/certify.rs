@@ -52,7 +52,7 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::of(scenario)?))
 }
 
-/// What keeps the vehicle from flying; if nothing does, the tightest inequality.
+/// The failing inequalities and loops; without any, the tightest inequality.
 fn limits(verdict: &Verdict) -> String {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();

@@ -1,4 +1,4 @@
-//! What a flight claims, what it showed, and whether the two agree.
+//! A flight's claims, its figures, and the verdict on each.
 //!
 //! Every flight claims Theorem 1's thrust interval, the file's limits, the box of the filters, and the sharp bounds of
 //! its certificate on thrust, torques and rotors, which hold whether or not they fit the limits:
@@ -35,17 +35,17 @@ pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// What it is about.
+    /// Its name.
     pub claim: String,
-    /// What must be; empty where nothing must.
+    /// The requirement; empty without one.
     pub required: String,
-    /// What was.
+    /// The figure of the flight.
     pub flown: String,
     /// Whether it holds; none where nothing is required.
     pub holds: Option<bool>,
 }
 
-/// The claims about a flight of `scenario`, of which `verdict` says whether it may fly, and which showed `flown`.
+/// The claims about a flight of `scenario`, with its `verdict` and the figures `flown`.
 #[must_use]
 pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let published = scenario.is_papers();
@@ -86,8 +86,8 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
     claims
 }
 
-/// The claims about a flight of `scenario` under another law: that it reached its position. What is proven of ours, and
-/// what ours must not ask for, stand beside what was flown, without a verdict.
+/// The claims about a flight of `scenario` under another law: that it reached its position. Our law's bounds stand
+/// beside its figures, without a verdict.
 #[must_use]
 pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
     let duration = scenario.timing.duration();
@@ -96,7 +96,7 @@ pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Cl
     std::iter::once(own).chain(reported).collect()
 }
 
-/// Whether every inequality holds that bounds what may be commanded.
+/// Whether every inequality of the certificate holds.
 fn commands(verdict: &Verdict) -> Claim {
     let failing = verdict.certificate().inequalities().find(|inequality| !inequality.holds());
     Claim {
@@ -121,17 +121,17 @@ fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
     }
 }
 
-/// Whether small motions die out, with something to spare.
+/// Whether the sampled loops are stable, with margins.
 fn loops(verdict: &Verdict) -> Claim {
     let LoopMargin { gain, delay } = LoopMargin::LEAST;
     let margins = verdict.loops().iter().filter_map(|report| report.margins);
     let least = margins.fold((f64::INFINITY, f64::INFINITY), |(gain, delay), margins| {
         (margins.gain_up.min(gain), margins.delay.min(delay))
     });
-    let spare = |gain: f64, delay: f64| format!("gain {}, delay {} ms", short(gain), short(1e3 * delay));
+    let spare = |gain: f64, delay: f64| format!("{}, {} ms", short(gain), short(1e3 * delay));
     let lacking = verdict.lacking();
     Claim {
-        claim: "sampled loops, least margins".to_owned(),
+        claim: "sampled loops, gain and delay margins".to_owned(),
         required: format!(">= {}", spare(gain, delay)),
         flown: lacking.map_or_else(|| spare(least.0, least.1), |lack| lack.to_string()),
         holds: Some(lacking.is_none()),
@@ -155,7 +155,7 @@ fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
     }
 }
 
-/// What the certificate bounds. Its bounds hold for every configuration, whether or not they fit the limits.
+/// The certificate's bounds. They hold for every configuration, whether or not they fit the limits.
 fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
     let interval = |Interval { least, greatest }: Interval| (least, greatest);
     let printed = certificate.paper().map(|paper| paper.printed.thrust);

@@ -2,9 +2,8 @@
 //!
 //! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle,
 //! allocation, sensors and clock. The table has every figure, less is better, and marks the rows that ours loses;
-//! `compare.csv` has them in full, two
-//! pictures the courses, `report.html` all of it. Our claim decides the exit status: every random flight of our law
-//! settles, and none of its commands is cut or leaves its certified bounds.
+//! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. Our claim decides the exit
+//! status: every random flight of our law settles, and none of its commands is cut or leaves its certified bounds.
 
 pub mod page;
 pub mod pictures;

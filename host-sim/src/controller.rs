@@ -1,4 +1,4 @@
-//! What flies a simulated vehicle: our law, or a rival to compare it with.
+//! The controller of a simulated vehicle: our law, or a rival to compare it with.
 
 use crate::rivals::pilot::RivalPilot;
 use controller_core::controller::Diagnostics;
@@ -43,7 +43,7 @@ impl Controller {
         }
     }
 
-    /// What the rotors deliver of what is commanded, as far as the controller knows.
+    /// The estimated thrust scale.
     #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {
@@ -70,7 +70,7 @@ impl Controller {
         }
     }
 
-    /// What has been estimated, if anything is.
+    /// The law's estimates, if it has any.
     #[must_use]
     pub fn estimates(&self) -> Option<Estimates> {
         match self {

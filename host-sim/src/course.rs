@@ -1,8 +1,6 @@
-//! What a pilot would say of a flight: how far it fell, how far it overshot, when it was there for good, how restless
-//! it was.
+//! The figures of a flight, of the true motion: height lost, overshoot, settling time, activity of the rotors.
 //!
-//! Of the true motion, whatever the law was told of it. With x the position, x_d the reference's, at the ticks k = 0 …
-//! n - 1:
+//! With x the position, x_d the reference's, at the ticks k = 0 … n - 1:
 //!
 //! | figure | |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! One writer for a directory: who writes flights, campaigns or comparisons into it keeps everybody else out.
+//! One writer for a directory of flights, campaigns or comparisons.
 //!
 //! The lock is the operating system's on the directory itself. It ends with the process, however that ends, and leaves
 //! no file behind. Some file systems across a network have no locks; there it does nothing.
@@ -11,7 +11,7 @@ use std::{fs, io};
 #[derive(Debug)]
 pub struct DirectoryLock {
     _directory: Option<File>,
-    /// What was missing, the innermost first.
+    /// The missing directories, the innermost first.
     made: Vec<PathBuf>,
 }
 

@@ -6,8 +6,8 @@
 //! every tick          Estimator::state -> law
 //! ```
 //!
-//! Before a flight begins the vehicle is carried into its start for [`ALIGNING`], at its velocity and its body rates,
-//! by an invisible hand: the estimator begins to work in motion, too.
+//! Before a flight the vehicle moves into its start for [`ALIGNING`], at constant velocity and body rates, without
+//! forces: so the estimator aligns in motion, too.
 
 use crate::instruments::{Instruments, SAMPLE};
 use controller_core::error::ParameterError;
@@ -91,7 +91,7 @@ impl Estimation {
             self.estimator.imu(&increment);
         }
         while let Some(Stamped { value, time }) = self.instruments.arrived() {
-            // What became of it, the estimator's health says.
+            // The estimator's health shows what became of it.
             let _ = self.estimator.pose(&Stamped { value: PoseMeasurement::new(&value), time }, self.clock);
         }
     }
@@ -100,7 +100,7 @@ impl Estimation {
     ///
     /// # Errors
     /// [`NoEstimate`].
-    pub fn told(&mut self) -> Result<(State, bool), NoEstimate> {
+    pub fn state(&mut self) -> Result<(State, bool), NoEstimate> {
         let newest = self.conditioner.newest();
         let estimated = newest.and_then(|newest| self.estimator.state(self.clock, &newest.value.angular_velocity));
         let Some(estimated) = estimated else {

@@ -1,8 +1,8 @@
-//! Who flies: our law, or a rival with its gains.
+//! The law that flies: ours, or a rival with its gains.
 //!
-//! [`LawChoice`] says which law is wanted and can be written down and read again; a [`Flier`] is that law on one
-//! vehicle, ready for any number of flights. Ours is flown as boards fly it, certified once for all flights; where
-//! nothing certifies it, as its scenario has it.
+//! [`LawChoice`] names a law and can be written and read; a [`Flier`] is that law on one vehicle, ready for any number
+//! of flights. Our law is certified once for all flights, as on boards; an uncertified one flies as its scenario has
+//! it.
 
 use crate::flight::Flight;
 use crate::rivals::kind::Kind;
@@ -11,7 +11,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 
-/// What our law is called beside others.
+/// Our law's name beside others.
 pub const OURS: &str = "ours";
 
 /// Which law.

@@ -1,7 +1,7 @@
 //! A closed-loop flight: plant, reference and controller, one control tick at a time.
 //!
-//! At each tick the law sees the vehicle's state rounded to single precision, or what its sensors or its estimator make
-//! of it, and the reference of that instant; its wrench is held until the next tick. Time is integer microseconds.
+//! At each tick the law gets the vehicle's state in single precision, true, measured or estimated, and the reference;
+//! its wrench is held until the next tick. Time is integer microseconds.
 
 use crate::actuators::ActuationError;
 use crate::controller::Controller;
@@ -38,25 +38,24 @@ pub struct Flight {
     tick: u64,
 }
 
-/// What happened at one control tick.
+/// One control tick.
 #[derive(Debug, Clone)]
 pub struct Tick {
     /// Time since the start, us.
     pub time_us: u64,
     /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
-    /// What the law was told of it, where there are sensors or an estimator.
+    /// The measured or estimated state that the law got, where there are sensors or an estimator.
     pub measured: Option<Box<State>>,
-    /// What surrounded the vehicle at that moment.
+    /// Wind and battery at that moment.
     pub surroundings: Surroundings,
-    /// What was asked for.
+    /// The reference.
     pub reference: Reference,
-    /// What the law commanded, before the plant clipped it. The rotors are asked for it divided by the estimated thrust
-    /// scale.
+    /// The law's command before clipping. The rotors get it divided by the estimated thrust scale.
     pub wrench: Wrench,
-    /// What the law went through.
+    /// The law's intermediate values.
     pub diagnostics: Diagnostics,
-    /// What the law has estimated, if it estimates anything.
+    /// The law's estimates, if it has any.
     pub estimates: Option<Estimates>,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
@@ -73,9 +72,9 @@ pub struct Brief {
     pub time_us: u64,
     /// The vehicle's true state before the tick's steps.
     pub state: BodyState,
-    /// What was asked for.
+    /// The reference.
     pub reference: Reference,
-    /// What the law commanded, as in [`Tick::wrench`].
+    /// The law's command, as in [`Tick::wrench`].
     pub wrench: Wrench,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
@@ -85,7 +84,7 @@ pub struct Brief {
     pub standing: bool,
 }
 
-/// What a law answers, with what it says of it.
+/// A law's wrench, and its diagnostics.
 type Answer<D> = Result<(Wrench, D), InputError>;
 
 /// A flight that could not go on.
@@ -137,7 +136,7 @@ pub fn law(scenario: &Scenario) -> Result<Law, ParameterError> {
 
 impl Flight {
     /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a
-    /// millisecond; whoever flies one scenario many times clones the start.
+    /// millisecond; to fly one scenario many times, clone the start.
     ///
     /// # Errors
     /// As [`law`]'s.
@@ -201,13 +200,13 @@ impl Flight {
     /// [`FlightError`] with the time; the flight cannot go on after it.
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
         let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
-        let (told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
+        let (measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
             self.advance(Controller::step)?;
         let estimates = self.controller.estimates();
         Ok(Tick {
             time_us,
             state,
-            measured: told.map(Box::new),
+            measured: measured.map(Box::new),
             surroundings,
             reference,
             wrench,
@@ -229,8 +228,8 @@ impl Flight {
         Ok(brief)
     }
 
-    /// A control tick with the law asked by `step`: what it was told where that is not the state, the tick, and what
-    /// `step` says of it.
+    /// A control tick with the law called by `step`: the measured state where that is not the true one, the tick, and
+    /// what `step` returns besides.
     #[inline(always)]
     fn advance<D>(
         &mut self,
@@ -238,8 +237,8 @@ impl Flight {
     ) -> Result<(Option<State>, Brief, D), FlightError> {
         let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
         let reference = self.trajectory.at(time_us);
-        let told = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
-        let answer = step(&mut self.controller, &told.unwrap_or_else(|| state.measured()), &reference);
+        let measured = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
+        let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &reference);
         let (wrench, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
         let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
@@ -248,7 +247,7 @@ impl Flight {
             self.controller.hold_estimates();
         }
         self.tick += 1;
-        Ok((told, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
+        Ok((measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
     }
 
     #[inline]
@@ -267,22 +266,22 @@ impl Flight {
         let Some(estimation) = &mut self.estimation else {
             return Ok(self.sensors.as_mut().map(|sensors| sensors.measure(state)));
         };
-        let (told, jumped) = estimation.told()?;
+        let (measured, jumped) = estimation.state()?;
         if jumped {
             self.controller.hold_estimates();
         }
-        Ok(Some(told))
+        Ok(Some(measured))
     }
 
-    /// The vehicle's motion until the next tick, under a wrench that is asked of the rotors.
+    /// The vehicle's motion until the next tick, under a wrench commanded of the rotors.
     #[inline]
-    fn hold(&mut self, asked: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
+    fn hold(&mut self, commanded: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
-            return self.vehicle.hold(asked, self.steps_per_tick);
+            return self.vehicle.hold(commanded, self.steps_per_tick);
         };
         let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
         for _ in 0..samples {
-            let (cut, arrived) = self.vehicle.hold(asked, self.steps_per_tick / samples)?;
+            let (cut, arrived) = self.vehicle.hold(commanded, self.steps_per_tick / samples)?;
             clipped |= cut;
             if !arrived.is_empty() {
                 thrusts = arrived;

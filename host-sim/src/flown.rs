@@ -1,4 +1,4 @@
-//! What a flight showed, gathered tick by tick: the extremes that claims and searches judge.
+//! The extremes of a flight that claims and searches judge, gathered tick by tick.
 //!
 //! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight
 //! has *reached* its reference once it is near it and stays near it until the end: in position within

@@ -27,7 +27,7 @@ const TICKS_PER_SHOW: u64 = 5000;
 /// The recording's name.
 const RECORDING: &str = "flight.mcap";
 
-/// What is written after the flight; whether that can be is asked before.
+/// The files written after the flight; whether they can be written is checked before.
 const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
 
 /// Why a flight left no report.
@@ -43,7 +43,7 @@ pub enum FlyError {
     Undefined(&'static str),
     /// A figure could not be drawn.
     Plot(PlotError),
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 
@@ -80,17 +80,17 @@ impl From<PlotError> for FlyError {
     }
 }
 
-/// What came of a flight.
+/// The outcome of a flight.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Whether its configuration may fly for real, in a sentence.
     pub certification: String,
-    /// What was claimed, and whether it holds.
+    /// The claims, with their verdicts.
     pub claims: Vec<Claim>,
 }
 
 /// Flies `scenario`, which was read from `text`, under `law`, and writes log.csv, report.html, four figures and
-/// report.md into `directory`; and flight.mcap if it is asked for; if not, that of an older flight goes.
+/// report.md into `directory`; and flight.mcap if `mcap`; otherwise an older flight's is removed.
 ///
 /// The files get their names only after the whole flight succeeded and all of them are on the disk; until then nothing
 /// of an older flight in the same directory is touched.

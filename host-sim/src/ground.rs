@@ -1,4 +1,4 @@
-//! Something to stand on.
+//! Level ground: standing, touching down, lifting off.
 //!
 //! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, friction and the legs'
 //! spread hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for
@@ -83,7 +83,7 @@ impl Ground {
         !matches!(self.stance, Stance::Air)
     }
 
-    /// Somebody's hands take hold of it: if it was on one foot, off that.
+    /// An outside force takes hold of it: off its foot, if it was on one.
     pub fn take_off_foot(&mut self) {
         if let Stance::Rocking(_) = self.stance {
             self.stance = Stance::Air;

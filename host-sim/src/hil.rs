@@ -7,10 +7,9 @@
 //!
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs,
 //! the flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far
-//! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. What the sensors know is
-//! [`senses`]' to say. Time is the other side's own: how regular its commands are by its clock is watched and reported
-//! ([`pace`]). A session may be held to a speed, for MAVLink clients that live in this desk's time and come by
-//! [`relay`].
+//! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. The measurements are
+//! [`senses`]'. Time is the other side's own: [`pace`] reports how regular its commands are by its clock. A session may
+//! be held to a speed, for MAVLink clients in real time ([`relay`]).
 
 pub mod answer;
 pub mod messages;
@@ -69,7 +68,7 @@ impl fmt::Display for HilError {
     }
 }
 
-/// What a session was.
+/// A session's summary.
 #[derive(Debug, Clone)]
 pub struct Summary {
     /// How regular the commands were.
@@ -80,18 +79,18 @@ pub struct Summary {
     pub touchdowns: Vec<(f64, f64, f64)>,
     /// How long it took from the first command on.
     pub took: Duration,
-    /// What ended it.
+    /// Its end.
     pub end: End,
 }
 
-/// What ends a session.
+/// The end of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// Its duration was over.
     Over,
     /// The other side went.
     Left,
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 
@@ -115,19 +114,19 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Clients that are served meanwhile, and where what they may want to know is shown.
+/// Clients that are served meanwhile, and where their vehicle's status is shown.
 pub struct Clients<'a> {
     /// Their line to the flight controller.
     pub relay: Relay,
     /// Takes lines to show: a status each second of the desk's time, and the vehicle's texts.
-    pub tell: &'a mut dyn FnMut(&str),
+    pub show: &'a mut dyn FnMut(&str),
 }
 
 /// Time between lines of status, by the desk's clock.
 const STATUS: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
-/// somebody interrupts.
+/// a signal comes.
 ///
 /// # Errors
 /// [`HilError`].
@@ -183,12 +182,12 @@ pub fn serve(
             speed.get_or_insert_with(|| Speed::new(factor)).wait(pace.ticks() * scenario.timing.period_us);
         }
         port.answer(&answer).map_err(HilError::Port)?;
-        if let Some(Clients { relay, tell }) = &mut clients {
-            relay.texts().iter().for_each(|text| tell(&format!("{time:9.2} s  \"{text}\"")));
+        if let Some(Clients { relay, show }) = &mut clients {
+            relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
             if shown.elapsed() >= STATUS {
                 shown = Instant::now();
                 let [x, y, z]: [f64; 3] = moved.state.position.into();
-                tell(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
+                show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
             }
         }
         if let Some(progress) = &mut progress {

@@ -1,19 +1,19 @@
-//! A vehicle of one's own: its numbers, from the log of a flight and from a bench, each with its uncertainty.
+//! Identification: a vehicle's numbers from the log of a flight and from a bench, each with its uncertainty.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`flight_log`], [`ulog`] | what the vehicle knew in flight, from log.csv or from the firmware's recorder |
-//! | [`low_passes`] | what its body rates went through before, and the gyro's noise with them |
-//! | [`impulses`] | what the model's rotors gave between ticks, with a lag and a delay |
-//! | [`model`] | the rigid body that the log is held against |
-//! | [`hubs`] | what the air does at the rotors |
-//! | [`noise`] | what is left, made white |
+//! | [`flight_log`], [`ulog`] | the states and commands of a flight, from log.csv or from the firmware's recorder |
+//! | [`low_passes`] | the low-passes of its body rates, and of the gyro's noise |
+//! | [`impulses`] | impulses of the model's rotors between ticks, with a lag and a delay |
+//! | [`model`] | the rigid body that is fitted to the log |
+//! | [`hubs`] | the air's forces at the rotors' hubs |
+//! | [`noise`] | the residuals, whitened |
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
 //! | [`agreement`] | whether the two can be of one vehicle |
-//! | [`telling`] | what a log cannot tell, and what to fly for it |
-//! | [`output`], [`margins`] | the scenario with these numbers; what the uncertainty eats of its certificate |
+//! | [`observability`] | what is not observable in a log, and what to fly for it |
+//! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
 //! | [`command`] | all of it, from files to a report |
 
 pub mod agreement;
@@ -27,9 +27,9 @@ pub mod low_passes;
 pub mod margins;
 pub mod model;
 pub mod noise;
+pub mod observability;
 pub mod output;
 pub mod quantities;
-pub mod telling;
 pub mod ulog;
 
 use bench::Bench;
@@ -39,15 +39,15 @@ use quantities::Quantities;
 use scenario::Scenario;
 use scenario::reality::estimator::IMU_RATE;
 
-/// What `log` and `bench` say of the vehicle whose model is `scenario`'s.
+/// The vehicle's numbers from `log` and `bench`; `scenario` is its model.
 ///
 /// # Errors
-/// If the log is of no flight of it.
+/// If the log does not fit the model.
 pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Quantities, String> {
     let configuration = &scenario.configuration;
-    let asked_for = log.asked_for();
-    let (flown, asked) = (Model::new(log, configuration)?, Model::new(&asked_for, configuration)?);
-    let fit = fit::fit(&flown, &asked, log.period)?;
+    let reference = log.of_reference();
+    let (flown, reference) = (Model::new(log, configuration)?, Model::new(&reference, configuration)?);
+    let fit = fit::fit(&flown, &reference, log.period)?;
     Quantities::combined(&fit, bench, configuration.vehicle(), late(log, scenario))
 }
 

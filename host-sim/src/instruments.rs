@@ -32,7 +32,7 @@ pub const SAMPLE: u64 = 1_000;
 const GYRO_BANDWIDTH: f64 = 116.0;
 const ACCELEROMETER_BANDWIDTH: f64 = 145.0;
 
-/// What an IMU feels, before filters and noise.
+/// An IMU's input, before filters and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Felt {
     /// rad/s, body.
@@ -186,7 +186,7 @@ impl Instruments {
     }
 }
 
-/// What a sensor with this `range` shows.
+/// The output of a sensor with this `range`.
 fn shown(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
     truth.map(|component| component.clamp(-range, range))
 }

@@ -1,4 +1,4 @@
-//! Being asked to stop: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so
+//! Interruption: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so
 //! that nothing half-written stays behind.
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -6,7 +6,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Whether somebody asked; clones know the same.
+/// Whether a signal has come; clones share it.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<AtomicUsize>);
 

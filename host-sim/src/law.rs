@@ -1,11 +1,11 @@
-//! The controller alone, lock-step over text: for simulators that others wrote.
+//! The controller alone, lock-step over text, for other simulators.
 //!
 //! One line of 33 numbers in, one line of 4 numbers out, flushed, until the input ends:
 //!
 //! ```text
 //! in:  t dt | x(3) v(3) world, z up | q(4) as x y z w, body to world | omega(3) body |
 //!      reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
-//! out: thrust [N], torque x y z [N m], what the rotors are to be asked for: not clipped to any limit
+//! out: thrust [N], torque x y z [N m], for the rotors: not clipped to any limit
 //! ```
 //!
 //! SI units and rad. The output uses the filters as they stand; they then advance by the line's dt. t serves messages
@@ -110,7 +110,7 @@ impl LawServer {
         })
     }
 
-    /// Serves lines until the input ends or nobody reads the output any more.
+    /// Serves lines until the input ends or the output is closed.
     ///
     /// # Errors
     /// If the input cannot be read or the output not written, but for a closed pipe.
@@ -143,7 +143,7 @@ impl LawServer {
         Ok(())
     }
 
-    /// The wrench for one line, or why there is none.
+    /// The wrench for one line, or why the line is invalid.
     ///
     /// # Errors
     /// One line of text; the controller's memory is then unchanged.

@@ -6,16 +6,16 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`plant`] | the paper's rigid body, eq. (2) |
-//! | [`actuators`] | what stands between the law's wrench and the body: delay, rotors that lag, or nothing |
+//! | [`actuators`] | delay, allocation and rotors that lag |
 //! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
 //! | [`vehicle`] | the one or the other, as the scenario says |
 //! | [`sensors`] | the measured state |
 //! | [`instruments`], [`estimation`] | an IMU at 1 kHz and late poses; the core's estimator on them |
-//! | [`ground`] | something to stand on, for flights that start and end there |
-//! | [`controller`], [`rivals`], [`flier`] | what flies: our law, or other laws to compare it with; the one that is chosen |
+//! | [`ground`] | level ground, for flights that start and end there |
+//! | [`controller`], [`rivals`], [`flier`] | our law; other laws to compare it with; the choice |
 //! | [`flight`] | plant, reference and controller in closed loop, one tick at a time |
-//! | [`course`], [`campaign`] | what a pilot would say of a flight; many flights at once, on all cores |
-//! | [`flown`], [`claims`] | what a flight showed, and that against what was claimed |
+//! | [`course`], [`campaign`] | a flight's figures; many flights at once, on all cores |
+//! | [`flown`], [`claims`] | a flight's extremes; its claims and verdicts |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
 //! | [`identify`] | a vehicle's numbers from the log of a flight and from a bench |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |

@@ -2,11 +2,11 @@
 //!
 //! The first 40 columns are a contract with other tools; what stands to their right may grow: by what the law estimates
 //! (m/s^2, N m), by the rotors' thrusts (N, after lag, in still air, numbered from 1), by the wind (m/s, world), by the
-//! battery's voltage (V) and current (A), by what the law was told of the state. Angles in rad, the rest in SI units;
+//! battery's voltage (V) and current (A), by the measured state that the law got. Angles in rad, the rest in SI units;
 //! each number has the digits that give its bits back.
 //!
 //! `p…` to `w…` and `yaw` are the vehicle's true state; what the law makes of it (`mrp…` and `position_error` on) is of
-//! the state that it was told, `measured_…` where there are sensors, `est_…` where there is an estimator.
+//! the state that it got, `measured_…` where there are sensors, `est_…` where there is an estimator.
 
 use crate::flight::Tick;
 use scenario::number::Number;
@@ -18,7 +18,7 @@ const HEADER: &str = "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,pdx,pdy,pdz,yaw,y
 mrp_x,mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,uf_y,uf_z,us_x,us_y,us_z,s_theta,s_omega,\
 qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 
-/// What a law that estimates adds: force, m/s^2; torque, N m; thrust scale.
+/// Columns of a law that estimates: force, m/s^2; torque, N m; thrust scale.
 const ESTIMATES: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
 
 /// The header row for a vehicle with so many rotors, under a law that estimates or not.
@@ -28,7 +28,7 @@ pub fn header(rotors: usize, estimates: bool) -> String {
     (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
-/// What the header row gains by what the scenario says of reality.
+/// The header row's columns of `[wind]`, `[battery]` and measurements.
 #[must_use]
 pub fn reality_header(reality: &Reality) -> String {
     [
@@ -95,12 +95,12 @@ pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     if let Some((voltage, current)) = tick.surroundings.battery {
         doubles(out, &[voltage, current])?;
     }
-    if let Some(told) = &tick.measured {
-        let q = &told.attitude;
-        singles(out, told.position.as_slice())?;
-        singles(out, told.velocity.as_slice())?;
+    if let Some(measured) = &tick.measured {
+        let q = &measured.attitude;
+        singles(out, measured.position.as_slice())?;
+        singles(out, measured.velocity.as_slice())?;
         singles(out, &[q.w, q.i, q.j, q.k])?;
-        singles(out, told.angular_velocity.as_slice())?;
+        singles(out, measured.angular_velocity.as_slice())?;
     }
     writeln!(out)
 }

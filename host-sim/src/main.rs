@@ -26,12 +26,12 @@ use host_sim::table::short;
 use host_sim::whole_file::WholeFile;
 use scenario::{STUDY, Scenario};
 use searches::{run_compare, run_tune};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use terminal::{BAD_INPUT, complain, not_a_campaigns, print, print_text, same_file, status, text_of, watch};
 
-/// The largest log that nobody is asked about, bytes.
+/// The largest log without `--large-log`, bytes.
 const LARGE_LOG: u64 = 1_000_000_000;
 
 fn main() -> ExitCode {
@@ -90,7 +90,7 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
     fly_into(&scenario, &text, &LawChoice::Ours, &directory, mcap)
 }
 
-/// Flies one flight of a scenario from a file with this `text`, and says what came of it.
+/// Flies one flight of a scenario from a file with this `text`, and prints its claims.
 fn fly_into(
     scenario: &Scenario,
     text: &str,
@@ -161,8 +161,7 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
     }
 }
 
-/// Refuses a flight whose log takes a lot, unless that is `allowed`, and says so; `duration` is the key that makes it
-/// so long.
+/// Refuses a flight with a large log unless that is `allowed`; names the size and `duration`, the key that sets it.
 fn permit(scenario: &Scenario, named: &str, duration: &str, allowed: bool) -> Result<(), String> {
     let rows = scenario.timing.ticks;
     let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));
@@ -193,12 +192,12 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
         alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
     }
     let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
-    let mut tell = |line: &str| drop(print_text(&format!("{line}\n")));
+    let mut show = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {
         None => None,
         Some((line, ports)) => {
             let relay = Relay::open(line, &ports, patience, &interrupt).map_err(|error| error.to_string())?;
-            Some(Clients { relay, tell: &mut tell })
+            Some(Clients { relay, show: &mut show })
         }
     };
     match hil::serve(&scenario, &mut port, &session, arguments.log.as_deref(), clients) {
@@ -235,7 +234,7 @@ fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
             print_text(&report)?;
             Ok(status(true, None))
         }
-        Err(Refused::CannotTell(what)) => {
+        Err(Refused::NotIdentifiable(what)) => {
             complain(format_args!("error: {what}"));
             Ok(status(false, None))
         }
@@ -247,7 +246,7 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
     let (text, name) = given_or_study(arguments.file.as_deref())?;
     let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
     let session = arguments.session(text, name)?;
-    // Whoever has stopped to read is none the less a pilot.
+    // A session goes on after the reader of its output has gone.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
     match sitl::run(&scenario, &session, &watch()?, show) {
         Ok(summary) => {
@@ -265,6 +264,11 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
 fn run_certify(file: Option<&Path>, show: bool) -> Result<ExitCode, String> {
     let scenario = load(file)?;
     let (text, certified) = certify(&scenario).map_err(|error| error.to_string())?;
-    print_text(&if show { shown::constants(&scenario) } else { text })?;
+    if show {
+        // Sections to paste are never folded.
+        print(|| io::stdout().write_all(shown::constants(&scenario).as_bytes()))?;
+    } else {
+        print_text(&text)?;
+    }
     Ok(status(certified, None))
 }

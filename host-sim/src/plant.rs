@@ -10,7 +10,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`body`] | what the equations need to know of a vehicle |
+//! | [`body`] | the vehicle's numbers in the equations |
 //! | [`motion`] | the equations and the method, for any number of vehicles side by side |
 //! | [`lanes`] | numbers of several vehicles in one register |
 //! | [`rows`] | many vehicles that move at the same time |
@@ -59,7 +59,7 @@ impl Plant {
         Self { body: Body::new(vehicle, limits, step), state }
     }
 
-    /// What moves.
+    /// The vehicle's numbers.
     #[must_use]
     pub fn body(&self) -> &Body {
         &self.body

@@ -14,7 +14,7 @@ use scenario::Scenario;
 
 /// Width and height of a figure, pixels.
 const SIZE: (u32, u32) = (1240, 860);
-/// What the transient's figure shows of a flight, s.
+/// The part of a flight in the transient's figure, s.
 const FIRST_SECONDS: f64 = 5.0;
 
 /// The paper's Figure 1: position, yaw, and the norms of the position's and the attitude's error.

@@ -1,5 +1,4 @@
-//! Progress for whoever is watching, on anything longer than a few seconds: a bar on a terminal, elsewhere a plain line
-//! now and then.
+//! Progress of anything longer than a few seconds: a bar on a terminal, elsewhere a plain line now and then.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write, stderr, stdout};

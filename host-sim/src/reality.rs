@@ -1,5 +1,5 @@
-//! A vehicle as it really is, in air that moves: what flies in place of [`crate::plant`] and [`crate::actuators`] where
-//! the scenario says more than its model ([`scenario::reality`]).
+//! The true vehicle in moving air: it replaces [`crate::plant`] and [`crate::actuators`] where the scenario has more
+//! than its model ([`scenario::reality`]).
 //!
 //! ```text
 //! wrench -> (delay) -> allocation -> motors (battery, failure) -> rotor speeds -> thrusts, drag -> body -> ground
@@ -8,7 +8,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`body`] | the rigid body, by the classical Runge-Kutta method of fourth order |
-//! | [`propulsion`] | from the thrusts asked of the rotors to the speeds they turn with |
+//! | [`propulsion`] | from the rotors' commanded thrusts to their speeds |
 //! | [`battery`] | the voltage the motors have |
 //! | [`air`] | forces and moments of rotors and frame in moving air |
 //! | [`wind`], [`dryden`] | how the air moves |
@@ -47,7 +47,7 @@ use scenario::reality::truth::Truth;
 use std::collections::VecDeque;
 use wind::{MovingAir, first_step};
 
-/// What surrounds a vehicle at an instant.
+/// Wind and battery at an instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Surroundings {
     /// Velocity of the air, m/s, world; none where the scenario has no wind.
@@ -121,7 +121,7 @@ impl RealVehicle {
         }
     }
 
-    /// The same vehicle before its motors are told anything: no rotor turns.
+    /// The same vehicle before the first command: no rotor turns.
     #[must_use]
     pub fn switched_off(mut self) -> Self {
         self.propulsion.stop();
@@ -151,7 +151,7 @@ impl RealVehicle {
         self.air.thrusts(&self.propulsion.speeds())
     }
 
-    /// What surrounds it at this moment.
+    /// Wind and battery at this moment.
     #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         Surroundings {
@@ -173,7 +173,7 @@ impl RealVehicle {
         self.disturbance = Some((nothing, 0, force));
     }
 
-    /// Moves its origin as somebody's hands do.
+    /// Moves its origin by an outside force.
     pub fn place(&mut self, state: &BodyState) {
         if let Some(ground) = &mut self.ground {
             ground.take_off_foot();
@@ -186,7 +186,7 @@ impl RealVehicle {
         self.state = *state;
     }
 
-    /// The last touch of the ground since this was asked; a vehicle that hops touches it more than once.
+    /// The last touch of the ground since the last call; a vehicle that hops touches it more than once.
     pub fn take_touchdown(&mut self) -> Option<Touchdown> {
         self.touchdown.take()
     }

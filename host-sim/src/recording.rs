@@ -1,14 +1,14 @@
-//! MCAP: a flight, or a session with the firmware, for [Foxglove](https://foxglove.dev) and whatever else reads MCAP.
+//! MCAP: a flight, or a session with the firmware, for [Foxglove](https://foxglove.dev) and other readers of MCAP.
 //!
 //! | topic | schema | what |
 //! |---|---|---|
-//! | /vehicle, /reference, /told | foxglove.PoseInFrame | where it is; where it is to be; where the law was told that it is |
+//! | /vehicle, /reference, /told | foxglove.PoseInFrame | true pose; reference; the measured pose that the law got |
 //! | /tf | foxglove.FrameTransform | world to body |
 //! | /scene | foxglove.SceneUpdate, once | arms and nose, in the body's frame |
 //! | /law | host_sim.Law | wrench, errors, saturated feedback |
 //! | /rotors | host_sim.Rotors | thrust of each, N, after lag |
 //! | /estimates | host_sim.Estimates | force, torque and thrust scale, where the law estimates |
-//! | /state, /log | host_sim.State, foxglove.Log | what the firmware is doing, and says: sessions of `sitl` only |
+//! | /state, /log | host_sim.State, foxglove.Log | the firmware's mode and texts: sessions of `sitl` only |
 //!
 //! A [flight] is recorded with all but the last two, a [session] with all but /estimates. Frames are the law's: world z
 //! up, body x ahead, y left, z up; SI units. Messages are JSON, one of each for every control tick, at the vehicle's
@@ -34,7 +34,7 @@ use std::io::{self, Write};
 /// A topic, and what its messages look like.
 pub type Topic = (&'static str, Schema);
 
-/// What every recording has.
+/// The topics of every recording.
 const COMMON: [Topic; 7] = [
     ("/vehicle", POSE_IN_FRAME),
     ("/reference", POSE_IN_FRAME),

@@ -13,8 +13,8 @@
 //! | [`document`] | a scenario's own text, section by section |
 //! | [`flight`] | the page that `fly` writes |
 //!
-//! A page is made of these parts: `fly` fills one from a flight; whoever has many flights shows their distributions and
-//! a table of the worst. Style and program lie in `host-sim/report/`, as source files of their own, and are built in.
+//! A page is made of these parts: `fly` fills one from a flight; `campaign` shows distributions and a table of the
+//! worst flights. Style and program lie in `host-sim/report/`, as source files of their own, and are built in.
 //!
 //! The page's Content-Security-Policy names its one style sheet and its one program by their SHA-256 and allows nothing
 //! else: no request, and no program that came in with a scenario's text.

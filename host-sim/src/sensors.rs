@@ -1,4 +1,4 @@
-//! What the controller is told of the state, at each control tick.
+//! The measured state that the controller gets at each control tick.
 //!
 //! White normal noise n, drawn anew for each sample, on each axis alone; T is the time between ticks.
 //!
@@ -18,7 +18,7 @@
 //! each pose   r = p_m - x,   x += (1 - rho^2) r,   v += (1 - rho)^2 r / T_p
 //! ```
 //!
-//!   and the position that the controller is told is the pose's at a pose and carried on from it with v between poses.
+//!   and the controller's position is the pose's at a pose and carried on from it with v between poses.
 //! - A pose drops out with a given probability. Everything arrives a number of ticks late; until the first sample does,
 //!   it is all there is.
 //! - The start of a flight is known: where a vehicle takes off from, it has been standing.
@@ -50,7 +50,7 @@ pub struct Sensors {
     gravity: f64,
     random: Xoshiro256PlusPlus,
     tick: u64,
-    /// The position that the controller is told, m.
+    /// The controller's position, m.
     position: Vector3<f64>,
     attitude: PropagatedAttitude,
     /// x, m.
@@ -59,7 +59,7 @@ pub struct Sensors {
     velocity: Vector3<f64>,
     /// The true velocity at the last tick, m/s: the accelerometer's.
     true_velocity: Vector3<f64>,
-    /// What was measured and is still under way.
+    /// Measurements still under way.
     late: VecDeque<State>,
 }
 
@@ -86,7 +86,7 @@ impl Sensors {
         })
     }
 
-    /// What the controller is told at this tick, while the vehicle is at `state`.
+    /// The measured state at this tick, while the vehicle is at `state`.
     pub fn measure(&mut self, state: &BodyState) -> State {
         let gyro = single(&(state.angular_velocity + self.what.gyro_bias + self.noise(self.what.gyro_noise)));
         if self.tick > 0 {

@@ -9,11 +9,11 @@
 //! |---|---|
 //! | [`clock`], [`mod@line`] | time that moves when every task waits; bytes in memory |
 //! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
-//! | [`port`], `voice` | clients on UDP; what the vehicle says |
-//! | [`pace`] | the vehicle's time against everybody else's |
-//! | [`faults`] | what is to fail, and when |
-//! | [`flash`] | where parameters are kept |
-//! | [`key`] | what frames are signed with |
+//! | [`port`], `voice` | clients on UDP; the vehicle's frames to them |
+//! | [`pace`] | the vehicle's time against real time |
+//! | [`faults`] | simulated faults and their times |
+//! | [`flash`] | the parameters' memory |
+//! | [`key`] | the key that signs frames |
 //! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
@@ -75,21 +75,21 @@ const STATUS: Duration = Duration::from_secs(1);
 /// How a session is run.
 #[derive(Debug, Clone)]
 pub struct Session {
-    /// What errors call the scenario: its file.
+    /// The scenario's name in errors: its file.
     pub file: String,
     /// Where the clients are.
     pub ports: Ports,
     /// How many times as fast as the desk's the vehicle's time passes.
     pub speed: f64,
-    /// Vehicle time after which it ends, s; none: when somebody interrupts.
+    /// Vehicle time after which it ends, s; none: at a signal.
     pub duration: Option<f64>,
     /// Where its poses come from.
     pub poses: PoseSource,
-    /// What fails.
+    /// The faults.
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,
-    /// What frames are signed with.
+    /// The key that signs frames.
     pub signing_key: Option<Key>,
     /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
     pub recording: Option<(PathBuf, String)>,
@@ -118,7 +118,7 @@ impl fmt::Display for SitlError {
 pub struct Summary {
     /// Vehicle time, s.
     pub time: f64,
-    /// What the vehicle was doing; none before its first tick.
+    /// The vehicle's mode; none before its first tick.
     pub mode: Option<Mode>,
     /// Where it really was, m.
     pub position: [f64; 3],
@@ -155,7 +155,7 @@ pub struct Sitl {
     restart: Rc<Cell<bool>>,
 }
 
-/// What starts the firmware anew, once its tasks have come to rest.
+/// Restarts the firmware, once its tasks have come to rest.
 struct Desk(Rc<Cell<bool>>);
 
 impl Restart for Desk {
@@ -165,7 +165,7 @@ impl Restart for Desk {
         self.0.set(true);
     }
 
-    /// There is none, and nobody asks for it.
+    /// Never called: there is no bootloader.
     fn start_bootloader(&mut self) {
         self.restart();
     }
@@ -274,7 +274,7 @@ impl Sitl {
         }
     }
 
-    /// What there is to be seen of it.
+    /// Its state, for a line of status.
     fn moment(&self) -> Moment {
         Moment {
             now: self.clock.now(),
@@ -314,7 +314,7 @@ fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'st
     let _ = spawner.spawn_local(async move { drop(task.await) });
 }
 
-/// Runs a session until its duration is over or somebody interrupts; `tell` gets lines to show.
+/// Runs a session until its duration is over or a signal comes; `show` gets lines to print.
 ///
 /// # Errors
 /// [`SitlError`].
@@ -322,14 +322,14 @@ pub fn run(
     scenario: &Scenario,
     session: &Session,
     interrupt: &Interrupt,
-    mut tell: impl FnMut(&str),
+    mut show: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
     let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
-    warning.iter().for_each(|warning| tell(&format!("warning: {warning}")));
+    warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
-    tell(&format!(
+    show(&format!(
         "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
         scenario.name
     ));
@@ -352,13 +352,13 @@ pub fn run(
             break Err(SitlError::Diverged(next as f64 * 1e-6));
         }
         for (time, text) in sitl.texts.take() {
-            tell(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+            show(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
             record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
         record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
         if shown.elapsed() >= STATUS {
             shown += STATUS;
-            tell(&sitl.status());
+            show(&sitl.status());
         }
     };
     // Also of a session that ended badly: what led to it is in there.

@@ -7,12 +7,13 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use textwrap::WordSplitter;
 
 /// A well-posed run whose claims fail.
 const CLAIMS_FAIL: u8 = 1;
 /// Input that cannot be used, or output that cannot be written.
 pub const BAD_INPUT: u8 = 2;
-/// What a signal's number is added to, as shells do.
+/// The status of signal 0, as shells have it.
 const INTERRUPTED: u8 = 128;
 
 /// Writes to standard output, whole. A reader that has gone away changes no verdict.
@@ -33,33 +34,34 @@ pub fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Widest line of prose on a terminal.
-const WIDTH_MAX: usize = 100;
+/// Widest line of printed prose, columns.
+pub const WIDTH_MAX: usize = 100;
 
-/// Writes a text to standard output: as it is to a file or a pipe, with its prose folded and its failures in red to a
-/// terminal.
+/// Writes a text to standard output with its prose folded; on a terminal no wider than that, and with failures in red.
 pub fn print_text(text: &str) -> Result<(), String> {
     let terminal = console::Term::stdout();
     let shown = match terminal.size_checked().filter(|_| terminal.is_term()) {
         Some((_, columns)) => coloured(&folded(text, WIDTH_MAX.min(columns.into()))),
-        None => text.to_owned(),
+        None => folded(text, WIDTH_MAX),
     };
     print(|| io::stdout().write_all(shown.as_bytes()))
 }
 
-/// Lines of prose no wider than `width`; the rows of tables, whose columns are two spaces apart, stay as they are.
+/// Lines of prose no wider than `width`, broken at spaces only, so that paths and options stay whole; the rows of
+/// tables, whose columns are two spaces apart, stay as they are.
 fn folded(text: &str, width: usize) -> String {
-    let fold = |line: &str| if line.contains("  ") { line.to_owned() } else { textwrap::fill(line, width) };
+    let options = textwrap::Options::new(width).break_words(false).word_splitter(WordSplitter::NoHyphenation);
+    let fold = |line: &str| if line.contains("  ") { line.to_owned() } else { textwrap::fill(line, &options) };
     text.split('\n').map(fold).collect::<Vec<_>>().join("\n")
 }
 
-/// What fails in red, unless NO_COLOR says otherwise.
+/// Failures in red, unless NO_COLOR is set.
 fn coloured(text: &str) -> String {
     let red = |word: &str| console::style(word).red().bold().to_string();
     ["FAILS", "NOT", "UNSTABLE"].iter().fold(text.to_owned(), |text, word| text.replace(word, &red(word)))
 }
 
-/// What a scenario is read from, once: a pipe cannot be read twice.
+/// A scenario's text, read once: a pipe cannot be read twice.
 pub fn text_of(file: Option<&Path>) -> Result<String, String> {
     let read = |file: &Path| {
         scenario::text::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
@@ -104,5 +106,6 @@ mod tests {
     fn prose_is_folded_and_tables_are_not() {
         let (prose, row) = ("one two three four", "a row  of a table  that is wide");
         assert_eq!(folded(&format!("{prose}\n{row}\n"), 10), format!("one two\nthree four\n{row}\n"));
+        assert_eq!(folded("in some/long-path, --large-log", 10), "in\nsome/long-path,\n--large-log");
     }
 }

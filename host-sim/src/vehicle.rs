@@ -56,7 +56,7 @@ impl SimulatedVehicle {
         }
     }
 
-    /// What surrounds it at this moment.
+    /// Wind and battery at this moment.
     #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         match self {

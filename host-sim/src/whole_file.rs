@@ -53,8 +53,8 @@ impl WholeFile {
     pub fn alone(path: &Path) -> io::Result<Self> {
         let file = Self::create(path)?;
         let Some((temporary, path)) = &file.names else { return Ok(file) };
-        // The lock is on what grows: it ends with the program and leaves nothing behind. Where a file system has no
-        // locks, there is none.
+        // The lock is on what grows: it ends with the program and leaves nothing behind. A file
+        // system without locks gets none.
         let _ = file.writer.get_ref().lock();
         let directory = temporary.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let locked = |found: PathBuf| {
@@ -74,7 +74,7 @@ impl WholeFile {
     /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.
     ///
     /// # Errors
-    /// As [`Self::create`]'s. A device or a pipe is not tried: whoever reads it would take the trial for the end.
+    /// As [`Self::create`]'s. A device or a pipe is not tried: its reader would take the trial for the end.
     pub fn try_name(path: &Path) -> io::Result<()> {
         if is_special(path) { Ok(()) } else { Self::create(path).map(drop) }
     }

@@ -88,7 +88,7 @@ impl Loop {
 pub struct Certificate {
     verdict: Verdict,
     rotors: usize,
-    /// What `host-sim certify` prints.
+    /// The output of `host-sim certify`.
     #[pyo3(get)]
     report: String,
     /// Everything that keeps it on the ground, in words; empty if nothing does.

@@ -1,6 +1,7 @@
 //! The threads that work is shared out to.
 //!
-//! Not rayon's own: a process that was forked, as multiprocessing does, has none of its parent's threads, and would wait for them for ever.
+//! Not rayon's own: a process that was forked, as multiprocessing does, has none of its parent's threads, and would
+//! wait for them for ever.
 
 use crate::refused::failed;
 use pyo3::prelude::*;
@@ -18,7 +19,8 @@ pub fn shared<T: Send>(work: impl FnOnce() -> T + Send) -> PyResult<T> {
     Ok(ours()?.install(work))
 }
 
-/// Does long work on threads of its own: on shared ones it could not end before other work that one of them took up meanwhile.
+/// Does long work on threads of its own: on shared ones it could not end before other work that one of them took up
+/// meanwhile.
 ///
 /// # Errors
 /// If the machine gives no threads.
@@ -35,7 +37,7 @@ fn ours() -> PyResult<Arc<ThreadPool>> {
         return Ok(Arc::clone(pool));
     }
     let pool = Arc::new(made()?);
-    // The parent's is not taken down: its threads are not here to be told.
+    // The parent's pool is not shut down: its threads do not exist in this process.
     std::mem::forget(ours.replace((process, Arc::clone(&pool))));
     Ok(pool)
 }

@@ -1,7 +1,7 @@
 //! The governor of a scenario: setpoints in, references inside its bounds out.
 
 use crate::refused::{refused, refused_field};
-use crate::rows::{array, of_asked, row};
+use crate::rows::{array, of_reference, row};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::governor::{self, GovernorLimits, Memory, Motion, Setpoint, Turn};
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 ///
 /// Args:
 ///     scenario: bounds and period.
-///     horizontal_speed, vertical_speed: greatest speeds asked for, m/s.
+///     horizontal_speed, vertical_speed: greatest commanded speeds, m/s.
 ///     snap_ramp, heading_ramp: how long snap and psi'' take from one end of their bound to the other, s.
 ///     timeout: how long velocities and rates are valid without renewal, s.
 #[pyclass(module = "saturated_hybrid")]
@@ -50,7 +50,7 @@ impl Governor {
     fn start(&mut self, position: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>, yaw: f64) -> PyResult<()> {
         let velocity = velocity.map_or(Ok(Vector3::zeros()), |velocity| single(velocity, "velocity"))?;
         let (across, greatest) = (velocity.xy().norm(), self.greatest_speed);
-        // Rounding is none of the caller's business.
+        // Rounding does not concern the caller.
         if across > greatest * (1.0 + 2.0 * f32::EPSILON) {
             let allowed = "must be at most the scenario's reference_bounds.horizontal_speed across";
             return Err(refused_field("velocity", format!("{allowed}, {greatest} m/s, found {across}")));
@@ -62,8 +62,9 @@ impl Governor {
 
     /// Replaces the setpoint, world frame.
     ///
-    /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
-    /// position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the one asked for.
+    /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving
+    /// point. A position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw:
+    /// keep the last one.
     #[pyo3(signature = (position=None, velocity=None, acceleration=None, *, yaw=None, yaw_rate=None))]
     fn accept(
         &mut self,
@@ -87,7 +88,7 @@ impl Governor {
         self.governor.stop();
     }
 
-    /// Whether the reference rests where it was asked to be.
+    /// Whether the reference rests at its setpoint.
     #[getter]
     fn at_rest(&self) -> bool {
         self.governor.at_rest()
@@ -95,7 +96,7 @@ impl Governor {
 
     /// The reference (19,) one period later.
     fn tick<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        PyArray1::from_slice(py, &of_asked(&self.governor.tick()))
+        PyArray1::from_slice(py, &of_reference(&self.governor.tick()))
     }
 
     /// The references (ticks, 19) of as many periods. Interrupted, it is where it was.
@@ -105,7 +106,7 @@ impl Governor {
         let mut references = Vec::with_capacity(ticks);
         while references.len() < ticks {
             let brief = TICKS_BETWEEN_SIGNALS.min(ticks - references.len());
-            py.detach(|| references.extend((0..brief).map(|_| of_asked(&governor.tick()))));
+            py.detach(|| references.extend((0..brief).map(|_| of_reference(&governor.tick()))));
             py.check_signals()?;
         }
         self.governor = governor;
@@ -122,7 +123,7 @@ fn single(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector3<f32>> {
     Ok(Vector3::from(row::<3>(array, field)?).map(|value| value as f32))
 }
 
-/// What is asked for, from what is given of it. A position may be `None` on axes that move at a velocity.
+/// The setpoint from its given parts. A position may be `None` on axes that move at a velocity.
 fn motion(
     position: Option<&Bound<'_, PyAny>>,
     velocity: Option<&Bound<'_, PyAny>>,

@@ -4,7 +4,7 @@
 
 use crate::cores::shared;
 use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, STATE, WRENCH, array, asked, of_wrench, row, rows, told, wrench, wrench_rows};
+use crate::rows::{REFERENCE, STATE, WRENCH, array, measured, of_wrench, reference_of, row, rows, wrench, wrench_rows};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::certificate::certified::Certified;
@@ -86,7 +86,7 @@ impl Law {
         Ok(PyArray1::from_slice(py, &of_wrench(&wrench)))
     }
 
-    /// What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`.
+    /// The rotors' command for a wrench (4,): the wrench over `thrust_scale`.
     fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
         Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.law, &asked))))
@@ -205,7 +205,7 @@ impl LawRows {
                 Ok((law, of_wrench(&wrench)))
             };
             let all = || given.map(one).collect();
-            // What one core does, none of the others is asked about.
+            // Each core works on its own rows.
             if count > ROWS_AT_ONCE { shared(all) } else { Ok(all()) }
         });
         let (laws, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
@@ -236,7 +236,7 @@ impl LawRows {
     }
 }
 
-/// What rotors are asked for, as flights and boards have it.
+/// The rotors' command, as in flights and on boards.
 fn for_rotors(law: &law::Law, wrench: &Wrench) -> Wrench {
     wrench.scaled(1.0 / law.thrust_scale())
 }
@@ -260,6 +260,6 @@ fn step(
     reference: &[f64; REFERENCE],
 ) -> Result<(Wrench, Diagnostics), String> {
     let said = |error: &dyn Display| error.to_string();
-    let reference = asked(reference).map_err(|error| format!("reference.{error}"))?;
-    law.step(&told(state), &reference).map_err(|error| said(&error))
+    let reference = reference_of(reference).map_err(|error| format!("reference.{error}"))?;
+    law.step(&measured(state), &reference).map_err(|error| said(&error))
 }

@@ -114,8 +114,8 @@ pub fn body(row: &[f64; STATE]) -> BodyState {
     }
 }
 
-/// What the law is told.
-pub fn told(row: &[f64; STATE]) -> State {
+/// The law's input state.
+pub fn measured(row: &[f64; STATE]) -> State {
     body(row).measured()
 }
 
@@ -125,8 +125,8 @@ pub fn of_body(state: &BodyState) -> [f64; STATE] {
     [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z]
 }
 
-/// What the law is told as a row.
-pub fn of_told(state: &State) -> [f64; STATE] {
+/// The law's input state as a row.
+pub fn of_measured(state: &State) -> [f64; STATE] {
     let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
     [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z].map(f64::from)
 }
@@ -134,8 +134,8 @@ pub fn of_told(state: &State) -> [f64; STATE] {
 /// The reference of a row.
 ///
 /// # Errors
-/// If its heading is none.
-pub fn asked(row: &[f64; REFERENCE]) -> Result<Reference, controller_core::error::ParameterError> {
+/// If its heading is invalid.
+pub fn reference_of(row: &[f64; REFERENCE]) -> Result<Reference, controller_core::error::ParameterError> {
     let single = |first| three(row, first).map(|value| value as f32);
     let direction = Vector2::new(row[15] as f32, row[16] as f32);
     let (rate, acceleration) = (row[17] as f32, row[18] as f32);
@@ -146,7 +146,7 @@ pub fn asked(row: &[f64; REFERENCE]) -> Result<Reference, controller_core::error
 }
 
 /// A reference as a row.
-pub fn of_asked(reference: &Reference) -> [f32; REFERENCE] {
+pub fn of_reference(reference: &Reference) -> [f32; REFERENCE] {
     let Reference { position, velocity, acceleration, jerk, snap, heading } = reference;
     let mut row = [0.0; REFERENCE];
     for (place, vector) in [position, velocity, acceleration, jerk, snap].into_iter().enumerate() {
@@ -160,7 +160,7 @@ pub fn of_asked(reference: &Reference) -> [f32; REFERENCE] {
 /// The wrench of a row.
 ///
 /// # Errors
-/// If a number is none in single precision.
+/// If a number is not finite in single precision.
 pub fn wrench(row: &[f64; WRENCH]) -> Result<Wrench, &'static str> {
     let single = row.map(|value| value as f32);
     if single.iter().all(|value| value.is_finite()) {
@@ -190,8 +190,8 @@ fn or_zero(argument: Option<&Bound<'_, PyAny>>, field: &str) -> PyResult<Vector3
     argument.map_or(Ok(Vector3::zeros()), |array| Ok(row::<3>(array, field)?.into()))
 }
 
-/// A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin, level,
-/// facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll).
+/// A state (13,): (3,) m, (3,) m/s world, (4,) scalar first, (3,) rad/s body. What is left out: at rest at the origin,
+/// level, facing world x. `euler` (3,) instead of `attitude`: roll, pitch, yaw in rad, R = Rz(yaw) Ry(pitch) Rx(roll).
 #[pyfunction]
 #[pyo3(signature = (position=None, velocity=None, attitude=None, angular_velocity=None, *, euler=None))]
 pub fn state<'py>(
@@ -249,5 +249,5 @@ pub fn reference<'py>(
         snap: single(snap, "snap")?,
         heading,
     };
-    Ok(PyArray1::from_slice(py, &of_asked(&reference)))
+    Ok(PyArray1::from_slice(py, &of_reference(&reference)))
 }

@@ -1,7 +1,7 @@
 //! Scenarios: text that was read, and what it says. A changed scenario is a changed text, read anew.
 
 use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, array, of_asked, of_body, vector};
+use crate::rows::{REFERENCE, array, of_body, of_reference, vector};
 use controller_core::allocation::Rotor;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -26,7 +26,8 @@ const BUILT_IN: [(&str, &str); 12] = [
     ("hummingbird-paper", include_str!("../../vehicles/hummingbird-paper.toml")),
 ];
 
-/// A scenario: vehicle, limits, gains, start, reference and circumstances of a flight. docs/scenario-file.md has its keys.
+/// A scenario: vehicle, limits, gains, start, reference and circumstances of a flight. docs/scenario-file.md has its
+/// keys.
 ///
 /// It never changes; `edited` gives a changed one. It can be pickled.
 #[pyclass(frozen, module = "saturated_hybrid")]
@@ -87,7 +88,8 @@ impl Scenario {
 
     /// The scenario with other values, by their dotted paths: `{"vehicle.mass": 0.48, "wind": {"steady": [2, 0, 0]}}`.
     ///
-    /// Numbers, text, booleans, lists and dictionaries; `None` takes a key or a section away. Comments in the text stay.
+    /// Numbers, text, booleans, lists and dictionaries; `None` takes a key or a section away. Comments in the text
+    /// stay.
     fn edited(&self, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut document: DocumentMut = self.text.parse().map_err(refused)?;
         for (path, value) in changes.iter() {
@@ -191,7 +193,7 @@ impl Scenario {
                     format!("must be from 0 to {:e} s, found {time}", GREATEST_TIME / 1e6),
                 ));
             }
-            Ok(of_asked(&self.read.trajectory.at(micros as u64)))
+            Ok(of_reference(&self.read.trajectory.at(micros as u64)))
         };
         array(py, vector(times, "times")?.into_iter().map(at).collect::<PyResult<Vec<_>>>()?)
     }
@@ -206,7 +208,7 @@ impl Scenario {
     }
 }
 
-/// The longest time of a reference, us: beyond it a double no longer tells microseconds apart.
+/// The longest time of a reference, us: beyond it a double no longer resolves microseconds.
 const GREATEST_TIME: f64 = 9e15;
 
 /// Sets what stands at a dotted path, or with `None` takes it away; sections that are missing come into being.
@@ -242,7 +244,8 @@ fn item(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Item> {
     Ok(Item::Table(table))
 }
 
-/// How deep lists and dictionaries may lie in each other: no key of a scenario takes more, and one that holds itself has no end.
+/// How deep lists and dictionaries may lie in each other: no key of a scenario takes more, and one that holds itself
+/// has no end.
 const DEEPEST: usize = 16;
 
 /// A key of a dictionary at `path`.

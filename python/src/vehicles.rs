@@ -1,15 +1,15 @@
-//! Rows of simulated vehicles under wrenches that somebody else decides on: what environments are made of.
+//! Rows of simulated vehicles under given wrenches, for environments.
 //!
-//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the scenario has
-//! any. A row whose motion is no longer finite goes no further until it is put somewhere.
+//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the
+//! scenario has any. A row whose motion is no longer finite goes no further until it is put somewhere.
 //!
-//! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's vector registers
-//! ([`host_sim::plant::rows`]), to the bits that each has alone.
+//! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's
+//! vector registers ([`host_sim::plant::rows`]), to the bits that each has alone.
 
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, numbers};
 use crate::refused::{refused, refused_field};
-use crate::rows::{STATE, array, body, of_asked, of_body, of_told, rows, wrench_rows};
+use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, wrench_rows};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::state::Wrench;
@@ -30,8 +30,8 @@ const STRETCH: usize = 16;
 struct Row {
     vehicle: SimulatedVehicle,
     sensors: Option<Sensors>,
-    /// What its controller is told now.
-    told: [f64; STATE],
+    /// The measured state now.
+    measured: [f64; STATE],
     tick: u64,
     lost: bool,
 }
@@ -39,15 +39,15 @@ struct Row {
 impl Row {
     fn new(scenario: &scenario::Scenario) -> Self {
         let vehicle = SimulatedVehicle::new(scenario, &scenario.configuration);
-        let mut row = Self { vehicle, sensors: Sensors::new(scenario), told: [0.0; STATE], tick: 0, lost: false };
+        let mut row = Self { vehicle, sensors: Sensors::new(scenario), measured: [0.0; STATE], tick: 0, lost: false };
         row.measure();
         row
     }
 
     fn measure(&mut self) {
         let state = *self.vehicle.state();
-        self.told = match &mut self.sensors {
-            Some(sensors) => of_told(&sensors.measure(&state)),
+        self.measured = match &mut self.sensors {
+            Some(sensors) => of_measured(&sensors.measure(&state)),
             None => of_body(&state),
         };
     }
@@ -123,7 +123,7 @@ impl Stretch {
     }
 }
 
-/// Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on.
+/// Rows of the vehicle that a flight of the scenario simulates, under given wrenches.
 #[pyclass(module = "saturated_hybrid")]
 pub struct VehicleRows {
     scenario: scenario::Scenario,
@@ -194,8 +194,8 @@ impl VehicleRows {
         Ok(())
     }
 
-    /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
-    /// rows' motion is no longer finite, each (rows,).
+    /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and
+    /// which rows' motion is no longer finite, each (rows,).
     #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
     fn step<'py>(
         &mut self,
@@ -208,7 +208,7 @@ impl VehicleRows {
             let brief = stretches.len() < 2;
             let given = stretches.par_iter_mut().zip(wrenches.par_chunks(STRETCH));
             let all = || given.map(|(stretch, asked)| stretch.hold(asked, steps)).collect();
-            // What one core does, none of the others is asked about.
+            // Each core works on its own rows.
             if brief { Ok(all()) } else { shared(all) }
         });
         let (clipped, lost) = (clipped?.concat(), self.rows().map(|row| row.lost).collect());
@@ -221,17 +221,17 @@ impl VehicleRows {
         array(py, self.rows().map(|row| of_body(row.vehicle.state())).collect())
     }
 
-    /// (rows, 13): what controllers are told, by the scenario's `[sensors]`; the true ones where it has none.
+    /// (rows, 13): the measured states, by the scenario's `[sensors]`; without that section the true ones.
     #[getter]
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array(py, self.rows().map(|row| row.told).collect())
+        array(py, self.rows().map(|row| row.measured).collect())
     }
 
     /// (rows, 19): the scenario's, each at its row's own time.
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let period = self.scenario.timing.period_us;
-        let at = |row: &Row| of_asked(&self.scenario.trajectory.at(row.tick * period));
+        let at = |row: &Row| of_reference(&self.scenario.trajectory.at(row.tick * period));
         array(py, self.rows().map(at).collect())
     }
 

@@ -23,7 +23,7 @@ pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> T
             let (sender, receiver) = channel();
             let worker = scope.spawn(move || {
                 let done = work(interrupt);
-                // Whoever no longer waits was interrupted.
+                // The caller was interrupted and no longer waits.
                 let _ = sender.send(());
                 done
             });

@@ -35,7 +35,7 @@ def distance(results):
     [
         (HoverTraj(), 0.001),
         (CIRCLE, 0.02),
-        # It states the snap of its end for ever after it, 47 m/s^4 at rest, and the law believes what it is told: 66 mm.
+        # It states the snap of its end for ever after it, 47 m/s^4 at rest, and the law follows that: 66 mm.
         (MinSnap(np.array([[0, 0, 0], [1, 0, 1], [1, 1, 1], [0, 1, 0]]), v_avg=1.0), 0.1),
     ],
 )
@@ -82,10 +82,10 @@ def test_the_command_is_the_laws_through_the_boards_mixer():
         state = {"x": random.normal(size=3), "v": random.normal(size=3), "q": q, "w": random.normal(size=3)}
         flat = trajectory.update(0.01 * tick)
         control = controller.update(0.01 * tick, state, flat)
-        told = sh.state(state["x"], state["v"], np.roll(q, 1), state["w"])
+        measured = sh.state(state["x"], state["v"], np.roll(q, 1), state["w"])
         asked = sh.reference(flat["x"], flat["x_dot"], flat["x_ddot"], flat["x_dddot"], flat["x_ddddot"],
                              yaw=float(flat["yaw"]), yaw_rate=float(flat["yaw_dot"]), yaw_acceleration=float(flat.get("yaw_ddot", 0.0)))
-        wrench = law.for_rotors(law.step(told, asked)) 
+        wrench = law.for_rotors(law.step(measured, asked)) 
         assert np.array_equal(wrench, np.r_[control["cmd_thrust"], control["cmd_moment"]])
         if not np.allclose(_delivered(control["cmd_motor_speeds"]), wrench, atol=1e-5):
             law.hold_estimates()

@@ -100,8 +100,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
     loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
 }
 
-/// A number that tells one scenario's configuration from another's, in [0, 2^24): what was tuned on one is not the
-/// other's.
+/// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
     let Timing { period, rotor_lag, delay_samples } = timing(scenario);
@@ -230,7 +229,7 @@ mod tests {
         }
     }
 
-    /// What the firmware's build would be told of the study, changed.
+    /// The study with a change, as the firmware's build checks it.
     fn checked(line: &str, other: &str) -> Result<Option<String>, String> {
         assert!(STUDY.contains(line), "{line}");
         check(&Scenario::parse(&STUDY.replace(line, other), "a test").unwrap(), "a test")

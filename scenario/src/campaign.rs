@@ -1,5 +1,4 @@
-//! `[campaign]`: how far the circumstances of a campaign's flights may differ. `host-sim campaign` flies them; nothing
-//! else looks.
+//! `[campaign]`: how far the circumstances of a campaign's flights may differ. Only `host-sim campaign` reads it.
 //!
 //! ```toml
 //! [campaign]
@@ -43,7 +42,7 @@ pub struct Campaign {
     pub flights: u64,
     /// Seed of all draws.
     pub seed: u64,
-    /// What is drawn.
+    /// The ranges of the draws.
     pub ranges: Ranges,
 }
 
@@ -52,8 +51,8 @@ pub struct Campaign {
 pub struct Ranges {
     /// Of each flight, s.
     pub duration: f64,
-    /// What the vehicle is asked to do.
-    pub reference: Asked,
+    /// The vehicle's task.
+    pub reference: Task,
     /// Whether attitudes are drawn, of all attitudes alike; otherwise flights start in the file's.
     pub attitude: bool,
     /// Greatest distance from the reference's first point, m.
@@ -70,15 +69,15 @@ pub struct Ranges {
     pub gust: f64,
     /// Wind at 20 feet, m/s.
     pub turbulence: f64,
-    /// What is measured.
+    /// The sensors' errors.
     pub noise: NoiseRanges,
-    /// What the model has wrong.
+    /// The model's errors.
     pub model: ModelRanges,
 }
 
-/// What a vehicle is asked to do.
+/// A vehicle's task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
+pub enum Task {
     /// The file's reference.
     File,
     /// To hover at the origin.
@@ -123,7 +122,7 @@ impl Campaign {
         let noise = NoiseRanges { gyro: 0.01, position: 2e-3, attitude: ATTITUDE_NOISE_DEG.to_radians(), delay: 0.0 };
         let ranges = Ranges {
             duration: if configuration.paper().is_some() { 180.0 } else { 60.0 },
-            reference: Asked::InTurn,
+            reference: Task::InTurn,
             attitude: true,
             offset: 10.0,
             velocity: 5.0,
@@ -139,7 +138,7 @@ impl Campaign {
     }
 }
 
-/// What the plant can follow, rad/s.
+/// The greatest body rate that the plant can follow, rad/s.
 fn greatest_rate(timing: &Timing) -> f64 {
     GREATEST_TURN_PER_STEP / timing.step()
 }
@@ -147,7 +146,7 @@ fn greatest_rate(timing: &Timing) -> f64 {
 /// Degrees.
 const ATTITUDE_NOISE_DEG: f64 = 0.2;
 
-/// The wind that a law is asked to bear where the file says nothing, m/s: 5, or less where the estimate of forces
+/// The default wind, m/s: 5, or less where the estimate of forces
 /// cannot hold against it. A wind of 1 m/s pushes with about 0.5 m/s^2, and four fifths of the estimate's level are
 /// taken. The paper's law, which estimates nothing and gives way to every constant force, gets none.
 #[must_use]
@@ -160,7 +159,7 @@ pub fn default_wind(configuration: &Configuration) -> f64 {
     }
 }
 
-/// Reads `[campaign]`; the defaults where there is none.
+/// Reads `[campaign]`; the defaults if it is missing.
 ///
 /// # Errors
 /// Names the field that is refused, or the section that it cannot stand beside.
@@ -193,8 +192,8 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         "rotor_scales",
     ])?;
     let measured = NOISE.into_iter().find(|key| section.has(key));
-    let told = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
-    if let (Some(key), Some(other)) = (measured, told) {
+    let source = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
+    if let (Some(key), Some(other)) = (measured, source) {
         let problem = format!("[{other}] says what is measured: leave that section or this key out");
         return Err(FieldError::new(section.path_of(key), problem));
     }
@@ -218,7 +217,7 @@ const LEAST_DURATION: f64 = 1.0;
 /// The most flights of a campaign.
 pub const MOST_FLIGHTS: f64 = 1e8;
 
-/// What takes the place of `[sensors]`.
+/// The keys that a file with `[sensors]` may not have.
 const NOISE: [&str; 4] = ["gyro_noise", "position_noise", "attitude_noise_deg", "pose_delay"];
 
 fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<Ranges, FieldError> {
@@ -254,7 +253,7 @@ fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<R
     })
 }
 
-const REFERENCES: [(&str, Asked); 3] = [("in-turn", Asked::InTurn), ("file", Asked::File), ("hover", Asked::Hover)];
+const REFERENCES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];
 
 fn read_choice<T: Copy, const N: usize>(
     section: &Section,

@@ -23,10 +23,10 @@ use toml::Table;
 /// The paper's Section VI, built in.
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
-/// What the firmware flies if nobody chooses, built in.
+/// The firmware's default vehicle, built in.
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
 
-/// What a scenario file may hold at its top level, beside [`reality::SECTIONS`].
+/// The keys of a scenario file's top level, beside [`reality::SECTIONS`].
 const MODEL_SECTIONS: [&str; 14] = [
     "name",
     "duration",
@@ -58,11 +58,11 @@ pub struct Scenario {
     pub rotor_lag: f64,
     /// From a tick to the moment its wrench acts, plant steps.
     pub delay_steps: u64,
-    /// What vehicle, air and sensors really are, where the model leaves it out.
+    /// The true vehicle, air and sensors, beyond the model.
     pub reality: Reality,
     /// Where it starts.
     pub initial: BodyState,
-    /// What it is asked to do, as the file says it.
+    /// The reference, as in the file.
     pub reference: ReferenceKind,
     /// How far it may stray from that once it is there, m.
     pub tolerance: f64,

@@ -54,7 +54,7 @@ fn diagonal(path: &str, inertia: &Matrix3<f64>) -> Result<Vector3<f64>, FieldErr
     Err(FieldError::new(path, not_diagonal(inertia)))
 }
 
-/// What a matrix with products of inertia is, and what to do about it.
+/// The error of a matrix with products of inertia, and its remedy.
 fn not_diagonal(inertia: &Matrix3<f64>) -> String {
     const WANTED: &str = "must be diagonal";
     let Some((moments, axes)) = principal(inertia) else {

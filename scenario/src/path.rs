@@ -11,7 +11,7 @@ use std::fmt;
 /// Instants looked at on each leg: a peak between two of them is missed by less than 1e-4 of the leg's swing.
 const INSTANTS: u32 = 256;
 
-/// What is not worth a word, or the rounding of single precision, m.
+/// The greatest distance that is not reported, and the rounding of single precision, m.
 const LEAST: f64 = 0.01;
 
 /// A point of a path.

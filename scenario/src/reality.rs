@@ -1,15 +1,15 @@
-//! What a vehicle and the air around it really are, where the model that the controller was given leaves it out.
+//! The true vehicle and the air around it, where they differ from the controller's model.
 //!
 //! | section | what it holds | needs |
 //! |---|---|---|
-//! | [`[truth]`](truth) | mass, inertia, centre of mass, what the rotors deliver | |
-//! | [`[drag]`](drag) | what the air does to frame and rotors | |
+//! | [`[truth]`](truth) | mass, inertia, centre of mass, thrust scale | |
+//! | [`[drag]`](drag) | drag of frame and rotors | |
 //! | [`[wind]`](wind) | how the air moves | `[drag]` |
-//! | [`[disturbance]`](disturbance) | a force and a torque that nobody explains | |
+//! | [`[disturbance]`](disturbance) | an unmodelled force and torque | |
 //! | [`[battery]`](battery) | a voltage that sags and runs down | `[rotors]` |
 //! | [`[failure]`](failure) | a rotor that fails | `[rotors]` |
-//! | [`[ground]`](ground) | something to stand on | |
-//! | [`[sensors]`](sensors) | what the controller is told of the state | |
+//! | [`[ground]`](ground) | level ground | |
+//! | [`[sensors]`](sensors) | noise, bias and delay of the measured state | |
 //! | [`[estimator]`](estimator) | an IMU and late poses, from which the core's estimator makes the state | no `[sensors]` |
 //!
 //! All may be left out. The certificate, the controller and the boards know nothing of them: they are what a flight is
@@ -43,7 +43,7 @@ use wind::Wind;
 pub const SECTIONS: [&str; 9] =
     ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors", "estimator"];
 
-/// What the file says beyond the model. By default nothing: the vehicle is the model, in still vacuum, its state known.
+/// The file's reality beyond the model. By default none: the vehicle is the model, in still vacuum, its state known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reality {
     /// `[truth]`.

@@ -1,4 +1,4 @@
-//! `[reference]`: what the vehicle is asked to do, one kind of trajectory per `kind`. Left out: to hover where it
+//! `[reference]`: the vehicle's trajectory, one per `kind`. Left out: hover where the flight
 //! starts, or 1 m above the origin if `[initial]` does not say where that is, facing world x.
 
 use crate::initial::read_position;
@@ -49,7 +49,7 @@ pub enum Path {
 }
 
 impl ReferenceKind {
-    /// Reads `[reference]`; the default where there is none.
+    /// Reads `[reference]`; the default if it is missing.
     ///
     /// # Errors
     /// Names the field that is missing, unknown, or no number.

@@ -74,7 +74,7 @@ impl Axis {
     /// All of them, in the order of [`LoopModel::reports`].
     pub const ALL: [Self; 6] = [Self::Roll, Self::Pitch, Self::Yaw, Self::LateralX, Self::LateralY, Self::Vertical];
 
-    /// What reports call it.
+    /// Its name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -101,7 +101,7 @@ pub struct Margins {
     pub crossover: f64,
 }
 
-/// What the linear model says about one axis.
+/// The linear model's result for one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopReport {
     /// Which loop.

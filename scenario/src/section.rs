@@ -17,7 +17,7 @@ const LONGEST_KEY: usize = 200;
 pub struct FieldError {
     /// Dotted path in the file, e.g. `vehicle.inertia[2]`.
     pub field: String,
-    /// What is wrong and what is allowed, in one line.
+    /// The error and the allowed values, in one line.
     pub problem: String,
 }
 
@@ -233,7 +233,7 @@ pub fn in_line(value: &Value) -> String {
     }
 }
 
-/// What a table holds at `key` or, with an index, at `key[index]`.
+/// A table's value at `key` or, with an index, at `key[index]`.
 fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
     match key.strip_suffix(']').and_then(|key| key.split_once('[')) {
         Some((key, index)) => table.get(key)?.get(index.parse::<usize>().ok()?),
@@ -241,7 +241,7 @@ fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
     }
 }
 
-/// What a vector must be.
+/// The requirement on a vector.
 const THREE_NUMBERS: &str = "a list of three numbers";
 
 /// Three finite numbers at `path`.

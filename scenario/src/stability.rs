@@ -1,4 +1,4 @@
-//! What is asked of the sampled loops: stable, and not nearly unstable.
+//! The requirements on the sampled loops: stable, with margins.
 //!
 //! A linear model without margin models a vehicle that does not exist. [`LoopMargin::LEAST`] is what a configuration
 //! must have to fly; `host-sim tune` asks for more.
@@ -16,7 +16,7 @@ pub struct LoopMargin {
 }
 
 impl LoopMargin {
-    /// What must be there to fly.
+    /// The least margin to fly.
     ///
     /// *Gain, 1.5*: a loop's gain is proportional to the rotors' thrust coefficient and to one over the inertia. Data
     /// sheets, air density and a fresh or a worn propeller move the first by a fifth, an estimate of the inertia is
@@ -27,7 +27,7 @@ impl LoopMargin {
     /// tick's own work, the frame to the motor controllers and their next step take most of another.
     pub const LEAST: Self = Self { gain: 1.5, delay: 2e-3 };
 
-    /// What `report`'s loop lacks most of this margin; none if it has all of it.
+    /// The greatest shortfall of `report`'s loop from this margin; none if it has all of it.
     #[must_use]
     pub fn lacking(&self, report: &LoopReport) -> Option<Lack> {
         let axis = report.axis;
@@ -37,15 +37,15 @@ impl LoopMargin {
         };
         let (gain, delay) = (self.gain, self.delay);
         let shortfalls = [
-            (gain / margins.gain_up - 1.0, Shortfall::GainUp { found: margins.gain_up, asked: gain }),
-            (gain * margins.gain_down - 1.0, Shortfall::GainDown { found: margins.gain_down, asked: 1.0 / gain }),
-            (1.0 - margins.delay / delay, Shortfall::Delay { found: margins.delay, asked: delay }),
+            (gain / margins.gain_up - 1.0, Shortfall::GainUp { found: margins.gain_up, required: gain }),
+            (gain * margins.gain_down - 1.0, Shortfall::GainDown { found: margins.gain_down, required: 1.0 / gain }),
+            (1.0 - margins.delay / delay, Shortfall::Delay { found: margins.delay, required: delay }),
         ];
         let (missed, what) = shortfalls.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
         (missed > 0.0).then_some(Lack { axis, missed, what })
     }
 
-    /// What the first of `reports` that lacks something lacks; an unstable loop counts before any that is only weak.
+    /// The shortfall of the first of `reports` that has one; an unstable loop counts before a weak one.
     #[must_use]
     pub fn first_lacking(&self, reports: &[LoopReport]) -> Option<Lack> {
         let unstable = reports.iter().filter(|report| report.margins.is_none());
@@ -53,18 +53,18 @@ impl LoopMargin {
     }
 }
 
-/// A loop without the margin asked for.
+/// A loop without the required margin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lack {
     /// Which loop.
     pub axis: Axis,
-    /// By how much it misses, relative to what was asked; above zero.
+    /// By how much it misses, relative to the requirement; above zero.
     pub missed: f64,
-    /// What it lacks.
+    /// Its shortfall.
     pub what: Shortfall,
 }
 
-/// What a loop lacks.
+/// A loop's shortfall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shortfall {
     /// It is unstable as it is.
@@ -77,21 +77,21 @@ pub enum Shortfall {
         /// The factor that does.
         found: f64,
         /// The factor that it must bear.
-        asked: f64,
+        required: f64,
     },
     /// Too little less gain destabilises it.
     GainDown {
         /// The factor that does.
         found: f64,
         /// The factor that it must bear.
-        asked: f64,
+        required: f64,
     },
     /// Too little delay destabilises it.
     Delay {
         /// The delay that does, s.
         found: f64,
         /// The delay that it must bear, s.
-        asked: f64,
+        required: f64,
     },
 }
 
@@ -102,14 +102,14 @@ impl fmt::Display for Lack {
             Shortfall::Unstable { spectral_radius } => {
                 write!(f, "unstable, spectral radius {spectral_radius:.4} per sample, must be below 1")
             }
-            Shortfall::GainUp { found, asked } => {
-                write!(f, "unstable at {found:.2} times its gain, must be stable up to {asked:.2} times")
+            Shortfall::GainUp { found, required } => {
+                write!(f, "unstable at {found:.2} times its gain, must be stable up to {required:.2} times")
             }
-            Shortfall::GainDown { found, asked } => {
-                write!(f, "unstable at {found:.2} times its gain, must be stable down to {asked:.2} times")
+            Shortfall::GainDown { found, required } => {
+                write!(f, "unstable at {found:.2} times its gain, must be stable down to {required:.2} times")
             }
-            Shortfall::Delay { found, asked } => {
-                write!(f, "unstable with {:.1} ms more delay, must bear {:.1} ms", 1e3 * found, 1e3 * asked)
+            Shortfall::Delay { found, required } => {
+                write!(f, "unstable with {:.1} ms more delay, must bear {:.1} ms", 1e3 * found, 1e3 * required)
             }
         }
     }

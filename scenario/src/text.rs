@@ -20,10 +20,10 @@ pub fn read(path: &Path) -> io::Result<String> {
 /// Where what the program was started with is, a pipe or a device as well: standard input, and a shell's `<(...)`.
 const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
 
-/// Opens a file for reading. Opening a pipe waits until somebody writes to it, and reading a device may never end.
+/// Opens a file for reading. Opening a pipe waits until a writer opens it, and reading a device may never end.
 ///
 /// # Errors
-/// If there is none, or it is [none to read](regular).
+/// If the file is missing, or is [not a regular file](regular).
 pub fn open(path: &Path) -> io::Result<File> {
     regular(path)?;
     File::open(path)

@@ -185,7 +185,7 @@ pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
     Limits::new(LimitParameters { thrust_max, torque_max }, vehicle).map_err(|error| root.refused(&error))
 }
 
-/// What `rotors` attain about each axis alone, N m.
+/// The greatest torque of `rotors` about each axis alone, N m.
 fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
     let torques = greatest_torques(rotors);
     if torques.min() > 0.0 {

@@ -18,7 +18,7 @@ use controller_core::certificate::inequality::Inequality;
 use controller_core::error::ParameterError;
 use std::fmt;
 
-/// What the certificate and the sampled loops say about one scenario.
+/// Certificate and sampled loops of one scenario.
 #[derive(Debug, Clone)]
 pub struct Verdict {
     /// The certificate, and with it the key to flight where it holds.

@@ -29,7 +29,7 @@ BOARD_SPEED = 0.5
 # How many times as long as for a vehicle in real time anything may take by this desk's clock.
 STRETCH = 8.0 if EMULATED else 1.0
 
-# So that a client that counts by this desk's clock hears a heartbeat each second, of a board that is ten times as slow.
+# So that a client on this desk's clock receives a heartbeat each second from a board that is ten times as slow.
 BOARD_HEARTBEAT = 100_000  # us
 
 # The longest wait for the emulator or for the simulator to come or go, s.
@@ -39,7 +39,7 @@ VEHICLE = os.path.join(os.path.dirname(__file__), "../../vehicles/study.toml")
 
 
 def free_ports(count, kind=socket.SOCK_DGRAM):
-    """Ports that nobody has."""
+    """Free ports."""
     sockets = [socket.socket(socket.AF_INET, kind) for _ in range(count)]
     for one in sockets:
         one.bind(("127.0.0.1", 0))

@@ -126,7 +126,7 @@ def rates(client):
 
 
 def questions(client):
-    """Whatever is asked is answered."""
+    """Every request is answered."""
     for kind in RATES:
         if kind not in FLYING_ONLY:
             number = numbered(kind)
@@ -140,7 +140,7 @@ def questions(client):
     client.rest(2.0)
     assert 96 <= client.counts["ODOMETRY"] <= 104, client.counts["ODOMETRY"]
     assert client.command(m.MAV_CMD_SET_MESSAGE_INTERVAL, m.MAVLINK_MSG_ID_ODOMETRY, 0) == ACCEPTED
-    # An integer command, one that the dialect has and the vehicle not, and one that nobody has.
+    # An integer command, one that the dialect has and the vehicle not, and an unknown one.
     version = m.MAVLINK_MSG_ID_AUTOPILOT_VERSION
     client.counts["AUTOPILOT_VERSION"] = 0
     assert client.command_int(m.MAV_CMD_REQUEST_MESSAGE, m.MAV_FRAME_GLOBAL, version) == ACCEPTED
@@ -181,7 +181,7 @@ def tuning(client):
         kept = client.reply("PARAM_VALUE", patience=20.0, param_id=name).param_value
         # The same words go out once a second at most.
         client.rest(1.1)
-        # An emulated board's sensors come by a line that nobody reads while it certifies.
+        # An emulated board's sensors come by a line that is not read while it certifies.
         return kept, [text for text in client.texts if not text.startswith("Estimator: ")]
 
     assert asked("GAIN_ATT_P", 80.0) == (80.0, ["GAIN_ATT_P: may be flown, from the next boot on"])
@@ -277,7 +277,7 @@ def recording(client):
         parts[part.ofs] = bytes(part.data[: part.count])
         if part.count < 90:
             break
-    # What was lost on the way is asked for again.
+    # Lost parts are requested again.
     for offset in range(0, entry.size, 90):
         while offset not in parts:
             client.line.mav.log_request_data_send(1, 1, 0, offset, min(90, entry.size - offset))
@@ -313,7 +313,7 @@ def main():
         client.line.wait_heartbeat(timeout=10)
         while client.position is None:
             client.step()
-        # Seconds of an emulated board are long, and its heartbeats were asked for more often.
+        # Seconds of an emulated board are long, and its heartbeats were requested more often.
         common = (parameters, tuning, flight)
         parts = common if EMULATED else (rates, questions, *common, forced, recording)
         assert client.line.target_system == 1, client.line.target_system

@@ -3,7 +3,7 @@
 QGroundControl itself is not run. The states and their times are those of its master as of 2026, read in its source:
 InitialConnectStateMachine, RequestMessageCoordinator (4c246ee4dc), MavCommandQueue (1e06c9b93f), StandardModes (117ed905b4),
 RequestMetaDataTypeStateMachine (0ae35b5c0e), InitialParameterDownloader, PlanManager (00d5b5e018), FTPManager, GimbalController and
-QGCCameraManager. Every request must be answered at the first asking; a refusal is an answer, silence is none.
+QGCCameraManager. Every request must be answered at the first asking; a refusal is an answer, silence is not.
 
 The fence, rally points and files are asked only of vehicles that say they have them. They are asked here all the same, since
 versions differ; and so is what its buttons ask.
@@ -55,7 +55,7 @@ class Station:
         self.unanswered = []
 
     def take(self, patience):
-        """The vehicle's next message; none if there is none in time."""
+        """The vehicle's next message; None if it does not come in time."""
         now = time.monotonic()
         if now - self.beaten >= HEARTBEAT:
             self.beaten = now
@@ -74,7 +74,7 @@ class Station:
                 return message
         return None
 
-    def tell(self, what, tries, began, said):
+    def show(self, what, tries, began, said):
         """Prints what was answered, and remembers what was not, or not at once."""
         took = 1e3 * (time.monotonic() - began)
         again = "" if tries == 1 else f", asked {tries} times"
@@ -88,17 +88,17 @@ class Station:
         for tried in range(1, tries + 1):
             send()
             if (message := self.wait(fits, patience)) is not None:
-                self.tell(what, tried, began, say(message))
+                self.show(what, tried, began, say(message))
                 return message
-        self.tell(what, tries, began, None)
+        self.show(what, tries, began, None)
         return None
 
-    def command(self, what, number, *parameters, heard=lambda message: None):
-        """A command by COMMAND_LONG; its result. `heard` sees whatever comes before that."""
+    def command(self, what, number, *parameters, received=lambda message: None):
+        """A command by COMMAND_LONG; its result. `received` sees whatever comes before that."""
         parameters = [*parameters, *[0.0] * (7 - len(parameters))]
 
         def acknowledged(message):
-            heard(message)
+            received(message)
             return message.get_type() == "COMMAND_ACK" and message.command == number
 
         send = lambda: self.line.mav.command_long_send(VEHICLE, AUTOPILOT, number, 0, *parameters)
@@ -108,13 +108,13 @@ class Station:
 
     def message(self, what, number):
         """A message by REQUEST_MESSAGE, which may come before or after the acknowledgement; none if refused."""
-        heard = []
-        note = lambda message: heard.append(message) if message.get_msgId() == number else None
-        if self.command(what, m.MAV_CMD_REQUEST_MESSAGE, number, heard=note) != m.MAV_RESULT_ACCEPTED:
+        received = []
+        note = lambda message: received.append(message) if message.get_msgId() == number else None
+        if self.command(what, m.MAV_CMD_REQUEST_MESSAGE, number, received=note) != m.MAV_RESULT_ACCEPTED:
             return None
         began = time.monotonic()
-        message = heard[0] if heard else self.wait(lambda one: one.get_msgId() == number, MESSAGE_AFTER_ACK)
-        self.tell("  the message itself", 1, began, message and message.get_type())
+        message = received[0] if received else self.wait(lambda one: one.get_msgId() == number, MESSAGE_AFTER_ACK)
+        self.show("  the message itself", 1, began, message and message.get_type())
         return message
 
 
@@ -136,11 +136,13 @@ def request_standard_modes(station):
 
     done = lambda: modes and len(modes) == next(iter(modes.values())).number_modes
     began = time.monotonic()
-    result = station.command("REQUEST_MESSAGE AVAILABLE_MODES, all", m.MAV_CMD_REQUEST_MESSAGE, AVAILABLE_MODES, heard=note)
+    result = station.command(
+        "REQUEST_MESSAGE AVAILABLE_MODES, all", m.MAV_CMD_REQUEST_MESSAGE, AVAILABLE_MODES, received=note
+    )
     assert result == m.MAV_RESULT_ACCEPTED, result
     station.wait(lambda message: note(message) or done(), MESSAGE_AFTER_ACK) if not done() else None
     names = [modes[index].mode_name for index in sorted(modes)]
-    station.tell("  the modes", 1, began, ", ".join(names) if done() else None)
+    station.show("  the modes", 1, began, ", ".join(names) if done() else None)
     assert len(set(names)) == len(names), names
 
 
@@ -164,7 +166,8 @@ def request_parameters(station):
         else:
             found[message.param_index] = message.param_id
         message = station.wait(value, LIST_SILENCE) if len(found) + len(LOST) < count else None
-    station.tell("  the rest of the list", 1, began, count and f"{len(found)} of {count} taken, {len(LOST)} lost on purpose")
+    taken = count and f"{len(found)} of {count} taken, {len(LOST)} lost on purpose"
+    station.show("  the rest of the list", 1, began, taken)
     # Its patience, before it reads what it misses.
     assert station.wait(lambda one: value(one) and one.param_index not in found, LIST_SILENCE) is None
     for index in sorted(set(range(count)) - set(found))[:LIST_BATCH]:
@@ -239,7 +242,7 @@ def what_else_it_can_ask(station):
     station.line.mav.timesync_send(0, 123_456)
     began = time.monotonic()
     answer = station.wait(lambda one: one.get_type() == "TIMESYNC" and one.ts1 == 123_456, 1.0)
-    station.tell("TIMESYNC", 1, began, answer and "answered")
+    station.show("TIMESYNC", 1, began, answer and "answered")
 
 
 STATES = [

@@ -76,7 +76,7 @@ class Station:
 
 
 def refused(flown, station, words):
-    """What a station asks for does not happen, and is told in words."""
+    """A station's request is refused, with a text."""
     before = sum(words in line for line in flown.lines)
     station.ask(m.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     station.rest(1.0)
@@ -131,7 +131,7 @@ def main():
         parameters = ["--parameters", os.path.join(directory, "parameters")]
         with Desk(SPEED, *parameters) as flown:
             station = Station(flown)
-            station.until(lambda message: message is not None, 10, "the vehicle is heard")
+            station.until(lambda message: message is not None, 10, "the vehicle sends")
             for part in (only_signed, strangers, flight, replays):
                 part(flown, station)
                 print(f"  signing {part.__name__}: passed", flush=True)
@@ -139,7 +139,7 @@ def main():
         # Another day: the key is in the parameters' file, and no time stamp that was used before counts.
         with Desk(SPEED, *parameters) as flown:
             station = Station(flown)
-            station.until(lambda message: message is not None, 10, "the vehicle is heard")
+            station.until(lambda message: message is not None, 10, "the vehicle sends")
             station.wait_for("ready", 20)
             station.sent = recorded
             replays(flown, station)

@@ -69,11 +69,11 @@ def flight(machine):
         assert truly <= NOISY_HOVER, truly
         touched = next(time for time, (_, _, height) in rig.truth(landing, math.inf) if height < 1e-3)
         at_touchdown = [report for report in station.track if abs(report[0] - touched) <= TOUCHDOWN_KNOWN]
-        told = rig.worst_error([report for report in station.track if report not in at_touchdown])
+        reported = rig.worst_error([report for report in station.track if report not in at_touchdown])
         shocked = rig.worst_error(at_touchdown)
-        print(f"    telemetry within {1e3 * told:.1f} mm of the truth, {1e3 * shocked:.1f} mm at the touchdown")
-        # Telemetry that tells the truth to a tenth of a millimetre comes from sensors without noise.
-        assert 1e-4 < told <= NOISY_ERROR, told
+        print(f"    telemetry within {1e3 * reported:.1f} mm of the truth, {1e3 * shocked:.1f} mm at the touchdown")
+        # Telemetry that is exact to a tenth of a millimetre comes from sensors without noise.
+        assert 1e-4 < reported <= NOISY_ERROR, reported
         assert shocked <= TOUCHDOWN_ERROR, shocked
         assert max(row["pz"] for row in rig.rows) < HOVER[2] + 0.05
 
@@ -87,8 +87,8 @@ def vanishing_client(machine):
         station.go((HOVER[0], HOVER[1] + far, HOVER[2]), far - 1.0, 10.0)
         station.alive = False
         # From here on it only listens.
-        station.until("holding", lambda: station.heard("Ground station lost"), SILENCE_MAX + 1.0)
-        after = station.heard("Ground station lost") - station.last_heartbeat
+        station.until("holding", lambda: station.received("Ground station lost"), SILENCE_MAX + 1.0)
+        after = station.received("Ground station lost") - station.last_heartbeat
         print(f"    holding position {after:.2f} s after the last heartbeat")
         # Both times are those of the telemetry that came last: up to two intervals and this machine's delays old.
         assert abs(after - SILENCE_MAX) <= 0.2, after
@@ -98,15 +98,15 @@ def vanishing_client(machine):
         worst = station.worst_distance(held, 1.5)
         print(f"    held within {1e3 * worst:.1f} mm for 1.5 s, {held[1]:.2f} m along a way of {far} m")
         assert worst <= 0.05 and 1.0 < held[1] < far - 1.0
-        # Heard again, it goes on holding until it is told to fly.
+        # With heartbeats again it goes on holding until setpoints are requested.
         station.target, station.alive = (held[0], held[1] - 1.0, held[2]), True
         station.wait(2.0)
         assert station.mode == HOLDING and station.distance(held) <= 0.05, station.position
-        print(f"    told again, 1 m within 0.1 m in {station.go(station.target, 0.1, 5.0):.2f} s")
+        print(f"    requested again, 1 m within 0.1 m in {station.go(station.target, 0.1, 5.0):.2f} s")
         station.wait(2.0)
         station.alive, silent = False, station.now
-        station.until("landing", lambda: station.heard("Ground station still lost"), SILENCE_LANDS + 1.0)
-        after = station.heard("Ground station still lost", silent) - station.last_heartbeat
+        station.until("landing", lambda: station.received("Ground station still lost"), SILENCE_LANDS + 1.0)
+        after = station.received("Ground station still lost", silent) - station.last_heartbeat
         print(f"    landing {after:.2f} s after the last heartbeat")
         assert abs(after - SILENCE_LANDS) <= 0.2, after
         station.landed(15.0)
@@ -121,7 +121,7 @@ def failing_pose(machine):
     with Rig(machine, ["--pose-until", stops]) as rig:
         station = rig.station
         take_off(station)
-        station.until("given up", lambda: station.heard("Pose lost"), stops)
+        station.until("given up", lambda: station.received("Pose lost"), stops)
         took = station.landed(40.0)
         print(f"    landed {took:.2f} s after the pose was given up, by telemetry")
         station.wait(0.5)

@@ -36,5 +36,5 @@ def as_printed(_machine):
         process.terminate()
         process.wait(PATIENCE)
     ticks, missed = re.search(r"(\d+) ticks, .* (\d+) missed", report).groups()
-    print(f"    {ticks} ticks, {missed} missed, nobody on the ground")
+    print(f"    {ticks} ticks, {missed} missed, no ground station")
     assert int(ticks) >= DURATION * 100 and int(missed) == 0, report

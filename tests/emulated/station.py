@@ -119,7 +119,7 @@ class Station:
     def take_off(self, height, limit):
         """Takes off by a command; returns how long it took."""
         self.order(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height)
-        return self.until("take-off", lambda: self.heard("Take-off over"), limit)
+        return self.until("take-off", lambda: self.received("Take-off over"), limit)
 
     def fly_setpoints(self):
         """Has the setpoints flown that are sent meanwhile."""
@@ -139,7 +139,7 @@ class Station:
 
     def landed(self, limit):
         """Waits until the vehicle has found the ground and disarmed; returns how long it took."""
-        took = self.until("landed", lambda: self.heard("Landed: disarmed"), limit)
+        took = self.until("landed", lambda: self.received("Landed: disarmed"), limit)
         self.until("disarmed", lambda: not self.armed, 2.0)
         return took
 
@@ -165,6 +165,6 @@ class Station:
         self.until("holding", passed, seconds + 1.0)
         return worst[0]
 
-    def heard(self, words, since=0.0):
-        """When a text that begins so was first heard, from a time on."""
+    def received(self, words, since=0.0):
+        """When a text that begins so was first received, from a time on."""
         return next((time for time, text in self.texts if text.startswith(words) and (time or 0.0) >= since), None)

@@ -88,7 +88,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
     shown
 }
 
-/// What the law would be told, less what is.
+/// The estimate's error.
 fn error(state: State, moment: &Moment) -> TickError {
     let attitude = UnitQuaternion::new_normalize(state.attitude.cast::<f64>());
     TickError {

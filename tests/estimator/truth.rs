@@ -83,10 +83,10 @@ impl Truth {
         for tick in 0..1_200 {
             let reference = scenario.trajectory.at(tick * 10_000);
             let (wrench, _) = law.step(&vehicle.state().measured(), &reference).unwrap();
-            let asked = wrench.scaled(1.0 / law.thrust_scale());
+            let commanded = wrench.scaled(1.0 / law.thrust_scale());
             let mut clipped = false;
             for _ in 0..10 {
-                clipped |= vehicle.hold(&asked, 1).unwrap().0;
+                clipped |= vehicle.hold(&commanded, 1).unwrap().0;
                 states.push(*vehicle.state());
             }
             if clipped {

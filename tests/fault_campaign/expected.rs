@@ -5,7 +5,7 @@
 //! alone; stop the motors. Of two failures the more severe answer must be given, each by its own time, and no answer
 //! may be given that is more severe than the more severe of the two allows.
 //!
-//! These are read off `docs/firmware.md` and the limits in it. The rules' table is not asked.
+//! These are read off `docs/firmware.md` and the limits in it. The rules' table is not read.
 
 use super::failure::Failure;
 use super::phase::Phase;
@@ -71,7 +71,8 @@ const NOTHING: Answer = Answer {
 const NO_POSES: Answer =
     Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NOTHING };
 
-/// Something outside pushes: the vehicle may go where it likes, and without a pose the IMU cannot tell it from a lie.
+/// Something outside pushes: the vehicle may go where it likes, and without a pose the push is not observable apart
+/// from a lie.
 const PUSHED: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NOTHING };
 
 /// Nothing can be flown any more, at once.
@@ -102,7 +103,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
         // It takes a while until a drift is more than noise.
         Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
-        // On the ground they may be of a simulated vehicle that stands still. Whoever stops a take-off then stops the
+        // On the ground they may be of a simulated vehicle that stands still. Stopping a take-off then stops the
         // motors of a vehicle that is believed to stand, and may be some centimetres up.
         Failure::PoseFreezes if phase == Phase::Spooling => {
             Answer { in_flight: &[(Descend, 3.6)], idling: None, forbids_arming: false, is_gentle: false, ..NO_POSES }

@@ -43,7 +43,7 @@ pub enum Failure {
     Thermal,
     /// Wind that is more than the law can hold against, for 15 s.
     Wind,
-    /// A rotor gives 80 % of what is asked of it.
+    /// A rotor gives 80 % of its command.
     RotorWeak,
     /// A rotor gives nothing.
     RotorLost,
@@ -154,12 +154,12 @@ impl Failures {
         self.failed.iter().any(|(failed, _)| *failed == failure)
     }
 
-    /// What the pilot is told besides what its sensors say, of what it would be told if nothing had failed.
-    pub fn spoil(&self, mut given: Inputs<'static>, heard: &mut Option<u64>) -> Inputs<'static> {
+    /// The pilot's inputs besides its sensors, from those without a failure.
+    pub fn spoil(&self, mut given: Inputs<'static>, heartbeat: &mut Option<u64>) -> Inputs<'static> {
         if !self.has(Failure::StationLost) {
-            *heard = given.ground_station;
+            *heartbeat = given.ground_station;
         }
-        given.ground_station = *heard;
+        given.ground_station = *heartbeat;
         if self.has(Failure::SetpointsLost) {
             given.setpoint = None;
         }

@@ -39,7 +39,7 @@ fn a_vehicle_that_sinks_against_the_airs_drag_has_not_landed() {
 
 #[test]
 fn a_vehicle_that_an_updraft_all_but_stops_in_its_descent_has_not_landed() {
-    // It stood at 0.15 m/s, and the law asked for a fall: motors stopped 1.3 m above the ground.
+    // It stood at 0.15 m/s, and the law commanded a fall: motors stopped 1.3 m above the ground.
     flown(Phase::Descending, Failure::Thermal, None);
 }
 

@@ -69,7 +69,7 @@ struct Flight<'m> {
     /// When the failures struck, ticks.
     struck: (Option<u64>, Option<u64>),
     sight: Sight,
-    heard: Option<u64>,
+    heartbeat: Option<u64>,
     /// Since when it stands on the ground with its motors off, ticks.
     down: Option<u64>,
     /// When it last touched the ground, us.
@@ -90,7 +90,7 @@ pub fn fly(vehicle: &Vehicle, case: Case) -> Flown {
         failures: Failures::none(vehicle.scenario.configuration.vehicle().mass),
         struck: (None, None),
         sight: Sight { tick: 0, mode: Mode::Boot, lasts: 0, height: 0.0, asked: case.height, now: 0 },
-        heard: None,
+        heartbeat: None,
         down: None,
         hit: 0,
         refused: None,
@@ -152,7 +152,7 @@ impl Flight<'_> {
         {
             given = Inputs { request: Some(Request::Land), setpoint: None, ..given };
         }
-        let given = self.failures.spoil(Inputs { now: self.sight.now, ..given }, &mut self.heard);
+        let given = self.failures.spoil(Inputs { now: self.sight.now, ..given }, &mut self.heartbeat);
         let before = self.sight.mode;
         let (outcome, command) = match self.vehicle.tick(&given, &mut self.failures) {
             Ok(answer) => answer,
@@ -257,7 +257,7 @@ impl Flight<'_> {
         let gentle = failed.iter().all(|(failure, _)| expected::answer(*failure, phase).is_gentle);
         let is_hit = !gentle && self.flown.touchdown.is_some();
         let is_down = self.is_on_ground() && does == Severity::Off && most >= Severity::Land;
-        // Once off, always off: arming is not asked for.
+        // Once off, always off: arming is not requested.
         let rearmed = self.down.is_some() && does != Severity::Off;
         if does < least || (does > most && !is_down && !is_hit) || rearmed {
             let Sight { mode, height, .. } = self.sight;
@@ -308,7 +308,7 @@ impl Flight<'_> {
             || self.failed().iter().any(|(failure, _)| expected::answer(*failure, self.case.phase).forbids_arming);
         for request in [Request::Disarm, Request::Arm] {
             let given = self.case.phase.given(&Sight { tick: 100, now: self.sight.now + 10_000, ..self.sight });
-            let given = self.failures.spoil(Inputs { request: Some(request), ..given }, &mut self.heard);
+            let given = self.failures.spoil(Inputs { request: Some(request), ..given }, &mut self.heartbeat);
             let before = self.sight.mode;
             let (outcome, command) = self.vehicle.tick(&given, &mut self.failures).unwrap();
             self.sight = Sight { mode: outcome.mode, now: self.vehicle.now(), tick: self.sight.tick + 1, ..self.sight };

@@ -41,7 +41,7 @@ pub fn complaints(before: Mode, outcome: &Outcome, command: MotorCommand, certif
     said
 }
 
-/// What each mode may tell the motors.
+/// The motor commands that each mode may send.
 fn fits(mode: Mode, command: MotorCommand) -> bool {
     match (mode, command) {
         (Mode::Boot | Mode::Locked | Mode::Checks | Mode::Ready | Mode::Stopped, command) => {

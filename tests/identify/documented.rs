@@ -1,10 +1,10 @@
-//! The flight and the bench of docs/identify.md: what they tell, and what they are refused for.
+//! The flight and the bench of docs/identify.md: the numbers they give, and why they are refused.
 
 use super::parse;
 use host_sim::identify::bench::{self, Bench};
 use host_sim::identify::flight_log::FlightLog;
 use host_sim::identify::quantities::Quantities;
-use host_sim::identify::{identify, telling};
+use host_sim::identify::{identify, observability};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 use verification::identify_trials::{MANOEUVRE, fly};
@@ -13,22 +13,22 @@ const PAGE: &str = include_str!("../../docs/identify.md");
 
 static FLOWN: LazyLock<FlightLog> = LazyLock::new(|| FlightLog::from_csv(&fly(MANOEUVRE).unwrap()).unwrap());
 
-/// What the documented flight and this bench say.
-fn told(bench: &str) -> Quantities {
+/// The numbers from the documented flight and this bench.
+fn identified(bench: &str) -> Quantities {
     let scenario = parse(MANOEUVRE);
     let rotors = scenario.configuration.rotors().unwrap();
     identify(&FLOWN, &scenario, &bench::read(bench, rotors, 9.81).unwrap()).unwrap()
 }
 
 #[test]
-fn the_documented_flight_tells_lag_and_delay_whatever_its_noise() {
+fn the_documented_flight_identifies_lag_and_delay_under_any_noise() {
     let truth = parse(MANOEUVRE);
     (1..=4u64).into_par_iter().for_each(|seed| {
         let noise = MANOEUVRE.replace("seed = 1", &format!("seed = {seed}"));
         let log = FlightLog::from_csv(&fly(&noise).unwrap()).unwrap();
-        let told = identify(&log, &truth, &Bench::default()).unwrap();
-        assert!(told.lag.holds(truth.rotor_lag), "{seed}: {:?}", told.lag);
-        assert!(told.delay.holds(truth.delay()), "{seed}: {:?}", told.delay);
+        let identified = identify(&log, &truth, &Bench::default()).unwrap();
+        assert!(identified.lag.holds(truth.rotor_lag), "{seed}: {:?}", identified.lag);
+        assert!(identified.delay.holds(truth.delay()), "{seed}: {:?}", identified.delay);
     });
 }
 
@@ -36,7 +36,9 @@ fn the_documented_flight_tells_lag_and_delay_whatever_its_noise() {
 fn what_the_air_does_at_the_hubs_is_not_taken_for_inertia() {
     // RotorPy's drag. Without a model of it the three are 2.7, 3.6 and -4.2 % off; with it about z 1.4 %, as yaw
     // accelerates little.
-    for (of_one, truth) in told("").inertia_over_scale.iter().zip(&parse(MANOEUVRE).configuration.vehicle().inertia) {
+    for (of_one, truth) in
+        identified("").inertia_over_scale.iter().zip(&parse(MANOEUVRE).configuration.vehicle().inertia)
+    {
         let truth = f64::from(*truth);
         assert!(of_one.holds(truth) && (of_one.value / truth - 1.0).abs() < 0.016, "{of_one:?}, truly {truth}");
     }
@@ -46,7 +48,7 @@ fn what_the_air_does_at_the_hubs_is_not_taken_for_inertia() {
 fn a_bench_that_contradicts_the_flight_is_refused_by_the_entry_that_deviates_most() {
     let (_, bench) = PAGE.split_once("```toml\n").unwrap();
     let (bench, _) = bench.split_once("```").unwrap();
-    let refused = |bench: &str| telling::unknown(&told(bench)).join("\n");
+    let refused = |bench: &str| observability::unobservable(&identified(bench)).join("\n");
     assert_eq!(refused(bench), "");
     for (good, bad, said) in [
         ("times = [25.51, 25.47, 25.53]", "times = [21.31, 21.28, 21.33]", "deviates most swing about x by -30."),
@@ -59,21 +61,18 @@ fn a_bench_that_contradicts_the_flight_is_refused_by_the_entry_that_deviates_mos
 }
 
 #[test]
-fn rotors_that_answer_before_they_are_asked_make_no_vehicle() {
-    let mut early = told("");
-    assert_eq!(telling::unknown(&early), Vec::<String>::new());
+fn rotors_that_answer_before_their_command_identify_no_vehicle() {
+    let mut early = identified("");
+    assert_eq!(observability::unobservable(&early), Vec::<String>::new());
     early.lag.interval = [0.0, 0.0];
-    assert!(telling::unknown(&early)[0].starts_with("lag: rotors would answer"));
+    assert!(observability::unobservable(&early)[0].starts_with("lag: rotors would answer"));
 }
 
 #[test]
-fn thrust_that_nobody_asked_for_makes_no_vehicle() {
+fn thrust_without_a_command_identifies_no_vehicle() {
     let mut log = FLOWN.clone();
-    log.moments.iter_mut().for_each(|moment| moment.asked.thrust = 0.0);
-    let told = identify(&log, &parse(MANOEUVRE), &Bench::default()).unwrap();
-    let refused = telling::unknown(&told);
-    assert!(
-        refused[0].starts_with("thrust scale: ") && refused[0].contains("from 0.3 to 3 is believed"),
-        "{refused:?}"
-    );
+    log.moments.iter_mut().for_each(|moment| moment.commanded.thrust = 0.0);
+    let identified = identify(&log, &parse(MANOEUVRE), &Bench::default()).unwrap();
+    let refused = observability::unobservable(&identified);
+    assert!(refused[0].starts_with("thrust scale: must be from 0.3 to 3, found"), "{refused:?}");
 }

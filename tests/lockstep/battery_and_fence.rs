@@ -1,4 +1,4 @@
-//! What ends a flight that nobody ends in time: a battery that runs down, and a fence.
+//! A battery that runs down, and a fence: each ends a flight.
 
 use super::down::check_landed;
 use super::flight::Flight;
@@ -35,7 +35,7 @@ fn a_battery_that_stays_low_makes_it_land_once_and_a_critical_one_for_good() {
     let since = flight.now();
     let landing = flight.until("Battery low: landing", 5.0);
     assert!((3_000_000..=3_300_000).contains(&(landing - since)), "{}", landing - since);
-    // Whoever wants to come further may: they have been told.
+    // After the warning a request to come further is granted.
     flight.station.go_to([0.0, 0.0, 1.0]);
     flight.station.hold();
     flight.pass(0.5);
@@ -73,7 +73,7 @@ fn a_setpoint_outside_the_fence_is_refused_and_the_vehicle_stays() {
         let mut flight = fenced(4.0, 3.0);
         flight.station.go_to(outside);
         flight.pass(5.0);
-        assert!(flight.station.heard("Refused: outside the fence").is_some(), "{outside:?}");
+        assert!(flight.station.received("Refused: outside the fence").is_some(), "{outside:?}");
         assert_eq!(flight.report().mode, Mode::Flying);
         assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.world.pose().position);
         // One inside is flown.
@@ -83,7 +83,7 @@ fn a_setpoint_outside_the_fence_is_refused_and_the_vehicle_stays() {
     }
 }
 
-/// How far a vehicle goes on, m, that has flown at `velocity` until `end`, us, and is told to hold.
+/// How far a vehicle goes on, m, that has flown at `velocity` until `end`, us, and then holds.
 fn braking_distance(velocity: [f32; 3], end: u64) -> f32 {
     let mut flight = Flight::in_the_air();
     while flight.now() < end {

@@ -132,7 +132,7 @@ impl Flight {
     pub fn until(&mut self, words: &str, seconds: f64) -> u64 {
         let end = self.now() + (seconds * 1e6) as u64;
         loop {
-            if let Some(time) = self.station.heard(words) {
+            if let Some(time) = self.station.received(words) {
                 return time;
             }
             assert!(self.now() < end, "not within {seconds} s: {words}: {:?}", self.station.texts());

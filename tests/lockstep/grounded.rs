@@ -12,7 +12,7 @@ use firmware::outputs::Outputs;
 use flight::{FlightSettings, Memory, Mode, Pilot};
 use mavlink::dialects::common::MavResult;
 
-/// The embedded vehicle, asked to follow references that its torques are not enough for.
+/// The embedded vehicle, with references that its torques are not enough for.
 fn too_agile() -> Configuration {
     let configuration = configuration::embedded().unwrap();
     let bounds = *configuration.bounds();

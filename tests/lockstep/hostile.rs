@@ -1,4 +1,4 @@
-//! Bytes that nobody meant to send: the vehicle flies on, or does what the flight rules say, and never panics.
+//! Random and damaged bytes: the vehicle flies on, or does what the flight rules say, and never panics.
 
 use super::flight::Flight;
 use super::station::Station;
@@ -55,7 +55,7 @@ fn truncated_and_duplicated_frames_change_nothing() {
         let bytes = flight.station.frame(&pose(&flight));
         flight.station.send_bytes(&bytes);
         flight.station.send_bytes(&bytes);
-        // Ten a second: what lies where the rest of such a frame should is not heard, heartbeats too.
+        // Ten a second: a frame within the rest of such a frame is lost, heartbeats too.
         if tick % 10 == 0 {
             flight.station.send_bytes(&bytes[..random.random_range(0..bytes.len())]);
         }
@@ -78,9 +78,9 @@ fn a_frame_that_arrives_in_two_halves_long_apart_is_no_fresh_pose() {
         flight.pass(0.09);
         flight.station.send_bytes(end);
     }
-    let lost = flight.station.heard("Pose lost").unwrap();
+    let lost = flight.station.received("Pose lost").unwrap();
     assert!(lost - last <= 2 * COASTING_MAX + 20_000, "{}", lost - last);
-    assert!(flight.station.heard("Landed: disarmed").is_some(), "{:?}", flight.station.texts());
+    assert!(flight.station.received("Landed: disarmed").is_some(), "{:?}", flight.station.texts());
     assert!(!flight.report().mode.is_armed());
 }
 
@@ -177,7 +177,7 @@ fn no_number_in_any_field_of_any_message_makes_it_panic_or_leave() {
     }
     assert!(sent > 1_000, "{sent}");
     // Among them were disarm commands, of a station that did not arm it.
-    assert!(flight.station.heard("Refused: another station commands").is_some());
+    assert!(flight.station.received("Refused: another station commands").is_some());
     flight.station.go_to([0.0, 0.0, 1.0]);
     flight.station.fly_setpoints();
     flight.pass(12.0);

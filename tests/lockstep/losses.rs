@@ -60,7 +60,7 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         let regained = flight.world.pose().position;
         let after = worst_tilt(&mut flight, 20.0);
         assert_eq!(flight.report().mode, Mode::Holding);
-        assert!(flight.station.heard("Pose regained").is_some());
+        assert!(flight.station.received("Pose regained").is_some());
         assert!(before.max(after) < 0.4, "{before} {after} rad");
         // The old way is forgotten: it stands where braking took it.
         let pose = flight.world.pose();

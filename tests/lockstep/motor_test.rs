@@ -53,7 +53,7 @@ fn a_disarm_command_ends_it_within_a_tick() {
     flight.pass(0.01);
     assert_eq!(flight.world.command(), MotorCommand::Stop);
     flight.pass(0.1);
-    assert!(flight.station.heard("Disarmed by command").is_some());
+    assert!(flight.station.received("Disarmed by command").is_some());
     flight.pass(2.0);
     assert_eq!(flight.world.command(), MotorCommand::Stop);
 }
@@ -74,7 +74,7 @@ fn any_other_request_ends_it_and_is_refused() {
         assert_eq!(flight.world.command(), MotorCommand::Stop);
         flight.pass(0.1);
         assert_eq!(flight.station.acknowledged(), Some(MavResult::MAV_RESULT_DENIED));
-        assert!(flight.station.heard("Motor test stopped by another request").is_some());
+        assert!(flight.station.received("Motor test stopped by another request").is_some());
         assert_eq!(flight.world.command(), MotorCommand::Stop);
     }
 }
@@ -97,7 +97,7 @@ fn one_that_is_too_fast_too_long_or_of_no_motor_turns_nothing() {
             assert_eq!(flight.world.command(), MotorCommand::Stop, "motor {number} {percent} % {seconds} s");
         }
         assert_eq!(flight.station.acknowledged(), Some(MavResult::MAV_RESULT_DENIED));
-        assert!(words.is_empty() || flight.station.heard(words).is_some(), "{:?}", flight.station.texts());
+        assert!(words.is_empty() || flight.station.received(words).is_some(), "{:?}", flight.station.texts());
     }
 }
 
@@ -111,5 +111,5 @@ fn none_is_run_in_flight() {
         assert!(matches!(flight.world.command(), MotorCommand::Run(_)));
     }
     assert_eq!(flight.station.acknowledged(), Some(MavResult::MAV_RESULT_DENIED));
-    assert!(flight.station.heard("Refused: armed already").is_some());
+    assert!(flight.station.received("Refused: armed already").is_some());
 }

@@ -13,7 +13,7 @@ const TICK: u64 = 10_000;
 const IMU_AGE_MAX: u64 = 22_000;
 
 #[test]
-fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_told_of_once() {
+fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_reported_once() {
     for health in [Health::Faults, Health::Hangs] {
         for mut flight in [grounded_flight(), Flight::in_the_air()] {
             let fed = flight.world.fed();
@@ -23,8 +23,8 @@ fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_told_of_once
             flight.pass(0.3);
             assert_eq!(flight.world.fed(), fed, "fed by ticks that wrote nothing");
             assert_eq!(count(&flight, "motors: a frame did not go out"), 1);
-            assert!(flight.station.heard("motors: a frame").unwrap() - since < 3 * TICK);
-            // Ticks go on meanwhile: whoever comes back is told what holds then.
+            assert!(flight.station.received("motors: a frame").unwrap() - since < 3 * TICK);
+            // Ticks go on meanwhile: motors that come back get the command that holds then.
             assert_eq!(flight.report().timing.missed, 0);
             flight.world.outputs(Health::Works);
             flight.pass(0.1);
@@ -41,7 +41,7 @@ fn grounded_flight() -> Flight {
 }
 
 fn count(flight: &Flight, text: &str) -> usize {
-    flight.station.texts().iter().filter(|(_, heard)| heard == text).count()
+    flight.station.texts().iter().filter(|(_, received)| received == text).count()
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn a_disarm_command_reaches_motors_that_come_back() {
     flight.pass(0.05);
     flight.station.disarm_by_force();
     flight.pass(0.05);
-    assert!(matches!(flight.world.command(), MotorCommand::Run(_)), "they cannot have heard");
+    assert!(matches!(flight.world.command(), MotorCommand::Run(_)), "they cannot have received it");
     flight.world.outputs(Health::Works);
     flight.pass(0.011);
     assert_eq!(flight.world.command(), MotorCommand::Stop);
@@ -70,7 +70,7 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
         }
         assert!(flight.now() - last > IMU_AGE_MAX - 1_000, "stopped by a sample {} us old", flight.now() - last);
         flight.pass(0.5);
-        assert!(flight.station.heard("Stopped: no IMU for 20 ms").is_some());
+        assert!(flight.station.received("Stopped: no IMU for 20 ms").is_some());
         assert_eq!(count(&flight, "IMU does not answer"), 1);
         // Somebody has to look first; then there is still no IMU.
         for words in ["Refused: stopped in flight; disarm first", "Refused: no IMU sample for 20 ms"] {

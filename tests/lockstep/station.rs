@@ -10,7 +10,7 @@ use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// What speaks to the vehicle and hears it; clones are the same station.
+/// A ground station on the vehicle's link; clones are the same station.
 #[derive(Clone)]
 pub struct Station(Rc<Inner>);
 
@@ -18,7 +18,7 @@ struct Inner {
     clock: SimClock,
     up: Line,
     down: Line,
-    heard: RefCell<Vec<(u64, MavMessage)>>,
+    received: RefCell<Vec<(u64, MavMessage)>>,
     sequence: Cell<u8>,
     heartbeats: Cell<bool>,
 }
@@ -30,7 +30,7 @@ impl Station {
             clock: clock.clone(),
             up,
             down,
-            heard: RefCell::default(),
+            received: RefCell::default(),
             sequence: Cell::new(0),
             heartbeats: Cell::new(true),
         }))
@@ -86,7 +86,7 @@ impl Station {
             raw.as_mut_slice()[..length].copy_from_slice(&rest[..length]);
             assert!(raw.has_valid_crc::<MavMessage>(), "the vehicle sent a broken frame");
             let message = MavMessage::parse(MavlinkVersion::V2, raw.message_id(), raw.payload()).unwrap();
-            self.0.heard.borrow_mut().push((now, message));
+            self.0.received.borrow_mut().push((now, message));
             rest = &rest[length..];
         }
     }
@@ -208,28 +208,28 @@ impl Station {
         })
     }
 
-    /// The texts heard so far, with their times, us.
+    /// The texts received so far, with their times, us.
     pub fn texts(&self) -> Vec<(u64, String)> {
         let text = |(time, message): &(u64, MavMessage)| match message {
             MavMessage::STATUSTEXT(data) => Some((*time, data.text.to_str().unwrap().to_owned())),
             _ => None,
         };
-        self.0.heard.borrow().iter().filter_map(text).collect()
+        self.0.received.borrow().iter().filter_map(text).collect()
     }
 
-    /// When a text that begins so was first heard, us.
-    pub fn heard(&self, beginning: &str) -> Option<u64> {
+    /// When a text that begins so was first received, us.
+    pub fn received(&self, beginning: &str) -> Option<u64> {
         self.texts().into_iter().find(|(_, text)| text.starts_with(beginning)).map(|(time, _)| time)
     }
 
-    /// Whatever is acknowledged after this is about what is asked after this.
+    /// Acknowledgements after this are of commands after this.
     pub fn forget_acknowledgements(&self) {
-        self.0.heard.borrow_mut().retain(|(_, message)| !matches!(message, MavMessage::COMMAND_ACK(_)));
+        self.0.received.borrow_mut().retain(|(_, message)| !matches!(message, MavMessage::COMMAND_ACK(_)));
     }
 
     /// The result of the newest acknowledgement.
     pub fn acknowledged(&self) -> Option<MavResult> {
-        self.0.heard.borrow().iter().rev().find_map(|(_, message)| match message {
+        self.0.received.borrow().iter().rev().find_map(|(_, message)| match message {
             MavMessage::COMMAND_ACK(data) => Some(data.result),
             _ => None,
         })

@@ -115,7 +115,7 @@ impl World {
         self.0.body.borrow().plant.state().measured()
     }
 
-    /// What the motors were last told.
+    /// The motors' last command.
     pub fn command(&self) -> MotorCommand {
         self.0.command.get().0
     }
@@ -194,7 +194,7 @@ impl Body {
     }
 }
 
-/// The board's IMU: a sample at each step, with as much noise as tells a sensor from one that is stuck.
+/// The board's IMU: a sample at each step, with enough noise that it does not count as stuck.
 pub struct SimImu(pub World);
 
 impl Imu for SimImu {

@@ -75,8 +75,8 @@ impl Lie {
         }]
     }
 
-    /// Whether nothing on board may tell it: positions that move, or are as far apart, as those of another flight.
-    pub fn is_beyond_telling(&self) -> bool {
+    /// Whether it is not observable on board: its positions are those of another flight.
+    pub fn is_undetectable(&self) -> bool {
         matches!(self, Self::Drifts(_) | Self::Scaled(_))
     }
 }

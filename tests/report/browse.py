@@ -61,7 +61,7 @@ class Reader:
             raise SystemExit(f"error: {self.name}: {what}")
 
     def frames(self):
-        """Waits until what was asked for is drawn."""
+        """Waits until the page is drawn."""
         self.chrome.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
 
     def element(self, selector):
@@ -101,7 +101,7 @@ class Reader:
         self.expect(not small, f"too small for a finger: {small[:3]}")
 
     def early(self):
-        """A pointer that the page is opened or scrolled under reads plots that nobody has seen yet, and so do keys."""
+        """A pointer that the page is opened or scrolled under reads plots that are not drawn yet, and so do keys."""
         self.script("""for (const box of document.querySelectorAll(".chart")) {
             const { left, top } = box.getBoundingClientRect();
             box.dispatchEvent(new PointerEvent("pointermove", { clientX: left + 99, clientY: top + 99 }));
@@ -135,7 +135,7 @@ class Reader:
         while self.time() < start + 0.3 and time.monotonic() < until:
             self.frames()
         self.seen(".play").click()
-        # A busy machine takes its time to hear a click.
+        # A busy machine takes its time to answer a click.
         while "Pause" in self.element(".play").text and time.monotonic() < until + 10:
             self.frames()
         played, at = self.picture(), self.time()
@@ -212,7 +212,7 @@ class Reader:
         self.expect(self.element(".range").text == shown, "0 does not show all")
         time.sleep(0.5)
         said = self.element("#live").get_attribute("textContent")
-        self.expect("x " in said and " m" in said, f"nothing is told to a screen reader: {said!r}")
+        self.expect("x " in said and " m" in said, f"a screen reader gets nothing: {said!r}")
 
     def toggles(self):
         """A name in a legend hides its curve, and shows it again."""
@@ -303,7 +303,7 @@ def main():
             reader.paper(folder)
             still = Reader(chrome, report, "desktop", "light", still=True)
             still.expect(still.script("return getComputedStyle(document.documentElement).scrollBehavior") == "auto",
-                         "it scrolls smoothly for whoever wants no motion")
+                         "it scrolls smoothly despite prefers-reduced-motion")
             still.quiet()
             print(f"{report}: {plots} plots, {time.monotonic() - started:.1f} s")
     finally:

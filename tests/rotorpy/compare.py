@@ -32,15 +32,15 @@ SE3_LABEL, TORQUE_FIRST_LABEL = "SE3", "SE3, torque first"
 EASED = 0.5
 
 
-def controller(label, laws, eased, told, folder):
-    """A new one. `told` changes a copy of the law's file, in this folder."""
+def controller(label, laws, eased, believed, folder):
+    """A new one. `believed` changes a copy of the law's file, in this folder."""
     if label == SE3_LABEL:
         return SE3(EASED if eased else 1.0)
     if label == TORQUE_FIRST_LABEL:
         return SE3TorqueFirst(EASED if eased else 1.0)
     file, arguments = laws[label]
     copy = pathlib.Path(folder) / pathlib.Path(file).name
-    copy.write_text(changed(pathlib.Path(file).read_text(), told))
+    copy.write_text(changed(pathlib.Path(file).read_text(), believed))
     return Law(PROGRAM, copy, arguments)
 
 
@@ -48,7 +48,7 @@ def flown(task):
     """One flight of one controller."""
     (flight, label, eased), laws, period, step = task
     with tempfile.TemporaryDirectory() as folder:
-        pilot = controller(label, laws, eased, flight.told, folder)
+        pilot = controller(label, laws, eased, flight.believed, folder)
         try:
             return fly(flight, pilot, period, step)
         finally:
@@ -88,7 +88,7 @@ def verdict(file):
 
 
 def clippings(records, chosen, label):
-    """Flights of the rows in which this controller asked a rotor for more or less than it can give, and in how many ticks."""
+    """Flights of the rows in which this controller commanded a rotor beyond its limits, and in how many ticks."""
     keys = {(row.flight, label, row.eased) for row in chosen}
     clipped = [record.clipped for key, record in records.items() if key in keys]
     return f"{label} in {sum(ticks > 0 for ticks in clipped)} of {len(clipped)} flights, {sum(clipped)} ticks"

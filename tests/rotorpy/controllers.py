@@ -1,6 +1,6 @@
 """The controllers, each from a state and RotorPy's flat outputs to commanded rotor speeds, rad/s.
 
-`command` also says whether the rotors could be given what the controller asked for.
+`command` also says whether the command was within the rotors' limits.
 """
 
 import subprocess

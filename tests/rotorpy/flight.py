@@ -27,7 +27,7 @@ class Flight:
     start: Start = Start()
     conditions: Conditions = Conditions()
     noise: Noise | None = None
-    told: tuple = ()  # what the law is told of it: (section, key, number) changed in a copy of its file
+    believed: tuple = ()  # the law's model where it differs: (section, key, number) changed in a copy of its file
 
 
 @dataclasses.dataclass
@@ -36,7 +36,7 @@ class Record:
     position: np.ndarray  # at every tick
     error: np.ndarray  # position - reference
     thrusts: np.ndarray  # commanded, of each rotor, N
-    clipped: int  # ticks at which a rotor could not be given what its controller asked for
+    clipped: int  # ticks at which a rotor was commanded beyond its limits
     lost: bool
 
     def last(self, duration):

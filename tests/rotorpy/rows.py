@@ -82,10 +82,10 @@ def step(metres):
     return Row(f"step of {metres} m", "within 0.1 m [s]", Flight(hover(metres), STEP), arrived)
 
 
-def circle(name, told=(), **conditions):
+def circle(name, believed=(), **conditions):
     reference = ThreeDCircularTraj(np.zeros(3), np.array([1.0, 1.0, 0.0]), np.array([CIRCLE_FREQUENCY] * 2 + [0.0]))
     start = Start(*(tuple(reference.update(0.0)[name].tolist()) for name in ("x", "x_dot")))
-    flight = Flight(reference, CIRCLE, start=start, conditions=Conditions(**conditions), told=told)
+    flight = Flight(reference, CIRCLE, start=start, conditions=Conditions(**conditions), believed=believed)
     return Row(f"circle 1 m, 0.25 Hz, {name}", "RMS [m]", flight, circled)
 
 

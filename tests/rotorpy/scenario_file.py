@@ -9,7 +9,7 @@ from vehicle import GRAVITY, PARAMETERS
 
 
 def check_vehicle(file):
-    """Refuses a scenario of another vehicle than RotorPy's: its law would fly a body it was not told of."""
+    """Refuses a scenario of another vehicle than RotorPy's: its law would fly a body that it has no model of."""
     try:
         with open(file, "rb") as text:
             scenario = tomllib.load(text)

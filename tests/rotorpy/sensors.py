@@ -1,4 +1,4 @@
-"""What the controllers are told: the vehicle's state, or what is left of it after noise and delay.
+"""The controllers' measured state: the vehicle's own, or with noise and delay.
 
 White noise from a fixed seed, the same for every controller:
 

@@ -16,7 +16,7 @@ GRAVITY = 9.81
 
 @dataclasses.dataclass(frozen=True)
 class Conditions:
-    """How the vehicle differs from the one its controller was told of, and the air around it."""
+    """How the vehicle differs from its controller's model, and the air around it."""
 
     drag: bool = True
     lag: bool = True

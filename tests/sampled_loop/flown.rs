@@ -91,18 +91,18 @@ impl Bench {
                     (state.position, state.velocity) = (Vector3::zeros(), Vector3::zeros());
                 }
                 let (wrench, _) = law.step(&state.measured(), &hover).unwrap();
-                let mut asked = wrench.scaled(1.0 / law.thrust_scale());
-                let commanded = match self.axis {
-                    Axis::Roll | Axis::LateralY => &mut asked.torque.x,
-                    Axis::Pitch | Axis::LateralX => &mut asked.torque.y,
-                    Axis::Yaw => &mut asked.torque.z,
-                    Axis::Vertical => &mut asked.thrust,
+                let mut commanded = wrench.scaled(1.0 / law.thrust_scale());
+                let component = match self.axis {
+                    Axis::Roll | Axis::LateralY => &mut commanded.torque.x,
+                    Axis::Pitch | Axis::LateralX => &mut commanded.torque.y,
+                    Axis::Yaw => &mut commanded.torque.z,
+                    Axis::Vertical => &mut commanded.thrust,
                 };
                 let rest = if self.axis == Axis::Vertical { weight } else { 0.0 };
-                let motion = *commanded - rest;
-                *commanded = rest + gain as f32 * motion;
+                let motion = *component - rest;
+                *component = rest + gain as f32 * motion;
                 // A rotor saturates when the motion has grown a thousand times.
-                let (clipped, _) = body.hold(&asked, scenario.timing.steps_per_tick).unwrap();
+                let (clipped, _) = body.hold(&commanded, scenario.timing.steps_per_tick).unwrap();
                 if clipped { f32::INFINITY } else { peak.max(motion.abs()) }
             })
         };

@@ -102,7 +102,7 @@ fn small_motions_grow_and_shrink_at_the_predicted_rate() {
     {
         let timing = Timing { rotor_lag, delay_samples, ..IDEAL };
         for axis in ATTITUDE {
-            // So small that it stays linear however it grows. Peaks of windows tell the rate but for half an
+            // So small that it stays linear however it grows. Peaks of windows show the rate but for half an
             // oscillation (9 samples at most) and for what a peak between two samples hides (4 %).
             let peaks = peaks(axis, timing, 1e-60, 1.0, 5);
             let flown = (peaks[4] / peaks[1]).ln() / 300.0;

@@ -39,7 +39,7 @@ pub struct Situation {
     pub filter: FilterState,
     /// ubar_p, m/s^2.
     pub feedback: Vector3<f32>,
-    /// What is asked for, at the origin and at rest.
+    /// The reference, at the origin and at rest.
     pub reference: Reference,
     /// The lifted attitude error m* Phi.
     pub attitude_error: Quaternion<f32>,

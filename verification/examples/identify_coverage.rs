@@ -3,31 +3,30 @@
 //! For each of two vehicles, for one whose commands act without delay, and for one with the air's forces at its rotors'
 //! hubs, RUNS (100) vehicles drawn like it fly the manoeuvre of `scenarios/identify.toml`, each identified from its log
 //! and a weighing. Printed: how many had every true value within its stated interval and how many were refused, with
-//! the quantity; and, for each quantity, the standard uncertainty, the error that really occurred, errors over
-//! uncertainties (root mean square, 1 if uncertainties are honest), and how many intervals missed. Fails if of any but
-//! the last fewer than 95 of 100 were told, and rightly.
+//! the quantity; and, for each quantity, the standard uncertainty, the actual error, errors over uncertainties (root
+//! mean square, 1 if uncertainties are right), and how many intervals missed. Fails if of any but the last fewer than
+//! 95 of 100 were identified correctly.
 
 use host_sim::identify::flight_log::FlightLog;
-use host_sim::identify::identify;
 use host_sim::identify::quantities::Quantity;
-use host_sim::identify::telling;
+use host_sim::identify::{identify, observability};
 use rayon::prelude::*;
 use scenario::{STUDY, Scenario};
 use std::error::Error;
 use verification::identify_trials::{Drag, Trial};
 
-/// A name, what is told, what is true.
-type Told = Vec<(&'static str, Quantity, f64)>;
+/// Name, identified quantity, true value.
+type Identified = Vec<(&'static str, Quantity, f64)>;
 
-fn run(file: &str, seed: u64, drag: Drag, delay: Option<f64>) -> Result<Told, String> {
+fn run(file: &str, seed: u64, drag: Drag, delay: Option<f64>) -> Result<Identified, String> {
     let trial = Trial::flown(file, seed, drag, delay)?;
     let scenario = Scenario::parse(file, "model").map_err(|error| error.to_string())?;
     let log = FlightLog::from_csv(&trial.log)?;
     let refused = |lines: Vec<String>| if lines.is_empty() { Ok(()) } else { Err(lines.join("; ")) };
-    refused(telling::unmoved(&log))?;
-    let told = identify(&log, &scenario, &trial.bench)?;
-    refused(telling::unknown(&told))?;
-    Ok(trial.truths(&told))
+    refused(observability::unexcited(&log))?;
+    let identified = identify(&log, &scenario, &trial.bench)?;
+    refused(observability::unobservable(&identified))?;
+    Ok(trial.truths(&identified))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -41,32 +40,38 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("hummingbird, drag at the hubs", hummingbird, Drag::AtHubs, None),
     ] {
         let flown = |seed| run(file, seed, drag, delay);
-        let told: Vec<Result<Told, String>> = (1..=runs).into_par_iter().map(flown).collect();
-        for (seed, refused) in
-            told.iter().enumerate().filter_map(|(index, told)| Some((index + 1, told.as_ref().err()?)))
+        let identified: Vec<Result<Identified, String>> = (1..=runs).into_par_iter().map(flown).collect();
+        for (seed, refused) in identified
+            .iter()
+            .enumerate()
+            .filter_map(|(index, identified)| Some((index + 1, identified.as_ref().err()?)))
         {
             println!("{name}, run {seed}: {refused}");
         }
-        let told: Vec<Told> = told.into_iter().flatten().collect();
-        let all = told.iter().filter(|run| run.iter().all(|(_, told, truth)| told.holds(*truth))).count();
-        println!("{name}: {} of {runs} runs told, {all} of them with every true value within its interval", told.len());
+        let identified: Vec<Identified> = identified.into_iter().flatten().collect();
+        let all =
+            identified.iter().filter(|run| run.iter().all(|(_, identified, truth)| identified.holds(*truth))).count();
+        println!(
+            "{name}: {} of {runs} runs identified, {all} of them with every true value within its interval",
+            identified.len()
+        );
         println!(
             "{:18} {:>12} {:>12} {:>12} {:>12} {:>7}",
             "", "uncertainty", "rms error", "mean error", "rms ratio", "missed"
         );
-        for index in 0..told.first().map_or(0, Vec::len) {
-            let of: Vec<(Quantity, f64)> = told.iter().map(|run| (run[index].1, run[index].2)).collect();
+        for index in 0..identified.first().map_or(0, Vec::len) {
+            let of: Vec<(Quantity, f64)> = identified.iter().map(|run| (run[index].1, run[index].2)).collect();
             let mean = |what: &dyn Fn(&(Quantity, f64)) -> f64| of.iter().map(what).sum::<f64>() / of.len() as f64;
-            let uncertainty = mean(&|(told, _)| told.uncertainty.powi(2)).sqrt();
-            let error = mean(&|(told, truth)| (told.value - truth).powi(2)).sqrt();
-            let bias = mean(&|(told, truth)| told.value - truth);
-            // What is told exactly may be told without any uncertainty: no delay.
-            let off = |told: &Quantity, truth: f64| {
-                if told.value == truth { 0.0 } else { (told.value - truth) / told.uncertainty }
+            let uncertainty = mean(&|(identified, _)| identified.uncertainty.powi(2)).sqrt();
+            let error = mean(&|(identified, truth)| (identified.value - truth).powi(2)).sqrt();
+            let bias = mean(&|(identified, truth)| identified.value - truth);
+            // A delay of zero may be exact, without any uncertainty.
+            let off = |identified: &Quantity, truth: f64| {
+                if identified.value == truth { 0.0 } else { (identified.value - truth) / identified.uncertainty }
             };
-            let ratio = mean(&|(told, truth)| off(told, *truth).powi(2)).sqrt();
-            let missed = of.iter().filter(|(told, truth)| !told.holds(*truth)).count();
-            let name = told[0][index].0;
+            let ratio = mean(&|(identified, truth)| off(identified, *truth).powi(2)).sqrt();
+            let missed = of.iter().filter(|(identified, truth)| !identified.holds(*truth)).count();
+            let name = identified[0][index].0;
             println!("{name:18} {uncertainty:12.3e} {error:12.3e} {bias:12.3e} {ratio:12.2} {missed:7}");
         }
         // What the air does at the hubs is known to be found in part only (docs/identify.md).

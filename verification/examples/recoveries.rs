@@ -11,15 +11,15 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
 use scenario::Scenario;
-use scenario::campaign::{Asked, ModelRanges, NoiseRanges, Ranges};
+use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;
 use std::path::Path;
 use verification::campaign::fly_all;
 
-/// What is drawn.
+/// The ranges of the draws.
 const RANGES: Ranges = Ranges {
     duration: 60.0,
-    reference: Asked::InTurn,
+    reference: Task::InTurn,
     attitude: true,
     offset: 10.0,
     velocity: 5.0,
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     row("settled within 0.2 m after", "s", |outcome| outcome.settled.unwrap_or(f64::INFINITY));
     let count = |what: fn(&Outcome) -> bool| flown.iter().filter(|outcome| what(outcome)).count();
     println!("not settled at the end: {}", count(|outcome| outcome.settled.is_none()));
-    println!("with a rotor asked for more than it has: {}", count(|outcome| outcome.clipped > 0));
+    println!("with a rotor commanded more than it has: {}", count(|outcome| outcome.clipped > 0));
     println!("with a command beyond its certified bound: {}", count(|outcome| outcome.beyond > 0));
     Ok(())
 }

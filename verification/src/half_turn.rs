@@ -45,7 +45,7 @@ pub struct Trial {
 pub struct Course {
     /// (s, rad): the roll, counted on past half a turn.
     pub roll: Vec<(f64, f64)>,
-    /// (s, N m): the torque asked for about body x.
+    /// (s, N m): the commanded torque about body x.
     pub torque: Vec<(f64, f64)>,
     /// How far it turned about body x in all, there and back, rad.
     pub turned: f64,
@@ -95,9 +95,9 @@ impl Trial {
                     deviation * normal
                 }
             };
-            let mut told = state;
-            told.attitude = state.attitude * about_x(error);
-            let (wrench, _) = controller.step(&told.measured(), &hover.at(tick * start.timing.period_us)).ok()?;
+            let mut measured = state;
+            measured.attitude = state.attitude * about_x(error);
+            let (wrench, _) = controller.step(&measured.measured(), &hover.at(tick * start.timing.period_us)).ok()?;
             let torque = f64::from(wrench.torque.x);
             if (roll - PI).abs() < 0.1 {
                 course.left_after = time + period;

@@ -38,7 +38,7 @@ use shown::widened;
 pub use shown::{Hour, Hours, Obeyed, TIMED};
 use std::fmt;
 
-/// What is to be flown.
+/// The plan of a long flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
     /// Hours.
@@ -83,7 +83,7 @@ impl From<PilotedError> for Ended {
     }
 }
 
-/// What is done to vehicle and poses at the moment.
+/// The current disturbance of vehicle and poses.
 #[derive(Debug, Clone, Copy, Default)]
 struct World {
     /// N, world.
@@ -102,7 +102,7 @@ impl Meddler for World {
     fn pose(&mut self, pose: Stamped<Pose>, _: u64) -> Option<Stamped<PoseMeasurement>> {
         let Stamped { value, time } = pose;
         let nothing = Velocity::World(Vector3::zeros());
-        // A pose that is too far away is none.
+        // A pose that is too far away is missing.
         let moved = Pose::new(value.position() + self.offset, nothing, value.attitude()).ok().filter(|_| self.poses)?;
         // The counter has eight bits, and runs over.
         Some(Stamped { value: PoseMeasurement::new(&moved).reset_counter(self.moves as u8), time })
@@ -136,7 +136,7 @@ impl Sums {
     }
 }
 
-/// Flies what `plan` says on the vehicle of `scenario`, whose configuration is `certified`; `tell` hears of each hour.
+/// Flies what `plan` says on the vehicle of `scenario`, whose configuration is `certified`; `report` gets each hour.
 ///
 /// # Errors
 /// [`Ended`]: the first mission that does not go as it should ends it.
@@ -144,7 +144,7 @@ pub fn fly(
     scenario: &Scenario,
     certified: &Certified,
     plan: &Plan,
-    mut tell: impl FnMut(&Hour),
+    mut report: impl FnMut(&Hour),
 ) -> Result<Hours, Ended> {
     let mut place = Place::new(certified.configuration());
     let mut scenario = scenario.clone();
@@ -155,7 +155,7 @@ pub fn fly(
         mass: f64::from(certified.configuration().vehicle().mass),
         random: ChaCha8Rng::seed_from_u64(plan.seed),
         world: World { poses: true, ..World::default() },
-        heard: None,
+        heartbeat: None,
         shown: Hours::nothing(),
     };
     for _ in 0..plan.hours {
@@ -164,7 +164,7 @@ pub fn fly(
             campaign.mission(&mut sums)?;
         }
         let hour = sums.hour();
-        tell(&hour);
+        report(&hour);
         campaign.shown.hours.push(hour);
     }
     let Campaign { vehicle, world, mut shown, .. } = campaign;
@@ -179,15 +179,15 @@ struct Campaign<'m> {
     mass: f64,
     random: ChaCha8Rng,
     world: World,
-    /// When the ground station was heard last, us.
-    heard: Option<u64>,
+    /// When the ground station's last heartbeat came, us.
+    heartbeat: Option<u64>,
     shown: Hours,
 }
 
-/// What is remembered within a mission.
+/// The state within a mission.
 #[derive(Default)]
 struct Course {
-    /// The transitions that are told.
+    /// The transitions taken so far.
     reasons: Vec<Reason>,
     /// When the take-off was commanded, ticks.
     up: u64,
@@ -207,7 +207,7 @@ impl Campaign<'_> {
             self.vehicle.choose(&script.settings());
             self.meddle(&script, tick);
             let mode = self.vehicle.pilot().mode();
-            let given = script.given(tick, mode, self.vehicle.now(), &mut self.heard);
+            let given = script.given(tick, mode, self.vehicle.now(), &mut self.heartbeat);
             let (outcome, _) = self.vehicle.tick(&given, &mut self.world)?;
             self.measure(&script, tick, &outcome, sums, &mut course);
             match outcome.answer {
@@ -235,7 +235,7 @@ impl Campaign<'_> {
         self.world.push = Vector3::new(from.cos(), from.sin(), 0.0) * force;
     }
 
-    /// What is done to the poses in this tick.
+    /// Withholds or moves the poses in this tick.
     fn meddle(&mut self, script: &Script, tick: u64) {
         self.world.poses = !script.is_dark(tick);
         if script.moves_frame(tick) {

@@ -21,11 +21,11 @@ pub const MANOEUVRE: &str = include_str!("../../scenarios/identify.toml");
 /// s: the last sample of the IMU came now, not a millisecond ago.
 pub const RATES_YOUNGER: f64 = 0.001;
 
-/// What RotorPy says of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
+/// RotorPy's coefficients of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
 const AT_HUBS: [(&str, f64); 3] =
     [("rotor_across", 1.19e-4), ("rotor_along", 2.32e-4), ("translational_lift", 3.39e-3)];
 
-/// What a trial's scale is good for: a standard uncertainty of so much of the mass.
+/// The standard uncertainty of a trial's scale, as a part of the mass.
 const SCALE: f64 = 1e-3;
 
 /// How the air pulls at a vehicle.
@@ -43,7 +43,7 @@ pub enum Drag {
 pub struct Trial {
     /// The file, with the truth in it.
     pub text: String,
-    /// What it left.
+    /// Its log.
     pub log: String,
     /// Its mass on a scale.
     pub bench: Bench,
@@ -117,26 +117,26 @@ impl Trial {
 
     /// The name of each quantity, its estimate, and its true value.
     #[must_use]
-    pub fn truths(&self, told: &Quantities) -> Vec<(&'static str, Quantity, f64)> {
+    pub fn truths(&self, identified: &Quantities) -> Vec<(&'static str, Quantity, f64)> {
         let t = &self.truths;
         let mut truths = vec![
-            ("mass", told.mass, t.mass),
-            ("thrust scale", told.thrust_scale, t.thrust_scale),
-            ("inertia x", told.inertia[0], t.inertia[0]),
-            ("inertia y", told.inertia[1], t.inertia[1]),
-            ("inertia z", told.inertia[2], t.inertia[2]),
-            ("lag and delay", told.whole_delay, t.lag + t.delay - RATES_YOUNGER),
-            ("lag", told.lag, t.lag),
+            ("mass", identified.mass, t.mass),
+            ("thrust scale", identified.thrust_scale, t.thrust_scale),
+            ("inertia x", identified.inertia[0], t.inertia[0]),
+            ("inertia y", identified.inertia[1], t.inertia[1]),
+            ("inertia z", identified.inertia[2], t.inertia[2]),
+            ("lag and delay", identified.whole_delay, t.lag + t.delay - RATES_YOUNGER),
+            ("lag", identified.lag, t.lag),
             // No estimate is below zero.
-            ("delay", told.delay, (t.delay - RATES_YOUNGER).max(0.0)),
-            ("centre of mass x", told.centre_of_mass[0], t.centre[0]),
-            ("centre of mass y", told.centre_of_mass[1], t.centre[1]),
-            ("drag x", told.drag[0], t.drag[0]),
-            ("drag y", told.drag[1], t.drag[1]),
-            ("drag z", told.drag[2], t.drag[2]),
+            ("delay", identified.delay, (t.delay - RATES_YOUNGER).max(0.0)),
+            ("centre of mass x", identified.centre_of_mass[0], t.centre[0]),
+            ("centre of mass y", identified.centre_of_mass[1], t.centre[1]),
+            ("drag x", identified.drag[0], t.drag[0]),
+            ("drag y", identified.drag[1], t.drag[1]),
+            ("drag z", identified.drag[2], t.drag[2]),
         ];
         if self.drag == Drag::AtHubs {
-            truths.truncate(truths.len() - told.drag.len());
+            truths.truncate(truths.len() - identified.drag.len());
         }
         truths
     }

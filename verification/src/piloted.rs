@@ -8,8 +8,8 @@
 //! ```
 //!
 //! It does in one call a tick what the firmware's tasks do, without their link and their clock: so hours pass in
-//! seconds. What an operator says goes in with each tick; what is to fail, a [`Meddler`] takes from the sensors or
-//! changes in what they say. SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
+//! seconds. An operator's requests go in with each tick; a [`Meddler`] removes or changes measurements that are to
+//! fail. SI units, world z up, times in us of the vehicle's clock, which may start anywhere.
 
 use controller_core::allocation::{Rotor, ThrustCurve};
 use controller_core::certificate::certified::{Certified, Refused};
@@ -30,7 +30,7 @@ use scenario::reality::ground::Ground;
 use std::collections::VecDeque;
 use std::fmt;
 
-/// What motors idle at, part of a full command: the firmware's default.
+/// The motors' idle command, part of a full one: the firmware's default.
 const IDLE: f32 = 0.03;
 
 /// Where a pilot's estimator, governor and mixer lie.
@@ -49,32 +49,32 @@ impl Place {
     }
 }
 
-/// Who stands between the sensors and the pilot, and lays hands on the vehicle.
+/// Faults between the sensors and the pilot, and forces on the vehicle.
 pub trait Meddler {
-    /// What becomes of the vehicle a millisecond on, at `time`, us, before its sensors look.
+    /// Acts on the vehicle each millisecond, at `time`, us, before its sensors measure.
     fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
 
-    /// What the IMU feels at `time`, us, of what the body does.
+    /// The IMU's input at `time`, us, from the body's motion.
     fn feel(&mut self, felt: Felt, _time: u64) -> Felt {
         felt
     }
 
-    /// What becomes of an IMU's sample that was taken at `time`, us; none: it does not come.
+    /// An IMU's sample of `time`, us, as it arrives; none: it is lost.
     fn sample(&mut self, sample: ImuSample, _time: u64) -> Option<ImuSample> {
         Some(sample)
     }
 
-    /// What becomes of a pose that arrives at `now`, us.
+    /// A pose that arrives at `now`, us, as it is delivered; none: it is lost.
     fn pose(&mut self, pose: Stamped<Pose>, _now: u64) -> Option<Stamped<PoseMeasurement>> {
         Some(Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
     }
 }
 
-/// Nobody.
+/// No interference: sensors and vehicle as they are.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Nobody;
+pub struct Undisturbed;
 
-impl Meddler for Nobody {}
+impl Meddler for Undisturbed {}
 
 /// Why a vehicle cannot be flown like this, or no further.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,9 +168,9 @@ impl<'m> PilotedVehicle<'m> {
         })
     }
 
-    /// A period passes; then the pilot decides, on what has come and on what is `given` besides: `now`, increments,
-    /// body rate and poses of that are replaced by the vehicle's own. With what it decided comes what the motors are
-    /// told from now on.
+    /// A period passes; then the pilot decides, on the vehicle's measurements and on what is `given` besides: `now`,
+    /// increments, body rate and poses of that are replaced by the vehicle's own. Returns its outcome and the motors'
+    /// command from now on.
     ///
     /// # Errors
     /// [`PilotedError::Diverged`].
@@ -212,7 +212,7 @@ impl<'m> PilotedVehicle<'m> {
         if let Some(sample) = meddler.sample(sample, self.now) {
             let force = Some(&sample.specific_force);
             let taken = self.conditioner.sample(self.now, &sample.angular_velocity, force);
-            // As the firmware's IMU task has it: a gyro that is stuck is none.
+            // As in the firmware's IMU task, a stuck gyro counts as missing.
             let is_stuck = taken.fault == Some(ImuFault::GyroStuck);
             if !is_stuck {
                 self.increments.extend(taken.increment);
@@ -225,7 +225,7 @@ impl<'m> PilotedVehicle<'m> {
         Ok(())
     }
 
-    /// What is asked of the rotors, N, as far as they can give it.
+    /// The commanded thrusts, N, as far as the rotors can give them.
     fn thrusts(&self) -> [f32; MOTORS] {
         let commands = self.acting.levels();
         std::array::from_fn(|rotor| self.left[rotor] * self.curves[rotor].thrust(commands[rotor], 1.0))
@@ -254,12 +254,12 @@ impl<'m> PilotedVehicle<'m> {
         &self.vehicle
     }
 
-    /// The same, for whoever pushes it, picks it up or asks for its touchdowns.
+    /// The same, to push it, pick it up or read its touchdowns.
     pub fn vehicle_mut(&mut self) -> &mut RealVehicle {
         &mut self.vehicle
     }
 
-    /// Leaves a rotor with a part of the thrust that is asked of it, from now on.
+    /// Leaves a rotor with a part of its commanded thrust, from now on.
     pub fn weaken(&mut self, rotor: usize, left: f32) {
         if let Some(part) = self.left.get_mut(rotor) {
             *part = left;

@@ -11,7 +11,7 @@ use nalgebra::{Vector3, Vector4};
 #[derive(Debug, Clone)]
 pub struct SpinningRotors {
     rotors: Rotors,
-    /// What is left of a speed error after half a plant step, and after a whole one.
+    /// The share of a speed error that remains after half a plant step, and after a whole one.
     decay: (f64, f64),
     /// Per rotor: speed now and speed commanded, rad/s.
     speeds: Vec<(f64, f64)>,

@@ -1,4 +1,4 @@
-//! What a campaign is asked to be, and a merge of its shards, in clap's terms; and what of it is refused.
+//! The arguments of a campaign and of a merge of its shards, in clap's terms, and their checks.
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -11,7 +11,7 @@ use scenario::Scenario;
 use scenario::campaign::MOST_FLIGHTS;
 use std::path::{Path, PathBuf};
 
-/// What a campaign is asked to be.
+/// The arguments of `campaign`.
 #[derive(Args)]
 pub struct CampaignArguments {
     /// Scenario file; its [campaign] says how circumstances differ from flight to flight
@@ -61,10 +61,12 @@ pub struct MergeArguments {
 
 /// The help of `campaign`.
 pub const HELP: &str = "\
-Each flight's circumstances come from the seed and its number alone: where it starts, wind, noise and, if the file asks for it, what the
-model has wrong. A flight recovers and tracks if it comes within 0.2 m of its reference in the first 90 % of its time and stays there to the
-end. The same flights give the same bytes at any number of threads, in any split, and after any interruption: what was finished is
-kept, and the same command goes on from there. campaign.arrow has a row for each flight; docs/campaign.md has its columns, and how to read them in Python.
+Each flight's circumstances come from the seed and its number alone: where it starts, wind, noise
+and, if the file asks for it, what the model has wrong. A flight recovers and tracks if it comes
+within 0.2 m of its reference in the first 90 % of its time and stays there to the end. The same
+flights give the same bytes at any number of threads, in any split, and after any interruption: what
+was finished is kept, and the same command goes on from there. campaign.arrow has a row for each
+flight; docs/campaign.md has its columns, and how to read them in Python.
 
   host-sim campaign vehicles/hummingbird.toml --flights 10000
   host-sim campaign vehicles/hummingbird.toml --replay 6194
@@ -72,12 +74,14 @@ kept, and the same command goes on from there. campaign.arrow has a row for each
   host-sim campaign vehicles/hummingbird.toml --shard 2/2 --out second    on another
   host-sim merge first second --out whole
 
-Another law flies the very same circumstances: --law indi, into campaigns/<name>-indi. docs/rivals.md says what the laws are.
+Another law flies the very same circumstances: --law indi, into campaigns/<name>-indi.
+docs/rivals.md says what the laws are.
 
-The exit status is 1 if a flight does not track, a command goes beyond its certified bound, or the scenario is not certified. Nothing is
-certified of another law: its status is 1 if a flight does not track.";
+The exit status is 1 if a flight does not track, a command goes beyond its certified bound, or the
+scenario is not certified. Nothing is certified of another law: its status is 1 if a flight does not
+track.";
 
-/// What --law may be.
+/// The values of --law.
 fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)))
 }

@@ -4,7 +4,7 @@ use clap::Args;
 use host_sim::tune::effort::Effort;
 use std::path::{Path, PathBuf};
 
-/// What a comparison with other laws is asked to be.
+/// The arguments of `compare`.
 #[derive(Args)]
 pub struct CompareArguments {
     /// Scenario file: vehicle, limits, rotors, our law's gains, [campaign]

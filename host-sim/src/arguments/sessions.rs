@@ -1,5 +1,4 @@
-//! What a session with somebody else's program is asked to be: `sitl` and `hil`, in clap's terms, and what of it is
-//! refused.
+//! The arguments of sessions with another program, `sitl` and `hil`, in clap's terms, and their checks.
 
 use clap::{ArgGroup, Args, ValueEnum};
 use host_sim::hil::Session;
@@ -11,7 +10,7 @@ use host_sim::sitl::world::PoseSource;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What a session with MAVLink clients is asked to be.
+/// The arguments of `sitl`.
 #[derive(Args)]
 pub struct SitlArguments {
     /// Scenario file: vehicle, rotors, gains, delay, [estimator], wind and the like [default: vehicles/study.toml,
@@ -60,7 +59,7 @@ struct PortArguments {
     /// Port at which ground stations listen
     #[arg(long, value_name = "PORT", default_value_t = Ports::default().ground)]
     ground_port: u16,
-    /// Port from which all is sent, and which answers whoever speaks to it
+    /// Local port: sends everything, and answers every client that sends to it
     #[arg(long, value_name = "PORT", default_value_t = Ports::default().local)]
     local_port: u16,
 }
@@ -69,7 +68,7 @@ struct PortArguments {
 const SPEED_MAX: f64 = 100.0;
 const SPEED_MIN: f64 = 0.1;
 
-/// What a session with a flight controller is asked to be.
+/// The arguments of `hil`.
 #[derive(Args)]
 #[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
 pub struct HilArguments {
@@ -105,7 +104,7 @@ pub struct HilArguments {
     ports: PortArguments,
 }
 
-/// A session's speed, if it is one.
+/// A session's speed, if it is in range.
 fn speed(speed: f64) -> Result<f64, String> {
     let possible = (SPEED_MIN..=SPEED_MAX).contains(&speed);
     possible.then_some(speed).ok_or_else(|| format!("--speed: must be from {SPEED_MIN} to {SPEED_MAX}, found {speed}"))
@@ -115,7 +114,7 @@ impl PortArguments {
     /// The ports.
     ///
     /// # Errors
-    /// If they are not three, or one is none.
+    /// If two are equal, or one is 0.
     fn ports(&self) -> Result<Ports, String> {
         let ports = Ports { offboard: self.offboard_port, ground: self.ground_port, local: self.local_port };
         if ports.local == ports.offboard || ports.local == ports.ground || ports.offboard == ports.ground {
@@ -134,7 +133,7 @@ impl SitlArguments {
     /// The session with a scenario from `file`, which has this `text`.
     ///
     /// # Errors
-    /// Names the argument that is no speed, no time, no set of ports, or no key.
+    /// Names the argument that is invalid.
     pub fn session(&self, text: String, file: String) -> Result<sitl::Session, String> {
         let speed = speed(self.speed)?;
         if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
@@ -173,7 +172,7 @@ impl HilArguments {
     /// The longest wait for the other side.
     ///
     /// # Errors
-    /// Names the argument if it is no time.
+    /// Names the argument if it is no valid time.
     pub fn patience(&self) -> Result<Duration, String> {
         let patience = Duration::try_from_secs_f64(self.patience).ok().filter(|patience| !patience.is_zero());
         patience.ok_or_else(|| format!("--patience: must be greater than zero, found {}", self.patience))
@@ -182,7 +181,7 @@ impl HilArguments {
     /// The session's times.
     ///
     /// # Errors
-    /// Names the argument that is no time.
+    /// Names the argument that is no valid time.
     pub fn session(&self) -> Result<Session, String> {
         let times = [("--duration", self.duration), ("--pose-until", self.pose_until)];
         for (name, time) in times {
@@ -196,7 +195,7 @@ impl HilArguments {
     /// The line for ground stations, and the clients it is handed to.
     ///
     /// # Errors
-    /// Names the ports that are none, or that nothing is handed to.
+    /// Names invalid ports, and ports given without `--ground`.
     pub fn ground(&self) -> Result<Option<(&str, Ports)>, String> {
         let ports = self.ports.ports()?;
         if self.ground.is_none() && ports != Ports::default() {

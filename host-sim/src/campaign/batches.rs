@@ -15,7 +15,7 @@ use std::panic;
 use std::path::Path;
 use std::sync::Once;
 
-/// What an Arrow file ends with.
+/// The last bytes of an Arrow file.
 const MAGIC: &[u8] = b"ARROW1";
 /// Bytes of a SHA-256.
 const DIGEST: usize = 32;
@@ -84,19 +84,19 @@ fn store(path: &Path, pieces: &[&[u8]]) -> Result<(), ArrowError> {
 }
 
 thread_local! {
-    /// Whether this thread is reading what may be damaged.
+    /// Whether this thread is reading a file that may be damaged.
     static READING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What `bytes` hold. Arrow's reader takes a file's word for where its buffers lie, and panics where they lie outside:
-/// a damaged file without a SHA-256 must be one that cannot be read, no more, and silently.
+/// The batches in `bytes`; none if they are damaged. Arrow's reader panics on a file whose buffers lie outside it. That
+/// panic is caught, and not printed.
 fn decoded(bytes: &[u8]) -> Option<Vec<RecordBatch>> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
-        let tell = panic::take_hook();
-        panic::set_hook(Box::new(move |told| {
+        let report = panic::take_hook();
+        panic::set_hook(Box::new(move |panic| {
             if !READING.get() {
-                tell(told);
+                report(panic);
             }
         }));
     });

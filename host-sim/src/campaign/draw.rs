@@ -27,7 +27,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use scenario::Scenario;
 use scenario::body::BodyState;
-use scenario::campaign::{Asked, ModelRanges, NoiseRanges, Ranges};
+use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
 use scenario::reality::drag::Drag;
 use scenario::reality::sensors::{Sensors, VelocitySource};
 use scenario::reality::truth::Truth;
@@ -36,7 +36,7 @@ use scenario::reference::ReferenceKind;
 use scenario::timing::Timing;
 use std::sync::Arc;
 
-/// What the air does to a vehicle of whose drag the file says nothing, 1/s.
+/// The drag over mass of a vehicle without `[drag]`, 1/s.
 const DRAG: f64 = 0.5;
 /// Turbulence is that of this height, m.
 const ALTITUDE: f64 = 10.0;
@@ -57,9 +57,9 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
     drawn.0.set_stream(seed);
     let mut thrown = scenario.clone();
     let hovers = match ranges.reference {
-        Asked::File => false,
-        Asked::Hover => true,
-        Asked::InTurn => number.is_multiple_of(2),
+        Task::File => false,
+        Task::Hover => true,
+        Task::InTurn => number.is_multiple_of(2),
     };
     if hovers {
         thrown.reference = ReferenceKind::Hover { position: Vector3::zeros(), heading: 0.0 };
@@ -110,7 +110,7 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
     });
 }
 
-/// What the controller is told.
+/// The sensors' circumstances.
 fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
     let (gyro, position, attitude, delay) = (drawn.part(), drawn.part(), drawn.part(), drawn.part());
     let seed = drawn.seed();
@@ -139,7 +139,7 @@ fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
     }
 }
 
-/// What the vehicle really is, where the model has it wrong.
+/// The true vehicle, where it differs from the model.
 fn err(scenario: &mut Scenario, ranges: &ModelRanges, drawn: &mut Drawn) {
     let mut factor = |range: f64| 1.0 + range * drawn.side();
     let (mass, inertia, thrust) = (factor(ranges.mass), factor(ranges.inertia), factor(ranges.thrust_scale));

@@ -23,7 +23,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What is to be flown.
+/// The orders of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orders {
     /// Flights of the whole campaign.
@@ -54,19 +54,19 @@ impl Source {
         }
     }
 
-    /// What is flown.
+    /// The scenario.
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// What it was read from.
+    /// Its text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What errors call that.
+    /// Its name in errors.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
@@ -217,7 +217,7 @@ impl<'a> Chunks<'a> {
     /// All of them, in the order of their numbers.
     fn fly(&self) -> Result<Vec<RecordBatch>, CampaignError> {
         let chunks = self.store.manifest().chunks();
-        // By single chunks: a thread that is done takes the next, and one that ends early leaves nobody waiting.
+        // By single chunks: a thread that is done takes the next, so that none waits for another.
         chunks.into_par_iter().with_max_len(1).map(|chunk| self.fly_chunk(chunk)).collect()
     }
 
@@ -245,7 +245,7 @@ impl<'a> Chunks<'a> {
     /// So many more are done.
     fn show(&self, more: u64) {
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
-        // Whoever cannot draw at once leaves it to the next.
+        // A thread that cannot draw at once leaves it to the next.
         if let Ok(mut progress) = self.progress.try_lock() {
             progress.show(done);
         }

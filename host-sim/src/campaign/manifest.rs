@@ -14,10 +14,10 @@ use std::path::Path;
 pub const CHUNK: u64 = 50;
 /// Its name in a directory.
 pub const MANIFEST: &str = "campaign.json";
-/// What it calls the hash of the flights' file.
+/// Its key of the hash of the flights' file.
 const RESULT_HASH: &str = "result_sha256";
 
-/// What was flown.
+/// The identity of a campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manifest {
     /// The scenario's name.
@@ -122,7 +122,7 @@ impl Manifest {
         ]
     }
 
-    /// What `directory` says that it holds; none where there is no campaign.
+    /// The manifest in `directory`; none if there is no campaign.
     ///
     /// # Errors
     /// If its manifest cannot be read or is malformed.

@@ -1,4 +1,4 @@
-//! What one flight of a campaign showed, against what its certificate has proven.
+//! The figures of one flight of a campaign, and their shares of the certified bounds.
 //!
 //! | figure | |
 //! |---|---|
@@ -24,7 +24,7 @@ pub const NEAR: f64 = 0.2;
 /// Room for the rounding of a wrench's components against a bound, relative; for a rotor that may stand still, N.
 const ROUNDING: f64 = 1e-6;
 
-/// What one flight showed.
+/// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
     /// Start minus lowest height, m.
@@ -145,14 +145,14 @@ impl Shares {
             *greatest = greatest.max(torque / proven);
             within &= torque <= proven * raised;
         }
-        for (rotor, (greatest, asked)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
-            let asked = f64::from(*asked);
+        for (rotor, (greatest, commanded)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
+            let commanded = f64::from(*commanded);
             let Some(proven) = certificate.rotor(rotor) else {
                 within = false;
                 continue;
             };
-            *greatest = greatest.max(asked / proven.greatest);
-            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&asked);
+            *greatest = greatest.max(commanded / proven.greatest);
+            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&commanded);
         }
         within
     }

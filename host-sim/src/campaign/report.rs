@@ -17,7 +17,7 @@ const LISTED: usize = 20;
 struct Figure {
     title: String,
     unit: &'static str,
-    /// What no flight may exceed.
+    /// The limit of every flight.
     bound: Option<f64>,
     values: Vec<f64>,
 }
@@ -91,7 +91,7 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
             Fact::new("Flights", summary.flights.to_string()),
             Fact::new("Recover and track", share(summary.tracking, summary.flights)),
             Fact::new(beyond, summary.beyond.to_string()),
-            Fact::new("Asked a rotor for more than it has", summary.clipped.to_string()),
+            Fact::new("Task a rotor for more than it has", summary.clipped.to_string()),
         ],
         tracks: Vec::new(),
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),

@@ -42,11 +42,11 @@ pub struct Row {
     pub start: BodyState,
     /// Steady wind and gust, m/s, world.
     pub wind: [Vector3<f64>; 2],
-    /// What it showed.
+    /// Its figures.
     pub outcome: Outcome,
 }
 
-/// What the metadata calls the law.
+/// The law's key in the metadata.
 const LAW: &str = "law";
 
 impl Row {
@@ -77,13 +77,13 @@ impl Outcome {
     }
 }
 
-/// Recovered, tracked, and asked for nothing beyond a bound.
+/// Recovered, tracked, and commanded nothing beyond a bound.
 pub const HOLDS: &str = "holds";
 /// Was not near its reference at the end.
 pub const AWAY: &str = "away";
 /// Came near it for good, but too late to have recovered ([`Outcome::in_time`]).
 pub const LATE: &str = "late";
-/// Asked for more than is proven.
+/// Commanded more than is proven.
 pub const BEYOND: &str = "beyond";
 
 const START: [&str; 13] = [

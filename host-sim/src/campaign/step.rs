@@ -1,4 +1,4 @@
-//! The plant step of a campaign's flights: no shorter than accuracy asks for.
+//! The plant step of a campaign's flights: no shorter than accuracy needs.
 //!
 //! A scenario's step is chosen for a single flight, whose log is read tick by tick. A campaign asks each of its flights
 //! for a verdict and for metres and seconds; it takes the longest step of at most [`LONGEST`] that still fits. The

@@ -12,8 +12,8 @@
 //! chunks that were finished are there when it goes on. A part that cannot be read is flown again, and so is a result
 //! that is not the one that was written.
 //!
-//! The manifest comes first: a directory without it is somebody else's, and nothing that has one of these names there
-//! is touched. Whoever writes into a directory holds a [lock](crate::directory_lock) on it.
+//! The manifest comes first: a directory without it is no campaign's, and no file there is touched. A writer holds a
+//! [lock](crate::directory_lock) on it.
 
 use super::CampaignError;
 use super::batches;
@@ -33,12 +33,12 @@ use std::path::{Path, PathBuf};
 pub const RESULT: &str = "campaign.arrow";
 /// The scenario's.
 pub const SCENARIO: &str = "scenario.toml";
-/// What they showed.
+/// The summary.
 pub const SUMMARY: &str = "summary.txt";
 /// The same as a page.
 pub const REPORT: &str = "report.html";
 const PARTS: &str = "parts";
-/// What a campaign writes over, or removes, besides its manifest.
+/// Files that a campaign overwrites or removes, besides its manifest.
 const OWN: [&str; 5] = [SCENARIO, PARTS, RESULT, SUMMARY, REPORT];
 
 /// A directory and what it is to hold.
@@ -54,7 +54,7 @@ impl Store {
     /// Begins a campaign in `directory`, or goes on with the same one.
     ///
     /// # Errors
-    /// If it holds another campaign or other files of these names, if somebody else is at work in it, or if it cannot
+    /// If it holds another campaign or other files of these names, if another program is at work in it, or if it cannot
     /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
         let lock = DirectoryLock::take(directory).map_err(unwritable(directory))?;
@@ -88,7 +88,7 @@ impl Store {
     /// A campaign, or a shard of one, that is complete.
     ///
     /// # Errors
-    /// If there is none, or it is still under way.
+    /// If the campaign is missing or incomplete.
     pub fn complete(directory: &Path) -> Result<(Self, Vec<RecordBatch>), CampaignError> {
         let manifest = Manifest::of(directory)?.ok_or_else(|| {
             CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST}", directory.display()))
@@ -103,7 +103,7 @@ impl Store {
         Ok((store, flown))
     }
 
-    /// What it is to hold.
+    /// Its manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest

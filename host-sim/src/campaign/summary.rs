@@ -1,4 +1,4 @@
-//! What a campaign showed: how many flights recover and track, quantiles, bounds, and the worst flights by number.
+//! A campaign's summary: how many flights recover and track, quantiles, bounds, and the worst flights by number.
 
 use super::draw::timing;
 use super::manifest::Manifest;
@@ -16,10 +16,10 @@ use std::fmt;
 /// How many of the worst are listed.
 const LISTED: usize = 5;
 
-/// What a campaign showed.
+/// A campaign's summary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// What was flown, in a line.
+    /// The campaign, in a line.
     pub title: String,
     /// Flights.
     pub flights: u64,
@@ -136,7 +136,7 @@ impl fmt::Display for Summary {
         }
         writeln!(
             f,
-            "{} of {} recover and track; {} went beyond a certified bound{}; {} asked a rotor for more than it has\n",
+            "{} of {} recover and track; {} went beyond a certified bound{}; {} commanded a rotor beyond its limits\n",
             self.tracking,
             self.flights,
             self.beyond,
@@ -169,7 +169,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
     aligned(&std::iter::once(head).chain(figures.iter().map(row)).collect::<Vec<_>>())
 }
 
-/// A figure, or that there is none.
+/// A figure, or "none".
 fn seen(value: f64) -> String {
     if value.is_finite() { short(value) } else { "never".to_owned() }
 }

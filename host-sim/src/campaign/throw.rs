@@ -1,5 +1,4 @@
-//! One flight of a campaign, under whatever law: the only way in which random flights are flown, by `campaign` and by
-//! `compare`.
+//! One flight of a campaign under any law: `campaign` and `compare` fly all random flights by it.
 
 use super::draw::circumstances;
 use super::outcome::Outcome;

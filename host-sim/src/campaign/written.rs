@@ -1,8 +1,8 @@
 //! What a flight of a campaign has in place of its scenario file: as comments above the file's text, in the file's own
 //! terms.
 //!
-//! The circumstances are drawn anew from seed and number wherever they are needed ([`super::draw`]); this is for who
-//! reads the report of one flight. Every number is written as it is, to the last bit.
+//! The circumstances are drawn anew from seed and number wherever they are needed ([`super::draw`]); this is for the
+//! reader of one flight's report. Every number is written as it is, to the last bit.
 
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -57,7 +57,7 @@ fn air(thrown: &Scenario) -> Vec<String> {
     lines
 }
 
-/// What the controller is told.
+/// The sensors' circumstances.
 fn senses(thrown: &Scenario) -> Vec<String> {
     let reality = &thrown.reality;
     if let Some(estimator) = &reality.estimator {
@@ -78,7 +78,7 @@ fn senses(thrown: &Scenario) -> Vec<String> {
     ]
 }
 
-/// What the vehicle really is, where that was drawn or the file says it.
+/// The true vehicle, as far as it was drawn or the file has it.
 fn truth(thrown: &Scenario) -> Vec<String> {
     let Some(truth) = &thrown.reality.truth else { return vec![] };
     vec![
@@ -120,7 +120,7 @@ mod tests {
         ] {
             assert!(written.contains(&format!("\n#   {expected}")), "{expected} is not in:\n{written}");
         }
-        // A file with comments above it: whoever flies it flies the file.
+        // Comments above the file's text: it can be flown as it is.
         assert_eq!(Scenario::parse(&written, "h").unwrap().initial, scenario.initial);
     }
 

@@ -1,9 +1,9 @@
-//! Whom to blame where the rotors are short of room: the certificate's numbers for the tightest rotor, in a sentence.
+//! Why the rotors' margin is what it is: the certificate's numbers for the tightest rotor, in a sentence.
 //!
 //! From its share of the middle thrust a rotor is displaced by half the thrust's interval and by the law's torque
 //! terms; these add up to its extreme. The one that displaces it most towards the limit it comes closest to is named;
 //! where the share alone is beyond the limit, it is the thrust. Which axis costs most is a separate question: how much
-//! less the rotor would have to do if the law asked for no torque about that axis. For real quadrotors it is yaw: a
+//! less the rotor would have to do if the law commanded no torque about that axis. For real quadrotors it is yaw: a
 //! newton metre of it costs several times the thrust that one of roll does (k_eta / k_m against 1 / arm; 4.9 times for
 //! the Hummingbird).
 
@@ -16,7 +16,7 @@ use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use nalgebra::{Vector3, Vector4};
 
-/// What the tightest rotor is asked for, by what, and about which axis. Empty without rotors.
+/// The command of the tightest rotor, its greatest part, and its weak axis. Empty without rotors.
 ///
 /// # Errors
 /// As [`rotors::torque_terms`].
@@ -33,7 +33,7 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
     };
     let demand = &certificate.rotors[worst].demand;
     let maximum = demand.available_max - demand.greatest <= demand.least - demand.available_min;
-    let (end, available, asked) = if maximum {
+    let (end, available, commanded) = if maximum {
         ("greatest", demand.available_max, demand.greatest)
     } else {
         ("least", demand.available_min, demand.least)
@@ -45,14 +45,14 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
     let (axis, relief) = weak_axis(&terms, &torque_part(&towards));
     let verdict = if margin(worst) >= 0.0 { "with a margin of" } else { "too much by" };
     Ok(format!(
-        "rotor {}: asked for {asked:.3} N, {end} available {available:.3} N, {verdict} {:.3} N; most of it from {blame} \
-         ({blamed:.3} N); the weak axis is {axis} ({relief:.3} N)\n",
+        "rotor {}: commanded {commanded:.3} N, {end} available {available:.3} N, {verdict} {:.3} N; most of it from \
+         {blame} ({blamed:.3} N); the weak axis is {axis} ({relief:.3} N)\n",
         worst + 1,
         margin(worst).abs(),
     ))
 }
 
-/// What displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
+/// The term that displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
 fn cause(form: &Form, terms: &[TorqueTerm], towards: &Vector4<f64>, available: f64) -> (&'static str, f64) {
     let share = 0.5 * towards.x * (form.thrust.least + form.thrust.greatest);
     let beyond = share - available * towards.x.signum();

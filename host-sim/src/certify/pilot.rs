@@ -25,8 +25,8 @@ pub fn terms(configuration: &Configuration, law: &ExtendedLaw) -> String {
     ];
     let degrees = |angle: f32| short(f64::from(angle).to_degrees().round());
     format!(
-        "{}tilt up to {} degrees; the thrust turns with up to {} degrees/s and {} degrees/s^2, {} of them always;\n\
-         the heading with up to {} and {}\n{}",
+        "{}tilt up to {} degrees\nthe thrust turns with up to {} degrees/s and {} degrees/s^2, {} of them always\n\
+         the heading turns with up to {} degrees/s and {} degrees/s^2\n{}",
         aligned(&rows),
         degrees(p.tilt_max),
         degrees(p.turn_rate),
@@ -48,7 +48,7 @@ fn torque(configuration: &Configuration, p: &ExtendedParameters) -> String {
     let idle =
         ExtendedParameters { turn_rate: 0.0, yaw_rate: 0.0, yaw_acceleration: 0.0, w: 0.0, m_omega_z: 0.0, ..unbiased };
     let [full, unbiased, idle] = [p, &unbiased, &idle].map(|parameters| budget(configuration, parameters));
-    let names = ["the torque about roll and pitch", "the torque about yaw", "the rotors' range"];
+    let names = ["roll and pitch torque", "yaw torque", "the rotors' range"];
     let rows = names.iter().zip(full.rows.iter().zip(unbiased.rows.iter().zip(&idle.rows)));
     let of_tilt = rows.filter(|(_, (row, _))| row.tilt > 0.0);
     let left = |row: &Row| row.room / row.tilt;

@@ -136,7 +136,7 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
 fn the_shares_of_the_torque_are_those_of_the_tightest_row() {
     for (text, row) in EXTENDED[..2].iter().zip(["T2 roll and pitch torque", "R rotors' range"]) {
         let (report, _) = report(text);
-        let shares = line(&report, "of the ");
+        let shares = line(&report, "of ");
         let parts = shares.split(['%', ',']).filter_map(|part| part.split_whitespace().last()?.parse::<f64>().ok());
         let margin = line(&report, row).split_whitespace().rev().nth(2).unwrap().parse::<f64>().unwrap();
         let sum: f64 = parts.sum();

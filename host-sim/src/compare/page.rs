@@ -62,11 +62,11 @@ pub struct Compared<'a> {
 pub fn page(compared: &Compared) -> Page {
     let Compared { file, text, rows, holds, .. } = compared;
     let named =
-        compared.scenes.iter().map(|scene| (scene.name, scene.asked)).chain([("random", "the random flights below")]);
-    let tables = named.map(|(scene, asked)| table(compared, scene, asked));
+        compared.scenes.iter().map(|scene| (scene.name, scene.task)).chain([("random", "the random flights below")]);
+    let tables = named.map(|(scene, task)| table(compared, scene, task));
     let sections = [
         ("Table", std::iter::once(Block::Text(STARS.into())).chain(tables.map(Block::Table)).collect()),
-        ("Scenes", vec![Block::Table(asked(compared)), Block::Text(CURVES.into()), Block::Plots(plots(compared))]),
+        ("Scenes", vec![Block::Table(scenes(compared)), Block::Text(CURVES.into()), Block::Plots(plots(compared))]),
         ("Random flights", vec![Block::Text(random(compared)), Block::Distributions(distributions(compared))]),
         (
             "Laws",
@@ -126,19 +126,19 @@ const LAWS: &str = "The rivals' gains were found by the trials and the cost that
                      quaternion alone.";
 
 /// The task of each scene.
-fn asked(compared: &Compared) -> Table {
-    let mut table = Table::new("What is asked", &["scene", "asked", "duration"]);
+fn scenes(compared: &Compared) -> Table {
+    let mut table = Table::new("The scenes", &["scene", "task", "duration"]);
     table.rows.extend(compared.scenes.iter().map(|scene| {
         let duration = Cell::number(format!("{} s", short(scene.scenario.timing.duration())));
-        vec![Cell::text(scene.name), Cell::text(scene.asked), duration]
+        vec![Cell::text(scene.name), Cell::text(scene.task), duration]
     }));
     table
 }
 
 /// The rows of one scene.
-fn table(compared: &Compared, scene: &str, asked: &str) -> Table {
+fn table(compared: &Compared, scene: &str, task: &str) -> Table {
     let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(compared.names.iter().copied()).collect();
-    let mut table = Table::new(format!("{}: {asked}", titled(scene)), &head);
+    let mut table = Table::new(format!("{}: {task}", titled(scene)), &head);
     table.rows.extend(compared.rows.iter().filter(|row| row.scene == scene).map(|row| {
         let head = [format!("{}, {}", row.figure, row.unit), if row.lost() { "★" } else { "" }.to_owned()];
         let values = row.values.iter().map(|value| Cell::Number(cell(*value)));

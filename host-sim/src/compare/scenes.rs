@@ -33,7 +33,7 @@ pub struct Scene {
     /// Its name in tables.
     pub name: &'static str,
     /// The task, in a sentence.
-    pub asked: &'static str,
+    pub task: &'static str,
     /// The scenario to fly.
     pub scenario: Scenario,
 }
@@ -43,13 +43,13 @@ pub struct Scene {
 /// # Errors
 /// None for a scenario that was read from a file.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
-    let mut calm = file.clone();
+    let mut still_air = file.clone();
     let mass = f64::from(file.configuration.vehicle().mass);
-    let reality = &mut calm.reality;
+    let reality = &mut still_air.reality;
     (reality.wind, reality.disturbance, reality.failure, reality.sensors, reality.estimator) =
         (None, None, None, None, None);
     reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() });
-    let at = |position: [f64; 3], duration: f64| hover(&calm, position.into(), duration);
+    let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);
     let windy = |speed: f64, duration: f64| {
         let mut windy = at([0.0; 3], duration)?;
         let gust = Gust { shape: Shape::Step, start: WIND_AT, velocity: Vector3::new(speed, 0.0, 0.0) };
@@ -63,7 +63,7 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     };
     let mut noisy = at([0.0; 3], 10.0)?;
     noisy.reality.sensors = Some(noise(file.timing.period()));
-    let upside_down = recovery(&calm, 20.0)?;
+    let upside_down = recovery(&still_air, 20.0)?;
     let scenes = [
         ("own", "the file's own flight", file.clone()),
         ("step", "hover 1 m from where it is", at([-1.0, 0.0, 0.0], 12.0)?),
@@ -75,5 +75,5 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
         ("weak rotors", "1 m step with rotors that deliver 60 %", really(at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
         ("heavy", "upside down with 1.6 times the mass", really(upside_down, 1.6, 1.0)),
     ];
-    Ok(scenes.map(|(name, asked, scenario)| Scene { name, asked, scenario }).into())
+    Ok(scenes.map(|(name, task, scenario)| Scene { name, task, scenario }).into())
 }

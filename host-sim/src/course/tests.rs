@@ -19,7 +19,7 @@ fn course(seconds: f64, initial: &str, sections: &str, near: f64) -> Course {
 }
 
 #[test]
-fn a_flight_that_stands_still_has_nothing_to_tell() {
+fn a_flight_that_stands_still_has_no_figures_but_zero() {
     let still = course(4.0, "position = [0.0, 0.0, 0.0]", "", 0.1);
     assert_eq!((still.settled, still.clipped), (Some(0.0), 0));
     assert!(still.height_lost < 1e-6 && still.rise.abs() < 1e-6 && still.excursion < 1e-6 && still.activity < 1e-6);

@@ -22,8 +22,8 @@ fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
         let seconds = f64::from(millisecond) * 1e-3;
         estimation.sample(&turning(seconds));
         if millisecond % 10 == 0 && millisecond > 500 {
-            let (told, _) = estimation.told().unwrap();
-            late += seconds - f64::from(told.angular_velocity.z) / ACCELERATION;
+            let (estimated, _) = estimation.state().unwrap();
+            late += seconds - f64::from(estimated.angular_velocity.z) / ACCELERATION;
             count += 1.0;
         }
     }

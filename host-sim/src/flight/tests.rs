@@ -23,13 +23,13 @@ fn rotors_start_at_hover_and_follow_their_commands_behind_them() {
     let vehicle = study.configuration.vehicle();
     let first = flight.tick().unwrap();
     assert!((first.rotors.iter().sum::<f64>() - f64::from(vehicle.mass * vehicle.gravity)).abs() < 1e-5);
-    // A second later, each is between where it was and what it was last told.
+    // A second later, each is between where it was and its last command.
     let mut before = first;
     for _ in 0..100 {
         let tick = flight.tick().unwrap();
-        for ((was, is), told) in before.rotors.iter().zip(&tick.rotors).zip(&before.rotor_thrusts) {
-            let told = f64::from(*told);
-            assert!((was.min(told)..=was.max(told)).contains(is), "{was} {is} {told}");
+        for ((was, is), commanded) in before.rotors.iter().zip(&tick.rotors).zip(&before.rotor_thrusts) {
+            let commanded = f64::from(*commanded);
+            assert!((was.min(commanded)..=was.max(commanded)).contains(is), "{was} {is} {commanded}");
         }
         before = tick;
     }

@@ -29,7 +29,7 @@ const LENGTH: f64 = 0.1;
 /// How far a vehicle may lean and still fall back onto its feet, rad: 30 degrees.
 pub const TILT_MAX: f64 = 0.52;
 
-/// What the ground carries.
+/// The vehicle's mass, inertia and gravity.
 #[derive(Debug, Clone)]
 pub struct Weight {
     /// kg.
@@ -93,7 +93,7 @@ impl Lean {
     }
 }
 
-/// What becomes of it in a step.
+/// Its motion after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rocked {
     /// It is still on its foot.

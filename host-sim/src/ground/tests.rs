@@ -225,7 +225,7 @@ fn however_it_lands_no_energy_appears() {
 }
 
 #[test]
-fn the_ground_makes_no_number_of_what_is_none() {
+fn the_ground_makes_no_number_of_a_non_finite_motion() {
     let (mut ground, plant, _) = leaning(0.2, 0.0);
     let falling = BodyState { velocity: Vector3::new(0.0, 0.0, f64::NAN), ..*plant.state() };
     assert_eq!(ground.touch(&falling), None);

@@ -1,11 +1,11 @@
-//! What a flight controller is told in answer to a command: poses, and the IMU's samples.
+//! The sensors' answer to a flight controller's command: poses, and the IMU's samples.
 
 use flight::{ImuSample, Stamped};
 use nalgebra::{Quaternion, Vector3};
 
-/// A pose as it is told.
+/// A measured pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToldPose {
+pub struct MeasuredPose {
     /// p, m, world.
     pub position: Vector3<f32>,
     /// q, body to world, unit.
@@ -16,11 +16,11 @@ pub struct ToldPose {
     pub deviations: Option<(f32, f32)>,
 }
 
-/// What the sensors say in answer to a command, with the times at which it was true, us.
+/// Measurements after a command, with the times at which they were true, us.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// Poses that have arrived, in the order of their times.
-    pub poses: Vec<Stamped<ToldPose>>,
+    pub poses: Vec<Stamped<MeasuredPose>>,
     /// The IMU's samples, in the order of their times; the last is of the period's end.
     pub samples: Vec<Stamped<ImuSample>>,
 }

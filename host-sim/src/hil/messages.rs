@@ -1,6 +1,6 @@
-//! The session's messages: what the flight controller says, and the answers it gets, in MAVLink's frames.
+//! The session's messages in MAVLink's frames: the flight controller's commands, and their answers.
 
-use super::answer::{Answer, ToldPose};
+use super::answer::{Answer, MeasuredPose};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::frames;
 use firmware::link::frame::{Frame, Version};
@@ -65,14 +65,14 @@ impl Encoder {
         answer.samples.iter().for_each(|sample| self.sensor(sample, bytes));
     }
 
-    /// Appends the answer, at `now`, us, to a TIMESYNC that was asked at `asked` of its sender's clock.
-    pub fn time_sync(&mut self, asked: i64, now: u64, bytes: &mut Vec<u8>) {
-        self.append(&time_sync::answer(asked, now), bytes);
+    /// Appends the answer, at `now`, us, to a TIMESYNC sent at `sent` of its sender's clock.
+    pub fn time_sync(&mut self, sent: i64, now: u64, bytes: &mut Vec<u8>) {
+        self.append(&time_sync::answer(sent, now), bytes);
     }
 
     /// Appends a pose as an ODOMETRY.
-    fn odometry(&mut self, pose: &Stamped<ToldPose>, bytes: &mut Vec<u8>) {
-        let Stamped { value: ToldPose { position, attitude, motion, deviations }, time } = pose;
+    fn odometry(&mut self, pose: &Stamped<MeasuredPose>, bytes: &mut Vec<u8>) {
+        let Stamped { value: MeasuredPose { position, attitude, motion, deviations }, time } = pose;
         let position = frames::world(position);
         let q = frames::attitude(attitude);
         let (velocity, rates) = motion.unwrap_or_default();

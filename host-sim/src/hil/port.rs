@@ -9,7 +9,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
-/// Pause between attempts to connect or to find somebody who does, and between looks at whether somebody interrupts.
+/// Pause between attempts to connect or accept, and between checks for a signal.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// The longest attempt to connect: the system itself would try for minutes where no answer comes at all. Long enough
@@ -28,27 +28,27 @@ pub enum Address {
 /// Why there is no connection, or none any more.
 #[derive(Debug)]
 pub enum PortError {
-    /// Nobody was there in time.
-    Nobody(Address, Duration, Option<io::Error>),
+    /// No connection came about in time.
+    NoConnection(Address, Duration, Option<io::Error>),
     /// The address cannot be used.
     Address(String, io::Error),
     /// The other side said nothing for so long.
     Silent(Duration),
     /// The connection broke.
     Broken(io::Error),
-    /// Somebody sent this signal.
+    /// Interrupted by this signal.
     Interrupted(u8),
 }
 
 impl fmt::Display for PortError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Nobody(Address::Connect(address), waited, error) => {
-                write!(f, "--connect: nobody listens on {address} for {} s", waited.as_secs_f64())?;
+            Self::NoConnection(Address::Connect(address), waited, error) => {
+                write!(f, "--connect: no listener on {address} for {} s", waited.as_secs_f64())?;
                 error.as_ref().map_or(Ok(()), |error| write!(f, ": {error}"))
             }
-            Self::Nobody(Address::Listen(address), waited, _) => {
-                write!(f, "--listen: nobody connects to {address} for {} s", waited.as_secs_f64())
+            Self::NoConnection(Address::Listen(address), waited, _) => {
+                write!(f, "--listen: no connection to {address} for {} s", waited.as_secs_f64())
             }
             Self::Address(address, error) => write!(f, "{address}: cannot be used: {error}"),
             Self::Silent(waited) => write!(f, "no motor command for {} s", waited.as_secs_f64()),
@@ -95,7 +95,7 @@ impl Port {
     /// # Errors
     /// [`PortError`] if no byte comes in time or the connection breaks.
     pub fn receive(&mut self) -> Result<Option<Controls>, PortError> {
-        let mut heard = Instant::now();
+        let mut last = Instant::now();
         loop {
             interrupted(&self.interrupt)?;
             let bytes = match self.reader.fill_buf() {
@@ -104,7 +104,7 @@ impl Port {
                 Err(error) => match error.kind() {
                     ErrorKind::ConnectionReset => return Ok(None),
                     ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {
-                        if heard.elapsed() >= self.patience {
+                        if last.elapsed() >= self.patience {
                             return Err(PortError::Silent(self.patience));
                         }
                         continue;
@@ -112,7 +112,7 @@ impl Port {
                     _ => return Err(PortError::Broken(error)),
                 },
             };
-            heard = Instant::now();
+            last = Instant::now();
             for (taken, byte) in (1..).zip(bytes) {
                 // Time does not matter here: a stream neither loses nor ages anything.
                 if let Some(controls) = self.parser.push(*byte, 0).and_then(|frame| Controls::from_frame(&frame)) {
@@ -145,7 +145,7 @@ fn interrupted(interrupt: &Interrupt) -> Result<(), PortError> {
     interrupt.signal().map_or(Ok(()), |signal| Err(PortError::Interrupted(signal)))
 }
 
-/// A connection to whoever is to be found at `address` within `patience`.
+/// A connection to `address`, made within `patience`.
 pub(super) fn connected(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     match address {
         Address::Connect(to) => connect(to, address, patience, interrupt),
@@ -174,7 +174,7 @@ fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrup
         }
         interrupted(interrupt)?;
         if started.elapsed() >= patience {
-            return Err(PortError::Nobody(address.clone(), patience, failed));
+            return Err(PortError::NoConnection(address.clone(), patience, failed));
         }
         std::thread::sleep(PAUSE);
     }
@@ -191,7 +191,7 @@ fn listen(on: &str, address: &Address, patience: Duration, interrupt: &Interrupt
             Ok((stream, _)) => return Ok(stream),
             Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(PortError::Broken(error)),
             Err(_) if started.elapsed() >= patience => {
-                return Err(PortError::Nobody(address.clone(), patience, None));
+                return Err(PortError::NoConnection(address.clone(), patience, None));
             }
             Err(_) => std::thread::sleep(PAUSE),
         }

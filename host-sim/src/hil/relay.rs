@@ -5,9 +5,8 @@
 //!         <-- a frame a datagram --
 //! ```
 //!
-//! Frames go on as they are, both ways; nothing is added. What is said on the way, texts and whether the vehicle is
-//! ready, is kept to be shown. It runs on a thread of its own: clients are served however long the simulator waits for
-//! a command.
+//! Frames go on as they are, both ways; nothing is added. Texts and the vehicle's state are kept to be shown. It runs
+//! on a thread of its own, so that clients are served while the simulator waits for a command.
 
 use super::port::{Address, PortError, connected};
 use crate::interrupt::Interrupt;
@@ -50,16 +49,16 @@ impl fmt::Display for RelayError {
     }
 }
 
-/// What the vehicle has said.
+/// The vehicle's texts and state, as received.
 #[derive(Debug, Default)]
-struct Heard {
+struct Received {
     texts: Vec<String>,
     state: Option<MavState>,
 }
 
 /// A relay that runs until it is dropped.
 pub struct Relay {
-    heard: Arc<Mutex<Heard>>,
+    received: Arc<Mutex<Received>>,
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -79,22 +78,22 @@ impl Relay {
             line.set_write_timeout(Some(FULL))
         };
         ready().map_err(|error| RelayError::Line(PortError::Broken(error)))?;
-        let (heard, over) = (Arc::<Mutex<Heard>>::default(), Arc::<AtomicBool>::default());
-        let (to_show, until) = (Arc::clone(&heard), Arc::clone(&over));
+        let (received, over) = (Arc::<Mutex<Received>>::default(), Arc::<AtomicBool>::default());
+        let (to_show, until) = (Arc::clone(&received), Arc::clone(&over));
         let thread = thread::spawn(move || serve(line, clients, &to_show, &until));
-        Ok(Self { heard, over, thread: Some(thread) })
+        Ok(Self { received, over, thread: Some(thread) })
     }
 
     /// The texts since the last time.
     #[must_use]
     pub fn texts(&self) -> Vec<String> {
-        std::mem::take(&mut locked(&self.heard).texts)
+        std::mem::take(&mut locked(&self.received).texts)
     }
 
-    /// What the last heartbeat says of the vehicle.
+    /// The vehicle's state by its last heartbeat.
     #[must_use]
     pub fn state(&self) -> &'static str {
-        match locked(&self.heard).state {
+        match locked(&self.received).state {
             None => "silent",
             Some(MavState::MAV_STATE_BOOT) => "boot",
             Some(MavState::MAV_STATE_CALIBRATING) => "checks",
@@ -114,20 +113,20 @@ impl Drop for Relay {
     }
 }
 
-fn locked(heard: &Mutex<Heard>) -> MutexGuard<'_, Heard> {
-    heard.lock().unwrap_or_else(PoisonError::into_inner)
+fn locked(received: &Mutex<Received>) -> MutexGuard<'_, Received> {
+    received.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Hands on what comes, either way, until it is over or the line has ended.
-fn serve(mut line: TcpStream, mut clients: Port, heard: &Mutex<Heard>, over: &AtomicBool) {
+fn serve(mut line: TcpStream, mut clients: Port, received: &Mutex<Received>, over: &AtomicBool) {
     let mut frames = Frames::default();
     let mut chunk = [0; 4096];
     while !over.load(Ordering::Relaxed) {
         match line.read(&mut chunk) {
             Ok(0) => break,
             Ok(count) => frames.take(chunk.get(..count).unwrap_or(&chunk), |bytes, frame| {
-                // First: who has received it may ask what was said.
-                overhear(frame, heard);
+                // First, so that a client that has the frame finds its text here.
+                follow(frame, received);
                 clients.send(bytes);
             }),
             Err(error) if is_a_pause(&error) => {}
@@ -142,26 +141,26 @@ fn is_a_pause(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }
 
-fn overhear(frame: &Frame<'_>, heard: &Mutex<Heard>) {
+fn follow(frame: &Frame<'_>, received: &Mutex<Received>) {
     match frame.message {
         HEARTBEAT_DATA::ID => {
             if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
-                locked(heard).state = Some(heartbeat.system_status);
+                locked(received).state = Some(heartbeat.system_status);
             }
         }
         STATUSTEXT_DATA::ID => {
             if let Some(STATUSTEXT_DATA { text, .. }) = frame.decode() {
-                locked(heard).texts.push(text.to_str().unwrap_or_default().to_owned());
+                locked(received).texts.push(text.to_str().unwrap_or_default().to_owned());
             }
         }
         _ => {}
     }
 }
 
-/// Cuts a stream into frames of version 2, bytes and all; what is none is left out.
+/// Cuts a stream into frames of version 2, bytes and all; other bytes are left out.
 struct Frames {
     parser: Parser,
-    /// What has come since the last frame's end, or the end of it.
+    /// The bytes since the last frame's end, or the newest of them.
     bytes: Vec<u8>,
 }
 
@@ -220,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn clients_and_the_line_hear_each_other_and_what_is_said_is_kept() {
+    fn clients_and_the_line_receive_each_others_frames_and_texts_are_kept() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
         let ((offboard, first), (ground, second)) = (client(), client());

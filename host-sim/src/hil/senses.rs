@@ -1,13 +1,13 @@
-//! What the vehicle's sensors say of the period that a command began.
+//! The sensors' measurements of the period that a command began.
 //!
 //! Where the scenario has `[estimator]`, its [`Instruments`] do: a sample of the IMU each millisecond, and the poses
 //! that arrive within the period, late and noisy; its IMU has no filters of its own, because a simulator's samples are
 //! true at the times they carry. Elsewhere the sensors are exact: one sample and one pose, of the period's end.
-//! `[sensors]` is not for here: it describes the measurements of a law without an estimator.
+//! `[sensors]` is not used: it describes the measurements of a law without an estimator.
 //!
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 
-use super::answer::{Answer, ToldPose};
+use super::answer::{Answer, MeasuredPose};
 use super::vehicle::Moved;
 use crate::instruments::{Instruments, SAMPLE};
 use flight::{ImuSample, Stamped};
@@ -44,7 +44,7 @@ impl Senses {
         if self.instruments.is_some() { self.period / SAMPLE } else { 1 }
     }
 
-    /// What they say of a motion that a command of time `command`, us, began.
+    /// The measurements of a motion that a command of time `command`, us, began.
     pub fn answer(&mut self, command: u64, moved: &Moved) -> Answer {
         let Some((instruments, deviations)) = &mut self.instruments else {
             return exact(command + self.period, moved);
@@ -54,7 +54,7 @@ impl Senses {
             answer.samples.push(Stamped { value: instruments.sample(state, time), time });
             while let Some(Stamped { value: pose, time }) = instruments.arrived() {
                 let (position, attitude) = (pose.position(), pose.attitude());
-                let value = ToldPose { position, attitude, motion: None, deviations: Some(*deviations) };
+                let value = MeasuredPose { position, attitude, motion: None, deviations: Some(*deviations) };
                 answer.poses.push(Stamped { value, time });
             }
         }
@@ -62,12 +62,12 @@ impl Senses {
     }
 }
 
-/// What perfect sensors say at the end of a motion, at `time`, us.
+/// Exact measurements at the end of a motion, at `time`, us.
 fn exact(time: u64, moved: &Moved) -> Answer {
     let state: &BodyState = &moved.state;
     let measured = state.measured();
     let velocity = UnitQuaternion::new_unchecked(state.attitude).inverse() * state.velocity;
-    let pose = ToldPose {
+    let pose = MeasuredPose {
         position: measured.position,
         attitude: measured.attitude,
         motion: Some((velocity.map(|component| component as f32), measured.angular_velocity)),

@@ -16,12 +16,12 @@ use std::collections::VecDeque;
 /// Height of the ground, m.
 const GROUND: f64 = 0.0;
 
-/// What a command led to.
+/// The motion under a command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
     /// Where the vehicle is a period later.
     pub state: BodyState,
-    /// Where it was on the way, at as many evenly spaced instants as were asked for; the last is the period's end.
+    /// Where it was on the way, at evenly spaced instants; the last is the period's end.
     pub path: Vec<BodyState>,
     /// What an accelerometer shows, m/s^2, body frame of then: the mean over the way, impacts with it.
     pub specific_force: Vector3<f64>,

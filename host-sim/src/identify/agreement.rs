@@ -1,7 +1,7 @@
 //! Whether bench and flight can be of one vehicle.
 //!
-//! Put together they leave something over: of each bench entry its distance from what all the rest says, and of the
-//! flight its own. Squared, over their variances and summed, that is chi-square with as many degrees of freedom as
+//! Combined they leave residuals: of each bench entry its distance from the fit to all others, and of the flight its
+//! own. Squared, over their variances and summed, they are chi-square with as many degrees of freedom as
 //! there are statements more than unknowns. Beyond what chance leaves in 999 of 1,000 no combination is worth its
 //! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
 //! all numbers, with tight intervals around the wrong values.
@@ -19,7 +19,7 @@ const NORMAL: f64 = 3.291;
 const ONE_SIDED: f64 = 3.090;
 
 /// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two
-/// say something of the same, nothing tells which of them errs.
+/// say something of the same, it does not show which of them errs.
 const ALIKE: f64 = 0.9;
 
 /// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.

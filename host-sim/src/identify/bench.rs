@@ -1,4 +1,4 @@
-//! What was measured on the bench: a small TOML file, every section optional.
+//! The bench's measurements: a small TOML file, every section optional.
 //!
 //! ```toml
 //! [weighing]

@@ -4,7 +4,7 @@ use super::bench::{self, Bench};
 use super::flight_log::{FlightLog, Source};
 use super::output::{Values, rewritten};
 use super::quantities::{COVERAGE, Quantities, Quantity};
-use super::{identify, margins, telling, ulog};
+use super::{identify, margins, observability, ulog};
 use crate::table::{aligned, short};
 use crate::whole_file::WholeFile;
 use scenario::Scenario;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The longest log, bytes: a day of the fastest one.
 const LONGEST_LOG: u64 = 1 << 30;
 
-/// What is asked for.
+/// The arguments of one identification.
 #[derive(Debug, Clone)]
 pub struct Task {
     /// log.csv or a ULog of the recorder.
@@ -34,11 +34,11 @@ pub struct Task {
 pub enum Refused {
     /// A file cannot be used or written.
     Input(String),
-    /// The log is in order and cannot tell.
-    CannotTell(String),
+    /// The log is in order, but does not identify the vehicle.
+    NotIdentifiable(String),
 }
 
-/// Identifies, writes `task.out` if it is asked for, and returns the report.
+/// Identifies, writes `task.out` if there is one, and returns the report.
 ///
 /// # Errors
 /// [`Refused`]; then nothing is written.
@@ -56,21 +56,21 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     };
     let log = read(&task.log)?;
     let cannot = |lines: Vec<String>| {
-        Refused::CannotTell(format!("{}: cannot tell\n  {}", task.log.display(), lines.join("\n  ")))
+        Refused::NotIdentifiable(format!("{}: not identifiable\n  {}", task.log.display(), lines.join("\n  ")))
     };
-    let missing = telling::unmoved(&log);
+    let missing = observability::unexcited(&log);
     if !missing.is_empty() {
         return Err(cannot(missing));
     }
-    let told = identify(&log, &scenario, &bench).map_err(|what| cannot(vec![format!("the log {what}")]))?;
-    let unknown = telling::unknown(&told);
+    let identified = identify(&log, &scenario, &bench).map_err(|what| cannot(vec![format!("the log {what}")]))?;
+    let unknown = observability::unobservable(&identified);
     if !unknown.is_empty() {
         return Err(cannot(unknown));
     }
     let mut report = head(&scenario, &log);
-    report += &table(&told, &scenario);
-    report += &remarks(&told, &bench);
-    let (eaten, all) = margins::report(&task.original, &task.file, &told)
+    report += &table(&identified, &scenario);
+    report += &remarks(&identified, &bench);
+    let (eaten, all) = margins::report(&task.original, &task.file, &identified)
         .map_err(|what| cannot(vec![format!("the vehicle found cannot fly: {what}")]))?;
     report += &format!("\nwhat the uncertainty eats of the margins\n{eaten}");
     report += if all {
@@ -79,7 +79,8 @@ pub fn run(task: &Task) -> Result<String, Refused> {
         "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
     };
     if let Some((name, path, mut file)) = out {
-        let text = rewritten(&task.original, &name, &Values::of(&told), scenario.timing.step()).map_err(of_file)?;
+        let text =
+            rewritten(&task.original, &name, &Values::of(&identified), scenario.timing.step()).map_err(of_file)?;
         let written = file.write_all(text.as_bytes()).and_then(|()| file.finish());
         written.map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
         report += &format!("written to {}\n", path.display());
@@ -121,38 +122,38 @@ fn in_file(path: &Path, what: &str) -> Refused {
 }
 
 fn head(scenario: &Scenario, log: &FlightLog) -> String {
-    let told = match log.source {
+    let source = match log.source {
         Source::Estimator => "the estimator's",
         Source::Sensors => "the sensors'",
         Source::Truth => "the TRUE state, which no real vehicle knows",
     };
     let seconds = log.moments.len() as f64 * log.period;
-    format!("{}: {} s flown without a gap, state: {told}\n\n", scenario.name, short(seconds))
+    format!("{}: {} s flown without a gap, state: {source}\n\n", scenario.name, short(seconds))
 }
 
-fn table(told: &Quantities, scenario: &Scenario) -> String {
+fn table(identified: &Quantities, scenario: &Scenario) -> String {
     let vehicle = scenario.configuration.vehicle();
     let inertia = vehicle.inertia.map(f64::from);
     let drag = scenario.reality.drag.map_or([f64::NAN; 3], |drag| drag.linear.into());
     let delay = scenario.delay();
     let rows = [
-        ("thrust scale / mass", "1/kg", told.scale_over_mass, 1.0 / f64::from(vehicle.mass)),
-        ("inertia x / thrust scale", "kg m^2", told.inertia_over_scale[0], inertia.x),
-        ("inertia y / thrust scale", "kg m^2", told.inertia_over_scale[1], inertia.y),
-        ("inertia z / thrust scale", "kg m^2", told.inertia_over_scale[2], inertia.z),
-        ("mass", "kg", told.mass, f64::from(vehicle.mass)),
-        ("thrust scale", "", told.thrust_scale, 1.0),
-        ("inertia x", "kg m^2", told.inertia[0], inertia.x),
-        ("inertia y", "kg m^2", told.inertia[1], inertia.y),
-        ("inertia z", "kg m^2", told.inertia[2], inertia.z),
-        ("lag and delay together", "s", told.whole_delay, scenario.rotor_lag + delay),
-        ("rotor lag", "s", told.lag, scenario.rotor_lag),
-        ("delay", "s", told.delay, delay),
-        ("centre of mass x", "m", told.centre_of_mass[0], 0.0),
-        ("centre of mass y", "m", told.centre_of_mass[1], 0.0),
-        ("linear drag x", "kg/s", told.drag[0], drag[0]),
-        ("linear drag y", "kg/s", told.drag[1], drag[1]),
-        ("linear drag z", "kg/s", told.drag[2], drag[2]),
+        ("thrust scale / mass", "1/kg", identified.scale_over_mass, 1.0 / f64::from(vehicle.mass)),
+        ("inertia x / thrust scale", "kg m^2", identified.inertia_over_scale[0], inertia.x),
+        ("inertia y / thrust scale", "kg m^2", identified.inertia_over_scale[1], inertia.y),
+        ("inertia z / thrust scale", "kg m^2", identified.inertia_over_scale[2], inertia.z),
+        ("mass", "kg", identified.mass, f64::from(vehicle.mass)),
+        ("thrust scale", "", identified.thrust_scale, 1.0),
+        ("inertia x", "kg m^2", identified.inertia[0], inertia.x),
+        ("inertia y", "kg m^2", identified.inertia[1], inertia.y),
+        ("inertia z", "kg m^2", identified.inertia[2], inertia.z),
+        ("lag and delay together", "s", identified.whole_delay, scenario.rotor_lag + delay),
+        ("rotor lag", "s", identified.lag, scenario.rotor_lag),
+        ("delay", "s", identified.delay, delay),
+        ("centre of mass x", "m", identified.centre_of_mass[0], 0.0),
+        ("centre of mass y", "m", identified.centre_of_mass[1], 0.0),
+        ("linear drag x", "kg/s", identified.drag[0], drag[0]),
+        ("linear drag y", "kg/s", identified.drag[1], drag[1]),
+        ("linear drag z", "kg/s", identified.drag[2], drag[2]),
     ];
     let head = ["", "identified", "uncertainty", "interval", "", "file", ""].map(str::to_owned).to_vec();
     let row = |(name, unit, quantity, file): (&str, &str, Quantity, f64)| {
@@ -164,13 +165,14 @@ fn table(told: &Quantities, scenario: &Scenario) -> String {
     aligned(&std::iter::once(head).chain(rows.map(row)).collect::<Vec<_>>())
 }
 
-fn remarks(told: &Quantities, bench: &Bench) -> String {
+fn remarks(identified: &Quantities, bench: &Bench) -> String {
     let mut text = format!(
         "uncertainty: standard. interval: {COVERAGE} of them to either side, for all true values together (docs/identify.md says how often that held)\n\
          the centre of mass is from the file's; other steady torques count as part of it\n"
     );
-    if !told.mass_is_measured {
-        text += "the mass was TAKEN FROM THE FILE: a flight tells thrust scale over mass and inertia over thrust scale only; weigh it (--bench)\n";
+    if !identified.mass_is_measured {
+        text += "the mass was TAKEN FROM THE FILE: only thrust scale over mass and inertia over thrust scale are \
+                 observable in flight; weigh it (--bench)\n";
     }
     if let Some(curve) = bench.curve {
         text += &format!("thrust curve a = {}: set the parameter THR_CURVE\n", short(curve));

@@ -3,12 +3,12 @@
 //! On whitened residuals e with their slopes J ([`super::noise`]), the noise fitted again on the way, each step solves
 //!
 //! ```text
-//! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton          velocities: Z = J of the flight that was *asked for*
+//! sum Z' J step = sum Z' e          body rates: Z = J, Gauss-Newton     velocities: Z = J of the *reference's* flight
 //! ```
 //!
 //! Gusts move the vehicle, and the law answers them: thrust and speed then go along with what is left, and least
-//! squares would take too little drag and thrust from it. What was asked for knows nothing of gusts: instrumental
-//! variables (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
+//! squares would underestimate drag and thrust. The reference does not depend on gusts: instrumental variables
+//! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
 //! not white is the jackknife's: by how much the unknowns move if a block b, a [`BLOCKS`]-th of the log, is left out,
@@ -16,9 +16,9 @@
 //! blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block pulls the fit to
 //! itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
 //!
-//! Body rates are looked at as what their low-passes leave that is new at each tick ([`super::low_passes`]). Velocities
-//! are looked at ten times a second only. What they know, thrust over mass, drag and wind, is slow, and an estimator
-//! that carries them on between its own updates leaves marks from tick to tick that are no motion.
+//! Of the body rates the fit uses the innovation at each tick ([`super::low_passes`]). Of the velocities it uses ten
+//! samples a second only: thrust over mass, drag and wind change slowly, and an estimator's prediction between its own
+//! updates leaves artefacts from tick to tick.
 
 use super::model::{CHANNELS, Channels, DRAG, Model, SQUARED_LAG, STRENGTH, UNKNOWNS, Unknowns, WHOLE_DELAY, prior};
 use super::noise::{Noise, Whitening};
@@ -29,7 +29,7 @@ use std::array::from_fn;
 /// of the residuals once they are whitened. Turbulence is not quite of first order, nor does an estimator's error
 /// in its gyro's bias come and go as the model has it.
 pub const BLOCKS: usize = 16;
-/// Between two looks at the velocities, s.
+/// Between two samples of the velocities, s.
 const LOOK: f64 = 0.1;
 /// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are
 /// longer than a standard uncertainty.
@@ -54,7 +54,7 @@ type White = Vec<Vec<f64>>;
 /// A covariance of all unknowns.
 pub type Covariance = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// What a log says.
+/// The result of a fit.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// The most likely unknowns.
@@ -63,11 +63,11 @@ pub struct Fit {
     pub covariance: Covariance,
 }
 
-/// Fits `model`; `asked_for` is that of the same flight without disturbances. Samples come each `period`, s.
+/// Fits `model`; `reference` is that of the same flight without disturbances. Samples come each `period`, s.
 ///
 /// # Errors
-/// If the search leads nowhere: the log is of another vehicle, or says next to nothing.
-pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String> {
+/// If the search does not settle: the log is of another vehicle, or has too little information.
+pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String> {
     let (mut unknowns, wide) = prior();
     unknowns[STRENGTH] = model.balance();
     let (start, mut noise) = (unknowns, [Noise::START; CHANNELS]);
@@ -78,7 +78,7 @@ pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String>
     let periods = every.map(|every| every as f64 * period);
     let seen = |channels: Channels| -> Channels {
         from_fn(|channel| match model.low_passes() {
-            Some(low_passes) if channel >= 3 => low_passes.unforetold(&channels[channel]),
+            Some(low_passes) if channel >= 3 => low_passes.innovations(&channels[channel]),
             _ => channels[channel].iter().step_by(every[channel]).copied().collect(),
         })
     };
@@ -97,13 +97,13 @@ pub fn fit(model: &Model, asked_for: &Model, period: f64) -> Result<Fit, String>
         let slopes: Vec<(White, White)> = (0..UNKNOWNS)
             .map(|unknown| {
                 let width = 1e-3 * wide[unknown];
-                let hovering = asked_for.hovering(&unknowns);
+                let hovering = reference.hovering(&unknowns);
                 let moved = |by: f64| {
                     let mut moved = unknowns;
                     moved[unknown] += by;
                     let late = [WHOLE_DELAY, SQUARED_LAG].contains(&unknown).then(|| model.impulses(&moved));
                     let flown = seen(model.left(&moved, late.as_ref().unwrap_or(&impulses), &felt));
-                    (flown, seen(asked_for.left(&moved, &hovering, &[])))
+                    (flown, seen(reference.left(&moved, &hovering, &[])))
                 };
                 let (ahead, behind) = (moved(width), moved(-width));
                 let slope = |ahead: &Channels, behind: &Channels| {
@@ -157,7 +157,7 @@ fn scaled_inverse(matrix: &Covariance) -> Option<Covariance> {
     Some(Covariance::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// What one of [`BLOCKS`] parts of the log says.
+/// The equations of one of [`BLOCKS`] parts of the log.
 #[derive(Debug, Clone, Default)]
 struct Block {
     /// Its part of A.
@@ -167,7 +167,7 @@ struct Block {
 }
 
 /// sum Z' Z, and what each part of the log adds to A and to sum Z' e; each unknown has the slopes of the model and of
-/// what was asked for.
+/// the reference.
 fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Block>) {
     let mut spread = Covariance::zeros();
     let mut blocks = vec![Block::default(); BLOCKS];

@@ -1,15 +1,14 @@
-//! What a vehicle knew in flight: the state it was told and what it asked for, at each control tick.
+//! The state that a vehicle measured in flight and the wrench that it commanded, at each control tick.
 //!
 //! From log.csv, the state is `est_…` where there is an estimator, `measured_…` where there are sensors, and the true
-//! state only where the vehicle itself was told that. From the firmware's recorder, it is what the estimator said
-//! ([`super::ulog`]).
+//! state only where the vehicle flew on that. From the firmware's recorder, it is the estimate ([`super::ulog`]).
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units.
 
 use controller_core::state::Wrench;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// How the state came about that a vehicle was told.
+/// The source of the state that a vehicle flew on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// By the estimator: body rates are late by the low-passes of the gyro.
@@ -31,10 +30,10 @@ pub struct Moment {
     pub attitude: UnitQuaternion<f64>,
     /// rad/s, body.
     pub angular_velocity: Vector3<f64>,
-    /// The velocity that was asked for, m/s, world.
+    /// The reference's velocity, m/s, world.
     pub reference_velocity: Vector3<f64>,
-    /// What the rotors were asked for: thrust, N, and torque, N m.
-    pub asked: Wrench,
+    /// The wrench commanded of the rotors: thrust, N, and torque, N m.
+    pub commanded: Wrench,
 }
 
 /// The longest part of a log that was flown without a gap.
@@ -42,7 +41,7 @@ pub struct Moment {
 pub struct FlightLog {
     /// Between two ticks, s.
     pub period: f64,
-    /// How the state came about.
+    /// The source of the state.
     pub source: Source,
     /// Tick by tick.
     pub moments: Vec<Moment>,
@@ -104,9 +103,9 @@ impl FlightLog {
         let column = |name: &str| {
             header.iter().position(|found| *found == name).ok_or(format!("line 1: has no column {name}: no log.csv"))
         };
-        let told = ["vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
+        let measured = ["vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
         let mut columns = vec![column("t")?];
-        for name in told {
+        for name in measured {
             columns.push(column(&format!("{prefix}{name}"))?);
         }
         for name in ["thrust", "tau_x", "tau_y", "tau_z", "pdx", "pdy", "pdz"] {
@@ -133,17 +132,16 @@ impl FlightLog {
         Self::longest(source, &moments)
     }
 
-    /// The same flight as it was asked for: velocities without what gusts and noise did to them, level, and not turning
-    /// but in heading.
+    /// The same flight as the reference has it: velocities without gusts and noise, level, turning in heading only.
     #[must_use]
-    pub fn asked_for(&self) -> Self {
-        let asked = |moment: &Moment| Moment {
+    pub fn of_reference(&self) -> Self {
+        let referred = |moment: &Moment| Moment {
             velocity: moment.reference_velocity,
             attitude: UnitQuaternion::from_euler_angles(0.0, 0.0, moment.attitude.euler_angles().2),
             angular_velocity: Vector3::zeros(),
             ..*moment
         };
-        Self { moments: self.moments.iter().map(asked).collect(), ..self.clone() }
+        Self { moments: self.moments.iter().map(referred).collect(), ..self.clone() }
     }
 }
 
@@ -160,8 +158,8 @@ fn differentiate(moments: &mut [Option<Moment>]) {
     }
 }
 
-/// A moment from time, velocity, attitude, rates, thrust and torque asked for by the law, the reference's velocity, and
-/// and the believed thrust scale; `None` if that is no state.
+/// A moment from time, velocity, attitude, rates, the law's thrust and torque, the reference's velocity, and the
+/// estimated thrust scale; `None` if that is no state.
 #[must_use]
 pub fn moment(numbers: &[f64], scale: f64) -> Option<Moment> {
     let &[time, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz, thrust, tau_x, tau_y, tau_z, rx, ry, rz] = numbers else {
@@ -178,7 +176,7 @@ pub fn moment(numbers: &[f64], scale: f64) -> Option<Moment> {
         attitude: UnitQuaternion::new_normalize(attitude),
         angular_velocity: Vector3::new(wx, wy, wz),
         reference_velocity: Vector3::new(rx, ry, rz),
-        asked: Wrench {
+        commanded: Wrench {
             thrust: (thrust / scale) as f32,
             torque: Vector3::new(tau_x, tau_y, tau_z).map(|torque| (torque / scale) as f32),
         },

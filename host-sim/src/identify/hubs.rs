@@ -1,6 +1,6 @@
-//! What the air does at the rotors' hubs, as far as a flight near hover shows it.
+//! The air's forces at the rotors' hubs, as far as a flight near hover shows them.
 //!
-//! With tau_xy the rotors' torque about x and y, F their thrust over the mass, A what the air does of the acceleration,
+//! With tau_xy the rotors' torque about x and y, F their thrust over the mass, A the air's part of the acceleration,
 //! body, V_b the velocity in it, c and m scale and mass, rotor i at p_i:
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! What the rotors gave between ticks, as the model has them, for a lag and a delay that are yet to be found.
+//! Impulses of the model's rotors between ticks, for a lag and a delay that are yet to be identified.
 //!
 //! A command c_k of rotor speed acts from t_k + D on, and speeds follow it with the first-order lag tau:
 //!
@@ -12,16 +12,16 @@
 //! reflection 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it
 //! afterwards.
 //!
-//! Body rates that [`LowPasses`] told are the integral of torques that went through the same: all are linear, so
-//! torques are passed through them here, and S is without their delay. Counted as a delay alone, their shape would be
-//! taken for lag.
+//! Body rates behind [`LowPasses`] are the integral of torques behind the same filters, which are linear. So torques
+//! are filtered here, and S is without the filters' delay. Counted as a delay alone, their shape would be taken for
+//! lag.
 
 use super::flight_log::FlightLog;
 use super::low_passes::LowPasses;
 use controller_core::allocation::{Mixer, Rotors};
 use nalgebra::{Vector3, Vector4};
 
-/// The shortest lag that is told from none, s.
+/// The shortest lag that is not taken for zero, s.
 const SHORTEST: f64 = 1e-6;
 
 /// Speeds commanded at each tick, rad/s, and what a squared speed gives.
@@ -33,7 +33,7 @@ pub struct Commands {
     columns: Vec<Vector4<f64>>,
     /// s.
     period: f64,
-    /// Of the body rates told.
+    /// Of the measured body rates.
     pub(super) low_passes: Option<LowPasses>,
 }
 
@@ -59,7 +59,7 @@ pub struct Impulse {
 }
 
 impl Commands {
-    /// What the model's allocation asks its rotors for.
+    /// The rotor speeds that the model's allocation commands.
     ///
     /// # Errors
     /// If the allocation refuses a wrench of the log.
@@ -67,7 +67,7 @@ impl Commands {
         let mixer = Mixer::new(rotors);
         let speeds = log.moments.iter().map(|moment| {
             let allocation = mixer
-                .allocate(&moment.asked)
+                .allocate(&moment.commanded)
                 .map_err(|error| format!("t = {}: thrust and torque cannot be allocated: {error}", moment.time))?;
             Ok(rotors.iter().zip(&allocation.thrusts).map(|(rotor, f)| f64::from(rotor.speed_at(*f))).collect())
         });
@@ -80,7 +80,7 @@ impl Commands {
         })
     }
 
-    /// What the rotors gave from each tick to the next, with the whole delay S and u, the squared lag.
+    /// The rotors' impulses from each tick to the next, with the whole delay S and u, the squared lag.
     #[must_use]
     pub fn impulses(&self, whole: f64, squared: f64) -> Vec<Impulse> {
         if squared >= 0.0 {

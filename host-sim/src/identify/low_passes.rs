@@ -1,11 +1,10 @@
-//! What the body rates of a log went through before they were told: the gyro's own low-pass and the firmware's, at the
-//! IMU's rate.
+//! The low-passes of a log's body rates: the gyro's own and the firmware's, at the IMU's rate.
 //!
 //! All of it is linear, so the model's torques are passed through the same two ([`super::impulses`]). The gyro's noise
-//! went through them as well. It was white before; afterwards samples next to each other go together by a sixteenth. A
-//! law that answers one sample acts before the next, where commands are not late: what is left of a rate would then go
-//! along with what the model's rotors do, and of a vehicle that acts at once the lag would come out a third of a
-//! millisecond too small. So of each sample what those before it foretell is taken away:
+//! went through them as well. It was white before; afterwards neighbouring samples correlate by 1/16. Without a delay
+//! the law answers one sample before the next: the residual of a rate would then correlate with the model's rotors, and
+//! the lag of a vehicle without delay would come out a third of a millisecond too small. So each sample is replaced by
+//! its innovation, the sample less its prediction:
 //!
 //! ```text
 //! rho_j = sum h_i h_i+jN / sum h_i^2                      h: response to an impulse, N samples of the IMU to a tick
@@ -21,8 +20,8 @@ use estimation::imu::ImuParameters;
 use estimation::imu::low_pass::LowPass;
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// From how many samples the next is foretold.
-const FORETELLING: usize = 3;
+/// From how many samples the next is predicted.
+const PREDICTORS: usize = 3;
 /// Samples of the IMU after an impulse; nothing is left of it then.
 const LONGEST: usize = 1000;
 
@@ -32,7 +31,7 @@ pub struct LowPasses {
     passes: [LowPass; 2],
     samples: usize,
     /// a.
-    foretelling: SVector<f64, FORETELLING>,
+    prediction: SVector<f64, PREDICTORS>,
 }
 
 impl LowPasses {
@@ -45,15 +44,15 @@ impl LowPasses {
     }
 
     fn new(passes: [LowPass; 2], samples: usize) -> Self {
-        let mut new = Self { passes, samples, foretelling: SVector::zeros() };
+        let mut new = Self { passes, samples, prediction: SVector::zeros() };
         let mut at_rest = new.clone();
         let impulse = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, LONGEST));
         let response: Vec<f64> = impulse.map(|sample| at_rest.take(&Vector3::repeat(sample)).x).collect();
         let together =
             |ticks: usize| response.iter().zip(response.iter().skip(ticks * samples)).map(|(a, b)| a * b).sum::<f64>();
-        let rho = SMatrix::<f64, FORETELLING, FORETELLING>::from_fn(|i, j| together(i.abs_diff(j)));
-        let next = SVector::<f64, FORETELLING>::from_fn(|i, _| together(i + 1));
-        new.foretelling = rho.cholesky().map_or_else(SVector::zeros, |rho| rho.solve(&next));
+        let rho = SMatrix::<f64, PREDICTORS, PREDICTORS>::from_fn(|i, j| together(i.abs_diff(j)));
+        let next = SVector::<f64, PREDICTORS>::from_fn(|i, _| together(i + 1));
+        new.prediction = rho.cholesky().map_or_else(SVector::zeros, |rho| rho.solve(&next));
         new
     }
 
@@ -69,14 +68,15 @@ impl LowPasses {
         ours.take(&own.take(&sample.map(|of_axis| of_axis as f32))).map(f64::from)
     }
 
-    /// Of a series with a sample a tick what the samples before do not foretell. Before the first stands the first.
+    /// The innovations of a series with a sample a tick: each sample less its prediction from those before. Before the
+    /// first stands the first.
     #[must_use]
-    pub fn unforetold(&self, series: &[f64]) -> Vec<f64> {
+    pub fn innovations(&self, series: &[f64]) -> Vec<f64> {
         let before = |tick: usize, by: usize| series[tick.saturating_sub(by)];
-        let foretold = |tick: usize| -> f64 {
-            self.foretelling.iter().enumerate().map(|(index, weight)| weight * before(tick, index + 1)).sum()
+        let predicted = |tick: usize| -> f64 {
+            self.prediction.iter().enumerate().map(|(index, weight)| weight * before(tick, index + 1)).sum()
         };
-        series.iter().enumerate().map(|(tick, sample)| sample - foretold(tick)).collect()
+        series.iter().enumerate().map(|(tick, sample)| sample - predicted(tick)).collect()
     }
 }
 
@@ -97,13 +97,13 @@ mod tests {
     fn white_noise_that_went_through_them_is_white_again() {
         let mut passes = LowPasses::new([gyro_filter(), ImuParameters::BMI088.low_pass()], 10);
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-        let told: Vec<f64> = (0..2_000_000)
+        let measured: Vec<f64> = (0..2_000_000)
             .map(|_| passes.take(&Vector3::repeat(StandardNormal.sample(&mut random))).x)
             .enumerate()
-            .filter_map(|(sample, told)| (sample % 10 == 0).then_some(told))
+            .filter_map(|(sample, measured)| (sample % 10 == 0).then_some(measured))
             .collect();
-        assert!((together(&told, 1) - 0.060).abs() < 0.01, "{}", together(&told, 1));
-        let white = passes.unforetold(&told);
+        assert!((together(&measured, 1) - 0.060).abs() < 0.01, "{}", together(&measured, 1));
+        let white = passes.innovations(&measured);
         for apart in 1..=5 {
             // 200,000 samples of noise that is white go together by 0.0022, one standard deviation.
             assert!(together(&white, apart).abs() < 0.007, "{apart}: {}", together(&white, apart));

@@ -1,4 +1,4 @@
-//! What the uncertainty of a vehicle's numbers eats of its certificate and of its sampled loops.
+//! The margins of certificate and sampled loops within the uncertainty of a vehicle's numbers.
 //!
 //! Every margin three times: with the file's numbers, with those identified, and in the worst corner of the intervals,
 //! linearised: from the identified margin, what it loses from one end or the other of each interval alone, all of it
@@ -19,10 +19,10 @@ struct Margin {
     value: f64,
 }
 
-/// What a margin counts.
+/// The kind of a margin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// What an inequality leaves, as a part of what is available.
+    /// An inequality's margin, as a part of what is available.
     Inequality,
     /// By which factor the gain of a loop may be wrong.
     Gain,
@@ -51,18 +51,18 @@ impl Kind {
 /// The table, and whether all margins are left in the worst corner.
 ///
 /// # Errors
-/// If the identified vehicle is none that could fly, or `original` is no scenario.
-pub fn report(original: &str, name: &str, told: &Quantities) -> Result<(String, bool), String> {
+/// If the identified vehicle cannot fly, or `original` is no scenario.
+pub fn report(original: &str, name: &str, quantities: &Quantities) -> Result<(String, bool), String> {
     let model = Scenario::parse(original, name).map_err(|error| error.to_string())?;
     let step = model.timing.step();
     let of = |values: &Values| -> Result<Vec<Margin>, String> {
         let text = rewritten(original, "identified", values, step)?;
         margins(&Scenario::parse(&text, "identified").map_err(|error| error.to_string())?)
     };
-    let (file, values) = (margins(&model)?, Values::of(told));
+    let (file, values) = (margins(&model)?, Values::of(quantities));
     let identified = of(&values)?;
     let mut worst: Vec<f64> = identified.iter().map(|margin| margin.value).collect();
-    for (quantity, set) in ends(told) {
+    for (quantity, set) in ends(quantities) {
         let moved = quantity.interval.map(|end| {
             let mut values = values;
             set(&mut values, end);
@@ -117,21 +117,21 @@ fn margins(scenario: &Scenario) -> Result<Vec<Margin>, String> {
 /// Sets one number of a vehicle.
 type Set = fn(&mut Values, f64);
 
-/// What the certificate and the loops depend on.
-fn ends(told: &Quantities) -> [(Quantity, Set); 9] {
+/// The quantities that the certificate and the loops depend on.
+fn ends(quantities: &Quantities) -> [(Quantity, Set); 9] {
     [
-        (told.mass, |values, end| values.mass = end),
-        (told.thrust_scale, |values, end| values.thrust_scale = end),
-        (told.inertia[0], |values, end| values.inertia[0] = end),
-        (told.inertia[1], |values, end| values.inertia[1] = end),
-        (told.inertia[2], |values, end| values.inertia[2] = end),
+        (quantities.mass, |values, end| values.mass = end),
+        (quantities.thrust_scale, |values, end| values.thrust_scale = end),
+        (quantities.inertia[0], |values, end| values.inertia[0] = end),
+        (quantities.inertia[1], |values, end| values.inertia[1] = end),
+        (quantities.inertia[2], |values, end| values.inertia[2] = end),
         // The whole is known better than its parts: a longer lag is a shorter delay.
-        (told.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
-        (told.lag, |values, end| {
+        (quantities.whole_delay, |values, end| values.delay = (end - values.lag).max(0.0)),
+        (quantities.lag, |values, end| {
             let whole = values.lag + values.delay;
             (values.lag, values.delay) = (end, (whole - end).max(0.0));
         }),
-        (told.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
-        (told.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
+        (quantities.centre_of_mass[0], |values, end| values.centre_of_mass[0] = end),
+        (quantities.centre_of_mass[1], |values, end| values.centre_of_mass[1] = end),
     ]
 }

@@ -1,4 +1,4 @@
-//! The rigid body that a log is held against, and what is left between the two.
+//! The rigid body that is fitted to a log, and its residuals.
 //!
 //! A flight shows accelerations, never forces: thrust scale c, mass m and inertia J appear as c/m and c/J_i only. With
 //! f and tau the thrust and torque of the model's rotors ([`super::impulses`]), r_c the centre of mass (x, y), V = v -
@@ -12,13 +12,14 @@
 //! ```
 //!
 //! b is what gusts add, as the filter of [`super::noise`] knows it. So v_c' + g e3 is known from the log, whatever
-//! share of it drag has: in h it is held while the unknowns move, and torques tell nothing of drag or thrust that
-//! forces do not. beta, and e about z alone, are what rotors in the air and unequal rotors may add: found, not
-//! reported. So are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is
-//! a centre of mass beside the origin: no flight near hover tells them apart. A steady vertical force is thrust: none
-//! is supposed.
+//! share of it drag has: in h it is held while the unknowns move, since torques show no more of drag or thrust than
+//! forces do. beta, and e about z alone, are what rotors in the air and unequal rotors may add: found, not reported. So
+//! are l and a, lift and torque by the air at the hubs ([`super::hubs`]). A steady torque about x or y is a centre of
+//! mass beside the origin: the two are not observable apart near hover. A steady vertical force is thrust: none is
+//! supposed.
 //!
-//! Both sides are integrated from tick to tick, never differentiated. What is left is the state told less the integral.
+//! Both sides are integrated from tick to tick, never differentiated. The residual is the measured state less the
+//! integral.
 
 use super::flight_log::{FlightLog, Moment};
 use super::hubs::{Hubs, Layout};
@@ -35,7 +36,7 @@ pub const UNKNOWNS: usize = 20;
 pub const STRENGTH: usize = 0;
 /// About x; y and z follow.
 pub const TURNING: usize = 1;
-/// The whole delay, with that of the rates told.
+/// The whole delay, with that of the measured rates.
 pub const WHOLE_DELAY: usize = 4;
 /// The squared lag.
 pub const SQUARED_LAG: usize = 5;
@@ -58,10 +59,10 @@ pub const CHANNELS: usize = 6;
 /// Six series.
 pub type Channels = [Vec<f64>; CHANNELS];
 
-/// Before the first, rotors turn in a way that no log tells, s.
+/// At the start of a log the rotors' speeds are unknown, s.
 const UNKNOWN_START: f64 = 0.5;
 
-/// A log and the model it is held against.
+/// A log and the model that is fitted to it.
 #[derive(Debug, Clone)]
 pub struct Model<'a> {
     log: &'a FlightLog,
@@ -74,8 +75,9 @@ pub struct Model<'a> {
     first: usize,
 }
 
-/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that a flight which
-/// can tell does not feel it; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are great.
+/// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that it does not
+/// matter for an observable quantity; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are
+/// great.
 #[must_use]
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -86,9 +88,10 @@ pub fn prior() -> (Unknowns, Unknowns) {
 
 impl<'a> Model<'a> {
     /// # Errors
-    /// If the file has no rotors, or its allocation refuses what the log says was asked for.
+    /// If the file has no rotors, or its allocation refuses a wrench of the log.
     pub fn new(log: &'a FlightLog, configuration: &Configuration) -> Result<Self, String> {
-        let rotors = configuration.rotors().ok_or("rotors: is missing; a log is held against a model of rotors")?;
+        let rotors =
+            configuration.rotors().ok_or("rotors: is missing; the log's commands need a model of the rotors")?;
         let vehicle = configuration.vehicle();
         Ok(Self {
             log,
@@ -107,13 +110,13 @@ impl<'a> Model<'a> {
         self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
     }
 
-    /// What the log's body rates went through.
+    /// The low-passes of the log's body rates.
     #[must_use]
     pub fn low_passes(&self) -> Option<&LowPasses> {
         self.commands.low_passes.as_ref()
     }
 
-    /// What is left of each channel: told less integrated. `felt` is as [`Self::felt`] has it.
+    /// The residuals of each channel: measured less integrated. `felt` is as [`Self::felt`] has it.
     #[must_use]
     pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Felt]) -> Channels {
         let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
@@ -127,8 +130,8 @@ impl<'a> Model<'a> {
         let mut left = Channels::default();
         for (sample, (pair, impulse)) in self.steps(impulses).enumerate() {
             let [now, next] = pair else { break };
-            let told = now.velocity + now.attitude * now.angular_velocity.cross(&centre);
-            let (apart, turned) = (told - velocity, now.angular_velocity - rates);
+            let measured = now.velocity + now.attitude * now.angular_velocity.cross(&centre);
+            let (apart, turned) = (measured - velocity, now.angular_velocity - rates);
             for axis in 0..3 {
                 left[axis].push(apart[axis]);
                 left[3 + axis].push(turned[axis]);
@@ -139,7 +142,7 @@ impl<'a> Model<'a> {
             let carried = strength * impulse.thrust;
             velocity += up * (carried + hubs.lifted(&self.layout, &airspeed) * period)
                 + (dragged - Vector3::z() * self.gravity) * period;
-            let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::calm(self.gravity * period));
+            let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::hover(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
             let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
                 + hubs.unlike(impulse, carried / period, &(felt.air / period));
@@ -225,7 +228,7 @@ fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
     now.attitude.inverse_transform_vector(&((now.velocity + next.velocity) * 0.5 - wind))
 }
 
-/// What an accelerometer at the centre of mass feels over a sample, m/s, body.
+/// The specific force at the centre of mass over a sample, m/s, body.
 #[derive(Debug, Clone, Copy)]
 pub struct Felt {
     /// R' (v_c' + g e3).
@@ -236,7 +239,7 @@ pub struct Felt {
 
 impl Felt {
     /// A hover in still air.
-    fn calm(weight: f64) -> Self {
+    fn hover(weight: f64) -> Self {
         Self { whole: Vector3::z() * weight, air: Vector3::zeros() }
     }
 }

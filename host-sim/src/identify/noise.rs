@@ -1,15 +1,14 @@
-//! What is left between model and log, made white: the innovations of a Kalman filter.
+//! The residuals between model and log, whitened: the innovations of a Kalman filter.
 //!
-//! On each axis what is left r is measured with white noise, and driven by an acceleration b that comes and goes
+//! On each axis the residual r is measured with white noise, and driven by an acceleration b that comes and goes
 //! (turbulence, what the estimator errs in attitude) and by a random walk of its own (what the estimator corrects):
 //!
 //! ```text
 //! r_k+1 = r_k + T b_k + n_r + n_i,   b_k+1 = e^(-T / T_b) b_k + n_b,   y_k = r_k + n
 //! ```
 //!
-//! n_i is what n_b, coming all through the period, does to r within it: variance T^2/3 of n_b's, covariance with it
-//! T/2, for T well below T_b. Without it innovations would go on for a second sample, and the numbers would seem surer
-//! than they are.
+//! n_i is the effect of n_b on r within the period: variance T^2/3 of n_b's, covariance with it T/2, for T well below
+//! T_b. Without it innovations would go on for a second sample, and the numbers would seem surer than they are.
 //!
 //! The three levels and T_b are those of greatest likelihood ([`Noise::fitted`]). The filter is linear: passed through
 //! it, residuals and their derivatives become those of a weighted least-squares problem with white noise. Innovations

@@ -1,8 +1,8 @@
 //! The scenario with a vehicle's own numbers: the original text, comments kept.
 //!
-//! Replaced are mass, inertia, what the rotors deliver (thrust and drag coefficient alike, or the thrusts that stand
-//! for them), lag, the delay, rounded to whole plant steps, `drag`, as linear drag in place of all its keys, and the
-//! rotors' positions, which count from the centre of mass.
+//! Replaced are mass, inertia, the rotors' thrust and drag coefficients (or the thrusts that stand for them), lag, the
+//! delay, rounded to whole plant steps, `drag`, as linear drag in place of all its keys, and the rotors' positions,
+//! which count from the centre of mass.
 
 use super::quantities::{Quantities, Quantity};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -29,17 +29,17 @@ pub struct Values {
 impl Values {
     /// The estimates.
     #[must_use]
-    pub fn of(told: &Quantities) -> Self {
+    pub fn of(identified: &Quantities) -> Self {
         let value = |quantity: &Quantity| quantity.value;
         Self {
-            mass: told.mass.value,
-            inertia: told.inertia.each_ref().map(value),
-            thrust_scale: told.thrust_scale.value,
-            lag: told.lag.value,
-            delay: told.delay.value,
-            centre_of_mass: told.centre_of_mass.each_ref().map(value),
+            mass: identified.mass.value,
+            inertia: identified.inertia.each_ref().map(value),
+            thrust_scale: identified.thrust_scale.value,
+            lag: identified.lag.value,
+            delay: identified.delay.value,
+            centre_of_mass: identified.centre_of_mass.each_ref().map(value),
             // The air takes energy, whatever noise says.
-            drag: told.drag.each_ref().map(|drag| drag.value.max(0.0)),
+            drag: identified.drag.each_ref().map(|drag| drag.value.max(0.0)),
         }
     }
 }
@@ -67,7 +67,7 @@ pub fn rewritten(original: &str, name: &str, values: &Values, step: f64) -> Resu
         for (axis, centre) in values.centre_of_mass.into_iter().enumerate() {
             let old = position.get(axis).and_then(|old| number(&Item::Value(old.clone())));
             let old = old.ok_or("rotors.position: must be lists of three numbers")?;
-            // Beyond a hundredth of a millimetre nobody measures.
+            // Rounded to 0.01 mm.
             let mut new = toml_edit::Value::from(((old - centre) * 1e5).round() * 1e-5);
             if axis > 0 {
                 new.decor_mut().set_prefix(" ");

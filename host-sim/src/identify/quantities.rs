@@ -1,9 +1,8 @@
-//! What is known of a vehicle in the end: a flight and a bench together, each number with its uncertainty.
+//! A vehicle's numbers from flight and bench together, each with its uncertainty.
 //!
-//! A flight knows c/m and c/J_i; a scale knows m; a bifilar swing knows J_i/m; a thrust stand knows c. In logarithms
-//! all of these are linear, so they are combined by least squares, each with its weight, unless they contradict each
-//! other ([`super::agreement`]). Without a scale or a stand nothing tells m and c apart: then the mass is taken from
-//! the file as it stands.
+//! A flight shows c/m and c/J_i; a scale shows m; a bifilar swing shows J_i/m; a thrust stand shows c. In logarithms
+//! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
+//! ([`super::agreement`]). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
 //! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen
 //! quantities at once, and all true values together are to be in their intervals in 95 of 100 flights. Bonferroni's
@@ -24,7 +23,7 @@ use nalgebra::{SMatrix, SVector};
 pub const COVERAGE: f64 = 3.515;
 const _: () = assert!(BLOCKS == 16);
 
-/// The file's mass, where nothing else tells: as good as exact.
+/// Relative uncertainty of the file's mass where no bench gives it: as good as exact.
 const TAKEN: f64 = 1e-6;
 
 /// One number of a vehicle.
@@ -58,18 +57,18 @@ impl Quantity {
     }
 }
 
-/// All that is found of a vehicle.
+/// All identified numbers of a vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantities {
     /// kg.
     pub mass: Quantity,
-    /// What the rotors deliver of the file's thrust and drag torque.
+    /// The thrust scale: thrust and drag torque over the file's.
     pub thrust_scale: Quantity,
-    /// c/m, 1/kg: what a flight alone knows of the two.
+    /// c/m, 1/kg: observable in flight alone.
     pub scale_over_mass: Quantity,
     /// kg m^2.
     pub inertia: [Quantity; 3],
-    /// J_i/c, kg m^2: what a flight alone knows.
+    /// J_i/c, kg m^2: observable in flight alone.
     pub inertia_over_scale: [Quantity; 3],
     /// Lag and delay together, s.
     pub whole_delay: Quantity,
@@ -88,7 +87,7 @@ pub struct Quantities {
 }
 
 impl Quantities {
-    /// What `fit` and `bench` say of a vehicle whose model is `vehicle`; the rates of the log were late by `late`, s.
+    /// Combines `fit` and `bench` for a vehicle whose model is `vehicle`; the log's rates were late by `late`, s.
     ///
     /// # Errors
     /// If the two cannot be combined; finite numbers can.
@@ -150,7 +149,7 @@ fn spanned(value: f64, interval: [f64; 2]) -> Quantity {
     Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * COVERAGE), interval }
 }
 
-/// What flight and bench know together, and in words how they contradict each other, if they do.
+/// Flight and bench combined, and in words how they contradict each other, if they do.
 fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Option<String>)> {
     const SHARES: [[f64; 5]; 4] = [
         [-1.0, 1.0, 0.0, 0.0, 0.0],
@@ -177,7 +176,7 @@ fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Opt
     Some((known, contradiction))
 }
 
-/// What the bench says of the logarithms; the file's mass, if it says nothing that tells it.
+/// The bench's logarithms; with the file's mass if the bench gives neither mass nor thrust scale.
 fn entries(bench: &Bench, vehicle: &Vehicle) -> Vec<Entry> {
     let mass = f64::from(vehicle.mass);
     let entry = |name: &str, row: [f64; 5], value: f64, deviation: f64| Entry {

@@ -24,7 +24,7 @@ struct Field {
 /// Reads the flight of a recording.
 ///
 /// # Errors
-/// What is wrong with the file, and at which byte.
+/// The file's error, and at which byte.
 pub fn read(bytes: &[u8]) -> Result<FlightLog, String> {
     let mut fields: Option<Vec<Field>> = None;
     let mut subscription: Option<[u8; 2]> = None;

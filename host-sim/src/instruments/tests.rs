@@ -15,7 +15,7 @@ const STILL: BodyState = BodyState {
     angular_velocity: Vector3::new(0.0, 0.0, 0.0),
 };
 
-/// What gyro and accelerometer show, each in its unit, over the last of three seconds in which both feel the same.
+/// Outputs of gyro and accelerometer, each in its unit, over the last of three seconds with the same input.
 fn filtered(feels: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     let mut instruments = noiseless();
     let mut shown = [Vec::new(), Vec::new()];

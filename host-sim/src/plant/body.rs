@@ -1,4 +1,4 @@
-//! What the equations of motion need to know of a vehicle, and of the limits of what moves it.
+//! The vehicle's numbers in the equations of motion, and the limits of its thrust and torque.
 
 use controller_core::state::Wrench;
 use controller_core::vehicle::{Limits, Vehicle};

@@ -109,7 +109,7 @@ impl<S: Simd> Motion<S> {
     }
 }
 
-/// What the gyroscopic term multiplies.
+/// The factors of the gyroscopic term.
 #[inline(always)]
 fn products<S: Simd>(Vectors([x, y, z]): Vectors<S, 3>) -> Vectors<S, 3> {
     Vectors([y * z, z * x, x * y])

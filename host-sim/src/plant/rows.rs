@@ -102,14 +102,15 @@ fn advance<S: Simd>(
 ) {
     for register in 0..commands[0].len() {
         let number = |row: usize| Lanes::new(unit, states[row][register]);
-        let asked = |row: usize| Lanes::new(unit, commands[row][register]);
+        let commanded = |row: usize| Lanes::new(unit, commands[row][register]);
         let moving = Moving {
             position: Vectors([number(0), number(1), number(2)]),
             velocity: Vectors([number(3), number(4), number(5)]),
             attitude: Vectors([number(6), number(7), number(8), number(9)]),
             angular_velocity: Vectors([number(10), number(11), number(12)]),
         };
-        let moved = moving.advanced(unit, body, asked(0), Vectors([asked(1), asked(2), asked(3)]), steps);
+        let moved =
+            moving.advanced(unit, body, commanded(0), Vectors([commanded(1), commanded(2), commanded(3)]), steps);
         for axis in 0..3 {
             states[axis][register] = moved.position[axis].numbers();
             states[3 + axis][register] = moved.velocity[axis].numbers();

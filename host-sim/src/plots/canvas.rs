@@ -1,4 +1,4 @@
-//! What every figure is drawn on: an SVG, finer than the drawing library's whole pixels.
+//! The canvas of every figure: an SVG, finer than the drawing library's whole pixels.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -6,7 +6,7 @@ use plotters::prelude::*;
 /// The drawing library counts in whole pixels: drawn so many times larger and shown smaller, curves are smooth.
 pub const FINE: i32 = 8;
 
-/// What drawing on a backend comes to.
+/// The result of drawing on a backend.
 pub type DrawingResult<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 /// A figure could not be drawn.

@@ -37,15 +37,14 @@ pub enum Scale {
 pub enum Line {
     /// Without gaps.
     Solid,
-    /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them
-    /// apart.
+    /// In dashes: a reference, or one of many laws, so that not colour alone separates them.
     Dashed,
     /// In dots: a second such pattern.
     Dotted,
 }
 
 impl Line {
-    /// What the style sheet calls it.
+    /// Its class in the style sheet.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -83,7 +82,7 @@ pub struct Curve {
 pub struct Bound {
     /// Where, in the panel's unit.
     pub value: f64,
-    /// What it says at the line's end.
+    /// The label at the line's end.
     pub label: String,
     /// Its colour: the one of the curve it belongs to, or [`INK`].
     pub color: RGBColor,
@@ -97,9 +96,9 @@ pub struct Panel {
     pub quantity: &'static str,
     /// The vertical axis.
     pub scale: Scale,
-    /// What is drawn.
+    /// The curves.
     pub curves: Vec<Curve>,
-    /// What it is measured against.
+    /// The bounds.
     pub bounds: Vec<Bound>,
 }
 
@@ -228,7 +227,7 @@ impl Panel {
         self.curves.iter().map(end_of).fold(1e-3, f64::max) * (1.0 + 1e-9)
     }
 
-    /// What holds all curves and bounds, with room for the bounds' labels.
+    /// The range of all curves and bounds, with room for the bounds' labels.
     fn vertical_range(&self) -> (f64, f64) {
         let values = self.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
         let values = values.chain(self.bounds.iter().map(|bound| bound.value));

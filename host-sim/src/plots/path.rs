@@ -1,4 +1,4 @@
-//! A picture of the path in space: what was flown, what was asked for, and how the vehicle stood along the way.
+//! A picture of the path in space: the flown path, the reference, and the vehicle's attitude along the way.
 //!
 //! Parallel projection, the same scale along every axis. The floor's
 //! squares and the path's shadow on it give the depth. The vehicle is drawn larger than life.

@@ -1,4 +1,4 @@
-//! What the figures need of a flight: samples, thinned where a flight is long, and yaw without jumps.
+//! A flight's samples for the figures: thinned where a flight is long, yaw without jumps.
 
 use crate::flight::Tick;
 use nalgebra::{Quaternion, Vector3};

@@ -1,4 +1,4 @@
-//! What rotors and frame do in air that moves past them.
+//! The air's forces and moments on rotors and frame.
 //!
 //! Body frame (x forward, y left, z up). V is the velocity of the body's *centre of mass* relative to the air, omega
 //! the body rate, w_i the speed of rotor i at p_i, r_c the centre of mass, both from the body's origin; d_i = p_i -

@@ -1,4 +1,4 @@
-//! From the thrusts asked of the rotors to the speeds they turn with.
+//! From the rotors' commanded thrusts to their speeds.
 //!
 //! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u =
 //! w_c / w_max. What a real one settles at, and how it gets there:
@@ -12,7 +12,7 @@
 //!
 //! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's
 //! equation is linear with w_s held over a plant step, so the speeds are exact at the beginning, the middle and the end
-//! of the step: what the body's method asks for. It is today's lag of `[rotors]`, which the body otherwise feels at the
+//! of the step, as the body's method needs. It is the lag of `[rotors]`, which the body otherwise feels at the
 //! middle of each step only.
 //!
 //! Sources: the first-order lag, R. Mahony, V. Kumar, P. Corke, *Multirotor Aerial Vehicles*, IEEE RAM 19(3), 2012; the
@@ -31,7 +31,7 @@ use nalgebra::{Vector3, Vector4};
 use scenario::reality::Reality;
 use scenario::reality::failure::Failure;
 
-/// What drives the body at one instant.
+/// The propulsion's action on the body at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Delivered {
     /// Thrust, N, and torque, N m, as commanded.
@@ -49,7 +49,7 @@ pub enum Delivered {
 #[derive(Debug, Clone)]
 struct Motors {
     rotors: Rotors,
-    /// What is left of a speed error at each stage of a plant step.
+    /// The share of a speed error that remains at each stage of a plant step.
     decay: [f64; 3],
     /// a.
     curve: f64,
@@ -62,7 +62,7 @@ struct Motors {
     battery: Option<BatteryState>,
 }
 
-/// What moves a vehicle.
+/// A vehicle's propulsion.
 #[derive(Debug, Clone)]
 pub struct Propulsion {
     motors: Option<Motors>,
@@ -105,10 +105,10 @@ impl Propulsion {
 
     /// Asks a vehicle without rotors for a wrench. Returns whether the limits cut it.
     pub fn command_directly(&mut self, wrench: &Wrench) -> bool {
-        let asked = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
-        let torque = asked.1.zip_map(&self.limits.1, |value, limit| value.clamp(-limit, limit));
-        self.direct = (asked.0.clamp(0.0, self.limits.0), torque);
-        self.direct != asked
+        let commanded = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
+        let torque = commanded.1.zip_map(&self.limits.1, |value, limit| value.clamp(-limit, limit));
+        self.direct = (commanded.0.clamp(0.0, self.limits.0), torque);
+        self.direct != commanded
     }
 
     /// The speeds of this moment, rad/s; zero where there is no rotor.

@@ -59,7 +59,7 @@ pub fn first_step(time: f64, step: f64) -> u64 {
     (time / step - 1e-6).ceil() as u64
 }
 
-/// What there is of a gust `since` s after its beginning; a step that has begun.
+/// The share of a gust `since` s after its beginning; a step that has begun.
 fn share(gust: &Gust, since: f64) -> f64 {
     let risen = |duration: f64| 0.5 * (1.0 - (PI * since / duration).cos());
     match gust.shape {

@@ -54,7 +54,7 @@ pub fn scene(rotors: &[[f64; 3]]) -> Value {
         })
     };
     let arm = rotors.iter().map(|rotor| rotor.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.15, f64::max);
-    // Blue and orange, which everybody tells apart.
+    // Blue and orange: distinct for the colour-blind too.
     let blue = json!({ "r": 0.0, "g": 0.447, "b": 0.698, "a": 1.0 });
     let orange = json!({ "r": 0.835, "g": 0.369, "b": 0.0, "a": 1.0 });
     let arms = rotors.iter().map(|rotor| line(rotor, blue.clone(), 0.02));

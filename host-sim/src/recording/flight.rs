@@ -1,4 +1,4 @@
-//! What a tick of a simulated flight adds to its recording.
+//! The messages of one tick of a simulated flight.
 
 use super::drawing::{pose, vector};
 use super::schemas::ESTIMATES;
@@ -7,7 +7,7 @@ use crate::flight::Tick;
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a flight is recorded as beside what every recording has.
+/// The topics of a flight besides the common ones.
 pub const TOPICS: &[Topic] = &[("/estimates", ESTIMATES)];
 
 impl<W: Write> Recording<W> {
@@ -19,8 +19,8 @@ impl<W: Write> Recording<W> {
         let (now, s, d) = (tick.time_us, &tick.state, &tick.diagnostics);
         self.truth(now, s)?;
         self.message("/reference", now, &pose(now, &tick.reference.position.cast(), &d.desired_attitude.cast()))?;
-        if let Some(told) = &tick.measured {
-            self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;
+        if let Some(measured) = &tick.measured {
+            self.message("/told", now, &pose(now, &measured.position.cast(), &measured.attitude.cast()))?;
         }
         let law = json!({
             "thrust": tick.wrench.thrust,

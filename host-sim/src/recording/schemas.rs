@@ -66,7 +66,7 @@ pub const SCENE_UPDATE: Schema = Schema {
     ),
 };
 
-/// What the law commands: N, N m; and its errors: m, modified Rodrigues parameters.
+/// The law's commands: N, N m; and its errors: m, modified Rodrigues parameters.
 pub const LAW: Schema = Schema {
     name: "host_sim.Law",
     text: concat!(
@@ -84,7 +84,7 @@ pub const ROTORS: Schema = Schema {
     text: r#"{"type":"object","properties":{"thrust":{"type":"array","items":{"type":"number"}}}}"#,
 };
 
-/// What the law estimates: m/s^2, N m, and a factor.
+/// The law's estimates: m/s^2, N m, and a factor.
 pub const ESTIMATES: Schema = Schema {
     name: "host_sim.Estimates",
     text: concat!(
@@ -96,7 +96,7 @@ pub const ESTIMATES: Schema = Schema {
     ),
 };
 
-/// What the firmware is doing: mode in words, V, s, a factor, a count; what is not known is null.
+/// The firmware's state: mode in words, V, s, a factor, a count; an unknown value is null.
 pub const STATE: Schema = Schema {
     name: "host_sim.State",
     text: r#"{"type":"object","properties":{"mode":{"type":"string"},"ready":{"type":"boolean"},"airborne":{"type":"boolean"},"battery":{"type":["number","null"]},"pose_age":{"type":["number","null"]},"thrust_scale":{"type":["number","null"]},"missed_ticks":{"type":"integer"}}}"#,

@@ -1,4 +1,4 @@
-//! What a session with the firmware adds to its recording: what the vehicle does, what it believes, and what it says.
+//! The messages of a session with the firmware: the true vehicle, its estimate, and its texts.
 
 use super::drawing::{pose, stamp, vector};
 use super::schemas::{LOG, STATE};
@@ -8,7 +8,7 @@ use scenario::body::{BodyState, attitude_from_euler};
 use serde_json::json;
 use std::io::{self, Write};
 
-/// What a session is recorded as beside what every recording has.
+/// The topics of a session besides the common ones.
 pub const TOPICS: &[Topic] = &[("/state", STATE), ("/log", LOG)];
 
 /// Foxglove's level of information.
@@ -21,9 +21,9 @@ pub struct Moment {
     pub now: u64,
     /// Where it really is.
     pub truth: BodyState,
-    /// What its rotors really give, N.
+    /// Its rotors' true thrusts, N.
     pub rotors: Vec<f64>,
-    /// What the last control tick did, once there was one.
+    /// The report of the last control tick, if any.
     pub report: Option<Report>,
     /// The battery as it is measured, V, if it is.
     pub voltage: Option<f32>,
@@ -40,19 +40,19 @@ impl<W: Write> Recording<W> {
         self.truth(now, truth)?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;
         let Some(report) = report else { return Ok(()) };
-        if let Some(told) = &report.state {
-            self.message("/told", now, &pose(now, &told.position.cast(), &told.attitude.cast()))?;
+        if let Some(measured) = &report.state {
+            self.message("/told", now, &pose(now, &measured.position.cast(), &measured.attitude.cast()))?;
         }
         if let Some(reference) = &report.reference {
             let ahead = reference.heading.direction();
             let level = attitude_from_euler(0.0, 0.0, f64::from(ahead.y).atan2(f64::from(ahead.x)));
             self.message("/reference", now, &pose(now, &reference.position.cast(), &level))?;
         }
-        if let (Some(wrench), Some(reference), Some(told)) = (&report.wrench, &report.reference, &report.state) {
+        if let (Some(wrench), Some(reference), Some(measured)) = (&report.wrench, &report.reference, &report.state) {
             let law = json!({
                 "thrust": wrench.thrust,
                 "torque": vector(&wrench.torque.cast()),
-                "position_error": (told.position - reference.position).norm(),
+                "position_error": (measured.position - reference.position).norm(),
             });
             self.message("/law", now, &law)?;
         }

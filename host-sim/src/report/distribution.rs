@@ -19,13 +19,13 @@ pub const QUANTILES: usize = 400;
 /// A quantity over many flights, in one or several groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distribution {
-    /// What it is.
+    /// Its name.
     pub title: String,
     /// Its unit; empty for a number without one.
     pub unit: String,
     /// Whether the axis of values shows decades; values of zero and below stand at the least positive one.
     pub logarithmic: bool,
-    /// What no flight may exceed.
+    /// The limit of every flight.
     pub bound: Option<f64>,
     /// A name and each flight's value: one group, or one for each law or vehicle. A value that is not finite is a
     /// flight that never came so far; it is counted and not drawn.
@@ -35,7 +35,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// What the page's program reads.
+    /// Its data for the page's program.
     #[must_use]
     pub fn json(&self) -> Value {
         let sorted: Vec<Vec<f64>> = self.groups.iter().map(|(_, values)| finite(values)).collect();

@@ -17,13 +17,13 @@ use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 
-/// What the word means.
+/// The meaning of "certified".
 const CERTIFIED: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
                          stay within the limits, and small motions are stable with margin.";
 
 /// A flight that is over.
 pub struct Flight<'a> {
-    /// What was flown.
+    /// The scenario.
     pub scenario: &'a Scenario,
     /// The file it was read from.
     pub text: &'a str,
@@ -33,9 +33,9 @@ pub struct Flight<'a> {
     pub verdict: &'a Verdict,
     /// The same in a sentence.
     pub certification: &'a str,
-    /// What was claimed.
+    /// The claims.
     pub claims: &'a [Claim],
-    /// What it showed.
+    /// The flight's figures.
     pub flown: &'a Flown,
 }
 
@@ -132,7 +132,7 @@ fn about_plots(ticks_per_row: u64) -> String {
              positions and attitudes are samples. Every tick is in log.csv."
         ),
     };
-    format!("{rows} Dashed lines are what was asked for; thin lines across are bounds.")
+    format!("{rows} Dashed lines are references; thin lines across are bounds.")
 }
 
 fn claims_table(claims: &[Claim]) -> Table {

@@ -51,16 +51,16 @@ pub enum Block {
 pub struct Section {
     /// The heading.
     pub title: String,
-    /// What stands below it.
+    /// Its blocks.
     pub blocks: Vec<Block>,
 }
 
 /// A whole page.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Page {
-    /// What the page is about: the scenario's name.
+    /// The scenario's name.
     pub title: String,
-    /// What kind of page it is: a flight, a comparison, a campaign.
+    /// The kind of page: a flight, a comparison, a campaign.
     pub kind: String,
     /// Whether everything holds, and that in a sentence.
     pub verdict: Option<(bool, String)>,
@@ -68,13 +68,13 @@ pub struct Page {
     pub lead: String,
     /// The figures that a reader looks for first.
     pub highlights: Vec<Fact>,
-    /// What was recorded over time.
+    /// Its columns over time.
     pub tracks: Vec<Track>,
     /// The page itself.
     pub sections: Vec<Section>,
 }
 
-/// What figures need of the page while it is written.
+/// The page's state that figures need while it is written.
 #[derive(Default)]
 struct Figures {
     plots: Vec<Value>,

@@ -1,4 +1,4 @@
-//! Curves over time and what bounds them, with a table of their extremes for whoever reads rather than looks.
+//! Curves over time with their bounds, and a table of their extremes for readers who cannot see them.
 
 use super::prose::{Cell, Table};
 use super::track::Track;
@@ -38,7 +38,7 @@ impl Color {
         Self::CYCLE[place % Self::CYCLE.len()]
     }
 
-    /// What the style sheet calls it.
+    /// Its class in the style sheet.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Curve {
 pub struct Bound {
     /// Where, in the plot's unit.
     pub value: f64,
-    /// What it is.
+    /// Its name.
     pub label: String,
     /// The colour of the curve that it belongs to, or [`Color::Ink`].
     pub color: Color,
@@ -99,15 +99,15 @@ pub struct Bound {
 /// Curves over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// What is shown.
+    /// Its title.
     pub title: String,
     /// The unit of the vertical axis; empty for a number without one.
     pub unit: String,
     /// Whether the vertical axis shows decades.
     pub logarithmic: bool,
-    /// What is drawn.
+    /// The curves.
     pub curves: Vec<Curve>,
-    /// What it is measured against.
+    /// The bounds.
     pub bounds: Vec<Bound>,
 }
 
@@ -130,7 +130,7 @@ impl Plot {
         Self { bounds, ..self }
     }
 
-    /// What the page's program reads.
+    /// Its data for the page's program.
     #[must_use]
     pub fn json(&self) -> Value {
         let curves = self.curves.iter().map(|curve| {

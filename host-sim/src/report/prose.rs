@@ -1,4 +1,4 @@
-//! What is read rather than looked at: sentences, facts, tables with verdicts, listings.
+//! The page's text: sentences, facts, tables with verdicts, listings.
 
 use super::text::escaped;
 use std::fmt::Write;
@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// A quantity with its value, as a reader meets it first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fact {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its value with its unit.
     pub value: String,
@@ -74,7 +74,7 @@ pub fn verdict_words(verdict: Option<bool>) -> (&'static str, &'static str) {
 /// A table: its first column heads the rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
-    /// What it shows.
+    /// Its title.
     pub caption: String,
     /// One name for each column.
     pub head: Vec<String>,
@@ -128,7 +128,7 @@ pub fn facts(facts: &[Fact]) -> String {
     format!("<dl class=\"facts\">{list}</dl>\n")
 }
 
-/// A text as it stands, folded away until it is asked for.
+/// A text as it stands, folded until the reader opens it.
 #[must_use]
 pub fn listing(name: &str, text: &str) -> String {
     format!("<details><summary>{}</summary><pre tabindex=\"0\">{}</pre></details>\n", escaped(name), escaped(text))

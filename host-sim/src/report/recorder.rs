@@ -1,4 +1,4 @@
-//! A track gathered tick by tick, so long as it may be.
+//! A track gathered tick by tick, of any length.
 //!
 //! Up to [`MOST_ROWS`] ticks each row is a tick. Of a longer flight two rows stand for a stretch of ticks: a column of
 //! *extremes* keeps the least and the greatest value of the stretch, in order of time, so that no peak is lost; a
@@ -12,7 +12,7 @@ use crate::plots::record::nearest_turn;
 /// Rows a track may have: the paper's 40 s at 100 Hz, whole.
 pub const MOST_ROWS: u64 = 4000;
 
-/// What a column is read from.
+/// The source of a column.
 pub struct Instant<'a> {
     /// The tick.
     pub tick: &'a Tick,
@@ -25,7 +25,7 @@ pub struct Instant<'a> {
 /// Reads a value.
 pub type Read = Box<dyn Fn(&Instant) -> f64>;
 
-/// What a long flight keeps of a column.
+/// The values that a long flight keeps of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
     /// Values of one instant, across columns.

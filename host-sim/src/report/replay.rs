@@ -1,4 +1,4 @@
-//! Vehicles that move in space: body and rotors, thrust, where each was asked to be.
+//! Vehicles that move in space: body and rotors, thrust, and their references.
 //!
 //! A body's track has the columns of log.csv: `px … pz`, `qw … qz` (body to world), `thrust`; `pdx … pdz` and `yaw_d`
 //! (degrees) for the reference; `rotor_1 …` where there are rotors. World z up, body x forward, y left, z up; metres,
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 pub struct Body {
     /// Which of the page's tracks moves it.
     pub track: usize,
-    /// What it is called, where there are several.
+    /// Its name, where there are several.
     pub label: String,
     /// The colour of its path.
     pub color: Color,
@@ -30,7 +30,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// What the page's program reads.
+    /// Its data for the page's program.
     #[must_use]
     pub fn json(&self) -> Value {
         let bodies = self

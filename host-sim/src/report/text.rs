@@ -1,4 +1,4 @@
-//! Text from elsewhere, made harmless: names and comments come from files that anybody may have written.
+//! Text from elsewhere, made harmless: names and comments come from untrusted files.
 
 use serde_json::Value;
 

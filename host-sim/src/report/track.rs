@@ -7,10 +7,10 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
-/// What was recorded over time, once for all plots and replays of a page.
+/// Columns over time, once for all plots and replays of a page.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Track {
-    /// What or who it is about.
+    /// Its subject.
     pub name: String,
     /// The first row's time, s.
     pub start: f64,
@@ -27,7 +27,7 @@ impl Track {
         self.columns.iter().find(|(found, _)| found == name).map(|(_, values)| values.as_slice())
     }
 
-    /// What the page's program reads.
+    /// Its data for the page's program.
     #[must_use]
     pub fn json(&self) -> Value {
         let columns: Map<String, Value> =

@@ -72,7 +72,7 @@ pub const PACES: [Pace; 18] = [
     Pace::Kept,
 ];
 
-/// Greatest tilt asked for, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
+/// Greatest commanded tilt, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
 /// `MC_YAWRATE_MAX`.
 const TILT_MAX: f64 = 0.785;
 const RATES_MAX: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
@@ -132,28 +132,28 @@ impl Cascade {
         }
     }
 
-    /// The force per mass asked for, m/s^2, world: position and velocity loop with their limits.
+    /// The commanded force per mass, m/s^2, world: position and velocity loop with their limits.
     fn force(&mut self, seen: &Seen, wanted: &Wanted) -> Vector3<f64> {
         let towards = self.k_p.component_mul(&(wanted.position - seen.position));
         let across = limited(wanted.velocity.xy() + towards.xy(), self.v_across);
         let along = (wanted.velocity.z + towards.z).clamp(-self.v_vertical, self.v_vertical);
         let error = across.push(along) - seen.velocity;
         let (_, acceleration) = self.velocity.take(&seen.velocity);
-        let asked = wanted.acceleration.0[0] + self.k_v.component_mul(&error) + self.velocity_integral
+        let commanded = wanted.acceleration.0[0] + self.k_v.component_mul(&error) + self.velocity_integral
             - self.k_d.component_mul(&(acceleration - wanted.motion));
 
         // The vertical first, but some of the thrust is kept for moving across.
         let greatest = self.model.thrust_max / self.model.mass;
-        let vertical = self.model.gravity + asked.z;
-        let wanted_across = asked.xy().norm();
+        let vertical = self.model.gravity + commanded.z;
+        let wanted_across = commanded.xy().norm();
         let kept = wanted_across.min(THRUST_KEPT * greatest);
         let up = vertical.clamp(0.0, (greatest * greatest - kept * kept).sqrt());
         let room = (greatest * greatest - up * up).max(0.0).sqrt();
         // The tilt counts from gravity, as if the vertical were not accelerated.
-        let produced = limited(asked.xy(), room.min(TILT_MAX.tan() * up.max(self.model.gravity)));
+        let produced = limited(commanded.xy(), room.min(TILT_MAX.tan() * up.max(self.model.gravity)));
 
         let period = self.model.period;
-        let lost = (asked.xy() - produced) * (2.0 / self.k_v.x);
+        let lost = (commanded.xy() - produced) * (2.0 / self.k_v.x);
         let mut taken = error - lost.push(0.0);
         if (vertical > up && error.z > 0.0) || (vertical < up && error.z < 0.0) {
             taken.z = 0.0;
@@ -185,9 +185,9 @@ impl Rival for Cascade {
         let needed = wanted.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
         let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);
         let forward = seen.attitude.inverse() * (reference.attitude * reference.rate);
-        let asked = (rates + forward).zip_map(&RATES_MAX, |rate, limit| rate.clamp(-limit, limit));
+        let commanded = (rates + forward).zip_map(&RATES_MAX, |rate, limit| rate.clamp(-limit, limit));
 
-        let error = asked - seen.rate;
+        let error = commanded - seen.rate;
         let (_, acceleration) = self.rate.take(&seen.rate);
         let turning = self.k_w.component_mul(&error) + self.rate_integral
             - Vector3::new(acceleration.x, acceleration.y, 0.0) * self.k_e;

@@ -180,7 +180,7 @@ pub fn chosen(name: &str, scenario: &Scenario, file: Option<&Path>) -> Result<La
     set.law(kind).ok_or_else(|| ("law", format!("there are no gains of {name}")))
 }
 
-/// What rivals know of the vehicle of `scenario`, by the keys of a table, in single precision.
+/// The rivals' model of the vehicle of `scenario`, by the keys of a table, in single precision.
 fn vehicle(scenario: &Scenario) -> [(&'static str, Vec<f32>); 6] {
     let model = model(scenario);
     [

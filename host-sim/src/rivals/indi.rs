@@ -133,11 +133,11 @@ impl Rival for Indi {
     fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
         let [angular, torque, linear, force] = self.measured(seen);
         let gravity = Vector3::z() * self.model.gravity;
-        // Known drag is part of what is measured here: the acceleration asked for is the motion's own.
-        let asked = wanted.motion
+        // The measured acceleration includes drag, so the commanded one is the motion's own.
+        let commanded = wanted.motion
             + self.k_p.component_mul(&(wanted.position - seen.position))
             + self.k_v.component_mul(&(wanted.velocity - seen.velocity));
-        let force = force + asked - linear;
+        let force = force + commanded - linear;
 
         let desired =
             Frame::new(&Jet::constant(force), &Jet::constant(wanted.heading.0[0]), HeadingRule::Horizontal).attitude;

@@ -38,7 +38,7 @@ impl Jet {
     /// Nothing, at rest.
     pub const ZERO: Self = Self([Vector3::new(0.0, 0.0, 0.0); 3]);
 
-    /// What does not change.
+    /// A constant.
     #[must_use]
     pub fn constant(value: Vector3<f64>) -> Self {
         Self([value, Vector3::zeros(), Vector3::zeros()])

@@ -55,7 +55,7 @@ impl Kind {
         }
     }
 
-    /// What it is, in a line.
+    /// Its description, in a line.
     #[must_use]
     pub fn about(self) -> &'static str {
         match self {

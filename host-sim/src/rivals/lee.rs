@@ -7,7 +7,7 @@
 //! u = -k_x e_x - k_v e_v + g e3 + x_d'',  f = m u . R e3                            the thrust
 //! e_R = 1/2 (R_d^T R - R^T R_d)^v,  e_W = W - R^T R_d W_d                           the errors
 //! M = -k_R e_R - k_W e_W + W x J W - J (W^ R^T R_d W_d - R^T R_d W_d')              the moment
-//! R_d: z along u, x along the heading's projection across it                        the attitude asked for
+//! R_d: z along u, x along the heading's projection across it                        the commanded attitude
 //! ```
 //!
 //! W_d and its derivative are those of R_d itself: u is differentiated along the motion, its v' and v'' those of the

@@ -4,7 +4,7 @@
 //! L. Martins, C. Cardeira, P. Oliveira: *Global trajectory tracking for quadrotors: An MRP-based hybrid strategy with
 //! input saturation*, Automatica 162, 2024, after A. R. Teel: *Global stabilization and restricted tracking for
 //! multiple integrators with bounded controls*, Systems & Control Letters 18, 1992. The article's own formula was not
-//! at hand: what is here is the structure that its abstract and the paper's Section I tell of, in the paper's
+//! at hand: what is here is the structure that its abstract and the paper's Section I describe, in the paper's
 //! saturation.
 //!
 //! ```text
@@ -34,7 +34,7 @@ pub const NAMES: [&str; 10] =
     ["k_v", "k_p", "k_i", "m_v", "m_p_share", "m_i_share", "k_theta", "m_theta", "k_omega", "m_omega"];
 /// Where a search starts, on a vehicle like the Hummingbird with rotors that lag. Table I's attitude gains bear no lag.
 pub const START: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
-/// What each of them follows.
+/// The speed that each of them scales with.
 pub const PACES: [Pace; 10] = [
     Pace::Position(1),
     Pace::Position(2),

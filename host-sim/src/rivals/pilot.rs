@@ -34,7 +34,7 @@ impl Clone for RivalPilot {
     }
 }
 
-/// What a rival knows of the vehicle of `scenario`.
+/// A rival's model of the vehicle of `scenario`.
 #[must_use]
 pub fn model(scenario: &Scenario) -> Model {
     let (configuration, timing) = (&scenario.configuration, &scenario.timing);
@@ -116,7 +116,7 @@ impl RivalPilot {
         }
     }
 
-    /// What of `wrench` can be delivered, and whether that is less than all.
+    /// The deliverable part of `wrench`, and whether that is less than all.
     fn deliverable(&self, wrench: &Wrench) -> Result<(Wrench, bool), InputError> {
         let not_finite = InputError::NotFinite { field: "wrench" };
         if let Some(mixer) = &self.mixer {

@@ -1,13 +1,14 @@
-//! What the continuous and the memoryless law share: quaternion feedback under a saturated position loop.
+//! Quaternion feedback under a saturated position loop, common to the continuous and the memoryless law.
 //!
 //! ```text
 //! u = -s(k_p p~ + k_v v~) + g e3 + p_d'',  T = m u . R e3
 //! tau = J (w_ref' - 2 k_q q_v - k_w (w - w_ref)) + w x J w
 //! ```
 //!
-//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part: which of the two is all that
-//! the two laws differ in. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis: *Quaternion
-//! feedback regulator for spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12, 1989.
+//! q is the error R_d^T R as one of its two quaternions, of which q_v is the vector part; the two laws differ only in
+//! which of the two they take. s keeps the direction and limits the length. B. Wie, H. Weiss, A. Arapostathis:
+//! *Quaternion feedback regulator for spacecraft eigenaxis rotations*, Journal of Guidance, Control, and Dynamics 12,
+//! 1989.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
@@ -19,7 +20,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 pub const NAMES: [&str; 7] = ["k_p", "k_v", "level", "k_q_tilt", "k_w_tilt", "k_q_yaw", "k_w_yaw"];
 /// Where a search starts, on a vehicle like the Hummingbird.
 pub const START: [f64; 7] = [5.0, 3.8, 5.0, 150.0, 20.0, 8.0, 5.0];
-/// What each of them follows.
+/// The speed that each of them scales with.
 pub const PACES: [Pace; 7] = {
     let [k_p, k_v, _, _, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
     [k_p, k_v, Pace::Kept, q_t, w_t, q_y, w_y]
@@ -51,9 +52,9 @@ impl QuaternionFeedback {
         choose: impl FnOnce(Quaternion<f64>) -> Quaternion<f64>,
     ) -> Commanded {
         let needed = wanted.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
-        let asked = (seen.position - wanted.position) * self.k_p + (seen.velocity - wanted.velocity) * self.k_v;
-        let share = self.level / (self.level * self.level + asked.norm_squared()).sqrt();
-        let force = needed.0[0] - asked * share;
+        let commanded = (seen.position - wanted.position) * self.k_p + (seen.velocity - wanted.velocity) * self.k_v;
+        let share = self.level / (self.level * self.level + commanded.norm_squared()).sqrt();
+        let force = needed.0[0] - commanded * share;
         let (force_jet, heading) = (Jet::constant(force), Jet::constant(wanted.heading.0[0]));
         let desired: UnitQuaternion<f64> = Frame::new(&force_jet, &heading, HeadingRule::Horizontal).attitude;
         let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);

@@ -1,11 +1,11 @@
-//! What a rival is told, and what it is asked for.
+//! The inputs and outputs of a rival law.
 //!
 //! World frame z up; body x forward, y left, z up; attitudes are body to world; SI units; double precision.
 
 use super::jet::Jet;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// What a rival knows of its vehicle: what ours knows, rotor lag and delay included.
+/// A rival's model of its vehicle: the same numbers as ours has, rotor lag and delay included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Model {
     /// kg.
@@ -53,7 +53,7 @@ pub struct Wanted {
     pub heading: Jet,
 }
 
-/// What a rival commands.
+/// A rival's command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commanded {
     /// N, along body z; negative is clipped.

@@ -31,7 +31,7 @@ pub const STIFFNESS_AND_DAMPING: [Pace; 8] = [
     Pace::Attitude(1),
 ];
 
-/// What START is multiplied by.
+/// The factors of START.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speed {
     /// How many times as fast the attitude loops are.
@@ -58,7 +58,7 @@ impl Speed {
 pub struct Start {
     /// Its gains.
     pub gains: &'static [f64],
-    /// What each of them follows.
+    /// The speed that each of them scales with.
     pub paces: &'static [Pace],
     /// How many times as much inertia the vehicle has as the one of START.
     pub inertia: f64,

@@ -92,10 +92,10 @@ fn a_rival_without_gains_survives_being_written_and_read() {
 fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
     let mut file = hummingbird();
     file.rotor_lag = 0.05;
-    let calm = Interrupt::default();
+    let uninterrupted = Interrupt::default();
     for kind in [Kind::Lee, Kind::Indi, Kind::Nested] {
         let own = RivalJudge::new(&file, kind, &kind.start(&file).at(Speed::OWN));
-        let best = RivalJudge::at_best_start(&file, kind, &calm);
+        let best = RivalJudge::at_best_start(&file, kind, &uninterrupted);
         let [own, best] = [own, best].map(|judge| judge.judge(&judge.start()).cost);
         println!("{}: {own} at START, {best} where the search starts", kind.name());
         assert!(best < own, "{}: {own} {best}", kind.name());

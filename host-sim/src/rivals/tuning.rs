@@ -1,7 +1,7 @@
 //! The search for a rival's gains: by the trials and the cost that ours are found by ([`crate::tune::trials`]), and the
 //! same search.
 //!
-//! Less is asked of rivals than of ours: no certificate, no margins of sampled loops, no flight without a clipped
+//! Rivals have fewer requirements than ours: no certificate, no margins of sampled loops, no flight without a clipped
 //! command, no vanishing offset in a gust. What stays is that every trial on every model is flown to its end, and that
 //! the recovery from upside down ends in time on the file's own model. A law that meets only the first of these is
 //! taken all the same, and its cost says so: what does not end counts as long as its trial.
@@ -151,7 +151,7 @@ pub fn expected(scenario: &Scenario, effort: &Effort) -> Duration {
     one.mul_f64((SEARCHED.len() * of_each) as f64 / threads as f64)
 }
 
-/// What is judged of each rival, one after the other: starts, the first population, and the generations.
+/// The steps of each rival's search: starts, the first population, and the generations.
 fn rounds(effort: &Effort) -> u64 {
     2 + u64::from(effort.generations)
 }

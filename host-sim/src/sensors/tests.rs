@@ -79,8 +79,8 @@ fn perfect_sensors_change_no_bit_of_a_flight() {
 fn everything_is_late_by_the_delay_and_no_more() {
     let mut sensors = sensors("delay = 0.03");
     let at = |tick: u32| BodyState { position: Vector3::new(f64::from(tick), 0.0, 0.0), ..somewhere() };
-    let told: Vec<f32> = (0..8).map(|tick| sensors.measure(&at(tick)).position.x).collect();
-    assert_eq!(told, [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+    let measured: Vec<f32> = (0..8).map(|tick| sensors.measure(&at(tick)).position.x).collect();
+    assert_eq!(measured, [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
 }
 
 #[test]
@@ -100,10 +100,10 @@ fn between_poses_position_and_attitude_are_carried_on() {
     };
     sensors.measure(&at(0));
     for tick in 1..50 {
-        let told = sensors.measure(&at(tick));
+        let measured = sensors.measure(&at(tick));
         let truth = at(tick).measured();
-        assert!((told.position - truth.position).norm() < 1e-6, "{tick}");
-        assert!((told.attitude - truth.attitude).norm() < 1e-6, "{tick}");
+        assert!((measured.position - truth.position).norm() < 1e-6, "{tick}");
+        assert!((measured.attitude - truth.attitude).norm() < 1e-6, "{tick}");
     }
     // A jump is not seen before the next pose.
     for tick in 50..60 {
@@ -119,8 +119,8 @@ fn poses_drop_out_as_often_as_the_file_says() {
     let mut lost = 0;
     for tick in 1..=20_000 {
         let state = BodyState { position: Vector3::new(f64::from(tick % 1000), 0.0, 0.0), ..somewhere() };
-        let told = sensors.measure(&state).position.x;
-        lost += u32::from(f64::from(told) != state.position.x);
+        let measured = sensors.measure(&state).position.x;
+        lost += u32::from(f64::from(measured) != state.position.x);
     }
     // Five standard deviations of 20,000 throws.
     assert!((f64::from(lost) - 6000.0).abs() < 5.0 * (20_000.0_f64 * 0.21).sqrt(), "{lost}");
@@ -165,10 +165,10 @@ fn an_observer_that_feels_the_acceleration_does_not_lag() {
 
 #[test]
 fn the_same_seed_gives_the_same_flight_and_another_another() {
-    let told = |seed: u32| {
+    let measured = |seed: u32| {
         let mut sensors = sensors(&format!("position_noise = 0.01\nseed = {seed}"));
         [(); 5].map(|()| sensors.measure(&somewhere()))
     };
-    assert_eq!(told(1), told(1));
-    assert_ne!(told(1), told(2));
+    assert_eq!(measured(1), measured(1));
+    assert_ne!(measured(1), measured(2));
 }

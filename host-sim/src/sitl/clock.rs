@@ -1,4 +1,4 @@
-//! Time that stands still until everybody waits for it, and the executor that makes it move.
+//! Time that stands still until every task waits for it, and the executor that moves it.
 //!
 //! All tasks share one thread. They run until none can go on; then the clock jumps to the earliest moment that any of
 //! them waits for. Minutes of flight take as long as their computations, and every run is the same.
@@ -25,7 +25,7 @@ struct Inner {
 }
 
 impl SimClock {
-    /// Jumps to the earliest time waited for, but not beyond `end`; false if there is none before it.
+    /// Jumps to the earliest time waited for, but not beyond `end`; false if no time is due before it.
     fn advance(&self, end: u64) -> bool {
         let mut waiting = self.0.waiting.borrow_mut();
         let Some((&(time, _), _)) = waiting.first_key_value().filter(|((time, _), _)| *time <= end) else {

@@ -15,7 +15,7 @@ pub enum Part {
     Gyro,
     /// The IMU's accelerometer does not answer.
     Accelerometer,
-    /// What clients send is lost, and what is sent to them.
+    /// Frames to and from clients are lost.
     GroundStation,
     /// The motors' frames do not go out.
     Motors,
@@ -98,7 +98,7 @@ impl Faults {
         self.active(now).any(|failed| failed == part)
     }
 
-    /// What the battery shows at `now`, us, if a fault says so.
+    /// The battery's voltage at `now`, us, if a fault sets it.
     #[must_use]
     pub fn voltage(&self, now: u64) -> Option<f32> {
         self.active(now).find_map(|part| if let Part::Battery(volts) = part { Some(volts) } else { None })

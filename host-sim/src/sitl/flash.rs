@@ -25,7 +25,7 @@ pub struct DeskFlash {
 }
 
 impl DeskFlash {
-    /// What `file` holds, or blank flash where there is none yet.
+    /// The content of `file`, or blank flash if it does not exist.
     ///
     /// # Errors
     /// In words, if the file cannot be read, is something else, or could not be written later: what is set in a session

@@ -1,4 +1,4 @@
-//! The vehicle's time against everybody else's.
+//! The vehicle's time against real time.
 //!
 //! Time passes in slices of a millisecond of the desk's. A desk that is too slow, or was asleep, does not catch up with
 //! more than `LAG_MAX`: clients would see a vehicle that leaps.
@@ -11,7 +11,7 @@ const SLICE: f64 = 1_000.0;
 /// The most that is caught up with.
 const LAG_MAX: Duration = Duration::from_millis(200);
 
-/// What the two clocks have to do with each other.
+/// The relation of the two clocks.
 #[derive(Debug)]
 pub struct Pace {
     speed: f64,

@@ -1,14 +1,14 @@
 //! The clients: MAVLink over UDP on this machine's loopback, a frame a datagram.
 //!
-//! Everything goes to two addresses, whether anybody is there or not, and to whoever has spoken within the last
-//! `REMEMBERED` from another. Nothing from outside this machine gets in.
+//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
+//! Nothing from outside this machine gets in.
 
 use std::fmt;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-/// How long a client that is silent is still sent to.
+/// How long after its last datagram a client still gets frames.
 const REMEMBERED: Duration = Duration::from_secs(10);
 
 /// The most clients beside the two addresses.
@@ -50,12 +50,12 @@ impl fmt::Display for PortTaken {
     }
 }
 
-/// The socket and who is spoken to.
+/// The socket and the clients' addresses.
 #[derive(Debug)]
 pub struct Port {
     socket: UdpSocket,
     fixed: [SocketAddr; 2],
-    /// The others, and when they were last heard.
+    /// The others, and when each last sent.
     clients: Vec<(SocketAddr, Instant)>,
 }
 
@@ -84,16 +84,16 @@ impl Port {
                     self.remember(from);
                     take(&datagram[..length]);
                 }
-                // Whoever is not there says so to the next call that receives.
+                // An address without a listener shows as an error of the next call that receives.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
                 Err(_) => break,
             }
         }
     }
 
-    /// Sends one frame to everybody. What does not go out is lost, as on any radio.
+    /// Sends one frame to every address. What does not go out is lost, as on any radio.
     pub fn send(&mut self, frame: &[u8]) {
-        self.clients.retain(|(_, heard)| heard.elapsed() < REMEMBERED);
+        self.clients.retain(|(_, last)| last.elapsed() < REMEMBERED);
         let others = self.clients.iter().map(|(address, _)| *address);
         for address in self.fixed.into_iter().chain(others) {
             let _ = self.socket.send_to(frame, address);
@@ -102,8 +102,8 @@ impl Port {
 
     fn remember(&mut self, from: SocketAddr) {
         let now = Instant::now();
-        if let Some((_, heard)) = self.clients.iter_mut().find(|(address, _)| *address == from) {
-            *heard = now;
+        if let Some((_, last)) = self.clients.iter_mut().find(|(address, _)| *address == from) {
+            *last = now;
         } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS {
             self.clients.push((from, now));
         }
@@ -122,25 +122,25 @@ mod tests {
         (socket, port)
     }
 
-    fn heard(socket: &UdpSocket) -> Vec<u8> {
+    fn received(socket: &UdpSocket) -> Vec<u8> {
         let mut datagram = [0; 64];
         let length = socket.recv(&mut datagram).unwrap();
         datagram[..length].to_vec()
     }
 
     #[test]
-    fn both_addresses_hear_everything_and_whoever_speaks_is_answered() {
+    fn both_addresses_receive_everything_and_each_sender_is_answered() {
         let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
         let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
         port.send(b"one");
-        assert_eq!((heard(&offboard), heard(&ground)), (b"one".to_vec(), b"one".to_vec()));
+        assert_eq!((received(&offboard), received(&ground)), (b"one".to_vec(), b"one".to_vec()));
         other.send_to(b"here", port.socket.local_addr().unwrap()).unwrap();
         std::thread::sleep(Duration::from_millis(50));
         let mut taken = Vec::new();
         port.receive(|bytes| taken.extend_from_slice(bytes));
         assert_eq!(taken, b"here");
         port.send(b"two");
-        assert_eq!((heard(&other), heard(&ground)), (b"two".to_vec(), b"two".to_vec()));
+        assert_eq!((received(&other), received(&ground)), (b"two".to_vec(), b"two".to_vec()));
     }
 
     #[test]

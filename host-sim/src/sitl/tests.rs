@@ -136,7 +136,7 @@ fn a_client_arms_takes_off_and_lands_with_late_and_noisy_poses() {
 }
 
 #[test]
-fn a_client_sends_the_poses_and_is_told_that_nobody_knows_how_late_they_are() {
+fn a_client_that_sends_the_poses_is_warned_that_their_delay_is_unknown() {
     let mut flown = Flown::boot_with(PoseSource::Link, STUDY, &[], None, None);
     flown.pass(5.0);
     assert_eq!(flown.mode(), Mode::Checks, "no camera of its own");
@@ -333,7 +333,7 @@ fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
     const ARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
     let key = Key::new([0x5A; 32]);
     let mut flown = Flown::boot_with(PoseSource::Camera, STUDY, &[], None, key);
-    // A ground station is heard if it signs, and not before.
+    // A ground station's frames count only if it signs.
     flown.pass(5.0);
     assert_eq!(flown.mode(), Mode::Checks);
     flown.signing.set(key, key::now(), 0);
@@ -348,7 +348,7 @@ fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
     flown.command(ARM, 0.0);
     flown.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
     flown.pass(6.0);
-    // The key outlasts a restart, and so does what was heard: this client did not hear how far the stamps have come.
+    // Key and received stamps outlast a restart: this client did not receive how far the stamps have come.
     flown.command(ARM, 1.0);
     assert_eq!((flown.mode(), flown.said("its time stamp was used before")), (Mode::Checks, true));
     flown.signing.set(key, key::now() + 2 * AHEAD, 0);

@@ -1,4 +1,4 @@
-//! What the vehicle says: to clients, to its camera, and to whoever watches this program.
+//! The vehicle's output: to clients, to its camera, and to the terminal.
 //!
 //! Frames go to the port as they are. A TIMESYNC question is answered by the camera's clock too, and texts are kept to
 //! be shown.
@@ -38,7 +38,7 @@ impl Write for Voice {
             self.port.borrow_mut().send(frame);
         }
         let (world, texts) = (&self.world, &self.texts);
-        self.parser.feed(frame, now, &mut |frame| overhear(frame, world, now, texts));
+        self.parser.feed(frame, now, &mut |frame| follow(frame, world, now, texts));
         Ok(frame.len())
     }
 
@@ -47,8 +47,8 @@ impl Write for Voice {
     }
 }
 
-fn overhear(frame: &Frame<'_>, world: &World, now: u64, texts: &RefCell<Vec<(u64, String)>>) {
-    world.hear(frame);
+fn follow(frame: &Frame<'_>, world: &World, now: u64, texts: &RefCell<Vec<(u64, String)>>) {
+    world.receive(frame);
     match frame.message {
         TIMESYNC_DATA::ID => {
             if let Some(TIMESYNC_DATA { tc1: 0, ts1 }) = frame.decode() {

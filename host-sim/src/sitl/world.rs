@@ -7,14 +7,13 @@
 //!
 //! The vehicle starts on the ground below where the scenario starts, level, with its rotors standing still. Poses go
 //! the way that poses of a motion capture go: as messages, from a system of their own, whose clock answers TIMESYNC.
-//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: nothing but the client is heard.
-//! The world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too
-//! late.
+//! Where a client sends the poses ([`PoseSource::Link`]), there is no such system: only the client sends poses. The
+//! world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too late.
 
 use super::clock::SimClock;
 use super::faults::{Faults, Part};
 use super::line::Line;
-use crate::hil::answer::{Answer, ToldPose};
+use crate::hil::answer::{Answer, MeasuredPose};
 use crate::hil::messages::Encoder;
 use crate::instruments::{Instruments, SAMPLE};
 use crate::plant::Diverged;
@@ -61,7 +60,7 @@ struct Body {
     vehicle: RealVehicle,
     instruments: Instruments,
     source: PoseSource,
-    /// What the poses say their deviations are, m and rad.
+    /// The poses' stated deviations, m and rad.
     deviations: (f32, f32),
     /// Plant steps in a millisecond.
     steps: u32,
@@ -72,7 +71,7 @@ struct Body {
     now: u64,
     /// Thrusts on their way, N, with the times at which they act, us.
     waiting: VecDeque<(u64, [f32; MOTORS])>,
-    /// Thrusts that are asked of the rotors, N.
+    /// The rotors' commanded thrusts, N.
     acting: [f32; MOTORS],
     sample: ImuSample,
     encoder: Encoder,
@@ -139,7 +138,7 @@ impl World {
         *self.0.body.borrow().vehicle.state()
     }
 
-    /// What its rotors really give, N.
+    /// Its rotors' true thrusts, N.
     #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         self.0.body.borrow().vehicle.thrusts()
@@ -158,19 +157,19 @@ impl World {
         self.0.body.borrow().encoder.signing.set(Some(key), stamp, 0);
     }
 
-    /// The camera hears a frame of the vehicle, and signs what it sends later with later stamps.
-    pub fn hear(&self, frame: &Frame<'_>) {
+    /// The camera receives a frame of the vehicle, and signs later frames with later stamps.
+    pub fn receive(&self, frame: &Frame<'_>) {
         self.0.body.borrow().encoder.signing.follow(frame, 0);
     }
 
-    /// The camera's answer to a TIMESYNC that the vehicle asked at `asked` of its clock.
-    pub fn answer_time_sync(&self, asked: i64) {
+    /// The camera's answer to a TIMESYNC that the vehicle sent at `sent` of its clock.
+    pub fn answer_time_sync(&self, sent: i64) {
         let mut bytes = Vec::new();
         let mut body = self.0.body.borrow_mut();
         if body.source == PoseSource::Link {
             return;
         }
-        body.encoder.time_sync(asked, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
+        body.encoder.time_sync(sent, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
         body.line.push(&bytes);
     }
 
@@ -217,10 +216,9 @@ impl Body {
                 continue;
             }
             let (position, attitude) = (pose.position(), pose.attitude());
-            let told = ToldPose { position, attitude, motion: None, deviations: Some(self.deviations) };
+            let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer =
-                Answer { poses: vec![Stamped { value: told, time: time + CAMERA_AHEAD }], samples: Vec::new() };
+            let answer = Answer { poses: vec![Stamped { value, time: time + CAMERA_AHEAD }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }
@@ -287,7 +285,7 @@ impl Battery for World {
     }
 }
 
-/// Nobody sees it.
+/// Invisible.
 impl Light for World {
     fn set(&mut self, _: bool) {}
 }

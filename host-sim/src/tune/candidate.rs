@@ -178,7 +178,7 @@ impl Judge {
             .max(flown.steady_mrp_error / needed.mrp_error - 1.0)
             .max(flown.clipped as f64);
         if beyond > 0.0 {
-            let what = "the file's flight: errors beyond those asked for, or a clipped command";
+            let what = "the file's flight: errors beyond the required ones, or a clipped command";
             return Err((0, beyond, what.to_owned()));
         }
         if !reached(&scenario, &flown) {

@@ -27,7 +27,7 @@ fn paper() -> Scenario {
     Scenario::parse(PAPER, "f").unwrap()
 }
 
-/// What the file's own gains earn.
+/// The cost of the file's own gains.
 fn verdict(scenario: &Scenario, requirements: Requirements) -> Verdict {
     let judge = Judge::new(scenario, requirements);
     judge.judge(&judge.start())

@@ -45,7 +45,7 @@ const GUST_TIME: f64 = 6.0;
 const STORM_TIME: f64 = 8.0;
 const STEP_TIME: f64 = 12.0;
 const NOISE_TIME: f64 = 4.0;
-/// A flight in calm air ends once position and yaw have been settled for this time, s.
+/// A flight in still air ends once position and yaw have been settled for this time, s.
 const REST: f64 = 2.0;
 /// The thrust scale of weak rotors, and the mass factor of a heavy vehicle.
 const WEAK: f64 = 0.6;
@@ -259,7 +259,7 @@ fn hovering_thrust(scenario: &Scenario) -> f64 {
 }
 
 /// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off
-/// the heading asked for), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
+/// the reference's heading), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
 ///
 /// # Errors
 /// None for a hover at the origin.

@@ -31,7 +31,7 @@ fn a_file_that_was_not_finished_leaves_nothing_behind() {
 fn a_name_that_is_taken_by_a_directory_leaves_nothing_behind() {
     let directory = directory("taken");
     std::fs::create_dir(directory.join("log.csv")).unwrap();
-    // At once: whoever writes for hours must not hear of it at the end.
+    // At once, not after hours of work.
     for refused in
         [WholeFile::create(&directory.join("log.csv")).map(drop), WholeFile::try_name(&directory.join("log.csv"))]
     {

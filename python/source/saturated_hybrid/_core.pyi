@@ -232,7 +232,7 @@ class Law:
             ValueError: names the field that cannot be used; nothing has changed then.
         """
     def for_rotors(self, asked: ArrayLike) -> NDArray[np.float32]:
-        """What the rotors are to be asked for to deliver a wrench (4,): it times 1 / `thrust_scale`."""
+        """The rotors' command for a wrench (4,): the wrench over `thrust_scale`."""
     def set_period(self, period: float) -> None:
         """The time by which the next steps advance the filters, s, from 0.00025 to 0.1. It begins as the scenario's."""
     def hold_estimates(self) -> None:
@@ -286,7 +286,7 @@ class Governor:
 
     Args:
         scenario: bounds and period.
-        horizontal_speed, vertical_speed: greatest speeds asked for, m/s.
+        horizontal_speed, vertical_speed: greatest commanded speeds, m/s.
         snap_ramp, heading_ramp: how long snap and psi'' take from one end of their bound to the other, s.
         timeout: how long velocities and rates are valid without renewal, s.
     """
@@ -316,13 +316,13 @@ class Governor:
         """Replaces the setpoint, world frame.
 
         A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
-        position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the one asked for.
+        position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the last one.
         """
     def stop(self) -> None:
         """Gives up the setpoint and comes to rest."""
     @property
     def at_rest(self) -> bool:
-        """Whether the reference rests where it was asked to be."""
+        """Whether the reference rests at its setpoint."""
     def tick(self) -> NDArray[np.float32]:
         """The reference (19,) one period later."""
     def run(self, ticks: int) -> NDArray[np.float32]:
@@ -493,7 +493,7 @@ def tune(
 
 @final
 class VehicleRows:
-    """Rows of the vehicle that a flight of the scenario simulates, under wrenches that somebody else decides on."""
+    """Rows of the vehicle that a flight of the scenario simulates, under given wrenches."""
 
     def __new__(cls, scenario: Scenario, rows: int) -> Self: ...
     def __len__(self) -> int: ...
@@ -510,7 +510,7 @@ class VehicleRows:
         """(rows, 13): the true ones."""
     @property
     def measured(self) -> NDArray[np.float64]:
-        """(rows, 13): what controllers are told, by the scenario's `[sensors]`; the true ones where it has none."""
+        """(rows, 13): the measured states, by the scenario's `[sensors]`; without that section the true ones."""
     @property
     def references(self) -> NDArray[np.float32]:
         """(rows, 19): the scenario's, each at its row's own time."""

@@ -11,7 +11,7 @@ without it they work alone, and their spaces have only what is needed.
     truncated                    the scenario's duration is over
 
 The law itself is a policy: with `law = LawRows(scenario, rows)`, `law.for_rotors(law.step(observations[:, :13], observations[:, 13:]))`
-are its actions, after which it is told of those that were `clipped`: `law.hold_estimates(info["clipped"].tolist())`.
+are its actions; report those that were `clipped` to it: `law.hold_estimates(info["clipped"].tolist())`.
 """
 
 import operator

@@ -78,7 +78,7 @@ class SaturatedHybridControl:
 
     def _compute(self, state, flat_output):
         x, y, z, w = state["q"]
-        told = _core.state(state["x"], state["v"], (w, x, y, z), state["w"])
+        measured = _core.state(state["x"], state["v"], (w, x, y, z), state["w"])
         asked = _core.reference(
             flat_output["x"],
             flat_output["x_dot"],
@@ -89,7 +89,7 @@ class SaturatedHybridControl:
             yaw_rate=float(flat_output["yaw_dot"]),
             yaw_acceleration=float(flat_output.get("yaw_ddot", 0.0)),
         )
-        wrench = self.law.for_rotors(self.law.step(told, asked))
+        wrench = self.law.for_rotors(self.law.step(measured, asked))
         thrusts, clipped = self.allocation.thrusts(wrench)
         if clipped:
             self.law.hold_estimates()

@@ -23,7 +23,7 @@ use crate::section::{FieldError, Section, in_line};
 use controller_core::error::{ParameterError, Reason};
 use toml::Value;
 
-/// What a rotor of the second form turns with at its greatest thrust, rad/s.
+/// The speed of a rotor of the second form at its greatest thrust, rad/s.
 pub const NOMINAL_SPEED: f64 = 1000.0;
 
 /// The keys of the first form.
@@ -32,7 +32,7 @@ pub const SPEEDS: [&str; 3] = ["thrust_coefficient", "drag_coefficient", "speed"
 /// The keys of the second form.
 pub const THRUSTS: [&str; 3] = ["thrust_max", "thrust_min", "torque_per_thrust"];
 
-/// What each rotor delivers; all are alike.
+/// The coefficients of each rotor; all are alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Propulsion {
     form: Form,

@@ -146,11 +146,11 @@ fn six_to_eight_rotors_deliver_what_they_can_deliver() {
         // All patterns of rotors at a third and at two thirds of their range: every wrench among them can be had.
         for pattern in 0..1_u32 << rotors.len() {
             let thrusts: Vec<f32> = (0..rotors.len()).map(|k| if pattern >> k & 1 == 1 { 4.0 } else { 2.0 }).collect();
-            let asked = mixer.wrench(&thrusts);
-            let given = mixer.allocate(&asked).unwrap();
+            let commanded = mixer.wrench(&thrusts);
+            let given = mixer.allocate(&commanded).unwrap();
             let delivered = mixer.wrench(&given.thrusts);
-            let error = (delivered.torque - asked.torque).norm().max((delivered.thrust - asked.thrust).abs());
-            assert!(given.is_exact() && error < 1e-4, "{name}: {asked:?} {delivered:?}");
+            let error = (delivered.torque - commanded.torque).norm().max((delivered.thrust - commanded.thrust).abs());
+            assert!(given.is_exact() && error < 1e-4, "{name}: {commanded:?} {delivered:?}");
         }
         // The certificate reaches every rotor, whatever it says of these gains.
         let verdict = Verdict::of(&scenario).unwrap();

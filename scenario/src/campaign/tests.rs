@@ -35,7 +35,7 @@ fn every_key_is_read() {
     let model = ModelRanges { mass: 0.12, inertia: 0.13, centre_of_mass: 0.14, thrust_scale: 0.15, rotor_scales: 0.16 };
     let expected = Ranges {
         duration: 9.0,
-        reference: Asked::Hover,
+        reference: Task::Hover,
         attitude: false,
         offset: 1.0,
         velocity: 2.0,
@@ -77,10 +77,10 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
-fn nobody_is_asked_to_bear_wind_that_its_law_gives_way_to_or_to_hurry() {
-    let asked = |campaign: Campaign| (campaign.ranges.wind, campaign.ranges.duration);
-    assert_eq!(asked(parse(crate::PAPER, "").unwrap()), (0.0, 180.0));
-    assert_eq!(asked(hummingbird("").unwrap()), (5.0, 60.0));
+fn default_wind_and_duration_are_within_the_laws_abilities() {
+    let drawn = |campaign: Campaign| (campaign.ranges.wind, campaign.ranges.duration);
+    assert_eq!(drawn(parse(crate::PAPER, "").unwrap()), (0.0, 180.0));
+    assert_eq!(drawn(hummingbird("").unwrap()), (5.0, 60.0));
     let extended = include_str!("../../../scenarios/paper-extended.toml");
     let weak = extended.replace("[control]", "[estimates]\nforce_across = 0.3\n\n[control]");
     assert!((parse(&weak, "").unwrap().ranges.wind - 0.48).abs() < 1e-6);

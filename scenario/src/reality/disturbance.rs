@@ -1,4 +1,4 @@
-//! `[disturbance]`: a force and a torque that nobody explains.
+//! `[disturbance]`: an unmodelled force and torque.
 //!
 //! ```toml
 //! [disturbance]

@@ -1,4 +1,4 @@
-//! `[drag]`: what the air does to a vehicle that moves through it.
+//! `[drag]`: the air's forces on a vehicle that moves through it.
 //!
 //! ```toml
 //! [drag]

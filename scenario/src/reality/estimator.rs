@@ -27,7 +27,7 @@ pub const IMU_RATE: f64 = 1e3;
 /// Noise of a pose's attitude where the file says nothing, degrees.
 const ATTITUDE_NOISE_DEG: f64 = 0.3;
 
-/// What the estimator is fed.
+/// The estimator's inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimator {
     /// Times a BMI088's densities and biases.
@@ -73,10 +73,10 @@ impl Default for Estimator {
 }
 
 impl Estimator {
-    /// What the estimator believes of its sensors, for a vehicle under `gravity`, m/s^2.
+    /// The estimator's model of its sensors, for a vehicle under `gravity`, m/s^2.
     #[must_use]
     pub fn believed(&self, gravity: f32) -> EstimatorParameters {
-        /// The least that single precision tells from zero with room to spare.
+        /// The least that single precision separates from zero, with room to spare.
         const LEAST: f64 = 1e-4;
         EstimatorParameters {
             position_noise: self.position_noise.max(LEAST) as f32,
@@ -87,7 +87,7 @@ impl Estimator {
     }
 }
 
-/// By how much the body rates that the law is told are late at most, s: [`ImuParameters::rates_late`].
+/// The greatest delay of the law's body rates, s: [`ImuParameters::rates_late`].
 #[must_use]
 pub fn rates_delay() -> f64 {
     ImuParameters::BMI088.rates_late().into()

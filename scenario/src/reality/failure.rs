@@ -4,7 +4,7 @@
 //! [failure]
 //! rotor = 2                            # numbered from 1
 //! time = 5.0                           # s
-//! thrust_left = 0.0                    # share of what is asked of it; left out: 0, it stops
+//! thrust_left = 0.0                    # share of its command; left out: 0, it stops
 //! ```
 
 use super::numbers::Allowed;
@@ -17,7 +17,7 @@ pub struct Failure {
     pub rotor: usize,
     /// When, s.
     pub time: f64,
-    /// The share of the thrust asked of it that it then settles at, at least 0 and below 1.
+    /// The share of its commanded thrust that it then settles at, at least 0 and below 1.
     pub thrust_left: f64,
 }
 

@@ -12,7 +12,7 @@ pub struct Allowed {
 }
 
 impl Allowed {
-    /// What lies in `range`; `unit` is for messages, empty where there is none.
+    /// A number in `range`; `unit` is for messages, empty without one.
     #[must_use]
     pub fn new(range: RangeInclusive<f64>, unit: &'static str) -> Self {
         Self { range, unit }

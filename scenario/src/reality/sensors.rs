@@ -1,4 +1,4 @@
-//! `[sensors]`: what the controller is told of the state, instead of the state.
+//! `[sensors]`: noise, bias and delay of the state that the controller gets.
 //!
 //! ```toml
 //! [sensors]
@@ -26,7 +26,7 @@ use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use nalgebra::Vector3;
 
-/// What the controller is told.
+/// Noise, bias and delay of the measured state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensors {
     /// Standard deviation of the gyro, rad/s.

@@ -1,11 +1,11 @@
-//! `[truth]`: what the vehicle really is, where it differs from the model its controller was given.
+//! `[truth]`: the true vehicle, where it differs from its controller's model.
 //!
 //! ```toml
 //! [truth]
 //! mass = 0.55                          # kg;            left out: vehicle.mass
 //! inertia = [3.9e-3, 3.9e-3, 7.5e-3]   # kg m^2, about the true centre of mass; left out: vehicle.inertia
 //! centre_of_mass = [0.005, 0.0, 0.0]   # m, body, from the model's; left out: zero
-//! thrust_scale = 0.8                   # what every rotor delivers of its thrust and drag torque; left out: 1
+//! thrust_scale = 0.8                   # scale of every rotor's thrust and drag torque; left out: 1
 //! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
 //! thrust_curve = 0.3                   # a of the thrust a u + (1 - a) u^2 of a motor command u; left out: 0
 //! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
@@ -21,7 +21,7 @@ use controller_core::error::ParameterError;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-/// What the vehicle really is.
+/// The true vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// kg.
@@ -30,7 +30,7 @@ pub struct Truth {
     pub inertia: Vector3<f64>,
     /// The true centre of mass, m, body, from the model's.
     pub centre_of_mass: Vector3<f64>,
-    /// What every rotor delivers of its thrust and drag torque at the speed it turns with.
+    /// The scale of every rotor's thrust and drag torque at its speed.
     pub thrust_scale: f64,
     /// The same for each rotor, besides; empty for 1.
     pub rotor_scales: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// What the model says.
+    /// The model itself.
     #[must_use]
     pub fn of_model(vehicle: &Vehicle) -> Self {
         Self {

@@ -25,9 +25,9 @@ use nalgebra::Vector3;
 pub struct Wind {
     /// m/s, world.
     pub steady: Vector3<f64>,
-    /// What begins at a time.
+    /// A gust from a time on.
     pub gust: Option<Gust>,
-    /// What never ends.
+    /// Turbulence, throughout.
     pub turbulence: Option<Turbulence>,
 }
 

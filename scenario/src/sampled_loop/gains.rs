@@ -36,7 +36,7 @@ pub(super) struct ForceGains {
     pub drag: f64,
 }
 
-/// What the law estimates along one axis; nothing by default.
+/// The law's estimates along one axis; none by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct EstimateGains {
     /// The force.

@@ -15,12 +15,12 @@ pub(super) const INTEGRATORS: usize = 4;
 /// 1/m!.
 pub(super) const INVERSE_FACTORIAL: [f64; INTEGRATORS + 2] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0];
 
-/// Entry m tells about y_m (y_0 = a) at the end of a stretch.
+/// Entry m is for y_m (y_0 = a) at the end of a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LagResponse {
-    /// What a unit of `a` at the start leaves in y_m.
+    /// The effect of a unit of `a` at the start on y_m.
     pub free: [f64; INTEGRATORS + 1],
-    /// What a unit of held input adds to y_m.
+    /// The effect of a unit of held input on y_m.
     pub forced: [f64; INTEGRATORS + 1],
 }
 

@@ -25,7 +25,7 @@ use super::compensator::Compensator;
 use super::gains::{EstimateGains, LateGains, PositionGains, TorqueGains};
 use super::lag::{Arrival, INTEGRATORS};
 
-/// What an axis is, with the gains of the laws that act along it.
+/// An axis, with the gains of the laws that act along it.
 #[derive(Debug, Clone, Copy)]
 enum Chain {
     Attitude(TorqueGains),
@@ -54,7 +54,7 @@ impl Tracker {
 pub(super) struct Law {
     chain: Chain,
     estimates: EstimateGains,
-    /// What the law takes its actuator for.
+    /// The law's model of its actuator.
     actuator: Arrival,
     /// Where the velocity comes from, if it is not known.
     tracker: Option<Tracker>,
@@ -87,7 +87,7 @@ struct Memory {
     wanted: f64,
     /// Of the torque bias, such an average.
     torque: f64,
-    /// What acts of what was commanded.
+    /// The acting part of the command.
     acting: f64,
     /// Commands, the newest first.
     commanded: Vec<f64>,
@@ -217,7 +217,7 @@ impl Law {
         }
     }
 
-    /// What commands of the past will still deliver of rate.
+    /// The rate that past commands will still deliver.
     fn pending(&self, memory: &Memory) -> f64 {
         let LateGains { lag, whole_delay, broken_delay } = self.estimates.late;
         let commanded = |age: usize| memory.commanded.get(age).copied().unwrap_or(0.0);
@@ -225,7 +225,7 @@ impl Law {
         lag * memory.acting + whole + broken_delay * commanded(whole_delay)
     }
 
-    /// The velocity that the law is told.
+    /// The measured velocity that the law gets.
     fn tracked(&self, memory: &mut Memory, velocity: f64, position: f64) -> f64 {
         let Some(tracker) = &self.tracker else {
             return velocity;
@@ -237,7 +237,7 @@ impl Law {
         memory.speed
     }
 
-    /// What the law takes for the mean of what acts until the next tick, `command` being given.
+    /// The law's mean of the acting command until the next tick, `command` being given.
     fn acted(&self, memory: &mut Memory, command: f64) -> f64 {
         let Arrival { whole_delay, free, newer, older } = &self.actuator;
         let commanded =
@@ -253,7 +253,7 @@ impl Law {
     }
 }
 
-/// What is remembered of an average x: (1 - share) x + share past.
+/// The memory of an average x: (1 - share) x + share past.
 fn averaged(x: f64, share: f64, past: f64) -> f64 {
     x + share * (past - x)
 }

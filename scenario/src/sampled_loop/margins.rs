@@ -8,7 +8,7 @@
 //!
 //! Two kinds of crossings no step leads to. A fraction of a sample may make one that was not there without it. And at
 //! the Nyquist frequency there is no phase to take: the response is real, and further delay carries it along the axis.
-//! So the eigenvalues themselves are asked, up to two samples of further delay.
+//! So the eigenvalues themselves decide, up to two samples of further delay.
 //!
 //! The response is followed along a grid of frequencies. Where it comes near an axis and turns back it is looked at
 //! more closely: it may cross twice between neighbours.
@@ -108,7 +108,7 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
     if high.1 < 0.0 { root(nearest, low, high) } else { high.0 }
 }
 
-/// What of `margin`, samples, the eigenvalues bear out.
+/// The part of `margin`, samples, that the eigenvalues confirm.
 fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
     /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist
     /// frequency is farthest along the axis.

@@ -21,7 +21,7 @@ pub(super) struct Slopes {
     estimates: Option<Estimates>,
 }
 
-/// What the extended law estimates, and by which model of its actuators.
+/// The extended law's estimates, and its model of its actuators.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Estimates {
     parameters: ExtendedParameters,
@@ -99,7 +99,7 @@ impl Slopes {
         in_samples(&self.vertical, period)
     }
 
-    /// What is estimated across, with the torque about the tilt's axes.
+    /// The estimates across, with the torque about the tilt's axes.
     pub fn estimated_across(&self, period: f64) -> EstimateGains {
         self.estimates.map_or_else(EstimateGains::default, |estimates| {
             let p = &estimates.parameters;

@@ -7,7 +7,7 @@ fn table(text: &str) -> Table {
 }
 
 #[test]
-fn a_key_that_holds_a_line_end_is_told_in_one_line() {
+fn a_key_that_holds_a_line_end_is_reported_in_one_line() {
     let table: Table = toml::from_str("\"a\\nb\\u001B[2J\" = 0").unwrap();
     let error = Section::root(&table).allow(&["mass"]).unwrap_err().to_string();
     assert!(error.starts_with("a\\nb\\u{1b}[2J: unknown key") && error.lines().count() == 1, "{error}");

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rand::RngExt;
 use scenario::Scenario;
 
-/// Limits nobody reaches, for questions that are not about limits.
+/// Limits that are never reached, for tests that are not about limits.
 pub fn without_limits(vehicle: Vehicle, gains: Gains, bounds: ReferenceBounds) -> Configuration {
     limited(vehicle, gains, bounds, f64::from(f32::MAX), &Vector3::repeat(f64::from(f32::MAX)))
 }

@@ -4,9 +4,9 @@
 //! It shares no code with the core and takes the other road wherever there is one: rotation matrices instead of
 //! quaternions, the thrust direction's turn in world axes, the heading's lag as an angle, omega_d and omega_d' by
 //! differentiating the lagging frame numerically, filters in small Runge-Kutta steps. One tick, [`Law::evaluate`], is a
-//! pure function of [`Tick`], so that its sensitivity to every rounding can be asked for. Its pieces:
+//! pure function of [`Tick`], so that its sensitivity to every rounding can be computed. Its pieces:
 //!
-//! - [`position`], [`turning`] and [`heading`]: the force that is asked for, and how the desired frame follows it;
+//! - [`position`], [`turning`] and [`heading`]: the commanded force, and how the desired frame follows it;
 //! - [`attitude`]: the torque of the attitude's errors;
 //! - [`budget`]: what rotors and limits leave for either;
 //! - [`estimates`]: what is learnt of the forces; [`acting`]: what rotors still do of earlier commands;
@@ -178,9 +178,9 @@ impl Law {
         after[1] = cut(after[1], fastest);
         let (rate, turned) = (error.transpose() * omega_d, error.transpose() * omega_d_dot);
         let torque = self.inertia * turned - skew(self.inertia * rate) * rate - pull - bias;
-        let asked = self.mass * u.dot(&axis);
+        let wanted = self.mass * u.dot(&axis);
         let [least, ceiling] = self.thrusts(&torque, scale);
-        let thrust = ceiling.min(least.max(asked));
+        let thrust = ceiling.min(least.max(wanted));
         let [rate, acceleration, whole, cone, swells, falls] = limited;
         Answer {
             thrust,
@@ -192,9 +192,9 @@ impl Law {
             lag: after,
             lifted,
             lift,
-            net: net.after(&errors, limited.contains(&true) || thrust < asked, h),
+            net: net.after(&errors, limited.contains(&true) || thrust < wanted, h),
             wanted: turned,
-            taken: [rate, acceleration, whole, cone, swells, falls, eased, asked < least, asked > ceiling, slowed],
+            taken: [rate, acceleration, whole, cone, swells, falls, eased, wanted < least, wanted > ceiling, slowed],
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What single precision may do to one tick of the extended law.
 //!
-//! As for the paper's law (`support::oracle::rounding`): the oracle is asked how far its own answer moves when each
+//! As for the paper's law (`support::oracle::rounding`): the oracle computes how far its own answer moves when each
 //! quantity the law reads or forms moves by one rounding of the magnitudes that were added up to form it, one at a
 //! time; the sum of these movements is what one rounding everywhere can do.
 

@@ -1,8 +1,8 @@
 //! What single precision may do to the law: the core's inputs in the oracle's terms, and tolerances derived from
 //! rounding.
 //!
-//! Single precision cannot be asked for more than the exact answer to a slightly different question, so the oracle is
-//! asked how far its own answer moves when each quantity the law reads or forms (each axis of p~, v~, u, u', u'', psi
+//! Single precision gives at best the exact answer to a slightly different question. So the oracle computes how far its
+//! own answer moves when each quantity the law reads or forms (each axis of p~, v~, u, u', u'', psi
 //! with its derivatives, R, omega) moves by one rounding, 2^-24 of the magnitudes that were added up to form it, one at
 //! a time. The sum of these movements is what one rounding everywhere can do. A quantity of the law is formed by about
 //! ten operations, whose roundings add up like a random walk: sqrt(10) to [`ROUNDINGS`]. The worst found is 2.1.

@@ -16,7 +16,7 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::course::Course;
 use host_sim::flight::Flight;
 use scenario::Scenario;
-use scenario::campaign::{Asked, NoiseRanges, Ranges};
+use scenario::campaign::{NoiseRanges, Ranges, Task};
 use section_six::{MATCHED, SectionSix, nested};
 use std::error::Error;
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ fn global(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>> {
     for (paper, rate) in [(paper, "100 Hz"), (&quick, "1 kHz")] {
         let noise = NoiseRanges::default();
         let own = paper.campaign.ranges;
-        let ranges = Ranges { reference: Asked::File, duration: 120.0, wind: 0.0, noise, ..own };
+        let ranges = Ranges { reference: Task::File, duration: 120.0, wind: 0.0, noise, ..own };
         let (mut settled, mut slowest) = (0, 0.0_f64);
         for number in 0..STARTS {
             let thrown = circumstances(paper, &ranges, 0, number);

@@ -13,7 +13,7 @@ use std::error::Error;
 /// Table I in the names of [`host_sim::rivals::nested`]; the integral is as good as none, since the paper's law has
 /// none.
 pub const MATCHED: [f64; 10] = [6.0, 9.0, 1e-6, 2.0, 0.499, 1e-3, 100.0, 0.206, 0.1, 0.045];
-/// What the actuators are drawn for, s.
+/// The duration of the actuators' picture, s.
 const FIRST: f64 = 4.0;
 
 /// A flight of nested saturations with these gains.
@@ -38,7 +38,7 @@ pub fn searched(paper: &Scenario) -> Result<[f64; 10], Box<dyn Error>> {
     Ok(best.1)
 }
 
-/// What a law showed in the paper's Section VI.
+/// A law's figures in the paper's Section VI.
 pub struct SectionSix {
     thrust: (f64, f64),
     torque: Vector3<f64>,

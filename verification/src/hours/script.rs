@@ -71,7 +71,7 @@ impl Script {
         }
     }
 
-    /// What was chosen for this mission: which height, and which speed.
+    /// This mission's take-off height and landing speed.
     pub fn choice(&self) -> (usize, usize) {
         self.choice
     }
@@ -92,12 +92,12 @@ impl Script {
         self.frame.contains(&tick)
     }
 
-    /// What the operator says in this tick, in `mode`, which will be at `now` and a period, us; `heard` is when the
-    /// station was heard last. Who is refused asks again, a second later.
-    pub fn given(&self, tick: u64, mode: Mode, now: u64, heard: &mut Option<u64>) -> Inputs<'static> {
+    /// The operator's inputs in this tick, in `mode`, which will be at `now` and a period, us; `heartbeat` is when the
+    /// station's last heartbeat came. A refused request is repeated a second later.
+    pub fn given(&self, tick: u64, mode: Mode, now: u64, heartbeat: &mut Option<u64>) -> Inputs<'static> {
         let silent = (self.silence..self.silence + SILENCE).contains(&tick);
         if tick.is_multiple_of(HEARTBEAT) && !silent {
-            *heard = Some(now);
+            *heartbeat = Some(now);
         }
         let request = match tick {
             tick if mode.may_arm() && asks(self.arm, tick) => Some(Request::Arm),
@@ -111,7 +111,7 @@ impl Script {
         let is_low = self.runs_down && (self.land..self.land + LOW).contains(&tick);
         Inputs {
             request,
-            ground_station: *heard,
+            ground_station: *heartbeat,
             setpoint: streams.then(|| self.setpoint(tick)),
             battery: if is_low { Battery::Low } else { Battery::Good },
             ..Inputs::default()
@@ -158,7 +158,7 @@ impl Script {
     }
 }
 
-/// Whether it is time for what is asked for at `since`, and up to three times again.
+/// Whether it is time for the request of `since`, or for one of its three repetitions.
 fn asks(since: u64, tick: u64) -> bool {
     (since..since + 400).contains(&tick) && (tick - since).is_multiple_of(AGAIN)
 }

@@ -4,7 +4,7 @@ use super::script::{HEIGHTS, SPEEDS};
 use flight::Reason;
 use nalgebra::Vector3;
 
-/// What one hour showed.
+/// The figures of one hour.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Hour {
     /// RMS of the distance between vehicle and reference in hover, m.
@@ -20,10 +20,10 @@ pub struct Hour {
 pub const TIMED: [Reason; 5] =
     [Reason::TakenOff, Reason::GroundStationLost, Reason::SetpointsLost, Reason::PoseLost, Reason::BatteryLow];
 
-/// What the parameters that were changed before a mission did in it, of all missions with the same choice.
+/// The effect of parameters changed before a mission, over all missions with the same choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Obeyed {
-    /// What was chosen: m, or m/s.
+    /// The choice: m, or m/s.
     pub chosen: f32,
     /// The least and the greatest of what came of it: m above the ground in hover, or m/s downwards while landing.
     pub found: (f64, f64),
@@ -52,14 +52,14 @@ pub(super) fn widened((least, most): (u64, u64), value: u64) -> (u64, u64) {
     (least.min(value), most.max(value))
 }
 
-/// What all of them showed.
+/// The figures of all hours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hours {
     /// Hour by hour.
     pub hours: Vec<Hour>,
     /// The shortest and longest of each of the delays, ticks.
     pub extremes: [(u64, u64); TIMED.len()],
-    /// What became of each height of a take-off, and of each speed of a landing, that were chosen.
+    /// The result of each chosen take-off height and landing speed.
     pub heights: [Obeyed; HEIGHTS.len()],
     /// See [`Self::heights`].
     pub speeds: [Obeyed; SPEEDS.len()],
@@ -67,7 +67,7 @@ pub struct Hours {
     pub missions: u64,
     /// How often the frame of the poses has moved.
     pub moves: u64,
-    /// How often somebody had to ask again, because a pose of the last second was not believed.
+    /// How often a request was repeated, because a pose of the last second was not believed.
     pub refusals: u64,
     /// Every transition but those between checks and ready, with its tick since the beginning.
     pub taken: Vec<(u64, Reason)>,

@@ -37,8 +37,8 @@ fn command(time_usec: u64, level: f32) -> Vec<u8> {
     bytes(&HIL_ACTUATOR_CONTROLS_DATA { time_usec, controls, ..Default::default() })
 }
 
-/// The next message of a kind that the board hears; none if it is another.
-fn heard<D: MessageData>(board: &mut TcpStream) -> Option<D> {
+/// The next message of a kind that the board receives; none if it is another.
+fn received<D: MessageData>(board: &mut TcpStream) -> Option<D> {
     let (mut parser, mut byte) = (Parser::new(), [0]);
     loop {
         board.read_exact(&mut byte).unwrap();
@@ -75,12 +75,12 @@ fn a_silent_side_is_given_up_and_one_that_goes_is_no_error() {
 }
 
 #[test]
-fn nobody_is_waited_for_without_end() {
+fn no_connection_is_waited_for_without_end() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     for address in [Address::Connect(free.clone()), Address::Listen(free)] {
         let started = Instant::now();
-        let Err(PortError::Nobody(who, waited, _)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
-            panic!("somebody is there")
+        let Err(PortError::NoConnection(who, waited, _)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
+            panic!("connected")
         };
         assert_eq!((who, waited), (address, PATIENCE));
         assert!(started.elapsed() < LONG);
@@ -89,7 +89,7 @@ fn nobody_is_waited_for_without_end() {
 
 #[test]
 fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
-    // Nobody accepts: once as many wait as the system lets, it answers no more.
+    // The listener accepts nothing: once as many wait as the system lets, it answers no more.
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let waiting: Vec<TcpStream> =
@@ -97,7 +97,9 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
     assert!(waiting.len() < 1000);
     let address = Address::Connect(address.to_string());
     let started = Instant::now();
-    let Err(PortError::Nobody(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else { panic!("found") };
+    let Err(PortError::NoConnection(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
+        panic!("found")
+    };
     let interrupt = Interrupt::default();
     let asking = interrupt.clone();
     let user = std::thread::spawn(move || {
@@ -119,11 +121,11 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
             let time = 5_000 + 10_000 * tick;
             board.write_all(&command(time, 0.0)).unwrap();
             if tick < 2 {
-                let pose: ODOMETRY_DATA = heard(&mut board).expect("a pose first");
+                let pose: ODOMETRY_DATA = received(&mut board).expect("a pose first");
                 assert_eq!((pose.time_usec, pose.z), (time + 10_000, 0.0));
                 assert_eq!((pose.pose_covariance, pose.velocity_covariance), ([0.0; 21], [0.0; 21]));
             }
-            let sensor: HIL_SENSOR_DATA = heard(&mut board).expect("sensors last");
+            let sensor: HIL_SENSOR_DATA = received(&mut board).expect("sensors last");
             assert_eq!(sensor.time_usec, time + 10_000);
             // At rest it feels the ground push: up, which is against FRD's z.
             let force = frames::body(&Vector3::new(sensor.xacc, sensor.yacc, sensor.zacc));
@@ -136,8 +138,8 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
     assert!(summary.to_string().contains(", 0 missed"), "{summary}");
 }
 
-/// Everything that a board hears in a session with sensors at 1 kHz, whose commands come a little irregularly.
-fn heard_in_a_noisy_session() -> Vec<u8> {
+/// Everything that a board receives in a session with sensors at 1 kHz, whose commands come a little irregularly.
+fn received_in_a_noisy_session() -> Vec<u8> {
     const TICKS: u64 = 20;
     let (mut port, mut board) = connected(LONG);
     let study = std::fs::read_to_string("../vehicles/study.toml").unwrap();
@@ -166,8 +168,8 @@ fn heard_in_a_noisy_session() -> Vec<u8> {
 
 #[test]
 fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_its_poses_are() {
-    let bytes = heard_in_a_noisy_session();
-    assert_eq!(bytes, heard_in_a_noisy_session());
+    let bytes = received_in_a_noisy_session();
+    assert_eq!(bytes, received_in_a_noisy_session());
     let (mut parser, mut poses, mut samples) = (Parser::new(), 0, 0);
     for byte in bytes {
         let Some(frame) = parser.push(byte, 0) else { continue };
@@ -192,7 +194,7 @@ fn a_session_is_held_to_a_speed_of_this_desks_time() {
         let board = std::thread::spawn(move || {
             for tick in 1..=TICKS {
                 board.write_all(&command(10_000 * tick, 0.0)).unwrap();
-                while heard::<HIL_SENSOR_DATA>(&mut board).is_none() {}
+                while received::<HIL_SENSOR_DATA>(&mut board).is_none() {}
             }
         });
         let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed };

@@ -35,7 +35,7 @@ fn answers(sensors: &str, ticks: u64, velocity: f64) -> Vec<Answer> {
 }
 
 #[test]
-fn without_a_section_one_exact_sample_and_pose_tell_the_periods_end() {
+fn without_a_section_one_exact_sample_and_pose_are_of_the_periods_end() {
     for (tick, answer) in (0..).zip(answers("", 3, 2.0)) {
         let [pose] = answer.poses[..] else { panic!("{answer:?}") };
         let [sample] = answer.samples[..] else { panic!("{answer:?}") };
@@ -84,7 +84,7 @@ fn poses_and_samples_have_the_noise_of_the_section_and_another_seed_has_other() 
     let deviation =
         (poses.iter().map(|pose| pose.value.position.norm_squared()).sum::<f32>() / (3 * poses.len()) as f32).sqrt();
     assert!((9.5e-4..1.05e-3).contains(&deviation), "{deviation} m");
-    let turned = |pose: &Stamped<ToldPose>| 2.0 * pose.value.attitude.imag().norm();
+    let turned = |pose: &Stamped<MeasuredPose>| 2.0 * pose.value.attitude.imag().norm();
     let deviation = (poses.iter().map(|pose| turned(pose).powi(2)).sum::<f32>() / (3 * poses.len()) as f32).sqrt();
     assert!((0.285..0.315).contains(&deviation.to_degrees()), "{} degrees", deviation.to_degrees());
     // From one sample to the next neither bias matters: twice the variance of white noise of the data sheet's density.

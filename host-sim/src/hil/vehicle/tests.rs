@@ -19,7 +19,7 @@ fn hover() -> f32 {
 }
 
 #[test]
-fn it_stands_below_the_scenarios_start_until_it_is_told_to_rise() {
+fn it_stands_below_the_scenarios_start_until_it_is_commanded_to_rise() {
     let mut vehicle = HilVehicle::new(&study()).unwrap();
     for _ in 0..100 {
         let moved = vehicle.advance(&all(hover() - 0.01), 1).unwrap();

@@ -17,7 +17,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let (mass, k): (f64, f64) = (vehicle.mass.into(), rotors.iter().next().unwrap().thrust_coefficient.into());
     let drag = Drag { rotor_across: 1.19e-4, rotor_along: 2.32e-4, translational_lift: 3.39e-3, ..Drag::default() };
     let truth = Truth::of_model(vehicle);
-    let (calm, windy) = (Air::new(Some(rotors), &truth, &Drag::default()), Air::new(Some(rotors), &truth, &drag));
+    let (still_air, windy) = (Air::new(Some(rotors), &truth, &Drag::default()), Air::new(Some(rotors), &truth, &drag));
     // Pressed down by the air, as in wind: more than a hover takes.
     let speed = (mass * 12.0 / (4.0 * k)).sqrt();
     let mut speeds = [0.0; ROTORS_MAX];
@@ -29,7 +29,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let airspeed = Vector3::new(3.0, -2.0, 1.5);
     let still = Flow { airspeed: Vector3::zeros(), angular_velocity: Vector3::zeros() };
     let (layout, hubs) = (Layout::of(rotors), Hubs { along: 1.0, across: 1.0, lift: drag.translational_lift / mass });
-    let (thrust, torque) = calm.act(&still, &delivered);
+    let (thrust, torque) = still_air.act(&still, &delivered);
     let impulse = Impulse { thrust: thrust.z, torque };
 
     let dragged = Air::new(Some(rotors), &truth, &Drag { translational_lift: 0.0, ..drag });

@@ -5,7 +5,7 @@ use crate::plant::Plant;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;
 
-/// What this machine has: plain instructions always.
+/// This machine's instruction sets: plain instructions always.
 fn processors() -> Vec<Arch> {
     let mut processors = vec![Arch::Scalar];
     #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,4 @@
-//! Sag against Ohm's law, power against what was asked, and the charge against the time.
+//! Sag against Ohm's law, power against the command, and the charge against the time.
 
 use super::*;
 

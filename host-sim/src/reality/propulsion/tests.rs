@@ -95,9 +95,9 @@ fn a_loaded_battery_sags_by_what_the_rotors_draw() {
 
 #[test]
 fn a_curve_bends_the_thrust_between_none_and_all() {
-    let thrust = |asked: f32, curve: f64| {
+    let thrust = |commanded: f32, curve: f64| {
         let mut bent = propulsion(&format!("[truth]\nthrust_curve = {curve}"), 0.0);
-        bent.command(&[asked; 4]);
+        bent.command(&[commanded; 4]);
         THRUST_COEFFICIENT * speeds(&bent.advance(0)[0])[0].powi(2)
     };
     let full = THRUST_COEFFICIENT * 1500.0 * 1500.0;

@@ -9,7 +9,7 @@ fn blowing(shape: Shape) -> MovingAir {
     MovingAir::new(&Wind { steady: Vector3::new(1.0, 2.0, 3.0), gust: Some(gust), turbulence: None }, STEP)
 }
 
-/// What is there besides the steady wind, over the gust's velocity.
+/// The wind less the steady wind, over the gust's velocity.
 fn share_at(air: &MovingAir, step: u64, part: f64) -> f64 {
     let extra = air.velocity(step, part) - Vector3::new(1.0, 2.0, 3.0);
     assert!((extra.z + 0.5 * extra.x).abs() < 1e-12 && extra.y == 0.0);

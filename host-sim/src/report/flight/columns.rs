@@ -3,7 +3,7 @@
 //!
 //! - `tilt`: the angle between thrust axis and vertical, degrees;
 //! - `filter_…`: |ubar_p|, |u_f|, |u_s|, m/s^2;
-//! - `told_…`: the distance between the state that the law was told and the true one: m, m/s, degrees, rad/s.
+//! - `measured_…`: the error of the state that the law got, measured or estimated: m, m/s, degrees, rad/s.
 
 use crate::flight::Tick;
 use crate::report::recorder::{Instant, Kept, Read};
@@ -17,7 +17,7 @@ use scenario::body::BodyState;
 type Columns = Vec<(String, Kept, Read)>;
 /// The length of a vector that the law goes through.
 type Norm = fn(&Diagnostics) -> f32;
-/// How far what the law was told is from the truth.
+/// The error of the state that the law got.
 type Distance = fn(&State, &BodyState) -> f64;
 
 /// The columns of a flight of `scenario`.
@@ -42,12 +42,12 @@ pub fn columns(scenario: &Scenario) -> Columns {
         add(&mut columns, "current", |tick| tick.surroundings.battery.map_or(f64::NAN, |(_, current)| current));
     }
     if reality.sensors.is_some() || reality.estimator.is_some() {
-        told(&mut columns);
+        measured(&mut columns);
     }
     columns
 }
 
-/// What belongs together at one instant: where the vehicle is and is to be.
+/// Values of one instant: the vehicle's pose and its reference.
 fn samples(columns: &mut Columns) {
     let from = columns.len();
     three(columns, ["px", "py", "pz"], |tick| tick.state.position);
@@ -99,19 +99,21 @@ fn estimates(columns: &mut Columns) {
     add(columns, "thrust_scale", move |tick| of(tick).scale.into());
 }
 
-/// How far what the law was told is from the truth.
-fn told(columns: &mut Columns) {
+/// The errors of the state that the law got.
+fn measured(columns: &mut Columns) {
     let distances: [(&str, Distance); 4] = [
-        ("told_position", |told, state| (told.position.cast::<f64>() - state.position).norm()),
-        ("told_velocity", |told, state| (told.velocity.cast::<f64>() - state.velocity).norm()),
-        ("told_attitude", |told, state| {
-            let [one, other] = [double(&told.attitude), state.attitude].map(UnitQuaternion::from_quaternion);
+        ("measured_position", |measured, state| (measured.position.cast::<f64>() - state.position).norm()),
+        ("measured_velocity", |measured, state| (measured.velocity.cast::<f64>() - state.velocity).norm()),
+        ("measured_attitude", |measured, state| {
+            let [one, other] = [double(&measured.attitude), state.attitude].map(UnitQuaternion::from_quaternion);
             one.angle_to(&other).to_degrees()
         }),
-        ("told_rate", |told, state| (told.angular_velocity.cast::<f64>() - state.angular_velocity).norm()),
+        ("measured_rate", |measured, state| (measured.angular_velocity.cast::<f64>() - state.angular_velocity).norm()),
     ];
     for (name, distance) in distances {
-        add(columns, name, move |tick| tick.measured.as_deref().map_or(f64::NAN, |told| distance(told, &tick.state)));
+        add(columns, name, move |tick| {
+            tick.measured.as_deref().map_or(f64::NAN, |measured| distance(measured, &tick.state))
+        });
     }
 }
 

@@ -7,7 +7,7 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
-/// What the vehicle has, which may be far from what is ever commanded.
+/// The vehicle's limit, which may be far from every command.
 const LIMIT: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
@@ -26,7 +26,7 @@ pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> V
     plots
 }
 
-/// Where it is, how it stands, and how far that is from what was asked.
+/// Position and attitude, and their errors from the reference.
 fn motion(scenario: &Scenario) -> Vec<Plot> {
     let published = |value| if scenario.is_papers() { vec![ink(value, "published, steady state")] } else { vec![] };
     vec![
@@ -37,7 +37,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
         Plot::new(
             "Yaw",
             "°",
-            vec![Curve::new("yaw", "yaw", Color::Blue), Curve::new("yaw_d", "asked", Color::Ink).dashed()],
+            vec![Curve::new("yaw", "yaw", Color::Blue), Curve::new("yaw_d", "reference", Color::Ink).dashed()],
         ),
         Plot::new("Tilt of the thrust axis", "°", vec![Curve::new("tilt", "tilt", Color::Blue)]),
         Plot::new("Attitude error (MRP)", "", vec![Curve::new("mrp_error", "|ϑ|", Color::Blue)])
@@ -53,7 +53,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
     ]
 }
 
-/// What the law commands, within what is proven and what the vehicle has.
+/// The law's commands, with the proven bounds and the vehicle's limits.
 fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     let limits = scenario.configuration.limits();
     let mut thrust = interval(certificate.thrust(), "proven", Color::Ink);
@@ -86,7 +86,7 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     plots
 }
 
-/// What the law goes through on its way: filters and saturated feedbacks.
+/// The law's filters and saturated feedbacks.
 fn inside(scenario: &Scenario) -> Vec<Plot> {
     let gains = scenario.configuration.gains();
     let level =
@@ -118,19 +118,19 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
     ]
 }
 
-/// What the law makes of the unknown, and how true is what it is told.
+/// The law's estimates, and the error of the state that it got.
 fn estimates() -> Vec<Plot> {
-    let told = |title, unit, column| {
-        Plot::new(title, unit, vec![Curve::new(column, "told − true", Color::Blue)]).logarithmic()
+    let error = |title, unit, column| {
+        Plot::new(title, unit, vec![Curve::new(column, "measured − true", Color::Blue)]).logarithmic()
     };
     vec![
         Plot::new("Estimated force per mass", "m/s²", axes(["d_x", "d_y", "d_z"])),
         Plot::new("Estimated torque", "N m", axes(["tau_d_x", "tau_d_y", "tau_d_z"])),
         Plot::new("Estimated thrust scale", "", vec![Curve::new("thrust_scale", "scale", Color::Blue)]),
-        told("Error of the position the law is told", "m", "told_position"),
-        told("Error of the velocity", "m/s", "told_velocity"),
-        told("Error of the attitude", "°", "told_attitude"),
-        told("Error of the body rates", "rad/s", "told_rate"),
+        error("Error of the measured position", "m", "measured_position"),
+        error("Error of the measured velocity", "m/s", "measured_velocity"),
+        error("Error of the measured attitude", "°", "measured_attitude"),
+        error("Error of the measured body rates", "rad/s", "measured_rate"),
     ]
 }
 
@@ -148,9 +148,9 @@ fn axes(columns: [&str; 3]) -> Vec<Curve> {
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
 }
 
-/// What was asked of them.
+/// The reference's components.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
-    let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
+    let named = columns.into_iter().zip(["x reference", "y reference", "z reference"]).enumerate();
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
 }
 

@@ -3,7 +3,7 @@ use crate::report::plot::{Bound, Color, Curve};
 use crate::report::prose::Cell;
 use crate::report::replay::Body;
 
-/// What somebody may write into a file to break out of a page.
+/// Text of a file that tries to break out of a page.
 const ATTACK: &str = "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\"> & <!-- é";
 
 fn page(text: &str) -> Page {
@@ -47,7 +47,7 @@ fn elements(html: &str) -> Vec<String> {
     html.split('<').skip(1).map(|rest| rest.split(['>', ' ']).next().unwrap_or_default().to_owned()).collect()
 }
 
-/// What stands between the first `from` and the next `to`.
+/// The text between the first `from` and the next `to`.
 fn within<'a>(html: &'a str, from: &str, to: &str) -> &'a str {
     let (_, rest) = html.split_once(from).unwrap_or_else(|| panic!("no {from}"));
     rest.split_once(to).unwrap_or_else(|| panic!("no {to}")).0

@@ -13,7 +13,7 @@ fn peak(at_us: u64) -> (String, Kept, Read) {
     ("peak".to_owned(), Kept::Extremes, Box::new(read))
 }
 
-/// What is recorded of so many ticks of 10 ms.
+/// The record of so many ticks of 10 ms.
 fn recorded(ticks: u64, columns: Vec<(String, Kept, Read)>) -> Track {
     let mut tick = Flight::new(&Scenario::paper().unwrap()).unwrap().tick().unwrap();
     let mut recorder = Recorder::new(ticks, 0.01, columns);

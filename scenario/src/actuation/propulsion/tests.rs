@@ -15,7 +15,7 @@ fn read(keys: &str) -> Result<Rotor, String> {
 }
 
 #[test]
-fn thrusts_stand_in_for_speeds_that_nobody_knows() {
+fn thrusts_stand_in_for_unknown_speeds() {
     let rotor = read("thrust_max = 4.0\nthrust_min = 0.1\ntorque_per_thrust = 0.0244").unwrap();
     assert_eq!((rotor.thrust_min, rotor.thrust_max), (0.1, 4.0));
     assert!((rotor.speed_at(4.0) / super::NOMINAL_SPEED as f32 - 1.0).abs() < 1e-6);

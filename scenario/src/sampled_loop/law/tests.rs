@@ -35,7 +35,7 @@ fn directions(axis: Axis) -> (Vector3<f64>, Vector3<f64>) {
 }
 
 /// Position or angle at tick k and its derivative, about one in size: four oscillations, slow to fast, out of rest and
-/// about zero, since the estimates integrate. `pace` tells one from another.
+/// about zero, since the estimates integrate. `pace` identifies each.
 fn wave(k: usize, period: f64, pace: f64) -> (f64, f64) {
     // The first tick is at rest: a law that has just been reset has none before it to compare with.
     let Some(since) = k.checked_sub(1) else { return (0.0, 0.0) };
@@ -58,7 +58,7 @@ fn motion(axis: Axis, k: usize, period: f64) -> [f64; 4] {
     [reach * p, reach * v, 3e-5 * angle, 3e-5 * rate]
 }
 
-/// What the flown law commands in the motion times `sign`: acceleration or angular acceleration.
+/// The flown law's command in the motion times `sign`: acceleration or angular acceleration.
 fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
     let vehicle = scenario.configuration.vehicle();
     let period = scenario.timing.period();
@@ -71,13 +71,13 @@ fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
         let [p, v, angle, rate] = motion(axis, k, period).map(|value| sign * value);
         let (sin, cos) = (0.5 * angle).sin_cos();
         let vector = about * sin;
-        let told = State {
+        let measured = State {
             position: (along * p).cast(),
             velocity: (along * v).cast(),
             attitude: Quaternion::new(cos as f32, vector.x as f32, vector.y as f32, vector.z as f32),
             angular_velocity: (about * rate).cast(),
         };
-        let (Wrench { thrust, torque }, _) = law.step(&told, &hover).unwrap();
+        let (Wrench { thrust, torque }, _) = law.step(&measured, &hover).unwrap();
         let sent = 1.0 / f64::from(law.thrust_scale());
         if axis == Axis::Vertical {
             f64::from(thrust) * sent / f64::from(vehicle.mass) - f64::from(vehicle.gravity)
@@ -88,7 +88,7 @@ fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
     (0..TICKS).map(tick).collect()
 }
 
-/// What the compensator commands in the motion.
+/// The compensator's command in the motion.
 fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
     let gravity = f64::from(scenario.configuration.vehicle().gravity);
     let period = scenario.timing.period();
