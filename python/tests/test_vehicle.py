@@ -15,7 +15,7 @@ def test_rotorpys_dictionary_becomes_a_vehicle_that_its_own_controller_takes_and
     assert vehicle.missing == []
     scenario = vehicle.scenario()
     check_vehicle(quad_params, scenario)
-    assert sh.certify(scenario).holds
+    assert sh.certify(scenario)
     SaturatedHybridControl(quad_params, scenario)
     Multirotor(quad_params)
     flight = sh.fly(scenario.edited({"initial.euler_deg": [-179.0, 0.0, 100.0], "duration": 15.0}))

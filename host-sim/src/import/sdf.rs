@@ -52,7 +52,7 @@ const NUMBERS: [&str; 6] =
 /// Names the element, of an included file as well.
 pub fn read(sdf: &Node, file: &Path) -> Result<VehicleNumbers, String> {
     let mut model = Model::default();
-    model.add(&model_of(sdf)?, file, 0)?;
+    model.add(&model_of(sdf)?, &Isometry3::identity(), file, 0)?;
     let whole = Part::together(&model.parts);
     let centre = whole.map(|whole| whole.centre).unwrap_or_default();
     model.motors.sort_by(|a, b| a.number.total_cmp(&b.number));
@@ -117,15 +117,17 @@ fn is_motor(node: &Node) -> bool {
 }
 
 impl Model {
-    /// Adds a `<model>` of `file`, in its own frame.
-    fn add(&mut self, model: &Node, file: &Path, depth: usize) -> Result<(), String> {
-        self.add_at(model, &Isometry3::identity(), file, depth)
-    }
-
-    fn add_at(&mut self, model: &Node, stands: &Isometry3<f64>, file: &Path, depth: usize) -> Result<(), String> {
+    /// Adds a `<model>` of `file`, whose frame stands at `stands`. What it includes comes first: its own links may stand
+    /// relative to those.
+    fn add(&mut self, model: &Node, stands: &Isometry3<f64>, file: &Path, depth: usize) -> Result<(), String> {
+        for nested in children(model, "model") {
+            let frame = self.frame(&nested, stands)?;
+            self.add(&nested, &frame, file, depth)?;
+        }
+        children(model, "include").try_for_each(|include| self.include(&include, stands, file, depth))?;
         for link in children(model, "link") {
             let name = link.attribute("name").unwrap_or_default();
-            let frame = stands * pose_of(&link)?;
+            let frame = self.frame(&link, stands)?;
             if self.links.insert(name.to_owned(), frame).is_some() {
                 return Err(format!("{}: there is another link of this name", place(&link)));
             }
@@ -137,16 +139,13 @@ impl Model {
         for plugin in model.children().filter(is_motor) {
             self.motors.push(motor(&plugin)?);
         }
-        for nested in children(model, "model") {
-            self.add_at(&nested, &(stands * pose_of(&nested)?), file, depth)?;
-        }
-        children(model, "include").try_for_each(|include| self.include(&include, stands, file, depth))
+        Ok(())
     }
 
     fn include(&mut self, include: &Node, stands: &Isometry3<f64>, file: &Path, depth: usize) -> Result<(), String> {
         let place = place(include);
         let uri = child(include, "uri").map(|uri| text(&uri).to_owned()).unwrap_or_default();
-        let name = uri.strip_prefix("model://").unwrap_or_default();
+        let name = uri.strip_prefix("model://").unwrap_or(&uri);
         if name.is_empty() || name.contains(['/', '\\']) || name.starts_with('.') {
             return Err(format!("{place}: uri: must be model://NAME, found {uri:?}"));
         }
@@ -163,36 +162,42 @@ impl Model {
         })?;
         let document = document(&text).map_err(of_it)?;
         let model = model_of(&document.root_element()).map_err(of_it)?;
-        let stands = stands * pose_of(include)?;
-        self.add_at(&model, &stands, &included, depth + 1).map_err(of_it)
+        // Where the include does not say where, the model does itself.
+        let says = if child(include, "pose").is_some() { include } else { &model };
+        let frame = self.frame(says, stands).map_err(of_it)?;
+        self.add(&model, &frame, &included, depth + 1).map_err(of_it)
+    }
+
+    /// Where an element with a `<pose>` stands: in the frame at `stands`, or relative to a link that is there already.
+    fn frame(&self, node: &Node, stands: &Isometry3<f64>) -> Result<Isometry3<f64>, String> {
+        let (relative_to, pose) = pose_of(node)?;
+        let Some(link) = relative_to else { return Ok(stands * pose) };
+        self.links.get(link).map(|frame| frame * pose).ok_or_else(|| {
+            format!(
+                "{}: relative_to={link:?}: must be a link before it, or be left out for the model's frame",
+                place(node)
+            )
+        })
     }
 }
 
-/// `<pose>` of an element.
-fn pose_of(node: &Node) -> Result<Isometry3<f64>, String> {
-    let Some(element) = child(node, "pose") else { return Ok(Isometry3::identity()) };
-    if let Some(frame) = element.attribute("relative_to").filter(|frame| !["", "__model__"].contains(frame)) {
-        return Err(format!(
-            "{}: relative_to={frame:?}: must be the model's frame: write the pose in that, without relative_to",
-            place(node)
-        ));
-    }
+/// `<pose>` of an element, and the link that it is relative to if not to its model.
+fn pose_of<'a>(node: &Node<'a, '_>) -> Result<(Option<&'a str>, Isometry3<f64>), String> {
+    let Some(element) = child(node, "pose") else { return Ok((None, Isometry3::identity())) };
+    let relative_to = element.attribute("relative_to").filter(|frame| !["", "__model__"].contains(frame));
     let written = text(&element);
     if written.is_empty() {
-        return Ok(Isometry3::identity());
+        return Ok((relative_to, Isometry3::identity()));
     }
     if element.attribute("rotation_format") == Some("quat_xyzw") {
         let [x, y, z, i, j, k, w] = numbers(&element, "", written)?;
-        let quaternion = Quaternion::new(w, i, j, k);
-        if quaternion.norm() < 1e-3 {
-            return Err(format!("{}: the quaternion must not be zero", place(&element)));
-        }
-        let rotation = UnitQuaternion::from_quaternion(quaternion);
-        return Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation));
+        let rotation = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-6)
+            .ok_or_else(|| format!("{}: the quaternion must not be zero", place(&element)))?;
+        return Ok((relative_to, Isometry3::from_parts(Translation3::new(x, y, z), rotation)));
     }
     let [x, y, z, angles @ ..]: [f64; 6] = numbers(&element, "", written)?;
     let is_degrees = element.attribute("degrees") == Some("true");
-    Ok(pose([x, y, z], if is_degrees { angles.map(f64::to_radians) } else { angles }))
+    Ok((relative_to, pose([x, y, z], if is_degrees { angles.map(f64::to_radians) } else { angles })))
 }
 
 /// What a link weighs, in its own frame.
@@ -215,7 +220,12 @@ fn part(link: &Node) -> Result<Part, String> {
         };
     }
     let own = Part { mass: weight, centre: Vector3::zeros(), inertia: inertia(values) };
-    Ok(own.placed(&pose_of(&inertial)?))
+    match pose_of(&inertial)? {
+        (None, pose) => Ok(own.placed(&pose)),
+        (Some(frame), _) => {
+            Err(format!("{}: relative_to={frame:?}: must be in the link's own frame", place(&inertial)))
+        }
+    }
 }
 
 fn motor(plugin: &Node) -> Result<Motor, String> {

@@ -23,6 +23,7 @@ __all__ = [
     "Loop",
     "Scenario",
     "Tuned",
+    "Vehicle",
     "VehicleRows",
     "campaign",
     "certify",
