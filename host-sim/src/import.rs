@@ -3,7 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`numbers`] | what a source says of a vehicle: numbers, each of which may be missing |
-//! | [`rotorpy`], [`literal`] | RotorPy's dictionaries, and the Python that they are written in |
+//! | [`rotorpy`], [`literal`], [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
 //! | [`urdf`] | URDF of gym-pybullet-drones' kind |
 //! | [`sdf`] | SDF of Gazebo with its motor model |
 //! | [`mujoco`], [`mujoco_frames`] | MuJoCo's XML |
@@ -22,6 +22,7 @@ pub mod rigid;
 pub mod rotorpy;
 pub mod sdf;
 pub mod urdf;
+pub mod value;
 pub mod written;
 pub mod xml;
 

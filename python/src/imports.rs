@@ -2,8 +2,8 @@
 
 use crate::refused::{refused, refused_field};
 use crate::scenarios::{Scenario, change};
-use host_sim::import::literal::Value;
 use host_sim::import::numbers::VehicleNumbers;
+use host_sim::import::value::Value;
 use host_sim::import::written::{Wishes, Written, written};
 use host_sim::import::{self, Format, rotorpy};
 use pyo3::prelude::*;

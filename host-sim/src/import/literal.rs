@@ -3,6 +3,7 @@
 //! over. A crate that reads all of Python would be larger than this program's own readers together, and would still
 //! leave these values to be worked out.
 
+use super::value::Value;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -10,53 +11,6 @@ use std::f64::consts::PI;
 const DEEPEST: usize = 64;
 /// How many values names may stand for, all together: lists of lists by name would grow without end.
 const MOST_REPEATED: usize = 10_000;
-
-/// A value.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// A number; `True` is 1.
-    Number(f64),
-    /// A text.
-    Text(String),
-    /// A list, a tuple or an array.
-    List(Vec<Value>),
-    /// A dictionary with texts as keys, in its order.
-    Dictionary(Vec<(String, Value)>),
-    /// `None`, and whatever else has no number.
-    Other,
-}
-
-impl Value {
-    /// What a dictionary holds at `key`.
-    #[must_use]
-    pub fn get(&self, key: &str) -> Option<&Self> {
-        let Self::Dictionary(entries) = self else { return None };
-        entries.iter().rev().find(|(known, _)| known == key).map(|(_, value)| value)
-    }
-
-    /// How many values it consists of.
-    fn size(&self) -> usize {
-        match self {
-            Self::List(elements) => 1 + elements.iter().map(Self::size).sum::<usize>(),
-            Self::Dictionary(entries) => 1 + entries.iter().map(|(_, value)| value.size()).sum::<usize>(),
-            _ => 1,
-        }
-    }
-
-    /// The same of JSON.
-    #[must_use]
-    pub fn of_json(json: serde_json::Value) -> Self {
-        match json {
-            serde_json::Value::Number(number) => number.as_f64().map_or(Self::Other, Self::Number),
-            serde_json::Value::String(text) => Self::Text(text),
-            serde_json::Value::Array(elements) => Self::List(elements.into_iter().map(Self::of_json).collect()),
-            serde_json::Value::Object(entries) => {
-                Self::Dictionary(entries.into_iter().map(|(key, value)| (key, Self::of_json(value))).collect())
-            }
-            serde_json::Value::Null | serde_json::Value::Bool(_) => Self::Other,
-        }
-    }
-}
 
 /// What a file assigns at its outermost level, in its order: each name with its value, or with what of it cannot be
 /// worked out.
@@ -357,43 +311,4 @@ impl<'a> Reader<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn last(text: &str) -> Result<Value, String> {
-        assignments(text).pop().unwrap().1
-    }
-
-    #[test]
-    fn numbers_lists_and_names_are_worked_out_as_python_does() {
-        for (text, value) in [
-            ("x = 2 * 3 + 4 / 8", 6.5),
-            ("x = -2 ** 2", -4.0),
-            ("x = 2 ** -1", 0.5),
-            ("x = (1 + 2) * 3  # three", 9.0),
-            ("x = 1_0.5e-1", 1.05),
-            ("\"\"\"x = 1\nx = 2\"\"\"\nimport numpy as np\nd = 3.0\nx = d * np.sqrt(4)", 6.0),
-        ] {
-            assert_eq!(last(text), Ok(Value::Number(value)), "{text}");
-        }
-        let list = |numbers: &[f64]| Value::List(numbers.iter().copied().map(Value::Number).collect());
-        assert_eq!(last("d = 2\nx = d*np.array([1, -2,\n  3])"), Ok(list(&[2.0, -4.0, 6.0])));
-        let read = last("x = {'a': 1, # one\n 'b': (1, 2), \"c\": 'text',}").unwrap();
-        assert_eq!(read.get("b"), Some(&list(&[1.0, 2.0])));
-        assert_eq!(read.get("c"), Some(&Value::Text("text".to_owned())));
-    }
-
-    #[test]
-    fn what_would_have_to_be_run_is_refused_by_its_line_and_nothing_overflows() {
-        let refused = last("\nx = {\n 'a': open('f')}").unwrap_err();
-        assert!(refused.starts_with("line 3: \"open\" cannot be worked out"), "{refused}");
-        for text in ["x = {'a' 1}", "x = [1", "x = 'a", "x = {1: 2}", "x = é", "x = [1] + [1, 2]", "x =", "x = 1."] {
-            assert_eq!(last(text).is_ok(), text == "x = 1.", "{text}");
-        }
-        let grown = (0..40).fold("x = [1, 1]\n".to_owned(), |text, _| text + "x = [x, x]\n");
-        assert!(last(&grown).unwrap_err().contains("more than 10000 values"));
-        for sign in ["(", "[", "-", "{'a':", "2**", "np.array("] {
-            assert!(last(&format!("x = {}", sign.repeat(100_000))).unwrap_err().contains("more than 64"), "{sign}");
-        }
-    }
-}
+mod tests;

@@ -3,9 +3,10 @@
 //! Its frames are ours. `Ixy`, `Ixz`, `Iyz` are elements of the matrix. `rotor_directions` is the sign of each rotor's
 //! torque about z: 1 for a rotor that turns clockwise seen from above.
 
-use super::literal::{Value, assignments};
+use super::literal::assignments;
 use super::numbers::{Actuation, RotorNumbers, Thrust, VehicleNumbers};
 use super::rigid::inertia;
+use super::value::Value;
 use controller_core::allocation::Spin;
 use nalgebra::Vector3;
 
