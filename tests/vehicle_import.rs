@@ -101,8 +101,8 @@ fn what_is_read_are_the_numbers_of_the_published_vehicles() {
         let (ours, theirs) = (scenario(name, given), published(file));
         let (vehicle, wanted) = (ours.configuration.vehicle(), theirs.configuration.vehicle());
         assert!((vehicle.mass / wanted.mass - 1.0).abs() < 2e-4, "{name}: {}", vehicle.mass);
-        for axis in 0..3 {
-            near(vehicle.inertia[axis], inertia_of_the_whole[axis] * wanted.inertia[axis], name);
+        for (axis, whole) in inertia_of_the_whole.into_iter().enumerate() {
+            near(vehicle.inertia[axis], whole * wanted.inertia[axis], name);
         }
         let (rotors, wanted) = (ours.configuration.rotors().unwrap(), theirs.configuration.rotors().unwrap());
         assert_eq!(rotors.len(), wanted.len());
@@ -206,6 +206,7 @@ fn malformed_sources_are_refused_by_file_element_and_reason_and_nothing_is_writt
         ("<sdf><model></sdf>".to_owned(), "not XML"),
         ("<!DOCTYPE a [<!ENTITY b \"b\">]><sdf>&b;</sdf>".to_owned(), "document type"),
         ("<sdf/>".to_owned(), "<sdf>: no <model>"),
+        ("<sdf><gz:a/></sdf>".to_owned(), "the prefix gz is not declared: write <sdf xmlns:gz="),
         (changed(&sdf, "<mass>1.0<", "<mass>heavy<"), "line 6: <mass>: must be finite numbers, found \"heavy\""),
         (changed(&sdf, "<mass>1.0<", "<mass>-1<"), "the mass must not be negative, found -1"),
         (changed(&sdf, "<mass>1.0</mass>", ""), "<link name=\"base_link\">: no <inertial> with <mass>"),

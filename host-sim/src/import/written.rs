@@ -179,7 +179,7 @@ fn entries(vehicle: &VehicleNumbers, neglect_products: bool) -> Vec<Entry> {
             format!("products of inertia neglected: xy = {xy}, xz = {xz}, yz = {yz}")
         } else {
             "the whole matrix: its products of inertia must be zero (certify says by which angles the axes are off): \
-             turn the axes, balance the vehicle, or neglect them"
+             turn the axes, balance the vehicle, or neglect them (--neglect-products)"
                 .to_owned()
         };
         entries.iter_mut().filter(|entry| entry.path == "vehicle.inertia").for_each(|e| e.comments.push(note.clone()));

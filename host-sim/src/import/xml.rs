@@ -15,6 +15,11 @@ pub fn document(text: &str) -> Result<Document<'_>, String> {
         roxmltree::Error::DtdDetected => {
             "has a document type (<!DOCTYPE …>), which is refused: remove it, and expand entities of its own".to_owned()
         }
+        roxmltree::Error::UnknownNamespace(prefix, place) => format!(
+            "line {}: the prefix {prefix} is not declared: write <sdf xmlns:{prefix}=\"{prefix}\"> in place of <sdf>, or \
+             likewise in the outermost element",
+            place.row
+        ),
         error => format!("not XML: {error}"),
     })?;
     let too_deep = document.descendants().find(|node| node.ancestors().nth(DEEPEST).is_some());
