@@ -6,7 +6,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | the laws beside it, at half a turn | [`half_turn`] |
-//! | a vehicle's numbers from a flight and a bench | [`identify`] |
+//! | a vehicle's numbers from a flight and a bench; from other programs' files | [`identify`]; [`vehicle_import`] |
 //! | the estimated state | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
@@ -62,5 +62,6 @@ mod steady_circle;
 mod support;
 mod touchdown;
 mod tuned;
+mod vehicle_import;
 mod vehicles;
 mod vibration;

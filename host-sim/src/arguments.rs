@@ -4,6 +4,7 @@ mod campaign;
 mod compare;
 mod identify;
 mod sessions;
+mod vehicle;
 
 use crate::terminal::WIDTH_MAX;
 pub use campaign::{CampaignArguments, MergeArguments};
@@ -16,6 +17,8 @@ pub use identify::IdentifyArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
 use std::path::PathBuf;
+use vehicle::VEHICLE_HELP;
+pub use vehicle::VehicleArguments;
 
 /// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
 #[derive(Parser)]
@@ -35,6 +38,7 @@ Examples:
   host-sim tune mine.toml --out tuned.toml   search for gains that certify and fly well
   host-sim identify log.csv --scenario mine.toml --bench bench.toml --out found.toml
                                              mass, inertia, lag, centre of mass and drag, from a log
+  host-sim vehicle cf2x.urdf --out cf2x.toml a vehicle from a URDF, SDF, MuJoCo, RotorPy or PX4 file
   host-sim campaign mine.toml --flights 1000 a thousand random throws, in wind and noise
   host-sim compare vehicles/hummingbird.toml our law beside others, in the same flights
   host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
@@ -110,6 +114,9 @@ pub enum Command {
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
     #[command(after_help = IDENTIFY_HELP)]
     Identify(IdentifyArguments),
+    /// Read a vehicle's numbers from another program's file; write a vehicle file, with what is missing marked.
+    #[command(after_help = VEHICLE_HELP)]
+    Vehicle(VehicleArguments),
     /// Fly a scenario thousands of times in circumstances drawn at random; the same to the bit however it is split.
     #[command(after_help = campaign::HELP)]
     Campaign(CampaignArguments),

@@ -18,6 +18,7 @@
 //! | [`flown`], [`claims`] | a flight's extremes; its claims and verdicts |
 //! | [`log`], [`recording`], [`plots`] | log.csv, flight.mcap and the figures |
 //! | [`identify`] | a vehicle's numbers from the log of a flight and from a bench |
+//! | [`import`] | a vehicle's numbers from files of other programs |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |
 //! | [`fly`], [`law`], [`certify`], [`tune`], [`compare`], [`hil`], [`sitl`] | the commands |
 
@@ -46,6 +47,7 @@ pub mod fly;
 pub mod ground;
 pub mod hil;
 pub mod identify;
+pub mod import;
 pub mod instruments;
 pub mod interrupt;
 pub mod law;

@@ -6,11 +6,13 @@ mod terminal;
 
 use arguments::{
     Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, MergeArguments, SitlArguments,
+    VehicleArguments,
 };
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
-use host_sim::campaign::{self, CampaignError, written};
+use host_sim::campaign::written::above;
+use host_sim::campaign::{self, CampaignError};
 use host_sim::certify::{certify, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
@@ -19,6 +21,8 @@ use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
 use host_sim::hil::{self, Clients, End, HilError};
 use host_sim::identify::command::{self, Refused, Task};
+use host_sim::import;
+use host_sim::import::written::written;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
 use host_sim::sitl::{self, SitlError};
@@ -43,6 +47,7 @@ fn main() -> ExitCode {
             Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
+            Some(Command::Vehicle(arguments)) => run_vehicle(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),
             Some(Command::Merge(arguments)) => run_merge(&arguments),
             Some(Command::Compare(arguments)) => run_compare(&arguments),
@@ -133,7 +138,7 @@ fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {
         let mut thrown = circumstances(scenario, &scenario.campaign.ranges, orders.seed, number);
         thrown.name = format!("{name}-{number}");
         permit(&thrown, &format!("{}: ", source.file()), "campaign.duration", arguments.large_log)?;
-        let text = written::above(source.text(), &thrown, orders.seed, number);
+        let text = above(source.text(), &thrown, orders.seed, number);
         return fly_into(&thrown, &text, &law, &arguments.directory(&thrown.name), false);
     }
     let (directory, interrupt) = (arguments.directory(&name), watch()?);
@@ -240,6 +245,31 @@ fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
         }
         Err(Refused::Input(what)) => Err(what),
     }
+}
+
+fn run_vehicle(arguments: &VehicleArguments) -> Result<ExitCode, String> {
+    let (source, out) = (arguments.source.display(), arguments.out.display());
+    let name = arguments.name()?;
+    if same_file(&arguments.source, &arguments.out) {
+        return Err(format!("{out}: --out must be another file than the source"));
+    }
+    let text = text_of(Some(&arguments.source))?;
+    let vehicle = import::read(&text, &arguments.source, arguments.format());
+    let vehicle = vehicle.map_err(|what| format!("{source}: {what}"))?;
+    let from = arguments.source.file_name().unwrap_or_default().to_string_lossy();
+    let file = written(&vehicle, &name, &from, &arguments.wishes()).map_err(|what| format!("--with {what}"))?;
+    WholeFile::write(&arguments.out, &file.text).map_err(|error| format!("{out}: cannot be written: {error}"))?;
+    let refused = Scenario::parse(&file.text, &out.to_string()).err().map(|error| error.to_string());
+    let next = match &refused {
+        None => format!("next: host-sim certify {out}"),
+        Some(_) if !file.missing.is_empty() => format!(
+            "missing: {}; the file says how to measure each, --with gives one: NOT to be used before",
+            file.missing.join(", ")
+        ),
+        Some(why) => format!("NOT to be used as it is: {why}"),
+    };
+    print_text(&format!("{source}: {}; written to {out}\n{next}\n", vehicle.source))?;
+    Ok(status(refused.is_none(), None))
 }
 
 fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {

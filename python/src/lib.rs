@@ -3,6 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`scenarios`] | scenarios from files, text and the built-in ones; edited copies; their references |
+//! | [`imports`] | vehicles from the files and dictionaries of other programs |
 //! | [`laws`] | the control law, one vehicle or rows of them |
 //! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
@@ -22,6 +23,7 @@ mod certificates;
 mod cores;
 mod flights;
 mod governors;
+mod imports;
 mod laws;
 mod refused;
 mod rows;
@@ -45,6 +47,8 @@ mod _core {
     use super::flights::{Claim, Flight, fly};
     #[pymodule_export]
     use super::governors::Governor;
+    #[pymodule_export]
+    use super::imports::Vehicle;
     #[pymodule_export]
     use super::laws::{Law, LawRows};
     #[pymodule_export]

@@ -212,7 +212,10 @@ impl Scenario {
 const GREATEST_TIME: f64 = 9e15;
 
 /// Sets what stands at a dotted path, or with `None` takes it away; sections that are missing come into being.
-fn change(document: &mut DocumentMut, path: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+///
+/// # Errors
+/// Names the path, and what of its value no scenario can hold.
+pub fn change(document: &mut DocumentMut, path: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let mut sections: Vec<&str> = path.split('.').collect();
     let key = sections.pop().filter(|_| path.split('.').all(|part| !part.is_empty()));
     let key =

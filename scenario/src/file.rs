@@ -105,6 +105,7 @@ impl Scenario {
 
     fn read(root: &Section) -> Result<Self, FieldError> {
         root.allow(&[MODEL_SECTIONS.as_slice(), reality::SECTIONS.as_slice()].concat())?;
+        root.check_measured()?;
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
         let reference = ReferenceKind::read(root)?;

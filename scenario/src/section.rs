@@ -12,6 +12,9 @@ use toml::{Table, Value};
 /// lengths.
 const LONGEST_KEY: usize = 200;
 
+/// What stands in place of a number that is not known yet: `host-sim vehicle` writes it.
+pub const MISSING: &str = "missing";
+
 /// A field that was refused, and why; `problem` also says what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldError {
@@ -112,6 +115,26 @@ impl<'a> Section<'a> {
         let (Some(first), rest) = (missing.next(), missing.copied().collect::<Vec<_>>()) else { return Ok(()) };
         let others = if rest.is_empty() { String::new() } else { format!(", as are {}", rest.join(", ")) };
         Err(FieldError::new(self.path_of(first), format!("missing{others}")))
+    }
+
+    /// Refuses sections with numbers that are not known yet, all of them in one line.
+    ///
+    /// # Errors
+    /// Names the keys that hold [`MISSING`].
+    pub fn check_measured(&self) -> Result<(), FieldError> {
+        let sections = self.table.iter().filter_map(|(name, section)| Some((name, section.as_table()?)));
+        let marked = sections.flat_map(|(name, section)| {
+            let keys = section.iter().filter(|(_, value)| value.as_str() == Some(MISSING));
+            keys.map(move |(key, _)| format!("{name}.{key}"))
+        });
+        let mut marked = marked.map(|path| path.escape_debug().to_string());
+        let (Some(first), others) = (marked.next(), marked.collect::<Vec<_>>()) else { return Ok(()) };
+        let others = if others.is_empty() { String::new() } else { format!(", as are {}", others.join(", ")) };
+        let problem = format!(
+            "marked \"{MISSING}\"{others}: measure it and write the number, as the file's comments and \
+             docs/identify.md say"
+        );
+        Err(FieldError::new(first, problem))
     }
 
     /// Whether `key` is there.

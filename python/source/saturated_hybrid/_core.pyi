@@ -23,6 +23,7 @@ __all__ = [
     "Loop",
     "Scenario",
     "Tuned",
+    "Vehicle",
     "VehicleRows",
     "campaign",
     "certify",
@@ -490,6 +491,42 @@ def tune(
     Raises:
         RuntimeError: no gains met the requirements; says in what the closest fail.
     """
+
+@final
+class Vehicle:
+    """A vehicle's numbers from another program, as a vehicle file; what the source has not is marked in it, never guessed.
+
+    docs/import.md has the formats.
+    """
+
+    @staticmethod
+    def from_rotorpy(quad_params: dict[str, Any], name: str = "vehicle", neglect_products: bool = False) -> Vehicle:
+        """The vehicle of RotorPy's dictionary, e.g. `rotorpy.vehicles.crazyflie_params.quad_params`.
+
+        `ValueError` names the key and the reason. Products of inertia are written as they are, which no scenario takes,
+        unless they are to be neglected.
+        """
+    @staticmethod
+    def read(path: str | PathLike[str], name: str | None = None, format: str | None = None, neglect_products: bool = False) -> Vehicle:
+        """The vehicle of a file: RotorPy's (Python or JSON), URDF, SDF, MuJoCo's XML, PX4's parameters.
+
+        `format` is "rotorpy", "urdf", "sdf", "mujoco" or "px4", left out what the file looks like; `name` left out the
+        file's. `ValueError` names the file, the element and the reason.
+        """
+    def scenario(self, changes: Mapping[str, Any] | None = None) -> Scenario:
+        """The vehicle as a scenario, with numbers of your own by their dotted paths: `{"rotors.lag": 0.03}`.
+
+        `ValueError` names the numbers that are still missing.
+        """
+    @property
+    def name(self) -> str:
+        """Names the vehicle."""
+    @property
+    def text(self) -> str:
+        """The vehicle file, TOML: `Scenario.parse` reads it if nothing is missing."""
+    @property
+    def missing(self) -> list[str]:
+        """Dotted paths of the numbers that the source has not."""
 
 @final
 class VehicleRows:

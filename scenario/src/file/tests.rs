@@ -187,3 +187,12 @@ fn a_delay_that_the_extended_law_has_no_memory_for_is_refused_by_name() {
     let without = crate::STUDY.replace("[sampling]", "[sensors]").replace(STUDY_DELAY, "delay = 0.040 ");
     assert!(Scenario::parse(&without, "f").err().unwrap().what.starts_with("sensors.delay: "));
 }
+
+#[test]
+fn numbers_marked_missing_are_refused_by_their_keys_all_in_one_line_and_a_name_may_be_that_word() {
+    let file = EXTENDED.replace("mass = 0.500 ", "mass = \"missing\"").replace("lag = 0.005 ", "lag = \"missing\"");
+    let refused = Scenario::parse(&file, "f").err().unwrap().to_string();
+    assert!(refused.starts_with("f: rotors.lag: marked \"missing\", as are vehicle.mass: measure it"), "{refused}");
+    let named = EXTENDED.replace("name = \"hummingbird\"", "name = \"missing\"");
+    assert_eq!(Scenario::parse(&named, "f").unwrap().name, "missing");
+}
