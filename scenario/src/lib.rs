@@ -44,6 +44,7 @@ pub mod section;
 pub mod stability;
 pub mod text;
 pub mod timing;
+pub mod trajectory;
 pub mod vehicle;
 pub mod verdict;
 

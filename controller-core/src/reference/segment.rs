@@ -104,7 +104,8 @@ impl Segment {
     }
 
     /// The reference at `time_us`, from the segment's start to its end.
-    pub(super) fn at(&self, time_us: u64) -> Reference {
+    #[must_use]
+    pub fn at(&self, time_us: u64) -> Reference {
         let duration = self.end_us.saturating_sub(self.start_us) as f32;
         let done = time_us.saturating_sub(self.start_us) as f32 / duration;
         let rest = self.end_us.saturating_sub(time_us) as f32 / duration;
