@@ -2,7 +2,7 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
-use crate::path::{self, Swing};
+use crate::path;
 use crate::reality::sensors::{self, VelocitySource};
 use crate::reality::{self, Reality, estimator};
 use crate::reference::ReferenceKind;
@@ -153,12 +153,6 @@ impl Scenario {
             trajectory,
             campaign,
         })
-    }
-
-    /// How far its path leaves the box of its waypoints, if it has any and does.
-    #[must_use]
-    pub fn swing(&self) -> Option<Swing> {
-        Swing::of(&self.reference, &*self.trajectory)
     }
 
     /// From a tick to the moment its wrench acts, s.

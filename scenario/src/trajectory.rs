@@ -18,7 +18,7 @@
 //!
 //! | module | |
 //! |---|---|
-//! | [`table`], `pieces` | rows from a file |
+//! | `row`, `table`, `pieces` | rows from a file |
 //! | `fit`, `band`, `lead` | a smooth path near rows, which begins and ends at rest |
 //! | `pace` | times for points that have none |
 //! | [`mod@stretch`] | by how much times must grow for a path's derivatives to fit |
@@ -28,8 +28,9 @@ mod fit;
 mod lead;
 mod pace;
 mod pieces;
+mod row;
 pub mod stretch;
-pub mod table;
+mod table;
 
 use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
@@ -37,8 +38,8 @@ use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
 use controller_core::reference::{ReferenceBounds, inside};
+use row::Row;
 use std::path::Path;
-use table::Row;
 
 /// How near a path is to the rows, and how far from straight legs, if the file does not say, m.
 const NEAR: f64 = 0.02;

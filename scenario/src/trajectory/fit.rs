@@ -13,8 +13,8 @@
 //! left out as far as that distance allows, and the path asks for little jerk and snap.
 
 use super::band::Band;
+use super::row::Row;
 use super::stretch::path;
-use super::table::Row;
 use controller_core::reference::Trajectory;
 use controller_core::reference::knot::{Derivatives, Knot, REST};
 use nalgebra::{Vector3, Vector4};

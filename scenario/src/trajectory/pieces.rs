@@ -5,7 +5,7 @@
 //! need not meet in jerk and snap, so they are read as what they say of position, velocity and acceleration at many
 //! instants, and [`super::fit`] finds the smooth path.
 
-use super::table::Row;
+use super::row::Row;
 use nalgebra::Vector3;
 
 /// Coefficients of one axis.

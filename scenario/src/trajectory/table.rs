@@ -12,23 +12,9 @@
 //! begin with `#` are comments.
 
 use super::pieces;
+use super::row::Row;
 use crate::section::FieldError;
 use nalgebra::Vector3;
-
-/// A row: where the vehicle is to be at a time, and how it moves there if the file says so.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
-    /// s; none in a file without times.
-    pub time: Option<f64>,
-    /// m, world.
-    pub position: Vector3<f64>,
-    /// rad.
-    pub heading: f64,
-    /// m/s.
-    pub velocity: Option<Vector3<f64>>,
-    /// m/s^2.
-    pub acceleration: Option<Vector3<f64>>,
-}
 
 /// The columns that may be there, with other names for them.
 const COLUMNS: [(&str, &[&str]); 12] = [
