@@ -5,17 +5,20 @@
 //!
 //! - [`hover`]: a point and a heading, at rest;
 //! - [`harmonic`]: a cosine on each axis, and a heading that turns and swings (the paper's experiment);
-//! - [`waypoints`]: polynomials through given points, smooth to snap.
+//! - [`waypoints`]: polynomials through given points, smooth to snap;
+//! - [`path`]: the same of any length, through knots that say how they are passed.
 //!
 //! Time is integer microseconds; see [`phase`] for why a month of uptime costs a periodic reference no precision.
 
 mod bernstein;
 pub mod harmonic;
 pub mod hover;
-mod inside;
+pub mod inside;
+pub mod knot;
+pub mod path;
 pub mod phase;
-mod segment;
-mod spline;
+pub mod segment;
+pub mod spline;
 pub mod waypoints;
 
 use crate::constants::{Range, constants};

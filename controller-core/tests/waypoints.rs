@@ -355,7 +355,7 @@ fn malformed_points_are_refused_by_name() {
     assert_eq!(with(9, |p| p.heading = f64::NAN), ("reference.points[9].heading_deg", Reason::NotFinite));
     // A metre in ten milliseconds.
     let fast = refusal(&[good(0), waypoint(0.01, [1.0, 0.0, 0.0], 0.0)]);
-    assert_eq!(fast, ("reference.points (jerk)", Reason::NotBelow(1e6)));
+    assert_eq!(fast, ("reference (jerk)", Reason::NotBelow(1e6)));
 }
 
 #[test]

@@ -17,6 +17,7 @@ use controller_core::certificate::paper::PaperCertificate;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
+use scenario::remarks::remarks;
 use scenario::stability::{LoopMargin, Shortfall};
 use scenario::verdict::Verdict;
 
@@ -128,7 +129,8 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let tightest = certificate.tightest().map_or(String::new(), |tightest| {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
-    let swing = scenario.swing().map_or(String::new(), |swing| format!("reference: {swing}\n"));
+    let remarks = remarks(scenario, certificate.holds());
+    let remarks: String = remarks.iter().map(|remark| format!("reference: {remark}\n")).collect();
     let projection = scenario
         .configuration
         .thrust_floor()
@@ -141,7 +143,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     };
     format!(
         "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{forms}\n\
-         {tightest}{projection}{swing}",
+         {tightest}{projection}{remarks}",
         scenario.name,
     )
 }

@@ -17,6 +17,7 @@ use crate::report::recorder::Recorder as PageRecorder;
 use crate::whole_file::WholeFile;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
+use scenario::remarks::remarks;
 use scenario::verdict::Verdict;
 use std::fmt;
 use std::io::{self, Write};
@@ -246,14 +247,15 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> FlyError {
 
 /// Whether the configuration is one that may fly for real, in a sentence.
 fn certification(scenario: &Scenario, verdict: &Verdict) -> String {
-    let swing = scenario.swing().map_or(String::new(), |swing| format!("; {swing}"));
+    let remarks = remarks(scenario, verdict.certificate().holds());
+    let remarks: String = remarks.iter().map(|remark| format!("; reference: {remark}")).collect();
     let sentence = match verdict.refusal() {
         None => "certified".to_owned(),
         Some(refusal) => {
             format!("not certified: {refusal}; what was flown here proves nothing about other flights")
         }
     };
-    sentence + &swing
+    sentence + &remarks
 }
 
 fn report(scenario: &Scenario, outcome: &Outcome) -> String {

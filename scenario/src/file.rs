@@ -2,19 +2,20 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
-use crate::path::{self, Swing};
+use crate::path;
 use crate::reality::sensors::{self, VelocitySource};
 use crate::reality::{self, Reality, estimator};
 use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
+use crate::trajectory::Directory;
 use crate::{actuation, initial, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;
-use controller_core::reference::Trajectory;
+use controller_core::reference::{ReferenceBounds, Trajectory};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,6 +44,9 @@ const MODEL_SECTIONS: [&str; 14] = [
     "reference_bounds",
     "campaign",
 ];
+
+/// How long a flight along points goes on after the last of them, if the file does not say, s.
+const AFTERWARDS: f64 = 5.0;
 
 /// A flight that can be flown.
 #[derive(Clone)]
@@ -100,17 +104,15 @@ impl Scenario {
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
         let refuse = |what: String| ScenarioError { file: file.to_owned(), what };
         let table: Table = text.parse().map_err(|error| refuse(syntax(text, &error)))?;
-        Self::read(&Section::root(&table)).map_err(|error| refuse(error.to_string()))
+        let directory = Path::new(file).parent();
+        Self::read(&Section::root(&table), directory).map_err(|error| refuse(error.to_string()))
     }
 
-    fn read(root: &Section) -> Result<Self, FieldError> {
+    fn read(root: &Section, directory: Directory) -> Result<Self, FieldError> {
         root.allow(&[MODEL_SECTIONS.as_slice(), reality::SECTIONS.as_slice()].concat())?;
         root.check_measured()?;
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
-        let reference = ReferenceKind::read(root)?;
-        let tolerance = ReferenceKind::tolerance(root)?;
-        let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let delay_steps = actuation::read_delay(root, &timing)?;
         let rotor_lag = actuation::read_lag(root)?;
         let delay = delay_steps as f64 * timing.step();
@@ -122,8 +124,18 @@ impl Scenario {
         let vehicle = vehicle::read_vehicle(root)?;
         let rotors = actuation::read_rotors(root, &vehicle)?;
         let limits = vehicle::read_limits(root, &vehicle, rotors.as_ref())?;
-        let model = (vehicle, limits, rotors);
-        let configuration = vehicle::read_configuration(root, model, &trajectory.bounds(), actuators, timing.period())?;
+        let configuration = |own: &ReferenceBounds| {
+            vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
+        };
+        let allow = || configuration(&ReferenceBounds::REST).map(|configuration| *configuration.bounds());
+        let reference = ReferenceKind::read(root, directory, &allow)?;
+        let tolerance = ReferenceKind::tolerance(root)?;
+        let trajectory = reference.build().map_err(|error| root.refused(&error))?;
+        let timing = match &reference {
+            ReferenceKind::Route(route) if !root.has("duration") => timing.lasting(route.duration() + AFTERWARDS),
+            _ => timing,
+        };
+        let configuration = configuration(&trajectory.bounds())?;
         let start = trajectory.at(0).position.map(f64::from);
         let initial = initial::read_initial(root, start, timing.step())?;
         let reality = Reality::read(root, &configuration, (sensors, estimator), &initial)?;
@@ -142,12 +154,6 @@ impl Scenario {
             trajectory,
             campaign,
         })
-    }
-
-    /// How far its path leaves the box of its waypoints, if it has any and does.
-    #[must_use]
-    pub fn swing(&self) -> Option<Swing> {
-        Swing::of(&self.reference, &*self.trajectory)
     }
 
     /// From a tick to the moment its wrench acts, s.

@@ -1,8 +1,9 @@
 //! Where a reference goes between the points that a file names: out of their box, or below the ground.
 
 use crate::reality::ground::Ground;
-use crate::reference::{Path, ReferenceKind};
+use crate::reference::ReferenceKind;
 use crate::section::FieldError;
+use crate::trajectory::{Route, Way};
 use controller_core::reference::Trajectory;
 use controller_core::reference::waypoints::Waypoint;
 use nalgebra::Vector3;
@@ -37,7 +38,7 @@ impl Swing {
     /// there are none.
     #[must_use]
     pub fn of(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
-        let ReferenceKind::Waypoints { points, .. } = reference else { return None };
+        let ReferenceKind::Route(Route { points, way: Way::Smooth, .. }) = reference else { return None };
         let positions = || points.iter().map(|point| Vector3::from(point.position));
         let (least, greatest) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
         let swings = places(points, trajectory).map(|at| {
@@ -81,11 +82,12 @@ pub fn check_ground(
             let time = if frequency == 0.0 { 0.0 } else { turned / frequency.abs() };
             ("reference.center", at(time), "raise it")
         }
-        ReferenceKind::Waypoints { points, path } => {
+        ReferenceKind::Route(Route { points, way, .. }) => {
             let lowest = places(points, trajectory).min_by(|a, b| a.position.z.total_cmp(&b.position.z));
-            let remedy = match path {
-                Path::Smooth => "take path = \"inside\", or raise the points",
-                Path::Inside => "raise the points",
+            let remedy = match way {
+                Way::Smooth => "take path = \"inside\", or raise the points",
+                Way::Paced { .. } => "narrow the corridor, or raise the points",
+                Way::Inside | Way::Near { .. } => "raise the points",
             };
             ("reference.points", lowest.unwrap_or_else(|| at(0.0)), remedy)
         }
@@ -93,7 +95,7 @@ pub fn check_ground(
     let above_zero = |points: &[Waypoint]| points.iter().all(|point| point.position[2] >= 0.0);
     let height = match (ground, reference) {
         (Some(ground), _) => ground.height,
-        (None, ReferenceKind::Waypoints { points, .. }) if above_zero(points) => 0.0,
+        (None, ReferenceKind::Route(Route { points, .. })) if above_zero(points) => 0.0,
         _ => return Ok(()),
     };
     if lowest.position.z >= height - LEAST {

@@ -3,12 +3,12 @@
 
 use crate::initial::read_position;
 use crate::section::{FieldError, Section};
-use controller_core::error::ParameterError;
+use crate::trajectory::{self, Directory, Route, stretch};
+use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
-use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
-use controller_core::reference::waypoints::{Waypoint, Waypoints};
+use controller_core::reference::{ReferenceBounds, Trajectory};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -30,30 +30,21 @@ pub enum ReferenceKind {
     },
     /// A cosine on each axis, a heading that turns and swings.
     Harmonic(HarmonicParameters),
-    /// Points with times, and a path through them.
-    Waypoints {
-        /// The points.
-        points: Vec<Waypoint>,
-        /// Which way between them.
-        path: Path,
-    },
-}
-
-/// The way between waypoints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Path {
-    /// The smoothest.
-    Smooth,
-    /// Inside the box of each leg's two points.
-    Inside,
+    /// A path through or near points.
+    Route(Route),
 }
 
 impl ReferenceKind {
-    /// Reads `[reference]`; the default if it is missing.
+    /// Reads `[reference]`; the default if it is missing. Files that it names lie in `directory`; points that come
+    /// with a speed only are passed inside the bounds that the vehicle is to `allow`.
     ///
     /// # Errors
     /// Names the field that is missing, unknown, or no number.
-    pub fn read(root: &Section) -> Result<Self, FieldError> {
+    pub fn read(
+        root: &Section,
+        directory: Directory,
+        allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
+    ) -> Result<Self, FieldError> {
         let Some(section) = root.optional_section("reference")? else {
             let position = read_position(root)?.unwrap_or(DEFAULT_POSITION);
             return Ok(Self::Hover { position, heading: 0.0 });
@@ -61,9 +52,10 @@ impl ReferenceKind {
         match section.text("kind")? {
             "hover" => read_hover(&section),
             "harmonic" => read_harmonic(&section).map(Self::Harmonic),
-            "waypoints" => read_waypoints(&section),
+            "waypoints" => trajectory::read_waypoints(&section, directory, allow).map(Self::Route),
+            "trajectory" => trajectory::read_trajectory(&section, directory, allow).map(Self::Route),
             other => {
-                let allowed = "must be \"hover\", \"harmonic\" or \"waypoints\"";
+                let allowed = "must be \"hover\", \"harmonic\", \"waypoints\" or \"trajectory\"";
                 Err(FieldError::new(section.path_of("kind"), format!("{allowed}, found {other:?}")))
             }
         }
@@ -93,8 +85,10 @@ impl ReferenceKind {
                 Arc::new(Hover::new(position.map(|value| value as f32), Heading::new(direction, 0.0, 0.0)?)?)
             }
             Self::Harmonic(parameters) => Arc::new(Harmonic::new(*parameters)?),
-            Self::Waypoints { points, path: Path::Smooth } => Arc::new(Waypoints::new(points)?),
-            Self::Waypoints { points, path: Path::Inside } => Arc::new(Waypoints::inside(points)?),
+            Self::Route(route) => match stretch::path(&route.knots)? {
+                Some(path) => Arc::new(path),
+                None => return Err(ParameterError { field: "reference.points", reason: Reason::TooFew(1) }),
+            },
         })
     }
 }
@@ -124,27 +118,4 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
         phase: section.vector_or("phase", Vector3::zeros())?.into(),
         heading,
     })
-}
-
-/// `heading_deg` is zero and the path the smoothest where they are left out.
-fn read_waypoints(section: &Section) -> Result<ReferenceKind, FieldError> {
-    section.allow(&["kind", "tolerance", "points", "path"])?;
-    let path = match section.has("path").then(|| section.text("path")).transpose()? {
-        None | Some("smooth") => Path::Smooth,
-        Some("inside") => Path::Inside,
-        Some(other) => {
-            let problem = format!("must be \"smooth\" or \"inside\", found {other:?}");
-            return Err(FieldError::new(section.path_of("path"), problem));
-        }
-    };
-    let read = |point: &Section| {
-        point.allow(&["t", "position", "heading_deg"])?;
-        Ok(Waypoint {
-            time: point.number("t")?,
-            position: point.vector("position")?.into(),
-            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
-        })
-    };
-    let points = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
-    Ok(ReferenceKind::Waypoints { points, path })
 }

@@ -54,6 +54,12 @@ impl Timing {
         Ok(Self { ticks, period_us, steps_per_tick })
     }
 
+    /// The same for so many seconds, as far as flights may last.
+    #[must_use]
+    pub fn lasting(self, duration: f64) -> Self {
+        Self { ticks: (duration.min(GREATEST_DURATION) / self.period()).ceil() as u64, ..self }
+    }
+
     /// The control period, s.
     #[must_use]
     pub fn period(&self) -> f64 {

@@ -10,17 +10,18 @@
 //! which never turn back, because 4 (v + w) T / 9 <= 8 D / 9; nor does the curve, whose velocity has their differences
 //! as control points. Through points in a line, evenly spaced in time, the speed is constant.
 
-use super::spline::{Derivatives, REST, SEGMENTS, Span};
+use super::knot::{Knot, REST, runs};
 
-/// The derivatives at the points between `spans`: one entry fewer than spans.
-pub(super) fn solve(spans: &[Span]) -> heapless::Vec<Derivatives, SEGMENTS> {
-    let mut derivatives = heapless::Vec::new();
-    for (span, next) in spans.iter().zip(spans.iter().skip(1)) {
-        let [before, after] = [span, next].map(|span| span.difference / span.duration);
-        let velocity = before.zip_map(&after, |v, w| if v * w > 0.0 { v.signum() * v.abs().min(w.abs()) } else { 0.0 });
-        let [_, acceleration, jerk, snap] = REST;
-        // There is room: no more spans than the storage they come in.
-        let _ = derivatives.push([velocity, acceleration, jerk, snap]);
-    }
-    derivatives
+/// Finds how to pass each of the `knots`, whose times increase.
+pub fn solve(knots: &mut [Knot]) {
+    runs(knots, |run| {
+        for i in 1..run.len() {
+            let Some([before, knot, after]) = run.get_mut(i - 1..i + 2) else { return };
+            let arriving = before.difference_to(knot) / before.duration_to(knot);
+            let leaving = knot.difference_to(after) / knot.duration_to(after);
+            let slower = |v: f64, w: f64| if v * w > 0.0 { v.signum() * v.abs().min(w.abs()) } else { 0.0 };
+            let [_, acceleration, jerk, snap] = REST;
+            knot.derivatives = [arriving.zip_map(&leaving, slower), acceleration, jerk, snap];
+        }
+    });
 }

@@ -10,23 +10,14 @@
 
 use super::Reference;
 use super::bernstein::{DEGREE_ZERO, Supremum, combine, raise};
+use super::knot::{Anchor, Derivatives, Knot};
 use super::phase;
-use super::spline::Derivatives;
 use crate::heading::Heading;
 use nalgebra::{Vector2, Vector3, Vector4};
 
-/// A place in space and on the circle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Anchor {
-    /// m, world.
-    pub position: Vector3<f32>,
-    /// Heading in 2^-64 turns.
-    pub phase: u64,
-}
-
 /// A polynomial piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Segment {
+pub struct Segment {
     start_us: u64,
     end_us: u64,
     origin: Anchor,
@@ -57,15 +48,12 @@ fn derivative<const N: usize, const M: usize>(
 }
 
 impl Segment {
-    /// From `origin` at `start_us` to `difference` away from it at `end_us`, with the derivatives given at either end.
-    pub(super) fn new(
-        (start_us, end_us): (u64, u64),
-        origin: Anchor,
-        difference: Vector4<f64>,
-        start: &Derivatives,
-        end: &Derivatives,
-    ) -> Self {
-        let t = end_us.saturating_sub(start_us) as f64 * 1e-6;
+    /// From one knot to the next, passing both as they say.
+    #[must_use]
+    pub fn between(knot: &Knot, next: &Knot) -> Self {
+        let (start_us, end_us, origin) = (knot.time_us, next.time_us, knot.anchor());
+        let (difference, start, end) = (knot.difference_to(next), &knot.derivatives, &next.derivatives);
+        let t = knot.duration_to(next);
         // Forward differences of the first control points, backward differences of the last: p^(k) T^k (9 - k)! / 9!.
         let scaled = |derivatives: &Derivatives| {
             let [v, a, j, s] = derivatives;
@@ -116,7 +104,8 @@ impl Segment {
     }
 
     /// The reference at `time_us`, from the segment's start to its end.
-    pub(super) fn at(&self, time_us: u64) -> Reference {
+    #[must_use]
+    pub fn at(&self, time_us: u64) -> Reference {
         let duration = self.end_us.saturating_sub(self.start_us) as f32;
         let done = time_us.saturating_sub(self.start_us) as f32 / duration;
         let rest = self.end_us.saturating_sub(time_us) as f32 / duration;

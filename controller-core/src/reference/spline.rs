@@ -18,17 +18,9 @@
 //!
 //! All four axes (x, y, z, heading) share the equations and differ in their right-hand sides.
 
+use super::knot::{Derivatives, Knot, REST, runs};
 use crate::math;
 use nalgebra::Vector4;
-
-/// Largest number of segments.
-pub(super) const SEGMENTS: usize = 15;
-
-/// Velocity, acceleration, jerk and snap (per second to the first to fourth) at a point.
-pub(super) type Derivatives = [Vector4<f64>; 4];
-
-/// At rest.
-pub(super) const REST: Derivatives = [Vector4::new(0.0, 0.0, 0.0, 0.0); 4];
 
 /// P_m^(k)(1) of the shifted Legendre polynomials: one row per k, in it m = 0..4.
 const LEGENDRE: [[f64; 5]; 5] = [
@@ -39,22 +31,6 @@ const LEGENDRE: [[f64; 5]; 5] = [
     [0.0, 0.0, 0.0, 0.0, 1680.0],
 ];
 
-/// A segment as the spline sees it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    /// T, s.
-    pub duration: f64,
-    /// Position (m) and heading (rad) at its end minus those at its start.
-    pub difference: Vector4<f64>,
-}
-
-impl Span {
-    /// Whether it leads from a point to the same point.
-    pub fn waits(&self) -> bool {
-        self.difference == Vector4::zeros()
-    }
-}
-
 /// Four equations carried over from earlier segments, then a segment's five.
 const CARRIED: usize = 4;
 const ROWS: usize = CARRIED + 5;
@@ -64,14 +40,28 @@ type Column = [f64; ROWS];
 const COLUMNS: usize = 12;
 const UNKNOWNS: usize = 8;
 /// What is left of a segment's equations for its start once its end is known: the first rows of its columns.
-type Stage = [Vector4<f64>; COLUMNS];
+#[derive(Debug, Clone, Copy)]
+pub struct Stage([Vector4<f64>; COLUMNS]);
 
-/// The derivatives at the points between `spans`: one entry fewer than spans.
-pub(super) fn solve(spans: &[Span]) -> heapless::Vec<Derivatives, SEGMENTS> {
-    let mut stages: heapless::Vec<Stage, SEGMENTS> = heapless::Vec::new();
+impl Stage {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self([Vector4::new(0.0, 0.0, 0.0, 0.0); COLUMNS]);
+}
+
+/// Finds how to pass each of the `knots`, whose times increase, with room for as many `stages`. Knots without a stage
+/// are passed at rest.
+pub fn solve(knots: &mut [Knot], stages: &mut [Stage]) {
+    runs(knots, |run| solve_run(run, stages));
+}
+
+/// One run from rest to rest.
+fn solve_run(knots: &mut [Knot], stages: &mut [Stage]) {
+    let segments = knots.len().saturating_sub(1);
     let mut carried = [[0.0; CARRIED]; COLUMNS - CARRIED];
-    for (i, span) in spans.iter().enumerate() {
-        let mut columns = equations(span, i > 0, i + 1 < spans.len());
+    // A knot's stage is written while the segment that begins there is looked at.
+    for (i, (pair, stage)) in knots.windows(2).zip(stages.iter_mut()).enumerate() {
+        let [knot, next] = pair else { return };
+        let mut columns = equations(knot, next, i > 0, i + 1 < segments);
         // The carried equations are about this segment's start, and their right-hand sides.
         let (start_and_end, right) = columns.split_at_mut(UNKNOWNS);
         let about = start_and_end.iter_mut().take(CARRIED).chain(right);
@@ -82,27 +72,20 @@ pub(super) fn solve(spans: &[Span]) -> heapless::Vec<Derivatives, SEGMENTS> {
         for (new, column) in carried.iter_mut().zip(columns.iter().skip(CARRIED)) {
             new.iter_mut().zip(column.iter().skip(CARRIED)).for_each(|(to, from)| *to = *from);
         }
-        if i > 0 {
-            let stage = columns.map(|[a, b, c, d, ..]| Vector4::new(a, b, c, d));
-            // There is room: one stage fewer than spans, and no more spans than the storage they come in.
-            let _ = stages.push(stage);
-        }
+        *stage = Stage(columns.map(|[a, b, c, d, ..]| Vector4::new(a, b, c, d)));
     }
-    let mut derivatives = heapless::Vec::new();
     let mut after = REST;
-    for stage in stages.iter().rev() {
+    for (knot, stage) in knots.iter_mut().zip(stages.iter()).take(segments).skip(1).rev() {
         after = substitute(stage, &after);
-        let _ = derivatives.push(after);
+        knot.derivatives = after;
     }
-    derivatives.reverse();
-    derivatives
 }
 
 /// A segment's five equations, in the rows after the carried ones. Ends that are not free are at rest.
-fn equations(span: &Span, free_start: bool, free_end: bool) -> [Column; COLUMNS] {
+fn equations(knot: &Knot, next: &Knot, free_start: bool, free_end: bool) -> [Column; COLUMNS] {
     /// (2 m + 1)^(1/2).
     const NORMS: [f64; 5] = [1.0, 1.732_050_807_568_877_2, 2.236_067_977_499_79, 2.645_751_311_064_590_7, 3.0];
-    let t = span.duration;
+    let (t, differences) = (knot.duration_to(next), knot.difference_to(next));
     let weight = 1.0 / (t * t * t * t * math::sqrt_f64(t));
     let mut columns = [[0.0; ROWS]; COLUMNS];
     let (start, rest) = columns.split_at_mut(4);
@@ -123,7 +106,7 @@ fn equations(span: &Span, free_start: bool, free_end: bool) -> [Column; COLUMNS]
         sign = -sign;
     }
     // k = 4 belongs to the positions, which are known.
-    for (column, difference) in right.iter_mut().zip(&span.difference) {
+    for (column, difference) in right.iter_mut().zip(&differences) {
         if let Some(last) = column.last_mut() {
             *last = -3.0 * 1680.0 * weight * difference;
         }
@@ -180,7 +163,7 @@ fn exchange(column: &mut Column, i: usize, j: usize) {
 /// The derivatives at a segment's start from those at its end.
 fn substitute(stage: &Stage, end: &Derivatives) -> Derivatives {
     let mut start = REST;
-    let (coefficients, right) = stage.split_at(UNKNOWNS);
+    let (coefficients, right) = stage.0.split_at(UNKNOWNS);
     let (own, others) = coefficients.split_at(CARRIED);
     for (axis, right) in right.iter().enumerate() {
         let mut rest = *right;

@@ -1,6 +1,10 @@
 use super::*;
 use crate::Scenario;
 
+fn swing(scenario: &Scenario) -> Option<Swing> {
+    Swing::of(&scenario.reference, &*scenario.trajectory)
+}
+
 /// The paper's vehicle on five gates, one leg much longer than the others: the smoothest path dives.
 fn gates(change: impl Fn(&str) -> String) -> Result<Scenario, String> {
     let points = [(0.0, 0.0, 1.0), (4.0, 4.0, 2.0), (16.0, 5.0, 2.0), (20.0, 0.0, 2.5), (24.0, 0.0, 1.0)]
@@ -17,7 +21,7 @@ fn lifted(text: &str) -> String {
 #[test]
 fn a_path_that_leaves_the_box_of_its_points_says_by_how_much_where_and_when() {
     let scenario = gates(lifted).unwrap();
-    let swing = scenario.swing().expect("the smoothest path swings out");
+    let swing = swing(&scenario).expect("the smoothest path swings out");
     let found = scenario.trajectory.at((swing.at.time * 1e6) as u64).position.map(f64::from);
     assert!((found - swing.at.position).norm() < 1e-3, "{swing:?}");
     let corners = [Vector3::new(0.0, 0.0, 11.0), Vector3::new(5.0, 0.0, 12.5)];
@@ -34,9 +38,9 @@ fn a_path_that_leaves_the_box_of_its_points_says_by_how_much_where_and_when() {
 #[test]
 fn a_path_inside_does_not_swing_out() {
     let inside = |text: &str| text.replace("kind = \"waypoints\"", "kind = \"waypoints\"\npath = \"inside\"");
-    assert_eq!(gates(inside).unwrap().swing(), None);
+    assert_eq!(swing(&gates(inside).unwrap()), None);
     let smooth = |text: &str| lifted(&text.replace("kind = \"waypoints\"", "kind = \"waypoints\"\npath = \"smooth\""));
-    assert_eq!(gates(smooth).unwrap().swing(), gates(lifted).unwrap().swing());
+    assert_eq!(swing(&gates(smooth).unwrap()), swing(&gates(lifted).unwrap()));
     let wrong = |text: &str| text.replace("kind = \"waypoints\"", "kind = \"waypoints\"\npath = \"straight\"");
     let refused = gates(wrong).err().unwrap();
     assert!(refused.contains("reference.path: must be \"smooth\" or \"inside\", found \"straight\""), "{refused}");

@@ -1,14 +1,39 @@
 use super::*;
+use nalgebra::Vector3;
+
+extern crate std;
 
 /// Exact rational solutions of the minimisation (computed with fractions, then rounded): durations, points, and
 /// velocity to snap at each inner point.
 fn check(durations: &[f64], points: &[f64], expected: &[[f64; 4]], tolerance: f64) {
-    let spans: heapless::Vec<Span, SEGMENTS> = durations
-        .iter()
-        .zip(points.windows(2))
-        .map(|(t, p)| Span { duration: *t, difference: Vector4::new(p[1] - p[0], 0.0, -2.0 * (p[1] - p[0]), 1.0) })
+    let times = durations.iter().scan(0.0, |time, t| {
+        *time += t;
+        Some(*time)
+    });
+    let mut knots: std::vec::Vec<Knot> = core::iter::once(0.0)
+        .chain(times)
+        .zip(points)
+        .enumerate()
+        .map(|(i, (time, p))| Knot {
+            // Twice as slowly, so that each time is a whole number of microseconds.
+            time_us: (time * 2e6) as u64,
+            position: Vector3::new(*p, 0.0, -2.0 * p),
+            heading: i as f64,
+            derivatives: REST,
+        })
         .collect();
-    let derivatives = solve(&spans);
+    let mut stages = [Stage::EMPTY; 16];
+    solve(&mut knots, &mut stages);
+    let derivatives: std::vec::Vec<_> = knots[1..knots.len() - 1]
+        .iter()
+        .map(|knot| {
+            [2.0, 4.0, 8.0, 16.0]
+                .into_iter()
+                .zip(knot.derivatives)
+                .map(|(slower, d)| d * slower)
+                .collect::<std::vec::Vec<_>>()
+        })
+        .collect();
     assert_eq!(derivatives.len(), expected.len());
     for order in 0..4 {
         let scale = expected.iter().fold(0.0_f64, |scale, e| scale.max(e[order].abs()));

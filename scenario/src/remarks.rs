@@ -1,0 +1,35 @@
+//! What there is to say of a scenario's reference, whether it flies or not.
+
+use crate::excess::Excess;
+use crate::file::Scenario;
+use crate::path::Swing;
+use crate::reference::ReferenceKind;
+use crate::trajectory::{Route, Way};
+
+/// Of the reference of a scenario: where it swings out, how near it is to the rows of a file,
+/// and where it is too fast.
+#[must_use]
+pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
+    let route = match &scenario.reference {
+        ReferenceKind::Route(route) => remark(route),
+        _ => None,
+    };
+    let swing = Swing::of(&scenario.reference, &*scenario.trajectory).map(|swing| swing.to_string());
+    let excess = if is_certified { None } else { Excess::of(scenario) };
+    route.into_iter().chain(swing).chain(excess.map(|excess| excess.to_string())).collect()
+}
+
+fn remark(route: &Route) -> Option<String> {
+    let (points, duration) = (route.points.len(), route.duration());
+    match route.way {
+        Way::Near { farthest: (distance, time), lead_in } => Some(format!(
+            "{points} rows, each within {:.1} mm (most at {time:.2} s); the first is passed {lead_in:.2} s after the \
+             start, the end is at {duration:.2} s",
+            1e3 * distance
+        )),
+        Way::Paced { corridor } => {
+            Some(format!("{points} points in {duration:.2} s, at most {corridor} m beside the straight legs"))
+        }
+        Way::Smooth | Way::Inside => None,
+    }
+}

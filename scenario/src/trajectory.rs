@@ -1,0 +1,288 @@
+//! `[reference]` from points: given in the file itself or in another one, passed exactly or followed closely.
+//!
+//! ```toml
+//! [reference]
+//! kind = "trajectory"                # near rows that say when to be where
+//! file = "lemniscate.csv"            # beside this file: t, x, y, z and more (table), or polynomial pieces
+//! within = 0.02                      # m: how near the path is to every row; left out: 0.02
+//! stretch = 1.0                      # the rows' times are multiplied by this; left out: 1
+//! ```
+//!
+//! ```toml
+//! [reference]
+//! kind = "waypoints"                 # through every point
+//! file = "gates.csv"                 # or points = [{ t = 0.0, position = [0.0, 0.0, 1.0] }, …]
+//! speed = 3.0                        # m/s at most, and otherwise as fast as the bounds allow; with this no times
+//! corridor = 0.3                     # m: how far from the straight legs the path may be; left out: 0.3
+//! ```
+//!
+//! | module | |
+//! |---|---|
+//! | `row`, `table`, `pieces` | rows from a file |
+//! | `fit`, `band`, `lead` | a smooth path near rows, which begins and ends at rest |
+//! | `pace` | times for points that have none |
+//! | [`mod@stretch`] | by how much times must grow for a path's derivatives to fit |
+
+mod band;
+mod fit;
+mod lead;
+mod pace;
+mod pieces;
+mod row;
+pub mod stretch;
+mod table;
+
+use crate::section::{FieldError, Section};
+use controller_core::error::ParameterError;
+use controller_core::reference::knot::Knot;
+use controller_core::reference::spline::{self, Stage};
+use controller_core::reference::waypoints::Waypoint;
+use controller_core::reference::{ReferenceBounds, inside};
+use row::Row;
+use std::path::Path;
+
+/// How near a path is to the rows, and how far from straight legs, if the file does not say, m.
+const NEAR: f64 = 0.02;
+const CORRIDOR: f64 = 0.3;
+
+/// A path through or near points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    /// The points, at the times at which they are passed.
+    pub points: Vec<Waypoint>,
+    /// How it is passed along.
+    pub knots: Vec<Knot>,
+    /// Which way between the points.
+    pub way: Way,
+}
+
+impl Route {
+    /// Until the path is at rest at its end, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.knots.last().map_or(0.0, |last| last.time_us as f64 * 1e-6)
+    }
+}
+
+/// The way between points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way {
+    /// The smoothest.
+    Smooth,
+    /// Inside the box of each leg's two points.
+    Inside,
+    /// The smoothest inside a corridor, m, at times that the bounds allow.
+    Paced {
+        /// Around the straight legs, m.
+        corridor: f64,
+    },
+    /// Near the points.
+    Near {
+        /// The greatest distance, m, and of which point, s.
+        farthest: (f64, f64),
+        /// How long after the start the first point is passed, s: what it takes to get there in motion.
+        lead_in: f64,
+    },
+}
+
+/// Where files that a scenario names lie: beside the scenario's own.
+pub type Directory<'a> = Option<&'a Path>;
+
+/// Reads a `[reference]` of points that are passed; what the bounds `allow` matters where only a speed is given.
+///
+/// # Errors
+/// Names the field and what is wrong.
+pub fn read_waypoints(
+    section: &Section,
+    directory: Directory,
+    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
+) -> Result<Route, FieldError> {
+    section.allow(&["kind", "tolerance", "points", "file", "data", "path", "speed", "corridor"])?;
+    let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
+    if section.has("speed") {
+        return paced(section, &rows, &field, &allow()?);
+    }
+    let way = match section.has("path").then(|| section.text("path")).transpose()? {
+        None | Some("smooth") => Way::Smooth,
+        Some("inside") => Way::Inside,
+        Some(other) => {
+            let problem = format!("must be \"smooth\" or \"inside\", found {other:?}");
+            return Err(FieldError::new(section.path_of("path"), problem));
+        }
+    };
+    if section.has("corridor") {
+        let problem = "goes with speed; points with times are passed at these, on the way that path says";
+        return Err(FieldError::new(section.path_of("corridor"), problem));
+    }
+    let mut points = Vec::with_capacity(rows.len());
+    let mut knots: Vec<Knot> = Vec::with_capacity(rows.len());
+    for (i, row) in rows.iter().enumerate() {
+        let Some(time) = row.time else {
+            let problem = "missing; give every point a time, or speed for all of them";
+            return Err(FieldError::new(format!("{field}[{i}].t"), problem));
+        };
+        let point = Waypoint { time, position: row.position.into(), heading: row.heading };
+        let knot = point.knot(knots.last(), ["t", "position", "heading_deg"]);
+        knots.push(knot.map_err(|error| refused(section, &format!("{field}[{i}]"), &error))?);
+        points.push(point);
+    }
+    match way {
+        Way::Inside => inside::solve(&mut knots),
+        _ => {
+            let mut stages = vec![Stage::EMPTY; knots.len()];
+            spline::solve(&mut knots, &mut stages);
+        }
+    }
+    Ok(Route { points, knots, way })
+}
+
+/// A refusal of a field of the point at `place`, with the value that the file has there.
+fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError {
+    let field = format!("{place}.{}", error.field);
+    let key = field.strip_prefix("reference.").unwrap_or(&field);
+    let found = section.lookup(key).map_or(String::new(), |value| format!(", found {value}"));
+    FieldError::new(field.clone(), format!("{}{found}", error.reason))
+}
+
+/// Times for points that are to be passed with a speed at most.
+fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds) -> Result<Route, FieldError> {
+    let corridor = positive(section, "corridor", CORRIDOR)?;
+    let speed = positive(section, "speed", 0.0)?;
+    for key in ["path"] {
+        if section.has(key) {
+            return Err(FieldError::new(section.path_of(key), "goes with times; with speed there is corridor"));
+        }
+    }
+    if rows.iter().any(|row| row.time.is_some()) {
+        let problem = "chooses the times: leave it out, or the points' own times";
+        return Err(FieldError::new(section.path_of("speed"), problem));
+    }
+    let points: Vec<pace::Point> =
+        rows.iter().map(|row| pace::Point { position: row.position, heading: row.heading }).collect();
+    if let Some(same) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+        let problem = "is the same as the one before: to wait, give the points times in place of speed";
+        return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
+    }
+    let mut values = allowed.values();
+    if values.iter().any(|bound| *bound <= 0.0) {
+        let problem =
+            "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
+        return Err(FieldError::new(section.path_of("speed"), problem));
+    }
+    if let Some(horizontal) = values.first_mut() {
+        *horizontal = horizontal.min(speed as f32);
+    }
+    let allowed = ReferenceBounds::from_values(values);
+    let (knots, named) =
+        pace::paced(&points, corridor, &allowed).map_err(|error| FieldError::new(field, error.to_string()))?;
+    let points = named.iter().map(|i| waypoint(&knots[*i])).collect();
+    Ok(Route { points, knots, way: Way::Paced { corridor } })
+}
+
+fn waypoint(knot: &Knot) -> Waypoint {
+    Waypoint { time: knot.time_us as f64 * 1e-6, position: knot.position.into(), heading: knot.heading }
+}
+
+/// Reads a `[reference]` of rows that are followed; a path that begins or ends in motion gets a beginning and an end
+/// inside the bounds that the vehicle is to `allow`.
+///
+/// # Errors
+/// Names the field and what is wrong.
+pub fn read_trajectory(
+    section: &Section,
+    directory: Directory,
+    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
+) -> Result<Route, FieldError> {
+    section.allow(&["kind", "tolerance", "file", "data", "within", "stretch"])?;
+    let (rows, field) = rows(section, directory)?;
+    let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
+    let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
+    let (Some(times), true) = (times, rows.len() > 1) else {
+        let problem =
+            "needs two rows or more, each with its time t; without times take kind = \"waypoints\" with speed";
+        return Err(FieldError::new(field, problem));
+    };
+    let timed: Vec<(f64, Row)> =
+        times.iter().map(|time| (time - times[0]) * stretch).zip(slowed(&rows, stretch)).collect();
+    let found = fit::fit(&timed, near).map_err(|nearest| {
+        let (distance, time) = nearest.farthest;
+        let problem = format!(
+            "no smooth path is within {near} m of every row: the nearest is {distance:.3} m off at {time:.2} s; raise within"
+        );
+        FieldError::new(field.clone(), problem)
+    })?;
+    let mut knots = found.knots;
+    let led_in =
+        lead::lead(&mut knots, &allow()?).map_err(|error| FieldError::new(field, error.to_string()))? as f64 * 1e-6;
+    let points = timed.iter().map(|(time, row)| Waypoint {
+        time: led_in + time,
+        position: row.position.into(),
+        heading: row.heading,
+    });
+    Ok(Route { points: points.collect(), knots, way: Way::Near { farthest: found.farthest, lead_in: led_in } })
+}
+
+/// The rows with headings that go the shorter way from each to the next, and flown `stretch` times as slowly.
+fn slowed(rows: &[Row], stretch: f64) -> Vec<Row> {
+    let mut heading = rows.first().map_or(0.0, |row| row.heading);
+    let slowed = rows.iter().map(|row| {
+        let turn = (row.heading - heading + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
+        heading += turn - std::f64::consts::PI;
+        Row {
+            heading,
+            velocity: row.velocity.map(|velocity| velocity / stretch),
+            acceleration: row.acceleration.map(|acceleration| acceleration / (stretch * stretch)),
+            ..*row
+        }
+    });
+    slowed.collect()
+}
+
+/// The points that stand in the scenario itself, with the name that errors use.
+fn points(section: &Section) -> Result<(Vec<Row>, String), FieldError> {
+    let read = |point: &Section| {
+        point.allow(&["t", "position", "heading_deg"])?;
+        Ok(Row {
+            time: point.has("t").then(|| point.number("t")).transpose()?,
+            position: point.vector("position")?,
+            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
+            velocity: None,
+            acceleration: None,
+        })
+    };
+    let field = section.path_of("points");
+    let rows: Vec<Row> = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
+    if rows.is_empty() { Err(FieldError::new(field, "needs at least 1 element")) } else { Ok((rows, field)) }
+}
+
+/// The rows of the file that is named, or of the text that stands in its place.
+fn rows(section: &Section, directory: Directory) -> Result<(Vec<Row>, String), FieldError> {
+    let (field, text) = match (section.has("file"), section.has("data")) {
+        (true, false) => (section.path_of("file"), beside(section, directory)?),
+        (false, true) => (section.path_of("data"), section.text("data")?.to_owned()),
+        _ => return Err(FieldError::new(section.path_of("file"), "needs one of file and data")),
+    };
+    let name = if section.has("file") { format!("{field}: {}", section.text("file")?) } else { field.clone() };
+    table::read(&text, &name).map(|rows| (rows, field))
+}
+
+/// The text of the file that `file` names.
+fn beside(section: &Section, directory: Directory) -> Result<String, FieldError> {
+    let file = section.text("file")?;
+    let path = directory.unwrap_or_else(|| Path::new("")).join(file);
+    crate::text::read(&path).map_err(|error| {
+        FieldError::new(section.path_of("file"), format!("{}: cannot be read: {error}", path.display()))
+    })
+}
+
+fn positive(section: &Section, key: &str, default: f64) -> Result<f64, FieldError> {
+    let number = section.number_or(key, default)?;
+    if number > 0.0 {
+        Ok(number)
+    } else {
+        Err(FieldError::new(section.path_of(key), format!("must be positive, found {number}")))
+    }
+}
+
+#[cfg(test)]
+mod tests;
