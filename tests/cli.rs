@@ -113,7 +113,7 @@ fn malformed_scenarios_exit_with_2_name_the_field_and_leave_no_output() {
         ("position", "position = [5.0, nan, 10.0]", &["initial.position[1]", "finite"]),
         ("position", "position = [5.0, 1e20, 10.0]", &["initial.position", "within"]),
         ("angular_velocity", "angular_velocity = [0, 0, 1e6]", &["initial.angular_velocity", "at most 500"]),
-        ("kind", "kind = \"harmonics\"", &["reference.kind", "\"hover\", \"harmonic\" or \"waypoints\"", "harmonics"]),
+        ("kind", "kind = \"harmonics\"", &["reference.kind", "\"waypoints\" or \"trajectory\"", "harmonics"]),
         ("kind", "kind = \"hover\"", &["reference.amplitude", "unknown key"]),
         ("frequency", "frequency = [0.4, 0.4, inf]", &["reference.frequency[2]", "finite"]),
         ("frequency", "frequency = [0.4, 0.4, 4.0]", &["gains.m_p", "K_a3"]),

@@ -9,7 +9,7 @@
 //! | a vehicle's numbers from a flight and a bench; from other programs' files | [`identify`]; [`vehicle_import`] |
 //! | the estimated state | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`]; along files: [`trajectory_files`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | the supervisor, whatever fails or lies; hours of it | [`fault_campaign`], [`lying_poses`], [`endurance`] |
@@ -61,6 +61,7 @@ mod sharp_derivation;
 mod steady_circle;
 mod support;
 mod touchdown;
+mod trajectory_files;
 mod tuned;
 mod vehicle_import;
 mod vehicles;

@@ -59,7 +59,7 @@ impl Scenario {
     fn load(path: PathBuf) -> PyResult<Self> {
         let file = path.display().to_string();
         let text =
-            scenario::text::read(&path).map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
+            scenario::whole::read(&path).map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
         Self::of(text, file)
     }
 

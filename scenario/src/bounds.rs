@@ -17,6 +17,7 @@
 
 use crate::constants;
 use crate::section::{FieldError, Section};
+use crate::trajectory::stretch::stretch;
 use controller_core::constants::Constant;
 use controller_core::reference::ReferenceBounds;
 
@@ -43,8 +44,16 @@ pub fn read_bounds(
             "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
             _ => section.number(key)?,
         } as f32;
-        if *value < taken {
-            let problem = format!("must be at least {taken}, which [reference] takes, found {value}");
+    }
+    for (value, (Constant { key, .. }, taken)) in values.into_iter().zip(own.entries()) {
+        if value < taken {
+            let slower = stretch(own, &ReferenceBounds::from_values(values));
+            let remedy = if slower.is_finite() {
+                format!("; {slower:.2} times as slowly it fits all bounds")
+            } else {
+                String::new()
+            };
+            let problem = format!("must be at least {taken}, which [reference] takes, found {value}{remedy}");
             return Err(FieldError::new(section.path_of(key), problem));
         }
     }

@@ -49,5 +49,6 @@ pub mod timing;
 pub mod trajectory;
 pub mod vehicle;
 pub mod verdict;
+pub mod whole;
 
 pub use file::{PAPER, STUDY, Scenario, ScenarioError, check_name};

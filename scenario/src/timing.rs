@@ -75,7 +75,7 @@ impl Timing {
     /// From the first tick to one period after the last, s.
     #[must_use]
     pub fn duration(&self) -> f64 {
-        (self.ticks * self.period_us) as f64 * 1e-6
+        (self.ticks * self.period_us) as f64 / 1e6
     }
 }
 

@@ -100,7 +100,7 @@ impl CampaignArguments {
     /// Names the file or the argument that is refused.
     pub fn source(&self) -> Result<Source, String> {
         let read = |file: &Path| {
-            scenario::text::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+            scenario::whole::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
         };
         let (mut text, mut name) = (read(&self.file)?, self.file.display().to_string());
         if let Some(draws) = &self.draws {
