@@ -181,7 +181,7 @@ fn every_example_of_a_scenario_section_can_be_used() {
     let blocks: Vec<&str> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split_once("```")).map(|(block, _)| block).collect();
     let (references, sections): (Vec<&str>, Vec<&str>) = blocks.into_iter().partition(|b| b.starts_with("[reference]"));
-    assert_eq!((references.len(), sections.len()), (3, 17));
+    assert_eq!((references.len(), sections.len()), (4, 17));
     for reference in references {
         let harmonic = reference.contains("\"harmonic\"");
         // The bounds stand beside the harmonic reference there. A file has one of the two.

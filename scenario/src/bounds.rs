@@ -44,20 +44,25 @@ pub fn read_bounds(
             "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
             _ => section.number(key)?,
         } as f32;
-    }
-    for (value, (Constant { key, .. }, taken)) in values.into_iter().zip(own.entries()) {
-        if value < taken {
-            let slower = stretch(own, &ReferenceBounds::from_values(values));
-            let remedy = if slower.is_finite() {
-                format!("; {slower:.2} times as slowly it fits all bounds")
-            } else {
-                String::new()
-            };
+        if *value < taken {
+            let slower = stretch(own, &given(&section)?);
+            let remedy = format!("; {slower:.2} times as slowly it fits");
             let problem = format!("must be at least {taken}, which [reference] takes, found {value}{remedy}");
             return Err(FieldError::new(section.path_of(key), problem));
         }
     }
     ReferenceBounds::from_values(values).validated().map_err(|error| root.refused(&error))
+}
+
+/// All bounds that the section has; the others bound nothing.
+fn given(section: &Section) -> Result<ReferenceBounds, FieldError> {
+    let mut values = [f32::INFINITY; ReferenceBounds::COUNT];
+    for (value, Constant { key, .. }) in values.iter_mut().zip(ReferenceBounds::TABLE) {
+        if section.has(key) {
+            *value = section.number(key)? as f32;
+        }
+    }
+    Ok(ReferenceBounds::from_values(values))
 }
 
 #[cfg(test)]
