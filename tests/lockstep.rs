@@ -15,6 +15,7 @@ mod motor_test;
 mod peripherals;
 mod refusals;
 mod station;
+mod streams;
 mod world;
 
 use ::flight::Mode;

@@ -11,8 +11,9 @@
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `averages`: the first two, of the command, in integers: a head that keeps the bounds under any setpoint;
-//! - `stream`, `direct`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the
+//! - `stream`, `direct`, `blend`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the
 //!   bounds;
+//! - `demand`: what a stream asks of the bounds, for those who send it;
 //! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time,
 //!   and where the averages begin;
 //! - `turning`: the same for the heading;
@@ -25,11 +26,13 @@
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
 //! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and
-//! accelerating as it does; once near, a stream inside the bounds is flown as it is sent. One outside comes out
+//! accelerating as it does; once caught up with, a stream inside the bounds is flown as it is sent. One outside comes out
 //! smoothed and smaller.
 
 mod averages;
+mod blend;
 mod braking;
+mod demand;
 mod direct;
 mod envelope;
 mod following;
@@ -44,6 +47,7 @@ mod stream;
 mod turning;
 mod windows;
 
+pub use demand::Following;
 pub use limits::{GovernorLimits, SPEED_RANGE};
 pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
@@ -243,15 +247,23 @@ impl Governor {
             && self.turning.at_rest(&self.turn_goal())
     }
 
+    /// How the stream that is sent is followed, if there is one: position, velocity and acceleration, not at rest.
+    #[must_use]
+    pub fn following(&self) -> Option<Following> {
+        self.direct.following()
+    }
+
     /// The reference one period later.
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
         let head = self.moving();
-        let snap = match self.direct.tick(&head, self.sought(&head).as_ref()) {
+        let averaged = if self.direct.is_averaging() { self.averages.push(&self.pursue()) } else { Vector3::zeros() };
+        let sought = self.sought(&head);
+        let snap = match self.direct.tick(&head, sought.as_ref(), &averaged, 1.0 / self.per_snap) {
             // To the nearest unit: so braking ends.
             Drive::Snap(snap) => (snap * self.per_snap).map(|units| (units + 0.5_f32.copysign(units)) as i32),
-            Drive::Averages => self.averages.push(&self.pursue()),
+            Drive::Averages => averaged,
             Drive::Restarted => {
                 self.go_on(&self.smoother.steady(&self.windows));
                 self.averages.push(&self.pursue())

@@ -201,6 +201,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let Some(share) = outcome.doubtful_thrust {
             self.shared.announce(Event::Thrust(share));
         }
+        if let Some(streamed) = outcome.streamed {
+            self.shared.announce(Event::Streamed(streamed));
+        }
     }
 
     /// Reports that an armed vehicle's battery is no longer measured: landing for want of a reading would not help.

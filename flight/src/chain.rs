@@ -14,7 +14,7 @@ use super::spool::Spool;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
-use controller_core::governor::{self, Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{self, Following, Governor, GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::law::Command;
 use controller_core::law::Law;
@@ -206,6 +206,11 @@ impl<'m> Chain<'m> {
     /// Names the field the governor refuses.
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), &'static str> {
         self.governor.accept(setpoint).map_err(|error| error.field())
+    }
+
+    /// How the stream that is sent is followed, if there is one.
+    pub fn following(&self) -> Option<Following> {
+        self.governor.following()
     }
 
     /// Whether the last thrusts have been held for long enough.

@@ -5,6 +5,7 @@ use super::motor::Word;
 use super::refusal::Refusal;
 use super::request::Request;
 use super::rules::{Mode, Transition};
+use super::stream_check::Streamed;
 use controller_core::allocation::Thrusts;
 use controller_core::error::InputError;
 use controller_core::governor::Setpoint;
@@ -128,4 +129,6 @@ pub struct Outcome {
     pub flown: Option<Result<Flown, InputError>>,
     /// The rotors' thrust over the commanded thrust, in the ticks that report a persistent deviation.
     pub doubtful_thrust: Option<f32>,
+    /// How a stream of setpoints is flown, in the ticks that report it.
+    pub streamed: Option<Streamed>,
 }

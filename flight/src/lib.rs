@@ -14,6 +14,7 @@
 //! - [`FlightSettings`]: the operator's settings for failures;
 //! - `trust`: whether a source of poses may still be believed;
 //! - `thrust_check`: delivered over commanded thrust, checked;
+//! - `stream_check`: whether a stream of setpoints is flown as it is sent;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `spool`, `sinking`: how rotors
 //!   are brought up, and how a vehicle without a pose goes down.
 //!
@@ -57,6 +58,7 @@ pub mod rules;
 mod settings;
 mod sinking;
 mod spool;
+mod stream_check;
 mod thrust_check;
 mod tilt;
 mod trust;
@@ -75,3 +77,4 @@ pub use refusal::{Grounded, Refusal};
 pub use request::{Request, SETPOINT_AGE_MAX};
 pub use rules::{Mode, Transition};
 pub use settings::FlightSettings;
+pub use stream_check::Streamed;

@@ -13,12 +13,13 @@ use super::refusal::Grounded;
 use super::request::Newest;
 use super::rules::{self, BRAKING_MAX, Conditions, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
+use super::stream_check::StreamCheck;
 use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
-use controller_core::governor::GovernorLimits;
+use controller_core::governor::{Following, GovernorLimits};
 use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
@@ -45,6 +46,7 @@ pub struct Pilot<'m> {
     /// How high above the place of arming a landing has been, m.
     landing_from: f32,
     thrust_check: ThrustCheck,
+    stream_check: StreamCheck,
 }
 
 impl<'m> Pilot<'m> {
@@ -81,6 +83,7 @@ impl<'m> Pilot<'m> {
             trust: Trust::default(),
             landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
+            stream_check: StreamCheck::default(),
         }
     }
 
@@ -149,6 +152,11 @@ impl<'m> Pilot<'m> {
             (Ok(chain), Some(Ok(_))) => Some(chain.delivered_share()),
             _ => None,
         }
+    }
+
+    /// How a stream of setpoints is followed, where setpoints are flown.
+    fn following(&self) -> Option<Following> {
+        self.chain.as_ref().ok().filter(|_| self.mode == Mode::Flying).and_then(Chain::following)
     }
 
     fn is_airborne(&self) -> bool {

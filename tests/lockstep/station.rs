@@ -171,6 +171,25 @@ impl Station {
         self.send(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(data));
     }
 
+    /// Asks to follow a point that moves, m to m/s^2, world, with the heading kept.
+    pub fn stream(&self, [x, y, z]: [f32; 3], [vx, vy, vz]: [f32; 3], [ax, ay, az]: [f32; 3]) {
+        self.send(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+            // All but yaw and its rate.
+            type_mask: PositionTargetTypemask::from_bits_truncate(0b1100_0000_0000),
+            x: y,
+            y: x,
+            z: -z,
+            vx: vy,
+            vy: vx,
+            vz: -vz,
+            afx: ay,
+            afy: ax,
+            afz: -az,
+            ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
+        }));
+    }
+
     /// Asks to move at a velocity, m/s, world, with the heading kept.
     pub fn move_at(&self, [x, y, z]: [f32; 3]) {
         self.send(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {

@@ -4,10 +4,14 @@
 //! and the head can get onto it without haste, the head is steered directly:
 //!
 //! ```text
-//! Averaged -- a feasible stream, near --> Direct -- it ceases, changes kind or is lost --> Levelling --> Averaged
+//! Averaged -- a feasible stream, near ----------------------> Direct --.
+//!     ^  '--- a feasible stream, never near --> Blending ------^       '--> it ceases, changes kind or is lost
+//!     '------------------------ Levelling <------'---------------------------'
 //! ```
 //!
 //! - *Averaged*: the head is the averaged command ([`super::averages`]).
+//! - *Blending*: as direct, but onto a point that goes over smoothly from what the averages make of the stream to the
+//!   stream itself ([`super::blend`]).
 //! - *Direct*: the head's snap is the stream's, with feedback of the head's error, as far as [`super::envelope`] lets
 //!   it.
 //! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else.
@@ -15,16 +19,12 @@
 //!
 //! In every stage the head keeps the bounds, and no change of stage moves it. So the bounds hold across them.
 //!
-//! Feedback: with e the stream less the head, l the stiffness and J the quarter turn by which a stream at rate w turns,
-//!
-//! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
-//!
-//! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at
-//! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own. l
-//! begins at what the error allows, and grows as it shrinks.
+//! How the head is steered onto a point is in `feedback`.
 
+use super::blend::{Blend, Watched};
+use super::demand::{Demand, Following};
 use super::envelope::{Envelope, Moving, WayOut};
-use super::stream::{Point, quarter};
+use super::stream::{Point, Sought};
 use crate::math;
 use nalgebra::Vector3;
 
@@ -32,20 +32,10 @@ use nalgebra::Vector3;
 const FEASIBLE: f32 = 0.9995;
 const RETREATING: f32 = 0.98;
 
-/// The share of the bounds, less the stream's part, that feedback may command, and the least that is counted on.
-const FEEDBACK: f32 = 0.25;
-const LEAST_LEFT: f32 = 0.01;
-
-/// The stiffness times the averages' span: at the beginning at most, and in the end; per tick at most; and its growth,
-/// l' = growth l^2.
+/// The stiffness times the averages' span at the beginning, at most; and the share of it for which a stream is near
+/// enough.
 const SLACK: f32 = 2.5;
-const STIFF: f32 = 9.0;
 const SLACKEST: f32 = 0.4;
-const STIFFEST: f32 = 0.2;
-const GROWTH: f32 = 0.12;
-
-/// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it leaves.
-const TURNING: f32 = 0.8;
 
 /// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too
 /// late.
@@ -53,9 +43,15 @@ const DELAYED: f32 = 0.15;
 const SAMPLED: f32 = 0.05;
 
 /// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest
-/// acceleration.
+/// acceleration; one that the head is blended onto so far.
 const FARTHER: f32 = 1.5;
 const FAR: f32 = 0.01;
+const ASTRAY: f32 = 0.04;
+
+/// Spans that the averages are given to come as near to a stream as they will, and for which it is then watched before
+/// the head is blended onto it.
+const SETTLED: f32 = 1.5;
+const WATCHED: f32 = 1.5;
 
 /// Spans that a stream must be near for, and that a lost one is left alone for, the first time and at most.
 const AGREEING: f32 = 0.4;
@@ -67,12 +63,19 @@ const BARRED_LONGEST: f32 = 32.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(u32)]
 enum Stage {
-    /// With the ticks for which a stream has been near.
-    Averaged { near: u32 },
+    /// With the ticks for which a stream has been near, and how it has moved.
+    Averaged { near: u32, watched: Watched },
+    /// As direct, with what is followed.
+    Blending { stiffness: f32, out: WayOut, blend: Blend },
     /// With the way out in hand, and how far off the stream is lost, m.
     Direct { stiffness: f32, out: WayOut, far: f32 },
     /// The way out, with the ticks since it has ended.
     Levelling { out: WayOut, still: u32 },
+}
+
+impl Stage {
+    /// No stream so far.
+    const AVERAGED: Self = Self::Averaged { near: 0, watched: Watched::NONE };
 }
 
 /// What drives the head in a tick.
@@ -84,13 +87,6 @@ pub(super) enum Drive {
     Restarted,
     /// This snap, m/s^2 per tick squared.
     Snap(Vector3<f32>),
-}
-
-/// A stream, and what it is ahead of the head by; SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sought {
-    pub point: Point,
-    pub error: Point,
 }
 
 /// The stages, and what they go by.
@@ -108,6 +104,7 @@ pub(super) struct Direct {
     /// The greatest rate of turning, rad/s.
     fastest: f32,
     stage: Stage,
+    demand: Demand,
     /// Ticks for which no stream is followed, and how many there will be the next time.
     barred: u32,
     next: u32,
@@ -123,7 +120,8 @@ impl Direct {
         acceleration: 0.0,
         flatness: 0.0,
         fastest: 0.0,
-        stage: Stage::Averaged { near: 0 },
+        stage: Stage::AVERAGED,
+        demand: Demand::NONE,
         barred: 0,
         next: 0,
     };
@@ -148,7 +146,8 @@ impl Direct {
 
     /// Starts anew, averaged.
     pub fn start(&mut self) {
-        self.stage = Stage::Averaged { near: 0 };
+        self.stage = Stage::AVERAGED;
+        self.demand = Demand::NONE;
         self.barred = 0;
         self.next = self.ticks(BARRED);
     }
@@ -162,29 +161,62 @@ impl Direct {
         matches!(self.stage, Stage::Averaged { .. })
     }
 
-    /// Advances by a tick: with the head, and with what a fresh stream is ahead of it by.
-    pub fn tick(&mut self, head: &Moving, sought: Option<&Sought>) -> Drive {
+    /// Whether the averages' snap counts.
+    pub fn is_averaging(&self) -> bool {
+        matches!(self.stage, Stage::Averaged { .. } | Stage::Blending { .. })
+    }
+
+    /// How a stream is followed, if there is one that moves.
+    pub fn following(&self) -> Option<Following> {
+        self.demand.following()
+    }
+
+    /// Advances by a tick: with the head, with what a fresh stream is ahead of it by, and with the `snap` that the
+    /// averages have for it, in units of `unit` m/s^2 per tick squared.
+    pub fn tick(&mut self, head: &Moving, sought: Option<&Sought>, averaged: &Vector3<i32>, unit: f32) -> Drive {
         self.barred = self.barred.saturating_sub(1);
-        let sought = sought.filter(|sought| self.is_feasible(&sought.point));
+        if sought.is_none() {
+            self.demand = Demand::NONE;
+        }
+        let sought = sought.filter(|sought| self.judge(sought));
+        if sought.is_none() && self.is_averaged() {
+            self.stage = Stage::AVERAGED;
+            return Drive::Averages;
+        }
         match (self.stage, sought) {
-            (Stage::Averaged { near }, Some(sought)) if self.barred == 0 => self.averaged(head, sought, near),
+            (Stage::Averaged { near, watched }, Some(sought)) if self.barred == 0 => {
+                let snap = averaged.map(|units| units as f32 * unit);
+                self.averaged(head, sought, &snap, near, &watched)
+            }
             (Stage::Averaged { .. }, _) => {
-                self.stage = Stage::Averaged { near: 0 };
+                self.stage = Stage::AVERAGED;
                 Drive::Averages
+            }
+            (Stage::Blending { stiffness, out, blend }, Some(sought)) => {
+                let snap = averaged.map(|units| units as f32 * unit);
+                let target = blend.target(head, sought, &snap, self.period);
+                if self.off(&target) <= self.astray() {
+                    self.blend(head, &target, &snap, stiffness, &out, &blend)
+                } else {
+                    self.give_up(head, &out)
+                }
             }
             (Stage::Direct { stiffness, out, far }, Some(sought)) if self.off(sought) <= far => {
                 self.follow(head, sought, stiffness, &out, far)
             }
-            (Stage::Direct { out, .. }, _) => {
-                self.barred = self.next;
-                self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
-                self.level(head, &out, 0)
-            }
+            (Stage::Blending { out, .. } | Stage::Direct { out, .. }, _) => self.give_up(head, &out),
             (Stage::Levelling { out, still }, _) => self.level(head, &out, still),
         }
     }
 
-    fn averaged(&mut self, head: &Moving, sought: &Sought, agreed: u32) -> Drive {
+    fn averaged(
+        &mut self,
+        head: &Moving,
+        sought: &Sought,
+        snap: &Vector3<f32>,
+        agreed: u32,
+        watched: &Watched,
+    ) -> Drive {
         let room = self.room(sought);
         let slack = SLACK / self.span;
         let stiffness = self.affordable(sought, room).min(slack);
@@ -196,23 +228,75 @@ impl Direct {
                 self.follow(head, sought, stiffness, &out, far)
             }
             _ => {
-                self.stage = Stage::Averaged { near: if out.is_some() { agreed + 1 } else { 0 } };
+                let near = if out.is_some() { agreed + 1 } else { 0 };
+                self.watch(head, sought, snap, near, watched)
+            }
+        }
+    }
+
+    /// Goes on with the averages, or begins to blend where a stream has been watched for long enough.
+    fn watch(&mut self, head: &Moving, sought: &Sought, snap: &Vector3<f32>, near: u32, watched: &Watched) -> Drive {
+        let Sought { point: Point { velocity, acceleration, jerk, snap: bend, .. }, error } = sought;
+        let used = math::greater(
+            self.envelope.used([acceleration, jerk, bend]),
+            math::sqrt(self.envelope.share_of_speed(velocity)),
+        );
+        let flat = [self.flat(&error.position), self.flat(&error.velocity)];
+        let is_settled = watched.ticks >= self.ticks(SETTLED);
+        let watched = if is_settled { watched.with(error, flat, used) } else { watched.later() };
+        if near > 0 || watched.ticks < self.ticks(SETTLED + WATCHED) {
+            self.stage = Stage::Averaged { near, watched };
+            return Drive::Averages;
+        }
+        match (watched.blend(&self.envelope, self.span), self.envelope.way_out(head)) {
+            (Some(blend), Some(out)) => {
+                let target = blend.target(head, sought, snap, self.period);
+                self.blend(head, &target, snap, SLACK / self.span, &out, &blend)
+            }
+            _ => {
+                self.stage = Stage::AVERAGED;
                 Drive::Averages
             }
         }
     }
 
+    /// Follows the `target` of a blend.
+    fn blend(
+        &mut self,
+        head: &Moving,
+        target: &Sought,
+        averaged: &Vector3<f32>,
+        stiffness: f32,
+        out: &WayOut,
+        blend: &Blend,
+    ) -> Drive {
+        let (snap, out) = self.envelope.step(head, &self.wanted(target, stiffness), out);
+        let stiffness = self.stiffened(target, stiffness);
+        let blend = blend.after(&(averaged - snap), self.period);
+        self.stage = if blend.is_over() {
+            Stage::Direct { stiffness, out, far: self.astray() }
+        } else {
+            Stage::Blending { stiffness, out, blend }
+        };
+        Drive::Snap(snap)
+    }
+
     fn follow(&mut self, head: &Moving, sought: &Sought, stiffness: f32, out: &WayOut, far: f32) -> Drive {
         let (snap, out) = self.envelope.step(head, &self.wanted(sought, stiffness), out);
-        let grown = stiffness + GROWTH * stiffness * stiffness * self.period;
-        let stiffness = grown.min(self.affordable(sought, self.room(sought)));
-        self.stage = Stage::Direct { stiffness, out, far };
+        self.stage = Stage::Direct { stiffness: self.stiffened(sought, stiffness), out, far };
         Drive::Snap(snap)
+    }
+
+    /// Gives up a stream that is lost, and leaves the next alone for longer each time.
+    fn give_up(&mut self, head: &Moving, out: &WayOut) -> Drive {
+        self.barred = self.next;
+        self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
+        self.level(head, out, 0)
     }
 
     fn level(&mut self, head: &Moving, out: &WayOut, still: u32) -> Drive {
         if still > self.last {
-            self.stage = Stage::Averaged { near: 0 };
+            self.stage = Stage::AVERAGED;
             return Drive::Restarted;
         }
         let (snap, out) = self.envelope.follow(head, out);
@@ -221,73 +305,35 @@ impl Direct {
         Drive::Snap(snap)
     }
 
-    /// Whether a stream moves, not round too fast, keeps the bounds, and leaves a way out.
-    fn is_feasible(&self, point: &Point) -> bool {
+    /// How far off a stream that was blended onto is lost, m.
+    fn astray(&self) -> f32 {
+        ASTRAY * self.acceleration * self.span * self.span
+    }
+
+    /// Takes down what a stream asks; whether it moves, not round too fast, keeps the bounds, and leaves a way out.
+    fn judge(&mut self, Sought { point, error }: &Sought) -> bool {
         let Point { velocity, acceleration, jerk, snap, rate, .. } = point;
-        let moves = *velocity != Vector3::zeros() && *acceleration != Vector3::zeros();
+        let (moves, bends) = (*velocity != Vector3::zeros(), *acceleration != Vector3::zeros());
+        if !moves && !bends {
+            self.demand = Demand::NONE;
+            return false;
+        }
+        let shares = self.envelope.shares([acceleration, jerk, snap]);
+        let turning = rate / self.fastest;
+        let speed = math::greater(self.envelope.share_of_speed(velocity), turning * turning);
+        let off = math::sqrt(error.position.norm_squared());
+        self.demand = self.demand.with(speed, shares, off, self.period);
         let on = Moving {
             velocity: *velocity,
             acceleration: acceleration / FEASIBLE,
             difference: jerk * (self.period / RETREATING),
         };
         moves
+            && bends
             && rate.abs() <= self.fastest
-            && self.envelope.used([acceleration, jerk, snap]) <= FEASIBLE
+            && shares.iter().all(|share| *share <= FEASIBLE * FEASIBLE)
             && self.envelope.way_out(&on).is_some()
     }
-
-    /// A length with which lengths along the vertical count as much as the accelerations that undo them.
-    fn flat(&self, y: &Vector3<f32>) -> f32 {
-        let vertical = y.z * self.flatness;
-        math::sqrt(y.x * y.x + y.y * y.y + vertical * vertical)
-    }
-
-    /// How the error moves beside turning with the stream.
-    fn drift(sought: &Sought) -> Vector3<f32> {
-        sought.error.velocity - quarter(&sought.error.position) * sought.point.rate
-    }
-
-    /// How far off a stream is, with how far it goes off in a span, m.
-    fn off(&self, sought: &Sought) -> f32 {
-        self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
-    }
-
-    /// The acceleration that feedback may command, m/s^2: a share of the rest beside a head whose error turns with the
-    /// stream.
-    fn room(&self, sought: &Sought) -> f32 {
-        let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
-        let turned = |y: &Vector3<f32>| quarter(y) * *rate;
-        let bent = turned(&turned(&sought.error.position));
-        let twisted = turned(&bent);
-        let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
-        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_LEFT, 1.0)
-    }
-
-    /// The stiffness whose answer to the error is within the room.
-    fn affordable(&self, sought: &Sought, room: f32) -> f32 {
-        let Point { position, .. } = &sought.error;
-        let stiff = (STIFF / self.span).min(STIFFEST / self.period);
-        let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
-        let turning = (TURNING * sought.point.rate.abs()).min(stiff);
-        let horizontal = within(math::sqrt(position.xy().norm_squared()), stiff).max(turning);
-        within((position.z * self.flatness).abs(), horizontal)
-    }
-
-    /// Whether what the error does beside turning with the stream is answered within the room.
-    fn is_near(&self, sought: &Sought, stiffness: f32, room: f32) -> bool {
-        let Point { velocity, acceleration, .. } = &sought.error;
-        let drift = Self::drift(sought);
-        let bend = acceleration - (quarter(velocity) + quarter(&drift)) * sought.point.rate;
-        2.0 * stiffness * self.flat(&drift) <= room && self.flat(&bend) <= room
-    }
-
-    /// The stream's snap and the feedback, m/s^2 per tick squared.
-    fn wanted(&self, sought: &Sought, stiffness: f32) -> Vector3<f32> {
-        let Point { position, velocity, acceleration, jerk, .. } = &sought.error;
-        let rate = sought.point.rate;
-        // m y.
-        let m = |y: Vector3<f32>| y * stiffness - quarter(&y) * rate;
-        let feedback = m(m(m(m(*position) + velocity * 4.0) + acceleration * 6.0) + jerk * 4.0);
-        (sought.point.snap + feedback) * (self.period * self.period)
-    }
 }
+
+mod feedback;

@@ -45,6 +45,12 @@ impl Cylinder {
         y.x * y.x + y.y * y.y <= self.horizontal * self.horizontal && y.z.abs() <= self.vertical
     }
 
+    /// The square of the share that `y` takes of it.
+    fn share(&self, y: &Vector3<f32>) -> f32 {
+        let share = |square: f32, bound: f32| square / (bound * bound);
+        math::greater(share(y.xy().norm_squared(), self.horizontal), share(y.z * y.z, self.vertical))
+    }
+
     /// The same with other measures.
     fn map(&self, change: impl Fn(f32) -> f32) -> Self {
         Self { horizontal: change(self.horizontal), vertical: change(self.vertical) }
@@ -138,16 +144,24 @@ impl Envelope {
     }
 
     /// The greatest share of a bound that acceleration, jerk and snap take, SI units.
-    pub fn used(&self, [acceleration, jerk, snap]: [&Vector3<f32>; 3]) -> f32 {
+    pub fn used(&self, derivatives: [&Vector3<f32>; 3]) -> f32 {
+        math::sqrt(self.shares(derivatives).into_iter().fold(0.0, math::greater))
+    }
+
+    /// The squares of the shares of the bounds that acceleration, jerk and snap take, SI units.
+    pub fn shares(&self, [acceleration, jerk, snap]: [&Vector3<f32>; 3]) -> [f32; 3] {
         let t = self.period;
-        let Cylinder { horizontal, vertical } = self.acceleration;
-        let squares = [
-            (acceleration.xy().norm_squared(), horizontal),
-            (acceleration.z * acceleration.z, vertical),
-            (jerk.norm_squared() * (t * t), self.jerk),
-            (snap.norm_squared() * (t * t) * (t * t), self.snap),
-        ];
-        math::sqrt(squares.iter().fold(0.0, |most, (square, bound)| math::greater(most, square / (bound * bound))))
+        let share = |square: f32, bound: f32| square / (bound * bound);
+        [
+            self.acceleration.share(acceleration),
+            share(jerk.norm_squared() * (t * t), self.jerk),
+            share(snap.norm_squared() * (t * t) * (t * t), self.snap),
+        ]
+    }
+
+    /// The square of the share of the speed that a velocity takes.
+    pub fn share_of_speed(&self, velocity: &Vector3<f32>) -> f32 {
+        self.speed.share(velocity)
     }
 
     /// Whether v keeps the speed on the way through these points, which ends in r.

@@ -4,10 +4,9 @@
 //! integers; its velocity and place follow from the knot's by the time between, (N_3 + 1)/2 ticks, with an acceleration
 //! that changes evenly. They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is commanded that much more.
 
-use super::direct::Sought;
 use super::envelope::{Bounds, Cylinder, Envelope, Moving};
 use super::smoother::Knot;
-use super::stream::Point;
+use super::stream::{Point, Sought};
 use super::windows::Windows;
 use super::{Governor, GovernorLimits};
 use crate::math::single;

@@ -4,7 +4,7 @@
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
-use flight::{Reason, Refusal};
+use flight::{Reason, Refusal, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -64,6 +64,8 @@ pub enum Event {
     Input(InputError),
     /// For a while now the rotors have delivered this share of the commanded thrust.
     Thrust(f32),
+    /// How a stream of setpoints is flown.
+    Streamed(Streamed),
     /// The motors' frames do not go out.
     MotorsLost,
     /// They do again.
@@ -89,11 +91,14 @@ impl Event {
         match self {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
             Self::Input(_) | Self::MotorsLost => Severity::Critical,
-            Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) => Severity::Information,
+            Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) | Self::Streamed(Streamed::AsSent) => {
+                Severity::Information
+            }
             Self::Refused(_)
             | Self::Pose(Err(_))
             | Self::Estimator(_)
             | Self::Thrust(_)
+            | Self::Streamed(_)
             | Self::BatteryMissing
             | Self::PoseDelayUnknown => Severity::Warning,
             Self::Words(severity, _) => *severity,
@@ -111,6 +116,7 @@ impl fmt::Display for Event {
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
+            Self::Streamed(streamed) => streamed.fmt(f),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
             Self::BatteryMissing => f.write_str("Battery: no reading for 1 s, nothing watches it"),

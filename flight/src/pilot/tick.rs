@@ -41,6 +41,7 @@ impl Pilot<'_> {
         let setpoint = self.fly_setpoint(inputs, estimate);
         let (output, flown) = self.output(estimate, seen.touched, now);
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
+        let streamed = self.stream_check.tick(self.following(), now);
         Outcome {
             output,
             mode: self.mode,
@@ -57,6 +58,7 @@ impl Pilot<'_> {
             pose: estimate.pose,
             flown,
             doubtful_thrust,
+            streamed,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Streams of moving points, flown as they are sent where the bounds allow it.
 
+extern crate std;
 use super::*;
 use crate::governor::tests::{PERIOD, Random, TYPICAL, go_to, governor, run};
 use crate::governor::{Motion, Setpoint, Turn};
@@ -132,4 +133,100 @@ fn a_circle_with_jitter_and_lost_setpoints_is_flown_within_centimetres() {
         }
     }
     assert!(worst < 0.02, "{worst} m off");
+}
+
+/// The eight of 2 m by 1 m in 7.4 s, which the averages never come near.
+fn tight_eight() -> impl Fn(f64) -> [Vector3<f64>; 3] {
+    eight(0.85, 1.0, Vector3::y())
+}
+
+#[test]
+fn a_tight_eight_is_flown_as_it_is_sent_from_rest_and_from_a_flight_elsewhere() {
+    for every in [1, 2, 5] {
+        let worst = follow(governor(), &tight_eight(), every, 30.0, 120.0);
+        assert!(worst < 0.01, "every {every}: {worst} m off");
+        // In motion, 6 m away.
+        let governor = governor();
+        governor.accept(&go_to(-3.0, 4.0, 2.0)).unwrap();
+        (0..300).for_each(|_| _ = governor.tick());
+        let worst = follow(governor, &tight_eight(), every, 30.0, 120.0);
+        assert!(worst < 0.01, "every {every}, from elsewhere: {worst} m off");
+    }
+}
+
+#[test]
+fn a_tight_eight_with_jitter_and_lost_setpoints_is_flown_within_centimetres() {
+    // The last loses up to six in a row, which is 0.3 s.
+    for (every, lost, most) in [(2, 0.0, 0.01), (2, 0.3, 0.015), (5, 0.1, 0.015), (5, 0.3, 0.12)] {
+        let (governor, mut random) = (governor(), Random::new(12));
+        let at = tight_eight();
+        let mut worst: f64 = 0.0;
+        for tick in 0..12_000 {
+            let time = f64::from(tick) * f64::from(PERIOD);
+            // What is sent is up to 1 ms old.
+            if tick % every == 0 && random.unit() >= lost {
+                governor.accept(&sent(&at, time - 0.001 * f64::from(random.unit()))).unwrap();
+            }
+            let reference = governor.tick();
+            assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+            if tick > 4_000 {
+                let [there, ..] = at(time + f64::from(PERIOD));
+                worst = worst.max((reference.position.map(f64::from) - there).norm());
+            }
+        }
+        assert!(worst < most, "every {every}, {lost} lost: {worst} m off");
+    }
+}
+
+/// Turns at 2, 3 and 4 times a rate, each axis its own.
+fn lissajous(time: f64) -> [Vector3<f64>; 3] {
+    let (turns, size) = (Vector3::new(2.0, 3.0, 4.0) * 0.3, Vector3::new(1.2, 0.6, 0.1));
+    let angle = turns * time + Vector3::new(0.0, 0.7, 0.3);
+    let position = size.component_mul(&angle.map(f64::sin));
+    let velocity = size.component_mul(&angle.map(f64::cos)).component_mul(&turns);
+    [position, velocity, -position.component_mul(&turns).component_mul(&turns)]
+}
+
+#[test]
+fn a_lissajous_figure_in_three_dimensions_is_flown_as_it_is_sent() {
+    for every in [1, 2, 5] {
+        let worst = follow(governor(), &lissajous, every, 30.0, 120.0);
+        assert!(worst < 0.002, "every {every}: {worst} m off");
+    }
+}
+
+#[test]
+fn a_stream_beyond_the_bounds_is_reported_with_the_factor_by_which_it_is_too_fast() {
+    // By acceleration; by jerk, on a circle and an eight; by snap, on a line; by speed.
+    let streams: [(At<'_>, f64); 5] = [
+        (&circle(1.5, 2.0), (2.0 * 1.5_f64.powi(2) / 2.5).sqrt()),
+        (&circle(2.5, 0.6), (0.6 * 2.5_f64.powi(3) / 4.0).cbrt()),
+        (&eight(1.2, 1.0, Vector3::y()), (4.1 * 1.2_f64.powi(3) / 4.0).cbrt()),
+        (&eight(3.5, 0.1, Vector3::zeros()), (0.1 * 3.5_f64.powi(4) / 10.0).powf(0.25)),
+        (&circle(0.25, 32.0), 8.0 / 5.0),
+    ];
+    for (index, (at, slower)) in streams.into_iter().enumerate() {
+        for every in [1, 2, 5] {
+            let governor = governor();
+            assert_eq!(governor.following(), None);
+            follow(governor, at, every, 0.0, 30.0);
+            let following = governor.following().unwrap();
+            let found = f64::from(following.slower());
+            assert!((found / slower - 1.0).abs() < 0.1, "stream {index}, every {every}: {found} for {slower}");
+            assert!(following.off > 0.05, "stream {index}: {} m", following.off);
+        }
+    }
+}
+
+#[test]
+fn a_stream_that_is_flown_as_it_is_sent_is_reported_so_and_one_that_ceases_not_at_all() {
+    let governor = governor();
+    follow(governor, &tight_eight(), 2, 0.0, 10.0);
+    let following = governor.following().unwrap();
+    assert!(following.off > 0.5 && following.slower() < 1.0, "{following:?}");
+    follow(governor, &tight_eight(), 2, 0.0, 40.0);
+    let following = governor.following().unwrap();
+    assert!(following.off < 0.02 && following.slower() < 1.0, "{following:?}");
+    run(governor);
+    assert_eq!(governor.following(), None);
 }

@@ -51,3 +51,50 @@ fn absurd_streams_make_finite_points_or_none_that_could_be_followed() {
         }
     }
 }
+
+#[test]
+fn jerk_and_snap_of_an_eight_are_known_between_its_setpoints() {
+    let rate = 0.85_f32;
+    // Acceleration, velocity, jerk and snap of (sin w t, sin 2 w t / 2).
+    let at = |time: f32| {
+        let ((sin, cos), (sin2, cos2)) = ((rate * time).sin_cos(), (2.0 * rate * time).sin_cos());
+        let both = |x: f32, y: f32, power: i32| Vector3::new(x, y, 0.0) * rate.powi(power);
+        [both(cos, cos2, 1), both(-sin, -2.0 * sin2, 2), both(-cos, -4.0 * cos2, 3), both(sin, 8.0 * sin2, 4)]
+    };
+    let [velocity, acceleration, ..] = at(0.0);
+    let mut stream = Stream::new(velocity, acceleration);
+    for number in 1..1_000 {
+        let time = number as f32 * 0.02;
+        let [velocity, acceleration, jerk, snap] = at(time);
+        stream = stream.followed_by(velocity, acceleration, 0.02);
+        let point = stream.ahead(0.0);
+        if number > 50 {
+            // Of 2.5 m/s^3 and 4.2 m/s^4.
+            assert!((point.jerk - jerk).norm() < 0.05, "{time} s: {} for {jerk}", point.jerk);
+            assert!((point.snap - snap).norm() < 0.8, "{time} s: {} for {snap}", point.snap);
+        }
+    }
+}
+
+#[test]
+fn whatever_is_sent_and_whenever_the_estimate_forgets_it() {
+    let mut random = super::super::tests::Random::new(5);
+    let circle = |time: f32| {
+        let (sin, cos) = time.sin_cos();
+        (Vector3::new(-sin, cos, 0.0), Vector3::new(-cos, -sin, 0.0))
+    };
+    let mut stream = Stream::STILL;
+    for _ in 0..20_000 {
+        let vector = |random: &mut super::super::tests::Random| Vector3::from_fn(|_, _| 1e6 * random.signed());
+        let (velocity, acceleration) = (vector(&mut random), vector(&mut random));
+        // The times that grow fastest: short after long.
+        stream = stream.followed_by(velocity, acceleration, if random.unit() < 0.5 { 0.01 } else { 0.3 });
+        assert!(stream.bend.norm().is_finite() && stream.change.norm().is_finite());
+    }
+    for number in 0..400 {
+        let (velocity, acceleration) = circle(0.02 * number as f32);
+        stream = stream.followed_by(velocity, acceleration, 0.02);
+    }
+    let point = stream.ahead(0.0);
+    assert!((point.jerk.norm() - 1.0).abs() < 0.01 && (point.snap.norm() - 1.0).abs() < 0.01, "{point:?}");
+}

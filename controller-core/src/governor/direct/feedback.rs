@@ -1,0 +1,87 @@
+//! Feedback: with e the stream less the head, l the stiffness and J the quarter turn by which a stream at rate w turns,
+//!
+//! e'''' = -(4 m e''' + 6 m^2 e'' + 4 m^3 e' + m^4 e),  m = l - w J  (m = l along the vertical),
+//!
+//! which is (d/dt - w J + l)^4 e = 0: an error that turns with the stream, as that of averages does, or of a head at
+//! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own. l
+//! begins at what the error allows, and grows as it shrinks.
+
+use super::Direct;
+use crate::governor::stream::{Point, Sought, quarter};
+use crate::math;
+use nalgebra::Vector3;
+
+/// The share of the bounds, less the stream's part, that feedback may command, and the least that is counted on.
+const FEEDBACK: f32 = 0.25;
+const LEAST_LEFT: f32 = 0.01;
+
+/// The stiffness times the averages' span in the end; per tick at most; and its growth, l' = growth l^2.
+const STIFF: f32 = 9.0;
+const STIFFEST: f32 = 0.2;
+const GROWTH: f32 = 0.12;
+
+/// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it leaves.
+const TURNING: f32 = 0.8;
+
+impl Direct {
+    /// The stiffness a tick later.
+    pub(super) fn stiffened(&self, sought: &Sought, stiffness: f32) -> f32 {
+        let grown = stiffness + GROWTH * stiffness * stiffness * self.period;
+        grown.min(self.affordable(sought, self.room(sought)))
+    }
+
+    /// A length with which lengths along the vertical count as much as the accelerations that undo them.
+    pub(super) fn flat(&self, y: &Vector3<f32>) -> f32 {
+        let vertical = y.z * self.flatness;
+        math::sqrt(y.x * y.x + y.y * y.y + vertical * vertical)
+    }
+
+    /// How the error moves beside turning with the stream.
+    pub(super) fn drift(sought: &Sought) -> Vector3<f32> {
+        sought.error.velocity - quarter(&sought.error.position) * sought.point.rate
+    }
+
+    /// How far off a stream is, with how far it goes off in a span, m.
+    pub(super) fn off(&self, sought: &Sought) -> f32 {
+        self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
+    }
+
+    /// The acceleration that feedback may command, m/s^2: a share of the rest beside a head whose error turns with the
+    /// stream.
+    pub(super) fn room(&self, sought: &Sought) -> f32 {
+        let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
+        let turned = |y: &Vector3<f32>| quarter(y) * *rate;
+        let bent = turned(&turned(&sought.error.position));
+        let twisted = turned(&bent);
+        let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
+        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_LEFT, 1.0)
+    }
+
+    /// The stiffness whose answer to the error is within the room.
+    pub(super) fn affordable(&self, sought: &Sought, room: f32) -> f32 {
+        let Point { position, .. } = &sought.error;
+        let stiff = (STIFF / self.span).min(STIFFEST / self.period);
+        let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
+        let turning = (TURNING * sought.point.rate.abs()).min(stiff);
+        let horizontal = within(math::sqrt(position.xy().norm_squared()), stiff).max(turning);
+        within((position.z * self.flatness).abs(), horizontal)
+    }
+
+    /// Whether what the error does beside turning with the stream is answered within the room.
+    pub(super) fn is_near(&self, sought: &Sought, stiffness: f32, room: f32) -> bool {
+        let Point { velocity, acceleration, .. } = &sought.error;
+        let drift = Self::drift(sought);
+        let bend = acceleration - (quarter(velocity) + quarter(&drift)) * sought.point.rate;
+        2.0 * stiffness * self.flat(&drift) <= room && self.flat(&bend) <= room
+    }
+
+    /// The stream's snap and the feedback, m/s^2 per tick squared.
+    pub(super) fn wanted(&self, sought: &Sought, stiffness: f32) -> Vector3<f32> {
+        let Point { position, velocity, acceleration, jerk, .. } = &sought.error;
+        let rate = sought.point.rate;
+        // m y.
+        let m = |y: Vector3<f32>| y * stiffness - quarter(&y) * rate;
+        let feedback = m(m(m(m(*position) + velocity * 4.0) + acceleration * 6.0) + jerk * 4.0);
+        (sought.point.snap + feedback) * (self.period * self.period)
+    }
+}
