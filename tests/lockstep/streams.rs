@@ -32,7 +32,7 @@ fn an_eight_streamed_at_50_hz_is_flown_to_centimetres_and_that_is_said() {
     println!("{:.1} cm from the eight, in the last 20 s", 100.0 * worst);
     assert!(worst < 0.05, "{worst} m");
     assert_eq!(flight.report().mode, Mode::Flying);
-    let said = |words: &str| flight.station.heard(words).map(|time| (time - begin) / 1_000_000);
+    let said = |words: &str| flight.station.received(words).map(|time| (time - begin) / 1_000_000);
     let smoothed = said("Setpoints smoothed: not caught up with yet");
     assert!(smoothed.is_some_and(|seconds| seconds < 4), "{:?}", flight.station.texts());
     let flown = said("Setpoints flown as sent");
@@ -50,7 +50,7 @@ fn an_eight_too_fast_for_the_bounds_is_smoothed_and_the_factor_said() {
         flight.pass(0.02);
     }
     // By snap, which turns sharpest: 4.2 m/s^4 times 1.5 to the fourth, of 6.089: 1.37 times slower.
-    let said = |words: &str| flight.station.heard(words).is_some();
+    let said = |words: &str| flight.station.received(words).is_some();
     let fits =
         ["1.4", "1.5"].iter().any(|slower| said(&format!("Setpoints too fast: smoothed, {slower}x slower fits")));
     assert!(fits, "{:?}", flight.station.texts());
