@@ -1,6 +1,7 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
-//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository.
+//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it an
+//! image for a board is built of a vehicle that does not exist, and never arms.
 //! `BOOTLOADER=kept` leaves the first flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
@@ -9,8 +10,8 @@ mod embed;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The default scenario: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
-const DEFAULT: &str = "vehicles/study.toml";
+/// What is built in without SCENARIO, to be flown on desks and emulated boards only: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
+const STUDY: &str = "vehicles/study.toml";
 
 /// Boards and the files that describe their memory, from this package's folder.
 const MEMORY: [(&str, &str); 4] = [
@@ -39,12 +40,18 @@ fn fail(problem: &str) -> ! {
     std::process::exit(1)
 }
 
+/// Whether this is an image of a board that has motors.
+fn is_for_a_vehicle() -> bool {
+    let is_on = |feature: &str| env::var_os(format!("CARGO_FEATURE_{feature}")).is_some();
+    env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") && (is_on("MICOAIR_H743") || is_on("CRAZYFLIE_BOLT"))
+}
+
 /// Writes what the chosen file becomes to `target`.
 fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-env-changed=SCENARIO");
     println!("cargo::rerun-if-changed=build/embed.rs");
     let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
-    let name = env::var("SCENARIO").unwrap_or_else(|_| DEFAULT.to_owned());
+    let name = env::var("SCENARIO").unwrap_or_else(|_| STUDY.to_owned());
     let file = top.join(&name);
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file)
@@ -53,7 +60,15 @@ fn scenario(target: &Path) -> Result<(), String> {
     if let Some(warning) = embedded.warning {
         println!("cargo::warning={warning}");
     }
-    fs::write(target, embedded.source).map_err(|error| format!("{}: {error}", target.display()))
+    let is_named = !is_for_a_vehicle() || env::var_os("SCENARIO").is_some();
+    if !is_named {
+        println!("cargo::warning=no vehicle: this image never arms; build with SCENARIO=vehicles/yours.toml");
+    }
+    let source = format!(
+        "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n",
+        embedded.source
+    );
+    fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.

@@ -55,27 +55,34 @@ pub fn start<M: RawMutex>(
     shared: BootView<'_, M>,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
     let configuration = configuration::embedded()?;
-    start_with(place, shared, Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY })
+    let built = Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY };
+    start_named(place, shared, built, configuration::IS_NAMED)
 }
 
-/// The same of another configuration than the embedded one, on a machine that reads scenario files.
+/// The same of what was built for a named vehicle, or for none in particular: that never arms, and says so.
 ///
 /// # Errors
-/// If it has no rotors, or not as many as there are motors.
+/// As [`start_with`].
 #[inline]
-pub fn start_with<M: RawMutex>(
+pub fn start_named<M: RawMutex>(
     place: &'static Place,
     shared: BootView<'_, M>,
     built: Built,
+    is_named: bool,
 ) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
     let parameters = shared.parameters();
     let built: &'static Built = place.built.init_with(|| built);
     if parameters.boot(built) {
         shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));
     }
-    let certification = certify(place, built.tuned(|name| parameters.raw(name)));
+    let certification = if is_named {
+        certify(place, built.tuned(|name| parameters.raw(name)))
+    } else {
+        shared.announce(Event::new(Severity::Critical, "No vehicle: build with SCENARIO"));
+        place.certification.init_with(|| Err(Refused::Undefined(configuration::NO_VEHICLE)))
+    };
     log(certification);
-    if certification.is_err() {
+    if certification.is_err() && is_named {
         for name in parameters.set_by_hand() {
             let words = format_args!("{} {}: cannot be flown", name.row().name, parameters.get(name));
             shared.announce(Event::new(Severity::Critical, words));
@@ -88,6 +95,19 @@ pub fn start_with<M: RawMutex>(
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
     let (limits, settings) = (parameters.governor_limits(), parameters.flight_settings());
     Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
+}
+
+/// The same of another configuration than the embedded one, on a machine that reads scenario files.
+///
+/// # Errors
+/// If it has no rotors, or not as many as there are motors.
+#[inline]
+pub fn start_with<M: RawMutex>(
+    place: &'static Place,
+    shared: BootView<'_, M>,
+    built: Built,
+) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+    start_named(place, shared, built, true)
 }
 
 // Configuration, estimator, certificate and pilot need most of the stack, one after the other: none may become part of

@@ -20,5 +20,9 @@ pub fn embedded() -> Result<Configuration, ParameterError> {
     built()
 }
 
+/// The error of an image that was built for no vehicle in particular: in the words of a refusal to arm.
+pub const NO_VEHICLE: ParameterError =
+    ParameterError { field: "no vehicle: build with SCENARIO", reason: Reason::NotPositive };
+
 /// The error for a scenario without rotors.
 pub const NO_ROTORS: ParameterError = ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) };

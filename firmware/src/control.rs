@@ -11,15 +11,19 @@
 //! command included: a vehicle whose motors do not receive it, or that has no time left, is reset.
 
 use crate::deadline::within;
+use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
+use crate::link::origin::Origin;
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{ControlView, Event, INCREMENTS, POSES, Queue, QueuedRequest, Report, Take, Timing};
+use crate::shared::{
+    ControlView, Event, INCREMENTS, MissionReport, POSES, Queue, QueuedRequest, Report, Severity, Take, Text, Timing,
+};
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use flight::{Battery, Inputs, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
+use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
 use heapless::Vec;
 
 /// How long the motors' frame may take to write, us.
@@ -40,6 +44,7 @@ pub struct Control<'a, M: RawMutex> {
     pilot: &'a mut Pilot<'static>,
     outputs: Outputs,
     timing: Timing,
+    mission: MissionReport,
     /// Whether the last tick ended too late.
     is_late: bool,
     /// Whether sensors and motors are a simulator's, as the last tick found it.
@@ -70,6 +75,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             pilot,
             outputs,
             timing: Timing::default(),
+            mission: MissionReport::default(),
             is_late: false,
             simulated: false,
             integrated: None,
@@ -112,6 +118,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             let order = asked.and_then(|asked| asked.order);
             self.shared.commander().put(order.map(|order| order.sender), now);
         }
+        self.follow_the_mission(&outcome);
         if !outcome.setpoints_requested {
             self.shared.setpoint_owner().set(None);
         }
@@ -157,8 +164,38 @@ impl<'a, M: RawMutex> Control<'a, M> {
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
             setpoint: self.shared.setpoint().take().map(|setpoint| setpoint.value),
+            mission_item: self.mission_item(asked.as_ref()),
             ..Inputs::default()
         }
+    }
+
+    /// The mission's item that the pilot needs.
+    fn mission_item(&self, asked: Option<&QueuedRequest>) -> Option<MissionItem> {
+        let number = self.pilot.mission_item(asked.map(|asked| &asked.request))?;
+        let item = self.shared.mission().item(number.into())?;
+        let home = self.shared.report().get().and_then(|report| report.value.home).unwrap_or_default();
+        let origin = self.shared.origin().get().map_or_else(Origin::default, |origin| origin.value);
+        Some(item.placed(&origin, &frames::world(&home)))
+    }
+
+    /// Notes how far the mission is, and says how it ends.
+    fn follow_the_mission(&mut self, outcome: &Outcome) {
+        (self.mission.next, self.mission.is_flown) = outcome.mission;
+        let (severity, words) = match outcome.mission_step {
+            None => return,
+            Some(MissionStep::Reached(item) | MissionStep::Lands(item)) => {
+                self.mission.done = (item, self.mission.done.1.wrapping_add(1));
+                if outcome.mission_step == Some(MissionStep::Reached(item)) {
+                    return;
+                }
+                (Severity::Information, Text::new("Mission over: landing"))
+            }
+            Some(MissionStep::Over) => (Severity::Information, Text::new("Mission over: holding position")),
+            Some(MissionStep::Refused(item, refusal)) => {
+                (Severity::Critical, Text::new(format_args!("Mission item {item}: {refusal}")))
+            }
+        };
+        self.shared.announce(Event::Words(severity, words));
     }
 
     /// What the battery has left, by its voltage. Without a recent reading it is unknown, which matters where a voltage
@@ -253,6 +290,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             reference: flown.map(|flown| flown.reference),
             wrench: flown.map(|flown| flown.wrench),
             thrust_scale: flown.map(|flown| flown.thrust_scale),
+            mission: self.mission,
             timing: self.timing,
         }
     }

@@ -12,7 +12,8 @@
 //! | [`origin`] | a local frame on the globe |
 //! | [`download`] | the list of logs, and a log, part by part |
 //! | [`port`] | which of two lines it is on |
-//! | [`plans`], [`files`] | answers to clients that request missions and files |
+//! | [`mission`] | the items of a mission |
+//! | [`plans`], [`files`] | which list of items is meant; answers to clients that request files |
 //! | [`acknowledgement`] | answers to commands |
 //! | [`signing`] | who may speak: signed frames |
 //! | [`writer`] | messages as frames |
@@ -30,6 +31,7 @@ mod commander;
 pub mod download;
 pub mod files;
 pub mod frame;
+pub mod mission;
 pub mod origin;
 pub mod plans;
 pub mod port;

@@ -27,6 +27,7 @@ mod event;
 mod flag;
 mod latest;
 mod library;
+mod mission;
 mod queue;
 mod recent_texts;
 mod reply;
@@ -42,9 +43,10 @@ pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, CHUNK, Library, Question};
+pub use mission::Mission;
 pub use queue::{Full, Queue};
 pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
-pub use report::{Report, Timing, Traffic};
+pub use report::{MissionReport, Report, Timing, Traffic};
 pub use requests::{REQUESTS, Requests};
 pub use setpoint_owner::SetpointOwner;
 
@@ -152,6 +154,8 @@ values! {
     /// Whose setpoints are flown, or will be once they come, by system and component; none without such a request on
     /// the link.
     pub setpoint_owner: SetpointOwner { Write: ControlView; Read: ReceiveView }
+    /// The mission's items. They are replaced while it is not flown.
+    pub mission: Mission<M> { Write: ReceiveView; Read: ControlView, TransmitView }
     /// Answers to requests. Put in with [`Values::answer`].
     pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
     /// Replies from the receiving half of the link to the sending half. Put in with [`Values::reply`].
@@ -169,7 +173,7 @@ values! {
     /// What the link received.
     pub traffic: Latest<M, Traffic> { Write: ReceiveView; Read: TransmitView, StatusView }
     /// Where the local frame is on the globe, if a ground station has set it.
-    pub origin: Latest<M, Origin> { Write: ReceiveView; Read: TransmitView }
+    pub origin: Latest<M, Origin> { Write: ReceiveView; Read: ControlView, TransmitView }
     /// The battery, V. It counts for 1 s.
     pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView }
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.

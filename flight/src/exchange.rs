@@ -1,6 +1,7 @@
 //! What a tick is given, and what it decides.
 
 use super::chain::Flown;
+use super::mission::{MissionItem, MissionStep};
 use super::motor::Word;
 use super::refusal::Refusal;
 use super::request::Request;
@@ -67,6 +68,8 @@ pub struct Inputs<'a> {
     pub is_late: bool,
     /// The newest setpoint since the last tick.
     pub setpoint: Option<Setpoint>,
+    /// The mission's item that [`mission_item`](super::Pilot::mission_item) names, if there is one of that number.
+    pub mission_item: Option<MissionItem>,
 }
 
 /// What the motors do until the next tick.
@@ -118,6 +121,10 @@ pub struct Outcome {
     pub setpoint: Option<Result<(), Refusal>>,
     /// Whether setpoints are flown, or will be once they come.
     pub setpoints_requested: bool,
+    /// The item of the mission that is flown, or will be, and whether it is flown.
+    pub mission: (u8, bool),
+    /// What the mission did.
+    pub mission_step: Option<MissionStep>,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
     /// The estimate's health.

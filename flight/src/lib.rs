@@ -11,6 +11,7 @@
 //! - `watch`: whether it follows, has landed, or lies on its back;
 //! - `fall`: whether a vehicle whose motors were stopped in the air lies still again;
 //! - `fence`: the limits of position;
+//! - [`MissionItem`]: missions, a source of setpoints inside the pilot;
 //! - [`FlightSettings`]: the operator's settings for failures;
 //! - `trust`: whether a source of poses may still be believed;
 //! - `thrust_check`: delivered over commanded thrust, checked;
@@ -48,6 +49,7 @@ mod fall;
 mod fence;
 mod lift_off;
 mod low_pass;
+mod mission;
 mod motor;
 mod permission;
 pub mod pilot;
@@ -70,6 +72,7 @@ pub use estimation::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
 };
 pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
+pub use mission::{Leg, MissionItem, MissionRefusal, MissionStep, RADIUS as MISSION_RADIUS};
 pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;
 pub use reason::Reason;

@@ -65,6 +65,15 @@ pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
+/// Flying a mission: with motors that idle, or in the air, where setpoints may be flown.
+pub(super) fn to_fly_mission(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Idling => Ok(()),
+        _ if !mode.flies() => Err(Refusal::NotIdling),
+        _ => to_fly_setpoints(mode),
+    }
+}
+
 /// Arming: an estimate that is healthy and has been for a while, of a vehicle that stands nearly upright, and a ground
 /// station on the link.
 pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {

@@ -1,6 +1,7 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! `tick` holds the order; `answers` grants requests, `conditions` evaluates the rules' inputs.
+//! `tick` holds the order; `answers` grants requests, `missions` flies a mission, `conditions` evaluates the rules'
+//! inputs.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
@@ -8,6 +9,7 @@ use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Output, PERIOD};
 use super::fall::Fall;
 use super::fence::Fence;
+use super::mission::Progress;
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::Newest;
@@ -39,6 +41,7 @@ pub struct Pilot<'m> {
     /// The newest setpoint that may be flown, and since when flight by setpoints is requested, us.
     newest: Newest,
     wanted_since: Option<u64>,
+    mission: Progress,
     /// Whether a vehicle without a pose was landing, or was commanded to land: it lands once there is a pose.
     must_still_land: bool,
     /// Whether poses may still be believed in this flight.
@@ -79,6 +82,7 @@ impl<'m> Pilot<'m> {
             bench: Bench::NONE,
             newest: Newest::default(),
             wanted_since: None,
+            mission: Progress::default(),
             must_still_land: false,
             trust: Trust::default(),
             landing_from: 0.0,
@@ -176,6 +180,11 @@ impl<'m> Pilot<'m> {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {
             self.wanted_since = None;
+            // What was stopped begins anew.
+            self.mission = if transition.to.is_armed() { self.mission } else { Progress::default() };
+        }
+        if transition.to != Mode::Flying {
+            self.mission = self.mission.paused();
         }
         self.must_still_land |= transition.from == Mode::Landing;
         self.must_still_land &= transition.to == Mode::Descending;
@@ -196,6 +205,7 @@ impl<'m> Pilot<'m> {
                 // What is armed was at rest.
                 self.fall = Fall::default();
             }
+            (Mode::Flying, _) if self.mission.is_flown => {}
             (Mode::Flying, _) => {
                 if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
                     // It was checked when it came.
@@ -263,6 +273,7 @@ impl<'m> Pilot<'m> {
 
 mod answers;
 mod conditions;
+mod missions;
 #[cfg(test)]
 mod tests;
 mod tick;

@@ -2,6 +2,7 @@
 //!
 //! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
 
+use super::mission::MissionRefusal;
 use controller_core::certificate::certified::Refused;
 use controller_core::error::ParameterError;
 use core::fmt;
@@ -93,6 +94,8 @@ pub enum Refusal {
     TakeOffHeight,
     /// The point is outside the fence.
     OutsideFence,
+    /// An item of the mission cannot be flown.
+    Mission(MissionRefusal),
     /// A motor test was running; the request has ended it.
     MotorTestRunning,
     /// A disarm command came in the same tick.
@@ -131,6 +134,7 @@ impl fmt::Display for Refusal {
             Self::Grounded(grounded) => return grounded.fmt(f),
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Refused: {field:.28} out of range"),
+            Self::Mission(refusal) => return write!(f, "Mission refused: {refusal}"),
             Self::AlreadyArmed => "Refused: armed already",
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",

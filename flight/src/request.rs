@@ -21,6 +21,10 @@ pub enum Request {
     FlySetpoints,
     /// Come to rest and hold position.
     Hold,
+    /// Fly the mission: from an item on, or from where it was left.
+    FlyMission(Option<u8>),
+    /// Make an item of the mission the next one.
+    SetMissionItem(u8),
     /// Fly to a setpoint and hold it.
     GoTo(Setpoint),
     /// Land and disarm; without a pose, as soon as there is one.

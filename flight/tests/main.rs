@@ -3,6 +3,7 @@
 mod arming;
 mod bench;
 mod lies;
+mod missions;
 mod modes;
 mod numbers;
 mod refusals;

@@ -3,10 +3,13 @@
 use crate::support::outputs::check_output;
 use crate::support::{Handed, SETTLING, go_to, pilot, pose, resting_imu, rotors};
 use controller_core::allocation::Rotors;
+use controller_core::governor::Turn;
 use controller_core::prelude::*;
 use estimation::estimator::{Increment, PoseMeasurement};
 use flight::rules::{COASTING_MAX, DESCENDING_MAX, IDLING_MAX, IMU_AGE_MAX, MOTOR_TEST_MAX};
-use flight::{Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Request, Setting, Stamped};
+use flight::{
+    Leg, MissionItem, Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Request, Setting, Stamped,
+};
 use proptest::prelude::*;
 
 /// What becomes of a tick's share of something measured.
@@ -63,6 +66,9 @@ fn arrival() -> impl Strategy<Value = Arrival> {
     let flight = prop::sample::select(vec![
         Request::TakeOff(None),
         Request::FlySetpoints,
+        Request::FlyMission(None),
+        Request::FlyMission(Some(3)),
+        Request::SetMissionItem(1),
         Request::Hold,
         Request::GoTo(go_to(1.0, 0.0, 1.0)),
         Request::Land,
@@ -95,6 +101,14 @@ fn arrival() -> impl Strategy<Value = Arrival> {
             position,
             numbers,
         })
+}
+
+/// Any item, or none.
+fn mission_item(&[x, y, z, kind, radius, hold]: &[f32; 6]) -> Option<MissionItem> {
+    let leg = [Leg::TakeOff, Leg::Waypoint, Leg::Land, Leg::Return][(kind + 2.0) as usize % 4];
+    let position = Vector3::new(100.0 * x, 100.0 * y, 10.0 * z);
+    let item = MissionItem { leg, position, turn: Turn::Keep, radius, hold: (hold.abs() * 1e5) as u64 };
+    (hold > -1.8).then_some(item)
 }
 
 /// A stretch of arrivals, of the truth or of anything, with or without poses, IMU or a ground station. Half of them
@@ -166,6 +180,7 @@ impl Judge {
             request: arrival.request,
             disarm: arrival.disarm,
             setpoint: arrival.position.map(|x| go_to(x, 0.0, 1.0)),
+            mission_item: mission_item(&arrival.numbers),
             ..Handed::default()
         };
         let outcome = handed.to(pilot);
@@ -252,7 +267,7 @@ impl Judge {
         assert_eq!(outcome.transition.is_some(), before != outcome.mode);
         assert_eq!(outcome.answer.is_some(), arrival.request.is_some());
         let judged = match outcome.mode {
-            Mode::Flying => arrival.position.is_some(),
+            Mode::Flying => arrival.position.is_some() && !outcome.mission.1,
             // What begins no flight is refused, where one is waited for.
             Mode::Idling => arrival.position.is_some() && matches!(outcome.setpoint, Some(Err(_))),
             _ => false,

@@ -28,6 +28,7 @@ pub mod line;
 pub mod pace;
 pub mod port;
 mod record;
+mod truth;
 mod voice;
 pub mod world;
 
@@ -63,6 +64,7 @@ use std::future::Future;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
+use truth::Truth;
 use voice::Voice;
 use world::{PoseSource, World};
 
@@ -91,6 +93,8 @@ pub struct Session {
     pub parameters: Option<PathBuf>,
     /// The key that signs frames.
     pub signing_key: Option<Key>,
+    /// The port to which its true pose goes.
+    pub truth: Option<u16>,
     /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
     pub recording: Option<(PathBuf, String)>,
 }
@@ -334,6 +338,7 @@ pub fn run(
         scenario.name
     ));
     let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
+    let mut truth = session.truth.map(Truth::open).transpose().map_err(SitlError::Input)?;
     let mut pace = Pace::new(session.speed);
     let mut shown = Instant::now();
     let ended = loop {
@@ -345,9 +350,13 @@ pub fn run(
             break Ok(sitl.summary(None));
         }
         let due = record.as_ref().map_or(u64::MAX, Record::due);
+        let due = due.min(truth.as_ref().map_or(u64::MAX, Truth::due));
         let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
         pace.wait(next);
         sitl.pass(next);
+        if let Some(truth) = &mut truth {
+            truth.look(sitl.clock.now(), &sitl.world.state());
+        }
         if sitl.world.check().is_err() {
             break Err(SitlError::Diverged(next as f64 * 1e-6));
         }

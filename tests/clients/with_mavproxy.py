@@ -1,4 +1,4 @@
-"""MAVProxy at its own prompt: connect, arm, take off, fly in body frames, hold, land, disarm.
+"""MAVProxy at its own prompt: connect, arm, take off, fly in body frames, hold, land, disarm; a mission by `wp`.
 
 Its `mode` is for ArduPilot and PX4: for any other autopilot it sends ArduCopter's numbers, which here are refused. Modes are changed by `long
 DO_SET_MODE` with PX4's numbers. `velocity` is sent once when it is typed; `repeat` makes a stream of it, as the vehicle asks for.
@@ -15,7 +15,7 @@ import time
 import pyulog
 from vehicle import PASSPHRASE, SIGNED, STRETCH, vehicle
 
-MODULES = "arm,mode,cmdlong,param,link,misc,log,signing"
+MODULES = "arm,mode,cmdlong,param,link,misc,log,signing,wp"
 
 
 class MAVProxy:
@@ -122,9 +122,39 @@ def fly(flown, proxy):
     (ticks,) = pyulog.ULog(str(proxy.directory / "flight.ulg")).data_list
     assert len(ticks.data["timestamp"]) > 400 and ticks.data["airborne"].any(), len(ticks.data["timestamp"])
     print(f"  MAVProxy: fetched {len(ticks.data['timestamp'])} ticks of the recorder", flush=True)
+    fly_mission(flown, proxy)
     proxy.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
     proxy.ask("disarm", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
     print("  MAVProxy: armed and disarmed on the ground", flush=True)
+
+
+METRES = 111_194.93  # of a degree
+
+# A mission as MAVProxy keeps it, in a file: number, current, frame, command, four parameters, place, autocontinue.
+WAYPOINTS = """QGC WPL 110
+0\t0\t3\t22\t0\t0\t0\t0\t0\t0\t2\t1
+1\t0\t3\t16\t0\t0.3\t0\t0\t{:.8f}\t{:.8f}\t2\t1
+2\t0\t0\t20\t0\t0\t0\t0\t0\t0\t0\t1
+"""
+
+
+def fly_mission(flown, proxy):
+    """`wp`: a file is sent, saved again, and flown."""
+    east, north, _ = flown.status()[1]
+    (proxy.directory / "square.txt").write_text(WAYPOINTS.format((north + 2.0) / METRES, east / METRES))
+    proxy.ask("wp load square.txt", "Loaded 3 waypoints", 10)
+    flown.wait_for("Mission: 3 items", 10)
+    proxy.ask("wp list back.txt", "Saved 3 waypoints to back.txt", 10)
+    back = [line.split("\t") for line in (proxy.directory / "back.txt").read_text().splitlines()[1:]]
+    assert [(int(line[2]), int(line[3])) for line in back] == [(3, 22), (3, 16), (2, 20)], back
+    assert abs(float(back[1][8]) * METRES - north - 2.0) < 0.02, back
+    proxy.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
+    proxy.ask("long MISSION_START", "Got COMMAND_ACK: MISSION_START: ACCEPTED")
+    flown.wait_for("Mission over: landing", 60)
+    flown.wait_for("Landed: disarmed", 90)
+    proxy.ask("wp clear", "", 5)
+    print("  MAVProxy: sent a mission by `wp load`, listed it, flew it", flush=True)
+    flown.rest(3.0)
 
 
 def main():

@@ -1,4 +1,4 @@
-"""MAVSDK: connect, healthy and armable, parameters, arm, take off, a square offboard, a place on the globe, hold, land."""
+"""MAVSDK: connect, healthy and armable, parameters, arm, take off, a square offboard, a place on the globe, hold, land; a mission."""
 
 import asyncio
 import math
@@ -7,9 +7,11 @@ import time
 
 from mavsdk.asyncio import ComponentType, Configuration, Mavsdk
 from mavsdk.asyncio.plugins.action import ActionAsync
+from mavsdk.asyncio.plugins.mission import MissionAsync
 from mavsdk.asyncio.plugins.offboard import OffboardAsync
 from mavsdk.asyncio.plugins.param import ParamAsync
 from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
+from mavsdk.plugins.mission import MissionItem, MissionPlan
 from mavsdk.plugins.offboard import PositionNedYaw
 from mavsdk.plugins.telemetry import FlightMode
 
@@ -24,6 +26,7 @@ class Client:
     def __init__(self, system):
         self.action, self.offboard = ActionAsync(system), OffboardAsync(system)
         self.param, self.telemetry = ParamAsync(system), TelemetryAsync(system)
+        self.mission = MissionAsync(system)
 
     async def until(self, what, patience, reason):
         end = time.monotonic() + STRETCH * patience
@@ -102,6 +105,48 @@ async def fly(flown):
         await client.until(lambda: landed(client), 2, "said to be on the ground")
         assert abs((await client.place())[2] - home[2]) < 0.1
         print("  mavsdk: held, landed, disarmed", flush=True)
+        if not EMULATED:
+            await fly_mission(client)
+
+
+def waypoint(latitude, longitude, height):
+    """A waypoint that is passed without stopping; what has no number is left to the vehicle."""
+    nan, actions = math.nan, (MissionItem.CameraAction.NONE, MissionItem.VehicleAction.NONE)
+    return MissionItem(latitude, longitude, height, nan, True, nan, nan, actions[0], nan, nan, 0.3, nan, nan, actions[1])
+
+
+async def fly_mission(client):
+    """A square by MAVSDK's mission plugin, from the ground to the ground."""
+    home = await client.place()
+    here = await client.telemetry.position()
+    corners = [(2, 0), (2, 2), (0, 2), (0, 0)]
+    items = [waypoint(here.latitude_deg + x / METRES, here.longitude_deg + y / METRES, 2.0) for x, y in corners]
+    await client.mission.set_return_to_launch_after_mission(True)
+    await client.mission.upload_mission(MissionPlan(items))
+    back = (await client.mission.download_mission()).mission_items
+    assert len(back) == len(items), back
+    for sent, one in zip(items, back):
+        assert abs(sent.latitude_deg - one.latitude_deg) < 2e-7, (sent, one)
+        assert abs(sent.longitude_deg - one.longitude_deg) < 2e-7, (sent, one)
+        assert abs(sent.relative_altitude_m - one.relative_altitude_m) < 1e-3, (sent, one)
+    print(f"  mavsdk: sent a mission of {len(items)} items and read it back", flush=True)
+    await client.until(lambda: armable(client), 20, "is_armable")
+    await client.action.arm()
+    await client.mission.start_mission()
+    await client.until(lambda: in_mode(client, FlightMode.MISSION), 5, "in its mission mode")
+    left = [(home[0] + x, home[1] + y, home[2] - 2.0) for x, y in corners]
+
+    async def passed():
+        if left and await client.near(left[0], 0.6):
+            left.pop(0)
+        return not left
+
+    await client.until(passed, 40, "past every corner")
+    await client.until(lambda: client.mission.is_mission_finished(), 20, "said to be finished")
+    await client.until(lambda: disarmed(client), 30, "landed and disarmed")
+    assert await client.near(home, 0.15), (home, await client.place())
+    await client.mission.clear_mission()
+    print("  mavsdk: flew the mission, landed at home, disarmed", flush=True)
 
 
 async def armable(client):

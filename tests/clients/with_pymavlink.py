@@ -19,13 +19,14 @@ SPEED = 4.0
 RATES = {
     "HEARTBEAT": 1, "ATTITUDE_QUATERNION": 25, "LOCAL_POSITION_NED": 25, "ATTITUDE": 10, "TIMESYNC": 1, "SYS_STATUS": 1,
     "EXTENDED_SYS_STATE": 2, "GLOBAL_POSITION_INT": 5, "ODOMETRY": 2, "ESTIMATOR_STATUS": 1, "BATTERY_STATUS": 0.5,
-    "UNKNOWN_436": 1, "HOME_POSITION": 0.5, "SYSTEM_TIME": 0.5, "POSITION_TARGET_LOCAL_NED": 5,
+    "UNKNOWN_436": 1, "HOME_POSITION": 0.5, "SYSTEM_TIME": 0.5, "POSITION_TARGET_LOCAL_NED": 5, "MISSION_CURRENT": 1,
     "GPS_GLOBAL_ORIGIN": 0, "AUTOPILOT_VERSION": 0, "UNKNOWN_300": 0,
 }  # fmt: skip
 # CURRENT_MODE (436) and PROTOCOL_VERSION (300), which this pymavlink's dialect has not: it counts frames by number.
 # Only while something is flown.
 FLYING_ONLY = {"POSITION_TARGET_LOCAL_NED"}
 
+METRES = 0.011_119_493  # of a unit of latitude, and of longitude near the equator
 POSITION = 0b110111111000
 VELOCITY = 0b110111000111
 ACCEPTED, DENIED, UNSUPPORTED = m.MAV_RESULT_ACCEPTED, m.MAV_RESULT_DENIED, m.MAV_RESULT_UNSUPPORTED
@@ -147,7 +148,7 @@ def questions(client):
     client.until(lambda _: client.counts["AUTOPILOT_VERSION"] == 1, 0.5, "AUTOPILOT_VERSION by COMMAND_INT")
     assert client.command(m.MAV_CMD_DO_PARACHUTE) == UNSUPPORTED
     assert client.command(31_999) == UNSUPPORTED
-    client.line.mav.mission_count_send(1, 1, 3)
+    client.line.mav.mission_count_send(1, 1, 3, m.MAV_MISSION_TYPE_FENCE)
     assert client.reply("MISSION_ACK").type == m.MAV_MISSION_UNSUPPORTED
     client.line.mav.mission_request_list_send(1, 1)
     assert client.reply("MISSION_COUNT").count == 0
@@ -252,6 +253,91 @@ def flight(client):
     assert abs(client.position[2] - down) < 0.1, client.position
 
 
+def mission_items(client, down):
+    """A take-off, a square by local places and places on the globe, and a landing at home."""
+    here = client.reply("GLOBAL_POSITION_INT")
+    north, east, _ = client.position
+    globe = lambda x, y: (here.lat + round(x / METRES), here.lon + round(y / METRES))
+    local = lambda x, y: (round((north + x) * 1e4), round((east + y) * 1e4))
+    ned, relative = m.MAV_FRAME_LOCAL_NED, m.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+    way = lambda frame, x, y, z, hold=0.0: (frame, m.MAV_CMD_NAV_WAYPOINT, hold, 0.3, 0.0, math.nan, x, y, z)
+    return [
+        (relative, m.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, math.nan, 0, 0, 2.0),
+        way(ned, *local(2, 0), down - 2.0, 1.0),
+        way(relative, *globe(2, 2), 2.0),
+        way(ned, *local(0, 2), down - 2.0),
+        (m.MAV_FRAME_MISSION, m.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0, 0.0, math.nan, 0, 0, 0.0),
+    ]
+
+
+def upload(client, items):
+    """Sends items as they are asked for; the last answer's result."""
+    client.line.mav.mission_count_send(1, 1, len(items))
+    while True:
+        message = client.until(
+            lambda one: one.get_type() in ("MISSION_REQUEST_INT", "MISSION_ACK"), 3.0, "an answer to an item"
+        )
+        if message.get_type() == "MISSION_ACK":
+            return message.type
+        frame, command, *rest = items[message.seq]
+        client.line.mav.mission_item_int_send(1, 1, message.seq, frame, command, 0, 1, *rest)
+
+
+def download(client):
+    """The items that the vehicle has."""
+    client.line.mav.mission_request_list_send(1, 1)
+    items = []
+    for number in range(client.reply("MISSION_COUNT").count):
+        client.line.mav.mission_request_int_send(1, 1, number)
+        one = client.reply("MISSION_ITEM_INT", seq=number)
+        items.append((one.frame, one.command, one.param1, one.param2, one.param3, one.param4, one.x, one.y, one.z))
+    client.line.mav.mission_ack_send(1, 1, m.MAV_MISSION_ACCEPTED)
+    return items
+
+
+def mission(client):
+    """A mission is sent, refused where it makes no sense, read back, flown, paused, followed, and cleared."""
+    client.until(lambda one: client.mode == (4, 1) and not client.armed, 5.0, "on the ground")
+    client.rest(3.0)
+    home = client.position
+    items = mission_items(client, home[2])
+    assert upload(client, items) == m.MAV_MISSION_ACCEPTED
+    bad = [items[0], (items[1][0], m.MAV_CMD_DO_CHANGE_SPEED, *items[1][2:])]
+    assert upload(client, bad) == m.MAV_MISSION_UNSUPPORTED
+    client.rest(0.5)
+    assert "Mission item 1: command 178 is not flown" in client.texts, client.texts
+    back = download(client)
+    assert [one[:2] + one[6:8] for one in back] == [one[:2] + one[6:8] for one in items], back
+    assert all(abs(one[8] - sent[8]) < 1e-5 for one, sent in zip(back, items)), back
+    assert abs(back[1][2] - 1.0) < 0.01 and abs(back[1][3] - 0.3) < 0.01, back[1]
+    start = (m.MAV_CMD_MISSION_START, 0, 0)
+    assert client.command(*start) == DENIED, "not armed"
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
+    assert client.command(*start) == ACCEPTED
+    reached = client.reply("MISSION_ITEM_REACHED", patience=20.0)
+    assert reached.seq == 0 and client.position[2] < home[2] - 1.5, (reached, client.position)
+    client.until(lambda _: client.mode == (4, 4), 2.0, "in the mission's mode")
+    assert upload(client, items) == m.MAV_MISSION_DENIED, "changed while it is flown"
+    assert client.reply("MISSION_ITEM_REACHED", patience=20.0).seq == 1
+    corner = (home[0] + 2.0, home[1], home[2] - 2.0)
+    assert math.dist(client.position, corner) < 0.4, (client.position, corner)
+    assert client.command(m.MAV_CMD_DO_PAUSE_CONTINUE, 0) == ACCEPTED
+    client.until(lambda _: client.mode == (4, 3), 2.0, "paused")
+    client.rest(3.0)
+    assert client.reply("MISSION_CURRENT").seq == 2
+    assert client.command(m.MAV_CMD_DO_SET_MODE, m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, 4, 4) == ACCEPTED
+    for number, (x, y) in [(2, (2, 2)), (3, (0, 2))]:
+        assert client.reply("MISSION_ITEM_REACHED", patience=20.0).seq == number
+        corner = (home[0] + x, home[1] + y, home[2] - 2.0)
+        assert math.dist(client.position, corner) < 0.6, (client.position, corner)
+    client.until(lambda _: not client.armed, 40.0, "landed and disarmed")
+    assert "Mission over: landing" in client.texts, client.texts
+    assert math.dist(client.position, home) < 0.15, (client.position, home)
+    client.line.mav.mission_clear_all_send(1, 1)
+    assert client.reply("MISSION_ACK").type == m.MAV_MISSION_ACCEPTED
+    assert download(client) == []
+
+
 def forced(client):
     """The force number stops the motors in the air."""
     client.until(lambda one: client.mode == (4, 1) and not client.armed, 5.0, "on the ground")
@@ -315,7 +401,7 @@ def main():
             client.step()
         # Seconds of an emulated board are long, and its heartbeats were requested more often.
         common = (parameters, tuning, flight)
-        parts = common if EMULATED else (rates, questions, *common, forced, recording)
+        parts = common if EMULATED else (rates, questions, *common, mission, forced, recording)
         assert client.line.target_system == 1, client.line.target_system
         for part in parts:
             started = time.monotonic()

@@ -122,7 +122,8 @@ def request_autopilot_version(station):
     version = station.message("REQUEST_MESSAGE AUTOPILOT_VERSION", AUTOPILOT_VERSION)
     assert version is not None, "no AUTOPILOT_VERSION: QGroundControl would assume what it can"
     offered = version.capabilities
-    for name in ("MISSION_INT", "MISSION_FENCE", "MISSION_RALLY", "FTP"):
+    assert offered & m.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    for name in ("MISSION_FENCE", "MISSION_RALLY", "FTP"):
         assert not offered & getattr(m, f"MAV_PROTOCOL_CAPABILITY_{name}"), f"{name} is offered and not there"
 
 
@@ -193,8 +194,10 @@ def request_plan(station, name, kind):
 def upload_plan(station, name, kind):
     """What its plan view sends, and how it clears."""
     fits = lambda message: message.get_type() == "MISSION_ACK" and message.mission_type == kind
+    # Only the mission is a list here: an empty one is taken.
+    count, result = (0, 0) if kind == MISSION else (3, 3)
     for what, send, expected in [
-        (f"MISSION_COUNT {name}", lambda: station.line.mav.mission_count_send(VEHICLE, AUTOPILOT, 3, kind), 3),
+        (f"MISSION_COUNT {name}", lambda: station.line.mav.mission_count_send(VEHICLE, AUTOPILOT, count, kind), result),
         (f"MISSION_CLEAR_ALL {name}", lambda: station.line.mav.mission_clear_all_send(VEHICLE, AUTOPILOT, kind), 0),
     ]:
         answer = station.ask(what, send, fits, PLAN_ACK, PLAN_TRIES, lambda one: f"MISSION_ACK {one.type}")

@@ -5,7 +5,10 @@
 //! | 400 COMPONENT_ARM_DISARM | requests arming (1) or disarming (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
 //! | 22 NAV_TAKEOFF | requests a take-off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT`. By COMMAND_INT in a global frame, and from here only |
 //! | 21 NAV_LAND | requests a landing here |
-//! | 176 DO_SET_MODE | PX4's custom modes: requests to fly setpoints (6), to hold (4, 3), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
+//! | 176 DO_SET_MODE | PX4's custom modes: requests to fly setpoints (6), to hold (4, 3), to fly the mission (4, 4), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
+//! | 300 MISSION_START | requests to fly the mission from item parameter 1 on; NaN or below 0: from where it was left |
+//! | 193 DO_PAUSE_CONTINUE | requests to hold (0), to go on with the mission (1) |
+//! | 224 DO_SET_MISSION_CURRENT | makes item parameter 1 the mission's next |
 //! | 209 DO_MOTOR_TEST | requests a test of one motor (1 to 4), throttle in percent, for a time in seconds |
 //! | 311 CONFIGURE_ACTUATOR | requests one motor (parameter 5, 1 to 4) to beep (1), or turn as wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
@@ -17,6 +20,7 @@
 #![expect(deprecated, reason = "superseded commands and frames: clients still send them")]
 
 use super::frame::{Frame, Header};
+use super::mission::ITEMS;
 use super::origin::{Origin, Place};
 use super::set_mode::SetMode;
 use super::streams;
@@ -42,6 +46,7 @@ const AUTO: f32 = 4.0;
 const OFFBOARD: f32 = 6.0;
 const AUTO_TAKEOFF: f32 = 2.0;
 const AUTO_LOITER: f32 = 3.0;
+const AUTO_MISSION: f32 = 4.0;
 const AUTO_LAND: f32 = 6.0;
 
 /// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one
@@ -132,6 +137,16 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call),
         MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
+        MavCmd::MAV_CMD_MISSION_START => mission_start(call),
+        MavCmd::MAV_CMD_DO_PAUSE_CONTINUE => match first {
+            0.0 => Action::Ask(Request::Hold),
+            1.0 => Action::Ask(Request::FlyMission(None)),
+            _ => denied("Pause: parameter 1 is 0, or 1 to go on"),
+        },
+        MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => match mission_item(first) {
+            Some(item) => Action::Ask(Request::SetMissionItem(item)),
+            None => denied("Mission item: parameter 1 is its number"),
+        },
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
         MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN => restart(call),
         MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
@@ -242,6 +257,26 @@ const fn unsupported(words: &'static str) -> Action {
     Action::Refuse(MavResult::MAV_RESULT_UNSUPPORTED, words)
 }
 
+/// The number of a mission's item.
+fn mission_item(number: f32) -> Option<u8> {
+    (0..ITEMS as u8).find(|&item| number == f32::from(item))
+}
+
+/// Flying the mission from an item on, or from where it was left; always to its end.
+fn mission_start(call: &Call) -> Action {
+    let [first, last, ..] = call.parameters;
+    if last != 0.0 && !last.is_nan() {
+        return denied("Mission start: parameter 2 is 0, no last item");
+    }
+    if first.is_nan() || first < 0.0 {
+        return Action::Ask(Request::FlyMission(None));
+    }
+    match mission_item(first) {
+        Some(item) => Action::Ask(Request::FlyMission(Some(item))),
+        None => denied("Mission start: parameter 1 is an item's number"),
+    }
+}
+
 /// The test of one motor that a command requests. The flight rules refuse what is too much or too long; negative times
 /// become zero, which is refused as well.
 fn motor_test(call: &Call) -> Action {
@@ -311,7 +346,8 @@ fn calibration(call: &Call) -> Action {
 }
 
 /// The answer to clients with other numbers, such as ArduPilot's.
-const NO_MODE: Action = Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only");
+const NO_MODE: Action =
+    Action::Refuse(MavResult::MAV_RESULT_DENIED, "Mode refused: PX4's 6 0, 4 2, 4 3, 4 4 or 4 6 only");
 
 /// PX4's clients send the custom mode, and echo the heartbeat's flags. Without one, the HIL flag requests a simulator
 /// and the guided flag for flight by setpoints.
@@ -325,6 +361,7 @@ fn set_mode(call: &Call, armed: bool) -> Action {
         return match (main, sub) {
             (OFFBOARD, _) => Action::Ask(Request::FlySetpoints),
             (AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
+            (AUTO, AUTO_MISSION) => Action::Ask(Request::FlyMission(None)),
             (AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
             (AUTO, AUTO_LAND) => Action::Ask(Request::Land),
             _ => NO_MODE,

@@ -1,4 +1,4 @@
-//! Lists of mission items: the mission, the fence and the rally points, each empty here.
+//! Lists of mission items: the mission, the fence and the rally points. The last two are empty here.
 //!
 //! Which list a message is about, MAV_MISSION_TYPE, is an extension field, and the crate's types have none. It is read
 //! and written here, behind the other fields: clients drop an answer about another list than the requested one.

@@ -23,21 +23,25 @@ use explained::Explained;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA,
-    LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA,
-    MISSION_REQUEST_LIST_DATA, MavType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-    SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SETUP_SIGNING_DATA, TIMESYNC_DATA,
+    LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA, MISSION_ACK_DATA, MISSION_CLEAR_ALL_DATA,
+    MISSION_COUNT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_DATA, MISSION_REQUEST_INT_DATA,
+    MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA,
+    PARAM_SET_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SETUP_SIGNING_DATA, TIMESYNC_DATA,
 };
 use senders::Senders;
+use upload::Upload;
 
 mod commands;
 mod explained;
 mod foreign;
+mod missions;
 mod parameters;
 mod places;
 mod recordings;
 mod senders;
 mod setpoints;
 mod signatures;
+mod upload;
 
 /// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
 const SILENCE: u64 = 1_000_000;
@@ -113,6 +117,7 @@ pub struct Receiver<'a, M: RawMutex> {
     traffic: Traffic,
     setpoints: Senders,
     foreign: Explained,
+    upload: Upload,
 }
 
 impl<'a, M: RawMutex> Receiver<'a, M> {
@@ -134,6 +139,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             traffic: Traffic::default(),
             setpoints: Senders::default(),
             foreign: Explained::default(),
+            upload: Upload::default(),
         }
     }
 
@@ -154,6 +160,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     #[inline(never)]
     fn dispatch(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
+        self.chase_upload(frame.time);
         self.commander.receive(sender, self.shared.commander().get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
@@ -164,6 +171,11 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             SetMode::ID => self.command(frame, Some(&SetMode::of(frame))),
             SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.decoded(frame, Self::set_origin),
             MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
+            MISSION_ITEM_INT_DATA::ID | MISSION_ITEM_DATA::ID => self.mission_item(frame),
+            MISSION_ACK_DATA::ID => self.decoded(frame, Self::mission_ack),
+            MISSION_REQUEST_DATA::ID => self.decoded(frame, Self::mission_request),
+            MISSION_REQUEST_INT_DATA::ID => self.decoded(frame, Self::mission_request_int),
+            MISSION_SET_CURRENT_DATA::ID => self.decoded(frame, Self::mission_set_current),
             MISSION_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::mission_list),
             MISSION_CLEAR_ALL_DATA::ID => self.decoded(frame, Self::mission_clear),
             FILE_TRANSFER_PROTOCOL_DATA::ID => self.file(frame),

@@ -16,7 +16,7 @@ pub enum Rate {
 /// The messages, those first that matter most. At the default rates they take 4 KB/s of a line's 5.7 KB/s at 57,600
 /// baud.
 #[rustfmt::skip]
-pub const STREAMS: [(Kind, Rate); 18] = [
+pub const STREAMS: [(Kind, Rate); 19] = [
     (Kind::Heartbeat,          Rate::Every(1_000_000)),
     (Kind::AttitudeQuaternion, Rate::Telemetry),
     (Kind::Position,           Rate::Telemetry),
@@ -30,6 +30,7 @@ pub const STREAMS: [(Kind, Rate); 18] = [
     (Kind::EstimatorStatus,    Rate::Every(1_000_000)),
     (Kind::BatteryStatus,      Rate::Every(2_000_000)),
     (Kind::CurrentMode,        Rate::Every(1_000_000)),
+    (Kind::MissionCurrent,     Rate::Every(1_000_000)),
     (Kind::HomePosition,       Rate::Every(2_000_000)),
     (Kind::SystemTime,         Rate::Every(2_000_000)),
     (Kind::GlobalOrigin,       Rate::OnRequest),

@@ -51,7 +51,10 @@ impl View {
             Kind::HomePosition => writer.write_some(system, motion::home(report, &self.origin)),
             Kind::EstimatorStatus => writer.write_some(system, Some(motion::estimator_status(time, report))),
             Kind::ExtendedState => writer.write_some(system, Some(vehicle::extended_state(report))),
-            Kind::CurrentMode => writer.write_some(system, Some(vehicle::current_mode(report.mode))),
+            Kind::MissionCurrent => writer.write_some(system, Some(vehicle::mission_current(report))),
+            Kind::CurrentMode => {
+                writer.write_some(system, Some(vehicle::current_mode(report.mode, report.mission.is_flown)))
+            }
             _ => self.write_without_report(kind, system, writer),
         }
     }
@@ -61,7 +64,10 @@ impl View {
         let report = self.report.as_ref().map(|report| &report.value);
         match kind {
             Kind::Heartbeat => {
-                writer.write(system, &vehicle::heartbeat(report.map(|report| report.mode), self.simulated));
+                writer.write(
+                    system,
+                    &vehicle::heartbeat(report.map(|report| (report.mode, report.mission.is_flown)), self.simulated),
+                );
             }
             Kind::SystemStatus => {
                 writer.write(system, &vehicle::status(self.voltage, report, self.traffic, self.is_logged))

@@ -15,13 +15,14 @@ use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, MissionList, Reply, Severity, TransmitView};
+use crate::shared::{Event, MissionList, MissionReport, Reply, Severity, TransmitView};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MavResult,
+    LOG_ENTRY_DATA, MESSAGE_INTERVAL_DATA, MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA,
+    MISSION_ITEM_REACHED_DATA, MISSION_REQUEST_INT_DATA, MavResult,
 };
 
 /// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
@@ -77,6 +78,8 @@ struct Speaker<'a, M: RawMutex> {
     list: Option<(usize, u64)>,
     /// What is still to be sent of the logs.
     download: Download,
+    /// What was said of the mission.
+    mission: MissionReport,
     writer: Writer,
     /// Lost events that were reported.
     reported: u32,
@@ -96,6 +99,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             schedule: Schedule::new(now),
             list: None,
             download: Download::new(),
+            mission: MissionReport::default(),
             writer: Writer::new(),
             reported: 0,
             answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
@@ -132,7 +136,22 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 return true;
             }
         }
-        self.listed(now) || self.downloaded(now)
+        self.followed() || self.listed(now) || self.downloaded(now)
+    }
+
+    /// Writes what the mission has done since: an item reached, or another current one.
+    fn followed(&mut self) -> bool {
+        let Some(mission) = self.shared.report().get().map(|report| report.value.mission) else { return false };
+        if mission.done.1 != self.mission.done.1 {
+            self.mission.done = mission.done;
+            self.say(&MISSION_ITEM_REACHED_DATA { seq: mission.done.0.into() });
+        } else if mission.next != self.mission.next {
+            self.mission.next = mission.next;
+            self.say(&MISSION_CURRENT_DATA { seq: mission.next.into() });
+        } else {
+            return false;
+        }
+        true
     }
 
     /// Writes the next of a list of parameters, if there is one and it is due.
@@ -255,8 +274,19 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 let system = self.system();
                 return self.writer.write_some(system, vehicle::available_mode(index));
             }
-            Reply::NoMission(MissionList { sender: (target_system, target_component), list }) => {
-                self.say(&About { message: MISSION_COUNT_DATA { count: 0, target_system, target_component }, list })
+            Reply::MissionCount(MissionList { sender: (target_system, target_component), list }, count) => {
+                self.say(&About { message: MISSION_COUNT_DATA { count, target_system, target_component }, list })
+            }
+            Reply::MissionRequest(MissionList { sender: (target_system, target_component), list }, seq) => {
+                self.say(&About { message: MISSION_REQUEST_INT_DATA { seq, target_system, target_component }, list })
+            }
+            Reply::MissionItem { list: MissionList { sender, list }, number, is_int } => {
+                match self.shared.mission().item(number) {
+                    Some(item) if is_int => self.say(&About { message: item.message(number, sender), list }),
+                    Some(item) => self.say(&About { message: item.old_message(number, sender), list }),
+                    // Its list was replaced meanwhile: the client asks again.
+                    None => return false,
+                }
             }
             Reply::Mission(MissionList { sender: (target_system, target_component), list }, mavtype) => {
                 self.say(&About { message: MISSION_ACK_DATA { target_system, target_component, mavtype }, list })

@@ -7,12 +7,14 @@ use super::count::Count;
 use super::flag::Flag;
 use super::latest::Latest;
 use super::library::{Answer, Library, Question};
+use super::mission::Mission;
 use super::queue::{Full, Queue};
 use super::reply::QueuedRequest;
 use super::requests::Requests;
 use super::setpoint_owner::SetpointOwner;
 use super::table::offers;
 use crate::link::frame::Frame;
+use crate::link::mission::Item;
 use crate::link::signing::{Refusal, Signing};
 use crate::parameters::table::Name;
 use crate::parameters::{Parameters, ValueRefusal};
@@ -80,6 +82,13 @@ offers! {
     [M: RawMutex] Write<'_, Parameters<M>> {
         fn set(name: Name, value: f32) -> Result<(), ValueRefusal>;
         fn get(name: Name) -> f32;
+        fn flight_settings() -> FlightSettings;
+    }
+    [M: RawMutex] Read<'_, Mission<M>> { fn item(number: u16) -> Option<Item>; }
+    [M: RawMutex] Write<'_, Mission<M>> {
+        fn replace(by: &[Item]);
+        fn item(number: u16) -> Option<Item>;
+        fn count() -> u16;
     }
     [M: RawMutex] Read<'_, Signing<M>> {
         fn judge(frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal>;

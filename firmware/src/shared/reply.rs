@@ -106,8 +106,19 @@ pub enum Reply {
     },
     /// No more LOG_DATA and LOG_ENTRY.
     LogEnd,
-    /// MISSION_COUNT: there is nothing in that list.
-    NoMission(MissionList),
+    /// MISSION_COUNT: how much there is in that list.
+    MissionCount(MissionList, u16),
+    /// MISSION_REQUEST_INT of an item.
+    MissionRequest(MissionList, u16),
+    /// An item.
+    MissionItem {
+        /// Of which list.
+        list: MissionList,
+        /// Its number.
+        number: u16,
+        /// As MISSION_ITEM_INT, or as MISSION_ITEM.
+        is_int: bool,
+    },
     /// MISSION_ACK.
     Mission(MissionList, MavMissionResult),
     /// FILE_TRANSFER_PROTOCOL: there are no files.

@@ -36,8 +36,21 @@ pub struct Report {
     pub wrench: Option<Wrench>,
     /// What the rotors are believed to give of it; none while the law does not fly.
     pub thrust_scale: Option<f32>,
+    /// How far the mission is.
+    pub mission: MissionReport,
     /// How well the ticks keep time.
     pub timing: Timing,
+}
+
+/// A mission's progress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MissionReport {
+    /// The item that is flown, or will be.
+    pub next: u8,
+    /// Whether it is flown.
+    pub is_flown: bool,
+    /// The item that was done last, and how many were, modulo 256.
+    pub done: (u8, u8),
 }
 
 impl Report {
@@ -55,6 +68,7 @@ impl Report {
         reference: None,
         wrench: None,
         thrust_scale: None,
+        mission: MissionReport { next: 0, is_flown: false, done: (0, 0) },
         timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
     };
 }

@@ -66,13 +66,16 @@ fn remove(waiting: &mut Deque<QueuedRequest, REQUESTS>, place: usize) -> Option<
 
 /// Whether it makes room for others.
 fn is_lesser(asked: &QueuedRequest) -> bool {
-    asked.order.is_some() && !matches!(asked.request, Request::Land | Request::Disarm)
+    (asked.order.is_some() || matches!(asked.request, Request::SetMissionItem(_)))
+        && !matches!(asked.request, Request::Land | Request::Disarm)
 }
 
 /// Whether two requests are equal, of the kinds that clients repeat: not points and motors.
 fn is_same(one: &QueuedRequest, other: &QueuedRequest) -> bool {
     let is_alike = match (&one.request, &other.request) {
         (Request::TakeOff(one), Request::TakeOff(other)) => one == other,
+        (Request::FlyMission(one), Request::FlyMission(other)) => one == other,
+        (Request::SetMissionItem(one), Request::SetMissionItem(other)) => one == other,
         (Request::GoTo(_) | Request::MotorTest(_) | Request::MotorSetting(_), _) => false,
         (one, other) => discriminant(one) == discriminant(other),
     };
@@ -85,10 +88,11 @@ const fn kind(request: &Request) -> u8 {
         Request::Arm => 0,
         Request::Disarm => 1,
         Request::TakeOff(_) => 2,
-        Request::FlySetpoints => 3,
+        Request::FlySetpoints | Request::FlyMission(_) => 3,
         Request::Hold | Request::GoTo(_) => 4,
         Request::Land => 5,
         Request::MotorTest(_) | Request::MotorSetting(_) => 6,
+        Request::SetMissionItem(_) => 7,
     }
 }
 

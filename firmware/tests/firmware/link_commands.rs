@@ -229,7 +229,7 @@ fn modes_are_px4s_or_guided() {
     for number in [5.0, 9.0] {
         let shared = Local::new();
         Fed::new(&shared).message(&set_mode(1.0, number, 0.0), 0);
-        assert_eq!(texts(&shared), ["Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only"]);
+        assert_eq!(texts(&shared), ["Mode refused: PX4's 6 0, 4 2, 4 3, 4 4 or 4 6 only"]);
     }
 }
 

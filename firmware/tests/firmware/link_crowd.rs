@@ -387,7 +387,7 @@ fn a_text_is_sent_at_most_once_a_second() {
     }
     let times = |words: &str| said.iter().filter(|text| text.as_str() == words).count();
     let (nonsense, level) =
-        ("Mode refused: PX4's 6 0, 4 2, 4 3 or 4 6 only", "Motor test refused: level not in 0 to 15 %");
+        ("Mode refused: PX4's 6 0, 4 2, 4 3, 4 4 or 4 6 only", "Motor test refused: level not in 0 to 15 %");
     assert!((2..=3).contains(&times(nonsense)) && (2..=3).contains(&times(level)), "{said:?}");
     assert!(!said.iter().any(|text| text.contains("events lost")), "{said:?}");
 }

@@ -3,15 +3,14 @@
 use crate::support::receiver::{Fed, Local, answer, command, newest, replies, texts};
 use crate::support::{extended, v2};
 use core::f32::consts::FRAC_PI_2;
-use firmware::shared::{MissionList, Reply};
+use firmware::shared::Reply;
 use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, GLOBAL_VISION_POSITION_ESTIMATE_DATA, GPS_INPUT_DATA, MANUAL_CONTROL_DATA,
-    MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA, MISSION_SET_CURRENT_DATA,
-    MISSION_WRITE_PARTIAL_LIST_DATA, MavCmd, MavFrame, MavMissionResult, MavParamType, MavResult,
-    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, REQUEST_DATA_STREAM_DATA, SET_ATTITUDE_TARGET_DATA,
-    SET_HOME_POSITION_DATA, VICON_POSITION_ESTIMATE_DATA, VISION_POSITION_ESTIMATE_DATA, VISION_SPEED_ESTIMATE_DATA,
+    MISSION_WRITE_PARTIAL_LIST_DATA, MavCmd, MavFrame, MavParamType, MavResult, PARAM_REQUEST_READ_DATA,
+    PARAM_SET_DATA, REQUEST_DATA_STREAM_DATA, SET_ATTITUDE_TARGET_DATA, SET_HOME_POSITION_DATA,
+    VICON_POSITION_ESTIMATE_DATA, VISION_POSITION_ESTIMATE_DATA, VISION_SPEED_ESTIMATE_DATA,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -86,30 +85,12 @@ fn an_unused_message_is_reported_once() {
     }
     let home = SET_HOME_POSITION_DATA { target_system: 1, ..Default::default() };
     reported_once(&home, Some(&SET_HOME_POSITION_DATA { target_system: 7, ..Default::default() }));
-    let request = MISSION_REQUEST_INT_DATA { target_system: 1, ..Default::default() };
-    reported_once(&request, Some(&MISSION_REQUEST_INT_DATA { target_system: 7, ..Default::default() }));
-    let current = MISSION_SET_CURRENT_DATA { target_system: 1, ..Default::default() };
-    reported_once(&current, Some(&MISSION_SET_CURRENT_DATA { target_system: 7, ..Default::default() }));
     let part = MISSION_WRITE_PARTIAL_LIST_DATA { target_system: 1, ..Default::default() };
     reported_once(&part, Some(&MISSION_WRITE_PARTIAL_LIST_DATA { target_system: 7, ..Default::default() }));
     let stream = REQUEST_DATA_STREAM_DATA { target_system: 1, ..Default::default() };
     reported_once(&stream, Some(&REQUEST_DATA_STREAM_DATA { target_system: 7, ..Default::default() }));
     reported_once(&VISION_SPEED_ESTIMATE_DATA { x: 1.0, ..Default::default() }, None);
     reported_once(&GPS_INPUT_DATA::DEFAULT, None);
-}
-
-#[test]
-fn a_mission_item_is_answered_as_unsupported() {
-    let sender = (255, 190);
-    let unsupported = |list| Reply::Mission(MissionList { sender, list }, MavMissionResult::MAV_MISSION_UNSUPPORTED);
-    let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
-    let item = MISSION_ITEM_DATA { target_system: 1, command, ..Default::default() };
-    let item_int = MISSION_ITEM_INT_DATA { target_system: 1, command, ..Default::default() };
-    let shared = Local::new();
-    let mut fed = Fed::new(&shared);
-    fed.message(&item, 0);
-    fed.bytes(&extended(&item_int, &[1]), 0);
-    assert_eq!(replies(&shared), [unsupported(0), unsupported(1)]);
 }
 
 #[test]

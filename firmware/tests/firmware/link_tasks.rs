@@ -353,7 +353,7 @@ fn payloads(replies: Vec<Reply>, number: u32) -> Vec<Vec<u8>> {
 #[test]
 fn an_answer_about_missions_says_which_list_it_is_about() {
     let about = |list| MissionList { sender: (255, 190), list };
-    let counts = payloads([0, 1, 2].map(|list| Reply::NoMission(about(list))).into(), MISSION_COUNT_DATA::ID);
+    let counts = payloads([0, 1, 2].map(|list| Reply::MissionCount(about(list), 0)).into(), MISSION_COUNT_DATA::ID);
     assert_eq!(counts, [vec![0, 0, 255, 190], vec![0, 0, 255, 190, 1], vec![0, 0, 255, 190, 2]]);
     let refused = MavMissionResult::MAV_MISSION_UNSUPPORTED;
     let acks = [0, 1, 2].map(|list| Reply::Mission(about(list), refused)).into();

@@ -187,9 +187,10 @@ fn ground_and_air_are_distinguished() {
 fn modes_have_names_and_the_heartbeat_says_the_same_number() {
     let named: Vec<_> = (1..=vehicle::MODES).map(|index| vehicle::available_mode(index).unwrap()).collect();
     assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODES + 1).is_none());
-    for mode in [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing] {
-        let number = vehicle::heartbeat(Some(mode), false).custom_mode;
+    let flown = [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing].map(|mode| (mode, false));
+    for (mode, mission) in flown.into_iter().chain([(Mode::Flying, true)]) {
+        let number = vehicle::heartbeat(Some((mode, mission)), false).custom_mode;
         assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
-        assert_eq!(vehicle::current_mode(mode).custom_mode, number);
+        assert_eq!(vehicle::current_mode(mode, mission).custom_mode, number);
     }
 }

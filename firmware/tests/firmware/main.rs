@@ -23,6 +23,7 @@ mod link_crowd;
 mod link_explained;
 mod link_frames;
 mod link_messages;
+mod link_missions;
 mod link_parameters;
 mod link_pose_times;
 mod link_poses;

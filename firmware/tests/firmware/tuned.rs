@@ -133,6 +133,16 @@ fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certifica
 }
 
 #[test]
+fn what_was_built_for_no_vehicle_never_arms_and_says_what_to_do() {
+    let shared = Local::new();
+    let built = Built { configuration: configuration::embedded().unwrap(), loops: &configuration::LOOPS, identity: 7 };
+    let place = Box::leak(Box::new(boot::Place::new()));
+    let (pilot, _) = boot::start_named(place, shared.for_boot(), built, false).unwrap();
+    assert_eq!(texts(&shared), ["No vehicle: build with SCENARIO"]);
+    assert_eq!(pilot.grounded().unwrap().to_string(), "Cannot fly with no vehicle: build with SCENARIO");
+}
+
+#[test]
 fn before_anything_is_built_there_is_nothing_to_tune() {
     let shared = Local::new();
     assert_eq!(texts_of_setting(&shared, Name::Mass, 0.4), ["MASS: not yet"]);

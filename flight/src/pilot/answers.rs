@@ -71,9 +71,12 @@ impl<'m> Pilot<'m> {
                 if self.mode.is_guided() {
                     self.has_setpoint(inputs.now)?;
                 }
+                self.end_mission(inputs.now);
                 self.wanted_since = Some(inputs.now);
                 Ok(())
             }
+            Request::FlyMission(from) => self.start_mission(from, inputs, estimate),
+            Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
                 self.with_chain(|chain| {
@@ -170,6 +173,7 @@ impl<'m> Pilot<'m> {
     pub(super) fn fly_setpoint(&mut self, inputs: &Inputs, estimate: &Estimate) -> Option<Result<(), Refusal>> {
         let setpoint = inputs.setpoint?;
         match self.mode {
+            Mode::Flying if self.mission.is_flown => None,
             Mode::Flying => Some(self.accept(&setpoint)),
             Mode::Idling if self.wanted_since.is_some() => {
                 let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));

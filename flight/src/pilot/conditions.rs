@@ -4,6 +4,7 @@ use super::Pilot;
 use crate::chain::Chain;
 use crate::estimate::Estimate;
 use crate::exchange::Inputs;
+use crate::mission::MissionStep;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::{
@@ -15,12 +16,13 @@ use estimation::estimator::{EstimatedState, Fault};
 use estimation::measurement::is_fresh;
 
 impl Pilot<'_> {
-    /// The conditions that a granted request fulfils.
+    /// The conditions that a granted request fulfils, or a mission that ends.
     pub(super) fn requested(
         &mut self,
         inputs: &Inputs,
         estimate: &Estimate,
         answer: Option<Result<(), Refusal>>,
+        mission: Option<MissionStep>,
     ) -> Conditions {
         let granted = inputs.request.filter(|_| answer == Some(Ok(())));
         let is = |wanted: fn(&Request) -> bool| granted.as_ref().is_some_and(wanted);
@@ -28,6 +30,9 @@ impl Pilot<'_> {
         self.must_still_land &= granted.is_none_or(|request| request == Request::Land);
         let wanted = self.wanted_since.is_some() && self.has_setpoint(inputs.now).is_ok();
         let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
+        let holds = matches!(mission, Some(MissionStep::Over | MissionStep::Refused(..)));
+        let lands = matches!(mission, Some(MissionStep::Lands(_)));
+        let begins = is(|request| matches!(request, Request::FlyMission(_)));
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
             .with(Condition::Killed, inputs.killed)
@@ -38,9 +43,9 @@ impl Pilot<'_> {
             )
             .with(Condition::Requested, inputs.request.is_some())
             .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
-            .with(Condition::HoldRequested, is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
-            .with(Condition::LandRequested, is(|request| *request == Request::Land))
-            .with(Condition::SetpointsRequested, setpoints)
+            .with(Condition::HoldRequested, holds || is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
+            .with(Condition::LandRequested, lands || is(|request| *request == Request::Land))
+            .with(Condition::SetpointsRequested, setpoints || begins)
     }
 
     /// The conditions that follow from the flight.
@@ -93,7 +98,7 @@ impl Pilot<'_> {
             .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
             .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
             .with(Condition::GroundStationGone, self.is_silent(inputs, patience))
-            .with(Condition::SetpointsLost, self.newest.has_ended(inputs.now))
+            .with(Condition::SetpointsLost, !self.mission.is_flown && self.newest.has_ended(inputs.now))
             .with(Condition::BatteryLow, seen.battery_low)
             .with(Condition::BatteryCritical, seen.battery_critical)
             .with(Condition::FenceBreached, self.is_outside(estimate))

@@ -4,7 +4,7 @@
 //! increments, poses -> estimate -> seen -------> conditions -> mode -> governor -> law -> allocation -> output
 //!                        jump -> reference         ^                      ^
 //! request ------------------> answer --------------'                      |
-//! setpoint -------------------------------------------------------------- '
+//! setpoint, or a mission's item ------------------------------------------ '
 //! ```
 
 use super::Pilot;
@@ -31,9 +31,10 @@ impl Pilot<'_> {
         self.keep_setpoint(inputs);
         self.take_back(inputs);
         let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
+        let mission = self.fly_mission(inputs, estimate);
         let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
         // The rules.
-        let conditions = self.requested(inputs, estimate, answer);
+        let conditions = self.requested(inputs, estimate, answer, mission);
         let conditions = self.happened(conditions, inputs, estimate, &seen);
         let conditions = self.checked(conditions, estimate, followed, ready);
         let transition = self.transit(conditions, inputs, estimate, &seen);
@@ -52,7 +53,9 @@ impl Pilot<'_> {
             is_airborne: self.is_airborne(),
             may_fall: self.fall.may_fall(),
             setpoint,
-            setpoints_requested: self.mode == Mode::Flying || self.wanted_since.is_some(),
+            setpoints_requested: self.mode == Mode::Flying && !self.mission.is_flown || self.wanted_since.is_some(),
+            mission: (self.mission.next, self.flies_mission()),
+            mission_step: mission,
             estimated: estimate.state,
             health: estimate.health,
             pose: estimate.pose,

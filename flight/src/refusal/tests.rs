@@ -13,6 +13,13 @@ const LONG: &str = "a_name.that_is_longer_than_the_fifty_characters_of_a_status_
 #[test]
 fn every_text_fits_a_statustext_and_is_unlike_the_others() {
     let grounded = [Grounded::Inequality(LONG), Grounded::Parameter(LONG), Grounded::NoRotors];
+    let mission = [
+        MissionRefusal::NoItem,
+        MissionRefusal::Number,
+        MissionRefusal::OutsideFence,
+        MissionRefusal::BelowHome,
+        MissionRefusal::TakeOffHeight,
+    ];
     let refusals = [
         Refusal::AlreadyArmed,
         Refusal::MotorTestRunning,
@@ -51,6 +58,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
     let poses = Rejected::ALL.map(Rejected::text).into_iter().chain(Taken::ALL.map(Taken::text));
     let refusals = refusals
         .into_iter()
+        .chain(mission.map(Refusal::Mission))
         .chain(grounded.map(Refusal::Grounded))
         .chain(Fault::ALL.map(Refusal::Estimator))
         .chain(ImuFault::ALL.map(Refusal::Imu));

@@ -21,8 +21,8 @@ use controller_core::state::Wrench;
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use estimation::imu::ImuFault;
 use flight::{
-    Battery, FlightSettings, Inputs, Memory, Outcome, Output, PERIOD, Pilot, Pose, Reason, Refusal, Request, Stamped,
-    Velocity,
+    Battery, FlightSettings, Inputs, Memory, MissionItem, Outcome, Output, PERIOD, Pilot, Pose, Reason, Refusal,
+    Request, Stamped, Velocity,
 };
 pub use hummingbird::{certified, paper_law as configuration, rotors};
 use nalgebra::UnitQuaternion;
@@ -67,6 +67,7 @@ pub struct Handed {
     pub battery: Battery,
     pub is_late: bool,
     pub setpoint: Option<Setpoint>,
+    pub mission_item: Option<MissionItem>,
 }
 
 impl Handed {
@@ -87,6 +88,7 @@ impl Handed {
             battery,
             is_late,
             setpoint,
+            mission_item,
         } = self;
         pilot.tick(&Inputs {
             now: *now,
@@ -104,6 +106,7 @@ impl Handed {
             battery: *battery,
             is_late: *is_late,
             setpoint: *setpoint,
+            mission_item: *mission_item,
         })
     }
 }
@@ -189,6 +192,8 @@ pub struct Flight {
     pub ground: f64,
     /// Whether something carries its weight.
     pub weightless: bool,
+    /// The mission's items.
+    pub mission: Vec<MissionItem>,
     mixer: Mixer,
     certified: Certified,
     ground_station: Option<u64>,
@@ -211,6 +216,7 @@ impl Flight {
             gyro_bias: Vector3::zeros(),
             ground: GROUND,
             weightless: false,
+            mission: Vec::new(),
             mixer: Mixer::new(&rotors()),
             certified: certified(),
             ground_station: None,
@@ -264,6 +270,8 @@ impl Flight {
             self.ground_station = Some(now);
         }
         self.inputs.ground_station = self.ground_station;
+        let item = self.pilot.mission_item(self.inputs.request.as_ref());
+        self.inputs.mission_item = item.and_then(|item| self.mission.get(usize::from(item)).copied());
         let outcome = self.inputs.to(&mut self.pilot);
         self.inputs = Handed { now: now + PERIOD, ..Handed::default() };
 

@@ -39,6 +39,10 @@ pub struct SitlArguments {
     /// up at the end
     #[arg(long, value_name = "FILE.mcap")]
     mcap: Option<PathBuf>,
+    /// Send where the vehicle really is to this port of this machine, 100 lines of JSON a second: a motion capture for
+    /// a bridge to be tried on
+    #[arg(long, value_name = "PORT")]
+    truth_port: Option<u16>,
     #[command(flatten)]
     ports: PortArguments,
 }
@@ -151,6 +155,7 @@ impl SitlArguments {
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
             signing_key: self.signing_key.as_deref().map(sitl::key::read).transpose()?,
+            truth: self.truth_port,
             recording: self.mcap.clone().map(|path| (path, text)),
         })
     }

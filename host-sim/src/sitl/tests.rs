@@ -47,6 +47,7 @@ impl Flown {
             faults,
             parameters,
             signing_key,
+            truth: None,
             recording: None,
         };
         let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
@@ -368,6 +369,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
         faults: Vec::new(),
         parameters: None,
         signing_key: None,
+        truth: None,
         recording: None,
     };
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();

@@ -66,7 +66,7 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// Acts on a command once, and has it answered.
     #[inline(never)]
-    fn call(&mut self, frame: &Frame<'_>, call: &Call) {
+    pub(super) fn call(&mut self, frame: &Frame<'_>, call: &Call) {
         let (order, armed) = (Order::of(call.command as u16, frame), self.shared.commander().get());
         let delivery = self.repetitions.look(frame, order.command);
         if delivery != Delivery::New {
@@ -96,6 +96,11 @@ impl<M: RawMutex> Receiver<'_, M> {
         let origin = self.shared.origin().get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
             Action::Ask(request) => {
+                if let (Request::FlyMission(_), Err((number, refusal))) = (&request, self.check_mission()) {
+                    let words = format_args!("Mission item {number}: {refusal}");
+                    self.shared.announce(Event::new(Severity::Warning, words));
+                    return Some(MavResult::MAV_RESULT_DENIED);
+                }
                 let setpoints = if request == Request::FlySetpoints {
                     match self.take_over(order.sender, now) {
                         Ok(sender) => Some(sender),

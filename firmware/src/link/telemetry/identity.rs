@@ -17,13 +17,14 @@ const fn number(text: &str) -> u32 {
     }
 }
 
-/// What it understands: versions 1 and 2, parameters as floats, setpoints, COMMAND_INT. No missions, no files.
+/// What it understands: versions 1 and 2, parameters as floats, setpoints, COMMAND_INT, missions. No files.
 #[must_use]
 pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     AUTOPILOT_VERSION_DATA {
         capabilities: MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
         flight_sw_version: VERSION,
         ..AUTOPILOT_VERSION_DATA::DEFAULT

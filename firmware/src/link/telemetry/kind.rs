@@ -5,8 +5,8 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA,
     ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA,
-    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
-    SYSTEM_TIME_DATA, TIMESYNC_DATA,
+    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA,
+    SYS_STATUS_DATA, SYSTEM_TIME_DATA, TIMESYNC_DATA,
 };
 
 /// A message that is sent by the clock or on request.
@@ -36,6 +36,8 @@ pub enum Kind {
     PositionTarget,
     /// ESTIMATOR_STATUS.
     EstimatorStatus,
+    /// MISSION_CURRENT.
+    MissionCurrent,
     /// HOME_POSITION.
     HomePosition,
     /// GPS_GLOBAL_ORIGIN.
@@ -72,6 +74,7 @@ impl Kind {
             Self::Odometry => of::<ODOMETRY_DATA>(),
             Self::PositionTarget => of::<POSITION_TARGET_LOCAL_NED_DATA>(),
             Self::EstimatorStatus => of::<ESTIMATOR_STATUS_DATA>(),
+            Self::MissionCurrent => of::<MISSION_CURRENT_DATA>(),
             Self::HomePosition => of::<HOME_POSITION_DATA>(),
             Self::GlobalOrigin => of::<GPS_GLOBAL_ORIGIN_DATA>(),
             Self::SystemTime => of::<SYSTEM_TIME_DATA>(),

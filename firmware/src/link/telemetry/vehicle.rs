@@ -7,9 +7,9 @@ use estimation::imu::ImuFault;
 use flight::{Mode, PERIOD};
 use mavlink::dialects::common::{
     AVAILABLE_MODES_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA,
-    MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag, MavModeProperty, MavParamType,
-    MavSeverity, MavStandardMode, MavState, MavSysStatusSensor, MavType, MavVtolState, PARAM_VALUE_DATA,
-    STATUSTEXT_DATA, SYS_STATUS_DATA,
+    MISSION_CURRENT_DATA, MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag,
+    MavModeProperty, MavParamType, MavSeverity, MavStandardMode, MavState, MavSysStatusSensor, MavType, MavVtolState,
+    PARAM_VALUE_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
 };
 
 /// The version of the protocol that HEARTBEAT names.
@@ -20,15 +20,17 @@ const AUTO: u32 = 4 << 16;
 const AUTO_READY: u32 = AUTO | 1 << 24;
 const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
 const AUTO_LOITER: u32 = AUTO | 3 << 24;
+const AUTO_MISSION: u32 = AUTO | 4 << 24;
 const AUTO_LAND: u32 = AUTO | 6 << 24;
 const OFFBOARD: u32 = 6 << 16;
 
-/// PX4's number for the mode that comes nearest.
-fn custom_mode(mode: Mode) -> u32 {
+/// PX4's number for the mode that comes nearest, where a mission is flown or not.
+fn custom_mode(mode: Mode, mission: bool) -> u32 {
     match mode {
         Mode::Boot | Mode::Checks | Mode::Ready | Mode::MotorTest => AUTO_READY,
         Mode::Idling | Mode::Stopped | Mode::Locked => AUTO_READY,
         Mode::TakingOff => AUTO_TAKEOFF,
+        Mode::Flying if mission => AUTO_MISSION,
         Mode::Flying => OFFBOARD,
         Mode::Holding => AUTO_LOITER,
         Mode::Landing | Mode::Descending => AUTO_LAND,
@@ -36,9 +38,10 @@ fn custom_mode(mode: Mode) -> u32 {
 }
 
 /// The modes that may be requested, with their names and MAVLink's standard ones.
-const SELECTABLE: [(u32, &str, MavStandardMode); 4] = [
+const SELECTABLE: [(u32, &str, MavStandardMode); 5] = [
     (OFFBOARD, "Setpoints", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
     (AUTO_LOITER, "Hold", MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD),
+    (AUTO_MISSION, "Mission", MavStandardMode::MAV_STANDARD_MODE_MISSION),
     (AUTO_TAKEOFF, "Take-off", MavStandardMode::MAV_STANDARD_MODE_TAKEOFF),
     (AUTO_LAND, "Land", MavStandardMode::MAV_STANDARD_MODE_LAND),
 ];
@@ -60,13 +63,19 @@ pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
     })
 }
 
-/// The mode that is flown.
+/// The mode that is flown, a mission's or not.
 #[must_use]
-pub fn current_mode(mode: Mode) -> CURRENT_MODE_DATA {
-    let custom_mode = custom_mode(mode);
+pub fn current_mode(mode: Mode, mission: bool) -> CURRENT_MODE_DATA {
+    let custom_mode = custom_mode(mode, mission);
     let standard = SELECTABLE.iter().find(|(custom, ..)| *custom == custom_mode);
     let standard_mode = standard.map_or(MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD, |(.., standard)| *standard);
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
+}
+
+/// The mission's item that is flown, or will be.
+#[must_use]
+pub fn mission_current(report: &Report) -> MISSION_CURRENT_DATA {
+    MISSION_CURRENT_DATA { seq: report.mission.next.into() }
 }
 
 /// Whether it is on the ground; unknown of a vehicle that was stopped in the air or may still fall, and before there is
@@ -84,9 +93,10 @@ pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     EXTENDED_SYS_STATE_DATA { vtol_state: MavVtolState::MAV_VTOL_STATE_UNDEFINED, landed_state }
 }
 
-/// The vehicle's type and state; no mode without a fresh report.
+/// The vehicle's type and state; no mode, and whether it is a mission's, without a fresh report.
 #[must_use]
-pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
+pub fn heartbeat(flown: Option<(Mode, bool)>, hil: bool) -> HEARTBEAT_DATA {
+    let mode = flown.map(|(mode, _)| mode);
     let system_status = match mode {
         None | Some(Mode::Boot) => MavState::MAV_STATE_BOOT,
         Some(Mode::Checks) => MavState::MAV_STATE_CALIBRATING,
@@ -103,7 +113,7 @@ pub fn heartbeat(mode: Option<Mode>, hil: bool) -> HEARTBEAT_DATA {
     base_mode.set(MavModeFlag::MAV_MODE_FLAG_TEST_ENABLED, mode == Some(Mode::MotorTest));
     base_mode.set(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED, hil);
     HEARTBEAT_DATA {
-        custom_mode: mode.map_or(0, custom_mode),
+        custom_mode: flown.map_or(0, |(mode, mission)| custom_mode(mode, mission)),
         mavtype: MavType::MAV_TYPE_QUADROTOR,
         autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC,
         base_mode,

@@ -1,0 +1,108 @@
+"""The motion capture bridge: a flight on its poses alone, on time and late; python/examples/mocap_bridge.py.
+
+`sitl --poses link` has no camera, and `--truth-port` is the motion capture: each line is stamped as it comes, held back, and piped into
+the bridge.
+"""
+
+import json
+import math
+import os
+import queue
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+os.environ["MAVLINK20"] = "1"
+from pymavlink.dialects.v20 import common as m  # noqa: E402
+
+import with_pymavlink  # noqa: E402
+from vehicle import SIGNED, Desk, accept_unsigned, free_ports  # noqa: E402
+
+BRIDGE = os.path.join(os.path.dirname(__file__), "../../python/examples/mocap_bridge.py")
+ACCEPTED = m.MAV_RESULT_ACCEPTED
+LATENESS = (0.0, 0.02, 0.1)  # s
+WITHIN = 0.15  # m, of each corner
+
+
+class Capture:
+    """Where the vehicle really is, held back for a while before the bridge has it."""
+
+    def __init__(self, flown, port, late):
+        self.truth, self.late, self.waiting = None, late, queue.Queue()
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", port))
+        command = [sys.executable, BRIDGE, f"udpout:127.0.0.1:{flown.local}"]
+        self.bridge = subprocess.Popen(command, stdin=subprocess.PIPE, text=True)
+        for task in (self._see, self._send):
+            threading.Thread(target=task, daemon=True).start()
+
+    def _see(self):
+        while True:
+            pose = json.loads(self.socket.recv(4096))
+            self.truth, pose["t"] = pose["position"], time.time()
+            self.waiting.put(pose)
+
+    def _send(self):
+        while True:
+            pose = self.waiting.get()
+            time.sleep(max(0.0, pose["t"] + self.late - time.time()))
+            try:
+                self.bridge.stdin.write(json.dumps(pose) + "\n")
+                self.bridge.stdin.flush()
+            except BrokenPipeError:
+                return
+
+    def close(self):
+        self.bridge.kill()
+        self.bridge.wait()
+
+
+def fly(client, capture):
+    """Take-off, a square, landing; how far the vehicle really was from each corner, m."""
+    ready = lambda one: one.get_type() == "SYS_STATUS" and (
+        one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
+    )
+    client.until(ready, 20.0, "ready to arm")
+    east, north, up = capture.truth
+    assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
+    assert not any("delay unknown" in text for text in client.texts), client.texts
+    assert client.command(m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 1.5) == ACCEPTED
+    client.until(lambda _: client.mode == (4, 3), 20.0, "taken off")
+    misses = []
+    for x, y in [(1, 0), (1, 1), (0, 1), (0, 0)]:
+        client.setpoint = (m.MAV_FRAME_LOCAL_NED, with_pymavlink.POSITION, (north + x, east + y, -up - 1.5, 0, 0, 0))
+        client.rest(0.3)
+        if client.mode != (6, 0):
+            offboard = (m.MAV_CMD_DO_SET_MODE, m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, 6, 0)
+            assert client.command(*offboard) == ACCEPTED
+            client.until(lambda _: client.mode == (6, 0), 3.0, "flying setpoints")
+        client.rest(4.5)
+        misses.append(math.dist(capture.truth, (east + y, north + x, up + 1.5)))
+    client.setpoint = None
+    assert client.command(m.MAV_CMD_NAV_LAND) == ACCEPTED
+    client.until(lambda _: not client.armed, 20.0, "landed and disarmed")
+    return misses
+
+
+def main():
+    for late in LATENESS:
+        (port,) = free_ports(1)
+        with Desk(1.0, "--poses", "link", "--truth-port", port) as flown:
+            if SIGNED:
+                accept_unsigned(flown)
+            capture = Capture(flown, port, late)
+            try:
+                client = with_pymavlink.Client(flown.offboard)
+                client.line.wait_heartbeat(timeout=10)
+                misses = fly(client, capture)
+            finally:
+                capture.close()
+            farthest = max(misses)
+            assert farthest < WITHIN, misses
+            print(f"  mocap bridge, {1e3 * late:.0f} ms late: a square within {100 * farthest:.1f} cm, landed", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
