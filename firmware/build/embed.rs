@@ -42,6 +42,7 @@ fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let bounds = fields(configuration.bounds().entries());
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
+    let constants = constants(configuration.law());
     let loops = board::judged(scenario);
     let (across, vertical) = loops.bits();
     format!(
@@ -54,6 +55,9 @@ pub const IDENTITY: u32 = {identity};
 /// Which factors on its gains have sampled loops with margin.
 pub static LOOPS: JudgedLoops = JudgedLoops::from_bits([{across}], [{vertical}]);
 
+/// The law's constants, as built.
+pub const CONSTANTS: [(&str, f32); {count}] = [{constants}];
+
 fn built() -> Result<Configuration, ParameterError> {{
     let vehicle = VehicleParameters {{ mass: {mass:e}, inertia: {inertia}, gravity: {gravity:e} }};
     let vehicle = Vehicle::new(vehicle)?;
@@ -65,6 +69,8 @@ fn built() -> Result<Configuration, ParameterError> {{
 {law}}}
 ",
         name = scenario.name.escape_default(),
+        count = constants.len(),
+        constants = constants.join(", "),
         across = bytes(across),
         vertical = bytes(vertical),
         identity = board::identity(scenario),
@@ -74,6 +80,15 @@ fn built() -> Result<Configuration, ParameterError> {{
         thrust_max = limits.thrust_max,
         torque_max = vector(&limits.torque_max),
     )
+}
+
+/// The law's constants by name.
+fn constants(law: &LawParameters) -> Vec<String> {
+    let named = |(constant, value): (Constant, f32)| format!("(\"{}\", {value:e})", constant.key);
+    match law {
+        LawParameters::Paper(PaperLaw { gains, .. }) => gains.entries().map(named).collect(),
+        LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.entries().map(named).collect(),
+    }
 }
 
 /// The law's constants, and the configuration made of them.

@@ -9,6 +9,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`sector`] | messages in a sector, whole or torn |
+//! | [`beginning`] | what a flight's file says of the vehicle, before its data |
 //! | [`log`] | a flight's file, made before the flight |
 //! | [`copy`] | the recording that a reset left, as a file |
 //! | [`library`] | the files, read over the link |
@@ -24,6 +25,7 @@
 //! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
 //!   that was there before: [`log`] and [`volume`] explain why.
 
+pub mod beginning;
 pub mod copy;
 pub mod geometry;
 pub mod library;
@@ -34,6 +36,7 @@ pub mod volume;
 use crate::hardware::{Card, Clock};
 use crate::recorder::follow::{Followed, Follower};
 use crate::shared::{CardState, CardView, Event, Severity};
+use beginning::Beginning;
 use core::convert::Infallible;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Deque;
@@ -117,7 +120,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
         }
         let mut library = Library::default();
         loop {
-            let mut log = Log::prepare(&volume)?;
+            let mut log = Log::prepare(&volume, &self.beginning())?;
             let number = log.number();
             shared.card().set(CardState::Ready, self.clock.now());
             if self.reported.take().is_some() || !log.has_begun() {
@@ -134,6 +137,11 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
             let words = format_args!("Log {number:05}: {ticks} ticks, {missed} missed");
             shared.announce(Event::new(severity, words));
         }
+    }
+
+    /// What files begin with now.
+    fn beginning(&self) -> Beginning<'_, M> {
+        Beginning { vehicle: self.shared.recorder().vehicle(), parameters: self.shared.parameters() }
     }
 
     /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, other files may be
@@ -194,7 +202,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
                         self.missed = self.missed.saturating_add(missed);
                         log.gap(volume, missed)?;
                     }
-                    log.record(volume, &record).inspect_err(|_| self.follower.go_back(1))?;
+                    log.record(volume, &self.beginning(), &record).inspect_err(|_| self.follower.go_back(1))?;
                 }
                 Followed::Nothing { is_recording } => {
                     if log.has_begun() {

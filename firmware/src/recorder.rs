@@ -31,6 +31,8 @@ pub const AFTERWARDS: u16 = 200;
 /// What records, and what there is.
 struct Recording {
     ring: Ring<'static>,
+    /// What the vehicle is called.
+    vehicle: &'static str,
     /// Ticks that are still recorded.
     left: u16,
 }
@@ -45,9 +47,15 @@ impl<M: RawMutex> Recorder<M> {
         Self(Mutex::new(RefCell::new(None)))
     }
 
-    /// Records in `ring` from now on; what it has kept can be fetched.
-    pub fn attach(&self, ring: Ring<'static>) {
-        self.0.lock(|recording| recording.replace(Some(Recording { ring, left: 0 })));
+    /// Records in `ring` from now on; what it has kept can be fetched, as of a `vehicle` that is called so.
+    pub fn attach(&self, ring: Ring<'static>, vehicle: &'static str) {
+        self.0.lock(|recording| recording.replace(Some(Recording { ring, vehicle, left: 0 })));
+    }
+
+    /// What the vehicle is called.
+    #[must_use]
+    pub fn vehicle(&self) -> &'static str {
+        self.with(|recording| recording.vehicle).unwrap_or_default()
     }
 
     /// One control tick of a vehicle that is `armed` or not.
@@ -74,7 +82,8 @@ impl<M: RawMutex> Recorder<M> {
     #[must_use]
     pub fn read(&self, offset: u32, out: &mut [u8]) -> usize {
         let read = |recording: &mut Recording| {
-            if recording.left == 0 { ulog::read(&recording.ring, offset as usize, out) } else { 0 }
+            let Recording { ring, vehicle, left } = recording;
+            if *left == 0 { ulog::read(ring, vehicle, offset as usize, out) } else { 0 }
         };
         self.with(read).unwrap_or(0)
     }

@@ -200,7 +200,7 @@ values! {
     /// What may be set from the ground.
     pub parameters: Parameters<M> {
         All: BootView, StorageView; Write: ImuView, ReceiveView;
-        Read: ControlView, SimulatorView, TransmitView, StatusView
+        Read: ControlView, SimulatorView, TransmitView, StatusView, CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
     pub signing: Signing<M> { All: StorageView; Read: ReceiveView, TransmitView }

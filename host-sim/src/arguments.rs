@@ -3,6 +3,7 @@
 mod campaign;
 mod compare;
 mod identify;
+mod log;
 mod sessions;
 mod vehicle;
 
@@ -14,6 +15,8 @@ use host_sim::tune::effort::Effort;
 use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
+use log::LOG_HELP;
+pub use log::LogArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
 use std::path::PathBuf;
@@ -38,6 +41,7 @@ Examples:
   host-sim tune mine.toml --out tuned.toml   search for gains that certify and fly well
   host-sim identify log.csv --scenario mine.toml --bench bench.toml --out found.toml
                                              mass, inertia, lag, centre of mass and drag, from a log
+  host-sim log LOG00012.ULG --ulog px4.ulg   a card's log for Flight Review and PlotJuggler
   host-sim vehicle cf2x.urdf --out cf2x.toml a vehicle from a URDF, SDF, MuJoCo, RotorPy or PX4 file
   host-sim campaign mine.toml --flights 1000 a thousand random throws, in wind and noise
   host-sim compare vehicles/hummingbird.toml our law beside others, in the same flights
@@ -114,6 +118,9 @@ pub enum Command {
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
     #[command(after_help = IDENTIFY_HELP)]
     Identify(IdentifyArguments),
+    /// Write a log of the firmware as the topics of PX4, for Flight Review and PlotJuggler.
+    #[command(after_help = LOG_HELP)]
+    Log(LogArguments),
     /// Read a vehicle's numbers from another program's file; write a vehicle file, with what is missing marked.
     #[command(after_help = VEHICLE_HELP)]
     Vehicle(VehicleArguments),

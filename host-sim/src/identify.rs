@@ -2,7 +2,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`flight_log`], [`ulog`] | the states and commands of a flight, from log.csv or from the firmware's recorder |
+//! | [`flight_log`], [`ulog`], [`px4`] | the states and commands of a flight, from log.csv, from the firmware's logs, from PX4's |
+//! | [`foreign`] | logs of other kinds, and what to do with them |
 //! | [`low_passes`] | the low-passes of its body rates, and of the gyro's noise |
 //! | [`impulses`] | impulses of the model's rotors between ticks, with a lag and a delay |
 //! | [`model`] | the rigid body that is fitted to the log |
@@ -11,6 +12,7 @@
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
+//! | [`student`] | how wide intervals are, by the length of the flight |
 //! | [`agreement`] | whether the two can be of one vehicle |
 //! | [`observability`] | what is not observable in a log, and what to fly for it |
 //! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
@@ -21,6 +23,7 @@ pub mod bench;
 pub mod command;
 pub mod fit;
 pub mod flight_log;
+pub mod foreign;
 pub mod hubs;
 pub mod impulses;
 pub mod low_passes;
@@ -29,7 +32,9 @@ pub mod model;
 pub mod noise;
 pub mod observability;
 pub mod output;
+pub mod px4;
 pub mod quantities;
+pub mod student;
 pub mod ulog;
 
 use bench::Bench;
@@ -57,7 +62,8 @@ fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
         Source::Estimator => 1.0 / IMU_RATE,
         Source::Sensors => scenario.input_delay(),
-        Source::Truth => 0.0,
+        // PX4's are brought to the time at which they were true.
+        Source::Truth | Source::Px4 => 0.0,
     }
 }
 

@@ -63,5 +63,6 @@ pub mod sensors;
 pub mod sitl;
 pub mod table;
 pub mod tune;
+pub mod ulog;
 pub mod vehicle;
 pub mod whole_file;

@@ -5,8 +5,8 @@ mod searches;
 mod terminal;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, MergeArguments, SitlArguments,
-    VehicleArguments,
+    Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, LogArguments, MergeArguments,
+    SitlArguments, VehicleArguments,
 };
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
@@ -47,6 +47,7 @@ fn main() -> ExitCode {
             Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
+            Some(Command::Log(arguments)) => run_log(&arguments),
             Some(Command::Vehicle(arguments)) => run_vehicle(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),
             Some(Command::Merge(arguments)) => run_merge(&arguments),
@@ -245,6 +246,14 @@ fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
         }
         Err(Refused::Input(what)) => Err(what),
     }
+}
+
+fn run_log(LogArguments { log, ulog }: &LogArguments) -> Result<ExitCode, String> {
+    if same_file(ulog, log) {
+        return Err(format!("{}: --ulog must be another file than the log", ulog.display()));
+    }
+    print_text(&host_sim::ulog::command::run(log, ulog)?)?;
+    Ok(status(true, None))
 }
 
 fn run_vehicle(arguments: &VehicleArguments) -> Result<ExitCode, String> {

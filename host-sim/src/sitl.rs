@@ -155,6 +155,8 @@ pub struct Sitl {
     configuration: Configuration,
     loops: &'static JudgedLoops,
     identity: u32,
+    /// What the vehicle is called.
+    name: &'static str,
     /// Set by the firmware: start it anew.
     restart: Rc<Cell<bool>>,
 }
@@ -208,6 +210,7 @@ impl Sitl {
             configuration: scenario.configuration.clone(),
             loops,
             identity,
+            name: Box::leak(scenario.name.clone().into_boxed_str()),
             restart: Rc::default(),
         };
         sitl.start().map_err(|error| in_file(error.to_string()))?;
@@ -226,7 +229,8 @@ impl Sitl {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
         let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
-        shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice())));
+        let memory = Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice());
+        shared.recorder.attach(Ring::recover(memory), self.name);
         let place = Box::leak(Box::new(boot::Place::new()));
         let built = Built { configuration: self.configuration.clone(), loops: self.loops, identity: self.identity };
         let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;

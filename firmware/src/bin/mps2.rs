@@ -37,7 +37,7 @@ mod target {
         };
         SHARED.for_boot().hil().raise();
         if let Some(memory) = recorder::take(false) {
-            SHARED.for_boot().recorder().attach(Ring::recover(memory));
+            SHARED.for_boot().recorder().attach(Ring::recover(memory), firmware::configuration::NAME);
         }
 
         let spawner = executors::start_flight();

@@ -8,11 +8,13 @@
 //! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in
 //! one byte: no cut leaves a length that mixes two.
 
-use super::sector::{BLANK, Content, HEAD_SECTORS, ROOM, Sector, beginning};
+use super::beginning::{Beginning, HEAD_SECTORS};
+use super::sector::{BLANK, Content, ROOM, Sector};
 use super::volume::{File, Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR};
 use crate::recorder::{tick, ulog};
 use crate::shared::{Event, Severity, Text};
+use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::PERIOD;
 
 /// What a file grows by, bytes: 3.8 s of flight.
@@ -53,7 +55,10 @@ impl Log {
     ///
     /// # Errors
     /// If there is no room for it, or the card fails.
-    pub fn prepare<C: Card>(volume: &Volume<'_, C>) -> Result<Self, Trouble> {
+    pub fn prepare<C: Card, M: RawMutex>(
+        volume: &Volume<'_, C>,
+        beginning: &Beginning<'_, M>,
+    ) -> Result<Self, Trouble> {
         // A file that was cut short while it got its first length may be at odds with the tables: it is left alone.
         let newest = volume.newest(&[Kind::Log])?;
         if let Some(entry) = newest.filter(|entry| entry.size.is_multiple_of(STEP) && entry.is_sound) {
@@ -64,18 +69,22 @@ impl Log {
                 volume.overwrite(file, end, &BLANK)?;
             }
             if end <= BEGINNING {
-                return Self::new(file, entry.number, entry.size).begun(volume);
+                return Self::new(file, entry.number, entry.size).begun(volume, beginning);
             }
             volume.close(file)?;
         }
         let (file, number) = volume.create(Kind::Log)?;
-        Self::new(file, number, 0).begun(volume)
+        Self::new(file, number, 0).begun(volume, beginning)
     }
 
     /// With a first chunk.
-    fn begun<C: Card>(mut self, volume: &Volume<'_, C>) -> Result<Self, Trouble> {
+    fn begun<C: Card, M: RawMutex>(
+        mut self,
+        volume: &Volume<'_, C>,
+        beginning: &Beginning<'_, M>,
+    ) -> Result<Self, Trouble> {
         if self.size < CHUNK {
-            self.grow(volume)?;
+            self.lengthen(volume, |place| if place < HEAD_SECTORS { beginning.sector(place, 0) } else { BLANK })?;
         }
         Ok(self)
     }
@@ -126,11 +135,17 @@ impl Log {
     /// # Errors
     /// [`Trouble::Full`] if there is no room. What there was room for is noted as well: nothing else can have it.
     pub fn grow<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
+        self.lengthen(volume, |_| BLANK)
+    }
+
+    fn lengthen<C: Card>(
+        &mut self,
+        volume: &Volume<'_, C>,
+        sector: impl Fn(usize) -> [u8; SECTOR],
+    ) -> Result<(), Trouble> {
         let end = (self.size / CHUNK + 1) * CHUNK;
-        let beginning = beginning(0);
         for place in self.size / STEP..end / STEP {
-            let sector = beginning.get(place as usize).unwrap_or(&BLANK);
-            if let Err(trouble) = volume.append(self.file, sector) {
+            if let Err(trouble) = volume.append(self.file, &sector(place as usize)) {
                 if trouble == Trouble::Full {
                     volume.note(self.file)?;
                 }
@@ -142,16 +157,21 @@ impl Log {
         Ok(())
     }
 
-    /// Adds a record.
+    /// Adds a record; before the first, what is to be said of the vehicle by now.
     ///
     /// # Errors
     /// If a sector cannot be written.
-    pub fn record<C: Card>(&mut self, volume: &Volume<'_, C>, record: &[u8; tick::SIZE]) -> Result<(), Trouble> {
+    pub fn record<C: Card, M: RawMutex>(
+        &mut self,
+        volume: &Volume<'_, C>,
+        beginning: &Beginning<'_, M>,
+        record: &[u8; tick::SIZE],
+    ) -> Result<(), Trouble> {
         if !self.has_begun() {
             let time = record.first_chunk().map_or(0, |time| u64::from_le_bytes(*time));
-            // But for the time it is what is there already, so a cut does no harm.
-            for (offset, sector) in (0..).step_by(SECTOR).zip(beginning(time)) {
-                volume.overwrite(self.file, offset, &sector)?;
+            // But for the time and values it is what is there already, so a cut does no harm.
+            for (offset, place) in (0..).step_by(SECTOR).zip(0..HEAD_SECTORS) {
+                volume.overwrite(self.file, offset, &beginning.sector(place, time))?;
             }
         }
         self.put(volume, &[&ulog::DATA, record])?;

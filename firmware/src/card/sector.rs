@@ -14,10 +14,10 @@ use crate::recorder::ulog;
 use mavlink::calculate_crc;
 
 /// The kind of a message that readers skip.
-const FILLER: u8 = b'Z';
+pub const FILLER: u8 = b'Z';
 
 /// Bytes of a message's head.
-const HEAD: usize = 3;
+pub const HEAD: usize = 3;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 2;
@@ -113,24 +113,6 @@ impl Default for Sector {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Sectors that a file begins with.
-pub const HEAD_SECTORS: usize = 2;
-
-/// The beginning of a file whose first record is of `time`, with filler to the end of its last sector.
-#[must_use]
-pub fn beginning(time: u64) -> [[u8; SECTOR]; HEAD_SECTORS] {
-    let mut sectors = [[0xFF; SECTOR]; HEAD_SECTORS];
-    let bytes = sectors.as_flattened_mut();
-    let (time, mut used) = (time.to_le_bytes(), 0);
-    for part in ulog::beginning(&time) {
-        bytes.iter_mut().skip(used).zip(part).for_each(|(to, from)| *to = *from);
-        used += part.len();
-    }
-    let filler = ulog::head(FILLER, (SECTOR * HEAD_SECTORS).saturating_sub(used + HEAD));
-    bytes.iter_mut().skip(used).zip(filler).for_each(|(to, from)| *to = from);
-    sectors
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ impl<M: RawMutex> Recorder<M> {
     }
 }
 
-fn next(Recording { ring, left }: &mut Recording, follower: &mut Follower) -> Followed {
+fn next(Recording { ring, left, .. }: &mut Recording, follower: &mut Follower) -> Followed {
     let (flight, end) = ring.position();
     let oldest = end.wrapping_sub(u32::try_from(Ring::len(ring)).unwrap_or(u32::MAX));
     let is_first = flight != follower.flight;

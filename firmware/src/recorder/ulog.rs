@@ -24,8 +24,9 @@ const FLAGS: [u8; 43] = {
 };
 
 /// The file's metadata, by ULog's keys.
-const INFORMATION: [Information; 3] = [
+const INFORMATION: [Information; 4] = [
     Information::new("char[25] sys_name", "saturated hybrid feedback"),
+    Information::new("char[5] ver_sw", env!("CARGO_PKG_VERSION")),
     Information::new("char[34] frames", "world z up, body x forward, y left"),
     Information::new(
         "char[132] modes",
@@ -33,6 +34,12 @@ const INFORMATION: [Information; 3] = [
          10 stopped, 11 locked",
     ),
 ];
+
+/// What the vehicle is called takes so many bytes, spaces at its end: files are as long whatever it is called.
+const VEHICLE: usize = 32;
+const VEHICLE_KEY: &str = "char[32] vehicle";
+const VEHICLE_HEAD: [u8; 4] = Information::head(VEHICLE_KEY, VEHICLE);
+const SPACES: [u8; VEHICLE] = [b' '; VEHICLE];
 
 /// Kind I: a key, with its type, and a text.
 struct Information {
@@ -43,8 +50,12 @@ struct Information {
 
 impl Information {
     const fn new(key: &'static str, text: &'static str) -> Self {
-        let [low, high, kind] = head(b'I', 1 + key.len() + text.len());
-        Self { head: [low, high, kind, key.len() as u8], key, text }
+        Self { head: Self::head(key, text.len()), key, text }
+    }
+
+    const fn head(key: &str, length: usize) -> [u8; 4] {
+        let [low, high, kind] = head(b'I', 1 + key.len() + length);
+        [low, high, kind, key.len() as u8]
     }
 }
 
@@ -76,18 +87,30 @@ const RECORD: usize = DATA.len() + tick::SIZE;
 /// Bytes of the time of a record, which is what it begins with.
 pub const TIME: usize = 8;
 
-/// The parts of the file before its data, where the first record was of `time`.
-pub fn beginning(time: &[u8]) -> impl Iterator<Item = &[u8]> {
+/// The parts of the file up to the format, where the first record was of `time`, and the `vehicle` is called so.
+pub fn definitions<'a>(time: &'a [u8], vehicle: &'a str) -> impl Iterator<Item = &'a [u8]> {
+    let name = vehicle.as_bytes().get(..VEHICLE).unwrap_or(vehicle.as_bytes());
+    let spaces = SPACES.get(name.len()..).unwrap_or_default();
+    let called = [&VEHICLE_HEAD[..], VEHICLE_KEY.as_bytes(), name, spaces];
     let information = INFORMATION
         .iter()
         .flat_map(|information| [&information.head[..], information.key.as_bytes(), information.text.as_bytes()]);
-    let definitions = [&FORMAT[..], tick::FORMAT.as_bytes(), &SUBSCRIPTION, NAME.as_bytes()];
-    [&MAGIC[..], time, &FLAGS].into_iter().chain(information).chain(definitions)
+    let format = [&FORMAT[..], tick::FORMAT.as_bytes()];
+    [&MAGIC[..], time, &FLAGS].into_iter().chain(information).chain(called).chain(format)
+}
+
+/// The message after which data may come.
+pub const SUBSCRIBED: [&[u8]; 2] = [&SUBSCRIPTION, NAME.as_bytes()];
+
+/// Bytes of [`definitions`].
+#[must_use]
+pub fn definitions_size() -> usize {
+    definitions(&[0; TIME], "").map(<[u8]>::len).sum()
 }
 
 /// Bytes before the data.
 fn beginning_size() -> usize {
-    beginning(&[0; TIME]).map(<[u8]>::len).sum()
+    definitions_size() + SUBSCRIPTION.len() + NAME.len()
 }
 
 /// Bytes of a file of so many records.
@@ -96,19 +119,19 @@ pub fn size(records: usize) -> u32 {
     u32::try_from(beginning_size() + records * RECORD).unwrap_or(u32::MAX)
 }
 
-/// Reads the file from `offset` on into `out`; how many bytes there were.
-pub fn read(ring: &Ring<'_>, offset: usize, out: &mut [u8]) -> usize {
+/// Reads the file of a `vehicle` from `offset` on into `out`; how many bytes there were.
+pub fn read(ring: &Ring<'_>, vehicle: &str, offset: usize, out: &mut [u8]) -> usize {
     let time = ring.get(0).and_then(|record| record.first_chunk::<TIME>()).copied().unwrap_or_default();
     let from_data =
         |index| (index..ring.len()).filter_map(|index| ring.get(index)).flat_map(|record| [&DATA[..], record]);
     match offset.checked_sub(beginning_size()) {
         Some(offset) => copy(from_data(offset / RECORD), offset % RECORD, out),
-        None => copy(beginning(&time).chain(from_data(0)), offset, out),
+        None => copy(definitions(&time, vehicle).chain(SUBSCRIBED).chain(from_data(0)), offset, out),
     }
 }
 
 /// Copies what `parts` hold beyond their first `skipped` bytes; how many bytes there were.
-fn copy<'a>(parts: impl Iterator<Item = &'a [u8]>, mut skipped: usize, out: &mut [u8]) -> usize {
+pub fn copy<'a>(parts: impl Iterator<Item = &'a [u8]>, mut skipped: usize, out: &mut [u8]) -> usize {
     let mut count = 0;
     for part in parts {
         let wanted = part.get(skipped..).unwrap_or_default();

@@ -97,6 +97,7 @@ offers! {
     [M: RawMutex] Read<'_, Recorder<M>> {
         fn size() -> Option<u32>;
         fn read(offset: u32, out: &mut [u8]) -> usize;
+        fn vehicle() -> &'static str;
         fn follower() -> Follower;
         fn follow(follower: &mut Follower) -> Followed;
         fn answer(question: Question) -> Answer;

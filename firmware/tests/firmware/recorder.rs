@@ -20,7 +20,7 @@ const ROOM: usize = 500;
 /// Shared, with a recorder for [`ROOM`] ticks.
 fn shared() -> Local {
     let shared = Local::new();
-    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())));
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())), "mine");
     shared
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// A log, and what it is held against.
 #[derive(Args)]
 pub struct IdentifyArguments {
-    /// log.csv of a flight, or the ULog that the firmware recorded
+    /// log.csv of a flight, or a ULog: of the firmware's recorder or card, or of PX4
     pub log: PathBuf,
     /// Scenario file whose vehicle is the model: rotors, mass and inertia as they are believed to be [default:
     /// vehicles/study.toml, built in]
@@ -23,8 +23,9 @@ pub struct IdentifyArguments {
 /// The end of `identify --help`.
 pub const IDENTIFY_HELP: &str = "\
 `identify` finds thrust scale over mass, inertia over thrust scale, rotor lag and delay, centre of
-mass (x, y) and linear drag. Each has a standard uncertainty, and an interval of 3.515 of them to
-either side, meant for all sixteen together (docs/identify.md says how often that held). The mass
+mass (x, y) and linear drag. Each has a standard uncertainty, and an interval of 3.515 of them (more
+if the flight is shorter than 80 s) to either side, meant for all sixteen together (docs/identify.md
+says how often that held). The mass
 itself is not observable in flight: give its weighing in a bench file, or the file's mass is taken.
 
   [weighing]

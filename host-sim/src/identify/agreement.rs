@@ -6,14 +6,13 @@
 //! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
 //! all numbers, with tight intervals around the wrong values.
 
+use super::student;
 use crate::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
-/// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by
-/// Student's t with 15 degrees of freedom, which is how well the flight's uncertainty is itself known
-/// ([`super::fit::BLOCKS`]).
-const DEVIATIONS: f64 = 4.073;
-/// The same of a normal distribution.
+/// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by a
+/// normal distribution. By Student's t it is more ([`student`]): the flight's uncertainty is known from a few parts of
+/// it.
 const NORMAL: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
 const ONE_SIDED: f64 = 3.090;
@@ -45,12 +44,13 @@ pub struct Entry {
 }
 
 /// Says which entry contradicts the rest, if all together leave more over than chance does. `flight` is the flight's
-/// own part of chi-square, `freedom` how many statements there are more than unknowns.
+/// own part of chi-square, `freedom` how many statements there are more than unknowns, `parts` from how many parts of it
+/// its uncertainty is known.
 #[must_use]
-pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usize) -> Option<String> {
+pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usize, parts: usize) -> Option<String> {
     let left = |entry: &Entry| entry.value - entry.row.dot(&known.values);
     let bench: f64 = entries.iter().map(|entry| (left(entry) / entry.deviation).powi(2)).sum();
-    if freedom == 0 || bench + flight <= greatest(freedom) {
+    if freedom == 0 || bench + flight <= greatest(freedom, parts) {
         return None;
     }
     // What is left over of an entry, less its own share in the combination: its distance from what all the rest says.
@@ -84,9 +84,9 @@ fn spread(covariance: &SMatrix<f64, 5, 5>, row: &SVector<f64, 5>) -> f64 {
 
 /// The quantile of chi-square at 99.9 % (E. B. Wilson and M. M. Hilferty, 1931), as much greater as one statement too
 /// many has it.
-fn greatest(freedom: usize) -> f64 {
+fn greatest(freedom: usize, parts: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
-    freedom as f64 * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3) * (DEVIATIONS / NORMAL).powi(2)
+    freedom as f64 * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3) * (student::consistent(parts) / NORMAL).powi(2)
 }
 
 #[cfg(test)]
@@ -97,7 +97,7 @@ mod tests {
     fn quantiles_are_those_of_tables() {
         // Chi-square at 99.9 %: within 4 %, on the safe side.
         for (freedom, table) in [(1, 10.828), (2, 13.816), (4, 18.467), (10, 29.588)] {
-            let ratio = greatest(freedom) / (DEVIATIONS / NORMAL).powi(2) / table;
+            let ratio = greatest(freedom, 16) / (4.073_f64 / NORMAL).powi(2) / table;
             assert!((0.99..1.04).contains(&ratio), "{freedom}: {ratio}");
         }
     }

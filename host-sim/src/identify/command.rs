@@ -3,21 +3,21 @@
 use super::bench::{self, Bench};
 use super::flight_log::{FlightLog, Source};
 use super::output::{Values, rewritten};
-use super::quantities::{COVERAGE, Quantities, Quantity};
-use super::{identify, margins, observability, ulog};
+use super::quantities::{Quantities, Quantity};
+use super::{foreign, identify, margins, observability, ulog};
 use crate::table::{aligned, short};
+use crate::ulog::MAGIC;
+use crate::ulog::command::LONGEST_LOG;
 use crate::whole_file::WholeFile;
+use controller_core::allocation::Rotors;
 use scenario::Scenario;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The longest log, bytes: a day of the fastest one.
-const LONGEST_LOG: u64 = 1 << 30;
-
 /// The arguments of one identification.
 #[derive(Debug, Clone)]
 pub struct Task {
-    /// log.csv or a ULog of the recorder.
+    /// log.csv, or a ULog of the firmware or of PX4.
     pub log: PathBuf,
     /// The scenario's text, and how errors call it.
     pub original: String,
@@ -54,7 +54,7 @@ pub fn run(task: &Task) -> Result<String, Refused> {
         None => Bench::default(),
         Some(path) => bench::read(&text(path)?, rotors, gravity).map_err(|what| in_file(path, &what))?,
     };
-    let log = read(&task.log)?;
+    let log = read(&task.log, rotors, bench.curve)?;
     let cannot = |lines: Vec<String>| {
         Refused::NotIdentifiable(format!("{}: not identifiable\n  {}", task.log.display(), lines.join("\n  ")))
     };
@@ -65,7 +65,9 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     let identified = identify(&log, &scenario, &bench).map_err(|what| cannot(vec![format!("the log {what}")]))?;
     let unknown = observability::unobservable(&identified);
     if !unknown.is_empty() {
-        return Err(cannot(unknown));
+        let known = observability::known(&identified);
+        let known = (!known.is_empty()).then(|| format!("known all the same: {}", known.join("; ")));
+        return Err(cannot(unknown.into_iter().chain(known).collect()));
     }
     let mut report = head(&scenario, &log);
     report += &table(&identified, &scenario);
@@ -99,15 +101,17 @@ fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path, Who
 }
 
 /// A log of either kind; a ULog is known by its first bytes.
-fn read(path: &Path) -> Result<FlightLog, Refused> {
+fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, Refused> {
     let bytes =
         scenario::text::bytes(path, LONGEST_LOG).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
-    let log = if bytes.starts_with(&ulog::MAGIC) {
-        ulog::read(&bytes)
+    let log = if bytes.starts_with(&MAGIC) {
+        ulog::read(&bytes, rotors, curve)
+    } else if let Some(what) = foreign::recognised(&bytes) {
+        Err(what)
     } else {
         match String::from_utf8(bytes) {
             Ok(text) => FlightLog::from_csv(&text),
-            Err(_) => Err("neither a log.csv nor a ULog".to_owned()),
+            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::COLUMNS)),
         }
     };
     log.map_err(|what| in_file(path, &what))
@@ -126,9 +130,12 @@ fn head(scenario: &Scenario, log: &FlightLog) -> String {
         Source::Estimator => "the estimator's",
         Source::Sensors => "the sensors'",
         Source::Truth => "the TRUE state, which no real vehicle knows",
+        Source::Px4 => {
+            "PX4's; supposed: a full motor output is a rotor's greatest thrust, and thrust goes with its square or as \
+             the bench's thrust stand has it"
+        }
     };
-    let seconds = log.moments.len() as f64 * log.period;
-    format!("{}: {} s flown without a gap, state: {source}\n\n", scenario.name, short(seconds))
+    format!("{}: {} s flown without a gap, state: {source}\n\n", scenario.name, short(log.seconds()))
 }
 
 fn table(identified: &Quantities, scenario: &Scenario) -> String {
@@ -167,8 +174,9 @@ fn table(identified: &Quantities, scenario: &Scenario) -> String {
 
 fn remarks(identified: &Quantities, bench: &Bench) -> String {
     let mut text = format!(
-        "uncertainty: standard. interval: {COVERAGE} of them to either side, for all true values together (docs/identify.md says how often that held)\n\
-         the centre of mass is from the file's; other steady torques count as part of it\n"
+        "uncertainty: standard. interval: {} of them to either side, for all true values together (docs/identify.md says how often that held)\n\
+         the centre of mass is from the file's; other steady torques count as part of it\n",
+        identified.coverage
     );
     if !identified.mass_is_measured {
         text += "the mass was TAKEN FROM THE FILE: only thrust scale over mass and inertia over thrust scale are \

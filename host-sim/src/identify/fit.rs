@@ -11,7 +11,7 @@
 //! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
-//! not white is the jackknife's: by how much the unknowns move if a block b, a [`BLOCKS`]-th of the log, is left out,
+//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each [`BLOCK`] long, is left out,
 //! (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full what rests on a few
 //! blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block pulls the fit to
 //! itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
@@ -22,13 +22,14 @@
 
 use super::model::{CHANNELS, Channels, DRAG, Model, SQUARED_LAG, STRENGTH, UNKNOWNS, Unknowns, WHOLE_DELAY, prior};
 use super::noise::{Noise, Whitening};
+use super::student::PARTS;
 use nalgebra::SMatrix;
 use std::array::from_fn;
 
-/// Parts of the log that the jackknife leaves out in turn: in a flight of 80 s each is 5 s long, longer than the memory
-/// of the residuals once they are whitened. Turbulence is not quite of first order, nor does an estimator's error
+/// Parts of the log that the jackknife leaves out in turn, s of each: longer than the memory of the residuals once they are
+/// whitened. Turbulence is not quite of first order, nor does an estimator's error
 /// in its gyro's bias come and go as the model has it.
-pub const BLOCKS: usize = 16;
+const BLOCK: f64 = 5.0;
 /// Between two samples of the velocities, s.
 const LOOK: f64 = 0.1;
 /// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are
@@ -61,6 +62,8 @@ pub struct Fit {
     pub unknowns: Unknowns,
     /// Theirs.
     pub covariance: Covariance,
+    /// From how many parts of the log the covariance is known.
+    pub blocks: usize,
 }
 
 /// Fits `model`; `reference` is that of the same flight without disturbances. Samples come each `period`, s.
@@ -69,6 +72,8 @@ pub struct Fit {
 /// If the search does not settle: the log is of another vehicle, or has too little information.
 pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String> {
     let (mut unknowns, wide) = prior();
+    let [least, most] = PARTS;
+    let count = ((model.seconds() / BLOCK).round() as usize).clamp(least, most);
     unknowns[STRENGTH] = model.balance();
     let (start, mut noise) = (unknowns, [Noise::START; CHANNELS]);
     let mut felt = Vec::new();
@@ -115,7 +120,7 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
                 (slope(&ahead.0, &behind.0), slope(&ahead.1, &behind.1))
             })
             .collect();
-        let (mut spread, blocks) = equations(&errors, &slopes);
+        let (mut spread, blocks) = equations(&errors, &slopes, count);
         let mut information = blocks.iter().map(|block| block.information).sum::<Covariance>();
         let mut pull = blocks.iter().map(|block| block.pull).sum::<Unknowns>();
         for unknown in 0..UNKNOWNS {
@@ -129,7 +134,7 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
         let moved = inverse * pull;
         let within = |part: f64| (0..UNKNOWNS).all(|i| moved[i].abs() < part * covariance[(i, i)].sqrt());
         if step >= NOISE_STEPS && is_near && within(SETTLED) {
-            return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)? });
+            return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)?, blocks: blocks.len() });
         }
         // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones
         // are taken.
@@ -157,7 +162,7 @@ fn scaled_inverse(matrix: &Covariance) -> Option<Covariance> {
     Some(Covariance::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// The equations of one of [`BLOCKS`] parts of the log.
+/// The equations of one of the parts of the log.
 #[derive(Debug, Clone, Default)]
 struct Block {
     /// Its part of A.
@@ -168,9 +173,9 @@ struct Block {
 
 /// sum Z' Z, and what each part of the log adds to A and to sum Z' e; each unknown has the slopes of the model and of
 /// the reference.
-fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Block>) {
+fn equations(errors: &White, slopes: &[(White, White)], count: usize) -> (Covariance, Vec<Block>) {
     let mut spread = Covariance::zeros();
-    let mut blocks = vec![Block::default(); BLOCKS];
+    let mut blocks = vec![Block::default(); count];
     for (channel, errors) in errors.iter().enumerate() {
         let deviation = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         for (sample, error) in errors.iter().enumerate() {
@@ -180,7 +185,7 @@ fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Bloc
             } else {
                 slope
             };
-            let block = &mut blocks[BLOCKS * sample / errors.len()];
+            let block = &mut blocks[count * sample / errors.len()];
             block.information.ger(1.0, &instrument, &slope, 1.0);
             block.pull += instrument * (error / deviation);
             spread.ger(1.0, &instrument, &instrument, 1.0);
@@ -191,11 +196,11 @@ fn equations(errors: &White, slopes: &[(White, White)]) -> (Covariance, Vec<Bloc
 
 /// The covariance with each deviation the greater of the usual and the jackknife's, correlations kept.
 fn robust(usual: &Covariance, information: &Covariance, blocks: &[Block]) -> Result<Covariance, String> {
-    let share = (BLOCKS - 1) as f64 / BLOCKS as f64;
+    let share = (blocks.len() - 1) as f64 / blocks.len() as f64;
     let mut spread = Covariance::zeros();
     for block in blocks {
         let others = scaled_inverse(&(information - block.information));
-        let moved = others.ok_or("rests on a sixteenth of its time: fly longer")? * block.pull;
+        let moved = others.ok_or("rests on a small part of its time: fly longer")? * block.pull;
         spread.ger(share, &moved, &moved, 1.0);
     }
     let mut grow = Unknowns::from_fn(|i, _| (spread[(i, i)] / usual[(i, i)]).max(1.0).sqrt());

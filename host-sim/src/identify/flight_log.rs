@@ -1,10 +1,11 @@
 //! The state that a vehicle measured in flight and the wrench that it commanded, at each control tick.
 //!
 //! From log.csv, the state is `est_…` where there is an estimator, `measured_…` where there are sensors, and the true
-//! state only where the vehicle flew on that. From the firmware's recorder, it is the estimate ([`super::ulog`]).
+//! state only where the vehicle flew on that. From a ULog, it is the estimate ([`super::ulog`]).
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units.
 
+use super::foreign::COLUMNS;
 use controller_core::state::Wrench;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -17,6 +18,8 @@ pub enum Source {
     Sensors,
     /// It is the state itself.
     Truth,
+    /// By PX4, on another clock than its own: [`super::px4`].
+    Px4,
 }
 
 /// One control tick.
@@ -101,7 +104,8 @@ impl FlightLog {
             (Source::Truth, "")
         };
         let column = |name: &str| {
-            header.iter().position(|found| *found == name).ok_or(format!("line 1: has no column {name}: no log.csv"))
+            let place = header.iter().position(|found| *found == name);
+            place.ok_or_else(|| format!("line 1: has no column {name}: no log.csv; {COLUMNS}"))
         };
         let measured = ["vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
         let mut columns = vec![column("t")?];
@@ -130,6 +134,12 @@ impl FlightLog {
         }
         differentiate(&mut moments);
         Self::longest(source, &moments)
+    }
+
+    /// How long it is, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.moments.len() as f64 * self.period
     }
 
     /// The same flight as the reference has it: velocities without gusts and noise, level, turning in heading only.

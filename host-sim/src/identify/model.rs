@@ -104,6 +104,12 @@ impl<'a> Model<'a> {
         })
     }
 
+    /// How long the log is, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.log.seconds()
+    }
+
     /// The rotors' impulses for these unknowns.
     #[must_use]
     pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {

@@ -6,11 +6,11 @@
 //! file's, or rotors that answer before their command.
 
 use super::flight_log::FlightLog;
-use super::quantities::{COVERAGE, Quantities, Quantity};
+use super::quantities::{Quantities, Quantity};
 use crate::table::short;
 
-/// The shortest flight, s.
-const SHORTEST: f64 = 20.0;
+/// The shortest flight, s: three of the parts that uncertainties are known from, as a board's recorder holds.
+const SHORTEST: f64 = 15.0;
 /// Least body rates, root mean square, rad/s: twice those that noise alone causes in hover.
 const TURNING: f64 = 0.025;
 /// Least reference speeds along body x, y, z, root mean square about their mean, m/s: drag shows from there on.
@@ -22,7 +22,7 @@ const SCALES: [f64; 2] = [0.3, 3.0];
 /// The missing excitation of a flight, a line each; empty if every quantity is excited.
 #[must_use]
 pub fn unexcited(log: &FlightLog) -> Vec<String> {
-    let seconds = log.moments.len() as f64 * log.period;
+    let seconds = log.seconds();
     if seconds < SHORTEST {
         return vec![format!(
             "the flight: {} s without a gap, at least {SHORTEST} are needed: fly longer, and lose no pose or record",
@@ -69,6 +69,51 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
     missing
 }
 
+/// What is asked of a quantity: its name, itself, how wide its interval may be, of itself or as it stands, and what to
+/// fly for a narrower one.
+type Asked<'q> = (&'static str, &'q Quantity, f64, &'static str, &'static str);
+
+fn asked(identified: &Quantities) -> [Asked<'_>; 7] {
+    let steady = "fly in calmer air, or longer";
+    let quick = "fly quicker and more varied steps about this axis, or longer";
+    let [x, y, z] = &identified.inertia_over_scale;
+    let [forward, left] = &identified.centre_of_mass;
+    // The law's own thrust estimate compensates 20 %.
+    [
+        ("thrust scale over mass", &identified.scale_over_mass, 0.2, "of it", steady),
+        ("inertia x", x, 0.2, "of it", quick),
+        ("inertia y", y, 0.2, "of it", quick),
+        ("inertia z", z, 0.2, "of it", quick),
+        ("lag and delay together", &identified.whole_delay, 0.005, "s", quick),
+        ("centre of mass x", forward, 0.003, "m", steady),
+        ("centre of mass y", left, 0.003, "m", steady),
+    ]
+}
+
+/// How far to either side the interval of a quantity reaches, as its limit counts.
+fn reach(identified: &Quantities, (_, quantity, _, unit, _): &Asked<'_>) -> f64 {
+    let wide = identified.coverage * quantity.uncertainty;
+    if *unit == "of it" { wide / quantity.value.abs() } else { wide }
+}
+
+/// The quantities that are known of a flight that does not tell all of them, each with its interval; none if what it
+/// tells is contradictory or implausible.
+#[must_use]
+pub fn known(identified: &Quantities) -> Vec<String> {
+    let plausible = (SCALES[0]..=SCALES[1]).contains(&identified.thrust_scale.value);
+    if identified.contradiction.is_some() || !plausible || identified.lag.interval[1] <= 0.0 {
+        return vec![];
+    }
+    let rows = asked(identified);
+    let narrow = rows.iter().filter(|row| reach(identified, row) <= row.2);
+    let written = narrow.map(|(name, quantity, ..)| {
+        let [least, greatest] = quantity.interval.map(short);
+        let over = if name.starts_with("inertia") { " over thrust scale" } else { "" };
+        format!("{name}{over} {} ({least} to {greatest})", short(quantity.value))
+    });
+    written.collect()
+}
+
 /// The quantities that are too uncertain or implausible to be written, a line each.
 #[must_use]
 pub fn unobservable(identified: &Quantities) -> Vec<String> {
@@ -91,22 +136,11 @@ pub fn unobservable(identified: &Quantities) -> Vec<String> {
                 .to_owned(),
         ];
     }
-    let relative = |quantity: &Quantity| COVERAGE * quantity.uncertainty / quantity.value.abs();
-    let absolute = |quantity: &Quantity| COVERAGE * quantity.uncertainty;
-    let steady = "fly in calmer air, or longer";
-    let quick = "fly quicker and more varied steps about this axis, or longer";
-    // The law's own thrust estimate compensates 20 %.
-    let mut rows = vec![("thrust scale over mass", relative(&identified.scale_over_mass), 0.2, "of it", steady)];
-    for (name, inertia) in ["inertia x", "inertia y", "inertia z"].into_iter().zip(&identified.inertia_over_scale) {
-        rows.push((name, relative(inertia), 0.2, "of it", quick));
-    }
-    rows.push(("lag and delay together", absolute(&identified.whole_delay), 0.005, "s", quick));
-    for (name, centre) in ["centre of mass x", "centre of mass y"].into_iter().zip(&identified.centre_of_mass) {
-        rows.push((name, absolute(centre), 0.003, "m", steady));
-    }
-    let wide = rows.into_iter().filter(|(_, found, most, ..)| found.is_nan() || found > most);
-    wide.map(|(name, found, most, unit, fly)| {
-        format!("{name}: known to +- {} {unit}, at most {most} is allowed: {fly}", short(found))
+    let rows = asked(identified);
+    let wide = rows.iter().filter(|row| !(reach(identified, row) <= row.2));
+    wide.map(|row| {
+        let (name, _, most, unit, fly) = row;
+        format!("{name}: known to +- {} {unit}, at most {most} is allowed: {fly}", short(reach(identified, row)))
     })
     .collect()
 }

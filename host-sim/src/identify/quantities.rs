@@ -4,24 +4,20 @@
 //! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
 //! ([`super::agreement`]). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
-//! Each *interval* is the estimate and [`COVERAGE`] standard uncertainties to either side. The report states sixteen
+//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student`]). The report states sixteen
 //! quantities at once, and all true values together are to be in their intervals in 95 of 100 flights. Bonferroni's
-//! inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from [`BLOCKS`] parts of a
+//! inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from a few parts of a
 //! flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less than there
-//! are parts, and 1 - 0.05 / 16 of those are within 3.515. A delay's interval follows from that of the whole delay and
+//! are parts. With the 16 parts of 80 s, 1 - 0.05 / 16 of those are within 3.515, with 4 within 8.768. A delay's interval follows from that of the whole delay and
 //! that of the lag, so it misses only where one of them does.
 
 use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
-use super::fit::{BLOCKS, Fit};
+use super::fit::Fit;
 use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
+use super::student;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
-
-/// Standard uncertainties to either side of an estimate: the quantile of Student's t with 15 degrees of freedom at 1 -
-/// 0.05 / (2 x 16).
-pub const COVERAGE: f64 = 3.515;
-const _: () = assert!(BLOCKS == 16);
 
 /// Relative uncertainty of the file's mass where no bench gives it: as good as exact.
 const TAKEN: f64 = 1e-6;
@@ -38,15 +34,15 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    fn new(value: f64, uncertainty: f64) -> Self {
-        let wide = COVERAGE * uncertainty;
+    fn new(value: f64, uncertainty: f64, coverage: f64) -> Self {
+        let wide = coverage * uncertainty;
         Self { value, uncertainty, interval: [value - wide, value + wide] }
     }
 
     /// `unit` times e to the power of the logarithm.
-    fn exponential(logarithm: f64, uncertainty: f64, unit: f64) -> Self {
+    fn exponential(logarithm: f64, uncertainty: f64, unit: f64, coverage: f64) -> Self {
         let at = |deviations: f64| unit * (logarithm + deviations * uncertainty).exp();
-        Self { value: at(0.0), uncertainty: at(0.0) * uncertainty, interval: [at(-COVERAGE), at(COVERAGE)] }
+        Self { value: at(0.0), uncertainty: at(0.0) * uncertainty, interval: [at(-coverage), at(coverage)] }
     }
 
     /// Whether a value is within the stated uncertainty.
@@ -82,6 +78,8 @@ pub struct Quantities {
     pub drag: [Quantity; 3],
     /// Whether the mass was weighed, or follows from a thrust stand.
     pub mass_is_measured: bool,
+    /// Standard uncertainties from an estimate to either end of its interval.
+    pub coverage: f64,
     /// How bench and flight contradict each other, in words.
     pub contradiction: Option<String>,
 }
@@ -93,38 +91,40 @@ impl Quantities {
     /// If the two cannot be combined; finite numbers can.
     pub fn combined(fit: &Fit, bench: &Bench, vehicle: &Vehicle, late: f64) -> Result<Self, String> {
         let (unknowns, covariance) = (&fit.unknowns, &fit.covariance);
-        let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt());
+        let coverage = student::coverage(fit.blocks);
+        let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt(), coverage);
         let (Known { values, covariance: spread }, contradiction) =
             logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
         let deviation = |index: usize| f64::max(spread[(index, index)], 0.0).sqrt();
         let mass_0 = f64::from(vehicle.mass);
-        let of_bench = |index: usize, unit: f64| Quantity::exponential(values[index], deviation(index), unit);
+        let of_bench = |index: usize, unit: f64| Quantity::exponential(values[index], deviation(index), unit, coverage);
         let mass = of_bench(0, mass_0);
         let over_scale = |axis: usize| {
             let known = direct(1 + axis);
-            Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]))
+            Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]), coverage)
         };
         let strength = direct(STRENGTH);
         let whole = direct(WHOLE_DELAY);
-        let whole_delay = Quantity::new(whole.value - late, whole.uncertainty);
-        let lag = lag(&direct(SQUARED_LAG), &whole);
+        let whole_delay = Quantity::new(whole.value - late, whole.uncertainty, coverage);
+        let lag = lag(&direct(SQUARED_LAG), &whole, coverage);
         let drag = |axis: usize| {
             let of_mass = direct(DRAG + axis);
             let relative = mass.uncertainty / mass.value * of_mass.value;
-            Quantity::new(mass.value * of_mass.value, mass.value * of_mass.uncertainty.hypot(relative))
+            Quantity::new(mass.value * of_mass.value, mass.value * of_mass.uncertainty.hypot(relative), coverage)
         };
         Ok(Self {
             mass,
             thrust_scale: of_bench(1, 1.0),
-            scale_over_mass: Quantity::exponential(strength.value, strength.uncertainty, 1.0 / mass_0),
+            scale_over_mass: Quantity::exponential(strength.value, strength.uncertainty, 1.0 / mass_0, coverage),
             inertia: [0, 1, 2].map(|axis| of_bench(2 + axis, f64::from(vehicle.inertia[axis]))),
             inertia_over_scale: [0, 1, 2].map(over_scale),
             whole_delay,
             lag,
-            delay: delay(&lag, &whole_delay),
+            delay: delay(&lag, &whole_delay, coverage),
             centre_of_mass: [direct(CENTRE), direct(CENTRE + 1)],
             drag: [0, 1, 2].map(drag),
             mass_is_measured: bench.mass.is_some() || bench.thrust_scale.is_some(),
+            coverage,
             contradiction,
         })
     }
@@ -133,20 +133,20 @@ impl Quantities {
 /// Between the bounds from the squared lag: not below zero, and not above the whole. That is the whole as it was
 /// flown: rates are late by what is counted for them or less, so without that the lag of a vehicle that acts at once
 /// would be cut short.
-fn lag(squared: &Quantity, whole: &Quantity) -> Quantity {
+fn lag(squared: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
     let interval = squared.interval.map(root);
-    spanned(root(squared.value).min(whole.value).max(interval[0]), interval)
+    spanned(root(squared.value).min(whole.value).max(interval[0]), interval, coverage)
 }
 
 /// The rest of the whole.
-fn delay(lag: &Quantity, whole: &Quantity) -> Quantity {
+fn delay(lag: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let [least, greatest] = [whole.interval[0] - lag.interval[1], whole.interval[1] - lag.interval[0]];
-    spanned((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)])
+    spanned((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)], coverage)
 }
 
-fn spanned(value: f64, interval: [f64; 2]) -> Quantity {
-    Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * COVERAGE), interval }
+fn spanned(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
+    Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * coverage), interval }
 }
 
 /// Flight and bench combined, and in words how they contradict each other, if they do.
@@ -172,7 +172,7 @@ fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Opt
     let known = Known { values: covariance * pull, covariance };
     let left = values - shares * known.values;
     let freedom = (SHARES.len() + entries.len()).saturating_sub(known.values.len());
-    let contradiction = contradiction(&entries, &known, left.dot(&(flown * left)), freedom);
+    let contradiction = contradiction(&entries, &known, left.dot(&(flown * left)), freedom, fit.blocks);
     Some((known, contradiction))
 }
 

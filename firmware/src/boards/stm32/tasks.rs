@@ -30,7 +30,7 @@ use crate::shared::{
     self, CardView, ControlView, Event, ImuView, PortView, RadioView, ReceiveView, RestartView, Severity,
     SimulatorView, StatusView, StorageView, TransmitView,
 };
-use crate::{boot, card, imu, link, radio, status};
+use crate::{boot, card, configuration, imu, link, radio, status};
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -78,7 +78,7 @@ pub fn run() -> ! {
         booting.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
     }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
-        booting.recorder().attach(Ring::recover(memory));
+        booting.recorder().attach(Ring::recover(memory), configuration::NAME);
     }
     static PLACE: boot::Place = boot::Place::new();
     // Without the error's words: what prints them takes 2 KB, and the build refuses such files.

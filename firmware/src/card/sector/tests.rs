@@ -48,12 +48,3 @@ fn a_torn_sector_is_found_wherever_it_tore() {
     }
     assert_eq!(Content::of(&[0; SECTOR]), Content::Torn);
 }
-
-#[test]
-fn the_beginning_fits_its_sectors_and_ends_with_them() {
-    let bytes = beginning(0x0123_4567_89AB_CDEF);
-    let bytes = bytes.as_flattened();
-    assert_eq!(bytes[8..16], 0x0123_4567_89AB_CDEF_u64.to_le_bytes());
-    let kinds: String = messages(&bytes[16..]).iter().map(|(kind, _)| kind).collect();
-    assert_eq!(kinds, "BIIIFAZ");
-}

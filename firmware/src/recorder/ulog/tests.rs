@@ -15,7 +15,7 @@ fn file(ring: &Ring, piece: usize) -> Vec<u8> {
     let mut file = vec![];
     let mut buffer = vec![0; piece];
     loop {
-        let count = read(ring, file.len(), &mut buffer);
+        let count = read(ring, "mine", file.len(), &mut buffer);
         file.extend(&buffer[..count]);
         if count < piece {
             return file;
@@ -33,7 +33,7 @@ fn a_file_is_the_same_in_pieces_of_any_size() {
         assert_eq!(file(&ring, piece), whole, "{piece}");
     }
     for beyond in [whole.len(), whole.len() + 1, usize::MAX] {
-        assert_eq!(read(&ring, beyond, &mut [0; 90]), 0);
+        assert_eq!(read(&ring, "mine", beyond, &mut [0; 90]), 0);
     }
 }
 
@@ -57,7 +57,16 @@ fn every_message_is_as_long_as_it_says_and_of_a_kind_in_its_place() {
         }
         at += 3 + length;
     }
-    assert_eq!((at, kinds.as_str()), (file.len(), "BIIIFADDDDDDDDDD"));
+    assert_eq!((at, kinds.as_str()), (file.len(), "BIIIIIFADDDDDDDDDD"));
+}
+
+#[test]
+fn whatever_a_vehicle_is_called_its_file_is_as_long() {
+    for (name, written) in [("", ""), ("mine", "mine"), (&"long".repeat(20)[..], &"long".repeat(8)[..])] {
+        let bytes: Vec<u8> = definitions(&[0; TIME], name).flatten().copied().collect();
+        assert_eq!(bytes.len(), definitions_size());
+        assert!(String::from_utf8_lossy(&bytes).contains(&format!("char[32] vehicle{written:32}")), "{name}");
+    }
 }
 
 #[test]
@@ -67,5 +76,5 @@ fn a_text_is_as_long_as_its_key_says_and_names_every_mode() {
         assert_eq!(length.parse(), Ok(text.len()), "{key}");
     }
     let modes = flight::Mode::ALL.map(|mode| format!("{} {}", mode as u8, mode));
-    assert_eq!(INFORMATION[2].text, modes.join(", "));
+    assert_eq!(INFORMATION[3].text, modes.join(", "));
 }

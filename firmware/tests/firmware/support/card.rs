@@ -202,7 +202,7 @@ pub fn parsed(file: &[u8]) -> Parsed {
                 parsed.texts.push((char::from(body[0]), number(&body[1..9]), text));
             }
             b'O' => parsed.gaps.push(u16::from_le_bytes(body.try_into().unwrap())),
-            b'B' | b'I' | b'F' | b'A' | b'Z' => {}
+            b'B' | b'I' | b'P' | b'F' | b'A' | b'Z' => {}
             _ => return parsed,
         }
         rest = behind;

@@ -1,0 +1,118 @@
+//! The beginning of a flight's file: what the recorder's file has, and the parameters and constants that are flown.
+//!
+//! ```text
+//! 2 sectors of information and format | 9 of parameters (kind P) and, at their end, the subscription
+//! ```
+//!
+//! The law's constants are those that were built; the parameters `GAIN_...` beside them are percent of them. All messages
+//! keep their places and lengths, so what a cut leaves of an older beginning under a newer one is still a beginning.
+
+use super::sector::{FILLER, HEAD, ROOM, Sector};
+use crate::configuration::CONSTANTS;
+use crate::hardware::SECTOR;
+use crate::parameters::Parameters;
+use crate::parameters::table::PARAMETERS;
+use crate::recorder::ulog;
+use crate::shared::Read;
+use embassy_sync::blocking_mutex::raw::RawMutex;
+
+/// Sectors that a file begins with.
+pub const HEAD_SECTORS: usize = 11;
+
+/// Those of information and format.
+const DEFINED: usize = 2;
+
+/// Parameters and constants in each of the others.
+const AT_ONCE: usize = 13;
+
+/// The longest of their names, bytes.
+const NAME_MAX: usize = 24;
+
+/// What their keys begin with, all of them numbers of single precision.
+const KIND: &str = "float ";
+
+const _: () = {
+    assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINED) * AT_ONCE);
+    let message = HEAD + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
+    assert!(AT_ONCE * message + ulog::SUBSCRIBED[0].len() + ulog::SUBSCRIBED[1].len() <= ROOM);
+};
+
+/// What a file says of the vehicle.
+pub struct Beginning<'a, M: RawMutex> {
+    /// What it is called.
+    pub vehicle: &'static str,
+    /// Their present values.
+    pub parameters: Read<'a, Parameters<M>>,
+}
+
+impl<M: RawMutex> Beginning<'_, M> {
+    /// One of its sectors, of a file whose first record is of `time`.
+    #[must_use]
+    pub fn sector(&self, place: usize, time: u64) -> [u8; SECTOR] {
+        match place.checked_sub(DEFINED) {
+            None => self.defined(place, time),
+            Some(place) => self.numbers(place),
+        }
+    }
+
+    fn defined(&self, place: usize, time: u64) -> [u8; SECTOR] {
+        let mut sector = [0xFF; SECTOR];
+        let (time, left) = (time.to_le_bytes(), (DEFINED * SECTOR).saturating_sub(ulog::definitions_size() + HEAD));
+        let filler = ulog::head(FILLER, left);
+        let parts = ulog::definitions(&time, self.vehicle).chain([&filler[..]]);
+        let _ = ulog::copy(parts, place * SECTOR, &mut sector);
+        sector
+    }
+
+    fn numbers(&self, place: usize) -> [u8; SECTOR] {
+        let parameters = PARAMETERS.iter().map(|row| (row.name, self.parameters.get(row.parameter)));
+        let numbers = parameters.chain(CONSTANTS);
+        let mut sector = Sector::new();
+        for (name, value) in numbers.skip(place * AT_ONCE).take(AT_ONCE) {
+            let length = KIND.len() + name.len();
+            let head = ulog::head(b'P', 1 + length + size_of_val(&value));
+            let _ = sector.put(&[&head, &[length as u8], KIND.as_bytes(), name.as_bytes(), &value.to_le_bytes()]);
+        }
+        if place + DEFINED + 1 == HEAD_SECTORS {
+            let _ = sector.put(&ulog::SUBSCRIBED);
+        }
+        sector.finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::table::Name;
+    use crate::shared::Shared;
+    use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+
+    #[test]
+    fn it_is_whole_messages_with_every_number_before_the_subscription() {
+        let shared = Shared::<NoopRawMutex>::new();
+        shared.parameters.set(Name::MotorIdle, 0.0625).unwrap();
+        let beginning = Beginning { vehicle: "mine", parameters: shared.for_card().parameters() };
+        let time = 0x0123_4567_89AB_CDEF;
+        let bytes: Vec<u8> = (0..HEAD_SECTORS).flat_map(|place| beginning.sector(place, time)).collect();
+        assert_eq!((&bytes[8..16], bytes.len()), (&time.to_le_bytes()[..], HEAD_SECTORS * SECTOR));
+        let (mut at, mut kinds, mut idle) = (16, String::new(), None);
+        while at < bytes.len() {
+            let length = usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+            let body = &bytes[at + HEAD..at + HEAD + length];
+            kinds.push(char::from(bytes[at + 2]));
+            if body.starts_with(b"\x0Efloat MOT_IDLE") {
+                idle = body[15..].try_into().ok().map(f32::from_le_bytes);
+            }
+            at += HEAD + length;
+        }
+        assert_eq!((at, idle), (bytes.len(), Some(0.0625)));
+        let count = PARAMETERS.len() + CONSTANTS.len();
+        assert_eq!(kinds.replace('Z', ""), format!("BIIIIIF{}A", "P".repeat(count)));
+    }
+
+    #[test]
+    fn no_name_is_too_long() {
+        let names = PARAMETERS.iter().map(|row| row.name).chain(CONSTANTS.map(|(name, _)| name));
+        names.for_each(|name| assert!(name.len() <= NAME_MAX, "{name}"));
+    }
+}

@@ -1,0 +1,154 @@
+use super::formats::Formats;
+use super::reader::Ulog;
+use super::topics::{TICK, written};
+use super::writer::{Topic, Writer};
+use super::{HEAD, MAGIC};
+use firmware::hardware::MotorCommand;
+use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::tick::Tick;
+use firmware::recorder::ulog;
+use flight::Mode;
+use nalgebra::{Quaternion, Vector3};
+
+/// A message of this kind.
+fn message(kind: u8, body: &[u8]) -> Vec<u8> {
+    [&(body.len() as u16).to_le_bytes()[..], &[kind], body].concat()
+}
+
+/// A file of these messages.
+fn file(messages: &[(u8, &[u8])]) -> Vec<u8> {
+    let head = [&MAGIC[..], &[1], &7_u64.to_le_bytes()].concat();
+    messages.iter().fold(head, |file, (kind, body)| [file, message(*kind, body)].concat())
+}
+
+/// The firmware's recording of two ticks.
+fn recording() -> Vec<u8> {
+    let mut memory = vec![[0; SLOT]; 4];
+    let mut ring = Ring::recover(&mut memory);
+    ring.begin();
+    for index in 0..2 {
+        let state = controller_core::state::State {
+            position: Vector3::new(1.0, 2.0, 3.0),
+            velocity: Vector3::new(0.1, 0.2, 0.3),
+            attitude: Quaternion::new(0.5, 0.5, -0.5, 0.5),
+            angular_velocity: Vector3::new(-1.0, -2.0, -3.0),
+        };
+        let tick = Tick {
+            time: 1_000_000 + 10_000 * index,
+            mode: Mode::Holding,
+            is_airborne: true,
+            state: Some(state),
+            reference: None,
+            wrench: None,
+            thrust_scale: None,
+            pose_age: None,
+            missed: 0,
+            command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]),
+            voltage: Some(15.5),
+        };
+        ring.put(&tick.to_bytes());
+    }
+    let mut file = vec![0; 10_000];
+    let length = ulog::read(&ring, "mine", 0, &mut file);
+    file.truncate(length);
+    file
+}
+
+#[test]
+fn fields_are_found_behind_arrays_nested_messages_and_padding() {
+    let nested = [&[0, 1, 0][..], b"outer"].concat();
+    let body = [
+        &[1, 0][..],
+        &5_u64.to_le_bytes(),
+        &[9; 3],
+        &(-2_i16).to_le_bytes(),
+        &1.5_f32.to_le_bytes(),
+        &3_i16.to_le_bytes(),
+    ];
+    let file = file(&[
+        (b'F', b"inner:int16_t a;float b;"),
+        (b'F', b"outer:uint64_t timestamp;uint8_t[3] _padding0;inner[1] in;int16_t last;uint8_t[4] _padding1;"),
+        (b'A', &nested),
+        (b'D', &body.concat()),
+        (b'Z', b"of a kind that is to come"),
+    ]);
+    let log = Ulog::read(&file, &["outer"]).unwrap();
+    let rows = log.topic("outer").unwrap().columns(&["timestamp", "in[0].a", "in[0].b", "last"]);
+    assert_eq!(rows, Some(vec![vec![5.0, -2.0, 1.5, 3.0]]));
+    assert_eq!(log.topic("outer").unwrap().columns(&["in[0].c"]), None);
+}
+
+#[test]
+fn a_file_that_does_not_fit_is_refused_with_its_byte_and_none_panics() {
+    let subscribed = [&[0, 1, 0][..], b"t"].concat();
+    let format: (u8, &[u8]) = (b'F', b"t:uint64_t timestamp;");
+    let subscription: (u8, &[u8]) = (b'A', &subscribed);
+    for (messages, said) in [
+        (vec![(b'A', &[][..])], "byte 16: a subscription is cut short"),
+        (vec![(b'P', &[200, 1][..])], "byte 16: a key is cut short"),
+        (vec![(b'P', b"\x07float A\x01")], "byte 16: the parameter A is no number"),
+        (vec![(b'F', b"nameless")], "byte 16: the format \"nameless\" has no name"),
+        (vec![subscription], "byte 16: there is no format \"t\""),
+        (vec![(b'F', b"t:t a;"), subscription], "byte 25: the format \"t\" holds itself"),
+        (vec![(b'F', b"e:"), (b'F', b"t:e[9999999999] a;"), subscription], "byte 42: the format \"e\" is empty"),
+        (vec![(b'F', b"t:float[99999] a;"), subscription], "byte 36: t: is longer than 65535 bytes"),
+        (vec![(b'F', b"t:float[-1] a;"), subscription], "byte 33: t: the field \"float[-1] a\" has no length"),
+        (vec![format, subscription, (b'D', &[1, 0, 5])], "byte 47: a record of t is cut short"),
+        (vec![(b'B', &[0; 3])], "byte 16: flags are cut short"),
+        (vec![(b'B', &[0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0])], "byte 16: is of a ULog that needs a newer"),
+    ] {
+        let refused = Ulog::read(&file(&messages), &["t"]).unwrap_err();
+        assert!(refused.starts_with(said), "{refused}");
+    }
+    // Every prefix of a file, and every byte of it changed, is read or refused.
+    let whole = recording();
+    for end in 0..whole.len() {
+        let _ = Ulog::read(&whole[..end], &[TICK]);
+        let mut changed = whole.clone();
+        changed[end] ^= 0xFF;
+        let _ = Ulog::read(&changed, &[TICK]).map(|log| written(&log));
+    }
+    assert!(Ulog::read(&whole[..HEAD - 1], &[TICK]).is_err());
+    assert_eq!(Ulog::read(&whole[..whole.len() - 1], &[TICK]).unwrap().topic(TICK).unwrap().len(), 1);
+    assert!(Formats::default().fields("t").is_err());
+}
+
+#[test]
+fn what_was_written_is_read() {
+    let topics = [Topic { name: "t", fields: "uint64_t timestamp;float a;" }];
+    let mut writer = Writer::new(4, &topics, &[("sys_name", "here")], &[("GAIN", 1.25)]);
+    writer.text(b'6', 5, "words");
+    writer.record(0, 6, &2.5_f32.to_le_bytes());
+    let log = Ulog::read(&writer.finish(), &["t"]).unwrap();
+    assert_eq!((log.start, log.information["sys_name"].as_str(), log.parameters["GAIN"]), (4, "here", 1.25));
+    assert_eq!((log.texts[0].level, log.texts[0].time, log.texts[0].words.as_str()), (b'6', 5, "words"));
+    assert_eq!(log.topic("t").unwrap().columns(&["timestamp", "a"]), Some(vec![vec![6.0, 2.5]]));
+}
+
+#[test]
+fn ticks_become_px4s_topics_in_px4s_frames() {
+    let log = Ulog::read(&recording(), &[TICK]).unwrap();
+    let file = written(&log).unwrap();
+    let asked = [
+        "vehicle_attitude",
+        "vehicle_angular_velocity",
+        "vehicle_local_position",
+        "actuator_motors",
+        "battery_status",
+        "vehicle_status",
+        "vehicle_land_detected",
+    ];
+    let px4 = Ulog::read(&file, &asked).unwrap();
+    let first = |topic: &str, names: &[&str]| px4.topic(topic).unwrap().columns(names).unwrap()[0].clone();
+    assert_eq!(first("vehicle_attitude", &["timestamp", "q[0]", "q[1]", "q[2]", "q[3]"]), [1e6, 0.5, 0.5, 0.5, -0.5]);
+    assert_eq!(first("vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"]), [-1.0, 2.0, 3.0]);
+    assert_eq!(first("vehicle_local_position", &["x", "y", "z", "xy_valid"]), [1.0, -2.0, -3.0, 1.0]);
+    assert!((first("actuator_motors", &["control[3]"])[0] - 0.4).abs() < 1e-6);
+    assert_eq!(first("battery_status", &["voltage_v"]), [15.5]);
+    // AUTO_LOITER, armed, in the air.
+    assert_eq!(first("vehicle_status", &["nav_state", "arming_state"]), [4.0, 2.0]);
+    assert_eq!(first("vehicle_land_detected", &["landed"]), [0.0]);
+    assert_eq!(px4.information, log.information);
+    let foreign = Ulog::read(&file, &[TICK]).unwrap();
+    assert!(written(&foreign).unwrap_err().contains("holds no record of a tick"));
+}

@@ -1,0 +1,153 @@
+//! The firmware's ticks as topics of PX4, which Flight Review and PlotJuggler's PX4 layouts plot.
+//!
+//! PX4's frames are north, east, down and forward, right, down; ours are z up, and forward, left, up. So y and z change
+//! their signs, of vectors as of quaternions, and our world's x counts as north. A record has no desired attitude and no
+//! raw inertial sample, so there is neither `vehicle_attitude_setpoint` nor `sensor_combined`: a plot of them stays
+//! empty. Of a battery only the voltage is known.
+
+use super::reader::Ulog;
+use super::writer::{Topic, Writer};
+use flight::Mode;
+
+/// The firmware's topic.
+pub const TICK: &str = "tick";
+
+/// What is read of it, field by field.
+const FIELDS: [(&str, usize); 11] = [
+    ("timestamp", 1),
+    ("position", 3),
+    ("velocity", 3),
+    ("attitude", 4),
+    ("angular_velocity", 3),
+    ("reference_position", 3),
+    ("reference_velocity", 3),
+    ("motors", 4),
+    ("voltage", 1),
+    ("mode", 1),
+    ("airborne", 1),
+];
+
+/// What is written, with PX4's names.
+const TOPICS: [Topic; 9] = [
+    Topic { name: "vehicle_attitude", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[4] q;" },
+    Topic { name: "vehicle_angular_velocity", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;" },
+    Topic {
+        name: "vehicle_local_position",
+        fields: "uint64_t timestamp;uint64_t timestamp_sample;float x;float y;float z;float vx;float vy;float vz;\
+                 bool xy_valid;bool z_valid;bool v_xy_valid;bool v_z_valid;",
+    },
+    Topic {
+        name: "vehicle_local_position_setpoint",
+        fields: "uint64_t timestamp;float x;float y;float z;float vx;float vy;float vz;",
+    },
+    Topic { name: "trajectory_setpoint", fields: "uint64_t timestamp;float[3] position;float[3] velocity;" },
+    Topic { name: "actuator_motors", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[12] control;" },
+    Topic { name: "battery_status", fields: "uint64_t timestamp;float voltage_v;float current_a;float remaining;" },
+    Topic { name: "vehicle_status", fields: "uint64_t timestamp;uint8_t nav_state;uint8_t arming_state;" },
+    Topic { name: "vehicle_land_detected", fields: "uint64_t timestamp;bool landed;" },
+];
+
+/// PX4's `arming_state`.
+const ARMED: u8 = 2;
+const DISARMED: u8 = 1;
+
+/// PX4's number of the mode that comes nearest, `nav_state`.
+fn nav_state(mode: Mode) -> u8 {
+    match mode {
+        Mode::TakingOff => 17,
+        Mode::Flying => 14,
+        Mode::Landing | Mode::Descending => 18,
+        _ => 4,
+    }
+}
+
+/// A file of PX4's topics with what `log` has of ticks; its information, parameters and texts are kept.
+///
+/// # Errors
+/// If it has no ticks, or they lack a field.
+pub fn written(log: &Ulog) -> Result<Vec<u8>, String> {
+    let ticks = log.topic(TICK).ok_or("holds no record of a tick: --ulog converts the firmware's own logs")?;
+    let names: Vec<String> = FIELDS
+        .iter()
+        .flat_map(|(name, count)| {
+            (0..*count).map(move |index| if *count == 1 { (*name).to_owned() } else { format!("{name}[{index}]") })
+        })
+        .collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let rows = ticks.columns(&names).ok_or("the records of ticks lack a field: they are of another firmware")?;
+    let information: Vec<(&str, &str)> =
+        log.information.iter().map(|(key, text)| (key.as_str(), text.as_str())).collect();
+    let parameters: Vec<(&str, f64)> = log.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let mut writer = Writer::new(log.start, &TOPICS, &information, &parameters);
+    let mut texts = log.texts.iter().peekable();
+    for row in &rows {
+        let tick = Record(row);
+        while let Some(text) = texts.next_if(|text| text.time <= tick.time()) {
+            writer.text(text.level, text.time, &text.words);
+        }
+        tick.write(&mut writer);
+    }
+    texts.for_each(|text| writer.text(text.level, text.time, &text.words));
+    Ok(writer.finish())
+}
+
+/// A tick's numbers in the order of [`FIELDS`].
+struct Record<'r>(&'r [f64]);
+
+impl Record<'_> {
+    fn time(&self) -> u64 {
+        self.0[0] as u64
+    }
+
+    /// The numbers of a field.
+    fn of(&self, name: &str) -> &[f64] {
+        let (mut at, mut length) = (0, 0);
+        for (field, count) in FIELDS {
+            if field == name {
+                length = count;
+                break;
+            }
+            at += count;
+        }
+        &self.0[at..at + length]
+    }
+
+    /// A vector in PX4's axes, or a quaternion between them.
+    fn turned(&self, name: &str) -> Vec<f64> {
+        let numbers = self.of(name);
+        let kept = numbers.len() - 2;
+        numbers.iter().enumerate().map(|(at, number)| if at < kept { *number } else { -number }).collect()
+    }
+
+    /// In the order of [`TOPICS`].
+    fn write(&self, writer: &mut Writer) {
+        let time = self.time();
+        let sampled = time.to_le_bytes();
+        let [position, velocity, attitude, rates] =
+            ["position", "velocity", "attitude", "angular_velocity"].map(|name| self.turned(name));
+        let [to, at] = ["reference_position", "reference_velocity"].map(|name| self.turned(name));
+        let mut motors = self.of("motors").to_vec();
+        motors.resize(12, f64::NAN);
+        let known = [&position, &velocity].map(|vector| u8::from(vector.iter().all(|number| number.is_finite())));
+        let mode = Mode::ALL.get(self.of("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
+        let airborne = self.of("airborne")[0] != 0.0;
+        let setpoint = floats(&[&to[..], &at].concat());
+        let bodies = [
+            [&sampled[..], &floats(&attitude)].concat(),
+            [&sampled[..], &floats(&rates)].concat(),
+            [&sampled[..], &floats(&[&position[..], &velocity].concat()), &[known[0], known[0], known[1], known[1]]]
+                .concat(),
+            setpoint.clone(),
+            setpoint,
+            [&sampled[..], &floats(&motors)].concat(),
+            floats(&[self.of("voltage")[0], -1.0, -1.0]),
+            vec![nav_state(mode), if mode.is_armed() { ARMED } else { DISARMED }],
+            vec![u8::from(!airborne)],
+        ];
+        (0..).zip(&bodies).for_each(|(number, body)| writer.record(number, time, body));
+    }
+}
+
+fn floats(numbers: &[f64]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| (*number as f32).to_le_bytes()).collect()
+}
