@@ -16,9 +16,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::link::origin::Origin;
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{
-    ControlView, Event, INCREMENTS, MissionReport, POSES, Queue, QueuedRequest, Report, Severity, Take, Text, Timing,
-};
+use crate::shared::{ControlView, Event, INCREMENTS, MissionReport, POSES, Queue, QueuedRequest, Report, Take, Timing};
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -178,24 +176,16 @@ impl<'a, M: RawMutex> Control<'a, M> {
         Some(item.placed(&origin, &frames::world(&home)))
     }
 
-    /// Notes how far the mission is, and says how it ends.
+    /// Notes how far the mission is, and announces how it ends.
     fn follow_the_mission(&mut self, outcome: &Outcome) {
         (self.mission.next, self.mission.is_flown) = outcome.mission;
-        let (severity, words) = match outcome.mission_step {
-            None => return,
-            Some(MissionStep::Reached(item) | MissionStep::Lands(item)) => {
-                self.mission.done = (item, self.mission.done.1.wrapping_add(1));
-                if outcome.mission_step == Some(MissionStep::Reached(item)) {
-                    return;
-                }
-                (Severity::Information, Text::new("Mission over: landing"))
-            }
-            Some(MissionStep::Over) => (Severity::Information, Text::new("Mission over: holding position")),
-            Some(MissionStep::Refused(item, refusal)) => {
-                (Severity::Critical, Text::new(format_args!("Mission item {item}: {refusal}")))
-            }
-        };
-        self.shared.announce(Event::Words(severity, words));
+        let Some(step) = outcome.mission_step else { return };
+        if let MissionStep::Reached(item) | MissionStep::Lands(item) = step {
+            self.mission.done = (item, self.mission.done.1.wrapping_add(1));
+        }
+        if !matches!(step, MissionStep::Reached(_)) {
+            self.shared.announce(Event::Mission(step));
+        }
     }
 
     /// What the battery has left, by its voltage. Without a recent reading it is unknown, which matters where a voltage

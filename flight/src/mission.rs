@@ -154,6 +154,17 @@ pub enum MissionStep {
     Refused(u8, MissionRefusal),
 }
 
+impl fmt::Display for MissionStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reached(item) => write!(f, "Mission item {item} reached"),
+            Self::Lands(_) => f.write_str("Mission over: landing"),
+            Self::Over => f.write_str("Mission over: holding position"),
+            Self::Refused(item, refusal) => write!(f, "Mission item {item}: {refusal}"),
+        }
+    }
+}
+
 /// How far it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Progress {

@@ -4,7 +4,7 @@
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
-use flight::{Reason, Refusal, Streamed};
+use flight::{MissionStep, Reason, Refusal, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -66,6 +66,8 @@ pub enum Event {
     Thrust(f32),
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
+    /// How a mission goes on.
+    Mission(MissionStep),
     /// The motors' frames do not go out.
     MotorsLost,
     /// They do again.
@@ -90,10 +92,12 @@ impl Event {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
-            Self::Input(_) | Self::MotorsLost => Severity::Critical,
-            Self::Mode(_) | Self::MotorsRegained | Self::Pose(Ok(_)) | Self::Streamed(Streamed::AsSent) => {
-                Severity::Information
-            }
+            Self::Input(_) | Self::MotorsLost | Self::Mission(MissionStep::Refused(..)) => Severity::Critical,
+            Self::Mission(_)
+            | Self::Mode(_)
+            | Self::MotorsRegained
+            | Self::Pose(Ok(_))
+            | Self::Streamed(Streamed::AsSent) => Severity::Information,
             Self::Refused(_)
             | Self::Pose(Err(_))
             | Self::Estimator(_)
@@ -117,6 +121,7 @@ impl fmt::Display for Event {
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
             Self::Streamed(streamed) => streamed.fmt(f),
+            Self::Mission(step) => step.fmt(f),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),
             Self::BatteryMissing => f.write_str("Battery: no reading for 1 s, nothing watches it"),
