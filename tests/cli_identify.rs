@@ -73,6 +73,14 @@ fn a_log_that_is_too_short_is_refused_with_what_to_fly() {
     let said = stderr(&output);
     assert_eq!((status(&output), stdout(&output)), (1, String::new()), "{said}");
     assert!(said.contains("the flight: 6 s without a gap, at least 15 are needed: fly longer"), "{said}");
+    // Fifteen seconds of it tell inertia and delay, and say so.
+    let part: Vec<&str> = log.lines().take(1).chain(log.lines().skip(4501).take(1531)).collect();
+    fs::write(directory.join("log.csv"), part.join("\n") + "\n").unwrap();
+    let output = host_sim(&directory, &asked);
+    let said = stderr(&output);
+    assert_eq!(status(&output), 1, "{said}");
+    assert!(said.contains("\n  thrust scale over mass: known to +- 0.4"), "{said}");
+    assert!(said.contains("\n  known all the same: inertia x over thrust scale 0.0037"), "{said}");
     assert!(!files(&directory).contains(&"mine.toml".to_owned()));
 }
 

@@ -137,7 +137,7 @@ pub fn unobservable(identified: &Quantities) -> Vec<String> {
         ];
     }
     let rows = asked(identified);
-    let wide = rows.iter().filter(|row| !(reach(identified, row) <= row.2));
+    let wide = rows.iter().filter(|row| reach(identified, row).is_nan() || reach(identified, row) > row.2);
     wide.map(|row| {
         let (name, _, most, unit, fly) = row;
         format!("{name}: known to +- {} {unit}, at most {most} is allowed: {fly}", short(reach(identified, row)))
