@@ -75,12 +75,13 @@ pub fn start_named<M: RawMutex>(
     if parameters.boot(built) {
         shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));
     }
-    let certification = if is_named {
-        certify(place, built.tuned(|name| parameters.raw(name)))
+    let tuned = if is_named {
+        built.tuned(|name| parameters.raw(name))
     } else {
         shared.announce(Event::new(Severity::Critical, "No vehicle: build with SCENARIO"));
-        place.certification.init_with(|| Err(Refused::Undefined(configuration::NO_VEHICLE)))
+        Err(configuration::NO_VEHICLE)
     };
+    let certification = certify(place, tuned);
     log(certification);
     if certification.is_err() && is_named {
         for name in parameters.set_by_hand() {

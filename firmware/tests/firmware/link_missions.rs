@@ -71,7 +71,7 @@ fn answer_to(item: &MISSION_ITEM_INT_DATA) -> (Verdict, Vec<String>) {
     let shared = Local::new();
     report(&shared, Mode::Ready, MissionReport::default());
     let mut fed = Fed::new(&shared);
-    let answer = upload(&mut fed, &shared, &[item.clone()]);
+    let answer = upload(&mut fed, &shared, std::slice::from_ref(item));
     let [Reply::Mission(LIST, verdict)] = answer[..] else { panic!("{answer:?}") };
     assert_eq!(shared.mission.count() == 1, verdict == Verdict::MAV_MISSION_ACCEPTED);
     (verdict, texts(&shared))
