@@ -24,6 +24,30 @@ fn a_recording_is_written_beside_the_log_with_mcap() {
 }
 
 #[test]
+fn a_replay_is_a_gif_or_is_refused_with_nothing_written() {
+    let directory = directory("replay");
+    std::fs::write(directory.join("brief.toml"), with(PAPER, "duration", "duration = 2.0")).unwrap();
+    let run = |more: &[&str]| host_sim(&directory, &[&["replay", "brief.toml", "--gif", "out.gif"], more].concat());
+    for (more, words) in [
+        (vec!["--speed", "0"], "--speed: must be from 0.05 to 100, found 0"),
+        (vec!["--from", "2"], "two moments of the flight, which takes 2 s, in order; found 2 and 2"),
+        (vec!["--to", "nan"], "found 0 and NaN"),
+        (vec!["--to", "3"], "found 0 and 3"),
+    ] {
+        let refused = run(&more);
+        assert_eq!(status(&refused), 2);
+        assert!(stderr(&refused).contains(words), "{}", stderr(&refused));
+    }
+    let onto_itself = host_sim(&directory, &["replay", "brief.toml", "--gif", "brief.toml"]);
+    assert!(stderr(&onto_itself).contains("--gif must be another file than the scenario"), "{}", stderr(&onto_itself));
+    assert_eq!(files(&directory), ["brief.toml"]);
+    let written = run(&["--from", "0.5", "--speed", "2"]);
+    assert_eq!(status(&written), 0, "{}", stderr(&written));
+    let gif = std::fs::read(directory.join("out.gif")).unwrap();
+    assert!(gif.starts_with(b"GIF89a") && gif.ends_with(b";") && gif.len() > 5_000, "{} bytes", gif.len());
+}
+
+#[test]
 fn without_arguments_it_flies_the_paper() {
     let directory = directory("paper");
     let output = host_sim(&directory, &[]);

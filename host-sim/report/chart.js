@@ -1,5 +1,7 @@
 // A drawing area with axes: what plots over time and distributions have in common.
 
+// The axes' rules are those of host-sim/src/plots/axis.rs, which draws the same plots as SVG.
+
 /** Round numbers between two ends, at most so many. */
 function ticks(least, greatest, most) {
   const rough = (greatest - least) / Math.max(most, 1);
@@ -41,7 +43,7 @@ class Chart {
     this.box.style.height = `${height}px`;
     place.append(this.box);
     Object.assign(this, { paint, mark, height, width: 0, visible: false });
-    this.margin = { left: 58, right: 26, top: 10, bottom: 24 };
+    this.margin = { left: 58, right: 26, top: 26, bottom: 24 };
     new ResizeObserver(() => this.resize()).observe(this.box);
     new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
@@ -121,8 +123,8 @@ class Chart {
     return logarithmic ? least * (greatest / least) ** share : least + share * (greatest - least);
   }
 
-  /** Grid, numbers, and the frame that curves are clipped to. */
-  axes(unit) {
+  /** Grid, zero, and numbers with their units. */
+  axes(unit, verticalUnit) {
     const { context, margin, width, height } = this;
     const [bottom, right] = [height - margin.bottom, width - margin.right];
     const marks = (axis, most) => (axis.logarithmic ? decades : ticks)(axis.least, axis.greatest, most);
@@ -135,6 +137,7 @@ class Chart {
     context.textAlign = "right";
     for (const value of up) {
       const y = Math.round(this.y(value)) + 0.5;
+      context.strokeStyle = color(value === 0 && !this.vertical.logarithmic ? "axis" : "grid");
       this.line([[margin.left, y], [right, y]]);
       context.fillText(tickText(value, up, this.vertical.logarithmic), margin.left - 8, y);
     }
@@ -149,13 +152,14 @@ class Chart {
     }
     context.textAlign = "right";
     context.fillText(unit, width, bottom + 8);
+    context.fillText(verticalUnit, margin.left - 8, 2);
     context.strokeStyle = color("axis");
     this.line([[margin.left, bottom + 0.5], [right, bottom + 0.5]]);
   }
 
   /** Text that stays legible on lines. */
   label(text, x, y) {
-    this.context.lineWidth = 3;
+    this.context.lineWidth = 5;
     this.context.lineJoin = "round";
     this.context.strokeStyle = color("card");
     this.context.strokeText(text, x, y);

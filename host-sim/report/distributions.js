@@ -58,7 +58,7 @@ class Spread {
     const greatest = this.cumulative ? 1 : 1.05 * Math.max(1e-6, ...this.shown().map(({ bins, count }) => Math.max(...bins) / Math.max(count, 1)));
     chart.range({ least: this.least, greatest: this.greatest, logarithmic: this.logarithmic }, { least: 0, greatest });
     context.clearRect(0, 0, chart.width, chart.height);
-    chart.axes(this.unit);
+    chart.axes(this.unit, "share");
     chart.clipped(() => {
       for (const group of this.shown()) (this.cumulative ? this.paintShare(context, group) : this.paintBars(context, group));
       if (this.bound !== null) {

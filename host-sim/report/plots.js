@@ -32,14 +32,14 @@ function middle() {
 }
 
 class Plot {
-  constructor(figure, { title, unit, logarithmic, curves, bounds }) {
-    Object.assign(this, { title, unit, logarithmic, bounds, fit: false, drag: null });
+  constructor(figure, { title, unit, logarithmic, fromZero, curves, bounds }) {
+    Object.assign(this, { title, unit, logarithmic, fromZero, bounds, fit: false, drag: null });
     this.curves = curves.map((curve) => ({ ...curve, source: tracks[curve.track], on: true }));
     this.end = Math.max(0, ...this.curves.map(({ source }) => source.end));
     this.reach = this.extremes(0, flightEnd);
     const place = figure.querySelector(".drawing");
     place.append(this.legend(figure));
-    this.chart = new Chart(place, 230, () => this.paint(), (context) => this.mark(context));
+    this.chart = new Chart(place, 246, () => this.paint(), (context) => this.mark(context));
     const box = this.chart.box;
     box.tabIndex = 0;
     box.setAttribute("role", "application");
@@ -98,6 +98,7 @@ class Plot {
       const low = Math.max(Math.min(Math.floor(Math.log10(Math.min(this.small(), least * 1e3))), high - 1), high - 9);
       return { least: 10 ** low, greatest: 10 ** high, logarithmic: true };
     }
+    if (this.fromZero && !this.fit) [least, greatest] = [Math.min(least, 0), Math.max(greatest, 0)];
     const room = greatest - least > 1e-9 * Math.max(Math.abs(greatest), 1e-6) ? 0.07 * (greatest - least) : Math.abs(greatest) * 0.1 || 1;
     return { least: least - room, greatest: greatest + room };
   }
@@ -108,42 +109,53 @@ class Plot {
     // Of several recordings a shorter one ends its plot where it ends itself.
     chart.range({ least: view.from, greatest: view.from < this.end ? Math.min(view.to, this.end) : view.to }, this.axis());
     context.clearRect(0, 0, chart.width, chart.height);
-    chart.axes("s");
+    chart.axes("s", this.unit);
+    const seen = this.bounds.map((bound) => ({ ...bound, y: chart.y(bound.value) }))
+      .filter(({ y }) => y > chart.margin.top - 1 && y < chart.height - chart.margin.bottom + 1);
     chart.clipped(() => {
-      this.paintBounds(context);
-      for (const curve of this.curves) if (curve.on) this.paintCurve(context, curve);
-    });
-  }
-
-  paintBounds(context) {
-    const { chart } = this;
-    const written = [];
-    const mirrored = (bound) => this.bounds.find(({ value, label }) => label === bound.label && value !== 0 && value === -bound.value);
-    context.textAlign = "right";
-    for (const bound of this.bounds) {
-      const { value, label, color: name, text } = bound;
-      const y = chart.y(value);
-      context.strokeStyle = context.fillStyle = color(name);
-      context.globalAlpha = 0.75;
       context.setLineDash([2, 3]);
-      chart.line([[chart.margin.left, y], [chart.width - chart.margin.right, y]]);
+      context.globalAlpha = 0.75;
+      for (const { y, color: name } of seen) {
+        context.strokeStyle = color(name);
+        chart.line([[chart.margin.left, y], [chart.width - chart.margin.right, y]]);
+      }
       context.setLineDash([]);
       context.globalAlpha = 1;
-      const above = Math.max(value > 0 ? y - 3 : y + 14, 12);
-      // Only where no other label stands; the table below the plot has them all.
-      if (value < 0 && mirrored(bound)) continue;
-      if (!(y > 2 && y < chart.height - chart.margin.bottom) || written.some((other) => Math.abs(other - above) < 13)) continue;
-      written.push(above);
-      context.textBaseline = "alphabetic";
-      chart.label(`${label}: ${mirrored(bound) ? "±" : ""}${text}`, chart.width - chart.margin.right - 4, above);
+      for (const curve of this.curves) if (curve.on) this.paintCurve(context, curve);
+    });
+    this.labelBounds(context, seen);
+  }
+
+  /** What each bound is: at the right or in the middle, above its line or below, never on it and never on another label. A bound that
+   *  finds no room has no label; the table below the plot has them all. Panel.rs has the same rules. */
+  labelBounds(context, seen) {
+    const { chart } = this;
+    const [left, right, low] = [chart.margin.left, chart.width - chart.margin.right, chart.height - chart.margin.bottom];
+    const written = [];
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (const { value, label, color: name, text, y } of seen) {
+      const mirrored = value !== 0 && seen.some((other) => other.label === label && other.value === -value);
+      if (mirrored && value < 0) continue;
+      const words = `${label}: ${mirrored ? "±" : ""}${text}`;
+      const width = context.measureText(words).width;
+      const outer = value >= 0 ? -9 : 9;
+      const places = [right - 4, left + 0.55 * (right - left)].flatMap((x) => [outer, -outer].map((by) => ({ x, y: y + by })));
+      const apart = (at, other) => Math.abs(at.y - other.y) > 13 || at.x < other.x - other.width || other.x < at.x - width;
+      const free = places.filter((at) => at.x - width > left && at.y > chart.margin.top - 12 && at.y < low - 6 && written.every((other) => apart(at, other)));
+      const place = free.find((at) => seen.every((other) => Math.abs(other.y - at.y) > 7)) || free[0];
+      if (!place) continue;
+      written.push({ ...place, width });
+      context.fillStyle = color(name);
+      chart.label(words, place.x, place.y);
     }
   }
 
-  paintCurve(context, { source, column, color: name, line }) {
+  paintCurve(context, { source, column, color: name, line, broad }) {
     const { chart } = this;
     const values = source.column(column);
     context.strokeStyle = color(name);
-    context.lineWidth = line === "solid" ? 1.75 : 1.25;
+    context.lineWidth = broad ? 3.5 : line === "solid" ? 1.75 : 1.25;
     context.lineJoin = "round";
     context.setLineDash(PATTERNS[line]);
     context.beginPath();

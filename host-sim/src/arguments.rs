@@ -4,6 +4,7 @@ mod campaign;
 mod compare;
 mod identify;
 mod log;
+mod replay;
 mod sessions;
 mod vehicle;
 
@@ -17,6 +18,7 @@ use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;
 pub use log::LogArguments;
+pub use replay::ReplayArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
 use std::path::PathBuf;
@@ -103,6 +105,9 @@ pub enum Command {
         #[arg(long)]
         large_log: bool,
     },
+    /// Fly a scenario and write it as a moving picture.
+    #[command(after_help = replay::HELP)]
+    Replay(ReplayArguments),
     /// Say whether a scenario may fly: prove its commands' limits, down to each rotor, and judge its sampled loops.
     #[command(after_help = CERTIFY_HELP)]
     Certify {

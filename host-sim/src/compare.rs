@@ -15,7 +15,6 @@ use crate::campaign::step;
 use crate::directory_lock::DirectoryLock;
 use crate::flier::{Flier, LawChoice};
 use crate::interrupt::Interrupt;
-use crate::plots::canvas::PlotError;
 use crate::progress::Progress;
 use crate::rivals::gains::Set;
 use crate::whole_file::WholeFile;
@@ -47,8 +46,6 @@ pub enum CompareError {
     NotCertified(&'static str),
     /// The law of this name is undefined for its gains.
     Undefined(&'static str),
-    /// A picture could not be drawn.
-    Plot(PlotError),
     /// A file or directory could not be written.
     Output(PathBuf, io::Error),
     /// This signal interrupted it.
@@ -63,7 +60,6 @@ impl fmt::Display for CompareError {
                 write!(f, "not certified ({inequality}): ours flies in a comparison as boards fly it, or not at all")
             }
             Self::Undefined(law) => write!(f, "the law {law} is undefined for its gains"),
-            Self::Plot(error) => write!(f, "{error}"),
             Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
         }
@@ -75,12 +71,6 @@ impl std::error::Error for CompareError {}
 impl From<ParameterError> for CompareError {
     fn from(error: ParameterError) -> Self {
         Self::Parameter(error)
-    }
-}
-
-impl From<PlotError> for CompareError {
-    fn from(error: PlotError) -> Self {
-        Self::Plot(error)
     }
 }
 
@@ -160,8 +150,8 @@ pub fn compare(
     let files = vec![
         ("report.html", page::page(&compared).html()),
         ("compare.csv", rows::csv(&names, &rows)),
-        ("scenes.svg", pictures::scenes(&names, &shown)?),
-        ("random.svg", pictures::random(&names, &thrown, &shown)?),
+        ("scenes.svg", pictures::scenes(&names, &shown)),
+        ("random.svg", pictures::random(&names, &thrown, &shown)),
     ];
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }

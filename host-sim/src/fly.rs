@@ -7,13 +7,11 @@ use crate::flight::{Flight, FlightError, Tick};
 use crate::flown::Flown;
 use crate::interrupt::Interrupt;
 use crate::log;
-use crate::plots;
-use crate::plots::canvas::PlotError;
-use crate::plots::record::Record;
 use crate::progress::Progress;
 use crate::recording::{Recording, flight};
 use crate::report::flight as report_page;
 use crate::report::recorder::Recorder as PageRecorder;
+use crate::report::track::Track;
 use crate::whole_file::WholeFile;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
@@ -42,8 +40,6 @@ pub enum FlyError {
     Parameter(ParameterError),
     /// The law of this name is undefined for its gains.
     Undefined(&'static str),
-    /// A figure could not be drawn.
-    Plot(PlotError),
     /// Interrupted by this signal.
     Interrupted(u8),
 }
@@ -55,7 +51,6 @@ impl fmt::Display for FlyError {
             Self::Output(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Undefined(law) => write!(f, "the law {law} is undefined for its gains"),
-            Self::Plot(error) => write!(f, "{error}"),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}; nothing is written"),
         }
     }
@@ -72,12 +67,6 @@ impl From<FlightError> for FlyError {
 impl From<ParameterError> for FlyError {
     fn from(error: ParameterError) -> Self {
         Self::Parameter(error)
-    }
-}
-
-impl From<PlotError> for FlyError {
-    fn from(error: PlotError) -> Self {
-        Self::Plot(error)
     }
 }
 
@@ -115,7 +104,7 @@ pub fn fly(
     }
     let mut log = Output::create(directory, "log.csv")?;
     let mut recording = mcap.then(|| Recorder::create(directory, scenario, text)).transpose()?;
-    let (flown, record, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
+    let (flown, page) = log_flight(scenario, &mut flight, &mut log, recording.as_mut(), interrupt)?;
 
     let outcome = match law {
         LawChoice::Ours => Outcome {
@@ -132,18 +121,11 @@ pub fn fly(
     };
     let Outcome { certification, claims } = &outcome;
     let over = report_page::Flight { scenario, text, law, verdict: &verdict, certification, claims, flown: &flown };
-    let samples = record.samples();
-    let texts = [
-        plots::figure_1(scenario, &samples)?,
-        plots::figure_2(scenario, &samples)?,
-        plots::first_seconds(scenario, &samples)?,
-        plots::path::picture(&samples)?,
-        report(scenario, &outcome),
-        report_page::page(&over, page).html(),
-    ];
+    let (page, figures) = report_page::page(&over, page);
+    let texts = [("report.md", report(scenario, &outcome)), ("report.html", page.html())];
     let mut outputs = vec![log];
     outputs.extend(recording.map(Recorder::finish).transpose()?);
-    for (name, text) in TEXTS.into_iter().zip(texts) {
+    for (name, text) in figures.into_iter().chain(texts) {
         let mut output = Output::create(directory, name)?;
         output.write(|file| file.write_all(text.as_bytes()))?;
         outputs.push(output);
@@ -172,11 +154,11 @@ fn log_flight(
     log: &mut Output,
     mut recording: Option<&mut Recorder>,
     interrupt: &Interrupt,
-) -> Result<(Flown, Record, PageRecorder), FlyError> {
+) -> Result<(Flown, PageRecorder), FlyError> {
     let ticks = scenario.timing.ticks;
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let estimates = scenario.configuration.paper().is_none();
-    let (mut flown, mut record, mut page) = (Flown::new(scenario), Record::new(ticks), report_page::recorder(scenario));
+    let (mut flown, mut page) = (Flown::new(scenario), report_page::recorder(scenario));
     let mut progress = Progress::new("flying", ticks);
     let reality = log::reality_header(&scenario.reality);
     log.write(|file| writeln!(file, "{}{reality}", log::header(rotors, estimates)))?;
@@ -188,13 +170,29 @@ fn log_flight(
             recording.take(&tick)?;
         }
         flown.observe(&tick);
-        record.observe(&tick);
         page.observe(&tick);
         if done % TICKS_PER_SHOW == 0 {
             progress.show(done);
         }
     }
-    Ok((flown, record, page))
+    Ok((flown, page))
+}
+
+/// What the report would keep of the flight of `scenario` under our law; nothing is written.
+///
+/// # Errors
+/// [`FlyError::Flight`], [`FlyError::Interrupted`].
+pub fn watched(scenario: &Scenario, interrupt: &Interrupt) -> Result<Track, FlyError> {
+    let (mut flight, mut page) = (Flight::new(scenario)?, report_page::recorder(scenario));
+    let mut progress = Progress::new("flying", scenario.timing.ticks);
+    for done in 0..scenario.timing.ticks {
+        interrupted(interrupt)?;
+        page.observe(&flight.tick()?);
+        if done % TICKS_PER_SHOW == 0 {
+            progress.show(done);
+        }
+    }
+    Ok(page.finish(&scenario.name))
 }
 
 fn interrupted(interrupt: &Interrupt) -> Result<(), FlyError> {

@@ -6,7 +6,7 @@ mod terminal;
 
 use arguments::{
     Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, LogArguments, MergeArguments,
-    SitlArguments, VehicleArguments,
+    ReplayArguments, SitlArguments, VehicleArguments,
 };
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
@@ -16,7 +16,7 @@ use host_sim::campaign::{self, CampaignError};
 use host_sim::certify::{certify, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
-use host_sim::fly::{FlyError, fly};
+use host_sim::fly::{FlyError, fly, watched};
 use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
 use host_sim::hil::{self, Clients, End, HilError};
@@ -25,6 +25,7 @@ use host_sim::import;
 use host_sim::import::written::written;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
+use host_sim::plots::replay::gif;
 use host_sim::sitl::{self, SitlError};
 use host_sim::table::short;
 use host_sim::whole_file::WholeFile;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Ok(Arguments { command }) => match command {
             None => run_fly(None, None, false, false),
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
+            Some(Command::Replay(arguments)) => run_replay(&arguments),
             Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
@@ -107,12 +109,7 @@ fn fly_into(
     not_a_campaigns(directory)?;
     let outcome = match fly(scenario, text, law, directory, mcap, &watch()?) {
         Ok(outcome) => outcome,
-        Err(error @ (FlyError::Flight(_) | FlyError::Interrupted(_))) => {
-            complain(format_args!("error: {}: {error}", scenario.name));
-            let signal = if let FlyError::Interrupted(signal) = error { Some(signal) } else { None };
-            return Ok(status(false, signal));
-        }
-        Err(error) => return Err(error.to_string()),
+        Err(error) => return stopped(scenario, &error),
     };
     let holds = claims::all_hold(&outcome.claims);
     print_text(&format!(
@@ -125,6 +122,43 @@ fn fly_into(
         directory.display()
     ))?;
     Ok(status(holds, None))
+}
+
+/// What a flight without a report ends with.
+fn stopped(scenario: &Scenario, error: &FlyError) -> Result<ExitCode, String> {
+    let signal = match error {
+        FlyError::Flight(_) => None,
+        FlyError::Interrupted(signal) => Some(*signal),
+        _ => return Err(error.to_string()),
+    };
+    complain(format_args!("error: {}: {error}", scenario.name));
+    Ok(status(false, signal))
+}
+
+fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
+    let scenario = load(arguments.file.as_deref())?;
+    let stretch = arguments.stretch(scenario.timing.duration())?;
+    let path = &arguments.gif;
+    if arguments.file.as_ref().is_some_and(|file| same_file(path, file)) {
+        return Err(format!("{}: --gif must be another file than the scenario", path.display()));
+    }
+    let unwritable = |error: io::Error| format!("{}: cannot be written: {error}", path.display());
+    let mut file = WholeFile::alone(path).map_err(unwritable)?;
+    let track = match watched(&scenario, &watch()?) {
+        Ok(track) => track,
+        Err(error) => return stopped(&scenario, &error),
+    };
+    let bytes = gif(&track, stretch).map_err(|error| format!("{}: cannot be drawn: {error}", path.display()))?;
+    file.write_all(&bytes).and_then(|()| file.finish()).map_err(unwritable)?;
+    print_text(&format!(
+        "{}: {} s to {} s at {} times life in {}\n",
+        scenario.name,
+        short(stretch.from),
+        short(stretch.to),
+        short(stretch.speed),
+        path.display()
+    ))?;
+    Ok(status(true, None))
 }
 
 fn run_campaign(arguments: &CampaignArguments) -> Result<ExitCode, String> {

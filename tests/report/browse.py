@@ -3,7 +3,9 @@
     browse.py SCREENSHOTS REPORT…
 
 For every report: no message on the console, no request but for the file itself, the replay moves when it is played and by its
-slider, plots and distributions can be read, legends hide and show, keys work, nothing is wider than the screen, paper gets the light colours, and every picture is left in SCREENSHOTS.
+slider, plots and distributions can be read, legends hide and show, keys work, nothing is wider than the screen, every verdict is seen,
+labels of bounds stand beside their lines, without scripts there are still pictures, paper gets the light colours, and every picture is
+left in SCREENSHOTS.
 """
 
 import base64
@@ -33,6 +35,35 @@ def browser(chromium, driver):
     found.set_page_load_timeout(30)
     found.set_script_timeout(30)
     return found
+
+
+# Notes, on each canvas, where dotted lines across and labels with a colon are drawn.
+WATCH = """(() => {
+    const context = CanvasRenderingContext2D.prototype;
+    const { clearRect, lineTo, moveTo, fillText } = context;
+    const of = (canvas) => (canvas.seen ||= { lines: [], labels: [] });
+    context.clearRect = function (...a) { this.canvas.seen = undefined; return clearRect.apply(this, a); };
+    context.moveTo = function (x, y) { this.from = [x, y]; return moveTo.call(this, x, y); };
+    context.lineTo = function (x, y) {
+        if (String(this.getLineDash()) === "2,3" && this.from && this.from[1] === y) of(this.canvas).lines.push(y);
+        return lineTo.call(this, x, y);
+    };
+    context.fillText = function (text, x, y) {
+        if (text.includes(": ")) of(this.canvas).labels.push([text, x - this.measureText(text).width, x, y]);
+        return fillText.call(this, text, x, y);
+    };
+})()"""
+# Of every still picture: its size, and of each label with a colon how many lines of its own colour run through the letters.
+STILL = """return [...document.querySelectorAll("noscript svg")].map((svg) => {
+    const { width, height } = svg.getBoundingClientRect();
+    const lines = [...svg.querySelectorAll("polyline[stroke-dasharray]")].map((line) => [line.getAttribute("stroke"), line.getBoundingClientRect()])
+        .filter(([, box]) => box.height < 2 && box.width > width / 2);
+    const labels = [...svg.querySelectorAll("text")].filter((text) => text.textContent.includes(": "));
+    const struck = labels.map((text) => [text.textContent, text.getBoundingClientRect()])
+        .filter(([, box]) => lines.some(([, line]) => Math.abs(line.top + line.height / 2 - (box.top + box.height / 2)) < 0.2 * box.height))
+        .map(([text]) => text);
+    return { width, height, curves: svg.querySelectorAll("polyline").length, labels: labels.length, struck };
+})"""
 
 
 class Reader:
@@ -99,6 +130,33 @@ class Reader:
         small = self.script("""return [...document.querySelectorAll("button, select, input")].filter((e) => e.offsetParent)
             .filter((e) => e.offsetHeight < 24).map((e) => e.outerHTML)""")
         self.expect(not small, f"too small for a finger: {small[:3]}")
+
+    def verdicts(self):
+        """Every verdict of a table is on the screen, whole, and nothing lies on it."""
+        lost = self.script("""return [...document.querySelectorAll("td .verdict")].filter((verdict) => {
+            verdict.scrollIntoView({ block: "center", behavior: "instant" });
+            const { left, right, top, bottom, width, height } = verdict.getBoundingClientRect();
+            const frame = verdict.closest(".scroll").getBoundingClientRect();
+            const on = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+            return !(width > 5 && height > 5 && left >= frame.left && right <= frame.right && on === verdict);
+        }).map((verdict) => verdict.closest("tr").textContent)""")
+        self.expect(not lost, f"verdicts that are not seen: {lost[:3]}")
+        wide = self.script("""const claims = document.querySelector("#claims ~ .scroll");
+            return claims ? claims.scrollWidth - claims.clientWidth : 0""")
+        self.expect(wide <= 0, f"the claims are {wide} pixels wider than their frame")
+
+    def labels(self):
+        """No label of a bound is struck through by its line or written on another label."""
+        seen = self.script("return [...document.querySelectorAll('figure[data-plot] canvas')].map((canvas) => canvas.seen).filter(Boolean)")
+        count = 0
+        for labels, lines in ((plot["labels"], plot["lines"]) for plot in seen):
+            count += len(labels)
+            for place, (text, left, right, y) in enumerate(labels):
+                # Beside its own line: letters reach five pixels up and down from their middle.
+                self.expect(any(7 <= abs(line - y) <= 11 for line in lines), f"{text!r} stands at no line")
+                for other, start, end, at in labels[:place]:
+                    self.expect(abs(at - y) > 11 or end < left or right < start, f"{text!r} is written on {other!r}")
+        return count
 
     def early(self):
         """A pointer that the page is opened or scrolled under reads plots that are not drawn yet, and so do keys."""
@@ -245,15 +303,33 @@ class Reader:
         ActionChains(self.chrome).double_click(chart).perform()
         self.expect(self.element(".range").text == shown, "a double click does not show all")
 
-    def shoot(self, folder, whole=False):
-        self.script("scrollTo({top: 0, behavior: 'instant'})")
-        self.frames()
+    def shoot(self, folder, whole=False, scripts=True):
+        if scripts:
+            self.script("scrollTo({top: 0, behavior: 'instant'})")
+            self.frames()
         asked = {"format": "png", "captureBeyondViewport": whole}
         if whole:
             height = self.script("return document.documentElement.scrollHeight")
             asked["clip"] = {"x": 0, "y": 0, "width": SIZES[self.size][0], "height": height, "scale": 1}
         shot = self.chrome.execute_cdp_cmd("Page.captureScreenshot", asked)
         (folder / f"{self.name}.png").write_bytes(base64.b64decode(shot["data"]))
+
+    def still(self, folder):
+        """Without scripts every plot and the replay are pictures, and labels stand beside their lines."""
+        figures = self.script("return document.querySelectorAll('figure[data-plot], [data-replay]').length")
+        self.chrome.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+        try:
+            self.chrome.get(self.report.resolve().as_uri())
+            pictures = self.script(STILL)
+            self.name += "-still"
+            self.expect(len(pictures) == figures, f"{len(pictures)} still pictures of {figures}")
+            for picture in pictures:
+                self.expect(picture["width"] > 200 and picture["height"] > 100 and picture["curves"] > 5, f"a still picture: {picture}")
+                self.expect(not picture["struck"], f"struck through: {picture['struck']}")
+            self.shoot(folder, whole=True, scripts=False)
+        finally:
+            self.chrome.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+        return sum(picture["labels"] for picture in pictures)
 
     def paper(self, folder):
         """Printed it is light whatever the screen, without controls, and the figures are there."""
@@ -278,15 +354,17 @@ def main():
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     chrome = browser(chromium, driver)
+    chrome.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": WATCH})
     try:
         for report in map(pathlib.Path, reports):
-            started, plots = time.monotonic(), 0
+            started, plots, labels = time.monotonic(), 0, 0
             for size in SIZES:
                 for scheme in ("light", "dark"):
                     reader = Reader(chrome, report, size, scheme)
                     if (size, scheme) == ("phone", "light"):
                         reader.early()
                     reader.fits()
+                    reader.verdicts()
                     if reader.has("canvas.stage"):
                         if size == "desktop":
                             reader.keyboard()
@@ -297,15 +375,17 @@ def main():
                     if reader.has("figure[data-distribution]"):
                         reader.distribution()
                     if (size, scheme) in (("desktop", "light"), ("phone", "dark")):
-                        plots = reader.drawn()
+                        plots, labels = reader.drawn(), reader.labels()
                     reader.shoot(folder, whole=True)
                     reader.quiet()
             reader.paper(folder)
+            stills = Reader(chrome, report, "phone", "light").still(folder)
+            reader.expect((stills > 0) == (labels > 0), f"{labels} labels of bounds, {stills} without scripts")
             still = Reader(chrome, report, "desktop", "light", still=True)
             still.expect(still.script("return getComputedStyle(document.documentElement).scrollBehavior") == "auto",
                          "it scrolls smoothly despite prefers-reduced-motion")
             still.quiet()
-            print(f"{report}: {plots} plots, {time.monotonic() - started:.1f} s")
+            print(f"{report}: {plots} plots, {labels} labels of bounds, {time.monotonic() - started:.1f} s")
     finally:
         chrome.quit()
 

@@ -6,11 +6,10 @@ use super::scenes::Scene;
 use super::shown::{Shown, THINNED, Thrown};
 use crate::campaign::outcome::Outcome;
 use crate::flier::OURS;
-use crate::plots::panel::Line;
 use crate::report::distribution::Distribution;
 use crate::report::document;
 use crate::report::page::{Block, Page, Section};
-use crate::report::plot::{Color, Curve, Plot};
+use crate::report::plot::{Color, Curve, Line, Plot};
 use crate::report::prose::{Cell, Fact, Table};
 use crate::report::track::Track;
 use crate::rivals::gains::Set;
@@ -162,17 +161,22 @@ fn tracks(compared: &Compared) -> Vec<Track> {
     compared.shown.iter().map(of_scene).collect()
 }
 
+/// The curve of the law at this place, its column named after it. Ours is broad.
+pub fn curve(place: usize, law: &str) -> Curve {
+    let (color, line) = LOOKS[place % LOOKS.len()];
+    Curve { line, broad: place == 0, ..Curve::new(law, law, color) }
+}
+
 /// The courses of all laws in each scene.
 fn plots(compared: &Compared) -> Vec<Plot> {
     let mut plots = Vec::new();
     for (track, (scene, shown)) in compared.shown.iter().enumerate() {
         let curves = |quantity: &str| {
-            let curve = |(place, law): (usize, &&'static str)| {
+            let drawn = |(place, law): (usize, &&'static str)| {
                 shown.get(place)?.as_ref()?;
-                let (color, line) = LOOKS[place % LOOKS.len()];
-                Some(Curve { track, column: format!("{law}_{quantity}"), label: (*law).to_owned(), color, line })
+                Some(Curve { track, column: format!("{law}_{quantity}"), ..curve(place, law) })
             };
-            compared.names.iter().enumerate().filter_map(curve).collect()
+            compared.names.iter().enumerate().filter_map(drawn).collect()
         };
         let title = titled(scene);
         plots.push(Plot::new(&format!("{title}: error"), "m", curves("error")).logarithmic());

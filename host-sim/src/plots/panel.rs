@@ -1,353 +1,231 @@
-//! One panel: curves over time, bounds as labelled dashed lines, and a legend above the data.
+//! One panel: a plot's curves over time, its bounds as labelled dashed lines, and a legend above them.
 //!
-//! Colours are Okabe and Ito's, which stay apart under the common colour-vision deficiencies; a reference is also
-//! dashed.
+//! A label stands beside its own line, never on it, and on no other label; words are drawn last, on a rim of the
+//! ground's colour. A bound that finds no room is drawn without its label.
 
-use super::canvas::{DrawingResult, FINE};
-use plotters::coord::Shift;
-use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::axis::Axis;
+use super::drawing::{Drawing, Inks, Point, Shape, Side};
+use crate::report::plot::{Bound, Color, Curve, Line, Plot};
+use crate::report::track::Track;
 
-/// Blue: the first axis, or the only curve.
-pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-/// Vermilion: the second axis.
-pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
-/// Bluish green: the third axis.
-pub const GREEN: RGBColor = RGBColor(0, 158, 115);
-/// Nearly black: bounds that belong to no axis, and references.
-pub const INK: RGBColor = RGBColor(60, 60, 60);
-/// Grid lines.
-const GRID: RGBColor = RGBColor(228, 228, 228);
-
-/// The width of a chart in pixels, near enough: a curve needs no more than its extremes in each.
-const COLUMNS: usize = 520;
-
-/// The vertical axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Evenly spaced numbers.
-    Linear,
-    /// Evenly spaced decades.
-    Log,
+/// Where in a drawing a panel stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    /// Its upper left corner.
+    pub corner: Point,
+    /// Width and height, pixels.
+    pub size: Point,
+    /// Height of the type, pixels.
+    pub em: f64,
+    /// Whether the plot's title stands above.
+    pub titled: bool,
 }
 
-/// How a line is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
-    /// Without gaps.
-    Solid,
-    /// In dashes: a reference, or one of many laws, so that not colour alone separates them.
-    Dashed,
-    /// In dots: a second such pattern.
-    Dotted,
+/// How wide a letter is, near enough, for its height.
+const LETTER: f64 = 0.56;
+
+/// The plot alone, for a page that has its title.
+#[must_use]
+pub fn picture(plot: &Plot, tracks: &[Track]) -> String {
+    let mut drawing = Drawing::new((420, 250));
+    draw(&mut drawing, Area { corner: (0.0, 0.0), size: (420.0, 250.0), em: 12.0, titled: false }, plot, tracks);
+    drawing.svg(Inks::Page, &plot.title)
 }
 
-impl Line {
-    /// Its class in the style sheet.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Solid => "solid",
-            Self::Dashed => "dashed",
-            Self::Dotted => "dotted",
+/// Draws `plot` of `tracks` into `area`.
+pub fn draw(drawing: &mut Drawing, area: Area, plot: &Plot, tracks: &[Track]) {
+    let Area { corner: (x, y), size: (width, height), em, titled } = area;
+    let mut top = y;
+    if titled {
+        top += 1.4 * em;
+        let (at, size, text) = ((x + 0.6 * em, top), 1.15 * em, plot.title.clone());
+        drawing.shapes.push(Shape::Words { at, side: Side::Start, size, color: Color::Ink, bold: true, text });
+        top += 0.3 * em;
+    }
+    let top = draw_legend(drawing, plot, (x + 0.6 * em, top), x + width, em);
+    let of = |curve: &Curve| tracks.get(curve.track);
+    let time = Axis {
+        least: 0.0,
+        greatest: plot.curves.iter().filter_map(of).map(Track::end).fold(1e-9, f64::max),
+        logarithmic: false,
+    };
+    let values = plot.curves.iter().filter_map(|curve| of(curve)?.column(&curve.column)).flatten();
+    let chart = Chart {
+        left: x + 4.2 * em,
+        right: x + width - 2.2 * em,
+        top: top + 2.7 * em,
+        bottom: y + height - 2.2 * em,
+        time,
+        value: Axis::vertical(plot, values.map(|value| f64::from(*value))),
+        em,
+    };
+    chart.draw_axes(drawing, &plot.unit);
+    for bound in plot.bounds.iter().filter(|bound| chart.shows(bound)) {
+        let (points, color) = (chart.across(chart.y(bound.value)), bound.color);
+        drawing.shapes.push(Shape::Stroke { points, color, width: 1.0, line: Line::Dashed });
+    }
+    for curve in &plot.curves {
+        if let Some(track) = of(curve) {
+            chart.draw_curve(drawing, curve, track);
+        }
+    }
+    chart.label_bounds(drawing, plot);
+}
+
+/// How thick a curve is.
+const fn width(curve: &Curve) -> f64 {
+    match (curve.broad, curve.line) {
+        (true, _) => 4.0,
+        (false, Line::Solid) => 1.8,
+        (false, _) => 1.4,
+    }
+}
+
+/// Samples of the lines with their names, in rows as long as there is room; gives the lower end.
+fn draw_legend(drawing: &mut Drawing, plot: &Plot, (left, top): Point, right: f64, em: f64) -> f64 {
+    let (mut x, mut y) = (left, top + 1.3 * em);
+    for curve in &plot.curves {
+        let needed = 2.4 * em + LETTER * em * curve.label.chars().count() as f64;
+        if x > left && x + needed > right {
+            (x, y) = (left, y + 1.4 * em);
+        }
+        let points = vec![(x, y - 0.35 * em), (x + 1.8 * em, y - 0.35 * em)];
+        drawing.shapes.push(Shape::Stroke { points, color: curve.color, width: width(curve), line: curve.line });
+        drawing.words(curve.label.clone(), (x + 2.3 * em, y), Side::Start, em, Color::Ink);
+        x += needed + 1.2 * em;
+    }
+    y
+}
+
+/// The ground that curves are drawn on.
+struct Chart {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+    time: Axis,
+    value: Axis,
+    em: f64,
+}
+
+impl Chart {
+    fn x(&self, time: f64) -> f64 {
+        self.left + self.time.share(time) * (self.right - self.left)
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        self.bottom - self.value.share(value) * (self.bottom - self.top)
+    }
+
+    fn across(&self, y: f64) -> Vec<Point> {
+        vec![(self.left, y), (self.right, y)]
+    }
+
+    fn shows(&self, bound: &Bound) -> bool {
+        (self.value.least..=self.value.greatest).contains(&bound.value)
+    }
+
+    /// Grid, numbers with their units, zero, and the axis of time.
+    fn draw_axes(&self, drawing: &mut Drawing, unit: &str) {
+        let em = self.em;
+        for (value, text) in self.value.marks((self.bottom - self.top) / (3.4 * em)) {
+            let (y, is_zero) = (self.y(value), value == 0.0 && !self.value.logarithmic);
+            drawing.stroke(self.across(y), if is_zero { Color::Axis } else { Color::Grid }, 1.0);
+            drawing.words(text, (self.left - 0.6 * em, y + 0.35 * em), Side::End, em, Color::Muted);
+        }
+        drawing.stroke(self.across(self.bottom), Color::Axis, 1.0);
+        for (time, text) in self.time.marks((self.right - self.left) / (4.5 * em)) {
+            let x = self.x(time);
+            drawing.stroke(vec![(x, self.bottom), (x, self.bottom + 0.3 * em)], Color::Axis, 1.0);
+            drawing.words(text, (x, self.bottom + 1.4 * em), Side::Middle, em, Color::Muted);
+        }
+        drawing.words("s", (self.right + 2.0 * em, self.bottom + 1.4 * em), Side::End, em, Color::Muted);
+        drawing.words(unit, (self.left - 0.6 * em, self.top - em), Side::End, em, Color::Muted);
+    }
+
+    fn draw_curve(&self, drawing: &mut Drawing, curve: &Curve, track: &Track) {
+        let values = track.column(&curve.column).unwrap_or_default();
+        let points = values.iter().enumerate().map(|(row, value)| {
+            let time = track.start + row as f64 * track.step;
+            (self.x(time), self.y(f64::from(*value)))
+        });
+        let points: Vec<Point> = points.collect();
+        for run in points.split(|(_, y)| !y.is_finite()).filter(|run| !run.is_empty()) {
+            let points = thinned(run);
+            drawing.shapes.push(Shape::Stroke { points, color: curve.color, width: width(curve), line: curve.line });
         }
     }
 
-    /// Lengths of a dash and of the gap behind it.
-    const fn pattern(self) -> Option<(i32, i32)> {
-        match self {
-            Self::Solid => None,
-            Self::Dashed => Some((7 * FINE, 4 * FINE)),
-            Self::Dotted => Some((2 * FINE, 3 * FINE)),
-        }
-    }
-}
-
-/// A line through the samples.
-pub struct Curve {
-    /// Its name in the legend; none, no entry.
-    pub label: String,
-    /// Its colour.
-    pub color: RGBColor,
-    /// How it is drawn.
-    pub line: Line,
-    /// Pixels; a curve that others may cover is wider, so that its rim shows.
-    pub width: u32,
-    /// (s, the panel's unit).
-    pub points: Vec<(f64, f64)>,
-}
-
-/// A level that must not be crossed.
-pub struct Bound {
-    /// Where, in the panel's unit.
-    pub value: f64,
-    /// The label at the line's end.
-    pub label: String,
-    /// Its colour: the one of the curve it belongs to, or [`INK`].
-    pub color: RGBColor,
-}
-
-/// A chart over time.
-pub struct Panel {
-    /// Above the chart.
-    pub title: &'static str,
-    /// Beside the vertical axis, with the unit.
-    pub quantity: &'static str,
-    /// The vertical axis.
-    pub scale: Scale,
-    /// The curves.
-    pub curves: Vec<Curve>,
-    /// The bounds.
-    pub bounds: Vec<Bound>,
-}
-
-impl Panel {
-    /// Draws into `area`.
-    ///
-    /// # Errors
-    /// As the backend's.
-    pub fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
-        area.draw(&Text::new(
-            self.title,
-            (14 * FINE, 10 * FINE),
-            font(17).into_font().style(FontStyle::Bold).color(&INK),
-        ))?;
-        self.draw_legend(area)?;
-        let (low, high) = self.vertical_range();
-        let chart_area = area.margin(58 * FINE, 6 * FINE, 8 * FINE, 22 * FINE);
-        match self.scale {
-            Scale::Linear => self.draw_chart(&chart_area, low..high, &|value| format_linear(*value, high - low)),
-            Scale::Log => self.draw_chart(&chart_area, (low..high).log_scale(), &|value| format_decade(*value)),
-        }
-    }
-
-    /// A row of line samples with names, between title and chart, where no data can be.
-    fn draw_legend<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> DrawingResult<DB> {
-        const SAMPLE: i32 = 26 * FINE;
-        const CHARACTER: i32 = 8 * FINE;
-        let mut x = 16 * FINE;
-        for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
-            draw_dashes(area, x, x + SAMPLE, 43 * FINE, curve)?;
-            x += SAMPLE + 6 * FINE;
-            area.draw(&Text::new(curve.label.as_str(), (x, 35 * FINE), font(15).into_font().color(&INK)))?;
-            x += CHARACTER * curve.label.chars().count() as i32 + 18 * FINE;
-        }
-        Ok(())
-    }
-
-    fn draw_chart<DB, Y>(
-        &self,
-        area: &DrawingArea<DB, Shift>,
-        vertical: Y,
-        label: &dyn Fn(&f64) -> String,
-    ) -> DrawingResult<DB>
-    where
-        DB: DrawingBackend,
-        Y: AsRangedCoord<Value = f64>,
-        Y::CoordDescType: ValueFormatter<f64> + Ranged<ValueType = f64>,
-    {
-        let end = self.end();
-        let mut chart = ChartBuilder::on(area)
-            .x_label_area_size(46 * FINE)
-            .y_label_area_size(76 * FINE)
-            .build_cartesian_2d(0.0..end, vertical)?;
-        let axis = font(15).into_font().color(&INK);
-        chart
-            .configure_mesh()
-            .bold_line_style(GRID.stroke_width(FINE as u32))
-            .light_line_style(TRANSPARENT)
-            .axis_style(INK.stroke_width(FINE as u32))
-            .set_all_tick_mark_size(5 * FINE)
-            .label_style(axis.clone())
-            .axis_desc_style(font(15).into_font().color(&INK))
-            .x_labels(9)
-            .y_labels(7)
-            .x_label_formatter(&|value| format_linear(*value, end))
-            .y_label_formatter(&label)
-            .x_desc("time [s]")
-            .y_desc(self.quantity)
-            .draw()?;
-        for (index, bound) in self.bounds.iter().enumerate() {
-            let line = [(0.0, bound.value), (end, bound.value)];
-            chart.draw_series(DashedLineSeries::new(
-                line,
-                7 * FINE,
-                5 * FINE,
-                bound.color.stroke_width(FINE as u32),
-            ))?;
-            // Outside the bound; inside, where another one lies just outside.
-            let up = (bound.value >= 0.0) != self.is_inner(bound);
-            let (side, gap) = if up { (VPos::Bottom, -3 * FINE) } else { (VPos::Top, 3 * FINE) };
-            let style = font(13).into_font().color(&bound.color).pos(Pos::new(HPos::Right, side));
-            let left = 6 * FINE + LABEL_WIDTH * self.crowd(index) as i32;
-            let text = EmptyElement::at((end, bound.value)) + Text::new(bound.label.clone(), (-left, gap), style);
-            chart.plotting_area().draw(&text)?;
-        }
-        for curve in &self.curves {
-            let style = curve.color.stroke_width(curve.width * FINE as u32);
-            let mut points = thinned(&curve.points, end);
-            if self.scale == Scale::Log {
-                points.iter_mut().for_each(|point| point.1 = point.1.max(LEAST_ON_LOG));
+    /// What each bound is, with its value: at the right or in the middle, above its line or below. Of two equal bounds
+    /// on both sides of zero one label says so.
+    fn label_bounds(&self, drawing: &mut Drawing, plot: &Plot) {
+        let mut written: Vec<[f64; 4]> = Vec::new();
+        let shown: Vec<&Bound> = plot.bounds.iter().filter(|bound| self.shows(bound)).collect();
+        let size = 0.9 * self.em;
+        for bound in &shown {
+            let mirrored = bound.value != 0.0
+                && shown.iter().any(|other| other.label == bound.label && other.value == -bound.value);
+            if mirrored && bound.value < 0.0 {
+                continue;
             }
-            match curve.line.pattern() {
-                Some((dash, gap)) => chart.draw_series(DashedLineSeries::new(points, dash, gap, style))?,
-                None => chart.draw_series(LineSeries::new(points, style))?,
+            let sign = if mirrored { "±" } else { "" };
+            let text = format!("{}: {sign}{}", bound.label, plot.measure(bound.value));
+            let (y, width) = (self.y(bound.value), LETTER * size * text.chars().count() as f64);
+            let crossed = |[_, top, _, bottom]: [f64; 4]| {
+                shown.iter().map(|other| self.y(other.value)).any(|line| top < line && line < bottom)
             };
+            let [outer, inner] = if bound.value >= 0.0 { [-1.0, 1.0] } else { [1.0, -1.0] };
+            let rights = [self.right - 0.3 * self.em, self.left + 0.55 * (self.right - self.left)];
+            let places = rights.into_iter().flat_map(|right| {
+                [outer, inner].map(|side| {
+                    let middle = y + side * 0.85 * size;
+                    [right - width, middle - 0.6 * size, right, middle + 0.6 * size]
+                })
+            });
+            let free = |place: &[f64; 4]| {
+                let [left, top, right, bottom] = *place;
+                let apart =
+                    |other: &[f64; 4]| right < other[0] || other[2] < left || bottom < other[1] || other[3] < top;
+                left > self.left && top > self.top - self.em && bottom < self.bottom && written.iter().all(apart)
+            };
+            let places: Vec<[f64; 4]> = places.filter(free).collect();
+            let Some(place) = places.iter().find(|place| !crossed(**place)).or(places.first()) else { continue };
+            written.push(*place);
+            drawing.words(text, (place[2], place[3] - 0.25 * size), Side::End, size, bound.color);
         }
-        Ok(())
-    }
-
-    /// Whether two bounds lie so close that their labels would touch.
-    fn close(&self, a: &Bound, b: &Bound) -> bool {
-        let (low, high) = self.vertical_range();
-        self.scale == Scale::Linear && (a.value - b.value).abs() < 0.06 * (high - low)
-    }
-
-    /// Whether another bound lies close by, further from zero.
-    fn is_inner(&self, bound: &Bound) -> bool {
-        self.bounds.iter().any(|other| self.close(other, bound) && other.value.abs() > bound.value.abs())
-    }
-
-    /// How many labels before this one stand in its place.
-    fn crowd(&self, index: usize) -> usize {
-        let Some(bound) = self.bounds.get(index) else { return 0 };
-        let same_side = |other: &&Bound| self.close(other, bound) && self.is_inner(other) == self.is_inner(bound);
-        self.bounds.iter().take(index).filter(same_side).count()
-    }
-
-    /// The end of the time axis: one sample after the last, so that a flight of 40 s ends at 40.
-    fn end(&self) -> f64 {
-        let end_of = |curve: &Curve| match curve.points.as_slice() {
-            [.., before, last] => 2.0 * last.0 - before.0,
-            [only] => only.0,
-            [] => 0.0,
-        };
-        // A hair more, so that rounding does not take the last label away.
-        self.curves.iter().map(end_of).fold(1e-3, f64::max) * (1.0 + 1e-9)
-    }
-
-    /// The range of all curves and bounds, with room for the bounds' labels.
-    fn vertical_range(&self) -> (f64, f64) {
-        let values = self.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
-        let values = values.chain(self.bounds.iter().map(|bound| bound.value));
-        let (low, high) = match self.scale {
-            Scale::Linear => values.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value))),
-            Scale::Log => {
-                let seen = values.filter(|value| *value > LEAST_ON_LOG);
-                let (low, high) = seen.fold((f64::MAX, f64::MIN), |(l, h), value| (l.min(value), h.max(value)));
-                let (low, high) = if low > high { (LEAST_ON_LOG, 1.0) } else { (low, high) };
-                let (least, most) = (low.log10().floor(), high.log10().ceil().max(low.log10().floor() + 1.0));
-                // A hair more, as at the end.
-                return (10f64.powf(least) * (1.0 - 1e-9), 10f64.powf(most) * (1.0 + 1e-9));
-            }
-        };
-        let room = if high - low > 1e-9 { 0.1 * (high - low) } else { 1.0 };
-        (low - room, high + room)
     }
 }
 
-/// The one typeface, at a size in pixels; the drawing library makes type smaller than asked, by a factor of 1.24.
-fn font(size: i32) -> (&'static str, i32) {
-    ("sans-serif", size * FINE * 124 / 100)
-}
-
-/// Below this an error on a logarithmic axis is single precision's noise, and drawn as this.
-const LEAST_ON_LOG: f64 = 1e-7;
-/// Room for the label of a bound, pixels.
-const LABEL_WIDTH: i32 = 124 * FINE;
-
-/// A horizontal sample of the curve's line in a legend.
-fn draw_dashes<DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
-    from: i32,
-    to: i32,
-    y: i32,
-    curve: &Curve,
-) -> DrawingResult<DB> {
-    let style = curve.color.stroke_width(curve.width * FINE as u32);
-    let (dash, gap) = curve.line.pattern().unwrap_or((to - from, 0));
-    let mut x = from;
-    while x < to {
-        area.draw(&PathElement::new(vec![(x, y), ((x + dash).min(to), y)], style))?;
-        x += dash + gap;
-    }
-    Ok(())
-}
-
-/// The least and the greatest point of each column of pixels, in order of time.
-fn thinned(points: &[(f64, f64)], end: f64) -> Vec<(f64, f64)> {
-    let column = |point: &(f64, f64)| (point.0 / end * COLUMNS as f64) as usize;
-    let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-    let mut kept = Vec::with_capacity(2 * COLUMNS);
-    for chunk in points.chunk_by(|a, b| column(a) == column(b)) {
-        let (Some(least), Some(greatest)) = (chunk.iter().min_by(by_value), chunk.iter().max_by(by_value)) else {
+/// The least and the greatest point of each column of pixels, in order, without the middle of what is level.
+fn thinned(points: &[Point]) -> Vec<Point> {
+    let by_height = |a: &&Point, b: &&Point| a.1.total_cmp(&b.1);
+    let mut kept: Vec<Point> = Vec::new();
+    let mut keep = |point: Point| {
+        if let [.., before, last] = kept.as_mut_slice()
+            && (before.1 - point.1).abs() < 0.05
+            && (last.1 - point.1).abs() < 0.05
+        {
+            *last = point;
+        } else {
+            kept.push(point);
+        }
+    };
+    for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+        let (Some(least), Some(greatest)) = (column.iter().min_by(by_height), column.iter().max_by(by_height)) else {
             continue;
         };
         let (first, second) = if least.0 <= greatest.0 { (least, greatest) } else { (greatest, least) };
-        kept.push(*first);
+        keep(*first);
         if second.0 > first.0 {
-            kept.push(*second);
+            keep(*second);
         }
+    }
+    // Where the curve ends it is seen to end.
+    if let Some(last) = points.last().filter(|last| kept.last() != Some(last)) {
+        kept.push(*last);
     }
     kept
 }
 
-/// As many decimals as the axis' span needs.
-fn format_linear(value: f64, span: f64) -> String {
-    let decimals = if span > 8.0 { 0 } else { (1.0 - span.log10()).ceil().clamp(1.0, 6.0) as usize };
-    // Rounding can leave a minus before a zero.
-    let text = format!("{value:.decimals$}");
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { text }
-}
-
-/// A power of ten with a raised exponent.
-fn format_decade(value: f64) -> String {
-    let exponent = value.log10().round() as i32;
-    let raised: String = exponent
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            other => char::from_u32('⁰' as u32 + other.to_digit(10).unwrap_or(0)).unwrap_or(other),
-        })
-        .collect();
-    format!("10{raised}")
-}
-
 #[cfg(test)]
-mod tests {
-    use super::super::canvas::draw;
-    use super::*;
-
-    #[test]
-    fn thinning_keeps_every_columns_extremes() {
-        let mut points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i) * 1e-3, 0.0)).collect();
-        points[50_000].1 = 7.0;
-        points[50_001].1 = -7.0;
-        let kept = thinned(&points, 100.0);
-        assert!(kept.len() <= 2 * COLUMNS + 2);
-        assert!(kept.contains(&points[50_000]) && kept.contains(&points[50_001]));
-        assert!(kept.windows(2).all(|pair| pair[0].0 < pair[1].0));
-    }
-
-    #[test]
-    fn labels_read_well() {
-        assert_eq!((format_decade(1e-5), format_decade(10.0)), ("10⁻⁵".into(), "10¹".into()));
-        assert_eq!((format_linear(-0.0, 20.0), format_linear(0.25, 0.5)), ("0".into(), "0.25".into()));
-    }
-
-    #[test]
-    fn both_ends_of_a_logarithmic_axis_have_labels() {
-        let points = vec![(0.0, 1e-4), (1.0, 1e2)];
-        let curve = Curve { label: String::new(), color: BLUE, line: Line::Solid, width: 2, points };
-        let panel = Panel { title: "", quantity: "m", scale: Scale::Log, curves: vec![curve], bounds: Vec::new() };
-        let drawn = draw((700, 450), |root| panel.draw(root)).unwrap();
-        for end in ["10⁻⁴", "10²"] {
-            assert!(drawn.contains(end), "{end}");
-        }
-    }
-}
+mod tests;

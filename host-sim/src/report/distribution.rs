@@ -4,10 +4,9 @@
 //! A page holds no flight's value by itself but [`BINS`] counts and [`QUANTILES`] + 1 evenly spaced quantiles for each
 //! group, the least and the greatest among them, whether a hundred flights were flown or a million.
 
-use super::plot::Color;
+use super::plot::{Color, Line};
 use super::prose::{Cell, Table};
 use super::track::encoded;
-use crate::plots::panel::Line;
 use crate::table::{percent, short};
 use serde_json::{Value, json};
 

@@ -12,6 +12,8 @@ use super::replay::{Body, Replay};
 use crate::claims::{self, Claim};
 use crate::flier::LawChoice;
 use crate::flown::Flown;
+use crate::plots::drawing::Inks;
+use crate::plots::{FIGURE_1, FIGURE_2, figure, first_seconds, path};
 use crate::table::{percent, short};
 use scenario::Scenario;
 use scenario::stability::LoopMargin;
@@ -46,13 +48,19 @@ pub fn recorder(scenario: &Scenario) -> Recorder {
     Recorder::new(timing.ticks, timing.period(), columns::columns(scenario))
 }
 
-/// The page of a flight.
+/// The page of a flight, and beside it the figures by the names of their files.
 #[must_use]
-pub fn page(flight: &Flight, recorder: Recorder) -> Page {
+pub fn page(flight: &Flight, recorder: Recorder) -> (Page, [(&'static str, String); 4]) {
     let Flight { scenario, law, verdict, claims, flown, .. } = flight;
     let ticks_per_row = recorder.ticks_per_row();
     let track = recorder.finish(&scenario.name);
     let plots = plots::plots(scenario, verdict.certificate(), &track);
+    let figures = [
+        ("fig1.svg", figure(&plots, FIGURE_1, &track)),
+        ("fig2.svg", figure(&plots, FIGURE_2, &track)),
+        ("first-seconds.svg", first_seconds(&plots, &track)),
+        ("flight.svg", path::picture(&track).svg(Inks::Light, "The path in space")),
+    ];
     let holds = claims::all_hold(claims);
     let sections = [
         ("Replay", vec![Block::Replay(replay(scenario))]),
@@ -77,7 +85,7 @@ pub fn page(flight: &Flight, recorder: Recorder) -> Page {
             ],
         ),
     ];
-    Page {
+    let page = Page {
         title: scenario.name.clone(),
         kind: "flight".into(),
         verdict: Some((holds, if holds { "Every claim holds" } else { "Not every claim holds" }.into())),
@@ -85,7 +93,8 @@ pub fn page(flight: &Flight, recorder: Recorder) -> Page {
         highlights: highlights(scenario, law, verdict, flown),
         tracks: vec![track],
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
-    }
+    };
+    (page, figures)
 }
 
 fn lead(scenario: &Scenario, law: &LawChoice) -> String {

@@ -1,18 +1,19 @@
 //! A page: a head with its verdict, sections of blocks, the data of all figures, and the program that draws them.
 
 use super::distribution::Distribution;
-use super::plot::Plot;
+use super::plot::{Plot, STYLE};
 use super::prose::{Fact, Table, facts, listing, verdict_words};
 use super::replay::Replay;
 use super::text::{anchor, escaped, json};
 use super::track::Track;
+use crate::plots::drawing::Inks;
+use crate::plots::{panel, path};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-const STYLE: &str = include_str!("../../report/page.css");
 /// The program's parts, in the order in which they need each other; together they are one function.
 const PROGRAM: [&str; 8] = [
     include_str!("../../report/data.js"),
@@ -113,7 +114,7 @@ impl Page {
              <title>{title}: {kind}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
              <a class=\"skip\" href=\"#content\">Skip to the content</a>\n{}{}<main id=\"content\">\n{body}</main>\n\
              <footer>Written by host-sim {version}. This file needs no network and asks for none.</footer>\n\
-             <noscript><p class=\"lead\">Plots and replay need JavaScript; every table is here without it.</p></noscript>\n\
+             <noscript><p class=\"lead\">Without JavaScript plots and paths are still pictures, and distributions are tables.</p></noscript>\n\
              <div id=\"live\" class=\"unseen\" role=\"status\" aria-live=\"polite\"></div>\n\
              <script type=\"application/json\" id=\"data\">{data}</script>\n<script>{program}</script>\n</body>\n</html>\n",
             self.head(&title, &kind),
@@ -155,20 +156,27 @@ impl Page {
             Block::Plots(plots) => {
                 *html += "<div class=\"plots\">\n";
                 for plot in plots {
-                    *html += &figure("plot", figures.plots.len(), &plot.title, &plot.unit, &plot.table(&self.tracks));
+                    let still = panel::picture(plot, &self.tracks);
+                    *html += &figure("plot", figures.plots.len(), &plot.title, &still, &plot.table(&self.tracks));
                     figures.plots.push(plot.json());
                 }
                 *html += "</div>\n";
             }
             Block::Replay(replay) => {
-                *html += &format!("<div class=\"replay\" data-replay=\"{}\"></div>\n", figures.replays.len());
+                let track = replay.bodies.first().and_then(|body| self.tracks.get(body.track));
+                let still =
+                    track.map_or_else(String::new, |track| path::picture(track).svg(Inks::Page, "The path in space"));
+                *html += &format!(
+                    "<div class=\"replay\" data-replay=\"{}\"><noscript>{still}</noscript></div>\n",
+                    figures.replays.len()
+                );
                 figures.replays.push(replay.json());
             }
             Block::Distributions(distributions) => {
                 *html += "<div class=\"plots\">\n";
                 for spread in distributions {
                     let place = figures.distributions.len();
-                    *html += &figure("distribution", place, &spread.title, &spread.unit, &spread.table());
+                    *html += &figure("distribution", place, &spread.title, "", &spread.table());
                     figures.distributions.push(spread.json());
                 }
                 *html += "</div>\n";
@@ -177,11 +185,11 @@ impl Page {
     }
 }
 
-/// A place for a drawing, with its heading, and its figures as a table.
-fn figure(kind: &str, place: usize, title: &str, unit: &str, table: &Table) -> String {
-    let unit = if unit.is_empty() { String::new() } else { format!(" <small>{}</small>", escaped(unit)) };
+/// A place for a drawing, with its heading, what is `still` there without the program, and its figures as a table.
+fn figure(kind: &str, place: usize, title: &str, still: &str, table: &Table) -> String {
+    let still = if still.is_empty() { String::new() } else { format!("<noscript>{still}</noscript>") };
     format!(
-        "<figure data-{kind}=\"{place}\"><h3>{}{unit}</h3><div class=\"drawing\"></div>\
+        "<figure data-{kind}=\"{place}\"><h3>{}</h3><div class=\"drawing\">{still}</div>\
          <details><summary>In figures<span class=\"unseen\">: {}</span></summary>{}</details></figure>\n",
         escaped(title),
         escaped(title),

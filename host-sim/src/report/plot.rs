@@ -1,13 +1,17 @@
-//! Curves over time with their bounds, and a table of their extremes for readers who cannot see them.
+//! Curves over time and what bounds them, with a table of their extremes for whoever reads rather than looks.
+//!
+//! The one description of a plot: the page's program draws it from [`Plot::json`], [`crate::plots::panel`] as SVG.
 
 use super::prose::{Cell, Table};
 use super::track::Track;
-use crate::plots::panel::Line;
 use crate::table::short;
 use serde_json::{Value, json};
 
-/// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies; the style sheet has their
-/// values.
+/// The style sheet, which has the colours' values.
+pub const STYLE: &str = include_str!("../../report/page.css");
+
+/// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies, and those of axes and
+/// grounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Color {
     /// The first axis, or the only curve.
@@ -26,6 +30,16 @@ pub enum Color {
     Grey,
     /// Bounds that belong to no curve; our law beside others.
     Ink,
+    /// Words on axes.
+    Muted,
+    /// Lines at round numbers.
+    Grid,
+    /// The axes, and zero.
+    Axis,
+    /// A path's shadow on the floor.
+    Shadow,
+    /// The ground that all is drawn on.
+    Card,
 }
 
 impl Color {
@@ -38,7 +52,7 @@ impl Color {
         Self::CYCLE[place % Self::CYCLE.len()]
     }
 
-    /// Its class in the style sheet.
+    /// What the style sheet calls it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -50,6 +64,42 @@ impl Color {
             Self::Sky => "sky",
             Self::Grey => "grey",
             Self::Ink => "ink",
+            Self::Muted => "muted",
+            Self::Grid => "grid",
+            Self::Axis => "axis",
+            Self::Shadow => "shadow",
+            Self::Card => "card",
+        }
+    }
+
+    /// Its value in the light scheme: `#rrggbb`.
+    #[must_use]
+    pub fn hex(self) -> &'static str {
+        let value = STYLE.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
+        value.unwrap_or("#000000")
+    }
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Line {
+    /// Without gaps.
+    Solid,
+    /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them
+    /// apart.
+    Dashed,
+    /// In dots: a second such pattern.
+    Dotted,
+}
+
+impl Line {
+    /// What the style sheet calls it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::Dashed => "dashed",
+            Self::Dotted => "dotted",
         }
     }
 }
@@ -67,19 +117,27 @@ pub struct Curve {
     pub color: Color,
     /// How it is drawn.
     pub line: Line,
+    /// Whether it is drawn so broad that its rim shows beneath a curve that covers it.
+    pub broad: bool,
 }
 
 impl Curve {
     /// A full line from the page's first track.
     #[must_use]
     pub fn new(column: impl Into<String>, label: impl Into<String>, color: Color) -> Self {
-        Self { track: 0, column: column.into(), label: label.into(), color, line: Line::Solid }
+        Self { track: 0, column: column.into(), label: label.into(), color, line: Line::Solid, broad: false }
     }
 
     /// The same, dashed.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { line: Line::Dashed, ..self }
+    }
+
+    /// The same, broad.
+    #[must_use]
+    pub fn broad(self) -> Self {
+        Self { broad: true, ..self }
     }
 }
 
@@ -88,7 +146,7 @@ impl Curve {
 pub struct Bound {
     /// Where, in the plot's unit.
     pub value: f64,
-    /// Its name.
+    /// What it is.
     pub label: String,
     /// The colour of the curve that it belongs to, or [`Color::Ink`].
     pub color: Color,
@@ -99,15 +157,17 @@ pub struct Bound {
 /// Curves over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// Its title.
+    /// What is shown.
     pub title: String,
     /// The unit of the vertical axis; empty for a number without one.
     pub unit: String,
     /// Whether the vertical axis shows decades.
     pub logarithmic: bool,
-    /// The curves.
+    /// Whether the vertical axis reaches zero though nothing drawn comes near.
+    pub from_zero: bool,
+    /// What is drawn.
     pub curves: Vec<Curve>,
-    /// The bounds.
+    /// What it is measured against.
     pub bounds: Vec<Bound>,
 }
 
@@ -115,7 +175,8 @@ impl Plot {
     /// A plot without bounds.
     #[must_use]
     pub fn new(title: &str, unit: &str, curves: Vec<Curve>) -> Self {
-        Self { title: title.to_owned(), unit: unit.to_owned(), logarithmic: false, curves, bounds: Vec::new() }
+        let (title, unit) = (title.to_owned(), unit.to_owned());
+        Self { title, unit, logarithmic: false, from_zero: false, curves, bounds: Vec::new() }
     }
 
     /// The same with decades on its vertical axis.
@@ -124,23 +185,29 @@ impl Plot {
         Self { logarithmic: true, ..self }
     }
 
+    /// The same with zero on its vertical axis.
+    #[must_use]
+    pub fn from_zero(self) -> Self {
+        Self { from_zero: true, ..self }
+    }
+
     /// The same within `bounds`.
     #[must_use]
     pub fn within(self, bounds: Vec<Bound>) -> Self {
         Self { bounds, ..self }
     }
 
-    /// Its data for the page's program.
+    /// What the page's program reads.
     #[must_use]
     pub fn json(&self) -> Value {
         let curves = self.curves.iter().map(|curve| {
             json!({ "track": curve.track, "column": curve.column, "label": curve.label, "color": curve.color.name(),
-                "line": curve.line.name() })
+                "line": curve.line.name(), "broad": curve.broad })
         });
         let bounds = self.bounds.iter().map(|bound| {
             json!({ "value": bound.value, "label": bound.label, "color": bound.color.name(), "always": bound.always, "text": self.measure(bound.value) })
         });
-        json!({ "title": self.title, "unit": self.unit, "logarithmic": self.logarithmic,
+        json!({ "title": self.title, "unit": self.unit, "logarithmic": self.logarithmic, "fromZero": self.from_zero,
             "curves": curves.collect::<Vec<_>>(), "bounds": bounds.collect::<Vec<_>>() })
     }
 
@@ -165,7 +232,9 @@ impl Plot {
         table
     }
 
-    fn measure(&self, value: f64) -> String {
+    /// A value with the plot's unit.
+    #[must_use]
+    pub fn measure(&self, value: f64) -> String {
         match (value.is_finite(), self.unit.as_str()) {
             (false, _) => "none".to_owned(),
             (true, "") => short(value),

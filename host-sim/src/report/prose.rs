@@ -50,7 +50,7 @@ impl Cell {
             Self::Number(text) => format!("<td class=\"number\">{}</td>", escaped(&unbroken(text))),
             Self::Verdict(verdict) => {
                 let (class, word) = verdict_words(*verdict);
-                format!("<td><span class=\"verdict {class}\">{word}</span></td>")
+                format!("<td class=\"judged\"><span class=\"verdict {class}\">{word}</span></td>")
             }
         }
     }
@@ -58,7 +58,9 @@ impl Cell {
 
 /// A number stays beside its unit where a line is short.
 fn unbroken(text: &str) -> String {
-    text.split(", ").map(|part| part.replace(' ', "\u{a0}")).collect::<Vec<_>>().join(", ")
+    let has_digit = |part: &str| part.contains(|c: char| c.is_ascii_digit());
+    let part = |part: &str| if has_digit(part) { part.replace(' ', "\u{a0}") } else { part.to_owned() };
+    text.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }
 
 /// How a verdict looks and what it says. Its sign is the style sheet's, so that colour never stands alone.
@@ -97,8 +99,12 @@ impl Table {
             "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{caption}\"><table><caption>{caption}</caption><thead><tr>"
         );
         for (column, name) in self.head.iter().enumerate() {
-            let is_number = |row: &Vec<Cell>| matches!(row.get(column), Some(Cell::Number(_)));
-            let class = if self.rows.iter().any(is_number) { " class=\"number\"" } else { "" };
+            let class =
+                match self.rows.iter().find_map(|row| row.get(column).filter(|cell| !matches!(cell, Cell::Text(_)))) {
+                    Some(Cell::Number(_)) => " class=\"number\"",
+                    Some(Cell::Verdict(_)) => " class=\"judged\"",
+                    _ => "",
+                };
             let _ = write!(html, "<th scope=\"col\"{class}>{}</th>", escaped(name));
         }
         html += "</tr></thead><tbody>";

@@ -7,7 +7,7 @@
 
 use super::track::Track;
 use crate::flight::Tick;
-use crate::plots::record::nearest_turn;
+use std::f64::consts::TAU;
 
 /// Rows a track may have: the paper's 40 s at 100 Hz, whole.
 pub const MOST_ROWS: u64 = 4000;
@@ -100,8 +100,24 @@ impl Recorder {
         // The last stretch may end before its middle: its start stands for it.
         let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
         columns.iter_mut().for_each(|(_, values)| values.resize(rows, values.last().copied().unwrap_or(f32::NAN)));
+        end_beside(&mut columns, "yaw", "yaw_d");
         let step = self.period * self.stretch as f64 / if self.stretch == 1 { 1.0 } else { 2.0 };
         Track { name: name.to_owned(), start: 0.0, step, columns }
+    }
+}
+
+/// `angle` plus the whole turns that bring it closest to `before`, rad.
+fn nearest_turn(angle: f64, before: f64) -> f64 {
+    angle + TAU * ((before - angle) / TAU).round()
+}
+
+/// Turns a column of degrees by whole turns, so that it ends beside another.
+fn end_beside(columns: &mut [(String, Vec<f32>)], name: &str, other: &str) {
+    let last = |name: &str| columns.iter().find(|(found, _)| found == name).and_then(|(_, values)| values.last());
+    let (Some(ends), Some(beside)) = (last(name), last(other)) else { return };
+    let turned = 360.0 * ((beside - ends) / 360.0).round();
+    for (_, values) in columns.iter_mut().filter(|(found, _)| found == name) {
+        values.iter_mut().for_each(|value| *value += turned);
     }
 }
 

@@ -7,10 +7,10 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
-/// Columns over time, once for all plots and replays of a page.
+/// What was recorded over time, once for all plots and replays of a page.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Track {
-    /// Its subject.
+    /// What or who it is about.
     pub name: String,
     /// The first row's time, s.
     pub start: f64,
@@ -27,7 +27,35 @@ impl Track {
         self.columns.iter().find(|(found, _)| found == name).map(|(_, values)| values.as_slice())
     }
 
-    /// Its data for the page's program.
+    /// One row after the last, s: a flight of 40 s ends at 40.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.start + self.step * self.columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0) as f64
+    }
+
+    /// The same without what comes after `end`, s.
+    #[must_use]
+    pub fn until(&self, end: f64) -> Self {
+        let rows = ((end - self.start) / self.step + 1e-6).max(0.0) as usize;
+        let cut = |(name, values): &(String, Vec<f32>)| (name.clone(), values[..rows.min(values.len())].to_vec());
+        Self { columns: self.columns.iter().map(cut).collect(), name: self.name.clone(), ..*self }
+    }
+
+    /// Columns of points (s, value) that are evenly spaced and begin together.
+    #[must_use]
+    pub fn of_points(columns: Vec<(String, Vec<(f64, f64)>)>) -> Self {
+        let longest = columns.iter().map(|(_, points)| points.as_slice()).max_by_key(|points| points.len());
+        let (start, step) = match longest.unwrap_or_default() {
+            [first, second, ..] => (first.0, second.0 - first.0),
+            [only] => (only.0, 1.0),
+            [] => (0.0, 1.0),
+        };
+        let values = |points: Vec<(f64, f64)>| points.into_iter().map(|(_, value)| value as f32).collect();
+        let columns = columns.into_iter().map(|(name, points)| (name, values(points))).collect();
+        Self { name: String::new(), start, step, columns }
+    }
+
+    /// What the page's program reads.
     #[must_use]
     pub fn json(&self) -> Value {
         let columns: Map<String, Value> =

@@ -42,8 +42,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", claims.table());
 
     std::fs::create_dir_all(&directory)?;
-    std::fs::write(directory.join("section-six.svg"), pictures::section_six(&filtered, &quick)?)?;
-    std::fs::write(directory.join("half-turn.svg"), pictures::half_turns(&turns, &held)?)?;
+    std::fs::write(directory.join("section-six.svg"), pictures::section_six(&filtered, &quick))?;
+    std::fs::write(directory.join("half-turn.svg"), pictures::half_turns(&turns, &held))?;
     println!("pictures in {}", directory.display());
     Ok(())
 }

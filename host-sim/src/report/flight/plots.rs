@@ -7,7 +7,7 @@ use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
-/// The vehicle's limit, which may be far from every command.
+/// What the vehicle has, which may be far from what is ever commanded.
 const LIMIT: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
@@ -26,18 +26,18 @@ pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> V
     plots
 }
 
-/// Position and attitude, and their errors from the reference.
+/// Where it is, how it stands, and how far that is from what was asked.
 fn motion(scenario: &Scenario) -> Vec<Plot> {
     let published = |value| if scenario.is_papers() { vec![ink(value, "published, steady state")] } else { vec![] };
     vec![
-        Plot::new("Position", "m", [axes(["px", "py", "pz"]), desired(["pdx", "pdy", "pdz"])].concat()),
+        Plot::new("Position", "m", [flown(["px", "py", "pz"]), desired(["pdx", "pdy", "pdz"])].concat()),
         Plot::new("Position error", "m", vec![Curve::new("position_error", "|p − p_d|", Color::Blue)])
             .logarithmic()
             .within(published(PUBLISHED_POSITION_ERROR)),
         Plot::new(
             "Yaw",
             "°",
-            vec![Curve::new("yaw", "yaw", Color::Blue), Curve::new("yaw_d", "reference", Color::Ink).dashed()],
+            vec![Curve::new("yaw", "yaw", Color::Blue).broad(), Curve::new("yaw_d", "asked", Color::Ink).dashed()],
         ),
         Plot::new("Tilt of the thrust axis", "°", vec![Curve::new("tilt", "tilt", Color::Blue)]),
         Plot::new("Attitude error (MRP)", "", vec![Curve::new("mrp_error", "|ϑ|", Color::Blue)])
@@ -49,11 +49,11 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
             [axes(["mrp_x", "mrp_y", "mrp_z"]), vec![Curve::new("lift_sign", "m*, the lift", Color::Orange)]].concat(),
         ),
         Plot::new("Velocity", "m/s", axes(["vx", "vy", "vz"])),
-        Plot::new("Body rates", "rad/s", [axes(["wx", "wy", "wz"]), desired(["wdx", "wdy", "wdz"])].concat()),
+        Plot::new("Body rates", "rad/s", [flown(["wx", "wy", "wz"]), desired(["wdx", "wdy", "wdz"])].concat()),
     ]
 }
 
-/// The law's commands, with the proven bounds and the vehicle's limits.
+/// What the law commands, within what is proven and what the vehicle has.
 fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     let limits = scenario.configuration.limits();
     let mut thrust = interval(certificate.thrust(), "proven", Color::Ink);
@@ -67,7 +67,7 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     }
     torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT));
     let mut plots = vec![
-        Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).within(thrust),
+        Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).from_zero().within(thrust),
         Plot::new("Torques", "N m", axes(["tau_x", "tau_y", "tau_z"])).within(torque),
         Plot::new("Commands cut by the limits", "", vec![Curve::new("clipped", "1: cut", Color::Blue)]),
     ];
@@ -81,12 +81,12 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
         let given =
             rotors.iter().map(|rotor| Interval { least: rotor.thrust_min.into(), greatest: rotor.thrust_max.into() });
         bounds.extend(given.take(1).flat_map(|given| interval(given, "a rotor's own limit", Color::Ink)));
-        plots.push(Plot::new("Rotor thrusts", "N", (0..rotors.len()).map(curve).collect()).within(bounds));
+        plots.push(Plot::new("Rotor thrusts", "N", (0..rotors.len()).map(curve).collect()).from_zero().within(bounds));
     }
     plots
 }
 
-/// The law's filters and saturated feedbacks.
+/// What the law goes through on its way: filters and saturated feedbacks.
 fn inside(scenario: &Scenario) -> Vec<Plot> {
     let gains = scenario.configuration.gains();
     let level =
@@ -102,10 +102,13 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
             .map(|(place, (column, label))| Curve::new(column, label, Color::of(place)))
             .collect()
     };
-    let filters = [("filter_input", "|ū_p|"), ("filter_first", "|u_f|"), ("filter_second", "|u_s|")];
+    let mut filters: Vec<Curve> =
+        curves([("filter_input", "|ū_p|"), ("filter_first", "|u_f|"), ("filter_second", "|u_s|")]);
+    // The second filter follows its input within a twentieth of a second and would hide it.
+    filters[0].broad = true;
     let second = [("us_x", "u_s x"), ("us_y", "u_s y"), ("us_z", "u_s z")];
     vec![
-        Plot::new("Position feedback and its filters", "m/s²", curves(filters)).within(norm.into_iter().collect()),
+        Plot::new("Position feedback and its filters", "m/s²", filters).within(norm.into_iter().collect()),
         Plot::new("First filter", "m/s²", curves([("uf_x", "u_f x"), ("uf_y", "u_f y"), ("uf_z", "u_f z")]))
             .within(m_p.clone().into_iter().flatten().collect()),
         Plot::new("Second filter", "m/s²", curves(second)).within(m_p.into_iter().flatten().collect()),
@@ -118,19 +121,19 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
     ]
 }
 
-/// The law's estimates, and the error of the state that it got.
+/// What the law makes of the unknown, and how true is what it is told.
 fn estimates() -> Vec<Plot> {
-    let error = |title, unit, column| {
-        Plot::new(title, unit, vec![Curve::new(column, "measured − true", Color::Blue)]).logarithmic()
+    let told = |title, unit, column| {
+        Plot::new(title, unit, vec![Curve::new(column, "told − true", Color::Blue)]).logarithmic()
     };
     vec![
         Plot::new("Estimated force per mass", "m/s²", axes(["d_x", "d_y", "d_z"])),
         Plot::new("Estimated torque", "N m", axes(["tau_d_x", "tau_d_y", "tau_d_z"])),
         Plot::new("Estimated thrust scale", "", vec![Curve::new("thrust_scale", "scale", Color::Blue)]),
-        error("Error of the measured position", "m", "measured_position"),
-        error("Error of the measured velocity", "m/s", "measured_velocity"),
-        error("Error of the measured attitude", "°", "measured_attitude"),
-        error("Error of the measured body rates", "rad/s", "measured_rate"),
+        told("Error of the position the law is told", "m", "told_position"),
+        told("Error of the velocity", "m/s", "told_velocity"),
+        told("Error of the attitude", "°", "told_attitude"),
+        told("Error of the body rates", "rad/s", "told_rate"),
     ]
 }
 
@@ -148,9 +151,14 @@ fn axes(columns: [&str; 3]) -> Vec<Curve> {
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
 }
 
-/// The reference's components.
+/// Curves that show beneath what was asked of them once the two agree.
+fn flown(columns: [&str; 3]) -> Vec<Curve> {
+    axes(columns).into_iter().map(Curve::broad).collect()
+}
+
+/// What was asked of them.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
-    let named = columns.into_iter().zip(["x reference", "y reference", "z reference"]).enumerate();
+    let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
 }
 

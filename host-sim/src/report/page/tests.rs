@@ -59,7 +59,7 @@ fn data(html: &str) -> Value {
 
 #[test]
 fn text_from_files_adds_no_element_and_is_read_back_as_it_was() {
-    let (attacked, harmless) = (page(ATTACK).html(), page("harmless").html());
+    let (attacked, harmless) = (page(ATTACK).html(), page(&"h".repeat(ATTACK.chars().count())).html());
     assert_eq!(elements(&attacked), elements(&harmless));
     assert!(!attacked.contains("onerror=\"") && !attacked.contains("<img"), "{attacked}");
     let data = data(&attacked);
@@ -127,6 +127,17 @@ fn headings_labels_and_tables_say_what_the_figures_show() {
     for words in ["-2.5\u{a0}structure", "1\u{a0}structure", "1.5\u{a0}structure"] {
         assert!(plot.contains(words), "{words}: {plot}");
     }
+}
+
+#[test]
+fn without_the_program_every_plot_and_the_path_are_pictures_in_the_pages_colours() {
+    let html = page("still").html();
+    assert_eq!(html.matches("<noscript><svg ").count(), 2);
+    let plot = within(within(&html, "data-plot=\"0\"", "</figure>"), "<noscript>", "</noscript>");
+    for part in ["aria-label=\"still\"", "var(--blue)", "fill=\"var(--card)\"", ">still: 1.5 still</text>"] {
+        assert!(plot.contains(part), "{part}: {plot}");
+    }
+    assert!(!plot.contains('#'), "a colour that is the same in the dark: {plot}");
 }
 
 #[test]

@@ -56,3 +56,22 @@ fn a_long_flight_keeps_every_peak_and_stays_bounded() {
         }
     }
 }
+
+#[test]
+fn yaw_has_no_jumps_of_a_turn_and_ends_beside_the_desired_one() {
+    let scenario = Scenario::paper().unwrap();
+    let mut flight = Flight::new(&scenario).unwrap();
+    let yaw: (String, Kept, Read) = ("yaw".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.yaw));
+    let asked: (String, Kept, Read) =
+        ("yaw_d".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.desired_yaw));
+    let mut recorder = Recorder::new(scenario.timing.ticks, 0.01, vec![yaw, asked]);
+    for _ in 0..scenario.timing.ticks {
+        recorder.observe(&flight.tick().unwrap());
+    }
+    let track = recorder.finish("paper");
+    let (yaw, asked) = (track.column("yaw").unwrap(), track.column("yaw_d").unwrap());
+    assert_eq!(yaw.len(), 4000);
+    assert!(asked.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 5.0));
+    assert!(yaw.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 180.0));
+    assert!((yaw[3999] - asked[3999]).abs() < 0.1);
+}
