@@ -125,6 +125,8 @@ fn the_front_page_has_at_most_900_words() {
 #[test]
 fn the_columns_of_the_log_are_listed_in_their_order() {
     let page = read("docs/log.md");
+    // Below stand topics of another format.
+    let page = page.split("\n## The firmware's ULog").next().unwrap_or_default();
     let rows = page.lines().filter(|line| line.starts_with("| `"));
     let names = rows.filter_map(|line| line.split('|').nth(1));
     let listed: Vec<&str> = names.flat_map(|names| names.split('`').skip(1).step_by(2)).collect();

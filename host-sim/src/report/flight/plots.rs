@@ -121,19 +121,19 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
     ]
 }
 
-/// What the law makes of the unknown, and how true is what it is told.
+/// The law's estimates, and the errors of its measured state.
 fn estimates() -> Vec<Plot> {
-    let told = |title, unit, column| {
-        Plot::new(title, unit, vec![Curve::new(column, "told − true", Color::Blue)]).logarithmic()
+    let error = |title, unit, column| {
+        Plot::new(title, unit, vec![Curve::new(column, "measured − true", Color::Blue)]).logarithmic()
     };
     vec![
         Plot::new("Estimated force per mass", "m/s²", axes(["d_x", "d_y", "d_z"])),
         Plot::new("Estimated torque", "N m", axes(["tau_d_x", "tau_d_y", "tau_d_z"])),
         Plot::new("Estimated thrust scale", "", vec![Curve::new("thrust_scale", "scale", Color::Blue)]),
-        told("Error of the position the law is told", "m", "told_position"),
-        told("Error of the velocity", "m/s", "told_velocity"),
-        told("Error of the attitude", "°", "told_attitude"),
-        told("Error of the body rates", "rad/s", "told_rate"),
+        error("Error of the measured position", "m", "measured_position"),
+        error("Error of the velocity", "m/s", "measured_velocity"),
+        error("Error of the attitude", "°", "measured_attitude"),
+        error("Error of the body rates", "rad/s", "measured_rate"),
     ]
 }
 
