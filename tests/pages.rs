@@ -18,6 +18,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 /// What nothing in `.ci/` runs as the pages write it, by how it begins, and why.
 const NOT_RUN: &[(&str, &str)] = &[
     ("host-sim sitl", "serves until it is stopped; `.ci/clients` flies it"),
+    ("host-sim log LOG", "needs a card's file; `.ci/logs` converts one"),
     ("host-sim hil", "serves firmware that runs elsewhere; `.ci/emulated_flight` flies it"),
     ("cargo micoair", "flashes a board"),
     ("cargo bolt", "flashes a board"),
