@@ -11,7 +11,7 @@
 //! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
-//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each [`BLOCK`] long, is left out,
+//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `BLOCK` long, is left out,
 //! (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full what rests on a few
 //! blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block pulls the fit to
 //! itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).

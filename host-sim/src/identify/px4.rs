@@ -7,7 +7,7 @@
 //! ```
 //!
 //! North, east, down and forward, right, down become z up and forward, left, up: y and z change their signs, of vectors
-//! and of quaternions. The clock is one of [`PERIOD`]; where a topic has a gap, or the vehicle stands, there is no
+//! and of quaternions. The clock is one of `PERIOD`; where a topic has a gap, or the vehicle stands, there is no
 //! flight.
 //!
 //! Supposed: a full output is a rotor's greatest thrust, and thrust goes with the square of the output, or as the
