@@ -1,6 +1,6 @@
 //! A path of polynomial pieces from knot to knot, of any length: its segments lie wherever its user has room.
 //!
-//! At rest on the last knot afterwards. Bounds come from the pieces' convex hulls ([`super::bernstein`]), so they hold at
+//! At rest on the last knot afterwards. Bounds come from the pieces' convex hulls (`bernstein`), so they hold at
 //! every instant, not only at those somebody looked at; they are tight within 1e-3 unless a piece's control points lie a
 //! hundred times further out than its curve does.
 
