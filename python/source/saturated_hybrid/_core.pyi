@@ -52,7 +52,8 @@ class _Rotors(TypedDict):
 
 @final
 class Scenario:
-    """A scenario: vehicle, limits, gains, start, reference and circumstances of a flight. docs/scenario-file.md has its keys.
+    """A scenario: vehicle, limits, gains, start, reference and circumstances of a flight. docs/scenario-file.md has its
+    keys.
 
     It never changes; `edited` gives a changed one. It can be pickled.
     """
