@@ -29,7 +29,8 @@ def test_help_says_what_the_stub_says():
     assert len(found) > 100
     for name, thing, doc in found:
         assert doc, name
-        assert inspect.getdoc(thing) == inspect.cleandoc(doc), name
+        # Each is folded in its own way.
+        assert inspect.getdoc(thing).split() == doc.split(), name
 
 
 def test_the_stub_has_everything_and_nothing_else():

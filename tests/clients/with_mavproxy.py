@@ -149,9 +149,11 @@ def fly_mission(flown, proxy):
     assert [(int(line[2]), int(line[3])) for line in back] == [(3, 22), (3, 16), (2, 20)], back
     assert abs(float(back[1][8]) * METRES - north - 2.0) < 0.02, back
     proxy.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED", 10)
+    # It has landed before.
+    before = len(proxy.text)
     proxy.ask("long MISSION_START", "Got COMMAND_ACK: MISSION_START: ACCEPTED")
     flown.wait_for("Mission over: landing", 60)
-    flown.wait_for("Landed: disarmed", 90)
+    proxy.wait_for("Landed: disarmed", 90, before)
     proxy.ask("wp clear", "", 5)
     print("  MAVProxy: sent a mission by `wp load`, listed it, flew it", flush=True)
     flown.rest(3.0)
