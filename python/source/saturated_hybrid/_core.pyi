@@ -199,7 +199,7 @@ class Certificate:
         """(n, 2): least and greatest thrust that it can command of each rotor, N."""
     @property
     def report(self) -> str:
-        """What `host-sim certify` prints."""
+        """The output of `host-sim certify`."""
     def __bool__(self) -> bool: ...
 
 def certify(scenario: Scenario) -> Certificate:
