@@ -1,8 +1,8 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
-//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it an
-//! image for a board is built of a vehicle that does not exist, and never arms.
-//! `BOOTLOADER=kept` leaves the first flash to a board's own bootloader.
+//! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it
+//! an image for a board is built of a vehicle that does not exist, and never arms. `BOOTLOADER=kept` leaves the first
+//! flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
 mod embed;
@@ -10,7 +10,8 @@ mod embed;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// What is built in without SCENARIO, to be flown on desks and emulated boards only: tuned for 30 ms of rotor lag and a whole sample of delay, certified to the rotors.
+/// What is built in without SCENARIO, to be flown on desks and emulated boards only: tuned for 30 ms of rotor lag and a
+/// whole sample of delay, certified to the rotors.
 const STUDY: &str = "vehicles/study.toml";
 
 /// Boards and the files that describe their memory, from this package's folder.

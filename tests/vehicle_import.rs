@@ -67,7 +67,8 @@ fn every_format_becomes_a_vehicle_that_is_certified_and_comes_back_from_upside_d
 
         let read = Scenario::load(&directory.join("mine.toml")).unwrap();
         let verdict = scenario::verdict::Verdict::of(&read).unwrap();
-        // The Crazyflie of cf2.xml is given 1e-5 N m of torque: it holds a hover, and falls for minutes until it is upright.
+        // The Crazyflie of cf2.xml is given 1e-5 N m of torque: it holds a hover, and falls for minutes until it is
+        // upright.
         let flown = if name == "cf2.xml" { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
         let course = host_sim::course::Course::over(&flown, flight, 0.1).unwrap();

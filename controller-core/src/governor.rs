@@ -11,8 +11,8 @@
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `averages`: the first two, of the command, in integers: a head that keeps the bounds under any setpoint;
-//! - `stream`, `direct`, `blend`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps the
-//!   bounds;
+//! - `stream`, `direct`, `blend`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps
+//!   the bounds;
 //! - `demand`: what a stream asks of the bounds, for those who send it;
 //! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time,
 //!   and where the averages begin;
@@ -26,8 +26,8 @@
 //!
 //! What it costs: the averages add (T_1+T_2+T_3) to the time-optimal double integrator. For K_a12 2.5, K_a3 0.5, K_j 4,
 //! K_s 10 that is 2.2 s: 10 m take 6.3 s. A moving point is followed without lag where it keeps turning and
-//! accelerating as it does; once caught up with, a stream inside the bounds is flown as it is sent. One outside comes out
-//! smoothed and smaller.
+//! accelerating as it does; once caught up with, a stream inside the bounds is flown as it is sent. One outside comes
+//! out smoothed and smaller.
 
 mod averages;
 mod blend;

@@ -148,10 +148,8 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds) -> Result<Route, FieldError> {
     let corridor = positive(section, "corridor", CORRIDOR)?;
     let speed = positive(section, "speed", 0.0)?;
-    for key in ["path"] {
-        if section.has(key) {
-            return Err(FieldError::new(section.path_of(key), "goes with times; with speed there is corridor"));
-        }
+    if section.has("path") {
+        return Err(FieldError::new(section.path_of("path"), "goes with times; with speed there is corridor"));
     }
     if rows.iter().any(|row| row.time.is_some()) {
         let problem = "chooses the times: leave it out, or the points' own times";

@@ -8,7 +8,7 @@ import sys
 from mcap.reader import make_reader
 from pyulog import ULog
 
-# What Flight Review plots of what a card has.
+# Topics that Flight Review plots and a card has.
 PLOTTED = {
     "vehicle_attitude": ["q[0]", "q[1]", "q[2]", "q[3]"],
     "vehicle_angular_velocity": ["xyz[0]", "xyz[1]", "xyz[2]"],

@@ -1,4 +1,5 @@
-//! How often `identify` is right: `cargo run --release -p verification --example identify_coverage -- [RUNS [SECONDS]]`.
+//! How often `identify` is right: `cargo run --release -p verification --example identify_coverage -- [RUNS
+//! [SECONDS]]`.
 //!
 //! With SECONDS only the end of each flight counts, as a board's recorder has it, and intervals are judged however wide
 //! they are.

@@ -1,4 +1,4 @@
-//! From what the averages make of a stream onto the stream itself, without a jump in any derivative up to snap.
+//! From the averages of a stream onto the stream itself, without a jump in any derivative up to snap.
 //!
 //! The averages go on with their own head, p. With s the stream and beta a smooth step from 0 to 1 that takes T_b,
 //!
@@ -23,8 +23,8 @@ use nalgebra::Vector3;
 /// The greatest beta' to beta'''', times powers of T_b.
 const STEEPEST: [f32; 4] = [2.461, 9.373, 78.75, 622.0];
 
-/// The share of what a stream leaves of the bounds that blending is taken to need. More than one: the greatest of each
-/// is added up, and they do not come together.
+/// The share of the bounds left by a stream that blending may need. More than one: each term counts with its greatest
+/// value, and these do not come together.
 const BLENDING: f32 = 1.2;
 
 /// T_b: the longest, s; from one span of the averages on it is tried this much longer.

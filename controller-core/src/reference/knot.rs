@@ -22,8 +22,8 @@ pub struct Knot {
     pub time_us: u64,
     /// Where, m.
     pub position: Vector3<f64>,
-    /// Pointing where, rad, modulo a full turn: between two knots the heading turns the shorter way round, an exact half
-    /// turn counter-clockwise.
+    /// Pointing where, rad, modulo a full turn: between two knots the heading turns the shorter way round, an exact
+    /// half turn counter-clockwise.
     pub heading: f64,
     /// How it is passed.
     pub derivatives: Derivatives,

@@ -1,8 +1,8 @@
 //! A path of polynomial pieces from knot to knot, of any length: its segments lie wherever its user has room.
 //!
 //! At rest on the last knot afterwards. Bounds come from the pieces' convex hulls (`bernstein`), so they hold at
-//! every instant, not only at those somebody looked at; they are tight within 1e-3 unless a piece's control points lie a
-//! hundred times further out than its curve does.
+//! every instant, not only at sampled ones; they are tight within 1e-3 unless a piece's control points lie
+//! a hundred times further out than its curve does.
 
 use super::knot::{Anchor, Knot};
 use super::segment::{Segment, Suprema};
@@ -21,8 +21,8 @@ pub struct Path<S> {
 }
 
 impl<S: AsRef<[Segment]>> Path<S> {
-    /// The path along [`Segment::between`]s, each of which begins where the one before ends, the last of them at `last`.
-    /// Without segments it is a hover there.
+    /// The path along [`Segment::between`]s, each of which begins where the one before ends, the last of them at
+    /// `last`. Without segments it is a hover there.
     ///
     /// # Errors
     /// Names the derivative that leaves the range of the law.

@@ -4,8 +4,9 @@
 //! 2 sectors of information and format | 9 of parameters (kind P) and, at their end, the subscription
 //! ```
 //!
-//! The law's constants are those that were built; the parameters `GAIN_...` beside them are percent of them. All messages
-//! keep their places and lengths, so what a cut leaves of an older beginning under a newer one is still a beginning.
+//! The law's constants are those that were built; the parameters `GAIN_...` beside them are percent of them. All
+//! messages keep their places and lengths, so what a cut leaves of an older beginning under a newer one is still a
+//! beginning.
 
 use super::sector::{FILLER, HEAD, ROOM, Sector};
 use crate::configuration::CONSTANTS;

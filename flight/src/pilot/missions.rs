@@ -44,7 +44,7 @@ impl Pilot<'_> {
         Ok(())
     }
 
-    /// Makes an item the next one, flown or not, the first even where there is none. It is checked when it is flown.
+    /// Makes an item the next one, flown or not, the first even without a mission. It is checked when it is flown.
     pub(super) fn set_mission_item(&mut self, item: u8, inputs: &Inputs) -> Result<(), Refusal> {
         require(item == 0 || inputs.mission_item.is_some(), Refusal::Mission(MissionRefusal::NoItem))?;
         self.mission = self.mission.at(item);

@@ -11,10 +11,11 @@
 //! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
-//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `BLOCK` long, is left out,
-//! (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full what rests on a few
-//! blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block pulls the fit to
-//! itself. The greater of the two counts for each unknown, times what trials show it to lack ([`UNDERSTATED`]).
+//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `BLOCK`
+//! long, is left out, (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full
+//! what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block
+//! pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it to lack
+//! ([`UNDERSTATED`]).
 //!
 //! Of the body rates the fit uses the innovation at each tick ([`super::low_passes`]). Of the velocities it uses ten
 //! samples a second only: thrust over mass, drag and wind change slowly, and an estimator's prediction between its own
@@ -26,9 +27,9 @@ use super::student::PARTS;
 use nalgebra::SMatrix;
 use std::array::from_fn;
 
-/// Parts of the log that the jackknife leaves out in turn, s of each: longer than the memory of the residuals once they are
-/// whitened. Turbulence is not quite of first order, nor does an estimator's error
-/// in its gyro's bias come and go as the model has it.
+/// Parts of the log that the jackknife leaves out in turn, s of each: longer than the memory of the residuals once they
+/// are whitened. Turbulence is not quite of first order, nor does an estimator's error in its gyro's bias come and go
+/// as the model has it.
 const BLOCK: f64 = 5.0;
 /// Between two samples of the velocities, s.
 const LOOK: f64 = 0.1;

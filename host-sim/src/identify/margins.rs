@@ -22,7 +22,7 @@ struct Margin {
 /// The kind of a margin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// An inequality's margin, as a part of what is available.
+    /// An inequality's margin, as a share of the bound.
     Inequality,
     /// By which factor the gain of a loop may be wrong.
     Gain,

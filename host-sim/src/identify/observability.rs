@@ -69,7 +69,7 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
     missing
 }
 
-/// What is asked of a quantity: its name, itself, how wide its interval may be, of itself or as it stands, and what to
+/// The requirement on a quantity: its name, itself, how wide its interval may be, of itself or as it stands, and what to
 /// fly for a narrower one.
 type Asked<'q> = (&'static str, &'q Quantity, f64, &'static str, &'static str);
 

@@ -62,7 +62,7 @@ pub fn is_one(log: &Ulog) -> bool {
 /// Reads the flight.
 ///
 /// # Errors
-/// Names the topic that is missing or too slow, or the motor that is none of the `rotors`.
+/// Names the topic that is missing or too slow, or the motor that is not among the `rotors`.
 pub fn read(log: &Ulog, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, String> {
     let places = places(log, rotors)?;
     let motors = motors(log, rotors.len())?;
@@ -248,7 +248,7 @@ impl Track {
         Some(&self.rows[self.before(time)?])
     }
 
-    /// The mean from `begin` to `end` of what is held from each record to the next.
+    /// The mean from `begin` to `end` of a signal that is held from each record to the next.
     fn mean(&self, begin: f64, end: f64) -> Option<Vec<f64>> {
         let mut index = self.before(begin)?;
         let mut sum = vec![0.0; self.rows[index].len()];

@@ -1,8 +1,8 @@
 //! SDF of Gazebo with its motor model, as PX4's models have it: `gz-sim-multicopter-motor-model-system`, or the older
 //! `libgazebo_motor_model.so`.
 //!
-//! All links are put together as they stand at zero joint angles, those of included models too: `model://NAME` is looked
-//! for where PX4's repositories have it, in `NAME/model.sdf` beside the folder of the file. A motor's thrust is
+//! All links are put together as they stand at zero joint angles, those of included models too: `model://NAME` is
+//! looked for where PX4's repositories have it, in `NAME/model.sdf` beside the folder of the file. A motor's thrust is
 //! `motorConstant` w^2, its torque `momentConstant` times that, w at most `maxRotVelocity` (rad/s); `ccw` and `cw` are
 //! seen from above. Our rotors have one lag: the slower of `timeConstantUp` and `timeConstantDown`.
 //! `rotorDragCoefficient` is kg/rad, across the rotor; `rollingMomentCoefficient` has no counterpart.
@@ -117,8 +117,8 @@ fn is_motor(node: &Node) -> bool {
 }
 
 impl Model {
-    /// Adds a `<model>` of `file`, whose frame stands at `stands`. What it includes comes first: its own links may stand
-    /// relative to those.
+    /// Adds a `<model>` of `file`, whose frame stands at `stands`. What it includes comes first: its own links may
+    /// stand relative to those.
     fn add(&mut self, model: &Node, stands: &Isometry3<f64>, file: &Path, depth: usize) -> Result<(), String> {
         for nested in children(model, "model") {
             let frame = self.frame(&nested, stands)?;

@@ -1,10 +1,10 @@
 //! URDF in the dialect of gym-pybullet-drones: `<properties>` beside the links of ordinary URDF.
 //!
-//! All links are put together as they stand at zero joint angles. Links called `prop0_link`, `prop1_link`, … are rotors,
-//! where their own inertial frames stand. `kf` and `km` are per (revolution/minute)^2 and become per (rad/s)^2; the
-//! greatest speed is the one that lifts `thrust2weight` times the weight; `drag_coeff_xy` and `drag_coeff_z` are kg/rad
-//! per rotor. Which rotor turns which way is not in the file but in the simulator: the torque of prop0 is about -z, and
-//! they alternate; of the robot `racer` the other way round.
+//! All links are put together as they stand at zero joint angles. Links called `prop0_link`, `prop1_link`, … are
+//! rotors, where their own inertial frames stand. `kf` and `km` are per (revolution/minute)^2 and become per (rad/s)^2;
+//! the greatest speed is the one that lifts `thrust2weight` times the weight; `drag_coeff_xy` and `drag_coeff_z` are
+//! kg/rad per rotor. Which rotor turns which way is not in the file but in the simulator: the torque of prop0 is about
+//! -z, and they alternate; of the robot `racer` the other way round.
 
 use super::numbers::{Actuation, RotorNumbers, Thrust, VehicleNumbers};
 use super::rigid::{Part, inertia, pose, upright};

@@ -196,7 +196,7 @@ impl Chart {
     }
 }
 
-/// The least and the greatest point of each column of pixels, in order, without the middle of what is level.
+/// The least and the greatest point of each column of pixels, in order, without the middle of a level stretch.
 fn thinned(points: &[Point]) -> Vec<Point> {
     let by_height = |a: &&Point, b: &&Point| a.1.total_cmp(&b.1);
     let mut kept: Vec<Point> = Vec::new();

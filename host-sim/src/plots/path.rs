@@ -184,7 +184,7 @@ impl View {
         }
     }
 
-    /// The shadow of what is `flown`, what was asked for in `all` of the flight, and what is flown.
+    /// The shadow of the path `flown`, the reference of `all` the flight, and the path itself.
     pub fn draw_paths(&self, drawing: &mut Drawing, flown: &[Pose], all: &[Pose]) {
         let shadow = |pose: &Pose| Vector3::new(pose.position.x, pose.position.y, self.floor);
         self.stroke(drawing, flown.iter().map(shadow), (Color::Shadow, 1.5));

@@ -67,7 +67,7 @@ pub fn gif(track: &Track, stretch: Stretch) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-/// The flight up to a row of what is shown, and below it how much of it is over.
+/// The flight up to one of the rows shown, and below it the share of the flight that is over.
 fn picture(view: &View, shown: &[Pose], row: usize, over: f64) -> Drawing {
     let mut drawing = Drawing::new(SIZE);
     view.draw_floor(&mut drawing);

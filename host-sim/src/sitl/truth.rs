@@ -54,7 +54,7 @@ impl Truth {
             q.j,
             q.k
         );
-        // Nobody may listen.
+        // There may be no listener.
         let _ = self.socket.send_to(line.as_bytes(), (Ipv4Addr::LOCALHOST, self.port));
     }
 }

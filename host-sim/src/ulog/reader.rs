@@ -5,8 +5,8 @@
 //! F format   I information   P parameter   A subscription   D data   L text   O dropout   B flags
 //! ```
 //!
-//! Messages of other kinds are skipped. A file that was cut short ends in the middle of a message; what stands before it
-//! is read. Anything else that does not fit is an error that names the byte.
+//! Messages of other kinds are skipped. A file that was cut short ends in the middle of a message; what stands before
+//! it is read. Anything else that does not fit is an error that names the byte.
 
 use super::formats::{Field, Formats, Number};
 use super::{HEAD, MAGIC};

@@ -1,8 +1,8 @@
 //! The firmware's ticks as topics of PX4, which Flight Review and PlotJuggler's PX4 layouts plot.
 //!
 //! PX4's frames are north, east, down and forward, right, down; ours are z up, and forward, left, up. So y and z change
-//! their signs, of vectors as of quaternions, and our world's x counts as north. A record has no desired attitude and no
-//! raw inertial sample, so there is neither `vehicle_attitude_setpoint` nor `sensor_combined`: a plot of them stays
+//! their signs, of vectors as of quaternions, and our world's x counts as north. A record has no desired attitude and
+//! no raw inertial sample, so there is neither `vehicle_attitude_setpoint` nor `sensor_combined`: a plot of them stays
 //! empty. Of a battery only the voltage is known.
 
 use super::reader::Ulog;

@@ -9,8 +9,9 @@
 //! for; with velocities and accelerations, where rows have them, in units of that distance per h and h^2; and, by next
 //! to nothing, the fifth differences of c, which decide where there are no rows. The normal equations are banded.
 //!
-//! The number of intervals grows by a third until every row's position is within the distance of the path as flown. So noise and rounding of what was recorded are
-//! left out as far as that distance allows, and the path asks for little jerk and snap.
+//! The number of intervals grows by a third until every row's position is within the distance of the path as flown. So
+//! noise and rounding of a recording are left out as far as that distance allows, and the path asks for little
+//! jerk and snap.
 
 use super::band::Band;
 use super::row::Row;

@@ -5,8 +5,8 @@
 //!
 //! v T/2 - 3/28 a T^2 + j T^3/84 - s T^4/1680
 //!
-//! before its end, and likewise backwards. T is the shortest of a few for which this takes no more acceleration, jerk and
-//! snap than the path itself or the vehicle's own bounds, or else the one for which it takes least.
+//! before its end, and likewise backwards. T is the shortest of a few for which this takes no more acceleration, jerk
+//! and snap than the path itself or the vehicle's own bounds, or else the one for which it takes least.
 
 use super::stretch::{stretch, taken};
 use controller_core::error::ParameterError;

@@ -16,9 +16,9 @@ use controller_core::reference::segment::Segment;
 use controller_core::reference::spline::{self, Stage};
 use nalgebra::Vector3;
 
-/// What is left of the bounds for rounding.
+/// The share of the bounds that is used; the rest is for rounding.
 const USED: f64 = 0.9995;
-/// How often legs are halved, paces are changed, and by which power of what a leg uses.
+/// How often legs are halved, paces are changed, and by which power of its use a leg changes.
 const HALVINGS: u32 = 8;
 const CHANGES: u32 = 40;
 const POWER: f64 = 0.35;

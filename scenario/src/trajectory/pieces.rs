@@ -1,5 +1,5 @@
-//! Polynomial pieces as Crazyswarm and `uav_trajectories` write them: a duration (s) and, for x, y, z and yaw, the eight
-//! coefficients of a polynomial in the time since the piece began, lowest power first.
+//! Polynomial pieces as Crazyswarm and `uav_trajectories` write them: a duration (s) and, for x, y, z and yaw, the
+//! eight coefficients of a polynomial in the time since the piece began, lowest power first.
 //!
 //! `duration,x^0,…,x^7,y^0,…,y^7,z^0,…,z^7,yaw^0,…,yaw^7`; the yaw (rad) may be missing. Pieces that others computed
 //! need not meet in jerk and snap, so they are read as what they say of position, velocity and acceleration at many

@@ -1,6 +1,6 @@
 //! What the paper claims of its design against others, beside what a simulation shows:
-//! `cargo run --release -p verification --example paper_claims -- [DIR]`. A table of claims, each confirmed or refuted by a
-//! figure; two pictures in DIR (default flights/paper-claims).
+//! `cargo run --release -p verification --example paper_claims -- [DIR]`. A table of claims, each confirmed or refuted
+//! by a figure; two pictures in DIR (default flights/paper-claims).
 //!
 //! All on the paper's vehicle with Table I. The nested-saturation design ([`host_sim::rivals::nested`]) has the same
 //! attitude law with the same gains and the same level, 2 m/s^2; and either the same small motions (k_p, k_v), or those

@@ -151,7 +151,7 @@ fn axes(columns: [&str; 3]) -> Vec<Curve> {
     named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
 }
 
-/// Curves that show beneath what was asked of them once the two agree.
+/// Curves that stay visible beneath their reference once the two agree.
 fn flown(columns: [&str; 3]) -> Vec<Curve> {
     axes(columns).into_iter().map(Curve::broad).collect()
 }
