@@ -4,6 +4,7 @@ mod campaign;
 mod compare;
 mod identify;
 mod log;
+mod reference;
 mod replay;
 mod sessions;
 mod vehicle;
@@ -18,6 +19,7 @@ use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;
 pub use log::LogArguments;
+pub use reference::ReferenceArguments;
 pub use replay::ReplayArguments;
 use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
@@ -108,6 +110,9 @@ pub enum Command {
     /// Fly a scenario and write it as a moving picture.
     #[command(after_help = replay::HELP)]
     Replay(ReplayArguments),
+    /// Write a scenario's reference as rows of a CSV, to be streamed.
+    #[command(after_help = reference::HELP)]
+    Reference(ReferenceArguments),
     /// Say whether a scenario may fly: prove its commands' limits, down to each rotor, and judge its sampled loops.
     #[command(after_help = CERTIFY_HELP)]
     Certify {

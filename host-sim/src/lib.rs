@@ -57,6 +57,7 @@ pub mod plots;
 pub mod progress;
 pub mod reality;
 pub mod recording;
+pub mod reference_rows;
 pub mod report;
 pub mod rivals;
 pub mod sensors;

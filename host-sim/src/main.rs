@@ -6,7 +6,7 @@ mod terminal;
 
 use arguments::{
     Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, LogArguments, MergeArguments,
-    ReplayArguments, SitlArguments, VehicleArguments,
+    ReferenceArguments, ReplayArguments, SitlArguments, VehicleArguments,
 };
 use clap::Parser;
 use host_sim::campaign::draw::circumstances;
@@ -26,9 +26,11 @@ use host_sim::import::written::written;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
 use host_sim::plots::replay::gif;
+use host_sim::reference_rows;
 use host_sim::sitl::{self, SitlError};
 use host_sim::table::short;
 use host_sim::whole_file::WholeFile;
+use scenario::verdict::Verdict;
 use scenario::{STUDY, Scenario};
 use searches::{run_compare, run_tune};
 use std::io::{self, Write};
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
             None => run_fly(None, None, false, false),
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Replay(arguments)) => run_replay(&arguments),
+            Some(Command::Reference(arguments)) => run_reference(&arguments),
             Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
@@ -133,6 +136,24 @@ fn stopped(scenario: &Scenario, error: &FlyError) -> Result<ExitCode, String> {
     };
     complain(format_args!("error: {}: {error}", scenario.name));
     Ok(status(false, signal))
+}
+
+fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
+    let (scenario, rate, path) = (load(arguments.file.as_deref())?, arguments.rate()?, &arguments.rows);
+    let name = path.display();
+    if arguments.file.as_ref().is_some_and(|file| same_file(path, file)) {
+        return Err(format!("{name}: --rows must be another file than the scenario"));
+    }
+    let unwritable = |error: io::Error| format!("{name}: cannot be written: {error}");
+    let mut file = WholeFile::create(path).map_err(unwritable)?;
+    let rows = reference_rows::write(&scenario, rate, &mut file).map_err(unwritable)?;
+    file.finish().map_err(unwritable)?;
+    let refusal = Verdict::of(&scenario).map_err(|error| error.to_string())?.refusal();
+    print_text(&format!("{}: {rows} rows, {} a second, in {name}\n", scenario.name, short(rate)))?;
+    if let Some(refusal) = &refusal {
+        complain(format_args!("{}: not certified for this reference: {refusal}", scenario.name));
+    }
+    Ok(status(refusal.is_none(), None))
 }
 
 fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
