@@ -53,7 +53,7 @@ pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
-use crate::math::{single, whole, within};
+use crate::math::{between, single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
@@ -92,6 +92,7 @@ impl Memory {
         turning: Turning::NONE,
         goal: Goal::STOP,
         goal_age: 0,
+        goal_late: 0.0,
         turn: TurnGoal::STOP,
         turn_age: 0,
     });
@@ -119,6 +120,8 @@ pub struct Governor {
     turning: Turning,
     goal: Goal,
     goal_age: u32,
+    /// How long before it came the goal was true, s.
+    goal_late: f32,
     turn: TurnGoal,
     turn_age: u32,
 }
@@ -218,10 +221,21 @@ impl Governor {
     /// # Errors
     /// [`InputError`] names the field that is not finite or out of range; the target stays as it was and ages on.
     pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), InputError> {
+        self.accept_late(setpoint, 0.0)
+    }
+
+    /// The same for a setpoint that was true `late` seconds ago, cut to [0, [`LATEST`]]: a moving point has gone on
+    /// since.
+    ///
+    /// # Errors
+    /// As [`Self::accept`]'s.
+    pub fn accept_late(&mut self, setpoint: &Setpoint, late: f32) -> Result<(), InputError> {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         let held = position.map(|position| position.is_some());
         let last = (self.goal_age <= self.timeout).then_some(&self.goal);
-        let stream = Goal::stream(held, velocity, acceleration, last, self.goal_age as f32 * self.period);
+        let late = between(late, 0.0, LATEST);
+        let stream = Goal::stream(held, velocity, acceleration, last, self.goal_time() - late);
+        self.goal_late = late;
         let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
         self.goal = Goal { position, held, stream };
         self.goal_age = 0;
@@ -230,6 +244,11 @@ impl Governor {
             self.turn_age = 0;
         }
         Ok(())
+    }
+
+    /// The time since the goal was true, s, at the last tick.
+    fn goal_time(&self) -> f32 {
+        self.goal_age as f32 * self.period + self.goal_late
     }
 
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
@@ -283,7 +302,7 @@ impl Governor {
         let stale = self.goal_age > self.timeout;
         let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
         // The command at hand is where it was a tick ago.
-        let age = (self.goal_age as f32 - 1.0) * self.period;
+        let age = (self.goal_age as f32 - 1.0) * self.period + self.goal_late;
         let (ahead, feed) = self.lead.of(velocity, acceleration, age);
         let away = position + self.length(&ahead) - self.averages.commanded();
         let [x, y, z] = *held;
@@ -304,6 +323,9 @@ impl Governor {
 
 /// The greatest length, units: 2^61, so that a target, its lead and the command's own place add up within 64 bits.
 const FARTHEST: f32 = 2_305_843_009_213_693_952.0;
+
+/// How late a setpoint counts as at most, s: a line with more is not one to stream over.
+pub const LATEST: f32 = 0.3;
 
 /// The longest ramp or timeout, s.
 const LONGEST_TIME: f32 = 60.0;

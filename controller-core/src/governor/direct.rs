@@ -32,6 +32,9 @@ use nalgebra::Vector3;
 const FEASIBLE: f32 = 0.9995;
 const RETREATING: f32 = 0.98;
 
+/// The share of the bounds on jerk and snap up to which a stream that is followed is believed to keep them.
+const GUESSED: f32 = 1.5;
+
 /// The stiffness times the averages' span at the beginning, at most; and the share of it for which a stream is near
 /// enough.
 const SLACK: f32 = 2.5;
@@ -47,6 +50,9 @@ const SAMPLED: f32 = 0.05;
 const FARTHER: f32 = 1.5;
 const FAR: f32 = 0.01;
 const ASTRAY: f32 = 0.04;
+
+/// What rests: within so many m, m/s and m/s^2.
+const RESTING: [f32; 3] = [1e-3, 1e-3, 0.1];
 
 /// Spans that the averages are given to come as near to a stream as they will, and for which it is then watched before
 /// the head is blended onto it.
@@ -178,6 +184,10 @@ impl Direct {
         if sought.is_none() {
             self.demand = Demand::NONE;
         }
+        if let (Stage::Averaged { near, .. }, true) = (self.stage, sought.is_some_and(|sought| rests(head, sought))) {
+            self.rest(near);
+            return Drive::Averages;
+        }
         let sought = sought.filter(|sought| self.judge(sought));
         if sought.is_none() && self.is_averaged() {
             self.stage = Stage::AVERAGED;
@@ -209,6 +219,13 @@ impl Direct {
         }
     }
 
+    /// At rest at a point that rests: near it, whatever was lost before.
+    fn rest(&mut self, near: u32) {
+        self.stage = Stage::Averaged { near: near.saturating_add(1), watched: Watched::NONE };
+        self.demand = Demand::NONE;
+        self.next = self.ticks(BARRED);
+    }
+
     fn averaged(
         &mut self,
         head: &Moving,
@@ -225,6 +242,10 @@ impl Direct {
         match out {
             Some(out) if agreed >= self.ticks(AGREEING) => {
                 let far = FARTHER * self.off(sought) + FAR * self.acceleration * self.span * self.span;
+                // From rest nothing is to be caught up with.
+                let [_, slow, _] = RESTING;
+                let rested = head.velocity.norm_squared() < 4.0 * slow * slow;
+                let stiffness = if rested { self.affordable(sought, room) } else { stiffness };
                 self.follow(head, sought, stiffness, &out, far)
             }
             _ => {
@@ -323,17 +344,32 @@ impl Direct {
         let speed = math::greater(self.envelope.share_of_speed(velocity), turning * turning);
         let off = math::sqrt(error.position.norm_squared());
         self.demand = self.demand.with(speed, shares, off, self.period);
+        if !moves || !bends || rate.abs() > self.fastest {
+            return false;
+        }
+        let [of_acceleration, of_jerk, of_snap] = shares;
+        if matches!(self.stage, Stage::Blending { .. } | Stage::Direct { .. }) {
+            // Jerk and snap are guesses from sample to sample, and the envelope has the last word on the head's.
+            return of_acceleration <= 1.0 && of_jerk.max(of_snap) <= GUESSED * GUESSED;
+        }
         let on = Moving {
             velocity: *velocity,
             acceleration: acceleration / FEASIBLE,
             difference: jerk * (self.period / RETREATING),
         };
-        moves
-            && bends
-            && rate.abs() <= self.fastest
-            && shares.iter().all(|share| *share <= FEASIBLE * FEASIBLE)
-            && self.envelope.way_out(&on).is_some()
+        shares.iter().all(|share| *share <= FEASIBLE * FEASIBLE) && self.envelope.way_out(&on).is_some()
     }
+}
+
+/// Whether the head and the point both rest, at one place.
+fn rests(head: &Moving, Sought { point, error }: &Sought) -> bool {
+    let [near, slow, steady] = RESTING;
+    let within = |vector: &Vector3<f32>, most: f32| vector.norm_squared() < most * most;
+    within(&error.position, near)
+        && within(&head.velocity, slow)
+        && within(&point.velocity, slow)
+        && within(&head.acceleration, steady)
+        && within(&point.acceleration, steady)
 }
 
 mod feedback;

@@ -4,6 +4,7 @@ extern crate std;
 use super::*;
 use crate::governor::tests::{PERIOD, Random, TYPICAL, go_to, governor, run};
 use crate::governor::{Motion, Setpoint, Turn};
+use crate::heading::Heading;
 use nalgebra::Vector3;
 
 /// Where a point is at a time, s, with its velocity and acceleration.
@@ -229,4 +230,57 @@ fn a_stream_that_is_flown_as_it_is_sent_is_reported_so_and_one_that_ceases_not_a
     assert!(following.off < 0.02 && following.slower() < 1.0, "{following:?}");
     run(governor);
     assert_eq!(governor.following(), None);
+}
+
+/// An eight that starts and ends at rest: along it by a clock that goes smoothly, to the fifth derivative, to `rate`.
+fn from_rest(rate: f64, size: f64, ramp: f64) -> impl Fn(f64) -> [Vector3<f64>; 3] {
+    let path = eight(1.0, size, Vector3::y());
+    move |time| {
+        let share = (time / ramp).clamp(0.0, 1.0);
+        let powers = |degree: i32| share.powi(degree);
+        // The integral of the smooth step 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7.
+        let gone = 7.0 * powers(5) - 14.0 * powers(6) + 10.0 * powers(7) - 2.5 * powers(8);
+        let speed = 35.0 * powers(4) - 84.0 * powers(5) + 70.0 * powers(6) - 20.0 * powers(7);
+        let change = (140.0 * powers(3) - 420.0 * powers(4) + 420.0 * powers(5) - 140.0 * powers(6)) / ramp;
+        let [there, along, bend] = path(rate * (ramp * gone + (time - ramp).max(0.0)));
+        [there, along * (rate * speed), bend * (rate * speed).powi(2) + along * (rate * change)]
+    }
+}
+
+#[test]
+fn a_stream_that_starts_at_rest_is_flown_as_it_is_sent_from_the_start() {
+    let at = from_rest(0.7, 1.0, 4.0);
+    for every in [1, 2, 5] {
+        let governor = governor();
+        let [there, ..] = at(0.0);
+        governor.start(&there.map(|x| x as f32), &Vector3::zeros(), &Heading::FORWARD).unwrap();
+        let waiting = |time: f64| at((time - 3.0).max(0.0));
+        let worst = follow(governor, &waiting, every, 0.0, 30.0);
+        std::println!("every {every}: {worst} m off");
+        assert!(worst < 1e-2, "every {every}: {worst} m off");
+    }
+}
+
+#[test]
+fn setpoints_that_come_at_odd_times_are_flown_as_by_their_own_times() {
+    let at = from_rest(0.7, 1.0, 4.0);
+    let governor = governor();
+    let [there, ..] = at(0.0);
+    governor.start(&there.map(|x| x as f32), &Vector3::zeros(), &Heading::FORWARD).unwrap();
+    let mut random = Random::new(7);
+    let (mut worst, mut due, mut sent_at) = (0.0_f64, 0.0, 0.0);
+    for tick in 0..3000 {
+        let now = f64::from(tick) * f64::from(PERIOD);
+        // Each 20 ms, up to 15 ms late.
+        while due <= now {
+            governor.accept_late(&sent(&|time| at((time - 3.0).max(0.0)), sent_at), (now - sent_at) as f32).unwrap();
+            sent_at += 0.02;
+            due = sent_at + 0.015 * f64::from(random.unit());
+        }
+        let reference = governor.tick();
+        assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
+        let [there, ..] = at((now + f64::from(PERIOD) - 3.0).max(0.0));
+        worst = worst.max((reference.position.map(f64::from) - there).norm());
+    }
+    assert!(worst < 1e-2, "{worst} m off");
 }
