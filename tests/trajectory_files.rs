@@ -3,7 +3,10 @@
 //! `cargo test -p host-sim trajectory_files -- --nocapture` prints how near.
 
 use crate::support::binary::{self, host_sim, status, stdout};
+use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::reference::Reference;
 use host_sim::flight::Flight;
+use host_sim::reference_rows::SLOWER;
 use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
 use scenario::trajectory::{Route, Way};
@@ -85,4 +88,41 @@ fn a_campaign_and_a_report_keep_the_rows_of_a_file() {
     let kept = fs::read_to_string(directory.join("flown/scenario.toml")).unwrap();
     assert_eq!(kept, text);
     Scenario::parse(&kept, "kept").unwrap();
+}
+
+/// How far the governor's reference is at worst from a scenario's that it is streamed 50 times a second, m.
+fn streamed(scenario: &Scenario) -> f32 {
+    let memory = Box::leak(Box::new(Memory::EMPTY));
+    let (bounds, period) = (scenario.configuration.bounds(), scenario.timing.period() as f32);
+    let governor = Governor::new(bounds, &GovernorLimits::default(), period, memory).unwrap();
+    // Two seconds at rest, then as `host-sim reference` writes it.
+    let at = |tick: u64| {
+        let time = (tick * 10_000).saturating_sub(2_000_000) as f64 / SLOWER;
+        let Reference { velocity, acceleration, .. } = scenario.trajectory.at(time as u64);
+        let slower = SLOWER as f32;
+        let (velocity, acceleration) = (velocity / slower, acceleration / (slower * slower));
+        Reference { velocity, acceleration, ..scenario.trajectory.at(time as u64) }
+    };
+    let first = at(0);
+    governor.start(&first.position, &Vector3::zeros(), &first.heading).unwrap();
+    let mut worst = 0.0_f32;
+    for tick in 0..(scenario.timing.ticks as f64 * SLOWER) as u64 + 200 {
+        if tick % 2 == 0 {
+            let Reference { position, velocity, acceleration, .. } = at(tick);
+            let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
+            governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        }
+        let off = (governor.tick().position - at(tick + 1).position).norm();
+        worst = worst.max(off);
+    }
+    worst
+}
+
+#[test]
+fn what_is_flown_from_a_file_is_flown_as_well_where_it_is_streamed() {
+    for scenario in [shipped("eight"), shipped("pieces"), shipped("gates"), eighteen()] {
+        let worst = streamed(&scenario);
+        println!("{}, streamed: the governor is {worst:.4} m off at worst", scenario.name);
+        assert!(worst < 0.02, "{}: {worst} m", scenario.name);
+    }
 }

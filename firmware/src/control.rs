@@ -148,6 +148,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn inputs(&mut self, now: u64, asked: Option<QueuedRequest>) -> Inputs<'static> {
         // The simulator takes over at a stop: an arm command from before must not turn the motors once more.
         let handed_over = self.shared.hil().is_raised() && !mem::replace(&mut self.simulated, true);
+        let setpoint = self.shared.setpoint().take();
         Inputs {
             now,
             body_rate: self.shared.imu().get().map(|newest| newest.map(|sample| sample.angular_velocity)),
@@ -161,7 +162,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
             motors_fail: self.reported.writing.is_some(),
             battery: self.battery(now),
             is_late: mem::take(&mut self.is_late),
-            setpoint: self.shared.setpoint().take().map(|setpoint| setpoint.value),
+            setpoint: setpoint.map(|setpoint| setpoint.value),
+            setpoint_late: setpoint.map_or(0.0, |setpoint| setpoint.age(now) as f32 * 1e-6),
             mission_item: self.mission_item(asked.as_ref()),
             ..Inputs::default()
         }

@@ -174,7 +174,7 @@ impl<'m> Chain<'m> {
     fn rise_on(&mut self) -> Result<(), &'static str> {
         let mut position = self.reference.position;
         position.z = self.rising_to;
-        self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep })
+        self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep }, 0.0)
     }
 
     /// Whether the reference has come to rest at the height of the take-off.
@@ -200,12 +200,12 @@ impl<'m> Chain<'m> {
         self.governor.stop();
     }
 
-    /// Takes a setpoint.
+    /// Takes a setpoint that was true `late` seconds ago.
     ///
     /// # Errors
     /// Names the field the governor refuses.
-    pub fn accept(&mut self, setpoint: &Setpoint) -> Result<(), &'static str> {
-        self.governor.accept(setpoint).map_err(|error| error.field())
+    pub fn accept(&mut self, setpoint: &Setpoint, late: f32) -> Result<(), &'static str> {
+        self.governor.accept_late(setpoint, late).map_err(|error| error.field())
     }
 
     /// How the stream that is sent is followed, if there is one.

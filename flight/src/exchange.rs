@@ -68,6 +68,8 @@ pub struct Inputs<'a> {
     pub is_late: bool,
     /// The newest setpoint since the last tick.
     pub setpoint: Option<Setpoint>,
+    /// How long before this tick that was true, s.
+    pub setpoint_late: f32,
     /// The mission's item that [`mission_item`](super::Pilot::mission_item) names, if there is one of that number.
     pub mission_item: Option<MissionItem>,
 }

@@ -209,7 +209,7 @@ impl<'m> Pilot<'m> {
             (Mode::Flying, _) => {
                 if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
                     // It was checked when it came.
-                    let _ = chain.accept(setpoint);
+                    let _ = chain.accept(setpoint, 0.0);
                 }
             }
             // The request has set the reference already.

@@ -146,10 +146,10 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
     }
     let unwritable = |error: io::Error| format!("{name}: cannot be written: {error}");
     let mut file = WholeFile::create(path).map_err(unwritable)?;
-    let rows = reference_rows::write(&scenario, rate, &mut file).map_err(unwritable)?;
+    let rows = reference_rows::write(&scenario, rate, arguments.slower()?, &mut file).map_err(unwritable)?;
     file.finish().map_err(unwritable)?;
     let refusal = Verdict::of(&scenario).map_err(|error| error.to_string())?.refusal();
-    print_text(&format!("{}: {rows} rows, {} a second, in {name}\n", scenario.name, short(rate)))?;
+    print_text(&format!("{}: {rows} rows in {name}\n", scenario.name))?;
     if let Some(refusal) = &refusal {
         complain(format_args!("{}: not certified for this reference: {refusal}", scenario.name));
     }

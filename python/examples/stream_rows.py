@@ -1,7 +1,7 @@
 """Flies the rows of a CSV on a vehicle over MAVLink: arm, take off, go to the first row, stream the rows, land.
 
-    host-sim reference scenarios/eight.toml --rows eight.csv      # smooth rows, 50 a second
-    python stream_rows.py udpin:127.0.0.1:14540 eight.csv         # to `host-sim sitl`; or /dev/ttyUSB0
+    host-sim reference scenarios/eight.toml --rows rows.csv       # smooth rows, 50 a second
+    python stream_rows.py udpin:127.0.0.1:14540 rows.csv          # to `host-sim sitl`; or /dev/ttyUSB0
 
 Columns: t, x, y, z, vx, vy, vz, ax, ay, az, yaw_deg, as `host-sim reference` writes them: s, m, degrees, world z up, x
 east, y north. Ctrl-C lands. Keep a hand on the switch that stops the motors all the same.
@@ -20,13 +20,15 @@ from pymavlink.dialects.v20 import common as m  # noqa: E402
 
 NAMES = ["t", "x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "yaw_deg"]
 NEAR, PATIENCE = 0.1, 60.0  # m, s
-WHOLE = m.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+USED = m.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
 
 
 class Vehicle:
     def __init__(self, address):
         self.line = mavutil.mavlink_connection(address, source_system=255, dialect="common")
-        self.position, self.armed, self.mode, self.ready, self.answers = None, False, None, False, {}
+        self.began = time.monotonic()
+        self.position, self.armed, self.mode, self.ready = None, False, None, False
+        self.answers, self.texts = {}, []
         threading.Thread(target=self._listen, daemon=True).start()
         threading.Thread(target=self._beat, daemon=True).start()
 
@@ -44,6 +46,7 @@ class Vehicle:
             elif kind == "COMMAND_ACK":
                 self.answers[message.command] = message.result
             elif kind == "STATUSTEXT":
+                self.texts.append(message.text)
                 print(f"  vehicle: {message.text}", flush=True)
 
     def _beat(self):
@@ -65,12 +68,13 @@ class Vehicle:
         if self.answers[number] != m.MAV_RESULT_ACCEPTED:
             raise RuntimeError(f"command {number} is refused: {self.answers[number]}; the vehicle's texts say why")
 
-    def send(self, row, mask):
+    def send(self, row, when):
+        """A row that is true at a time of this machine: how late it comes varies, and the vehicle makes up for it."""
         x, y, z, vx, vy, vz, ax, ay, az = row[1:10]
         # East, north, up to north, east, down; a yaw from east, counter-clockwise, to one from north, clockwise.
         yaw = math.remainder(math.pi / 2 - math.radians(row[10]), math.tau)
         self.line.mav.set_position_target_local_ned_send(
-            0, 1, 1, m.MAV_FRAME_LOCAL_NED, mask, y, x, -z, vy, vx, -vz, ay, ax, -az, yaw, 0
+            round(1e3 * (when - self.began)), 1, 1, m.MAV_FRAME_LOCAL_NED, USED, y, x, -z, vy, vx, -vz, ay, ax, -az, yaw, 0
         )
 
 
@@ -91,7 +95,7 @@ def hold(vehicle, row, until, reason):
     """Streams the place of a row, at rest, until something is true."""
 
     def sent():
-        vehicle.send(row, WHOLE)
+        vehicle.send(row, time.monotonic())
         return until()
 
     vehicle.wait(sent, reason)
@@ -116,7 +120,7 @@ def fly(vehicle, rows):
             time.sleep(max(0.0, began + row[0] - time.monotonic()))
             if vehicle.mode != (6, 0):
                 raise RuntimeError("the vehicle no longer flies setpoints; its texts say why")
-            vehicle.send(row, WHOLE)
+            vehicle.send(row, began + row[0])
     finally:
         vehicle.command(m.MAV_CMD_NAV_LAND)
         vehicle.wait(lambda: not vehicle.armed, "landed")

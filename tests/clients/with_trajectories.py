@@ -24,6 +24,7 @@ sys.path.append(str(ROOT / "python/examples"))
 import stream_rows  # noqa: E402
 
 WITHIN = 0.05  # m, of each row
+TRIES = 3
 MISSION_WITHIN = 0.45  # m, of each point: its acceptance radius, and what the vehicle is off the reference
 
 
@@ -68,16 +69,27 @@ def simulator(*arguments):
 
 
 def stream(file, directory):
+    """On a busy machine a setpoint may come too late to be followed: the vehicle then says so, and it is tried again."""
     rows = directory / "rows.csv"
     simulator("reference", file, "--rows", rows)
+    for _ in range(TRIES):
+        worst, texts = stream_once(file, rows)
+        if worst < WITHIN:
+            print(f"  {file.stem}, streamed: every row passed within {100 * worst:.1f} cm", flush=True)
+            return
+        assert any(text.startswith("Setpoints") for text in texts), (worst, texts)
+        print(f"  {file.stem}, streamed: {worst:.2f} m off, and said so: {texts}", flush=True)
+    raise AssertionError(f"{file}: not within {WITHIN} m in {TRIES} flights")
+
+
+def stream_once(file, rows):
+    """How far from a row the vehicle was at worst, m, and what it said."""
     (port,) = free_ports(1)
     with Desk(1.0, file, "--truth-port", port) as flown:
         truth = Truth(port)
         vehicle = stream_rows.Vehicle(f"udpin:127.0.0.1:{flown.offboard}")
         stream_rows.fly(vehicle, stream_rows.read(rows))
-        worst = truth.nearest([row[1:4] for row in stream_rows.read(rows)])
-    assert worst < WITHIN, (file, worst)
-    print(f"  {file.stem}, streamed: every row passed within {100 * worst:.1f} cm", flush=True)
+        return truth.nearest([row[1:4] for row in stream_rows.read(rows)]), vehicle.texts
 
 
 def fly_mission(file):

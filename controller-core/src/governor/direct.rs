@@ -241,11 +241,13 @@ impl Direct {
         let out = self.envelope.way_out(head).filter(|_| near);
         match out {
             Some(out) if agreed >= self.ticks(AGREEING) => {
-                let far = FARTHER * self.off(sought) + FAR * self.acceleration * self.span * self.span;
                 // From rest nothing is to be caught up with.
                 let [_, slow, _] = RESTING;
-                let rested = head.velocity.norm_squared() < 4.0 * slow * slow;
-                let stiffness = if rested { self.affordable(sought, room) } else { stiffness };
+                let (stiffness, far) = if head.velocity.norm_squared() < 4.0 * slow * slow {
+                    (self.affordable(sought, room), self.astray())
+                } else {
+                    (stiffness, FARTHER * self.off(sought) + FAR * self.acceleration * self.span * self.span)
+                };
                 self.follow(head, sought, stiffness, &out, far)
             }
             _ => {

@@ -39,6 +39,7 @@ mod parameters;
 mod places;
 mod recordings;
 mod senders;
+mod setpoint_clock;
 mod setpoints;
 mod signatures;
 mod upload;

@@ -87,7 +87,7 @@ impl<'m> Pilot<'m> {
             Request::GoTo(setpoint) => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
                 require(self.is_airborne(), Refusal::NotInTheAir)?;
-                self.accept(&setpoint)
+                self.accept(&setpoint, 0.0)
             }
             Request::Land => {
                 let has_landed = matches!(self.mode, Mode::Checks | Mode::Ready);
@@ -143,9 +143,9 @@ impl<'m> Pilot<'m> {
         self.mode.is_guided() && state.is_some_and(|estimated| !self.fence.contains(&estimated.state.position))
     }
 
-    pub(super) fn accept(&mut self, setpoint: &Setpoint) -> Result<(), Refusal> {
+    pub(super) fn accept(&mut self, setpoint: &Setpoint, late: f32) -> Result<(), Refusal> {
         self.check(setpoint)?;
-        self.with_chain(|chain| chain.accept(setpoint).map_err(Refusal::Setpoint))
+        self.with_chain(|chain| chain.accept(setpoint, late).map_err(Refusal::Setpoint))
     }
 
     /// Whether a setpoint may be flown.
@@ -174,7 +174,7 @@ impl<'m> Pilot<'m> {
         let setpoint = inputs.setpoint?;
         match self.mode {
             Mode::Flying if self.mission.is_flown => None,
-            Mode::Flying => Some(self.accept(&setpoint)),
+            Mode::Flying => Some(self.accept(&setpoint, inputs.setpoint_late)),
             Mode::Idling if self.wanted_since.is_some() => {
                 let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
                 may_begin.err().map(Err)

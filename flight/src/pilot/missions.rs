@@ -62,7 +62,7 @@ impl Pilot<'_> {
             && let (Ok(chain), Some(setpoint)) = (&mut self.chain, self.newest.fresh(now))
         {
             // It was checked when it came.
-            let _ = chain.accept(setpoint);
+            let _ = chain.accept(setpoint, 0.0);
         }
         self.mission = self.mission.paused();
     }
@@ -128,7 +128,7 @@ impl Pilot<'_> {
         let aimed = self.chain.as_mut().map_err(|_| MissionRefusal::NoItem).and_then(|chain| {
             let target = item.target(&chain.reference().position, &home, rises);
             let setpoint = Setpoint { motion: Motion::Position(target), turn };
-            chain.accept(&setpoint).map(|()| target).map_err(|_| MissionRefusal::Number)
+            chain.accept(&setpoint, 0.0).map(|()| target).map_err(|_| MissionRefusal::Number)
         })?;
         self.mission.target = Some(aimed);
         Ok(aimed)

@@ -1,13 +1,15 @@
 //! The arguments of `reference`, in clap's terms.
 
 use clap::Args;
-use host_sim::reference_rows::GREATEST_RATE;
+use host_sim::reference_rows::{GREATEST_RATE, SLOWER};
 use std::path::PathBuf;
 
 /// The end of `reference --help`.
 pub const HELP: &str = "\
 The columns are t, x to z, vx to vz, ax to az and yaw_deg: s, m, degrees, z up. Whatever the file's
-[reference] is, this is what the law is given: smooth, with a beginning and an end at rest.
+[reference] is, this is what the law is given: smooth, with a beginning and an end at rest; but a
+tenth slower, since a vehicle guesses the jerk and snap of a stream, and smooths one that seems to
+be beyond its bounds.
 python/examples/stream_rows.py streams the rows to a vehicle over MAVLink; as file = \"rows.csv\" they
 are a reference again.
 
@@ -25,6 +27,9 @@ pub struct ReferenceArguments {
     /// Rows a second, 1 to 1000
     #[arg(long, default_value_t = 50.0, value_name = "HZ")]
     rate: f64,
+    /// How many times slower than the reference the rows are, 1 to 100
+    #[arg(long, default_value_t = SLOWER, value_name = "FACTOR")]
+    slower: f64,
 }
 
 impl ReferenceArguments {
@@ -34,6 +39,15 @@ impl ReferenceArguments {
             Ok(self.rate)
         } else {
             Err(format!("--rate: must be from 1 to {GREATEST_RATE} Hz, found {}", self.rate))
+        }
+    }
+
+    /// How many times slower the rows are.
+    pub fn slower(&self) -> Result<f64, String> {
+        if (1.0..=100.0).contains(&self.slower) {
+            Ok(self.slower)
+        } else {
+            Err(format!("--slower: must be from 1 to 100, found {}", self.slower))
         }
     }
 }

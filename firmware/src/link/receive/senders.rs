@@ -1,5 +1,6 @@
 //! The senders of setpoints.
 
+use super::setpoint_clock::SetpointClock;
 use controller_core::governor::Setpoint;
 use flight::{SETPOINT_AGE_MAX, Stamped};
 
@@ -21,11 +22,13 @@ pub(super) struct Senders {
     pub taken: Stamped<Sender>,
     /// The last that was refused because the sticks fly, and whose it was.
     pub kept: Option<(Sender, Stamped<Setpoint>)>,
+    /// The clock of whose are taken.
+    pub clock: SetpointClock,
 }
 
 impl Default for Senders {
     fn default() -> Self {
-        Self { senders: [NO_SENDER; SENDERS], taken: NO_SENDER, kept: None }
+        Self { senders: [NO_SENDER; SENDERS], taken: NO_SENDER, kept: None, clock: SetpointClock::default() }
     }
 }
 

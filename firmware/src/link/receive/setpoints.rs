@@ -45,6 +45,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             return Err(SetpointRefusal::Others);
         }
         self.setpoints.taken = Stamped { value: sender, time };
+        let time = self.setpoints.clock.stamp(message.time_boot_ms, time);
         self.shared.setpoint().put(value, time);
         Ok(())
     }
