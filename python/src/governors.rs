@@ -64,8 +64,8 @@ impl Governor {
     ///
     /// A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving
     /// point. A position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw:
-    /// keep the last one.
-    #[pyo3(signature = (position=None, velocity=None, acceleration=None, *, yaw=None, yaw_rate=None))]
+    /// keep the last one. `late`: how long ago it was true, s, at most 0.3; a moving point has gone on since.
+    #[pyo3(signature = (position=None, velocity=None, acceleration=None, *, yaw=None, yaw_rate=None, late=0.0))]
     fn accept(
         &mut self,
         position: Option<&Bound<'_, PyAny>>,
@@ -73,6 +73,7 @@ impl Governor {
         acceleration: Option<&Bound<'_, PyAny>>,
         yaw: Option<f32>,
         yaw_rate: Option<f32>,
+        late: f32,
     ) -> PyResult<()> {
         let motion = motion(position, velocity, acceleration)?;
         let turn = match (yaw, yaw_rate) {
@@ -80,7 +81,7 @@ impl Governor {
             (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
             (None, Some(rate)) => Turn::Rate(rate),
         };
-        self.governor.accept(&Setpoint { motion, turn }).map_err(refused)
+        self.governor.accept_late(&Setpoint { motion, turn }, late).map_err(refused)
     }
 
     /// Gives up the setpoint and comes to rest.

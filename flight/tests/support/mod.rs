@@ -105,6 +105,7 @@ impl Handed {
             motors_fail: *motors_fail,
             battery: *battery,
             is_late: *is_late,
+            setpoint_late: 0.0,
             setpoint: *setpoint,
             mission_item: *mission_item,
         })

@@ -314,11 +314,13 @@ class Governor:
         *,
         yaw: float | None = None,
         yaw_rate: float | None = None,
+        late: float = 0.0,
     ) -> None:
         """Replaces the setpoint, world frame.
 
         A position alone: go there and rest. A velocity alone: move so. Both, and an acceleration: follow that moving point. A
         position with `None` on some axes: go there on the others, and on these move at the velocity. No yaw: keep the last one.
+        `late`: how long ago it was true, s, at most 0.3; a moving point has gone on since.
         """
     def stop(self) -> None:
         """Gives up the setpoint and comes to rest."""
