@@ -1,15 +1,12 @@
 //! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
 //!
-//! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice
-//! that. Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no
-//! RAM). The controllers' power switches close only when the motor lines are driven low, and open by themselves when
-//! the chip restarts.
+//! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
+//! restarts.
 
 use super::stm32::board::Board;
-use super::stm32::clock::{self, SystemClock};
-use super::stm32::crystal;
+use super::stm32::chip;
+use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::executors;
 use super::stm32::imu::{self, BoardBmi088};
 use super::stm32::light::Lamp;
 use super::stm32::link;
@@ -25,14 +22,9 @@ use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{
-    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3, USB_OTG_FS,
-};
-use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, TIM2, USART2, USART3, USB_OTG_FS};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
@@ -66,43 +58,23 @@ pub type BoardImu = BoardBmi088;
 /// The motors.
 pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
 
-/// The watchdog.
-pub type BoardWatchdog = ChipWatchdog<IWDG>;
-
 /// The battery.
 pub type BoardBattery = NoBattery;
 
 /// There is no slot for a memory card.
 pub type BoardCard = NoCard;
 
-/// The watchdog's registers, for code that outlasts its timeout.
-pub const WATCHDOG: Iwdg = pac::IWDG;
-
 /// What it is called.
 pub const NAME: &str = "Crazyflie Bolt 1.1";
-
-/// The interrupts that control and the sensor's task run in: nothing on the board uses them.
-pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::UART4;
-/// See [`CONTROL_INTERRUPT`].
-pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
-/// And the services.
-pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::CAN1_TX;
 
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
 /// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let restart = restart::cause();
-    let has_crystal = crystal::starts();
-    let p = embassy_stm32::init(clocks(has_crystal));
-    clock::halt_with_the_core();
-    pac::FLASH.acr().modify(|w| {
-        w.set_prften(true);
-        w.set_icen(true);
-        w.set_dcen(true);
-    });
+    let (p, has_crystal) = chip::start();
 
     // The motors first: PA15 is pulled up until here, and the controllers must not see that.
     let pins = Pins(
@@ -149,32 +121,10 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         simulator_transmitter,
         radio: None,
         card: None,
-        storage: ParameterFlash::new(p.FLASH, WATCHDOG),
+        storage: ParameterFlash::new(p.FLASH),
         has_crystal,
         restart,
     }
-}
-
-fn clocks(has_crystal: bool) -> embassy_stm32::Config {
-    let mut config = embassy_stm32::Config::default();
-    let rcc = &mut config.rcc;
-    rcc.hse = has_crystal.then_some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
-    // 2 MHz of the crystal's 8 or of the chip's own 16.
-    let (source, prediv) =
-        if has_crystal { (PllSource::HSE, PllPreDiv::DIV4) } else { (PllSource::HSI, PllPreDiv::DIV8) };
-    rcc.pll_src = source;
-    rcc.pll = Some(rcc::Pll {
-        prediv,
-        mul: PllMul::MUL168,
-        divp: Some(PllPDiv::DIV2), // core: 168 MHz
-        divq: Some(PllQDiv::DIV7), // 48 MHz, for USB
-        divr: None,
-    });
-    rcc.sys = rcc::Sysclk::PLL1_P;
-    rcc.ahb_pre = AHBPrescaler::DIV1;
-    rcc.apb1_pre = APBPrescaler::DIV4; // 42 MHz; timers 84 MHz
-    rcc.apb2_pre = APBPrescaler::DIV2; // 84 MHz
-    config
 }
 
 /// The slot that there is not.
@@ -212,22 +162,4 @@ impl Battery for NoBattery {
 pub fn motor_timer() -> TimGp16 {
     // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
     unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }
-}
-
-#[interrupt]
-unsafe fn UART4() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_control_interrupt() }
-}
-
-#[interrupt]
-unsafe fn UART5() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_sensor_interrupt() }
-}
-
-#[interrupt]
-unsafe fn CAN1_TX() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_services_interrupt() }
 }

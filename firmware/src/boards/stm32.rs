@@ -2,14 +2,14 @@
 
 pub mod board;
 mod bootloader;
-#[cfg(feature = "micoair-h743")]
+#[cfg(feature = "stm32h743")]
 pub mod card;
+pub mod chip;
 pub mod clock;
 pub mod crystal;
 pub mod edges;
 pub mod executors;
 pub(super) mod fault;
-mod handover;
 pub mod imu;
 pub mod light;
 pub mod link;

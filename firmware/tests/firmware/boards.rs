@@ -45,7 +45,7 @@ fn an_edge_is_stamped_before_the_handler_that_ends_it() {
 
 #[test]
 fn plls_of_the_h743_run_in_the_range_that_their_8_mhz_are_allowed_in() {
-    let source = source("micoair_h743");
+    let source = source("stm32/chip/h743");
     let factors: Vec<u32> =
         source.split("PllMul::MUL").skip(1).filter_map(|rest| rest.split(',').next()?.parse().ok()).collect();
     assert_eq!(factors.len(), 2);

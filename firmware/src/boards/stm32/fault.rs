@@ -28,8 +28,9 @@
 //! stop for want of frames within their own time-out. The watchdog is fed once before these steps, so that the restart
 //! is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
+use super::chip::{SILENCE, WATCHDOG};
 use super::motors::rest;
-use crate::boards::chosen::{WATCHDOG, motor_timer};
+use crate::boards::chosen::motor_timer;
 use crate::boards::fault::Fault;
 use crate::boards::kept;
 use crate::dshot::{BITS, zero_width};
@@ -45,14 +46,6 @@ use embassy_stm32::pac::timer::TimGp16;
 /// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the
 /// peripheral bus.
 const POLLS: usize = 10_000;
-
-/// Silence before each frame, cycles of the core: 0.08 ms at 400 MHz.
-#[cfg(feature = "micoair-h743")]
-const SILENCE: u32 = 32_000;
-
-/// Silence before each frame, cycles of the core: 0.08 ms at 168 MHz.
-#[cfg(feature = "crazyflie-bolt")]
-const SILENCE: u32 = 13_440;
 
 /// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
 const _: () = assert!((FRAMES + LAST_FRAMES) * 140 < 34_000);
@@ -96,7 +89,7 @@ fn stop(frames: usize) {
     rest(timer);
 }
 
-/// Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines let it.
+/// Silence before each frame. Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines let it.
 fn silence() {
     /// It runs by the core's clock, without an interrupt.
     const RUN: u32 = 0b101;

@@ -1,6 +1,6 @@
 //! Why the chip started, the first thing to read after something went wrong; and starting it anew.
 
-use super::bootloader;
+use super::{bootloader, chip};
 use crate::hardware::Restart;
 
 /// What made the chip start.
@@ -18,6 +18,21 @@ pub enum Cause {
     Watchdog,
     /// None of these.
     Unknown,
+}
+
+/// The chip's flags of what made it start. Every restart also pulls the reset pin, and power raises more of them still.
+#[derive(Debug, Clone, Copy)]
+pub struct Flags {
+    /// The independent watchdog.
+    pub watchdog: bool,
+    /// The firmware.
+    pub software: bool,
+    /// Power came.
+    pub power: bool,
+    /// Power fell below the brown-out level and came back.
+    pub brown_out: bool,
+    /// The reset pin.
+    pub pin: bool,
 }
 
 /// The chip, which can start itself anew.
@@ -38,6 +53,19 @@ impl Restart for Chip {
 }
 
 impl Cause {
+    /// The most telling of the flags.
+    #[must_use]
+    pub fn first(flags: Flags) -> Self {
+        match flags {
+            Flags { power: true, .. } => Self::Power,
+            Flags { brown_out: true, .. } => Self::BrownOut,
+            Flags { watchdog: true, .. } => Self::Watchdog,
+            Flags { software: true, .. } => Self::Software,
+            Flags { pin: true, .. } => Self::Pin,
+            _ => Self::Unknown,
+        }
+    }
+
     /// Whether the memory has been without power, or may have been.
     #[must_use]
     pub fn is_power(self) -> bool {
@@ -55,49 +83,10 @@ impl Cause {
     }
 }
 
-/// Whether the chip is not held in reset while its supply is too low for it: an option, which comes off.
-#[must_use]
-pub fn has_no_brown_out() -> bool {
-    #[cfg(feature = "micoair-h743")]
-    let is_off = embassy_stm32::pac::FLASH.optsr_cur().read().bor_lev() == 0;
-    #[cfg(feature = "crazyflie-bolt")]
-    let is_off = embassy_stm32::pac::FLASH.optcr().read().bor_lev() == 0b11;
-    is_off
-}
-
 /// Reads the flags and clears them, so that the next start reports its own.
 #[must_use]
 pub fn cause() -> Cause {
-    let cause = flags();
-    #[cfg(feature = "micoair-h743")]
-    embassy_stm32::pac::RCC.rsr().modify(|w| w.set_rmvf(true));
-    #[cfg(feature = "crazyflie-bolt")]
-    embassy_stm32::pac::RCC.csr().modify(|w| w.set_rmvf(true));
+    let cause = chip::flags();
+    chip::clear_flags();
     cause
-}
-
-/// Reads the flags.
-#[cfg(feature = "micoair-h743")]
-pub(super) fn flags() -> Cause {
-    let flags = embassy_stm32::pac::RCC.rsr().read();
-    first(flags.iwdg1rstf(), flags.sftrstf(), [flags.porrstf(), flags.borrstf()], flags.pinrstf())
-}
-
-/// Reads the flags.
-#[cfg(feature = "crazyflie-bolt")]
-pub(super) fn flags() -> Cause {
-    let flags = embassy_stm32::pac::RCC.csr().read();
-    first(flags.wdgrstf(), flags.sftrstf(), [flags.porrstf(), flags.borrstf()], flags.padrstf())
-}
-
-/// Every restart also pulls the reset pin, and power raises more flags still: the most telling one counts.
-fn first(watchdog: bool, software: bool, [power, brown_out]: [bool; 2], pin: bool) -> Cause {
-    match (power || brown_out, watchdog, software, pin) {
-        (true, ..) if power => Cause::Power,
-        (true, ..) => Cause::BrownOut,
-        (_, true, ..) => Cause::Watchdog,
-        (_, _, true, _) => Cause::Software,
-        (.., true) => Cause::Pin,
-        _ => Cause::Unknown,
-    }
 }
