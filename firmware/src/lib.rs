@@ -28,6 +28,7 @@
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`restart`] | the commanded restart |
 //! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
+//! | [`spi`] | devices on a bus that several may share |
 //! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
@@ -67,4 +68,5 @@ pub mod repeat;
 pub mod replay;
 pub mod restart;
 pub mod shared;
+pub mod spi;
 pub mod status;

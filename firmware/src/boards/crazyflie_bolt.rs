@@ -7,7 +7,7 @@ use super::stm32::board::Board;
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088};
+use super::stm32::imu::{self, BoardBmi088, Bus, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
@@ -29,6 +29,7 @@ use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
+use static_cell::StaticCell;
 
 bind_interrupts!(
     /// Interrupts and their handlers.
@@ -50,7 +51,7 @@ bind_interrupts!(
 const MOTOR_CHANNELS: [usize; 4] = [1, 3, 0, 2];
 
 /// As Bitcraze's own firmware takes it: the sensor's axes are the body's.
-const MOUNTING: Mounting = Mounting::Aligned;
+const MOUNTING: Mounting = Mounting::ALIGNED;
 
 /// The inertial sensor.
 pub type BoardImu = BoardBmi088;
@@ -92,11 +93,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         Output::new(p.PC15, Level::High, Speed::Low),
     ]);
 
-    let bus = imu::Bus(Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config()));
-    let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
-    let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
+    static BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
+    let bus = BUS.init(Bus::new(spi));
+    let devices = [imu::device(bus, p.PB1), imu::device(bus, p.PB0)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
-    let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+    let imu = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
 
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
     let uart = uart.expect("USART2's clock makes no 921,600 baud");

@@ -6,7 +6,7 @@ use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
+use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Pins};
@@ -34,6 +34,7 @@ use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
+use static_cell::StaticCell;
 
 bind_interrupts!(
     /// Interrupts and their handlers.
@@ -61,10 +62,10 @@ const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
 
 /// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward,
 /// right, down).
-const MOUNTING: Mounting = Mounting::XLeft;
+const MOUNTING: Mounting = Mounting::new([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).expect("no rotation");
 
 /// As it mounts the BMI270 (roll 180 degrees).
-const SECOND_MOUNTING: Mounting = Mounting::Aligned;
+const SECOND_MOUNTING: Mounting = Mounting::ALIGNED;
 
 /// The inertial sensors: the BMI088 flies, the BMI270 stands by.
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
@@ -99,15 +100,17 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     );
     let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
 
-    let bus = imu::Bus(Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config()));
-    let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
-    let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
+    static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+    let bus = FIRST_BUS.init(Bus::new(spi));
+    let devices = [imu::device(bus, p.PD4), imu::device(bus, p.PD5)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
-    let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
-    let bus = imu::Bus(Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config()));
-    let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
+    let first = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
+    static SECOND_BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
+    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15);
     let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
-    let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));
+    let imu = Redundant::new(first, Bmi270::new(device, data_ready, SystemClock, &SECOND_MOUNTING));
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
     let uart = uart.expect("USART1's clock makes no 921,600 baud");
