@@ -10,7 +10,7 @@ use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardBmi088, Bus, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
-use super::stm32::motors::{Dshot, Pins};
+use super::stm32::motors::{Dshot, Line, OnTimer};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
@@ -21,11 +21,10 @@ use crate::hardware::{Battery, Card, Fault, SECTOR};
 use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, TIM2, USART2, USART3, USB_OTG_FS};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
@@ -47,9 +46,6 @@ bind_interrupts!(
     }
 );
 
-/// Motors 1 to 4 are on PA1, PB11, PA15, PB10: channels 2, 4, 1, 3 of TIM2.
-const MOTOR_CHANNELS: [usize; 4] = [1, 3, 0, 2];
-
 /// As Bitcraze's own firmware takes it: the sensor's axes are the body's.
 const MOUNTING: Mounting = Mounting::ALIGNED;
 
@@ -57,7 +53,11 @@ const MOUNTING: Mounting = Mounting::ALIGNED;
 pub type BoardImu = BoardBmi088;
 
 /// The motors.
-pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
+pub type BoardMotors = Dshot<OnTimer<TIM2, DMA1_CH1, Interrupts>>;
+
+/// Their timers, as far as stopping needs them.
+// SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
+pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }];
 
 /// The battery.
 pub type BoardBattery = NoBattery;
@@ -78,13 +78,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let (p, has_crystal) = chip::start();
 
     // The motors first: PA15 is pulled up until here, and the controllers must not see that.
-    let pins = Pins(
-        PwmPin::new(p.PA15, OutputType::PushPull),
-        PwmPin::new(p.PA1, OutputType::PushPull),
-        PwmPin::new(p.PB10, OutputType::PushPull),
-        PwmPin::new(p.PB11, OutputType::PushPull),
-    );
-    let motors = Dshot::new(p.TIM2, pins, MOTOR_CHANNELS, p.DMA1_CH1, Interrupts);
+    let lines = [Line::direct(p.PA1), Line::direct(p.PB11), Line::direct(p.PA15), Line::direct(p.PB10)].map(Some);
+    let motors = Dshot(OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts));
     // The controllers have power for as long as these are held: for ever.
     forget([
         Output::new(p.PA0, Level::High, Speed::Low),
@@ -157,11 +152,4 @@ impl Battery for NoBattery {
     async fn voltage(&mut self) -> Option<f32> {
         None
     }
-}
-
-/// The registers that TIM2 has in common with 16-bit timers: all that stopping needs.
-#[must_use]
-pub fn motor_timer() -> TimGp16 {
-    // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
-    unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }
 }

@@ -9,7 +9,7 @@ use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
-use super::stm32::motors::{Dshot, Pins};
+use super::stm32::motors::{Dshot, Line, OnTimer};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
@@ -22,7 +22,7 @@ use crate::mounting::Mounting;
 use crate::redundant::Redundant;
 use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, PC0, SDMMC1, TIM1, USART1, USART2,
@@ -30,7 +30,6 @@ use embassy_stm32::peripherals::{
 };
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
@@ -57,9 +56,6 @@ bind_interrupts!(
     }
 );
 
-/// Motors 1 to 4 are on PE14, PE13, PE11, PE9: channels 4, 3, 2, 1 of TIM1.
-const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
-
 /// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward,
 /// right, down).
 const MOUNTING: Mounting = Mounting::new([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).expect("no rotation");
@@ -71,7 +67,11 @@ const SECOND_MOUNTING: Mounting = Mounting::ALIGNED;
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
 
 /// The motors.
-pub type BoardMotors = Dshot<TIM1, DMA1_CH2, Interrupts>;
+pub type BoardMotors = Dshot<OnTimer<TIM1, DMA1_CH2, Interrupts>>;
+
+/// Their timers, as far as stopping needs them.
+// SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
+pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }];
 
 /// The battery.
 pub type BoardBattery = DividedBattery;
@@ -92,13 +92,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let (p, has_crystal) = chip::start();
 
     // The motors first: their lines float until here.
-    let pins = Pins(
-        PwmPin::new(p.PE9, OutputType::PushPull),
-        PwmPin::new(p.PE11, OutputType::PushPull),
-        PwmPin::new(p.PE13, OutputType::PushPull),
-        PwmPin::new(p.PE14, OutputType::PushPull),
-    );
-    let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
+    let lines = [Line::direct(p.PE14), Line::direct(p.PE13), Line::direct(p.PE11), Line::direct(p.PE9)].map(Some);
+    let motors = Dshot(OnTimer::new(p.TIM1, lines, p.DMA1_CH2, Interrupts));
 
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
@@ -175,11 +170,4 @@ impl Battery for DividedBattery {
         let counts = self.converter.blocking_read(&mut self.pin, SampleTime::CYCLES64_5);
         Some(f32::from(counts) * Self::VOLTS_PER_COUNT * Self::DIVIDER)
     }
-}
-
-/// The registers that TIM1 has in common with smaller timers: all that stopping needs.
-#[must_use]
-pub fn motor_timer() -> TimGp16 {
-    // SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
-    unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }
 }
