@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`bmi088`], [`bmi270`] | the boards' inertial measurement units, over any SPI |
+//! | [`bmi088`], [`bmi270`], [`icm42688`] | the boards' inertial measurement units, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
 //! | [`card`] | every flight as a file on a memory card |
 //! | [`configuration`] | the scenario this build embeds |
@@ -53,6 +53,7 @@ pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
+pub mod icm42688;
 pub mod imu;
 pub mod last_words;
 pub mod link;
