@@ -3,11 +3,12 @@
 //! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
 //! restarts.
 
+use super::stm32::absent::{NoBattery, NoCard};
 use super::stm32::board::Board;
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088, Bus, SharedBus};
+use super::stm32::imu::{self, BoardBmi088, Bus, FAST, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
@@ -17,7 +18,6 @@ use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
-use crate::hardware::{Battery, Card, Fault, SECTOR};
 use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
@@ -59,7 +59,7 @@ pub type BoardMotors = Dshot<OnTimer<TIM2, DMA1_CH1, Interrupts>>;
 // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
 pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }];
 
-/// The battery.
+/// The radio's own processor measures the battery, and this firmware does not talk to it.
 pub type BoardBattery = NoBattery;
 
 /// There is no slot for a memory card.
@@ -91,7 +91,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     static BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
     let bus = BUS.init(Bus::new(spi));
-    let devices = [imu::device(bus, p.PB1), imu::device(bus, p.PB0)];
+    let devices = [imu::device(bus, p.PB1, FAST), imu::device(bus, p.PB0, FAST)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
     let imu = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
 
@@ -121,35 +121,5 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         storage: ParameterFlash::new(p.FLASH),
         has_crystal,
         restart,
-    }
-}
-
-/// The slot that there is not.
-pub enum NoCard {}
-
-impl Card for NoCard {
-    fn start(&mut self) -> Result<(), Fault> {
-        match *self {}
-    }
-
-    fn sectors(&self) -> u32 {
-        match *self {}
-    }
-
-    fn read(&mut self, _: u32, _: &mut [u8; SECTOR]) -> Result<(), Fault> {
-        match *self {}
-    }
-
-    fn write(&mut self, _: u32, _: &[u8; SECTOR]) -> Result<(), Fault> {
-        match *self {}
-    }
-}
-
-/// The radio's own processor measures the battery, and this firmware does not talk to it.
-pub struct NoBattery;
-
-impl Battery for NoBattery {
-    async fn voltage(&mut self) -> Option<f32> {
-        None
     }
 }

@@ -1,12 +1,13 @@
 //! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link,
 //! SDMMC1 for the log.
 
+use super::stm32::battery::DividedBattery;
 use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, SharedBus};
+use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
@@ -17,22 +18,20 @@ use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
-use crate::hardware::Battery;
 use crate::mounting::Mounting;
 use crate::redundant::Redundant;
-use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, PC0, SDMMC1, TIM1, USART1, USART2,
-    USART6, USB_OTG_FS,
+    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, SDMMC1, TIM1, USART1, USART2, USART6,
+    USB_OTG_FS,
 };
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
+use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
 use static_cell::StaticCell;
 
 bind_interrupts!(
@@ -62,6 +61,9 @@ const MOUNTING: Mounting = Mounting::new([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.
 
 /// As it mounts the BMI270 (roll 180 degrees).
 const SECOND_MOUNTING: Mounting = Mounting::ALIGNED;
+
+/// The battery's divider, of the same definition.
+const DIVIDER: f32 = 21.12;
 
 /// The inertial sensors: the BMI088 flies, the BMI270 stands by.
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
@@ -98,12 +100,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
     let bus = FIRST_BUS.init(Bus::new(spi));
-    let devices = [imu::device(bus, p.PD4), imu::device(bus, p.PD5)];
+    let devices = [imu::device(bus, p.PD4, FAST), imu::device(bus, p.PD5, FAST)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
     let first = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
     static SECOND_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
-    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15);
+    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15, FAST);
     let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
     let imu = Redundant::new(first, Bmi270::new(device, data_ready, SystemClock, &SECOND_MOUNTING));
 
@@ -130,7 +132,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         imu,
         motors,
         watchdog: ChipWatchdog::new(p.IWDG1),
-        battery: DividedBattery::new(p.ADC1, p.PC0),
+        battery: DividedBattery::new(p.ADC1, p.PC0, DIVIDER),
         light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
         receiver,
         transmitter,
@@ -142,32 +144,5 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         storage: ParameterFlash::new(p.FLASH),
         has_crystal,
         restart,
-    }
-}
-
-/// The battery through the board's divider, on PC0.
-pub struct DividedBattery {
-    converter: Adc<'static, ADC1>,
-    pin: Peri<'static, PC0>,
-}
-
-impl DividedBattery {
-    /// The divider of the board's definition.
-    const DIVIDER: f32 = 21.12;
-
-    /// Volts at the pin in one count of 16 bits, the reference being the board's 3.3 V.
-    const VOLTS_PER_COUNT: f32 = 3.3 / 65535.0;
-
-    fn new(adc: Peri<'static, ADC1>, pin: Peri<'static, PC0>) -> Self {
-        let config = AdcConfig { resolution: Some(Resolution::BITS16), averaging: Some(Averaging::Samples16) };
-        Self { converter: Adc::new_with_config(adc, config), pin }
-    }
-}
-
-impl Battery for DividedBattery {
-    /// Takes about 50 us: sixteen conversions of 73 cycles at no more than 32 MHz.
-    async fn voltage(&mut self) -> Option<f32> {
-        let counts = self.converter.blocking_read(&mut self.pin, SampleTime::CYCLES64_5);
-        Some(f32::from(counts) * Self::VOLTS_PER_COUNT * Self::DIVIDER)
     }
 }

@@ -1,5 +1,8 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
+pub mod absent;
+#[cfg(feature = "stm32h743")]
+pub mod battery;
 pub mod board;
 mod bootloader;
 #[cfg(feature = "stm32h743")]

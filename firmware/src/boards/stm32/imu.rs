@@ -6,6 +6,7 @@ use super::edges::StampedPin;
 use super::transfers::{self, Begun};
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
+use crate::icm42688::Icm42688;
 use crate::spi::Selected;
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
@@ -68,9 +69,15 @@ pub type SharedBus = Mutex<CriticalSectionRawMutex, Bus>;
 /// A device on such a bus.
 pub type Device = Selected<'static, CriticalSectionRawMutex, Bus, Output<'static>>;
 
+/// How steep a chip select's edges are.
+pub const FAST: Speed = Speed::VeryHigh;
+
+/// And on PC13 to PC15, which can drive little.
+pub const SLOW: Speed = Speed::Low;
+
 /// A device on `bus`, chosen by a low level on `select`.
-pub fn device(bus: &'static SharedBus, select: Peri<'static, impl Pin>) -> Device {
-    Selected::new(bus, Output::new(select, Level::High, Speed::VeryHigh))
+pub fn device(bus: &'static SharedBus, select: Peri<'static, impl Pin>, speed: Speed) -> Device {
+    Selected::new(bus, Output::new(select, Level::High, speed))
 }
 
 /// A BMI088 as the boards wire it.
@@ -78,6 +85,9 @@ pub type BoardBmi088 = Bmi088<Device, StampedPin, SystemClock>;
 
 /// A BMI270 as the boards wire it.
 pub type BoardBmi270 = Bmi270<Device, StampedPin, SystemClock>;
+
+/// An ICM-42688-P or ICM-42605 as the boards wire it.
+pub type BoardIcm42688 = Icm42688<Device, StampedPin, SystemClock>;
 
 /// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above the requested one too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
