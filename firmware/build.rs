@@ -17,14 +17,18 @@ const STUDY: &str = "vehicles/study.toml";
 /// Boards and the files that describe their memory, from this package's folder.
 const MEMORY: &[(&str, &str)] = &[
     ("MICOAIR_H743", "memory/stm32h743.x"),
+    ("MATEK_H743", "memory/stm32h743.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
     ("MPS2", "memory/mps2.x"),
     ("PROBE", "memory/mps2.x"),
 ];
 
 /// The same for who builds with `BOOTLOADER=kept`: behind the bootloader that the board came with.
-const KEPT: &[(&str, &str)] =
-    &[("MICOAIR_H743", "memory/stm32h743-kept.x"), ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x")];
+const KEPT: &[(&str, &str)] = &[
+    ("MICOAIR_H743", "memory/stm32h743-kept.x"),
+    ("MATEK_H743", "memory/stm32h743-kept.x"),
+    ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
+];
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
