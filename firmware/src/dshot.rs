@@ -3,8 +3,8 @@
 //! A frame is 16 bits, most significant first: 11 of value, one that requests telemetry (set in words alone: they are
 //! ignored without), four of checksum. Value 0 is the stop command, 1 to 47 are words to a controller whose motor
 //! stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a second, high for 3/8 of it if zero and for 6/8
-//! if one. [`Waveform`] holds a frame for each of a timer's four channels, one row a bit, in the order in which its burst
-//! transfer wants them. Channels without a motor stay low.
+//! if one. [`Waveform`] holds a frame for each of a timer's four channels, one row a bit, in the order in which its
+//! burst transfer wants them. Channels without a motor stay low.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
 use dshot_frame::{Command, NormalFrame};

@@ -98,7 +98,8 @@ impl Model {
         }
     }
 
-    /// The anti-alias filters' parameters DELT, DELTSQR and BITSHIFT: 258 Hz of the ICM-42688-P, 249 Hz of the ICM-42605.
+    /// The anti-alias filters' parameters DELT, DELTSQR and BITSHIFT: 258 Hz of the ICM-42688-P, 249 Hz of the
+    /// ICM-42605.
     const fn filter(self) -> (u8, u16, u8) {
         match self {
             Self::Icm42688P => (6, 36, 10),

@@ -21,8 +21,8 @@ impl Mounting {
     /// The sensor's axes are the body's.
     pub const ALIGNED: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
 
-    /// `rows` are the body's x, y and z axes in the sensor's. None unless they are as long as 1, at right angles to each
-    /// other, and z is x cross y: a mirror image is no mounting.
+    /// `rows` are the body's x, y and z axes in the sensor's. None unless they are as long as 1, at right angles to
+    /// each other, and z is x cross y: a mirror image is no mounting.
     #[must_use]
     pub const fn new(rows: [[f32; 3]; 3]) -> Option<Self> {
         let [x, y, z] = rows;
@@ -82,7 +82,10 @@ mod tests {
 
         #[test]
         fn what_is_no_rotation_is_no_mounting(
-            angle in -7.0_f32..7.0, row in 0..3_usize, column in 0..3_usize, by in prop_oneof![0.01_f32..2.5, -2.5_f32..-0.01],
+            angle in -7.0_f32..7.0,
+            row in 0..3_usize,
+            column in 0..3_usize,
+            by in prop_oneof![0.01_f32..2.5, -2.5_f32..-0.01],
         ) {
             let rotation = Rotation3::from_euler_angles(angle, 0.7 * angle, 0.3 - angle);
             let mut skewed = rows(&rotation);

@@ -88,7 +88,8 @@ fn stop(frames: usize) {
     MOTOR_TIMERS.into_iter().for_each(rest);
 }
 
-/// Silence before each frame. Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines let it.
+/// Silence before each frame. Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines
+/// let it.
 fn silence() {
     /// It runs by the core's clock, without an interrupt.
     const RUN: u32 = 0b101;

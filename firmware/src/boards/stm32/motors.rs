@@ -3,8 +3,8 @@
 //! A timer rests between frames: counter stopped at zero, every channel low. [`Motors::write`] draws the frames, starts
 //! the counter, and at each update event one DMA burst sets the four widths of the next bit. The counter starts only
 //! once the transfer waits for it, so that no burst can straddle an update. However a write ends, also if it is dropped
-//! half-way, the timer rests again, and a controller discards the frame that was cut by its checksum. Two timers send at
-//! the same time, each on its own.
+//! half-way, the timer rests again, and a controller discards the frame that was cut by its checksum. Two timers send
+//! at the same time, each on its own.
 //!
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
