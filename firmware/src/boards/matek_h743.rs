@@ -1,4 +1,4 @@
-//! Matek H743 V3 (SLIM, MINI, WING): STM32H743VI (Cortex-M7), ICM-42688-P and ICM-42605, TIM8 and TIM2 for the motors,
+//! Matek H743 V3 (SLIM, WING): STM32H743VI (Cortex-M7), ICM-42688-P and ICM-42605, TIM8 and TIM2 for the motors,
 //! UART7 for the link, SDMMC1 for the log.
 //!
 //! ArduPilot has motors 3 and 4 on TIM5, which is the scheduler's here; the same pins are TIM2's as well.

@@ -7,6 +7,7 @@ pub mod board;
 mod bootloader;
 #[cfg(feature = "stm32h743")]
 pub mod card;
+pub mod cause;
 pub mod chip;
 pub mod clock;
 pub mod crystal;

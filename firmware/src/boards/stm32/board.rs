@@ -1,8 +1,8 @@
 //! What a board hands to its tasks.
 
+use super::cause::Cause;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::Cause;
 use super::storage::ParameterFlash;
 use super::usb::Controller;
 use super::watchdog::ChipWatchdog;

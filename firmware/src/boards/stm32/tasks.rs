@@ -4,12 +4,13 @@
 //! memory card, which has the thread to itself.
 
 use super::bootloader;
+use super::cause::Cause;
 use super::chip::{self, CONTROL_INTERRUPT, SENSOR_INTERRUPT, SERVICES_INTERRUPT};
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::{Cause, Chip};
+use super::restart::Chip;
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
 use super::watchdog::ChipWatchdog;

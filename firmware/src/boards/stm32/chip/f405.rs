@@ -4,7 +4,7 @@
 //! that. Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no
 //! RAM).
 
-use super::super::restart::{Cause, Flags};
+use super::super::cause::{Cause, Flags};
 use super::super::{crystal, executors};
 use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::{DBGMCU, FLASH, RCC, SYSCFG};

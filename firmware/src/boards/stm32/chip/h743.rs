@@ -5,7 +5,7 @@
 //! need revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays
 //! off: it would stand between the core and the DMA buffers.
 
-use super::super::restart::{Cause, Flags};
+use super::super::cause::{Cause, Flags};
 use super::super::{crystal, executors};
 use cortex_m::peripheral::SCB;
 use embassy_stm32::pac::iwdg::Iwdg;
