@@ -3,7 +3,8 @@
 //!
 //! One device with gyroscope and accelerometer. Its data-ready pin INT1 rises 1000 times a second. Registers lie in
 //! banks, of which all but the first hold settings alone. Registers, waits and scales are those of the data sheets
-//! DS-000347 and DS-000292; what `AFSR_OFF` does is in neither, and known from other firmware.
+//! DS-000347 and DS-000292, as ArduPilot's, Betaflight's and PX4's drivers agree on them: the sheets were not at hand.
+//! What `AFSR_OFF` does is in neither, and known from these drivers.
 //!
 //! | what | setting |
 //! |---|---|
