@@ -15,16 +15,20 @@ use std::{env, fs};
 const STUDY: &str = "vehicles/study.toml";
 
 /// Boards and the files that describe their memory, from this package's folder.
-const MEMORY: [(&str, &str); 4] = [
-    ("MICOAIR_H743", "memory/micoair-h743.x"),
+const MEMORY: &[(&str, &str)] = &[
+    ("MICOAIR_H743", "memory/stm32h743.x"),
+    ("MATEK_H743", "memory/stm32h743.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
     ("MPS2", "memory/mps2.x"),
     ("PROBE", "memory/mps2.x"),
 ];
 
 /// The same for who builds with `BOOTLOADER=kept`: behind the bootloader that the board came with.
-const KEPT: [(&str, &str); 2] =
-    [("MICOAIR_H743", "memory/micoair-h743-kept.x"), ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x")];
+const KEPT: &[(&str, &str)] = &[
+    ("MICOAIR_H743", "memory/stm32h743-kept.x"),
+    ("MATEK_H743", "memory/stm32h743-kept.x"),
+    ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
+];
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -43,8 +47,7 @@ fn fail(problem: &str) -> ! {
 
 /// Whether this is an image of a board that has motors.
 fn is_for_a_vehicle() -> bool {
-    let is_on = |feature: &str| env::var_os(format!("CARGO_FEATURE_{feature}")).is_some();
-    env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") && (is_on("MICOAIR_H743") || is_on("CRAZYFLIE_BOLT"))
+    env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") && env::var_os("CARGO_FEATURE_STM32").is_some()
 }
 
 /// Writes what the chosen file becomes to `target`.

@@ -21,6 +21,7 @@ const NOT_RUN: &[(&str, &str)] = &[
     ("host-sim log LOG", "needs a card's file; `.ci/logs` converts one"),
     ("host-sim hil", "serves firmware that runs elsewhere; `.ci/emulated_flight` flies it"),
     ("cargo micoair", "flashes a board"),
+    ("cargo matek", "flashes a board"),
     ("cargo bolt", "flashes a board"),
     ("cargo build --profile board", "`.ci/budgets` builds these images by `.ci/arm`"),
     ("cargo add", "for a crate of the reader's own"),

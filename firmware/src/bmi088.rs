@@ -22,8 +22,7 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
-use embedded_hal::digital::OutputPin;
-use embedded_hal_async::spi::SpiBus;
+use crate::spi;
 use estimation::imu::ImuParameters;
 use nalgebra::Vector3;
 
@@ -132,19 +131,18 @@ impl Part {
 }
 
 /// One device on the bus.
-struct Port<'a, B, S, C> {
-    bus: &'a mut B,
-    select: &'a mut S,
+struct Port<'a, D, C> {
+    spi: &'a mut D,
     clock: &'a C,
     device: &'static Device,
 }
 
-impl<B: SpiBus, S: OutputPin, C: Clock> Port<'_, B, S, C> {
+impl<D: spi::Device, C: Clock> Port<'_, D, C> {
     /// Reads `count` registers, at most six, from `register` on.
     async fn read_many(&mut self, register: u8, count: usize) -> Result<[u8; 6], Fault> {
         let mut bytes = [READ | register, 0, 0, 0, 0, 0, 0, 0];
         let used = bytes.get_mut(..self.device.lead + count).ok_or(Fault)?;
-        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, used).await?;
+        exchange(self.spi, self.clock, ACCESS_WITHIN, used).await?;
         let [_, early @ .., _] = bytes;
         let [_, _, late @ ..] = bytes;
         Ok(if self.device.lead == 1 { early } else { late })
@@ -160,7 +158,7 @@ impl<B: SpiBus, S: OutputPin, C: Clock> Port<'_, B, S, C> {
     }
 }
 
-impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
+impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
     async fn read(&mut self, register: u8) -> Result<u8, Fault> {
         let [value, ..] = self.read_many(register, 1).await?;
         Ok(value)
@@ -168,29 +166,27 @@ impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
 
     async fn write(&mut self, register: u8, bytes: &[u8]) -> Result<(), Fault> {
         let &[value] = bytes else { return Err(Fault) };
-        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, &mut [register, value]).await
+        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut [register, value]).await
     }
 }
 
-/// The two devices on their bus, the data-ready pin, and the clock that bounds every wait.
-pub struct Bmi088<B, S, P, C> {
-    bus: B,
-    /// Chip selects of accelerometer and gyroscope.
-    selects: [S; 2],
+/// The two devices, the data-ready pin, and the clock that bounds every wait.
+pub struct Bmi088<D, P, C> {
+    /// Accelerometer and gyroscope.
+    devices: [D; 2],
     pace: Pace<P>,
     clock: C,
-    mounting: Mounting,
+    mounting: &'static Mounting,
     accelerometer: Part,
     gyroscope: Part,
 }
 
-impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi088<B, S, P, C> {
-    /// Touches nothing yet: the first sample powers the sensor up. `selects` are those of accelerometer and gyroscope,
-    /// high.
-    pub fn new(bus: B, selects: [S; 2], data_ready: P, clock: C, mounting: Mounting) -> Self {
+impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
+    /// Touches nothing yet: the first sample powers the sensor up. `devices` are accelerometer and gyroscope.
+    pub fn new(devices: [D; 2], data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
         let time = clock.now() + POWER_TAKES;
         let (accelerometer, gyroscope) = (Part::new(&ACCELEROMETER, time), Part::new(&GYROSCOPE, time));
-        Self { bus, selects, pace: Pace::new(data_ready, PERIOD), clock, mounting, accelerometer, gyroscope }
+        Self { devices, pace: Pace::new(data_ready, PERIOD), clock, mounting, accelerometer, gyroscope }
     }
 
     /// Both devices at once, because most of it is waiting; the gyroscope's faults end it, and the accelerometer's only
@@ -222,14 +218,14 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi088<B, S, P, C> {
     }
 
     async fn advance_gyroscope(&mut self) -> Result<(), Fault> {
-        let Self { bus, selects: [_, select], clock, gyroscope, .. } = self;
-        let mut port = Port { bus, select, clock, device: gyroscope.device };
+        let Self { devices: [_, spi], clock, gyroscope, .. } = self;
+        let mut port = Port { spi, clock, device: gyroscope.device };
         gyroscope.power_up.advance(&mut port, clock).await
     }
 
     async fn advance_accelerometer(&mut self) -> Result<(), Fault> {
-        let Self { bus, selects: [select, _], clock, accelerometer, .. } = self;
-        let mut port = Port { bus, select, clock, device: accelerometer.device };
+        let Self { devices: [spi, _], clock, accelerometer, .. } = self;
+        let mut port = Port { spi, clock, device: accelerometer.device };
         let advanced = accelerometer.power_up.advance(&mut port, clock).await;
         if advanced.is_err() {
             accelerometer.power_up.restart(clock.now() + LEFT_ALONE);
@@ -239,8 +235,8 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi088<B, S, P, C> {
 
     /// The rates, in counts.
     async fn rates(&mut self) -> Result<Vector3<f32>, Fault> {
-        let Self { bus, selects: [_, select], clock, gyroscope, .. } = self;
-        let measured = Port { bus, select, clock, device: gyroscope.device }.measure().await;
+        let Self { devices: [_, spi], clock, gyroscope, .. } = self;
+        let measured = Port { spi, clock, device: gyroscope.device }.measure().await;
         gyroscope.judge(measured, clock.now() + POWER_TAKES)
     }
 
@@ -252,13 +248,13 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi088<B, S, P, C> {
             let _ = self.advance_accelerometer().await;
             return None;
         }
-        let Self { bus, selects: [select, _], clock, accelerometer, .. } = self;
-        let measured = Port { bus, select, clock, device: accelerometer.device }.measure().await;
+        let Self { devices: [spi, _], clock, accelerometer, .. } = self;
+        let measured = Port { spi, clock, device: accelerometer.device }.measure().await;
         accelerometer.judge(measured, clock.now() + LEFT_ALONE).ok()
     }
 }
 
-impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Imu for Bmi088<B, S, P, C> {
+impl<D: spi::Device, P: DataReady, C: Clock> Imu for Bmi088<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         if !self.gyroscope.power_up.is_done(self.clock.now()) {
             self.power_up().await?;

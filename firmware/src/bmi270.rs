@@ -22,8 +22,7 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
 use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
-use embedded_hal::digital::OutputPin;
-use embedded_hal_async::spi::SpiBus;
+use crate::spi;
 use estimation::imu::ImuParameters;
 
 #[cfg(test)]
@@ -103,24 +102,23 @@ const POWER_UP: [Step; 19] = [
     (0x7D, 0x06, Set(50_000)),
 ];
 
-/// The device on its bus.
-struct Port<'a, B, S, C> {
-    bus: &'a mut B,
-    select: &'a mut S,
+/// The device and the clock.
+struct Port<'a, D, C> {
+    spi: &'a mut D,
     clock: &'a C,
 }
 
-impl<B: SpiBus, S: OutputPin, C: Clock> Port<'_, B, S, C> {
+impl<D: spi::Device, C: Clock> Port<'_, D, C> {
     /// Reads `N` bytes, of which the first two mean nothing.
     async fn read_many<const N: usize>(&mut self, register: u8) -> Result<[u8; N], Fault> {
         let mut bytes = [0; N];
         *bytes.first_mut().ok_or(Fault)? = READ | register;
-        exchange(self.bus, self.select, self.clock, ACCESS_WITHIN, &mut bytes).await?;
+        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut bytes).await?;
         Ok(bytes)
     }
 }
 
-impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
+impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
     async fn read(&mut self, register: u8) -> Result<u8, Fault> {
         let [_, _, value] = self.read_many(register).await?;
         Ok(value)
@@ -134,17 +132,16 @@ impl<B: SpiBus, S: OutputPin, C: Clock> Registers for Port<'_, B, S, C> {
             *address = register;
             rest.copy_from_slice(bytes);
         }
-        exchange(self.bus, self.select, self.clock, UPLOAD_WITHIN, used).await
+        exchange(self.spi, self.clock, UPLOAD_WITHIN, used).await
     }
 }
 
 /// The device, the data-ready pin, and the clock that bounds every wait.
-pub struct Bmi270<B, S, P, C> {
-    bus: B,
-    select: S,
+pub struct Bmi270<D, P, C> {
+    spi: D,
     clock: C,
     pace: Pace<P>,
-    mounting: Mounting,
+    mounting: &'static Mounting,
     power_up: PowerUp,
     /// Faults in a row.
     faults: u8,
@@ -152,16 +149,16 @@ pub struct Bmi270<B, S, P, C> {
     cross_sensitivity: Option<f32>,
 }
 
-impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi270<B, S, P, C> {
-    /// Touches nothing yet: the first sample powers the sensor up. `select` is high.
-    pub fn new(bus: B, select: S, data_ready: P, clock: C, mounting: Mounting) -> Self {
+impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
+    /// Touches nothing yet: the first sample powers the sensor up.
+    pub fn new(spi: D, data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
         let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_TAKES);
         let pace = Pace::new(data_ready, PERIOD);
-        Self { bus, select, clock, pace, mounting, power_up, faults: 0, cross_sensitivity: None }
+        Self { spi, clock, pace, mounting, power_up, faults: 0, cross_sensitivity: None }
     }
 
-    fn port(&mut self) -> Port<'_, B, S, C> {
-        Port { bus: &mut self.bus, select: &mut self.select, clock: &self.clock }
+    fn port(&mut self) -> Port<'_, D, C> {
+        Port { spi: &mut self.spi, clock: &self.clock }
     }
 
     /// Powers it up, if it is not, and reads the gyroscope's cross-sensitivity of x to z.
@@ -176,8 +173,8 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi270<B, S, P, C> {
                 return Err(Fault);
             }
             self.clock.until(due).await;
-            let Self { bus, select, clock, power_up, .. } = self;
-            power_up.advance(&mut Port { bus, select, clock }, clock).await?;
+            let Self { spi, clock, power_up, .. } = self;
+            power_up.advance(&mut Port { spi, clock }, clock).await?;
         }
         let bits = self.port().read(CROSS_SENSITIVITY).await?;
         // Seven bits, the highest of them the sign.
@@ -202,7 +199,7 @@ impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Bmi270<B, S, P, C> {
     }
 }
 
-impl<B: SpiBus, S: OutputPin, P: DataReady, C: Clock> Imu for Bmi270<B, S, P, C> {
+impl<D: spi::Device, P: DataReady, C: Clock> Imu for Bmi270<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let cross_sensitivity = self.ready().await?;
         let sample = self.measure(cross_sensitivity).await;

@@ -10,6 +10,8 @@ pub mod guard;
 pub mod handover;
 #[cfg(any(feature = "stm32", feature = "mps2"))]
 pub mod kept;
+#[cfg(feature = "matek-h743")]
+pub mod matek_h743;
 #[cfg(feature = "micoair-h743")]
 pub mod micoair_h743;
 #[cfg(feature = "mps2")]
@@ -20,5 +22,7 @@ pub mod stm32;
 
 #[cfg(feature = "crazyflie-bolt")]
 use crazyflie_bolt as chosen;
+#[cfg(feature = "matek-h743")]
+use matek_h743 as chosen;
 #[cfg(feature = "micoair-h743")]
 use micoair_h743 as chosen;

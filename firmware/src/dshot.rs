@@ -1,10 +1,10 @@
-//! DShot300: from motor commands to the pulse widths that a timer's four channels put out.
+//! DShot300: from motor commands to the pulse widths that timers' four channels put out.
 //!
 //! A frame is 16 bits, most significant first: 11 of value, one that requests telemetry (set in words alone: they are
 //! ignored without), four of checksum. Value 0 is the stop command, 1 to 47 are words to a controller whose motor
 //! stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a second, high for 3/8 of it if zero and for 6/8
-//! if one. [`Waveform`] holds one frame for each of the four channels, one row a bit, in the order in which the timer's
-//! burst transfer wants them.
+//! if one. [`Waveform`] holds a frame for each of a timer's four channels, one row a bit, in the order in which its
+//! burst transfer wants them. Channels without a motor stay low.
 
 use crate::hardware::{Fault, MOTORS, MotorCommand};
 use dshot_frame::{Command, NormalFrame};
@@ -87,10 +87,11 @@ impl<W: From<u16>> Waveform<W> {
         Self([(); ROWS].map(|()| [(); MOTORS].map(|()| W::from(0))))
     }
 
-    /// Draws `frames` at `period` ticks a bit, motor i on channel `channels[i]` (0 to 3).
-    pub fn draw(&mut self, frames: &[NormalFrame; MOTORS], channels: &[usize; MOTORS], period: u16) {
+    /// Draws `frames` at `period` ticks a bit, motor i on channel `channels[i]` (0 to 3) or on none of this timer's.
+    pub fn draw(&mut self, frames: &[NormalFrame; MOTORS], channels: &[Option<u8>; MOTORS], period: u16) {
         let zero = zero_width(period);
         for (frame, &channel) in frames.iter().zip(channels) {
+            let Some(channel) = channel.map(usize::from) else { continue };
             // The first to leave is the highest.
             let bits = frame.inner().reverse_bits();
             for (index, row) in self.0.iter_mut().enumerate() {

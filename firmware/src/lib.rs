@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`bmi088`], [`bmi270`] | the boards' inertial measurement units, over any SPI |
+//! | [`bmi088`], [`bmi270`], [`icm42688`] | the boards' inertial measurement units, over any SPI |
 //! | [`boot`] | from the embedded scenario to a pilot, with its certificate worked out and logged |
 //! | [`card`] | every flight as a file on a memory card |
 //! | [`configuration`] | the scenario this build embeds |
@@ -28,6 +28,7 @@
 //! | [`replay`] | the paper's flight as one number, for comparing machines bit by bit |
 //! | [`restart`] | the commanded restart |
 //! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
+//! | [`spi`] | devices on a bus that several may share |
 //! | [`status`] | a light, the battery, the log |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
@@ -52,6 +53,7 @@ pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
+pub mod icm42688;
 pub mod imu;
 pub mod last_words;
 pub mod link;
@@ -67,4 +69,5 @@ pub mod repeat;
 pub mod replay;
 pub mod restart;
 pub mod shared;
+pub mod spi;
 pub mod status;

@@ -1,15 +1,13 @@
 //! Registers of a sensor behind SPI, and the way from power to measuring through them.
 //!
-//! An [`exchange`] is bounded in time, and its chip select is high afterwards however it ends. A power-up is a table of
-//! [`Step`]s. [`PowerUp`] does one of them at a time, when its time has come, so that a task with other work meanwhile
-//! does it. A setting is written, read back a millisecond later, and written again if it did not stick, up to [`TRIES`]
-//! times: the BMI088's accelerometer is known to need that. Everything before a setting that failed for good is done
-//! again by the next attempt.
+//! An [`exchange`] is bounded in time. A power-up is a table of [`Step`]s. [`PowerUp`] does one of them at a time, when
+//! its time has come, so that a task with other work meanwhile does it. A setting is written, read back a millisecond
+//! later, and written again if it did not stick, up to [`TRIES`] times: the BMI088's accelerometer is known to need
+//! that. Everything before a setting that failed for good is done again by the next attempt.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault};
-use embedded_hal::digital::OutputPin;
-use embedded_hal_async::spi::SpiBus;
+use crate::spi::Device;
 use nalgebra::Vector3;
 
 /// The bit of the address that makes an access a read.
@@ -24,42 +22,12 @@ pub const POWER_TAKES: u64 = 1_000;
 /// From a write to reading it back, us.
 const WRITE_TAKES: u64 = 1_000;
 
-/// Exchanges `bytes` with the device behind `select`, within `limit`, us. The first of them is an address.
+/// Exchanges `bytes` with `device`, within `limit`, us. The first of them is an address.
 ///
 /// # Errors
-/// [`Fault`] if bus or pin fail, or it takes longer.
-pub async fn exchange(
-    bus: &mut impl SpiBus,
-    select: &mut impl OutputPin,
-    clock: &impl Clock,
-    limit: u64,
-    bytes: &mut [u8],
-) -> Result<(), Fault> {
-    let _selected = Selected::new(select)?;
-    let exchange = async {
-        bus.transfer_in_place(bytes).await?;
-        bus.flush().await
-    };
-    within(clock, limit, exchange).await?.map_err(|_| Fault)
-}
-
-/// A device's chip select, low until this goes, however an access ends.
-struct Selected<'a, S: OutputPin>(&'a mut S);
-
-impl<'a, S: OutputPin> Selected<'a, S> {
-    fn new(select: &'a mut S) -> Result<Self, Fault> {
-        match select.set_low() {
-            Ok(()) => Ok(Self(select)),
-            Err(_) => Err(Fault),
-        }
-    }
-}
-
-impl<S: OutputPin> Drop for Selected<'_, S> {
-    fn drop(&mut self) {
-        // A pin that cannot rise shows at the next access: its device does not identify itself.
-        let _ = self.0.set_high();
-    }
+/// [`Fault`] if bus or chip select fail, or it takes longer.
+pub async fn exchange(device: &mut impl Device, clock: &impl Clock, limit: u64, bytes: &mut [u8]) -> Result<(), Fault> {
+    within(clock, limit, device.exchange(bytes)).await?
 }
 
 /// Three signed 16-bit numbers, low byte first.

@@ -3,7 +3,8 @@
 mod bench;
 
 use super::*;
-use bench::{Bench, Bus, Jumping, Part, Pin, Registers, Select, bench};
+use crate::bench::{Jumping, Pin, X_LEFT, on_one_bus};
+use bench::{Bench, Part, Registers, bench};
 use core::cell::Cell;
 use core::future::{Future, pending};
 use core::pin::pin;
@@ -23,7 +24,7 @@ fn pause_after(device: &Part, register: u8) -> u64 {
 
 #[test]
 fn power_up_writes_the_data_sheets_registers_in_order() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     assert_eq!(writes(&bench.accelerometer), [(0x7E, 0xB6), (0x7C, 0x00), (0x7D, 0x04), (0x40, 0x8C), (0x41, 0x03)]);
     let gyroscope = [(0x14, 0xB6), (0x0F, 0x00), (0x10, 0x82), (0x16, 0x0D), (0x18, 0x01), (0x15, 0x80)];
@@ -32,7 +33,7 @@ fn power_up_writes_the_data_sheets_registers_in_order() {
 
 #[test]
 fn power_up_waits_as_long_as_the_devices_need() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     assert!(bench.accelerometer.0.borrow().written[0].time >= 1_000);
     assert!(pause_after(&bench.accelerometer, ACCELEROMETER_RESET) >= 1_000);
@@ -43,14 +44,14 @@ fn power_up_waits_as_long_as_the_devices_need() {
 
 #[test]
 fn power_up_ends_before_the_task_loses_patience() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
 }
 
 #[test]
 fn a_running_sensor_is_not_powered_up_again() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     let before = (writes(&bench.accelerometer), writes(&bench.gyroscope));
     bench.sample().unwrap();
@@ -59,7 +60,7 @@ fn a_running_sensor_is_not_powered_up_again() {
 
 #[test]
 fn full_scale_counts_are_two_thousand_degrees_a_second_and_24_g() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.gyroscope.load(GYROSCOPE.data, &[0x00, 0x80, 0xFF, 0x7F, 0x01, 0x00]);
     bench.accelerometer.load(ACCELEROMETER.data, &[0xFF, 0x7F, 0x00, 0x80, 0x55, 0x05]);
     let sample = bench.sample().unwrap();
@@ -75,13 +76,8 @@ fn full_scale_counts_are_two_thousand_degrees_a_second_and_24_g() {
 }
 
 #[test]
-fn mountings_are_proper_rotations_of_both_measurements() {
-    for mounting in [Mounting::Aligned, Mounting::XLeft] {
-        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| mounting.to_body(axis));
-        assert_eq!(x.cross(&y), z, "{mounting:?}");
-        assert_eq!((x.norm(), y.norm(), x.dot(&y)), (1.0, 1.0, 0.0), "{mounting:?}");
-    }
-    let mut bench = bench(Mounting::XLeft);
+fn the_mounting_turns_both_measurements() {
+    let mut bench = bench(&X_LEFT);
     bench.gyroscope.load(GYROSCOPE.data, &[0x00, 0x10, 0, 0, 0, 0]);
     bench.accelerometer.load(ACCELEROMETER.data, &[0x00, 0x10, 0, 0, 0, 0]);
     let sample = bench.sample().unwrap();
@@ -91,18 +87,18 @@ fn mountings_are_proper_rotations_of_both_measurements() {
 
 #[test]
 fn another_chips_identity_is_a_fault_of_the_gyroscope_and_silence_of_the_accelerometer() {
-    let mut other = bench(Mounting::Aligned);
+    let mut other = bench(&Mounting::ALIGNED);
     other.accelerometer.load(CHIP_ID, &[0x1F]);
     assert_eq!(other.sample().unwrap().specific_force, None);
-    let mut other = bench(Mounting::Aligned);
+    let mut other = bench(&Mounting::ALIGNED);
     other.gyroscope.load(CHIP_ID, &[0x0E]);
     assert_eq!(other.sample(), Err(Fault));
 }
 
 #[test]
 fn a_bus_that_fails_at_once_leaves_time_for_other_tasks() {
-    let mut other = bench(Mounting::Aligned);
-    other.gyroscope.0.borrow_mut().fails = true;
+    let mut other = bench(&Mounting::ALIGNED);
+    other.gyroscope.0.borrow_mut().line.fails = true;
     for _ in 0..100 {
         let before = other.clock.now();
         assert_eq!(other.sample(), Err(Fault));
@@ -115,7 +111,7 @@ fn settings_are_written_again_one_by_one_until_they_stick() {
     // Every setting of either device may be lost seven times; the eighth must stick.
     for device in [0, 1] {
         for lost in [1, 7] {
-            let mut bench = bench(Mounting::Aligned);
+            let mut bench = bench(&Mounting::ALIGNED);
             let part = if device == 0 { &bench.accelerometer } else { &bench.gyroscope }.clone();
             part.0.borrow_mut().deaf_per_setting = lost;
             assert!(bench.sample().unwrap().specific_force.is_some(), "device {device}, {lost} lost");
@@ -132,10 +128,10 @@ fn settings_are_written_again_one_by_one_until_they_stick() {
 
 #[test]
 fn a_setting_that_never_sticks_is_a_fault_of_the_gyroscope_and_silence_of_the_accelerometer() {
-    let mut other = bench(Mounting::Aligned);
+    let mut other = bench(&Mounting::ALIGNED);
     other.gyroscope.0.borrow_mut().deaf_per_setting = 8;
     assert_eq!(other.sample(), Err(Fault));
-    let mut other = bench(Mounting::Aligned);
+    let mut other = bench(&Mounting::ALIGNED);
     other.accelerometer.0.borrow_mut().deaf_per_setting = 8;
     assert_eq!(other.sample().unwrap().specific_force, None);
 }
@@ -143,7 +139,7 @@ fn a_setting_that_never_sticks_is_a_fault_of_the_gyroscope_and_silence_of_the_ac
 #[test]
 fn a_stuck_bus_in_flight_is_no_vehicle_at_rest() {
     for level in [0x00, 0xFF] {
-        let mut bench = bench(Mounting::Aligned);
+        let mut bench = bench(&Mounting::ALIGNED);
         bench.sample().unwrap();
         bench.accelerometer.0.borrow_mut().stuck = Some(level);
         assert_eq!(bench.sample().unwrap().specific_force, None, "level {level:#x}");
@@ -156,9 +152,9 @@ fn a_stuck_bus_in_flight_is_no_vehicle_at_rest() {
 fn the_gyro_is_delivered_while_the_accelerometer_fails_and_is_powered_up_between_its_samples() {
     type Disturbed = fn(&mut Registers, bool);
     let disturbances: [Disturbed; 3] =
-        [|part, on| part.fails = on, |part, on| part.hangs = on, |part, on| part.stuck = on.then_some(0xFF)];
+        [|part, on| part.line.fails = on, |part, on| part.line.hangs = on, |part, on| part.stuck = on.then_some(0xFF)];
     for disturb in disturbances {
-        let mut bench = bench(Mounting::Aligned);
+        let mut bench = bench(&Mounting::ALIGNED);
         bench.gyroscope.load(GYROSCOPE.data, &[0x00, 0x10, 0, 0, 0, 0]);
         bench.sample().unwrap();
         let resets = |part: &Part| writes(part).iter().filter(|(_, value)| *value == SOFT_RESET).count();
@@ -185,7 +181,7 @@ fn the_gyro_is_delivered_while_the_accelerometer_fails_and_is_powered_up_between
 
 #[test]
 fn without_data_ready_edges_the_sensor_is_polled_a_thousand_times_a_second() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     assert!(!bench.imu.is_polled());
     bench.data_ready.set(false);
@@ -203,9 +199,9 @@ fn without_data_ready_edges_the_sensor_is_polled_a_thousand_times_a_second() {
 
 #[test]
 fn a_gyroscope_that_hangs_is_a_fault_within_500_us() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
-    bench.gyroscope.0.borrow_mut().hangs = true;
+    bench.gyroscope.0.borrow_mut().line.hangs = true;
     let before = bench.clock.now();
     assert_eq!(bench.sample(), Err(Fault));
     assert_eq!(bench.clock.now() - before, 500);
@@ -214,15 +210,15 @@ fn a_gyroscope_that_hangs_is_a_fault_within_500_us() {
 #[test]
 fn chip_selects_are_high_after_an_access_however_it_ends() {
     type Disturbed = fn(&mut Registers);
-    let disturbances: [Disturbed; 3] = [|_| (), |part| part.fails = true, |part| part.hangs = true];
+    let disturbances: [Disturbed; 3] = [|_| (), |part| part.line.fails = true, |part| part.line.hangs = true];
     for disturb in disturbances {
         for broken in [0, 1] {
-            let mut bench = bench(Mounting::Aligned);
+            let mut bench = bench(&Mounting::ALIGNED);
             bench.sample().unwrap();
             let devices = [bench.accelerometer.clone(), bench.gyroscope.clone()];
             disturb(&mut devices[broken].0.borrow_mut());
             let _ = bench.sample();
-            assert!(devices.iter().all(|device| !device.0.borrow().selected));
+            assert!(devices.iter().all(|device| !device.0.borrow().line.selected));
         }
     }
 }
@@ -243,35 +239,35 @@ fn chip_selects_are_high_after_a_sample_that_is_dropped_half_way() {
             self.0.jump(time);
         }
     }
-    let Bench { accelerometer, gyroscope, .. } = bench(Mounting::Aligned);
-    accelerometer.0.borrow_mut().hangs = true;
+    let Bench { accelerometer, gyroscope, .. } = bench(&Mounting::ALIGNED);
+    accelerometer.0.borrow_mut().line.hangs = true;
     let parts = [accelerometer, gyroscope];
     let pin = Pin { rises: Rc::new(Cell::new(true)), late: 0, clock: Jumping::default() };
-    let mut imu =
-        Bmi088::new(Bus(parts.clone()), parts.clone().map(Select), pin, Patient(Jumping::default()), Mounting::Aligned);
+    let devices = on_one_bus([parts[0].0.clone(), parts[1].0.clone()]);
+    let mut imu = Bmi088::new(devices, pin, Patient(Jumping::default()), &Mounting::ALIGNED);
     {
         let mut sample = pin!(imu.sample());
         assert!(sample.as_mut().poll(&mut Context::from_waker(Waker::noop())).is_pending());
-        assert!(parts[0].0.borrow().selected);
+        assert!(parts[0].0.borrow().line.selected);
     }
-    assert!(parts.iter().all(|device| !device.0.borrow().selected));
+    assert!(parts.iter().all(|device| !device.0.borrow().line.selected));
 }
 
 #[test]
 fn one_fault_costs_one_sample_and_many_power_the_gyroscope_up_anew() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     let writes_of_one_power_up = writes(&bench.gyroscope).len();
-    bench.gyroscope.0.borrow_mut().fails = true;
+    bench.gyroscope.0.borrow_mut().line.fails = true;
     bench.sample().unwrap_err();
-    bench.gyroscope.0.borrow_mut().fails = false;
+    bench.gyroscope.0.borrow_mut().line.fails = false;
     bench.sample().unwrap();
     assert_eq!(writes(&bench.gyroscope).len(), writes_of_one_power_up);
-    bench.gyroscope.0.borrow_mut().fails = true;
+    bench.gyroscope.0.borrow_mut().line.fails = true;
     for _ in 0..RESTART_AFTER {
         bench.sample().unwrap_err();
     }
-    bench.gyroscope.0.borrow_mut().fails = false;
+    bench.gyroscope.0.borrow_mut().line.fails = false;
     bench.sample().unwrap();
     assert_eq!(writes(&bench.gyroscope).len(), 2 * writes_of_one_power_up);
 }

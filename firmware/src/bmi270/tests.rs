@@ -1,12 +1,9 @@
 //! The driver against a device that follows the data sheet, or fails.
 
 use super::*;
-use crate::bench::{Jumping, Pin};
+use crate::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
 use core::cell::{Cell, RefCell};
-use core::convert::Infallible;
-use core::future::pending;
 use embassy_futures::block_on;
-use embedded_hal_async::spi::{ErrorKind, ErrorType};
 use nalgebra::Vector3;
 use std::rc::Rc;
 
@@ -20,8 +17,7 @@ struct Chip {
     file: Vec<u8>,
     written: Vec<(u64, u8, u8)>,
     stuck: Option<u8>,
-    hangs: bool,
-    selected: bool,
+    line: Line,
 }
 
 impl Chip {
@@ -30,8 +26,14 @@ impl Chip {
         (self.values[0], self.values[0x7C]) = (ID, 0x03);
         (self.asleep, self.file) = (true, Vec::new());
     }
+}
 
-    fn transfer(&mut self, bytes: &mut [u8]) {
+impl Device for Chip {
+    fn line(&mut self) -> &mut Line {
+        &mut self.line
+    }
+
+    fn exchange(&mut self, bytes: &mut [u8]) {
         let asleep = std::mem::take(&mut self.asleep);
         let [address, data @ ..] = bytes else { return };
         let register = *address & !READ;
@@ -66,62 +68,11 @@ impl Chip {
     }
 }
 
-struct Bus(Rc<RefCell<Chip>>);
-
-impl ErrorType for Bus {
-    type Error = ErrorKind;
-}
-
-impl SpiBus for Bus {
-    async fn transfer_in_place(&mut self, bytes: &mut [u8]) -> Result<(), ErrorKind> {
-        assert!(self.0.borrow().selected);
-        if self.0.borrow().hangs {
-            pending::<()>().await;
-        }
-        self.0.borrow_mut().transfer(bytes);
-        Ok(())
-    }
-
-    async fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
-
-    async fn read(&mut self, _: &mut [u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-
-    async fn write(&mut self, _: &[u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-
-    async fn transfer(&mut self, _: &mut [u8], _: &[u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-}
-
-struct Select(Rc<RefCell<Chip>>);
-
-impl embedded_hal::digital::ErrorType for Select {
-    type Error = Infallible;
-}
-
-impl OutputPin for Select {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().selected = true;
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().selected = false;
-        Ok(())
-    }
-}
-
 struct Bench {
     clock: Jumping,
     chip: Rc<RefCell<Chip>>,
     edges: Rc<Cell<bool>>,
-    imu: Bmi270<Bus, Select, Pin, Jumping>,
+    imu: Bmi270<Spi, Pin, Jumping>,
 }
 
 impl Bench {
@@ -134,7 +85,7 @@ impl Bench {
     }
 }
 
-fn bench(mounting: Mounting) -> Bench {
+fn bench(mounting: &'static Mounting) -> Bench {
     let (clock, edges) = (Jumping::default(), Rc::new(Cell::new(true)));
     let mut chip = Chip {
         values: [0; 128],
@@ -143,19 +94,19 @@ fn bench(mounting: Mounting) -> Bench {
         file: Vec::new(),
         written: Vec::new(),
         stuck: None,
-        hangs: false,
-        selected: false,
+        line: Line::default(),
     };
     chip.reset();
     let chip = Rc::new(RefCell::new(chip));
     let pin = Pin { rises: Rc::clone(&edges), late: 0, clock: clock.clone() };
-    let imu = Bmi270::new(Bus(Rc::clone(&chip)), Select(Rc::clone(&chip)), pin, clock.clone(), mounting);
+    let [spi] = on_one_bus([chip.clone()]);
+    let imu = Bmi270::new(spi, pin, clock.clone(), mounting);
     Bench { clock, chip, edges, imu }
 }
 
 #[test]
 fn power_up_writes_the_file_and_the_data_sheets_registers_in_order() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     let chip = bench.chip.borrow();
     assert_eq!(chip.file, CONFIGURATION);
@@ -172,7 +123,7 @@ fn power_up_writes_the_file_and_the_data_sheets_registers_in_order() {
 
 #[test]
 fn a_file_that_does_not_run_is_a_fault() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.chip.borrow_mut().file = vec![0];
     // A reset forgets it: only what is written after the reset counts, so it runs.
     bench.sample().unwrap();
@@ -188,7 +139,7 @@ fn a_file_that_does_not_run_is_a_fault() {
 
 #[test]
 fn full_scale_counts_are_two_thousand_degrees_a_second_and_16_g_and_x_is_freed_of_z() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     bench.load(0x0C, &[0xFF, 0x7F, 0x00, 0x80, 0x00, 0x08]);
     bench.load(0x12, &[0x00, 0x00, 0x00, 0x80, 0x00, 0x40]);
@@ -206,7 +157,7 @@ fn full_scale_counts_are_two_thousand_degrees_a_second_and_16_g_and_x_is_freed_o
 
 #[test]
 fn the_mounting_turns_both_measurements() {
-    let mut bench = bench(Mounting::XLeft);
+    let mut bench = bench(&X_LEFT);
     bench.sample().unwrap();
     bench.load(0x0C, &[0, 0x10, 0, 0, 0, 0, 0, 0x10, 0, 0, 0, 0]);
     let sample = bench.sample().unwrap();
@@ -217,18 +168,18 @@ fn the_mounting_turns_both_measurements() {
 #[test]
 fn a_stuck_bus_is_a_fault_and_a_hanging_one_within_500_us() {
     for level in [0x00, 0xFF] {
-        let mut bench = bench(Mounting::Aligned);
+        let mut bench = bench(&Mounting::ALIGNED);
         bench.sample().unwrap();
         bench.chip.borrow_mut().stuck = Some(level);
         assert_eq!(bench.sample(), Err(Fault));
     }
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
-    bench.chip.borrow_mut().hangs = true;
+    bench.chip.borrow_mut().line.hangs = true;
     let before = bench.clock.now();
     assert_eq!(bench.sample(), Err(Fault));
     assert_eq!(bench.clock.now() - before, 500);
-    assert!(!bench.chip.borrow().selected);
+    assert!(!bench.chip.borrow().line.selected);
     // Powering up a bus that hangs ends as well, and leaves time for others.
     for _ in 0..20 {
         let before = bench.clock.now();
@@ -239,7 +190,7 @@ fn a_stuck_bus_is_a_fault_and_a_hanging_one_within_500_us() {
 
 #[test]
 fn without_edges_it_is_polled_800_times_a_second() {
-    let mut bench = bench(Mounting::Aligned);
+    let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
     bench.edges.set(false);
     let before = bench.clock.now();

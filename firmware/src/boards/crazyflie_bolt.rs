@@ -1,42 +1,34 @@
 //! Crazyflie Bolt 1.1: STM32F405RG (Cortex-M4F), BMI088, TIM2 for the motors, USART2 on the deck port for the link.
 //!
-//! Clocks: a crystal of 8 MHz to 168 MHz for the core, 42 and 84 MHz for the peripheral buses, their timers at twice
-//! that. Flash needs six cycles of the core for a word, so its prefetch and its caches are on (they hold flash only, no
-//! RAM). The controllers' power switches close only when the motor lines are driven low, and open by themselves when
-//! the chip restarts.
+//! The controllers' power switches close only when the motor lines are driven low, and open by themselves when the chip
+//! restarts.
 
+use super::stm32::absent::{NoBattery, NoCard};
 use super::stm32::board::Board;
-use super::stm32::clock::{self, SystemClock};
-use super::stm32::crystal;
+use super::stm32::chip;
+use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::executors;
-use super::stm32::imu::{self, BoardBmi088};
+use super::stm32::imu::{self, BoardBmi088, Bus, FAST, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
-use super::stm32::motors::{Dshot, Pins};
+use super::stm32::motors::{Dshot, Line, OnTimer};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
-use crate::hardware::{Battery, Card, Fault, SECTOR};
 use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::pac::iwdg::Iwdg;
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{
-    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG, TIM2, USART2, USART3, USB_OTG_FS,
-};
-use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllMul, PllPDiv, PllPreDiv, PllQDiv, PllSource};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, TIM2, USART2, USART3, USB_OTG_FS};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
 use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
+use static_cell::StaticCell;
 
 bind_interrupts!(
     /// Interrupts and their handlers.
@@ -54,64 +46,40 @@ bind_interrupts!(
     }
 );
 
-/// Motors 1 to 4 are on PA1, PB11, PA15, PB10: channels 2, 4, 1, 3 of TIM2.
-const MOTOR_CHANNELS: [usize; 4] = [1, 3, 0, 2];
-
 /// As Bitcraze's own firmware takes it: the sensor's axes are the body's.
-const MOUNTING: Mounting = Mounting::Aligned;
+const MOUNTING: Mounting = Mounting::ALIGNED;
 
 /// The inertial sensor.
 pub type BoardImu = BoardBmi088;
 
 /// The motors.
-pub type BoardMotors = Dshot<TIM2, DMA1_CH1, Interrupts>;
+pub type BoardMotors = Dshot<OnTimer<TIM2, DMA1_CH1, Interrupts>>;
 
-/// The watchdog.
-pub type BoardWatchdog = ChipWatchdog<IWDG>;
+/// Their timers, as far as stopping needs them.
+// SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
+pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }];
 
-/// The battery.
+/// The radio's own processor measures the battery, and this firmware does not talk to it.
 pub type BoardBattery = NoBattery;
 
 /// There is no slot for a memory card.
 pub type BoardCard = NoCard;
 
-/// The watchdog's registers, for code that outlasts its timeout.
-pub const WATCHDOG: Iwdg = pac::IWDG;
-
 /// What it is called.
 pub const NAME: &str = "Crazyflie Bolt 1.1";
-
-/// The interrupts that control and the sensor's task run in: nothing on the board uses them.
-pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::UART4;
-/// See [`CONTROL_INTERRUPT`].
-pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
-/// And the services.
-pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::CAN1_TX;
 
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
 /// The second time, and where a clock makes no 921,600 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let restart = restart::cause();
-    let has_crystal = crystal::starts();
-    let p = embassy_stm32::init(clocks(has_crystal));
-    clock::halt_with_the_core();
-    pac::FLASH.acr().modify(|w| {
-        w.set_prften(true);
-        w.set_icen(true);
-        w.set_dcen(true);
-    });
+    let (p, has_crystal) = chip::start();
 
     // The motors first: PA15 is pulled up until here, and the controllers must not see that.
-    let pins = Pins(
-        PwmPin::new(p.PA15, OutputType::PushPull),
-        PwmPin::new(p.PA1, OutputType::PushPull),
-        PwmPin::new(p.PB10, OutputType::PushPull),
-        PwmPin::new(p.PB11, OutputType::PushPull),
-    );
-    let motors = Dshot::new(p.TIM2, pins, MOTOR_CHANNELS, p.DMA1_CH1, Interrupts);
+    let lines = [Line::direct(p.PA1), Line::direct(p.PB11), Line::direct(p.PA15), Line::direct(p.PB10)].map(Some);
+    let motors = Dshot(OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts));
     // The controllers have power for as long as these are held: for ever.
     forget([
         Output::new(p.PA0, Level::High, Speed::Low),
@@ -120,11 +88,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         Output::new(p.PC15, Level::High, Speed::Low),
     ]);
 
-    let bus = imu::Bus(Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config()));
-    let accelerometer = Output::new(p.PB1, Level::High, Speed::VeryHigh);
-    let gyroscope = Output::new(p.PB0, Level::High, Speed::VeryHigh);
+    static BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
+    let bus = BUS.init(Bus::new(spi));
+    let devices = [imu::device(bus, p.PB1, FAST), imu::device(bus, p.PB0, FAST)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
-    let imu = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
+    let imu = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
 
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Interrupts, link::config());
     let uart = uart.expect("USART2's clock makes no 921,600 baud");
@@ -149,85 +118,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         simulator_transmitter,
         radio: None,
         card: None,
-        storage: ParameterFlash::new(p.FLASH, WATCHDOG),
+        storage: ParameterFlash::new(p.FLASH),
         has_crystal,
         restart,
     }
-}
-
-fn clocks(has_crystal: bool) -> embassy_stm32::Config {
-    let mut config = embassy_stm32::Config::default();
-    let rcc = &mut config.rcc;
-    rcc.hse = has_crystal.then_some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
-    // 2 MHz of the crystal's 8 or of the chip's own 16.
-    let (source, prediv) =
-        if has_crystal { (PllSource::HSE, PllPreDiv::DIV4) } else { (PllSource::HSI, PllPreDiv::DIV8) };
-    rcc.pll_src = source;
-    rcc.pll = Some(rcc::Pll {
-        prediv,
-        mul: PllMul::MUL168,
-        divp: Some(PllPDiv::DIV2), // core: 168 MHz
-        divq: Some(PllQDiv::DIV7), // 48 MHz, for USB
-        divr: None,
-    });
-    rcc.sys = rcc::Sysclk::PLL1_P;
-    rcc.ahb_pre = AHBPrescaler::DIV1;
-    rcc.apb1_pre = APBPrescaler::DIV4; // 42 MHz; timers 84 MHz
-    rcc.apb2_pre = APBPrescaler::DIV2; // 84 MHz
-    config
-}
-
-/// The slot that there is not.
-pub enum NoCard {}
-
-impl Card for NoCard {
-    fn start(&mut self) -> Result<(), Fault> {
-        match *self {}
-    }
-
-    fn sectors(&self) -> u32 {
-        match *self {}
-    }
-
-    fn read(&mut self, _: u32, _: &mut [u8; SECTOR]) -> Result<(), Fault> {
-        match *self {}
-    }
-
-    fn write(&mut self, _: u32, _: &[u8; SECTOR]) -> Result<(), Fault> {
-        match *self {}
-    }
-}
-
-/// The radio's own processor measures the battery, and this firmware does not talk to it.
-pub struct NoBattery;
-
-impl Battery for NoBattery {
-    async fn voltage(&mut self) -> Option<f32> {
-        None
-    }
-}
-
-/// The registers that TIM2 has in common with 16-bit timers: all that stopping needs.
-#[must_use]
-pub fn motor_timer() -> TimGp16 {
-    // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
-    unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }
-}
-
-#[interrupt]
-unsafe fn UART4() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_control_interrupt() }
-}
-
-#[interrupt]
-unsafe fn UART5() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_sensor_interrupt() }
-}
-
-#[interrupt]
-unsafe fn CAN1_TX() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_services_interrupt() }
 }

@@ -1,21 +1,16 @@
 //! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link,
 //! SDMMC1 for the log.
-//!
-//! Clocks: a crystal of 8 MHz, times 100, halved: 400 MHz for the core, half for the buses, a quarter for their
-//! peripherals. Every revision of the chip and its whole temperature range allow that at voltage scale 1; 480 MHz would
-//! need revision V and scale 0, and a control tick has time to spare. The instruction cache is on. The data cache stays
-//! off: it would stand between the core and the DMA buffers.
 
+use super::stm32::battery::DividedBattery;
 use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
-use super::stm32::clock::{self, SystemClock};
-use super::stm32::crystal;
+use super::stm32::chip;
+use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::executors;
-use super::stm32::imu::{self, BoardBmi088, BoardBmi270};
+use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
-use super::stm32::motors::{Dshot, Pins};
+use super::stm32::motors::{Dshot, Line, OnTimer};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
@@ -23,26 +18,21 @@ use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
-use crate::hardware::Battery;
 use crate::mounting::Mounting;
 use crate::redundant::Redundant;
-use embassy_stm32::adc::{Adc, AdcConfig, Averaging, Resolution, SampleTime};
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::pac::iwdg::Iwdg;
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    ADC1, DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, IWDG1, PC0, SDMMC1, TIM1, USART1,
-    USART2, USART6, USB_OTG_FS,
+    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, SDMMC1, TIM1, USART1, USART2, USART6,
+    USB_OTG_FS,
 };
-use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, PllDiv, PllMul, PllPreDiv, PllSource};
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::simple_pwm::PwmPin;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, interrupt, pac, usart};
+use embassy_stm32::{bind_interrupts, dma, exti, interrupt, pac, usart};
+use static_cell::StaticCell;
 
 bind_interrupts!(
     /// Interrupts and their handlers.
@@ -65,24 +55,25 @@ bind_interrupts!(
     }
 );
 
-/// Motors 1 to 4 are on PE14, PE13, PE11, PE9: channels 4, 3, 2, 1 of TIM1.
-const MOTOR_CHANNELS: [usize; 4] = [3, 2, 1, 0];
-
 /// As ArduPilot's definition of this board mounts the BMI088 (roll 180 degrees, then yaw 270, in its axes forward,
 /// right, down).
-const MOUNTING: Mounting = Mounting::XLeft;
+const MOUNTING: Mounting = Mounting::new([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).expect("no rotation");
 
 /// As it mounts the BMI270 (roll 180 degrees).
-const SECOND_MOUNTING: Mounting = Mounting::Aligned;
+const SECOND_MOUNTING: Mounting = Mounting::ALIGNED;
+
+/// The battery's divider, of the same definition.
+const DIVIDER: f32 = 21.12;
 
 /// The inertial sensors: the BMI088 flies, the BMI270 stands by.
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
 
 /// The motors.
-pub type BoardMotors = Dshot<TIM1, DMA1_CH2, Interrupts>;
+pub type BoardMotors = Dshot<OnTimer<TIM1, DMA1_CH2, Interrupts>>;
 
-/// The watchdog.
-pub type BoardWatchdog = ChipWatchdog<IWDG1>;
+/// Their timers, as far as stopping needs them.
+// SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
+pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }];
 
 /// The battery.
 pub type BoardBattery = DividedBattery;
@@ -90,49 +81,33 @@ pub type BoardBattery = DividedBattery;
 /// The slot for a memory card.
 pub type BoardCard = CardSlot;
 
-/// The watchdog's registers, for code that outlasts its timeout.
-pub const WATCHDOG: Iwdg = pac::IWDG1;
-
 /// What it is called.
 pub const NAME: &str = "MicoAir H743 V2";
-
-/// The interrupts that control and the sensor's task run in: nothing on the board uses them.
-pub const CONTROL_INTERRUPT: interrupt::Interrupt = interrupt::SAI1;
-/// See [`CONTROL_INTERRUPT`].
-pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
-/// And the services.
-pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::SAI3;
 
 /// Sets the clocks and takes every peripheral. Once.
 ///
 /// # Panics
 /// The second time, and where a clock makes no 921,600 or 420,000 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, BoardCard> {
+pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let restart = restart::cause();
-    spare_revision_y();
-    let has_crystal = crystal::starts();
-    let p = embassy_stm32::init(clocks(has_crystal));
-    clock::halt_with_the_core();
+    let (p, has_crystal) = chip::start();
 
     // The motors first: their lines float until here.
-    let pins = Pins(
-        PwmPin::new(p.PE9, OutputType::PushPull),
-        PwmPin::new(p.PE11, OutputType::PushPull),
-        PwmPin::new(p.PE13, OutputType::PushPull),
-        PwmPin::new(p.PE14, OutputType::PushPull),
-    );
-    let motors = Dshot::new(p.TIM1, pins, MOTOR_CHANNELS, p.DMA1_CH2, Interrupts);
+    let lines = [Line::direct(p.PE14), Line::direct(p.PE13), Line::direct(p.PE11), Line::direct(p.PE9)].map(Some);
+    let motors = Dshot(OnTimer::new(p.TIM1, lines, p.DMA1_CH2, Interrupts));
 
-    let bus = imu::Bus(Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config()));
-    let accelerometer = Output::new(p.PD4, Level::High, Speed::VeryHigh);
-    let gyroscope = Output::new(p.PD5, Level::High, Speed::VeryHigh);
+    static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
+    let bus = FIRST_BUS.init(Bus::new(spi));
+    let devices = [imu::device(bus, p.PD4, FAST), imu::device(bus, p.PD5, FAST)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
-    let first = Bmi088::new(bus, [accelerometer, gyroscope], data_ready, SystemClock, MOUNTING);
-    let bus = imu::Bus(Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config()));
-    let select = Output::new(p.PA15, Level::High, Speed::VeryHigh);
+    let first = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
+    static SECOND_BUS: StaticCell<SharedBus> = StaticCell::new();
+    let spi = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
+    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15, FAST);
     let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
-    let imu = Redundant::new(first, Bmi270::new(bus, select, data_ready, SystemClock, SECOND_MOUNTING));
+    let imu = Redundant::new(first, Bmi270::new(device, data_ready, SystemClock, &SECOND_MOUNTING));
 
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA1_CH3, p.DMA1_CH4, Interrupts, link::config());
     let uart = uart.expect("USART1's clock makes no 921,600 baud");
@@ -145,7 +120,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
     let uart = BufferedUart::new(p.USART6, p.PC7, p.PC6, to, from, Interrupts, link::radio_config());
     let (radio, _) = link::simulator_halves(uart.expect("USART6's clock makes no 420,000 baud"));
 
-    let usb = usb::has_supply()
+    let usb = chip::has_usb_supply()
         .then(|| Driver::new_fs(p.USB_OTG_FS, Interrupts, p.PA12, p.PA11, usb::packets(), usb::config()));
 
     let (clock, command) = (p.PC12, p.PD2);
@@ -157,7 +132,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         imu,
         motors,
         watchdog: ChipWatchdog::new(p.IWDG1),
-        battery: DividedBattery::new(p.ADC1, p.PC0),
+        battery: DividedBattery::new(p.ADC1, p.PC0, DIVIDER),
         light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
         receiver,
         transmitter,
@@ -166,113 +141,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardWatchdog, BoardBattery, Board
         simulator_transmitter,
         radio: Some(radio),
         card: Some(CardSlot::new(card)),
-        storage: ParameterFlash::new(p.FLASH, WATCHDOG),
+        storage: ParameterFlash::new(p.FLASH),
         has_crystal,
         restart,
     }
-}
-
-/// Revision Y may read wrong data from the AXI SRAM, where everything but the stack lies (ST's errata sheet ES0392,
-/// 2.2.9). The remedy given there: no more than one read of it at a time.
-fn spare_revision_y() {
-    /// AXI_TARG7_FN_MOD, and its bit READ_ISS_OVERRIDE.
-    const AXI_SRAM: (*mut u32, u32) = (0x5100_8108 as *mut u32, 1);
-    /// The first revision without that fault has 0x2001.
-    const MENDED: u16 = 0x2000;
-    if pac::DBGMCU.idc().read().rev_id() < MENDED {
-        let (register, limit) = AXI_SRAM;
-        // SAFETY: a register of the bus matrix, which nothing else here uses.
-        unsafe { register.write_volatile(limit) };
-    }
-}
-
-fn clocks(has_crystal: bool) -> embassy_stm32::Config {
-    let mut config = embassy_stm32::Config::default();
-    let rcc = &mut config.rcc;
-    rcc.hse = has_crystal.then_some(rcc::Hse { freq: Hertz(8_000_000), mode: rcc::HseMode::Oscillator });
-    // 8 MHz of the crystal's 8 or of the chip's own 64.
-    let (source, prediv) =
-        if has_crystal { (PllSource::HSE, PllPreDiv::DIV1) } else { (PllSource::HSI, PllPreDiv::DIV8) };
-    rcc.pll1 = Some(rcc::Pll {
-        source,
-        prediv,
-        mul: PllMul::MUL100,
-        fracn: None,
-        divp: Some(PllDiv::DIV2), // core: 400 MHz
-        divq: Some(PllDiv::DIV8), // SPI2, SPI3 and SDMMC1: 100 MHz
-        divr: None,
-    });
-    // The same 8 MHz times 60, for the port: the crystal is more exact than USB requires. A PLL that is fed more than 2
-    // MHz must run in its wide range, which the driver chooses above 420 MHz.
-    rcc.pll3 = Some(rcc::Pll {
-        source,
-        prediv,
-        mul: PllMul::MUL60,
-        fracn: None,
-        divp: None,
-        divq: Some(PllDiv::DIV10), // 48 MHz
-        divr: None,
-    });
-    rcc.mux.usbsel = rcc::mux::Usbsel::PLL3_Q;
-    rcc.sys = rcc::Sysclk::PLL1_P;
-    rcc.ahb_pre = AHBPrescaler::DIV2; // 200 MHz
-    rcc.apb1_pre = APBPrescaler::DIV2; // 100 MHz; timers 200 MHz
-    rcc.apb2_pre = APBPrescaler::DIV2;
-    rcc.apb3_pre = APBPrescaler::DIV2;
-    rcc.apb4_pre = APBPrescaler::DIV2;
-    rcc.voltage_scale = rcc::VoltageScale::Scale1;
-    rcc.mux.adcsel = rcc::mux::Adcsel::PER; // the internal 64 MHz oscillator, divided by the driver
-    config
-}
-
-/// The battery through the board's divider, on PC0.
-pub struct DividedBattery {
-    converter: Adc<'static, ADC1>,
-    pin: Peri<'static, PC0>,
-}
-
-impl DividedBattery {
-    /// The divider of the board's definition.
-    const DIVIDER: f32 = 21.12;
-
-    /// Volts at the pin in one count of 16 bits, the reference being the board's 3.3 V.
-    const VOLTS_PER_COUNT: f32 = 3.3 / 65535.0;
-
-    fn new(adc: Peri<'static, ADC1>, pin: Peri<'static, PC0>) -> Self {
-        let config = AdcConfig { resolution: Some(Resolution::BITS16), averaging: Some(Averaging::Samples16) };
-        Self { converter: Adc::new_with_config(adc, config), pin }
-    }
-}
-
-impl Battery for DividedBattery {
-    /// Takes about 50 us: sixteen conversions of 73 cycles at no more than 32 MHz.
-    async fn voltage(&mut self) -> Option<f32> {
-        let counts = self.converter.blocking_read(&mut self.pin, SampleTime::CYCLES64_5);
-        Some(f32::from(counts) * Self::VOLTS_PER_COUNT * Self::DIVIDER)
-    }
-}
-
-/// The registers that TIM1 has in common with smaller timers: all that stopping needs.
-#[must_use]
-pub fn motor_timer() -> TimGp16 {
-    // SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
-    unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }
-}
-
-#[interrupt]
-unsafe fn SAI1() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_control_interrupt() }
-}
-
-#[interrupt]
-unsafe fn SAI2() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_sensor_interrupt() }
-}
-
-#[interrupt]
-unsafe fn SAI3() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_services_interrupt() }
 }

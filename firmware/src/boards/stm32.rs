@@ -1,15 +1,19 @@
 //! What the STM32 boards share: the traits of [`crate::hardware`] on Embassy's drivers, and the tasks.
 
+pub mod absent;
+#[cfg(feature = "stm32h743")]
+pub mod battery;
 pub mod board;
 mod bootloader;
-#[cfg(feature = "micoair-h743")]
+#[cfg(feature = "stm32h743")]
 pub mod card;
+pub mod cause;
+pub mod chip;
 pub mod clock;
 pub mod crystal;
 pub mod edges;
 pub mod executors;
 pub(super) mod fault;
-mod handover;
 pub mod imu;
 pub mod light;
 pub mod link;

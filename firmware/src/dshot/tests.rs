@@ -71,19 +71,36 @@ fn each_motors_frame_comes_out_of_its_channel() {
     let frames = frames(MotorCommand::Run([0.0, 0.3, 0.7, 1.0])).unwrap();
     let channels = [3, 2, 0, 1];
     let mut waveform = Waveform::silent();
-    waveform.draw(&frames, &channels, PERIOD);
+    waveform.draw(&frames, &channels.map(Some), PERIOD);
     for (frame, channel) in frames.iter().zip(channels) {
-        assert_eq!(read(&waveform, channel), frame.inner(), "channel {channel}");
+        assert_eq!(read(&waveform, channel.into()), frame.inner(), "channel {channel}");
+    }
+}
+
+#[test]
+fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
+    let frames = frames(MotorCommand::Run([0.1, 0.3, 0.7, 1.0])).unwrap();
+    let wiring = [[Some(1), None, Some(2), None], [None, Some(0), None, Some(1)]];
+    for channels in wiring {
+        let mut waveform = Waveform::silent();
+        waveform.draw(&frames, &channels, PERIOD);
+        for channel in 0..4_u8 {
+            let motor = channels.iter().position(|&on| on == Some(channel));
+            let low = waveform.words().iter().skip(channel.into()).step_by(MOTORS).all(|width| *width == 0);
+            assert_eq!(low, motor.is_none(), "channel {channel}");
+            let expected = motor.map_or(0, |motor| frames[motor].inner());
+            assert_eq!(read(&waveform, channel.into()), expected, "channel {channel}");
+        }
     }
 }
 
 #[test]
 fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3], PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
     let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
     assert!((first - 0.75).abs() < 0.003, "{first}");
-    waveform.draw(&stop(), &[0, 1, 2, 3], PERIOD);
+    waveform.draw(&stop(), &[0, 1, 2, 3].map(Some), PERIOD);
     let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
     assert!((first - 0.375).abs() < 0.003, "{first}");
     assert!(waveform.words()[0].abs_diff(zero_width(PERIOD)) <= 1);
@@ -92,7 +109,7 @@ fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
 #[test]
 fn a_waveform_ends_silent_and_fills_whole_bursts() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3], PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
     let words = waveform.words();
     assert!(words[BITS * MOTORS..].iter().all(|word| *word == 0) && words.len() == ROWS * MOTORS);
     assert_eq!(size_of_val(words) % 16, 0);

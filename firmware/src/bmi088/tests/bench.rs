@@ -1,12 +1,9 @@
-//! A register file that follows the data sheet, a bus and pins around it, and a clock that jumps.
+//! A register file that follows the data sheet.
 
 use super::super::*;
-pub use crate::bench::{Jumping, Pin};
+use crate::bench::{self, Jumping, Line, Pin, Spi, on_one_bus};
 use core::cell::{Cell, RefCell};
-use core::convert::Infallible;
-use core::future::pending;
 use embassy_futures::block_on;
-use embedded_hal_async::spi::{ErrorKind, ErrorType};
 use std::rc::Rc;
 
 /// One write that a device received.
@@ -23,8 +20,7 @@ pub struct Part(pub Rc<RefCell<Registers>>);
 
 pub struct Registers {
     pub values: [u8; 128],
-    /// Its chip select is low.
-    pub selected: bool,
+    pub line: Line,
     clock: Jumping,
     pub written: Vec<Written>,
     /// Reads answer after the address, or after one more byte.
@@ -37,8 +33,6 @@ pub struct Registers {
     pub deaf_per_setting: usize,
     /// How often the writes of a register were lost so far.
     lost: [usize; 128],
-    pub hangs: bool,
-    pub fails: bool,
 }
 
 impl Part {
@@ -51,7 +45,7 @@ impl Part {
         let asleep = dummy > 0;
         let registers = Registers {
             values,
-            selected: false,
+            line: Line::default(),
             clock,
             written: Vec::new(),
             dummy,
@@ -60,8 +54,6 @@ impl Part {
             stuck: None,
             deaf_per_setting: 0,
             lost: [0; 128],
-            hangs: false,
-            fails: false,
         };
         Self(Rc::new(RefCell::new(registers)))
     }
@@ -72,8 +64,12 @@ impl Part {
     }
 }
 
-impl Registers {
-    fn transfer(&mut self, bytes: &mut [u8]) {
+impl bench::Device for Registers {
+    fn line(&mut self) -> &mut Line {
+        &mut self.line
+    }
+
+    fn exchange(&mut self, bytes: &mut [u8]) {
         let asleep = std::mem::take(&mut self.asleep);
         let [address, data @ ..] = bytes else { return };
         let register = *address & !READ;
@@ -101,80 +97,23 @@ impl Registers {
     }
 }
 
-/// The bus that both share.
-pub struct Bus(pub [Part; 2]);
-
-impl ErrorType for Bus {
-    type Error = ErrorKind;
-}
-
-impl SpiBus for Bus {
-    async fn transfer_in_place(&mut self, bytes: &mut [u8]) -> Result<(), ErrorKind> {
-        let mut selected = self.0.iter().filter(|part| part.0.borrow().selected);
-        let (Some(Part(part)), None) = (selected.next(), selected.next()) else { panic!("one device at a time") };
-        if part.borrow().fails {
-            return Err(ErrorKind::Other);
-        }
-        if part.borrow().hangs {
-            pending::<()>().await;
-        }
-        part.borrow_mut().transfer(bytes);
-        Ok(())
-    }
-
-    async fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
-
-    async fn read(&mut self, _: &mut [u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-
-    async fn write(&mut self, _: &[u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-
-    async fn transfer(&mut self, _: &mut [u8], _: &[u8]) -> Result<(), ErrorKind> {
-        unreachable!("the driver exchanges in place")
-    }
-}
-
-/// A device's chip select.
-pub struct Select(pub Part);
-
-impl embedded_hal::digital::ErrorType for Select {
-    type Error = Infallible;
-}
-
-impl OutputPin for Select {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.0.borrow_mut().selected = true;
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.0.borrow_mut().selected = false;
-        Ok(())
-    }
-}
-
 /// The driver and handles on everything it talks to.
 pub struct Bench {
     pub clock: Jumping,
     pub accelerometer: Part,
     pub gyroscope: Part,
     pub data_ready: Rc<Cell<bool>>,
-    pub imu: Bmi088<Bus, Select, Pin, Jumping>,
+    pub imu: Bmi088<Spi, Pin, Jumping>,
 }
 
-pub fn bench(mounting: Mounting) -> Bench {
+pub fn bench(mounting: &'static Mounting) -> Bench {
     let clock = Jumping::default();
     let accelerometer = Part::new(&clock, 1, ACCELEROMETER_RESET, 0x1E);
     let gyroscope = Part::new(&clock, 0, GYROSCOPE_RESET, 0x0F);
     let data_ready = Rc::new(Cell::new(true));
     let pin = Pin { rises: data_ready.clone(), late: 0, clock: clock.clone() };
-    let parts = [accelerometer.clone(), gyroscope.clone()];
-    let imu = Bmi088::new(Bus(parts.clone()), parts.map(Select), pin, clock.clone(), mounting);
+    let devices = on_one_bus([accelerometer.0.clone(), gyroscope.0.clone()]);
+    let imu = Bmi088::new(devices, pin, clock.clone(), mounting);
     Bench { clock, accelerometer, gyroscope, data_ready, imu }
 }
 

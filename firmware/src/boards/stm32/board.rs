@@ -1,19 +1,20 @@
 //! What a board hands to its tasks.
 
+use super::cause::Cause;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::Cause;
 use super::storage::ParameterFlash;
 use super::usb::Controller;
+use super::watchdog::ChipWatchdog;
 
 /// Everything on the board, each part ready for the task that will own it.
-pub struct Board<Imu, Motors, Watchdog, Battery, Card> {
+pub struct Board<Imu, Motors, Battery, Card> {
     /// The inertial sensors, each powered up at its first sample.
     pub imu: Imu,
     /// The motors, silent.
     pub motors: Motors,
     /// The watchdog, not started.
-    pub watchdog: Watchdog,
+    pub watchdog: ChipWatchdog,
     /// The battery.
     pub battery: Battery,
     /// The light, off.

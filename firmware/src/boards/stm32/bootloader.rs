@@ -4,6 +4,7 @@
 //! reset stops, not started. So the wish is kept in memory that no start clears, behind the flight recorder's, and
 //! looked at first of all.
 
+use super::chip::{self, BOOTLOADER};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{Ordering, fence};
 
@@ -15,14 +16,6 @@ unsafe extern "C" {
 /// The request, written four times: a write to memory that has error-correcting codes may wait in the chip for the next
 /// one, and be lost if a reset comes first.
 const WISH: [u64; 4] = [0x4446_5520_706C_6561; 4];
-
-/// Where the bootloader's vector table is.
-#[cfg(feature = "micoair-h743")]
-const BOOTLOADER: u32 = 0x1FF0_9800;
-
-/// Where the bootloader's vector table is.
-#[cfg(feature = "crazyflie-bolt")]
-const BOOTLOADER: u32 = 0x1FFF_0000;
 
 /// Has the next start enter the bootloader.
 pub fn wish() {
@@ -53,14 +46,7 @@ fn set(value: [u64; 4]) {
 }
 
 fn enter() -> ! {
-    // It expects to be where the core looks for vectors, as where the boot pin has chosen it.
-    #[cfg(feature = "crazyflie-bolt")]
-    {
-        use embassy_stm32::pac::{RCC, SYSCFG};
-        RCC.apb2enr().modify(|w| w.set_syscfgen(true));
-        cortex_m::asm::dsb();
-        SYSCFG.memrm().modify(|w| w.set_mem_mode(1));
-    }
+    chip::map_bootloader();
     // SAFETY: one register, nothing else runs; the address is that of ST's bootloader in this chip's system memory,
     // where a valid vector table is (application note AN2606), and nothing of this firmware is in use any more.
     unsafe {

@@ -6,8 +6,7 @@
 //! flash.
 
 use crate::hardware::Clock;
-use embassy_stm32::pac::DBGMCU;
-#[cfg(feature = "crazyflie-bolt")]
+#[cfg(feature = "stm32f405")]
 use embassy_stm32::pac::TIM5;
 use embassy_time::{Instant, Timer};
 
@@ -25,27 +24,19 @@ impl Clock for SystemClock {
     }
 }
 
-/// Lets the clock stand still while a probe halts the core. Once the clocks are set.
-pub fn halt_with_the_core() {
-    #[cfg(feature = "micoair-h743")]
-    DBGMCU.apb1lfzr1().modify(|w| w.set_tim5(true));
-    #[cfg(feature = "crazyflie-bolt")]
-    DBGMCU.apb1fzr().modify(|w| w.set_tim5(true));
-}
-
 /// The clock stands still for as long as this lives.
-#[cfg(feature = "crazyflie-bolt")]
+#[cfg(feature = "stm32f405")]
 #[must_use]
 pub struct Halted;
 
 /// Halts the clock, for work that stalls the core.
-#[cfg(feature = "crazyflie-bolt")]
+#[cfg(feature = "stm32f405")]
 pub fn halt() -> Halted {
     TIM5.cr1().modify(|w| w.set_cen(false));
     Halted
 }
 
-#[cfg(feature = "crazyflie-bolt")]
+#[cfg(feature = "stm32f405")]
 impl Drop for Halted {
     fn drop(&mut self) {
         TIM5.cr1().modify(|w| w.set_cen(true));

@@ -39,13 +39,13 @@ pub struct StampedPin {
     /// The pin.
     pub pin: ExtiInput<'static, Async>,
     /// Its line, which is its number in its port.
-    pub line: usize,
+    pub line: u8,
 }
 
 impl DataReady for StampedPin {
     async fn rise(&mut self) -> Result<u64, Fault> {
         self.pin.wait_for_rising_edge().await;
-        let edge = EDGES.get(self.line).ok_or(Fault)?.load(Ordering::Relaxed);
+        let edge = EDGES.get(usize::from(self.line)).ok_or(Fault)?.load(Ordering::Relaxed);
         let now = Instant::now().as_micros();
         Ok(now.saturating_sub((now as u32).wrapping_sub(edge).into()))
     }

@@ -2,8 +2,8 @@
 //!
 //! Panics, faults and unhandled interrupts end here, in the order of [`Ending`]:
 //!
-//! 1. interrupts go off, and stop frames go out: by polling the motors' timer alone, whose registers say themselves
-//!    whether it was ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
+//! 1. interrupts go off, and stop frames go out: by polling the motors' timers alone, whose registers say themselves
+//!    whether they were ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
 //!    log.
 //! 2. the panic's message, or the fault's place and registers, go to memory that the restart leaves as it is
 //!    ([`crate::last_words`]), and to the log.
@@ -28,8 +28,9 @@
 //! stop for want of frames within their own time-out. The watchdog is fed once before these steps, so that the restart
 //! is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
+use super::chip::{SILENCE, WATCHDOG};
 use super::motors::rest;
-use crate::boards::chosen::{WATCHDOG, motor_timer};
+use crate::boards::chosen::MOTOR_TIMERS;
 use crate::boards::fault::Fault;
 use crate::boards::kept;
 use crate::dshot::{BITS, zero_width};
@@ -45,14 +46,6 @@ use embassy_stm32::pac::timer::TimGp16;
 /// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the
 /// peripheral bus.
 const POLLS: usize = 10_000;
-
-/// Silence before each frame, cycles of the core: 0.08 ms at 400 MHz.
-#[cfg(feature = "micoair-h743")]
-const SILENCE: u32 = 32_000;
-
-/// Silence before each frame, cycles of the core: 0.08 ms at 168 MHz.
-#[cfg(feature = "crazyflie-bolt")]
-const SILENCE: u32 = 13_440;
 
 /// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
 const _: () = assert!((FRAMES + LAST_FRAMES) * 140 < 34_000);
@@ -85,18 +78,18 @@ fn end(words: impl FnOnce() -> LastWords) -> ! {
     SCB::sys_reset()
 }
 
-/// Sends so many stop frames to every motor and leaves the lines low; takes as long where their timer does not run.
+/// Sends so many stop frames to every motor and leaves the lines low; takes as long where their timers do not run.
 fn stop(frames: usize) {
-    let timer = motor_timer();
     for _ in 0..frames {
-        rest(timer);
+        MOTOR_TIMERS.into_iter().for_each(rest);
         silence();
-        let _ = stop_frame(timer);
+        stop_frame();
     }
-    rest(timer);
+    MOTOR_TIMERS.into_iter().for_each(rest);
 }
 
-/// Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines let it.
+/// Silence before each frame. Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines
+/// let it.
 fn silence() {
     /// It runs by the core's clock, without an interrupt.
     const RUN: u32 = 0b101;
@@ -113,18 +106,27 @@ fn silence() {
     let _ = (0..SILENCE).find(|_| timer.csr.read() & HAS_ENDED != 0);
 }
 
-/// One stop frame by polling; none if the timer does not run.
-fn stop_frame(timer: TimGp16) -> Option<()> {
-    let width = zero_width(timer.arr().read().arr().saturating_add(1));
-    widths(timer, width);
-    // Widths take effect at an update: the first update begins bit one, the seventeenth ends bit sixteen.
-    timer.sr().write(|w| w.0 = 0);
-    timer.cr1().modify(|w| w.set_cen(true));
-    for _ in 0..BITS {
-        period_ends(timer)?;
+/// One stop frame by polling, on all timers at once; none on one that does not run.
+fn stop_frame() {
+    for timer in MOTOR_TIMERS {
+        widths(timer, zero_width(timer.arr().read().arr().saturating_add(1)));
+        // Widths take effect at an update: the first update begins bit one, the seventeenth ends bit sixteen.
+        timer.sr().write(|w| w.0 = 0);
+        timer.cr1().modify(|w| w.set_cen(true));
     }
-    widths(timer, 0);
-    period_ends(timer)
+    let mut run = MOTOR_TIMERS.map(|_| true);
+    let mut periods_end = || {
+        for (timer, runs) in MOTOR_TIMERS.into_iter().zip(&mut run) {
+            *runs = *runs && period_ends(timer);
+        }
+    };
+    for _ in 0..BITS {
+        periods_end();
+    }
+    for timer in MOTOR_TIMERS {
+        widths(timer, 0);
+    }
+    periods_end();
 }
 
 fn widths(timer: TimGp16, width: u16) {
@@ -133,8 +135,9 @@ fn widths(timer: TimGp16, width: u16) {
     }
 }
 
-fn period_ends(timer: TimGp16) -> Option<()> {
-    (0..POLLS).find(|_| timer.sr().read().uif())?;
+/// Waits for it, and whether it did.
+fn period_ends(timer: TimGp16) -> bool {
+    let ended = (0..POLLS).any(|_| timer.sr().read().uif());
     timer.sr().write(|w| w.0 = 0);
-    Some(())
+    ended
 }

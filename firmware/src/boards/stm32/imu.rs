@@ -1,19 +1,32 @@
-//! The inertial sensors of the boards: chip selects on an SPI bus with DMA, data-ready on an interrupt pin.
+//! The inertial sensors of the boards: chip selects on an SPI bus with DMA, which several may share, data-ready on an
+//! interrupt pin.
 
 use super::clock::SystemClock;
 use super::edges::StampedPin;
 use super::transfers::{self, Begun};
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
-use embassy_stm32::gpio::Output;
+use crate::icm42688::Icm42688;
+use crate::spi::Selected;
+use embassy_stm32::Peri;
+use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::mode::Async;
 use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{self, Config, Spi};
 use embassy_stm32::time::Hertz;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::mutex::Mutex;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, SpiBus};
 
 /// A bus of whose transfers none counts in which the DMA controller failed.
-pub struct Bus(pub Spi<'static, Async, Master>);
+pub struct Bus(Spi<'static, Async, Master>);
+
+impl Bus {
+    /// To be shared.
+    pub fn new(spi: Spi<'static, Async, Master>) -> SharedBus {
+        Mutex::new(Self(spi))
+    }
+}
 
 impl ErrorType for Bus {
     type Error = ErrorKind;
@@ -50,11 +63,31 @@ impl SpiBus for Bus {
     }
 }
 
+/// A bus that several devices share, each for as long as an exchange takes.
+pub type SharedBus = Mutex<CriticalSectionRawMutex, Bus>;
+
+/// A device on such a bus.
+pub type Device = Selected<'static, CriticalSectionRawMutex, Bus, Output<'static>>;
+
+/// How steep a chip select's edges are.
+pub const FAST: Speed = Speed::VeryHigh;
+
+/// And on PC13 to PC15, which can drive little.
+pub const SLOW: Speed = Speed::Low;
+
+/// A device on `bus`, chosen by a low level on `select`.
+pub fn device(bus: &'static SharedBus, select: Peri<'static, impl Pin>, speed: Speed) -> Device {
+    Selected::new(bus, Output::new(select, Level::High, speed))
+}
+
 /// A BMI088 as the boards wire it.
-pub type BoardBmi088 = Bmi088<Bus, Output<'static>, StampedPin, SystemClock>;
+pub type BoardBmi088 = Bmi088<Device, StampedPin, SystemClock>;
 
 /// A BMI270 as the boards wire it.
-pub type BoardBmi270 = Bmi270<Bus, Output<'static>, StampedPin, SystemClock>;
+pub type BoardBmi270 = Bmi270<Device, StampedPin, SystemClock>;
+
+/// An ICM-42688-P or ICM-42605 as the boards wire it.
+pub type BoardIcm42688 = Icm42688<Device, StampedPin, SystemClock>;
 
 /// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above the requested one too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.

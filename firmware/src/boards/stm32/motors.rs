@@ -1,9 +1,10 @@
-//! DShot300 for four motors on the four channels of one timer, by burst DMA.
+//! DShot300 for four motors on the channels of one timer, or of two, by burst DMA.
 //!
-//! The timer rests between frames: counter stopped at zero, every channel low. [`Motors::write`] draws the frames,
-//! starts the counter, and at each update event one DMA burst sets the four widths of the next bit. The counter starts
-//! only once the transfer waits for it, so that no burst can straddle an update. However a write ends, also if it is
-//! dropped half-way, the timer rests again, and a controller discards the frame that was cut by its checksum.
+//! A timer rests between frames: counter stopped at zero, every channel low. [`Motors::write`] draws the frames, starts
+//! the counter, and at each update event one DMA burst sets the four widths of the next bit. The counter starts only
+//! once the transfer waits for it, so that no burst can straddle an update. However a write ends, also if it is dropped
+//! half-way, the timer rests again, and a controller discards the frame that was cut by its checksum. Two timers send
+//! at the same time, each on its own.
 //!
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
@@ -11,53 +12,96 @@
 use super::transfers;
 use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
 use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
+use core::marker::PhantomData;
+use core::mem::forget;
+use dshot_frame::NormalFrame;
+use embassy_futures::join::join;
 use embassy_futures::select::{Either, select};
 use embassy_stm32::Peri;
 use embassy_stm32::dma::InterruptHandler;
+use embassy_stm32::gpio::OutputType;
 use embassy_stm32::interrupt::typelevel::Binding;
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::complementary_pwm::ComplementaryPwmPin;
 use embassy_stm32::timer::low_level::{CountingMode, OutputCompareMode, RoundTo, Timer};
 use embassy_stm32::timer::simple_pwm::PwmPin;
-use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, UpDma};
-
-/// The timer's four pins, by channel.
-pub struct Pins<T: GeneralInstance4Channel>(
-    pub PwmPin<'static, T, Ch1>,
-    pub PwmPin<'static, T, Ch2>,
-    pub PwmPin<'static, T, Ch3>,
-    pub PwmPin<'static, T, Ch4>,
-);
+use embassy_stm32::timer::{
+    AdvancedInstance4Channel, Channel, GeneralInstance4Channel, TimerChannel, TimerComplementaryPin, TimerPin, UpDma,
+};
 
 /// How long a frame may take, us. It takes a bit time a row, 60 us.
 const FRAME_WITHIN: u64 = 4 * ROWS as u64 * 1_000_000 / BIT_RATE as u64;
 
-/// Four controllers on one timer. Must live in memory that the DMA controller reaches.
-pub struct Dshot<T: GeneralInstance4Channel, D: UpDma<T>, I> {
+/// The enable bits of a channel in CCER, the first channel's: the others' follow every four bits. Timers without
+/// complementary outputs have nothing in the second's place.
+const DIRECT: u32 = 1;
+const COMPLEMENTARY: u32 = 1 << 2;
+
+/// An output: a pin that a channel of the timer drives from here on.
+pub struct Line<T> {
+    channel: u8,
+    enable: u32,
+    _timer: PhantomData<T>,
+}
+
+impl<T: GeneralInstance4Channel> Line<T> {
+    /// On a channel's own pin.
+    pub fn direct<C: TimerChannel>(pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
+        forget(PwmPin::<T, C>::new(pin, OutputType::PushPull));
+        Self::new(C::CHANNEL, DIRECT)
+    }
+
+    /// On the pin of its complementary output (CHxN), which is as high as its own would be while that is off.
+    pub fn complementary<C: TimerChannel>(pin: Peri<'static, impl TimerComplementaryPin<T, C>>) -> Self
+    where
+        T: AdvancedInstance4Channel,
+    {
+        forget(ComplementaryPwmPin::<T, C>::new(pin, OutputType::PushPull));
+        Self::new(C::CHANNEL, COMPLEMENTARY)
+    }
+
+    fn new(channel: Channel, enable: u32) -> Self {
+        let index = channel.index();
+        Self { channel: index as u8, enable: enable << (4 * index), _timer: PhantomData }
+    }
+}
+
+/// What sends frames to some of the motors, or to all.
+pub trait Lines {
+    /// Wires motor i to the output `wiring[i]` of those that the board has.
+    fn wire(&mut self, wiring: [usize; MOTORS]);
+
+    /// Prepares a frame for each motor.
+    fn draw(&mut self, frames: &[NormalFrame; MOTORS]);
+
+    /// Sends the frames.
+    fn send(&mut self) -> impl Future<Output = Result<(), Fault>>;
+}
+
+/// Controllers on one timer. Must live in memory that the DMA controller reaches.
+pub struct OnTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     timer: Timer<'static, T>,
     dma: Peri<'static, D>,
     interrupts: I,
     waveform: Waveform<T::Word>,
-    /// The channel (0 to 3) of each motor.
-    channels: [usize; MOTORS],
+    /// The channel (0 to 3) of each motor; none where it is on another timer.
+    channels: [Option<u8>; MOTORS],
     /// Timer ticks in a bit.
     period: u16,
-    /// Held for as long as the timer drives them.
-    _pins: Pins<T>,
 }
 
-impl<T, D, I> Dshot<T, D, I>
+impl<T, D, I> OnTimer<T, D, I>
 where
     T: GeneralInstance4Channel,
     D: UpDma<T>,
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
-    /// Every channel low, nothing sent. Motor i is on channel `channels[i]` (0 to 3); `dma` is the timer's update
-    /// request.
+    /// Every channel low, nothing sent. `lines` are the board's outputs in their order, none for those on another
+    /// timer; `dma` is the timer's update request.
     pub fn new(
         timer: Peri<'static, T>,
-        pins: Pins<T>,
-        channels: [usize; MOTORS],
+        lines: [Option<Line<T>>; MOTORS],
         dma: Peri<'static, D>,
         interrupts: I,
     ) -> Self {
@@ -68,18 +112,30 @@ where
         for channel in [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4] {
             timer.set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
             timer.set_output_compare_preload(channel, true);
-            timer.enable_channel(channel, true);
         }
+        let enable = lines.iter().flatten().fold(0, |enable, line| enable | line.enable);
+        timer.regs_gp16().ccer().modify(|w| w.0 |= enable);
         rest(timer.regs_gp16());
         timer.enable_outputs();
         let period = timer.regs_gp16().arr().read().arr() + 1;
-        Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, period, _pins: pins }
+        let channels = lines.map(|line| line.map(|line| line.channel));
+        Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, period }
+    }
+}
+
+impl<T, D, I> Lines for OnTimer<T, D, I>
+where
+    T: GeneralInstance4Channel,
+    D: UpDma<T>,
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+{
+    fn wire(&mut self, wiring: [usize; MOTORS]) {
+        let channels = self.channels;
+        self.channels = wiring.map(|output| channels.get(output).copied().flatten());
     }
 
-    /// Wires motor i to the output `wiring[i]` of those that the board has.
-    pub fn wire(&mut self, wiring: [usize; MOTORS]) {
-        let channels = self.channels;
-        self.channels = wiring.map(|output| channels.get(output).copied().unwrap_or(output));
+    fn draw(&mut self, frames: &[NormalFrame; MOTORS]) {
+        self.waveform.draw(frames, &self.channels, self.period);
     }
 
     async fn send(&mut self) -> Result<(), Fault> {
@@ -99,17 +155,39 @@ where
     }
 }
 
-impl<T, D, I> Motors for Dshot<T, D, I>
-where
-    T: GeneralInstance4Channel,
-    D: UpDma<T>,
-    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
-{
+impl<A: Lines, B: Lines> Lines for (A, B) {
+    fn wire(&mut self, wiring: [usize; MOTORS]) {
+        self.0.wire(wiring);
+        self.1.wire(wiring);
+    }
+
+    fn draw(&mut self, frames: &[NormalFrame; MOTORS]) {
+        self.0.draw(frames);
+        self.1.draw(frames);
+    }
+
+    async fn send(&mut self) -> Result<(), Fault> {
+        let (first, second) = join(self.0.send(), self.1.send()).await;
+        first.and(second)
+    }
+}
+
+/// The motors on their lines.
+pub struct Dshot<L>(pub L);
+
+impl<L: Lines> Dshot<L> {
+    /// Wires motor i to the output `wiring[i]` of those that the board has.
+    pub fn wire(&mut self, wiring: [usize; MOTORS]) {
+        self.0.wire(wiring);
+    }
+}
+
+impl<L: Lines> Motors for Dshot<L> {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
         let frames = dshot::frames(command);
         let usable = frames.as_ref().map(|_| ()).map_err(|fault| *fault);
-        self.waveform.draw(&frames.unwrap_or_else(|_| dshot::stop()), &self.channels, self.period);
-        self.send().await?;
+        self.0.draw(&frames.unwrap_or_else(|_| dshot::stop()));
+        self.0.send().await?;
         usable
     }
 }

@@ -9,17 +9,17 @@
 //! the flags standing that a record torn by a power cut raises, after which nothing could be written. Each chip's part
 //! adds its own: addresses, registers, and how a record that may be torn is read.
 
+use super::chip::WATCHDOG;
 use super::watchdog::Patience;
 use crate::hardware::{Fault, Flash, Record};
 use core::ptr;
 use embassy_stm32::Peri;
-use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::peripherals::FLASH;
 
-#[cfg(feature = "crazyflie-bolt")]
+#[cfg(feature = "stm32f405")]
 #[path = "storage/f405.rs"]
 mod chip;
-#[cfg(feature = "micoair-h743")]
+#[cfg(feature = "stm32h743")]
 #[path = "storage/h743.rs"]
 mod chip;
 
@@ -33,13 +33,12 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 pub struct ParameterFlash {
     /// No other code erases or programs.
     _flash: Peri<'static, FLASH>,
-    watchdog: Iwdg,
 }
 
 impl ParameterFlash {
-    /// `watchdog` is the one that must be patient while the flash is erased.
-    pub fn new(flash: Peri<'static, FLASH>, watchdog: Iwdg) -> Self {
-        Self { _flash: flash, watchdog }
+    /// The last two sectors of this flash.
+    pub fn new(flash: Peri<'static, FLASH>) -> Self {
+        Self { _flash: flash }
     }
 }
 
@@ -96,8 +95,8 @@ impl Flash for ParameterFlash {
 
     fn erase(&mut self, sector: usize) -> Result<(), Fault> {
         words(sector * Self::RECORDS)?;
-        let _patience = Patience::new(self.watchdog);
-        #[cfg(feature = "crazyflie-bolt")]
+        let _patience = Patience::new(WATCHDOG);
+        #[cfg(feature = "stm32f405")]
         let _halted = super::clock::halt();
         opened(|| {
             chip::erase(sector as u8);

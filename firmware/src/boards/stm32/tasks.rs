@@ -4,18 +4,17 @@
 //! memory card, which has the thread to itself.
 
 use super::bootloader;
+use super::cause::Cause;
+use super::chip::{self, CONTROL_INTERRUPT, SENSOR_INTERRUPT, SERVICES_INTERRUPT};
 use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
-use super::handover::quiet;
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
-use super::restart::{self, Cause, Chip, flags};
+use super::restart::Chip;
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
-use crate::boards::chosen::{
-    self, BoardBattery, BoardCard, BoardImu, BoardMotors, BoardWatchdog, CONTROL_INTERRUPT, SENSOR_INTERRUPT,
-    SERVICES_INTERRUPT,
-};
+use super::watchdog::ChipWatchdog;
+use crate::boards::chosen::{self, BoardBattery, BoardCard, BoardImu, BoardMotors};
 use crate::boards::{guard, handover, kept, recorder};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
@@ -44,8 +43,8 @@ type Repeated = repeat::Repeated<Raw>;
 
 /// Boots the board and flies it, for ever.
 pub fn run() -> ! {
-    let mut core = handover::begin_anew(quiet);
-    bootloader::enter_if_wished(flags() == Cause::Software);
+    let mut core = handover::begin_anew(chip::quiet);
+    bootloader::enter_if_wished(chip::flags() == Cause::Software);
     guard::watch(&mut core.MPU);
     let has_cache = handover::cache_instructions(&mut core);
     let mut board = chosen::take();
@@ -74,7 +73,7 @@ pub fn run() -> ! {
     if board.transmitter.set_baudrate(booting.parameters().get(Name::SerialRate) as u32).is_err() {
         booting.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
     }
-    if restart::has_no_brown_out() {
+    if chip::has_no_brown_out() {
         booting.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
     }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
@@ -125,7 +124,7 @@ async fn control(
     pilot: &'static mut Pilot<'static>,
     outputs: Outputs,
     repeated: &'static Repeated,
-    mut watchdog: BoardWatchdog,
+    mut watchdog: ChipWatchdog,
 ) {
     let pins = Repeater { repeated, clock: SystemClock };
     let mut motors = SelectedMotors { pins, hil, wanted: shared.hil(), clock: SystemClock };

@@ -12,6 +12,7 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_stm32::dma::ChannelInstance;
 use embassy_stm32::interrupt::typelevel::Handler;
+use embassy_stm32::pac::dma::Dma;
 use embassy_stm32::{pac, peripherals};
 
 /// Errors of all streams since boot.
@@ -38,8 +39,10 @@ impl Begun {
 /// Bound to a stream's interrupt before Embassy's handler.
 pub struct Errors<T>(PhantomData<T>);
 
-/// A stream of the first controller.
+/// A stream of one of the controllers.
 pub trait Stream: ChannelInstance {
+    /// Its controller.
+    const CONTROLLER: Dma;
     /// Its number.
     const NUMBER: usize;
 }
@@ -47,19 +50,21 @@ pub trait Stream: ChannelInstance {
 impl<T: Stream> Handler<T::Interrupt> for Errors<T> {
     unsafe fn on_interrupt() {
         let (half, place) = (T::NUMBER / 4, T::NUMBER % 4);
-        if pac::DMA1.isr(half).read().teif(place) {
-            pac::DMA1.ifcr(half).write(|w| w.set_teif(place, true));
+        if T::CONTROLLER.isr(half).read().teif(place) {
+            T::CONTROLLER.ifcr(half).write(|w| w.set_teif(place, true));
             ERRORS.fetch_add(1, Ordering::Relaxed);
         }
     }
 }
 
 macro_rules! streams {
-    ($($stream:ident $number:literal),*) => {
+    ($controller:ident: $($stream:ident $number:literal),*) => {
         $(impl Stream for peripherals::$stream {
+            const CONTROLLER: Dma = pac::$controller;
             const NUMBER: usize = $number;
         })*
     };
 }
 
-streams!(DMA1_CH0 0, DMA1_CH1 1, DMA1_CH2 2, DMA1_CH3 3, DMA1_CH4 4, DMA1_CH5 5, DMA1_CH6 6, DMA1_CH7 7);
+streams!(DMA1: DMA1_CH0 0, DMA1_CH1 1, DMA1_CH2 2, DMA1_CH3 3, DMA1_CH4 4, DMA1_CH5 5, DMA1_CH6 6, DMA1_CH7 7);
+streams!(DMA2: DMA2_CH0 0, DMA2_CH1 1, DMA2_CH2 2, DMA2_CH3 3, DMA2_CH4 4, DMA2_CH5 5, DMA2_CH6 6, DMA2_CH7 7);

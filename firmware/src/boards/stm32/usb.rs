@@ -148,14 +148,3 @@ impl Write for PortTransmitter {
         Ok(())
     }
 }
-
-/// Whether the port's own supply comes up, which the driver would wait for without end.
-#[cfg(feature = "micoair-h743")]
-#[must_use]
-pub fn has_supply() -> bool {
-    /// Each takes 20 ns or more.
-    const POLLS: u32 = 1_000_000;
-    let control = embassy_stm32::pac::PWR.cr3();
-    control.modify(|w| w.set_usb33den(true));
-    (0..POLLS).any(|_| control.read().usb33rdy())
-}

@@ -1,10 +1,11 @@
 //! The independent watchdog: a clock of its own restarts the chip when the control task stops feeding it.
 
+use super::chip;
 use crate::hardware::Watchdog;
 use embassy_stm32::Peri;
 use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
-use embassy_stm32::wdg::{IndependentWatchdog, Instance};
+use embassy_stm32::wdg::IndependentWatchdog;
 
 /// Time without food, us: five ticks of the control task. The watchdog's clock is crude: on the F405 this is 34 to 94
 /// ms.
@@ -15,19 +16,19 @@ const SETTLES: usize = 100_000;
 
 /// The chip's watchdog. It starts with the first food, so that booting may take its time; then nothing but a restart
 /// stops it.
-pub struct ChipWatchdog<T: Instance + 'static> {
-    watchdog: IndependentWatchdog<'static, T>,
+pub struct ChipWatchdog {
+    watchdog: IndependentWatchdog<'static, chip::Watchdog>,
     started: bool,
 }
 
-impl<T: Instance + 'static> ChipWatchdog<T> {
+impl ChipWatchdog {
     /// Not started.
-    pub fn new(peripheral: Peri<'static, T>) -> Self {
+    pub fn new(peripheral: Peri<'static, chip::Watchdog>) -> Self {
         Self { watchdog: IndependentWatchdog::new(peripheral, TIMEOUT), started: false }
     }
 }
 
-impl<T: Instance + 'static> Watchdog for ChipWatchdog<T> {
+impl Watchdog for ChipWatchdog {
     fn feed(&mut self) {
         if !self.started {
             self.watchdog.unleash();

@@ -32,7 +32,7 @@ pub fn program() {
     });
 }
 
-/// Begins to erase a sector of the two, by words like programming: that needs the 2.7 V that both boards exceed.
+/// Begins to erase a sector of the two, by words like programming: that needs the 2.7 V that the boards exceed.
 pub fn erase(sector: u8) {
     FLASH.cr().write(|w| {
         w.set_ser(true);
