@@ -128,9 +128,7 @@ Qed.
 
 End Law.
 
-(** ** The certificate's rows make every torque fit
-
-    A row is t |tau_12| + y |tau_3| <= R: section 4. *)
+(** ** The certificate's rows make every torque fit: section 4 *)
 
 Definition tilt_length (v : torque) : R := sqrt (about_x v * about_x v + about_y v * about_y v).
 
@@ -174,21 +172,12 @@ Proof. intros. unfold dot, minus. cbn. ring. Qed.
 Section Rows.
 
 Variables (s_lo s_hi margin T_max : R) (rotors : list rotor).
-(** t and y of the row "two rotors at their ends at once", and of the row "the
-    thrust floor and T_max". *)
-Variables (t_pair y_pair t_floor y_floor : R).
 (** The right sides' parts: the least s_lo f_max / b and the greatest
     s_hi f_min / b. *)
 Variables (range_top range_bottom : R).
 
 Hypothesis b_positive : forall r, In r rotors -> 0 < b r.
 Hypothesis ranges : forall r, In r rotors -> 0 <= least r /\ 0 <= greatest r.
-Hypothesis t_pair_greatest : forall r r', In r rotors -> In r' rotors ->
-  tilt_length (minus (beta r) (beta r')) <= t_pair.
-Hypothesis y_pair_greatest : forall r r', In r rotors -> In r' rotors ->
-  Rabs (about_z (minus (beta r) (beta r'))) <= y_pair.
-Hypothesis t_floor_greatest : forall r, In r rotors -> tilt_length (beta r) <= t_floor.
-Hypothesis y_floor_greatest : forall r, In r rotors -> Rabs (about_z (beta r)) <= y_floor.
 Hypothesis range_top_least : forall r, In r rotors -> range_top <= s_lo * greatest r / b r.
 Hypothesis range_bottom_greatest : forall r, In r rotors -> s_hi * least r / b r <= range_bottom.
 Hypothesis margin_nonneg : 0 <= margin.
@@ -197,10 +186,13 @@ Hypothesis some_rotor : rotors <> [].
 (** Torques share the collective thrust among the rotors without changing it. *)
 Hypothesis balanced : forall v, fold_right (fun r sum => b r * dot (beta r) v + sum) 0 rotors = 0.
 
-(** Both rows, for the torque at hand. *)
+(** Both rows, for the torque at hand: "two rotors at their ends at once" and
+    "the thrust floor and T_max". [parts_add_up] of Budget.v bounds the left
+    sides by what the rows count. *)
 Definition rows_hold (tau : torque) : Prop :=
-  t_pair * tilt_length tau + y_pair * Rabs (about_z tau) <= range_top - range_bottom - 2 * margin
-  /\ t_floor * tilt_length tau + y_floor * Rabs (about_z tau) <= T_max - range_bottom - 2 * margin.
+  (forall r r', In r rotors -> In r' rotors ->
+     Rabs (dot (minus (beta r) (beta r')) tau) <= range_top - range_bottom - 2 * margin)
+  /\ (forall r, In r rotors -> Rabs (dot (beta r) tau) <= T_max - range_bottom - 2 * margin).
 
 Lemma scale_monotone : forall s x, s_lo <= s <= s_hi -> 0 <= x -> s_lo * x <= s * x <= s_hi * x.
 Proof. intros s x Hs Hx. split; apply Rmult_le_compat_r; lra. Qed.
@@ -246,14 +238,11 @@ Proof.
     apply over_b; [exact Hr|]. apply (scale_monotone s); [exact Hs | apply (ranges r Hr)]. }
   assert (Hneeds : forall r, In r rotors -> needs s margin tau r <= T_max).
   { intros r Hr. unfold needs. pose proof (Hlow r Hr).
-    pose proof (dot_bound (beta r) tau t_floor y_floor (t_floor_greatest r Hr) (y_floor_greatest r Hr)) as Hd.
-    apply abs_bounds in Hd. lra. }
+    pose proof (Hfloor r Hr) as Hd. apply abs_bounds in Hd. lra. }
   assert (Hpairs : forall r r', In r rotors -> In r' rotors -> needs s margin tau r <= gives s margin tau r').
   { intros r r' Hr Hr'. unfold needs, gives.
     pose proof (Hlow r Hr). pose proof (Hhigh r' Hr').
-    pose proof (dot_bound (minus (beta r') (beta r)) tau t_pair y_pair
-      (t_pair_greatest r' r Hr' Hr) (y_pair_greatest r' r Hr' Hr)) as Hd.
-    apply abs_bounds in Hd. rewrite dot_minus in Hd. lra. }
+    pose proof (Hpair r' r Hr' Hr) as Hd. apply abs_bounds in Hd. rewrite dot_minus in Hd. lra. }
   destruct (some_rotor_slows tau) as (slow & Hslow & Hdot).
   assert (Hmargin : margin <= needs s margin tau slow).
   { unfold needs.

@@ -119,6 +119,77 @@ Proof.
     rewrite Hr, Hrest. unfold rest. ring.
 Qed.
 
+(** *** Row D: the tilt's level over cells of r *)
+
+(** The level of the cell from [near] to [far], each term at the end where it
+    is greatest: [greatest_potential] of the certificate. *)
+Definition cell (near far : R) : R :=
+  w / 2 * far
+  + M_t * k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far))
+    * (sqrt (1 - near * near) / sqrt (1 - near * near + eta_t * eta_t)).
+
+(** a / sqrt (c + a^2) rises with a. *)
+Lemma ratio_rises : forall a b c, 0 < c -> 0 <= a <= b ->
+  a / sqrt (c + a * a) <= b / sqrt (c + b * b).
+Proof.
+  intros a b c Hc Hab.
+  assert (Ha : 0 < sqrt (c + a * a)) by (apply sqrt_lt_R0; pose proof (squared a); lra).
+  assert (Hb : 0 < sqrt (c + b * b)) by (apply sqrt_lt_R0; pose proof (squared b); lra).
+  assert (Haa : sqrt (c + a * a) * sqrt (c + a * a) = c + a * a) by (apply sqrt_def; pose proof (squared a); lra).
+  assert (Hbb : sqrt (c + b * b) * sqrt (c + b * b) = c + b * b) by (apply sqrt_def; pose proof (squared b); lra).
+  assert (Hsq : a * a <= b * b) by (apply Rmult_le_compat; lra).
+  assert (Hcross : a * sqrt (c + b * b) <= b * sqrt (c + a * a)).
+  { apply Rsqr_incr_0_var; [|apply Rmult_le_pos; lra]. unfold Rsqr.
+    replace (a * sqrt (c + b * b) * (a * sqrt (c + b * b))) with (a * a * (sqrt (c + b * b) * sqrt (c + b * b))) by ring.
+    replace (b * sqrt (c + a * a) * (b * sqrt (c + a * a))) with (b * b * (sqrt (c + a * a) * sqrt (c + a * a))) by ring.
+    rewrite Haa, Hbb.
+    assert (a * a * c <= b * b * c) by (apply Rmult_le_compat_r; lra). lra. }
+  apply Rmult_le_reg_r with (sqrt (c + a * a) * sqrt (c + b * b)); [now apply Rmult_lt_0_compat|].
+  replace (a / sqrt (c + a * a) * (sqrt (c + a * a) * sqrt (c + b * b))) with (a * sqrt (c + b * b)) by (field; lra).
+  replace (b / sqrt (c + b * b) * (sqrt (c + a * a) * sqrt (c + b * b))) with (b * sqrt (c + a * a)) by (field; lra).
+  exact Hcross.
+Qed.
+
+Theorem level_in_a_cell : forall near r far, 0 <= near <= r -> r <= far -> r <= 1 ->
+  w / 2 * r + slope (r * r) (1 - r * r) * (r * sqrt (1 - r * r)) <= cell near far.
+Proof.
+  intros near r far Hnear Hfar H1.
+  assert (Hrr : r * r <= 1) by (rewrite <- (Rmult_1_r 1); apply Rmult_le_compat; lra).
+  assert (Hnn : near * near <= r * r) by (apply Rmult_le_compat; lra).
+  assert (He : 0 < eta_t * eta_t) by (now apply Rmult_lt_0_compat).
+  assert (HM : 0 < M_t * M_t) by (now apply Rmult_lt_0_compat).
+  set (rest := sqrt (1 - r * r)). set (rest_near := sqrt (1 - near * near)).
+  assert (Hrest : rest * rest = 1 - r * r) by (apply sqrt_def; lra).
+  assert (Hrest_near : rest_near * rest_near = 1 - near * near) by (apply sqrt_def; lra).
+  assert (Hpos : 0 <= rest) by apply sqrt_pos.
+  assert (Hless : rest <= rest_near) by (apply sqrt_le_1_alt; lra).
+  pose proof (ratio_rises rest rest_near (eta_t * eta_t) He ltac:(lra)) as Hfall.
+  rewrite Hrest, Hrest_near, !(Rplus_comm (eta_t * eta_t)) in Hfall.
+  pose proof (ratio_rises (k_t * r) (k_t * far) (M_t * M_t) HM
+    ltac:(split; [apply Rmult_le_pos | apply Rmult_le_compat_l]; lra)) as Hrise.
+  replace (k_t * r * (k_t * r)) with (k_t * k_t * (r * r)) in Hrise by ring.
+  replace (k_t * far * (k_t * far)) with (k_t * k_t * (far * far)) in Hrise by ring.
+  assert (Hsr : 0 < sqrt (M_t * M_t + k_t * k_t * (r * r))).
+  { apply sqrt_lt_R0. assert (0 <= k_t * k_t * (r * r)) by (apply Rmult_le_pos; apply squared). lra. }
+  assert (Hse : 0 < sqrt (1 - r * r + eta_t * eta_t)) by (apply sqrt_lt_R0; lra).
+  unfold cell, slope. fold rest_near. fold rest in Hfall. fold rest_near in Hfall.
+  set (a := k_t * r / sqrt (M_t * M_t + k_t * k_t * (r * r))) in *.
+  set (b := k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far))) in *.
+  set (c := rest / sqrt (1 - r * r + eta_t * eta_t)) in *.
+  set (d := rest_near / sqrt (1 - near * near + eta_t * eta_t)) in *.
+  replace (M_t * k_t / (sqrt (M_t * M_t + k_t * k_t * (r * r)) * sqrt (1 - r * r + eta_t * eta_t)) * (r * rest))
+    with (M_t * (a * c)) by (unfold a, c; field; lra).
+  replace (M_t * k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far)) * d) with (M_t * (b * d))
+    by (unfold b; unfold Rdiv; ring).
+  assert (Ha : 0 <= a).
+  { unfold a. apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; now apply Rinv_0_lt_compat]. }
+  assert (Hc : 0 <= c).
+  { unfold c. apply Rmult_le_pos; [exact Hpos | left; now apply Rinv_0_lt_compat]. }
+  assert (a * c <= b * d) by (apply Rmult_le_compat; assumption).
+  assert (M_t * (a * c) <= M_t * (b * d)) by (apply Rmult_le_compat_l; lra).
+  assert (w / 2 * r <= w / 2 * far) by (apply Rmult_le_compat_l; lra). lra.
+Qed.
+
 (** *** Equilibria: rows E *)
 
 (** G r is at most M_t / eta_t. *)
