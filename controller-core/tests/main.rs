@@ -2,6 +2,7 @@
 
 mod allocation;
 mod harmonic;
+mod proofs;
 mod rotor_demand;
 mod support;
 mod waypoints;

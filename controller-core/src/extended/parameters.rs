@@ -111,8 +111,8 @@ constants! {
 pub struct Extended(ExtendedParameters);
 
 impl Extended {
-    /// The least margin of the thrust floor, in weights: rounding in single precision moves a rotor's thrust by a tenth
-    /// of it at most, up to ten times the thrust that hovers.
+    /// The least margin of the thrust floor, in weights: rounding in single precision moves floor and ceiling by less
+    /// than half of it, up to ten times the thrust that hovers (`proofs/rounding.gappa`).
     pub const FLOOR_MARGIN_LEAST: f32 = 1e-5;
 
     /// Checks every constant, and that the command never pushes down.

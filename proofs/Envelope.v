@@ -1,0 +1,136 @@
+(** * The envelope is invariant
+
+    Section 3 of docs/extended-law.md, claim (c), in continuous time;
+    controller-core/src/extended/turning.rs. *)
+
+From Coq Require Import Reals Lra.
+From Coquelicot Require Import Coquelicot.
+From SaturatedHybrid Require Import Limiter.
+Open Scope R_scope.
+
+(** A function whose derivative is not negative does not fall. *)
+Lemma does_not_fall : forall (f df : R -> R) a b, a <= b ->
+  (forall s, a <= s <= b -> is_derive f s (df s)) ->
+  (forall s, a < s < b -> 0 <= df s) -> f a <= f b.
+Proof.
+  intros f df a b Hab Hd Hpos.
+  destruct (Req_dec a b) as [->|Hne]; [lra|].
+  assert (Hlt : a < b) by lra.
+  destruct (MVT_cor2 f df a b Hlt) as (c & Hc & Hin).
+  - intros s Hs. apply is_derive_Reals. now apply Hd.
+  - specialize (Hpos c Hin). assert (0 <= df c * (b - a)) by (apply Rmult_le_pos; lra). lra.
+Qed.
+
+(** c_z >= -A_-, and |u| <= U: y is c_z + A_-, or U - n. Both limits leave
+    y'' >= -2 k y' - k^2 y, and both start with y > 0, y' + k y >= 0. *)
+Theorem stays_inside : forall (y y_1 y_2 : R -> R) k,
+  (forall s, 0 <= s -> is_derive y s (y_1 s)) ->
+  (forall s, 0 <= s -> is_derive y_1 s (y_2 s)) ->
+  (forall s, 0 <= s -> - (2 * k * y_1 s) - k * k * y s <= y_2 s) ->
+  0 < y 0 -> 0 <= y_1 0 + k * y 0 ->
+  forall t, 0 <= t -> 0 < y t.
+Proof.
+  intros y y_1 y_2 k Hy Hy1 Hlimit Hstart Hrate t Ht.
+  assert (Hfirst : forall s, 0 <= s -> 0 <= y_1 s + k * y s).
+  { intros s Hs.
+    assert (Hle : (y_1 0 + k * y 0) * exp (k * 0) <= (y_1 s + k * y s) * exp (k * s)).
+    { apply (does_not_fall (fun r => (y_1 r + k * y r) * exp (k * r))
+        (fun r => (y_2 r + k * y_1 r) * exp (k * r) + (y_1 r + k * y r) * (k * exp (k * r))) 0 s Hs).
+      - intros r Hr. specialize (Hy r (proj1 Hr)). specialize (Hy1 r (proj1 Hr)).
+        auto_derive; [repeat split; try (eexists; eassumption); exact I|].
+        rewrite (is_derive_unique (fun x : R => y x) r _ Hy : Derive (fun x : R => y x) r = _),
+          (is_derive_unique (fun x : R => y_1 x) r _ Hy1 : Derive (fun x : R => y_1 x) r = _). ring.
+      - intros r Hr. specialize (Hlimit r ltac:(lra)).
+        replace ((y_2 r + k * y_1 r) * exp (k * r) + (y_1 r + k * y r) * (k * exp (k * r)))
+          with ((y_2 r + 2 * k * y_1 r + k * k * y r) * exp (k * r)) by ring.
+        apply Rmult_le_pos; [lra | left; apply exp_pos]. }
+    rewrite Rmult_0_r, exp_0, Rmult_1_r in Hle.
+    apply Rmult_le_reg_r with (exp (k * s)); [apply exp_pos|]. lra. }
+  assert (Hle : y 0 * exp (k * 0) <= y t * exp (k * t)).
+  { apply (does_not_fall (fun r => y r * exp (k * r)) (fun r => (y_1 r + k * y r) * exp (k * r)) 0 t Ht).
+    - intros r Hr. specialize (Hy r (proj1 Hr)).
+      auto_derive; [repeat split; try (eexists; eassumption); exact I|].
+      rewrite (is_derive_unique (fun x : R => y x) r _ Hy : Derive (fun x : R => y x) r = _). ring.
+    - intros r Hr. apply Rmult_le_pos; [apply Hfirst; lra | left; apply exp_pos]. }
+  rewrite Rmult_0_r, exp_0, Rmult_1_r in Hle.
+  apply Rmult_lt_reg_r with (exp (k * t)); [apply exp_pos|]. lra.
+Qed.
+
+(** What does not grow where it is positive never becomes positive. *)
+Theorem never_positive : forall (g dg : R -> R),
+  (forall s, 0 <= s -> is_derive g s (dg s)) ->
+  (forall s, 0 <= s -> 0 < g s -> dg s <= 0) ->
+  g 0 <= 0 -> forall t, 0 <= t -> g t <= 0.
+Proof.
+  intros g dg Hd Hout H0 t Ht. apply Rnot_lt_le. intros Hpos.
+  assert (Hcont : forall s, 0 <= s -> continuity_pt g s).
+  { intros s Hs. apply derivable_continuous_pt. exists (dg s). apply is_derive_Reals. now apply Hd. }
+  (* The last time at which it was not positive. *)
+  set (E := fun s => 0 <= s <= t /\ g s <= 0).
+  destruct (completeness E) as (last & Hub & Hleast).
+  - exists t. intros s Hs. apply Hs.
+  - exists 0. repeat split; lra.
+  - assert (Hlast : 0 <= last <= t).
+    { split; [apply Hub; repeat split; lra | apply Hleast; intros s Hs; apply Hs]. }
+    assert (Hafter : forall s, last < s <= t -> 0 < g s).
+    { intros s Hs. apply Rnot_le_lt. intros Hle.
+      assert (s <= last) by (apply Hub; repeat split; lra). lra. }
+    assert (Hat : g last <= 0).
+    { apply Rnot_lt_le. intros Hgt.
+      destruct (Hcont last (proj1 Hlast) (g last) Hgt) as (d & Hdpos & Hnear).
+      assert (Hbound : is_upper_bound E (last - d / 2)).
+      { intros s (Hs & Hgs). apply Rnot_lt_le. intros Hlt.
+        assert (s <= last) by (apply Hub; split; assumption).
+        destruct (Req_dec s last) as [->|Hne]; [lra|].
+        assert (Hclose : Rabs (g s - g last) < g last).
+        { apply Hnear. split; [split; [exact I | lra]|]. cbn. unfold R_dist.
+          rewrite Rabs_left; lra. }
+        unfold Rabs in Hclose. destruct (Rcase_abs (g s - g last)); lra. }
+      specialize (Hleast _ Hbound). lra. }
+    assert (Hfall : - g last <= - g t).
+    { apply (does_not_fall (fun s => - g s) (fun s => - dg s) last t (proj2 Hlast)).
+      - intros s Hs. apply @is_derive_opp. apply Hd. lra.
+      - intros s Hs. assert (dg s <= 0) by (apply Hout; [lra | apply Hafter; lra]). lra. }
+    lra.
+Qed.
+
+(** |omega_d12| <= Omega: outside, the third step turns p inwards, and the
+    fourth does not undo it. *)
+Theorem turned_inwards : forall rate wanted rate_max period, 0 < period -> 0 <= rate_max ->
+  rate_max * rate_max < square rate ->
+  let q := within_rate rate wanted period rate_max in
+  x rate * x q + y rate * y q <= 0.
+Proof.
+  intros rate wanted rate_max period Hh Hmax Hout q.
+  pose proof (rate_after_third_step rate wanted period rate_max Hmax Hh) as H. fold q in H.
+  assert (Hsq : square (add rate (scaled period q)) <= rate_max * rate_max).
+  { rewrite <- length_squared. pose proof (length_nonneg (add rate (scaled period q))).
+    apply Rmult_le_compat; assumption. }
+  generalize dependent q. intros q _ Hsq. unfold square, add, scaled in *. cbn in Hsq.
+  assert (0 <= period * x q * (period * x q)) by apply Rle_0_sqr.
+  assert (0 <= period * y q * (period * y q)) by apply Rle_0_sqr.
+  assert (period * (x rate * x q + y rate * y q) <= 0) by lra.
+  apply Rnot_lt_le. intros Hlt. assert (0 < period * (x rate * x q + y rate * y q)) by nra. lra.
+Qed.
+
+(** So the rate of the thrust direction never passes Omega: p' is q of the
+    limiter. *)
+Theorem rate_is_bounded : forall (p_1 p_2 q_1 q_2 : R -> R) rate_max, 0 <= rate_max ->
+  (forall s, 0 <= s -> is_derive p_1 s (q_1 s)) -> (forall s, 0 <= s -> is_derive p_2 s (q_2 s)) ->
+  (forall s, 0 <= s -> rate_max * rate_max < p_1 s * p_1 s + p_2 s * p_2 s ->
+     p_1 s * q_1 s + p_2 s * q_2 s <= 0) ->
+  p_1 0 * p_1 0 + p_2 0 * p_2 0 <= rate_max * rate_max ->
+  forall t, 0 <= t -> p_1 t * p_1 t + p_2 t * p_2 t <= rate_max * rate_max.
+Proof.
+  intros p_1 p_2 q_1 q_2 rate_max Hmax H1 H2 Hin H0 t Ht.
+  assert (H : p_1 t * p_1 t + p_2 t * p_2 t - rate_max * rate_max <= 0).
+  { apply (never_positive (fun s => p_1 s * p_1 s + p_2 s * p_2 s - rate_max * rate_max)
+      (fun s => 2 * (p_1 s * q_1 s + p_2 s * q_2 s))); try assumption.
+    - intros s Hs. specialize (H1 s Hs). specialize (H2 s Hs).
+      auto_derive; [repeat split; try (eexists; eassumption); exact I|].
+      rewrite (is_derive_unique (fun x : R => p_1 x) s _ H1 : Derive (fun x : R => p_1 x) s = _),
+        (is_derive_unique (fun x : R => p_2 x) s _ H2 : Derive (fun x : R => p_2 x) s = _). ring.
+    - intros s Hs Hpos. specialize (Hin s Hs ltac:(lra)). lra.
+    - lra. }
+  lra.
+Qed.
