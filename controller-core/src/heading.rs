@@ -75,6 +75,11 @@ impl Heading {
         Self { direction: Vector2::new(cos, sin), rate, acceleration }
     }
 
+    /// A direction of nearly unit length, normalised, with rates that are finite.
+    pub(crate) fn near_unit(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Self {
+        Self { direction: direction / math::sqrt(direction.norm_squared()), rate, acceleration }
+    }
+
     /// The same direction with its rates dropped.
     #[must_use]
     pub fn at_rest(&self) -> Self {
