@@ -150,12 +150,7 @@ impl Shield {
     ///
     /// # Errors
     /// As the law's step; law and shield remember nothing of the tick then. Whatever the policy offers is no error.
-    pub fn step(
-        &mut self,
-        law: &mut Controller,
-        state: &State,
-        offers: Option<&Demand>,
-    ) -> Result<Flown, InputError> {
+    pub fn step(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
         let mut next = *self;
         let flown = next.advance(law, state, offers)?;
         *self = next;

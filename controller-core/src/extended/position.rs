@@ -279,11 +279,10 @@ impl PositionLaw {
         Vector3::new(z_2.x * horizontal, z_2.y * horizontal, z_2.z * vertical)
     }
 
-    /// The tangent of the tilt that stopping takes at most, at `speed` across and these levels.
+    /// ubar where the reference is at rest at z_1, m/s^2.
     #[must_use]
-    pub fn stopping_tilt(&self, speed: f32, [across, ..]: [f32; 3]) -> f32 {
-        let wanted = speed * self.k_v_across;
-        wanted * unit_factor(across, wanted * wanted) / self.gravity
+    pub fn stopping(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+        self.saturated([&Vector3::zeros(), z_2], force, greatest, f32::MAX)
     }
 
     /// The inputs of the filters c, x and y in turn, for a position and its derivatives: p + p' / k_f, and that with

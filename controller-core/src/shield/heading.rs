@@ -6,10 +6,10 @@
 //! half of psi''.
 
 use crate::extended::demand::Demand;
-use crate::heading::Heading;
+use crate::heading::{Heading, forwards};
 use crate::math;
 use crate::reference::ReferenceBounds;
-use nalgebra::{Quaternion, Vector2};
+use nalgebra::Vector2;
 
 /// The part of the root of K_nu'' that the rate may take.
 const RATE_SHARE: f32 = 0.8;
@@ -90,9 +90,4 @@ impl HeadingGenerator {
         let turned = here * cos + across * sin;
         self.heading = Heading::near_unit(turned, rate + acceleration * self.period, acceleration);
     }
-}
-
-/// The horizontal part of R e1.
-fn forwards(q: &Quaternion<f32>) -> Vector2<f32> {
-    Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k))
 }

@@ -38,15 +38,7 @@ impl Settings {
     /// The usual settings for a box.
     #[must_use]
     pub const fn new(low: Vector3<f32>, high: Vector3<f32>) -> Self {
-        Self {
-            low,
-            high,
-            speed: 10.0,
-            silence: 0.1,
-            patience: 1.0,
-            patience_greatest: 16.0,
-            hand_overs: 10,
-        }
+        Self { low, high, speed: 10.0, silence: 0.1, patience: 1.0, patience_greatest: 16.0, hand_overs: 10 }
     }
 
     /// Checks them.
@@ -83,11 +75,7 @@ impl Settings {
     pub fn refuge(&self, place: &Vector3<f32>) -> Vector3<f32> {
         let axis = |place: f32, low: f32, high: f32| math::between(place, low + INSET, high - INSET);
         let (low, high) = (&self.low, &self.high);
-        Vector3::new(
-            axis(place.x, low.x, high.x),
-            axis(place.y, low.y, high.y),
-            axis(place.z, low.z, high.z),
-        )
+        Vector3::new(axis(place.x, low.x, high.x), axis(place.y, low.y, high.y), axis(place.z, low.z, high.z))
     }
 
     /// Whether `place` is in the box.

@@ -54,9 +54,8 @@ impl Controller {
         let magnitude = math::sqrt(command.norm_squared());
 
         let reaction = self.reaction(&z_2, &command, &force, greatest);
-        let carried = Vector3::new(reaction, reaction, self.late + self.period);
-        let went_on = z_1 + z_2.component_mul(&carried);
-        let sped_up = acceleration.component_mul(&carried);
+        let went_on = z_1 + z_2 * reaction;
+        let sped_up = acceleration * reaction;
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
             let levels = self.position.stopping_levels(&speed, &force, greatest);
             at + self.position.stopping_way(&speed, levels)
@@ -70,20 +69,18 @@ impl Controller {
                 first,
                 second,
                 stop(went_on, z_2),
-                stop(went_on + sped_up.component_mul(&carried) * 0.5, z_2 + sped_up),
+                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up),
             ],
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
             doubtful: self.memory.held > 0 || self.is_at_a_level(),
         }
     }
 
-    /// How much longer than the filters the thrust direction takes from where it points to where braking has it, s.
+    /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.
     fn reaction(&self, z_2: &Vector3<f32>, command: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> f32 {
-        let speed = math::sqrt(z_2.xy().norm_squared());
-        let levels = self.position.stopping_levels(z_2, force, greatest);
-        let needed = self.position.stopping_tilt(speed, levels);
-        let outwards = command.xy().dot(&z_2.xy()) / (math::greater(speed, 1e-3) * command.z);
-        let angle = math::greater(arc_tangent(needed) + arc_tangent(outwards), 0.0);
+        let mut stopping = self.position.stopping(z_2, force, greatest);
+        stopping.z += self.vehicle.gravity;
+        let angle = angle(command, &stopping);
         let parameters = &self.law.parameters;
         let budget = self.budget.acceleration(command.z, FEEDBACK_SHARE * parameters.m_all, SINE);
         let acceleration = TURNED * math::greater(budget, parameters.turn_reserve);
@@ -109,10 +106,16 @@ impl Controller {
     }
 }
 
-/// The angle with this tangent, rad, to 0.005.
-fn arc_tangent(x: f32) -> f32 {
+/// The angle between two vectors, rad, to 0.01: twice the one with the tangent |a x b| / (|a| |b| + a . b).
+fn angle(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
     const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
-    let size = x.abs();
-    let angle = if size > 1.0 { QUARTER - size / (size * size + 0.28) } else { size / (1.0 + 0.28 * size * size) };
-    angle.copysign(x)
+    let across = math::sqrt(a.cross(b).norm_squared());
+    let along = math::sqrt(a.norm_squared() * b.norm_squared()) + a.dot(b);
+    let tangent = across / math::greater(along, f32::MIN_POSITIVE);
+    let half = if tangent > 1.0 {
+        QUARTER - tangent / (tangent * tangent + 0.28)
+    } else {
+        tangent / (1.0 + 0.28 * tangent * tangent)
+    };
+    2.0 * half
 }
