@@ -33,6 +33,7 @@ use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
 use crate::extended::controller::{Controller, Prospect};
 use crate::extended::net;
+use crate::extended::position::Most;
 use crate::heading::Heading;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -88,6 +89,8 @@ pub struct Shield {
     settings: Settings,
     monitor: Monitor,
     heading: HeadingGenerator,
+    /// The greatest levels of feedback while the law flies.
+    most: Most,
     period: f32,
     pilot: Pilot,
     /// The last demand that could be used, and how many ticks ago it came.
@@ -112,6 +115,11 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
+            most: Most {
+                up: f32::MAX,
+                down: 0.4 * configuration.vehicle().gravity,
+                across: 0.8 * configuration.vehicle().gravity,
+            },
             period,
             pilot: Pilot::Policy,
             demand: None,
@@ -158,7 +166,7 @@ impl Shield {
     }
 
     fn advance(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
-        let prospect = law.prospect(state);
+        let prospect = law.prospect(state, &self.most);
         let against = self.judge(state, &prospect, offers);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
@@ -176,7 +184,7 @@ impl Shield {
                 };
                 self.heading.come_to_rest();
                 let reference = Reference::resting(refuge, *self.heading.heading());
-                let (wrench, diagnostics) = law.step(state, &reference)?;
+                let (wrench, diagnostics) = law.step_within(state, &reference, &self.most)?;
                 Ok(Flown { wrench, diagnostics, reason: Some(reason), reference })
             }
         }
