@@ -83,6 +83,14 @@ enum Pilot {
     },
 }
 
+/// The greatest levels of feedback while the law flies in place of a policy, under `gravity`, m/s^2: 0.4 g down and 0.8
+/// g across. With all of the envelope the law may brake a climb with a third of the weight as thrust, and while it is
+/// tilted such a thrust turns the vehicle too slowly to follow: a Hummingbird in wind then went two metres astray. Up
+/// there is no such limit.
+fn stopping(gravity: f32) -> Most {
+    Most { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
+}
+
 /// A shield, as before a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shield {
@@ -115,11 +123,7 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
-            most: Most {
-                up: f32::MAX,
-                down: 0.4 * configuration.vehicle().gravity,
-                across: 0.8 * configuration.vehicle().gravity,
-            },
+            most: stopping(configuration.vehicle().gravity),
             period,
             pilot: Pilot::Policy,
             demand: None,
