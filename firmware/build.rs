@@ -1,7 +1,8 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
 //! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it
-//! an image for a board is built of a vehicle that does not exist, and never arms. `BOOTLOADER=kept` leaves the first
+//! an image for a board is built of a vehicle that does not exist, and never arms. `POLICY=file.toml` builds in a policy,
+//! a network as docs/shield.md has it. `BOOTLOADER=kept` leaves the first
 //! flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
@@ -66,10 +67,22 @@ fn scenario(target: &Path) -> Result<(), String> {
         println!("cargo::warning=no vehicle: this image never arms; build with SCENARIO=vehicles/yours.toml");
     }
     let source = format!(
-        "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n",
-        embedded.source
+        "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n{}",
+        embedded.source,
+        policy(&top)?
     );
     fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
+}
+
+/// The source of the policy that POLICY names, or of none.
+fn policy(top: &Path) -> Result<String, String> {
+    println!("cargo::rerun-if-env-changed=POLICY");
+    let Ok(name) = env::var("POLICY") else { return Ok(embed::NO_POLICY.to_owned()) };
+    let file = top.join(&name);
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = scenario::text::read(&file)
+        .map_err(|error| format!("POLICY {name}: cannot be read from the top of the repository: {error}"))?;
+    embed::policy(&text, &name)
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.

@@ -11,6 +11,7 @@
 //! law's theorem holds from there on.
 //!
 //! - [`monitor`]: when the law has to take over: a table of rules, each with its number and its reason;
+//! - [`network`]: a small network as a policy;
 //! - [`reason`]: those reasons in words;
 //! - [`settings`]: the box, and the numbers of the rules;
 //! - `heading`: a heading that turns within the certified bounds.
@@ -21,6 +22,7 @@
 
 mod heading;
 pub mod monitor;
+pub mod network;
 pub mod reason;
 pub mod settings;
 

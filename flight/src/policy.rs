@@ -156,6 +156,31 @@ impl<P: Policy> Aboard for Guarded<P> {
     }
 }
 
+/// A policy that a build may have found no use for.
+impl<A: Aboard> Aboard for Option<A> {
+    const EXISTS: bool = A::EXISTS;
+
+    fn fit(&mut self, configuration: &Configuration, period: f32) {
+        if let Some(aboard) = self {
+            aboard.fit(configuration, period);
+        }
+    }
+
+    fn begin(&mut self, corners: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal> {
+        self.as_mut().ok_or(Refusal::NoPolicy)?.begin(corners, goal, heading)
+    }
+
+    fn go_to(&mut self, goal: &Vector3<f32>) {
+        if let Some(aboard) = self {
+            aboard.go_to(goal);
+        }
+    }
+
+    fn fly(&mut self, law: &mut Law, state: &State) -> Result<Shielded, InputError> {
+        self.as_mut().ok_or(InputError::OutOfRange { field: "policy" })?.fly(law, state)
+    }
+}
+
 /// The corners of the box in a fence about `home`, m: a square in its circle.
 pub(super) fn corners(home: &Vector3<f32>, radius: f32, height: f32) -> [Vector3<f32>; 2] {
     let half = radius * core::f32::consts::FRAC_1_SQRT_2 - INSIDE;
