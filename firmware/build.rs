@@ -7,6 +7,8 @@
 
 #[path = "build/embed.rs"]
 mod embed;
+#[path = "build/policy.rs"]
+mod policy;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -52,6 +54,7 @@ fn is_for_a_vehicle() -> bool {
 fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-env-changed=SCENARIO");
     println!("cargo::rerun-if-changed=build/embed.rs");
+    println!("cargo::rerun-if-changed=build/policy.rs");
     let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
     let name = env::var("SCENARIO").unwrap_or_else(|_| STUDY.to_owned());
     let file = top.join(&name);
@@ -69,20 +72,20 @@ fn scenario(target: &Path) -> Result<(), String> {
     let source = format!(
         "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n{}",
         embedded.source,
-        policy(&top)?
+        carried(&top)?
     );
     fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
 }
 
 /// The source of the policy that POLICY names, or of none.
-fn policy(top: &Path) -> Result<String, String> {
+fn carried(top: &Path) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=POLICY");
-    let Ok(name) = env::var("POLICY") else { return Ok(embed::NO_POLICY.to_owned()) };
+    let Ok(name) = env::var("POLICY") else { return Ok(policy::NONE.to_owned()) };
     let file = top.join(&name);
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file)
         .map_err(|error| format!("POLICY {name}: cannot be read from the top of the repository: {error}"))?;
-    embed::policy(&text, &name)
+    policy::source(&text, &name)
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.

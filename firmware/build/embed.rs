@@ -11,7 +11,6 @@ use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::constants::Constant;
 use controller_core::extended::actuators::ActuatorParameters;
 use nalgebra::Vector3;
-use scenario::policy::PolicyFile;
 use scenario::{Scenario, board};
 
 /// What is to be built in.
@@ -144,47 +143,4 @@ fn bytes(bytes: &[u8]) -> String {
 
 fn vector(v: &Vector3<f32>) -> String {
     format!("Vector3::new({:e}, {:e}, {:e})", v.x, v.y, v.z)
-}
-
-/// The source of an image without a policy.
-pub const NO_POLICY: &str = "
-/// What policy is built in.
-pub type Policy = flight::NoPolicy;
-
-/// None.
-pub fn policy() -> Policy {
-    flight::NoPolicy
-}
-";
-
-/// The source of an image with the policy in `text`, of the file `name`.
-///
-/// # Errors
-/// One line: the file, the field and what is wrong.
-pub fn policy(text: &str, name: &str) -> Result<String, String> {
-    let PolicyFile { layers, scale } = PolicyFile::parse(text, name)?;
-    let list = |numbers: &[f32]| numbers.iter().map(|number| format!("{number:e}, ")).collect::<String>();
-    let layers: String = layers
-        .iter()
-        .map(|(weights, biases)| {
-            format!("    Layer {{ weights: &[{}], biases: &[{}] }},\n", list(weights), list(biases))
-        })
-        .collect();
-    Ok(format!(
-        "
-use controller_core::shield::network::{{Layer, Network, NetworkPolicy}};
-
-static LAYERS: &[Layer<'static>] = &[
-{layers}];
-
-/// What policy is built in.
-pub type Policy = Option<flight::Guarded<NetworkPolicy<'static>>>;
-
-/// The network; none that the build has not accepted.
-pub fn policy() -> Policy {{
-    Network::new(LAYERS, [{}]).ok().map(|network| flight::Guarded::new(NetworkPolicy::new(network)))
-}}
-",
-        list(&scale)
-    ))
 }
