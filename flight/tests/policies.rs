@@ -185,3 +185,12 @@ fn without_a_policy_or_under_the_papers_law_none_flies() {
     let none: Option<Guarded<Pilot>> = None;
     assert_eq!({ none }.begin(corners, &Vector3::zeros(), &Heading::FORWARD), Err(Refusal::NoPolicy));
 }
+
+#[test]
+fn every_hand_over_in_words_fits_a_statustext() {
+    for reason in shield::Reason::ALL {
+        for handed in [Handed::ToPolicy, Handed::ToLaw(reason), Handed::ToLawForGood(reason)] {
+            assert!(handed.to_string().len() <= flight::reason::TEXT_MAX, "{handed}");
+        }
+    }
+}
