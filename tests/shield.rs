@@ -217,6 +217,42 @@ fn no_policy_leaves_the_box_touches_the_ground_or_overloads_a_rotor() {
     assert!(flights >= 1_000);
 }
 
+/// To one place after the other, at 2 m/s and 3 m/s^2 at most.
+#[test]
+fn a_calm_policy_flies_without_a_hand_over() {
+    let mut rng = random::generator(302);
+    for name in ["hummingbird", "published/cf2x-pybullet"] {
+        let scenario = read(name, 0.0);
+        let period = scenario.timing.period() as f32;
+        for _ in 0..10 {
+            let mut scenario = scenario.clone();
+            let mut anywhere =
+                || Vector3::from([0, 1, 2].map(|axis: usize| rng.random_range(LOW[axis] + 1.0..HIGH[axis] - 1.0)));
+            scenario.initial.position = anywhere().cast();
+            let mut vehicle = SimulatedVehicle::new(&scenario, &scenario.configuration);
+            let mut law = flight::law(&scenario).unwrap();
+            let law = law.extended().unwrap();
+            let mut shield = Shield::new(&scenario.configuration, &Settings::new(LOW, HIGH), period).unwrap();
+            let mut goal = anywhere();
+            let at_most = |v: Vector3<f32>, length: f32| v * (length / v.norm().max(length));
+            for tick in 0..1_500 {
+                if tick % 400 == 399 {
+                    assert!((vehicle.state().position.cast() - goal).norm() < 0.3, "{name}");
+                    goal = anywhere();
+                }
+                let state = vehicle.state().measured();
+                let wanted = at_most((goal - state.position) * 0.8, 2.0);
+                let acceleration = at_most((wanted - state.velocity) * 2.5, 3.0);
+                let demand = Demand::Acceleration { acceleration, yaw_rate: 0.0 };
+                let flown = shield.step(law, &state, Some(&demand)).unwrap();
+                assert_eq!(flown.reason, None, "{name} {tick} {state:?}");
+                let wrench = flown.wrench.scaled(1.0 / law.thrust_scale());
+                vehicle.hold(&wrench, scenario.timing.steps_per_tick).unwrap();
+            }
+        }
+    }
+}
+
 /// The law alone keeps its limits and goes wherever it is sent.
 #[test]
 fn without_the_monitor_the_same_policies_crash() {

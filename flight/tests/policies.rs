@@ -118,8 +118,17 @@ fn the_law_takes_over_says_why_and_gives_the_vehicle_back() {
             last = said(&mut flight, 2_000).0.last().copied().or(last);
         }
         assert_eq!(last, Some(Handed::ToLawForGood(reason)));
-        assert_eq!(flight.answer(Request::FlyPolicy), Ok(()));
-        assert!(said(&mut flight, 100).0.is_empty() && flight.pilot.mode() == Mode::Flying);
+        flight.inputs.request = Some(Request::FlyPolicy);
+        assert_eq!(flight.tick().handed, Some(Handed::ToPolicy));
+        // Asked for again and again it still waits for its time.
+        harm.set(does);
+        said(&mut flight, 100);
+        harm.set(Harm::None);
+        for _ in 0..20 {
+            assert_eq!(flight.answer(Request::FlyPolicy), Ok(()));
+            assert_eq!(said(&mut flight, 2).0, []);
+        }
+        assert_eq!(said(&mut flight, 600).0, [Handed::ToPolicy]);
     }
 }
 
