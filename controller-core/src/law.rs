@@ -104,6 +104,15 @@ impl Law {
         }
     }
 
+    /// The extended law, if it is that one.
+    #[must_use]
+    pub fn extended(&mut self) -> Option<&mut extended::controller::Controller> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => Some(law),
+        }
+    }
+
     /// Changes the time between steps, s.
     ///
     /// # Errors
@@ -116,7 +125,7 @@ impl Law {
     }
 
     /// [`Self::step`] as it is flown: compiled once, in this crate, however small its callers are compiled, and without
-    /// what they do not read. The extended law's takes 1,711 instructions so.
+    /// what they do not read. The extended law's takes 1,718 instructions so.
     ///
     /// # Errors
     /// As [`Self::step`].

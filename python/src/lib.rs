@@ -5,6 +5,8 @@
 //! | [`scenarios`] | scenarios from files, text and the built-in ones; edited copies; their references |
 //! | [`imports`] | vehicles from the files and dictionaries of other programs |
 //! | [`laws`] | the control law, one vehicle or rows of them |
+//! | [`shields`] | the law behind which a policy flies, one vehicle or rows of them |
+//! | [`networks`] | a small network as a policy |
 //! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
@@ -25,9 +27,11 @@ mod flights;
 mod governors;
 mod imports;
 mod laws;
+mod networks;
 mod refused;
 mod rows;
 mod scenarios;
+mod shields;
 mod tuning;
 mod vehicles;
 mod waiting;
@@ -52,9 +56,13 @@ mod _core {
     #[pymodule_export]
     use super::laws::{Law, LawRows};
     #[pymodule_export]
+    use super::networks::Network;
+    #[pymodule_export]
     use super::rows::{reference, state};
     #[pymodule_export]
     use super::scenarios::Scenario;
+    #[pymodule_export]
+    use super::shields::{Shield, ShieldRows};
     #[pymodule_export]
     use super::tuning::{Tuned, tune};
     #[pymodule_export]

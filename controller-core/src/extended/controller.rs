@@ -14,10 +14,11 @@
 use super::actuators::ActuatorModel;
 use super::attitude::{AttitudeLaw, Late};
 use super::budget::TurningBudget;
+use super::demand::Demand;
 use super::heading::{self, HeadingLag};
 use super::learning::Learning;
 use super::memory::{Averages, Estimates, Last, Memory};
-use super::position::{Filters, PositionLaw};
+use super::position::{Filters, Most, PositionLaw};
 use super::thrust_range::ThrustRange;
 use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
@@ -33,6 +34,14 @@ use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
+
+/// Where ubar comes from.
+enum Wanted<'a> {
+    /// The law, with these levels at most.
+    Feedback(&'a Most),
+    /// A policy.
+    Demand(&'a Demand),
+}
 
 /// The extended law for one vehicle, one set of constants and one period.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,16 +123,75 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        self.tick(state, reference, &Wanted::Feedback(&Most::ALL))
+    }
+
+    /// One tick with a demand in place of the position law's feedback. The reference gives the heading, and where the
+    /// errors in the diagnostics are counted from; it has to be at rest. The net does not count.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s, and for a demand that cannot be used.
+    pub fn step_on_demand(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        demand: &Demand,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        demand.check()?;
+        self.shielded_tick(state, reference, &Wanted::Demand(demand))
+    }
+
+    /// One tick whose feedback has levels of at most `most`. Every theorem on feedback holds for lower levels as well.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s.
+    pub fn step_within(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        most: &Most,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        self.shielded_tick(state, reference, &Wanted::Feedback(most))
+    }
+
+    /// Behind a shield: compiled once for both.
+    #[inline(never)]
+    fn shielded_tick(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        wanted: &Wanted,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        self.tick(state, reference, wanted)
+    }
+
+    #[inline(always)]
+    fn tick(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        wanted: &Wanted,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
         let learnt = self.learning.learnt(&self.memory, state, &axis);
         let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
 
         let mut net = self.memory.net;
-        let filters = if net.catches() { Filters::at(-force) } else { self.memory.filters };
-        let [each, taken, most] = self.greatest;
-        let greatest = math::lesser(scale * each - taken, most);
-        let feedback = self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught());
+        let counts = matches!(wanted, Wanted::Feedback(_));
+        let catches = counts && net.catches();
+        let filters = if catches { Filters::at(-force) } else { self.memory.filters };
+        let greatest = self.greatest(scale);
+        let feedback = match wanted {
+            Wanted::Feedback(most) => {
+                let most = if net.is_caught() { self.position.net() } else { **most };
+                self.position.feedback(state, reference, &filters, &force, greatest, &most)
+            }
+            Wanted::Demand(demand) => {
+                let wanted = self.wanted(state, demand, &force);
+                self.position.demanded(state, reference, &filters, &force, greatest, &wanted)
+            }
+        };
         let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position.k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
@@ -177,7 +245,9 @@ impl Controller {
         let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
-        net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
+        if counts {
+            net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
+        }
 
         if let Some(changed) = self.changed {
             cold_path();
@@ -218,7 +288,28 @@ impl Controller {
         Ok((Wrench { thrust, torque }, diagnostics))
     }
 
+    /// U for a thrust scale, m/s^2.
+    #[inline(always)]
+    fn greatest(&self, scale: f32) -> f32 {
+        let [each, taken, most] = self.greatest;
+        math::lesser(scale * each - taken, most)
+    }
+
+    /// ubar for a demand, before it is cut to the envelope, m/s^2.
+    fn wanted(&self, state: &State, demand: &Demand, force: &Vector3<f32>) -> Vector3<f32> {
+        match demand {
+            // v' = c - kappa v_h + D for a reference at rest.
+            Demand::Acceleration { acceleration, .. } => self.with_drag(acceleration, &state.velocity) - force,
+            Demand::Attitude { attitude, thrust } => {
+                let mut wanted = thrust_axis(attitude) * (thrust / self.vehicle.mass);
+                wanted.z -= self.vehicle.gravity;
+                wanted
+            }
+        }
+    }
+
     /// The part of past commands that has not acted yet, for the current thrust scale and torque bias.
+    #[inline(always)] // see position.rs
     fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
         let pending = self.actuators.pending(&self.memory.actuators);
         let impulse = Vector3::new(pending.y, pending.z, pending.w) * scale + bias * self.late;
@@ -240,6 +331,7 @@ impl Controller {
     }
 
     /// Refuses inputs for which the law is undefined. Nearly every input passes the first comparison.
+    #[inline(always)] // see position.rs
     fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
         let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
         let climbs = reference.acceleration.z > self.steepest_fall;
@@ -272,5 +364,9 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
 }
 
 mod building;
+mod prospect;
+
+pub use prospect::Prospect;
+
 #[cfg(test)]
 mod tests;
