@@ -109,8 +109,8 @@ fn the_thrust_range_is_that_of_the_proofs() {
             };
             fields.insert("beta".to_owned(), record(&beta));
             let rotor = Value::Record(fields);
-            floor = floor.max(proofs.value("needs", &[rotor.clone()]).number());
-            ceiling = ceiling.min(proofs.value("gives", &[rotor]).number());
+            floor = floor.max(proofs.value("needs", std::slice::from_ref(&rotor)).number());
+            ceiling = ceiling.min(proofs.value("gives", std::slice::from_ref(&rotor)).number());
         }
         near(range.least(&torque, scale), floor, 10.0, "floor");
         near(range.greatest(&torque, scale), ceiling, 10.0, "ceiling");
