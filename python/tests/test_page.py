@@ -17,4 +17,5 @@ def test_the_pages_code_runs_from_top_to_bottom(tmp_path, monkeypatch):
     figure = (tmp_path / "recovery.png").read_bytes()
     assert figure.startswith(b"\x89PNG") and len(figure) > 10_000
     assert names["late"].reasons and names["rewards"].shape == (64,)
+    assert names["frame"].shape == (420, 480, 3) and (tmp_path / "climb.gif").read_bytes().startswith(b"GIF89a")
     assert names["references"].shape == (500, 19) and len(names["flight"]) == 600
