@@ -40,6 +40,8 @@ pub enum Reason {
     DoesNotSpan,
     /// An option of a law other than the one that flies.
     OtherLaw,
+    /// The paper's law, which carries no policy.
+    CarriesNoPolicy,
     /// Loops that were not found stable with their margin.
     WithoutMargin,
 }
@@ -66,6 +68,7 @@ impl fmt::Display for Reason {
             Self::NotIncreasing => write!(f, "must be strictly increasing"),
             Self::NotOnCircle => write!(f, "must be a unit vector with derivatives along the circle"),
             Self::OtherLaw => write!(f, "belongs to another law than control.law"),
+            Self::CarriesNoPolicy => write!(f, "must be \"extended\": the paper's law carries no policy"),
             Self::WithoutMargin => write!(f, "without margin at these gains"),
             Self::DoesNotSpan => write!(f, "cannot produce thrust and all three torques independently"),
         }

@@ -19,6 +19,7 @@
 //! | [`net`] | proven gains, if a flight does not arrive with the own ones | 13 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
+//! | [`demand`] | an acceleration, or an attitude and a thrust, in place of the feedback | |
 //! | [`memory`] | the law's memory from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`crate::constants`], [`parameters`] | all of its constants, declared once, validated | |
@@ -31,6 +32,7 @@ pub mod attitude;
 pub mod budget;
 pub mod controller;
 pub mod defaults;
+pub mod demand;
 pub mod force;
 pub mod heading;
 pub mod learning;

@@ -6,7 +6,7 @@
 
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
-use nalgebra::Vector2;
+use nalgebra::{Quaternion, Vector2};
 
 /// A heading nu_d on S^1 with its rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +75,19 @@ impl Heading {
         Self { direction: Vector2::new(cos, sin), rate, acceleration }
     }
 
+    /// Where a vehicle's x axis points, at rest; along world x where that points up or down.
+    #[must_use]
+    pub fn of_attitude(attitude: &Quaternion<f32>) -> Self {
+        let forwards = forwards(attitude);
+        let length = math::sqrt(forwards.norm_squared());
+        if length > Self::TOLERANCE { Self::near_unit(forwards, 0.0, 0.0) } else { Self::FORWARD }
+    }
+
+    /// A direction that is not zero, normalised, with rates that are finite.
+    pub(crate) fn near_unit(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Self {
+        Self { direction: direction / math::sqrt(direction.norm_squared()), rate, acceleration }
+    }
+
     /// The same direction with its rates dropped.
     #[must_use]
     pub fn at_rest(&self) -> Self {
@@ -110,6 +123,11 @@ impl Heading {
     pub fn second_derivative(&self) -> Vector2<f32> {
         Vector2::new(-self.direction.y, self.direction.x) * self.acceleration - self.direction * (self.rate * self.rate)
     }
+}
+
+/// The horizontal part of R e1, for a quaternion of unit length.
+pub(crate) fn forwards(q: &Quaternion<f32>) -> Vector2<f32> {
+    Vector2::new(1.0 - 2.0 * (q.j * q.j + q.k * q.k), 2.0 * (q.i * q.j + q.w * q.k))
 }
 
 #[cfg(test)]

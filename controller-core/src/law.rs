@@ -104,6 +104,15 @@ impl Law {
         }
     }
 
+    /// The extended law, if it is that one.
+    #[must_use]
+    pub fn extended(&mut self) -> Option<&mut extended::controller::Controller> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => Some(law),
+        }
+    }
+
     /// Changes the time between steps, s.
     ///
     /// # Errors

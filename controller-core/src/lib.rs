@@ -36,6 +36,7 @@
 //!   [`path_lifting`], [`attitude`]; the other in [`extended`]. Each module opens with its equations and their numbers.
 //! - Proof: [`certificate`] of a [`configuration`]. Rotors: [`allocation`].
 //! - References: [`mod@reference`] with their own bounds; [`governor`] makes them of any stream of setpoints.
+//! - Other people's controllers, within the same limits: [`shield`].
 //! - Parameters on board: [`tuning`].
 //!
 //! # Conventions
@@ -91,6 +92,7 @@ pub mod position;
 pub mod projection;
 pub mod reference;
 pub mod rotation;
+pub mod shield;
 pub mod state;
 pub mod tuning;
 pub mod vehicle;

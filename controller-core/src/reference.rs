@@ -49,6 +49,13 @@ pub struct Reference {
 }
 
 impl Reference {
+    /// At rest.
+    #[must_use]
+    pub const fn resting(position: Vector3<f32>, heading: Heading) -> Self {
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        Self { position, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading }
+    }
+
     /// The sum of the squares of all vectors and of the heading's rates.
     #[inline(always)]
     pub(crate) fn squares(&self) -> f32 {

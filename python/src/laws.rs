@@ -20,7 +20,7 @@ use scenario::timing::check_period;
 use std::fmt::Display;
 
 /// Rows that one core takes at a time: fewer are not worth waking another for.
-const ROWS_AT_ONCE: usize = 256;
+pub const ROWS_AT_ONCE: usize = 256;
 /// Rows of laws, or of vehicles: of these some 10 GB.
 pub const MOST_ROWS: u64 = 1_000_000;
 
@@ -124,32 +124,36 @@ impl Law {
     /// `attitude_error` (4,), `lift_sign`. None after a reset.
     #[getter]
     fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(d) = &self.diagnostics else { return Ok(None) };
-        let named = PyDict::new(py);
-        for (name, vector) in [
-            ("position_error", &d.position_error),
-            ("velocity_error", &d.velocity_error),
-            ("z_1", &d.z_1),
-            ("z_2", &d.z_2),
-            ("feedback", &d.feedback),
-            ("filtered", &d.filtered),
-            ("intermediate", &d.intermediate),
-            ("acceleration_command", &d.acceleration_command),
-            ("desired_angular_velocity", &d.desired_angular_velocity),
-            ("desired_angular_acceleration", &d.desired_angular_acceleration),
-            ("mrp", &d.mrp),
-            ("angular_velocity_error", &d.angular_velocity_error),
-            ("attitude_feedback", &d.attitude_feedback),
-            ("rate_feedback", &d.rate_feedback),
-        ] {
-            named.set_item(name, PyArray1::from_slice(py, vector.as_slice()))?;
-        }
-        for (name, q) in [("desired_attitude", &d.desired_attitude), ("attitude_error", &d.attitude_error)] {
-            named.set_item(name, PyArray1::from_slice(py, &[q.w, q.i, q.j, q.k]))?;
-        }
-        named.set_item("lift_sign", d.lift_sign)?;
-        Ok(Some(named))
+        self.diagnostics.as_ref().map(|diagnostics| named(py, diagnostics)).transpose()
     }
+}
+
+/// Diagnostics by their names.
+pub fn named<'py>(py: Python<'py>, d: &Diagnostics) -> PyResult<Bound<'py, PyDict>> {
+    let named = PyDict::new(py);
+    for (name, vector) in [
+        ("position_error", &d.position_error),
+        ("velocity_error", &d.velocity_error),
+        ("z_1", &d.z_1),
+        ("z_2", &d.z_2),
+        ("feedback", &d.feedback),
+        ("filtered", &d.filtered),
+        ("intermediate", &d.intermediate),
+        ("acceleration_command", &d.acceleration_command),
+        ("desired_angular_velocity", &d.desired_angular_velocity),
+        ("desired_angular_acceleration", &d.desired_angular_acceleration),
+        ("mrp", &d.mrp),
+        ("angular_velocity_error", &d.angular_velocity_error),
+        ("attitude_feedback", &d.attitude_feedback),
+        ("rate_feedback", &d.rate_feedback),
+    ] {
+        named.set_item(name, PyArray1::from_slice(py, vector.as_slice()))?;
+    }
+    for (name, q) in [("desired_attitude", &d.desired_attitude), ("attitude_error", &d.attitude_error)] {
+        named.set_item(name, PyArray1::from_slice(py, &[q.w, q.i, q.j, q.k]))?;
+    }
+    named.set_item("lift_sign", d.lift_sign)?;
+    Ok(named)
 }
 
 /// A law after a step, and its wrench.
@@ -237,7 +241,7 @@ impl LawRows {
 }
 
 /// The rotors' command, as in flights and on boards.
-fn for_rotors(law: &law::Law, wrench: &Wrench) -> Wrench {
+pub fn for_rotors(law: &law::Law, wrench: &Wrench) -> Wrench {
     wrench.scaled(1.0 / law.thrust_scale())
 }
 

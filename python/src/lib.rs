@@ -5,6 +5,7 @@
 //! | [`scenarios`] | scenarios from files, text and the built-in ones; edited copies; their references |
 //! | [`imports`] | vehicles from the files and dictionaries of other programs |
 //! | [`laws`] | the control law, one vehicle or rows of them |
+//! | [`shields`] | the law behind which a policy flies, one vehicle or rows of them |
 //! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
@@ -30,6 +31,7 @@ mod refused;
 mod replays;
 mod rows;
 mod scenarios;
+mod shields;
 mod tuning;
 mod vehicles;
 mod waiting;
@@ -59,6 +61,8 @@ mod _core {
     use super::rows::{reference, state};
     #[pymodule_export]
     use super::scenarios::Scenario;
+    #[pymodule_export]
+    use super::shields::{Shield, ShieldRows};
     #[pymodule_export]
     use super::tuning::{Tuned, tune};
     #[pymodule_export]

@@ -4,6 +4,8 @@
 //! state      13   p(3) v(3) world, z up | q(4) scalar first, body to world | omega(3) body
 //! reference  19   p_d(3) v(3) a(3) j(3) s(3) world | nu_x nu_y (unit) | psi' psi''
 //! wrench      4   thrust along body z | torque(3) body
+//! demand      4   acceleration(3) world | yaw rate
+//!             5   q(4) scalar first, body to world | thrust
 //! ```
 //!
 //! The order of `log.csv`. A heading is a direction, as everywhere, so that a row gives a reference back bit for bit.
@@ -11,6 +13,7 @@
 use crate::refused::{refused, refused_field};
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
+use controller_core::shield::Demand;
 use controller_core::state::{State, Wrench};
 use nalgebra::{Quaternion, Vector2, Vector3};
 use numpy::{
@@ -191,6 +194,42 @@ pub fn wrench_rows(array: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Wrenc
     let given = rows::<WRENCH>(array, count, "wrenches")?;
     let each = given.iter().enumerate().map(|(number, row)| wrench(row).map_err(|problem| (number, problem)));
     each.collect::<Result<_, _>>().map_err(|(number, problem)| refused(format!("row {number}: {problem}")))
+}
+
+/// The demand of a row of 4 or 5 numbers.
+fn demand(row: &[f64]) -> Option<Demand> {
+    let single: Vec<f32> = row.iter().map(|value| *value as f32).collect();
+    match *single {
+        [x, y, z, yaw_rate] => Some(Demand::Acceleration { acceleration: Vector3::new(x, y, z), yaw_rate }),
+        [w, x, y, z, thrust] => Some(Demand::Attitude { attitude: Quaternion::new(w, x, y, z), thrust }),
+        _ => None,
+    }
+}
+
+/// One demand.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn demand_row(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Demand> {
+    let (values, shape) = numbers(array, field)?;
+    let given = if shape.len() == 1 { demand(&values) } else { None };
+    given.ok_or_else(|| refused_field(field, format!("must have shape (4,) or (5,), found {}", shown(&shape))))
+}
+
+/// The demands of so many rows.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn demand_rows(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyResult<Vec<Demand>> {
+    let (values, shape) = numbers(array, field)?;
+    let wanted = format!("must have shape ({count}, 4) or ({count}, 5)");
+    let other = || refused_field(field, format!("{wanted}, found {}", shown(&shape)));
+    match *shape {
+        [rows, columns @ (4 | 5)] if rows == count => {
+            values.chunks_exact(columns).map(demand).collect::<Option<_>>().ok_or_else(other)
+        }
+        _ => Err(other()),
+    }
 }
 
 /// A wrench as a row.

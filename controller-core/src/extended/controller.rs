@@ -14,6 +14,7 @@
 use super::actuators::ActuatorModel;
 use super::attitude::{AttitudeLaw, Late};
 use super::budget::TurningBudget;
+use super::demand::Demand;
 use super::heading::{self, HeadingLag};
 use super::learning::Learning;
 use super::memory::{Averages, Estimates, Last, Memory};
@@ -114,16 +115,48 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+        self.tick(state, reference, None)
+    }
+
+    /// One tick with a demand in place of the position law's feedback. The reference gives the heading, and where the
+    /// errors in the diagnostics are counted from; it has to be at rest. The net does not count.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s, and for a demand that cannot be used.
+    #[inline(never)]
+    pub fn step_on_demand(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        demand: &Demand,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        demand.check()?;
+        self.tick(state, reference, Some(demand))
+    }
+
+    #[inline(always)]
+    fn tick(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        demand: Option<&Demand>,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
         let learnt = self.learning.learnt(&self.memory, state, &axis);
         let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
 
         let mut net = self.memory.net;
-        let filters = if net.catches() { Filters::at(-force) } else { self.memory.filters };
-        let [each, taken, most] = self.greatest;
-        let greatest = math::lesser(scale * each - taken, most);
-        let feedback = self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught());
+        let catches = demand.is_none() && net.catches();
+        let filters = if catches { Filters::at(-force) } else { self.memory.filters };
+        let greatest = self.greatest(scale);
+        let feedback = match demand {
+            None => self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught()),
+            Some(demand) => {
+                let wanted = self.wanted(state, demand, &force);
+                self.position.demanded(state, reference, &filters, &force, greatest, &wanted)
+            }
+        };
         let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position.k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
@@ -177,7 +210,9 @@ impl Controller {
         let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
-        net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
+        if demand.is_none() {
+            net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
+        }
 
         if let Some(changed) = self.changed {
             cold_path();
@@ -216,6 +251,26 @@ impl Controller {
             rate_feedback: torques.damping,
         };
         Ok((Wrench { thrust, torque }, diagnostics))
+    }
+
+    /// U for a thrust scale, m/s^2.
+    #[inline(always)]
+    fn greatest(&self, scale: f32) -> f32 {
+        let [each, taken, most] = self.greatest;
+        math::lesser(scale * each - taken, most)
+    }
+
+    /// ubar for a demand, before it is cut to the envelope, m/s^2.
+    fn wanted(&self, state: &State, demand: &Demand, force: &Vector3<f32>) -> Vector3<f32> {
+        match demand {
+            // v' = c - kappa v_h + D for a reference at rest.
+            Demand::Acceleration { acceleration, .. } => self.with_drag(acceleration, &state.velocity) - force,
+            Demand::Attitude { attitude, thrust } => {
+                let mut wanted = thrust_axis(attitude) * (thrust / self.vehicle.mass);
+                wanted.z -= self.vehicle.gravity;
+                wanted
+            }
+        }
     }
 
     /// The part of past commands that has not acted yet, for the current thrust scale and torque bias.
@@ -272,5 +327,9 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
 }
 
 mod building;
+mod prospect;
+
+pub use prospect::Prospect;
+
 #[cfg(test)]
 mod tests;

@@ -83,6 +83,19 @@ pub struct PositionFeedback {
     pub drive: Vector3<f32>,
 }
 
+/// The errors that the feedback sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// p~, m.
+    pub position: Vector3<f32>,
+    /// v~, m/s.
+    pub velocity: Vector3<f32>,
+    /// z_1, m.
+    pub z_1: Vector3<f32>,
+    /// z_2, m/s.
+    pub z_2: Vector3<f32>,
+}
+
 /// The position law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
@@ -160,6 +173,7 @@ impl PositionLaw {
     /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2;
     /// `caught`, whether the level is the net's.
     #[must_use]
+    #[inline(always)] // into the law's step
     pub fn feedback(
         &self,
         state: &State,
@@ -169,6 +183,30 @@ impl PositionLaw {
         greatest: f32,
         caught: bool,
     ) -> PositionFeedback {
+        let errors = self.errors(state, reference, filters, force);
+        let most = if caught { self.net } else { f32::MAX };
+        self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, greatest, most))
+    }
+
+    /// The same with a demand in place of feedback: `wanted`, m/s^2, cut to the envelope.
+    #[must_use]
+    #[inline(always)] // likewise
+    pub fn demanded(
+        &self,
+        state: &State,
+        reference: &Reference,
+        filters: &Filters,
+        force: &Vector3<f32>,
+        greatest: f32,
+        wanted: &Vector3<f32>,
+    ) -> PositionFeedback {
+        self.passed_on(&self.errors(state, reference, filters, force), filters, self.within(wanted, greatest))
+    }
+
+    /// p~, v~, z_1 and z_2.
+    #[must_use]
+    #[inline(always)]
+    pub fn errors(&self, state: &State, reference: &Reference, filters: &Filters, force: &Vector3<f32>) -> Errors {
         let Filters { command: c, intermediate: x, smoothed: y } = filters;
         let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
         let [of_command, of_intermediate, of_smoothed] = self.lags;
@@ -176,11 +214,18 @@ impl PositionLaw {
         let (c_d, x_d, y_d) = (c + force, x + force, y + force);
         let z_1 = p + v * self.all_lags + c_d * with_command + x_d * with_intermediate;
         let z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
-        let feedback = self.saturated([&z_1, &z_2], force, greatest, if caught { self.net } else { f32::MAX });
+        Errors { position: p, velocity: v, z_1, z_2 }
+    }
+
+    /// Passes ubar, `feedback`, on to the filters.
+    #[inline(always)]
+    fn passed_on(&self, errors: &Errors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
+        let Filters { command: c, intermediate: x, smoothed: y } = filters;
         let smoothed = y + (feedback - y) * self.smoothing;
+        let Errors { position, velocity, z_1, z_2 } = *errors;
         PositionFeedback {
-            position_error: p,
-            velocity_error: v,
+            position_error: position,
+            velocity_error: velocity,
             z_1,
             z_2,
             feedback,
@@ -188,6 +233,72 @@ impl PositionLaw {
             smoothed,
             drive: (smoothed - x) * self.k_s_held,
         }
+    }
+
+    /// How far ubar may reach across, m/s^2, where `lift` is g + ubar_z.
+    #[inline(always)]
+    fn reach(&self, lift: f32, greatest: f32) -> f32 {
+        let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
+        math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left))
+    }
+
+    /// A demand cut to the envelope: the vertical first, then what it leaves across.
+    fn within(&self, wanted: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+        let vertical = math::greater(math::lesser(wanted.z, greatest - self.gravity), -self.a_down);
+        let reach = math::greater(self.reach(self.gravity + vertical, greatest), 0.0);
+        let length = math::sqrt(wanted.xy().norm_squared());
+        let share = if length > reach { reach / length } else { 1.0 };
+        Vector3::new(wanted.x * share, wanted.y * share, vertical)
+    }
+
+    /// The levels that a force d leaves for stopping at z_2, where the reference is at rest at z_1, m/s^2: across, up
+    /// and down. Across: the least on the way, for the vertical goes from its command of now to -d_z, and the reach
+    /// between two lifts is nowhere below the lesser of theirs.
+    #[must_use]
+    pub fn stopping_levels(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> [f32; 3] {
+        let up = math::greater(greatest - self.gravity + force.z, LEVEL_LEAST);
+        let down = math::greater(self.a_down - force.z, LEVEL_LEAST);
+        let vertical = z_2.z * self.k_v_vertical;
+        let level = if vertical > 0.0 { down } else { up };
+        let resting = self.gravity - force.z;
+        let lift = resting - vertical * unit_factor(level, vertical * vertical);
+        let reach = math::lesser(self.reach(lift, greatest), self.reach(resting, greatest));
+        let across = math::greater(reach - math::sqrt(force.xy().norm_squared()), LEVEL_LEAST);
+        [across, up, down]
+    }
+
+    /// By how far z_1 moves until z_2 has come to rest, at these levels: at most |z_2| / k_v + |z_2|^2 / (2 M).
+    ///
+    /// With the reference at z_1, feedback is at least s(k_v z_2; M) long, so |z_2|' <= -M k_v |z_2| / sqrt(M^2 + k_v^2
+    /// |z_2|^2), and the way is the integral of sqrt(M^2 + k_v^2 z^2) / (k_v M) from zero to |z_2|.
+    #[must_use]
+    pub fn stopping_way(&self, z_2: &Vector3<f32>, [across, up, down]: [f32; 3]) -> Vector3<f32> {
+        let time = |speed: f32, level: f32, k_v: f32| 1.0 / k_v + 0.5 * speed / level;
+        let horizontal = time(math::sqrt(z_2.xy().norm_squared()), across, self.k_v_across);
+        let vertical = time(z_2.z.abs(), if z_2.z > 0.0 { down } else { up }, self.k_v_vertical);
+        Vector3::new(z_2.x * horizontal, z_2.y * horizontal, z_2.z * vertical)
+    }
+
+    /// ubar where the reference is at rest at z_1, m/s^2.
+    #[must_use]
+    pub fn stopping(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+        self.saturated([&Vector3::zeros(), z_2], force, greatest, f32::MAX)
+    }
+
+    /// The inputs of the filters c, x and y in turn, for a position and its derivatives: p + p' / k_f, and that with
+    /// 1 / k_s as well. p is the first's output, the first is the second's, the second is z_1's.
+    #[must_use]
+    pub fn stages(&self, state: &State, filters: &Filters, force: &Vector3<f32>) -> [Vector3<f32>; 2] {
+        let [of_command, of_intermediate, _] = self.lags;
+        let (p, v) = (state.position, state.velocity);
+        let both = p + v * (of_command + of_intermediate) + (filters.command + force) * (of_command * of_intermediate);
+        [p + v * of_command, both]
+    }
+
+    /// 1/k_f + 1/k_s + 1/k_d, s.
+    #[must_use]
+    pub fn lag(&self) -> f32 {
+        self.all_lags
     }
 
     /// ubar.
@@ -206,9 +317,7 @@ impl PositionLaw {
             * unit_factor(math::lesser(math::greater(level, LEVEL_LEAST), most), vertical * vertical)
             - force.z;
 
-        let lift = self.gravity + vertical;
-        let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
-        let reach = math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left));
+        let reach = self.reach(self.gravity + vertical, greatest);
         let (across, wind) = (z_1.xy(), force.xy());
         let wanted = (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
         let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);

@@ -12,6 +12,8 @@ quaternions scalar first. Arrays of rows are
     state      13   p(3) v(3) world | q(4) scalar first | omega(3) body
     reference  19   p_d(3) v(3) a(3) j(3) s(3) world | heading nu_x nu_y, a unit vector | psi' psi''
     wrench      4   thrust along body z, N | torque(3) body, N m
+    demand      4   acceleration(3) world, m/s^2 | yaw rate, rad/s
+                5   attitude q(4) scalar first | thrust, N
 
 An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind altogether is a
 `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a search that finds no gains) is a
@@ -35,6 +37,8 @@ from ._core import (
     LawRows,
     Loop,
     Scenario,
+    Shield,
+    ShieldRows,
     Tuned,
     Vehicle,
     VehicleRows,
@@ -72,6 +76,8 @@ __all__ = [
     "LawRows",
     "Loop",
     "Scenario",
+    "Shield",
+    "ShieldRows",
     "Tuned",
     "Vehicle",
     "VehicleRows",

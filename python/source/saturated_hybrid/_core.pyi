@@ -22,6 +22,8 @@ __all__ = [
     "LawRows",
     "Loop",
     "Scenario",
+    "Shield",
+    "ShieldRows",
     "Tuned",
     "Vehicle",
     "VehicleRows",
@@ -265,6 +267,127 @@ class LawRows:
 
         If one is refused, the error names the row and no row has changed.
         """
+    def hold_estimates(self, chosen: Sequence[bool] | None = None) -> None:
+        """As `Law.hold_estimates`, of the rows that are chosen."""
+    def for_rotors(self, wrenches: ArrayLike) -> NDArray[np.float32]:
+        """As `Law.for_rotors`, of every row: (rows, 4)."""
+    @property
+    def thrust_scale(self) -> NDArray[np.float32]:
+        """(rows,)."""
+
+@final
+class Shield:
+    """The extended law flying what a policy demands, within its limits, and taking over while it must.
+
+    docs/shield.md has the rules. It starts as before a flight; nothing that a policy demands is an error.
+
+    Args:
+        scenario: of the extended law.
+        low, high: corners (3,) of the box to stay in, m, world.
+        speed: the greatest speed of the policy, m/s.
+        silence: for how long the last demand is flown if none comes, s.
+        patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
+        patience_greatest: the longest such time, s.
+        hand_overs: after so many the law keeps the vehicle, until `ask_again` or `reset`.
+    """
+
+    def __new__(
+        cls,
+        scenario: Scenario,
+        *,
+        low: ArrayLike,
+        high: ArrayLike,
+        speed: float = 10.0,
+        silence: float = 0.1,
+        patience: float = 1.0,
+        patience_greatest: float = 16.0,
+        hand_overs: int = 10,
+    ) -> Self: ...
+    def copy(self) -> Shield:
+        """Another shield that remembers the same."""
+    def reset(self) -> None:
+        """As before a flight, law included."""
+    def ask_again(self) -> None:
+        """Counts hand-overs anew: the policy may fly again."""
+    def step(self, state: ArrayLike, demand: ArrayLike | None = None) -> NDArray[np.float32]:
+        """One control tick.
+
+        Args:
+            state: (13,).
+            demand: (4,) or (5,), or None where the policy says nothing.
+
+        Returns:
+            The wrench (4,), as of `Law.step`.
+
+        Raises:
+            ValueError: names the field of the state that cannot be used; nothing has changed then.
+        """
+    @property
+    def by_policy(self) -> bool:
+        """Whether the policy flew the last step."""
+    @property
+    def reason(self) -> str:
+        """Why the law flew it: "silent", "demand", "stop", "speed", "tilt", "rate" or "estimate"; "" where it did not."""
+    @property
+    def hand_overs(self) -> int:
+        """How often the law took over since the reset, or since `ask_again`."""
+    @property
+    def reference(self) -> NDArray[np.float32]:
+        """The reference (19,), at rest: where the law flies to, or would if it took over now."""
+    def for_rotors(self, asked: ArrayLike) -> NDArray[np.float32]:
+        """As `Law.for_rotors`."""
+    def hold_estimates(self) -> None:
+        """As `Law.hold_estimates`."""
+    @property
+    def thrust_scale(self) -> float:
+        """As `Law.thrust_scale`."""
+    @property
+    def diagnostics(self) -> dict[str, Any] | None:
+        """As `Law.diagnostics`, with errors from `reference`."""
+
+@final
+class ShieldRows:
+    """The shields of rows of vehicles, each with its own memory. Rows are shared out to all cores.
+
+    Arguments as of `Shield`.
+    """
+
+    def __new__(
+        cls,
+        scenario: Scenario,
+        rows: int,
+        *,
+        low: ArrayLike,
+        high: ArrayLike,
+        speed: float = 10.0,
+        silence: float = 0.1,
+        patience: float = 1.0,
+        patience_greatest: float = 16.0,
+        hand_overs: int = 10,
+    ) -> Self: ...
+    def __len__(self) -> int: ...
+    def reset(self, chosen: Sequence[bool] | None = None) -> None:
+        """Resets the rows that are chosen, (rows,) bool; all of them if none are given."""
+    def ask_again(self, chosen: Sequence[bool] | None = None) -> None:
+        """As `Shield.ask_again`, of the rows that are chosen."""
+    def step(self, states: ArrayLike, demands: ArrayLike | None = None) -> NDArray[np.float32]:
+        """One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
+        to wrenches (rows, 4).
+
+        If a state is refused, the error names the row and no row has changed.
+        """
+    @property
+    def by_policy(self) -> NDArray[np.bool_]:
+        """(rows,) bool: whether the policy flew the last step."""
+    @property
+    def reasons(self) -> list[str]:
+        """As `Shield.reason`, of every row."""
+    @property
+    def hand_overs(self) -> NDArray[np.uint32]:
+        """(rows,): as `Shield.hand_overs`."""
+    @property
+    def references(self) -> NDArray[np.float32]:
+        """(rows, 19): as `Shield.reference`."""
     def hold_estimates(self, chosen: Sequence[bool] | None = None) -> None:
         """As `Law.hold_estimates`, of the rows that are chosen."""
     def for_rotors(self, wrenches: ArrayLike) -> NDArray[np.float32]:

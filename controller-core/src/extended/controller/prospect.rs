@@ -1,0 +1,121 @@
+//! Where a vehicle would come to rest if the law took it now: what a monitor judges.
+//!
+//! Behind its three filters the position is z_1 low-passed: z_1 = (1 + s / k_f) (1 + s / k_s) (1 + s / k_d) p for a
+//! force that is known. z_1' = z_2 and z_2' = ubar + D are a double integrator without any lag. A first-order low-pass
+//! never leaves an interval that its input stays in and that it started in. So p stays in a box for good if it, the two
+//! stages between and the whole way of z_1 to its stop are in that box. `docs/shield.md` has the proof and what it
+//! takes: nothing limited, a constant force that is known, ideal actuators. The limit on turning is allowed for by a
+//! time for which z_2 goes on as it is.
+
+use super::{Controller, thrust_axis};
+use crate::extended::memory::Estimates;
+use crate::extended::turning::TURNED;
+use crate::heading::Heading;
+use crate::math;
+use crate::reference::Reference;
+use crate::state::State;
+use nalgebra::Vector3;
+
+/// The part of M_all that feedback is taken to use while the frame turns.
+const FEEDBACK_SHARE: f32 = 0.5;
+
+/// The sine of the tilt error that is assumed then.
+const SINE: f32 = 0.3;
+
+/// What is ahead of a vehicle. World frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prospect {
+    /// z_1, m, for a reference at rest at the origin.
+    pub z_1: Vector3<f32>,
+    /// z_2, m/s, for a reference at rest.
+    pub z_2: Vector3<f32>,
+    /// p, the stages between it and z_1, and where z_1 would come to rest, with and without the acceleration of now for
+    /// as long as turning takes, m.
+    pub places: [Vector3<f32>; 5],
+    /// The cosine of the angle from the thrust axis to where it is wanted.
+    pub alignment: f32,
+    /// Whether an estimate is held, or at its level.
+    pub doubtful: bool,
+}
+
+impl Controller {
+    /// What is ahead of a vehicle in `state`.
+    #[must_use]
+    pub fn prospect(&self, state: &State) -> Prospect {
+        let Estimates { force, scale, .. } = self.estimates();
+        let filters = &self.memory.filters;
+        let greatest = self.greatest(scale);
+        let origin = Reference::resting(Vector3::zeros(), Heading::FORWARD);
+        let errors = self.position.errors(state, &origin, filters, &force);
+        let (z_1, z_2) = (errors.z_1, errors.z_2);
+        let acceleration = filters.command + force;
+        let mut command = filters.command;
+        command.z += self.vehicle.gravity;
+        let magnitude = math::sqrt(command.norm_squared());
+
+        let reaction = self.reaction(&z_2, &command, &force, greatest);
+        let went_on = z_1 + z_2 * reaction;
+        let sped_up = acceleration * reaction;
+        let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
+            let levels = self.position.stopping_levels(&speed, &force, greatest);
+            at + self.position.stopping_way(&speed, levels)
+        };
+        let [first, second] = self.position.stages(state, filters, &force);
+        Prospect {
+            z_1,
+            z_2,
+            places: [
+                state.position,
+                first,
+                second,
+                stop(went_on, z_2),
+                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up),
+            ],
+            alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
+            doubtful: self.memory.held > 0 || self.is_at_a_level(),
+        }
+    }
+
+    /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.
+    fn reaction(&self, z_2: &Vector3<f32>, command: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> f32 {
+        let mut stopping = self.position.stopping(z_2, force, greatest);
+        stopping.z += self.vehicle.gravity;
+        let angle = angle(command, &stopping);
+        let parameters = &self.law.parameters;
+        let budget = self.budget.acceleration(command.z, FEEDBACK_SHARE * parameters.m_all, SINE);
+        let acceleration = TURNED * math::greater(budget, parameters.turn_reserve);
+        let rate = parameters.turn_rate;
+        let turning = if angle * acceleration > rate * rate {
+            angle / rate + rate / acceleration
+        } else {
+            2.0 * math::sqrt(angle / acceleration)
+        };
+        math::greater(turning - self.position.lag(), 0.0) + self.late + self.period
+    }
+
+    /// Whether force or thrust scale would be beyond a level that is not zero.
+    fn is_at_a_level(&self) -> bool {
+        let p = &self.law.parameters;
+        let (average, believed) = (self.memory.averages.force, self.estimates().force);
+        let scale = self.memory.averages.scale.scale;
+        let of_force = (p.force_across > 0.0 && average.xy() != believed.xy())
+            || (p.force_up > 0.0 && average.z > believed.z)
+            || (p.force_down > 0.0 && average.z < believed.z);
+        let learns = p.scale_rate > 0.0 && p.scale_least < p.scale_greatest;
+        of_force || (learns && !(p.scale_least < scale && scale < p.scale_greatest))
+    }
+}
+
+/// The angle between two vectors, rad, to 0.01: twice the one with the tangent |a x b| / (|a| |b| + a . b).
+fn angle(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
+    const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
+    let across = math::sqrt(a.cross(b).norm_squared());
+    let along = math::sqrt(a.norm_squared() * b.norm_squared()) + a.dot(b);
+    let tangent = across / math::greater(along, f32::MIN_POSITIVE);
+    let half = if tangent > 1.0 {
+        QUARTER - tangent / (tangent * tangent + 0.28)
+    } else {
+        tangent / (1.0 + 0.28 * tangent * tangent)
+    };
+    2.0 * half
+}

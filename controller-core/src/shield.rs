@@ -1,0 +1,229 @@
+//! The shield: the extended law flies what a policy demands, within its own limits, and takes over while it must.
+//!
+//! ```text
+//! policy -> Demand -> Shield { Monitor } -+- step_on_demand -> Wrench     while the policy may fly
+//!                                         '- step           -> Wrench     at rest at a refuge, otherwise
+//! ```
+//!
+//! A policy is anything that decides on an acceleration, or on an attitude and a thrust: a learned one, a planner, a
+//! law under study. Its demand takes the place of the law's feedback ubar ([`crate::extended::demand`]). So the limits
+//! on thrust, torque and rotors hold whatever it demands, and a hand-over changes ubar alone: nothing jumps, and the
+//! law's theorem holds from there on.
+//!
+//! - [`monitor`]: when the law has to take over: a table of rules, each with its number and its reason;
+//! - [`reason`]: those reasons in words;
+//! - [`settings`]: the box, and the numbers of the rules;
+//! - `heading`: a heading that turns within the certified bounds.
+//!
+//! The refuge is a place in the box near z_1 at the hand-over, at rest: the law brakes there with all that the
+//! envelope has. The policy gets the vehicle back once it has been near the refuge for a while, and again after longer
+//! each time, up to a number of hand-overs. `docs/shield.md` says what is proven of it.
+
+mod heading;
+pub mod monitor;
+pub mod reason;
+pub mod settings;
+
+pub use crate::extended::demand::Demand;
+pub use reason::Reason;
+pub use settings::Settings;
+
+use crate::configuration::{Configuration, LawParameters};
+use crate::controller::Diagnostics;
+use crate::error::{InputError, ParameterError, Reason as Refused};
+use crate::extended::controller::{Controller, Prospect};
+use crate::extended::net;
+use crate::heading::Heading;
+use crate::reference::Reference;
+use crate::state::{State, Wrench};
+use heading::HeadingGenerator;
+use monitor::Monitor;
+use nalgebra::Vector3;
+
+/// What a policy sees besides what its maker gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The state.
+    pub state: State,
+    /// Where it is to go, m, world.
+    pub goal: Vector3<f32>,
+    /// Where the heading generator points.
+    pub heading: Heading,
+}
+
+/// Anything that decides what to do.
+pub trait Policy {
+    /// What to do now; none to say nothing.
+    fn act(&mut self, observation: &Observation) -> Option<Demand>;
+}
+
+/// One tick of a shield.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flown {
+    /// T and tau.
+    pub wrench: Wrench,
+    /// The law's, with errors from [`Self::reference`].
+    pub diagnostics: Diagnostics,
+    /// Why the law flies; none while the policy does.
+    pub reason: Option<Reason>,
+    /// At rest at the refuge: where the law flies to, or would if it took over now.
+    pub reference: Reference,
+}
+
+/// Who flies, and since when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Pilot {
+    Policy,
+    Law {
+        reason: Reason,
+        refuge: Vector3<f32>,
+        /// For how many ticks the vehicle has been near its refuge.
+        near: u32,
+    },
+}
+
+/// A shield, as before a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shield {
+    settings: Settings,
+    monitor: Monitor,
+    heading: HeadingGenerator,
+    period: f32,
+    pilot: Pilot,
+    /// The last demand that could be used, and how many ticks ago it came.
+    demand: Option<Demand>,
+    silent: u32,
+    /// How many ticks in a row an estimate could not be trusted.
+    doubtful: u32,
+    hand_overs: u32,
+}
+
+impl Shield {
+    /// A shield for the law of `configuration`, with ticks `period` seconds apart.
+    ///
+    /// # Errors
+    /// For the paper's law; for a setting that makes no sense, by its name.
+    pub fn new(configuration: &Configuration, settings: &Settings, period: f32) -> Result<Self, ParameterError> {
+        let LawParameters::Extended(law) = configuration.law() else {
+            return Err(ParameterError { field: "control.law", reason: Refused::CarriesNoPolicy });
+        };
+        settings.check()?;
+        Ok(Self {
+            settings: *settings,
+            monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
+            heading: HeadingGenerator::new(configuration.bounds(), period),
+            period,
+            pilot: Pilot::Policy,
+            demand: None,
+            silent: 0,
+            doubtful: 0,
+            hand_overs: 0,
+        })
+    }
+
+    /// As before a flight, pointing along `heading`.
+    pub fn reset(&mut self, heading: &Heading) {
+        self.heading.start(heading);
+        (self.pilot, self.demand) = (Pilot::Policy, None);
+        (self.silent, self.doubtful) = (0, 0);
+        self.hand_overs = 0;
+    }
+
+    /// A person asks for the policy again: hand-overs are counted anew. The vehicle still has to come near its refuge.
+    pub fn ask_again(&mut self) {
+        self.hand_overs = 0;
+    }
+
+    /// How often the law took over since the reset, or since a person asked again.
+    #[must_use]
+    pub fn hand_overs(&self) -> u32 {
+        self.hand_overs
+    }
+
+    /// Where the heading generator points.
+    #[must_use]
+    pub fn heading(&self) -> &Heading {
+        self.heading.heading()
+    }
+
+    /// One tick of `law`, on what the policy `offers`; none if it says nothing.
+    ///
+    /// # Errors
+    /// As the law's step; law and shield remember nothing of the tick then. Whatever the policy offers is no error.
+    pub fn step(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
+        let mut next = *self;
+        let flown = next.advance(law, state, offers)?;
+        *self = next;
+        Ok(flown)
+    }
+
+    fn advance(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
+        let prospect = law.prospect(state);
+        let against = self.judge(state, &prospect, offers);
+        self.decide(&prospect, against);
+        match (&self.pilot, &self.demand) {
+            (Pilot::Policy, Some(demand)) => {
+                self.heading.follow(demand);
+                let reference = Reference::resting(self.refuge(&prospect), *self.heading.heading());
+                let (wrench, diagnostics) = law.step_on_demand(state, &reference, demand)?;
+                Ok(Flown { wrench, diagnostics, reason: None, reference })
+            }
+            (pilot, _) => {
+                // A policy that flies has made a demand, so the other case is never met.
+                let (reason, refuge) = match pilot {
+                    Pilot::Law { reason, refuge, .. } => (*reason, *refuge),
+                    Pilot::Policy => (Reason::Silent, self.refuge(&prospect)),
+                };
+                self.heading.come_to_rest();
+                let reference = Reference::resting(refuge, *self.heading.heading());
+                let (wrench, diagnostics) = law.step(state, &reference)?;
+                Ok(Flown { wrench, diagnostics, reason: Some(reason), reference })
+            }
+        }
+    }
+
+    /// What speaks against the policy in this tick.
+    fn judge(&mut self, state: &State, prospect: &Prospect, offers: Option<&Demand>) -> Option<Reason> {
+        let usable = offers.map(|demand| demand.check().map(|()| *demand));
+        match usable {
+            Some(Ok(demand)) => (self.demand, self.silent) = (Some(demand), 0),
+            _ => self.silent = self.silent.saturating_add(1),
+        }
+        self.doubtful = if prospect.doubtful { self.doubtful.saturating_add(1) } else { 0 };
+        let seconds = |ticks: u32| ticks as f32 * self.period;
+        if matches!(usable, Some(Err(_))) {
+            return Some(Reason::Demand);
+        }
+        if self.demand.is_none() || seconds(self.silent) > self.settings.silence {
+            return Some(Reason::Silent);
+        }
+        self.monitor.against(state, prospect, seconds(self.doubtful))
+    }
+
+    /// Hands over, either way.
+    fn decide(&mut self, prospect: &Prospect, against: Option<Reason>) {
+        match (&mut self.pilot, against) {
+            (Pilot::Policy, None) => {}
+            (Pilot::Policy, Some(reason)) => {
+                self.hand_overs = self.hand_overs.saturating_add(1);
+                self.pilot = Pilot::Law { reason, refuge: self.refuge(prospect), near: 0 };
+            }
+            (Pilot::Law { refuge, near, .. }, against) => {
+                let arrived = net::is_near(&(prospect.z_1 - *refuge), &prospect.z_2);
+                *near = if arrived && against.is_none() { near.saturating_add(1) } else { 0 };
+                let waited = *near as f32 * self.period;
+                if self.hand_overs < self.settings.hand_overs && waited >= self.settings.patience(self.hand_overs) {
+                    self.pilot = Pilot::Policy;
+                }
+            }
+        }
+    }
+
+    /// Where the law would fly to if it took over now.
+    fn refuge(&self, prospect: &Prospect) -> Vector3<f32> {
+        self.settings.refuge(&prospect.z_1)
+    }
+}
+
+#[cfg(test)]
+mod tests;

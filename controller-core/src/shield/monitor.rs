@@ -1,0 +1,72 @@
+//! When the law has to take over: the rules, in the order in which they are looked at. The first that holds is said.
+//!
+//! | reason | holds when | number | why |
+//! |---|---|---|---|
+//! | [`Reason::Demand`] | a demand cannot be used | | [`Demand::check`](super::Demand::check) |
+//! | [`Reason::Silent`] | no demand for longer than `silence` | 0.1 s | ten ticks at 100 Hz: a policy that is late by more does not fly |
+//! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
+//! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT M_all / J), or about z faster than [`YAW`] W_max | | M_all stops such a turn within [`TILT`]; 1.15 Omega is the frame's own |
+//! | [`Reason::Speed`] | faster than `speed` | 10 m/s | drag is linear and the estimator is tested up to there |
+//! | [`Reason::Stop`] | a place of the [`Prospect`] is outside the box | | the law would not stop inside any more |
+//! | [`Reason::Estimate`] | force or thrust scale at a level, or held, for longer than [`DOUBT`] | 1 s | the levels for stopping count on them |
+
+use super::Settings;
+use super::reason::Reason;
+use crate::extended::controller::Prospect;
+use crate::extended::parameters::ExtendedParameters;
+use crate::math;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+
+/// The greatest angle from the thrust axis to where it is wanted, rad, and its cosine.
+pub const TILT: f32 = core::f32::consts::FRAC_PI_3;
+const COSINE: f32 = 0.5;
+
+/// The share of Omega by which the frame may exceed it in samples: `docs/extended-law.md`, section 15.
+const FRAME: f32 = 1.15;
+
+/// The greatest rate about the thrust axis, in W_max.
+pub const YAW: f32 = 3.0;
+
+/// For how long an estimate may be in doubt, s.
+pub const DOUBT: f32 = 1.0;
+
+/// The rules with their numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Monitor {
+    settings: Settings,
+    /// Squares of the greatest rate about the tilt's axes, rad^2/s^2, and of the greatest speed, m^2/s^2.
+    rate: f32,
+    speed: f32,
+    yaw_rate: f32,
+}
+
+impl Monitor {
+    /// For a vehicle under the extended law.
+    #[must_use]
+    pub fn new(settings: &Settings, parameters: &ExtendedParameters, vehicle: &Vehicle) -> Self {
+        let inertia = math::greater(vehicle.inertia.x, vehicle.inertia.y);
+        let rate = FRAME * parameters.turn_rate + math::sqrt(2.0 * TILT * parameters.m_all / inertia);
+        Self {
+            settings: *settings,
+            rate: rate * rate,
+            speed: settings.speed * settings.speed,
+            yaw_rate: YAW * parameters.yaw_rate,
+        }
+    }
+
+    /// What speaks against the policy; `doubtful`, for how long an estimate was in doubt, s.
+    #[must_use]
+    pub fn against(&self, state: &State, prospect: &Prospect, doubtful: f32) -> Option<Reason> {
+        // Comparisons as they are: one with a NaN is against.
+        let w = &state.angular_velocity;
+        let fine = [
+            (prospect.alignment >= COSINE, Reason::Tilt),
+            (w.x * w.x + w.y * w.y <= self.rate && w.z.abs() <= self.yaw_rate, Reason::Rate),
+            (state.velocity.norm_squared() <= self.speed, Reason::Speed),
+            (prospect.places.iter().all(|place| self.settings.contain(place)), Reason::Stop),
+            (doubtful <= DOUBT, Reason::Estimate),
+        ];
+        fine.iter().find(|(fine, _)| !fine).map(|(_, reason)| *reason)
+    }
+}

@@ -1,0 +1,349 @@
+//! The shield of a scenario, one vehicle or rows of them: demands in, wrenches out.
+//!
+//! A step that is refused changes nothing, of rows none of them. No demand is refused that has the right shape: one
+//! that cannot be used hands over to the law.
+
+use crate::cores::shared;
+use crate::laws::{MOST_ROWS, ROWS_AT_ONCE, for_rotors, named, numbers};
+use crate::refused::refused;
+use crate::rows::{
+    REFERENCE, STATE, WRENCH, array, demand_row, demand_rows, measured, of_reference, of_wrench, row, rows, wrench,
+    wrench_rows,
+};
+use crate::scenarios::Scenario;
+use crate::whole::Whole;
+use controller_core::controller::Diagnostics;
+use controller_core::heading::Heading;
+use controller_core::law::Law;
+use controller_core::reference::Reference;
+use controller_core::shield::{self, Demand, Reason, Settings};
+use controller_core::state::State;
+use host_sim::flight;
+use nalgebra::Vector3;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+/// A law, its shield, and what became of the last step.
+#[derive(Clone)]
+struct One {
+    law: Law,
+    shield: shield::Shield,
+    /// Before the first step.
+    fresh: bool,
+    reason: Option<Reason>,
+    reference: Reference,
+}
+
+impl One {
+    fn new(scenario: &Scenario, settings: &Settings) -> PyResult<Self> {
+        let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
+        let shield = shield::Shield::new(configuration, settings, period).map_err(refused)?;
+        let law = flight::law(&scenario.read).map_err(refused)?;
+        let reference = Reference::resting(settings.refuge(&Vector3::zeros()), Heading::FORWARD);
+        Ok(Self { law, shield, fresh: true, reason: None, reference })
+    }
+
+    fn by_policy(&self) -> bool {
+        !self.fresh && self.reason.is_none()
+    }
+
+    fn reason(&self) -> &'static str {
+        self.reason.map_or("", Reason::word)
+    }
+
+    fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH], Diagnostics), String> {
+        if self.fresh {
+            self.shield.reset(&Heading::of_attitude(&state.attitude));
+        }
+        // There is no shield of another law.
+        let law = self.law.extended().ok_or("control.law: must be \"extended\"")?;
+        let flown = self.shield.step(law, state, demand).map_err(|error| error.to_string())?;
+        (self.fresh, self.reason, self.reference) = (false, flown.reason, flown.reference);
+        Ok((of_wrench(&flown.wrench), flown.diagnostics))
+    }
+}
+
+fn settings(
+    low: [f64; 3],
+    high: [f64; 3],
+    [speed, silence, patience, patience_greatest]: [f64; 4],
+    hand_overs: u32,
+) -> Settings {
+    let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
+    let [speed, silence, patience, patience_greatest] =
+        [speed, silence, patience, patience_greatest].map(|value| value as f32);
+    Settings { speed, silence, patience, patience_greatest, hand_overs, ..Settings::new(corner(low), corner(high)) }
+}
+
+/// The extended law flying what a policy demands, within its limits, and taking over while it must.
+///
+/// docs/shield.md has the rules. It starts as before a flight; nothing that a policy demands is an error.
+///
+/// Args:
+///     scenario: of the extended law.
+///     low, high: corners (3,) of the box to stay in, m, world.
+///     speed: the greatest speed of the policy, m/s.
+///     silence: for how long the last demand is flown if none comes, s.
+///     patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
+///     patience_greatest: the longest such time, s.
+///     hand_overs: after so many the law keeps the vehicle, until `ask_again` or `reset`.
+#[pyclass(module = "saturated_hybrid")]
+pub struct Shield {
+    start: One,
+    one: One,
+    diagnostics: Option<Diagnostics>,
+}
+
+#[pymethods]
+impl Shield {
+    #[new]
+    #[pyo3(signature = (scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
+        hand_overs=Whole::of(10)),
+        text_signature = "(scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
+hand_overs=10)")]
+    #[allow(clippy::too_many_arguments)] // its user names them
+    fn new(
+        scenario: &Scenario,
+        low: &Bound<'_, PyAny>,
+        high: &Bound<'_, PyAny>,
+        speed: f64,
+        silence: f64,
+        patience: f64,
+        patience_greatest: f64,
+        hand_overs: Whole,
+    ) -> PyResult<Self> {
+        let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
+        let (low, high) = (row::<3>(low, "low")?, row::<3>(high, "high")?);
+        let settings = settings(low, high, [speed, silence, patience, patience_greatest], hand_overs);
+        let start = One::new(scenario, &settings)?;
+        Ok(Self { one: start.clone(), start, diagnostics: None })
+    }
+
+    /// Another shield that remembers the same.
+    fn copy(&self) -> Self {
+        Self { start: self.start.clone(), one: self.one.clone(), diagnostics: self.diagnostics }
+    }
+
+    /// As before a flight, law included.
+    fn reset(&mut self) {
+        self.one = self.start.clone();
+        self.diagnostics = None;
+    }
+
+    /// Counts hand-overs anew: the policy may fly again.
+    fn ask_again(&mut self) {
+        self.one.shield.ask_again();
+    }
+
+    /// One control tick.
+    ///
+    /// Args:
+    ///     state: (13,).
+    ///     demand: (4,) or (5,), or None where the policy says nothing.
+    ///
+    /// Returns:
+    ///     The wrench (4,), as of `Law.step`.
+    ///
+    /// Raises:
+    ///     ValueError: names the field of the state that cannot be used; nothing has changed then.
+    #[pyo3(signature = (state, demand=None))]
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        state: &Bound<'py, PyAny>,
+        demand: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let state = measured(&row::<STATE>(state, "state")?);
+        let demand = demand.map(|demand| demand_row(demand, "demand")).transpose()?;
+        let mut next = self.one.clone();
+        let (wrench, diagnostics) = next.step(&state, demand.as_ref()).map_err(refused)?;
+        (self.one, self.diagnostics) = (next, Some(diagnostics));
+        Ok(PyArray1::from_slice(py, &wrench))
+    }
+
+    /// Whether the policy flew the last step.
+    #[getter]
+    fn by_policy(&self) -> bool {
+        self.one.by_policy()
+    }
+
+    /// Why the law flew it: "silent", "demand", "stop", "speed", "tilt", "rate" or "estimate"; "" where it did not.
+    #[getter]
+    fn reason(&self) -> &'static str {
+        self.one.reason()
+    }
+
+    /// How often the law took over since the reset, or since `ask_again`.
+    #[getter]
+    fn hand_overs(&self) -> u32 {
+        self.one.shield.hand_overs()
+    }
+
+    /// The reference (19,), at rest: where the law flies to, or would if it took over now.
+    #[getter]
+    fn reference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &of_reference(&self.one.reference))
+    }
+
+    /// As `Law.for_rotors`.
+    fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
+        Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.one.law, &asked))))
+    }
+
+    /// As `Law.hold_estimates`.
+    fn hold_estimates(&mut self) {
+        self.one.law.hold_estimates();
+    }
+
+    /// As `Law.thrust_scale`.
+    #[getter]
+    fn thrust_scale(&self) -> f32 {
+        self.one.law.thrust_scale()
+    }
+
+    /// As `Law.diagnostics`, with errors from `reference`.
+    #[getter]
+    fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        self.diagnostics.as_ref().map(|diagnostics| named(py, diagnostics)).transpose()
+    }
+}
+
+/// The shields of rows of vehicles, each with its own memory. Rows are shared out to all cores.
+///
+/// Arguments as of `Shield`.
+#[pyclass(module = "saturated_hybrid")]
+pub struct ShieldRows {
+    start: One,
+    ones: Vec<One>,
+}
+
+#[pymethods]
+impl ShieldRows {
+    #[new]
+    #[pyo3(signature = (scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
+        hand_overs=Whole::of(10)),
+        text_signature = "(scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
+hand_overs=10)")]
+    #[allow(clippy::too_many_arguments)] // its user names them
+    fn new(
+        scenario: &Scenario,
+        rows: Whole,
+        low: &Bound<'_, PyAny>,
+        high: &Bound<'_, PyAny>,
+        speed: f64,
+        silence: f64,
+        patience: f64,
+        patience_greatest: f64,
+        hand_overs: Whole,
+    ) -> PyResult<Self> {
+        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
+        let Shield { start, .. } =
+            Shield::new(scenario, low, high, speed, silence, patience, patience_greatest, hand_overs)?;
+        Ok(Self { ones: vec![start.clone(); rows], start })
+    }
+
+    fn __len__(&self) -> usize {
+        self.ones.len()
+    }
+
+    /// Resets the rows that are chosen, (rows,) bool; all of them if none are given.
+    #[pyo3(signature = (chosen=None))]
+    fn reset(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
+        for number in numbers(chosen, self.ones.len())? {
+            self.ones[number] = self.start.clone();
+        }
+        Ok(())
+    }
+
+    /// As `Shield.ask_again`, of the rows that are chosen.
+    #[pyo3(signature = (chosen=None))]
+    fn ask_again(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
+        for number in numbers(chosen, self.ones.len())? {
+            self.ones[number].shield.ask_again();
+        }
+        Ok(())
+    }
+
+    /// One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
+    /// to wrenches (rows, 4).
+    ///
+    /// If a state is refused, the error names the row and no row has changed.
+    #[pyo3(signature = (states, demands=None))]
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        states: &Bound<'py, PyAny>,
+        demands: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let count = self.ones.len();
+        let states = rows::<STATE>(states, count, "states")?;
+        let demands = demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?;
+        let (ones, demands) = (&self.ones, demands.as_deref());
+        let stepped: PyResult<Result<Vec<(One, [f32; WRENCH])>, String>> = py.detach(|| {
+            let given = ones.par_iter().zip(&states).enumerate().with_min_len(ROWS_AT_ONCE);
+            let one = |(number, (one, state)): (usize, (&One, &[f64; STATE]))| {
+                let mut one = one.clone();
+                let demand = demands.and_then(|demands| demands.get(number));
+                let stepped = one.step(&measured(state), demand);
+                let (wrench, _) = stepped.map_err(|error| format!("row {number}: {error}"))?;
+                Ok((one, wrench))
+            };
+            let all = || given.map(one).collect();
+            // Each core works on its own rows.
+            if count > ROWS_AT_ONCE { shared(all) } else { Ok(all()) }
+        });
+        let (ones, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
+        self.ones = ones;
+        array(py, wrenches)
+    }
+
+    /// (rows,) bool: whether the policy flew the last step.
+    #[getter]
+    fn by_policy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_vec(py, self.ones.iter().map(One::by_policy).collect())
+    }
+
+    /// As `Shield.reason`, of every row.
+    #[getter]
+    fn reasons(&self) -> Vec<&'static str> {
+        self.ones.iter().map(One::reason).collect()
+    }
+
+    /// (rows,): as `Shield.hand_overs`.
+    #[getter]
+    fn hand_overs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_vec(py, self.ones.iter().map(|one| one.shield.hand_overs()).collect())
+    }
+
+    /// (rows, 19): as `Shield.reference`.
+    #[getter]
+    fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let references: Vec<[f32; REFERENCE]> = self.ones.iter().map(|one| of_reference(&one.reference)).collect();
+        array(py, references)
+    }
+
+    /// As `Law.hold_estimates`, of the rows that are chosen.
+    #[pyo3(signature = (chosen=None))]
+    fn hold_estimates(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
+        for number in numbers(chosen, self.ones.len())? {
+            self.ones[number].law.hold_estimates();
+        }
+        Ok(())
+    }
+
+    /// As `Law.for_rotors`, of every row: (rows, 4).
+    fn for_rotors<'py>(&self, py: Python<'py>, wrenches: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let wrenches = wrench_rows(wrenches, self.ones.len())?;
+        let asked = self.ones.iter().zip(&wrenches).map(|(one, wrench)| of_wrench(&for_rotors(&one.law, wrench)));
+        array(py, asked.collect())
+    }
+
+    /// (rows,).
+    #[getter]
+    fn thrust_scale<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_vec(py, self.ones.iter().map(|one| one.law.thrust_scale()).collect())
+    }
+}
