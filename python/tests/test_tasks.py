@@ -138,7 +138,7 @@ def test_demands_are_flown_by_the_textbook_controller():
 def test_what_no_action_can_be_is_refused():
     for options, said in [
         ({"action": "speed"}, "action: must be one of wrench, acceleration, attitude, found 'speed'"),
-        ({"shield": ([-1] * 3, [1] * 3)}, "shield: carries no wrenches"),
+        ({"shield": {"low": [-1] * 3, "high": [1] * 3}}, "shield: carries no wrenches"),
         ({"render_mode": "human"}, 'render_mode: must be None or "rgb_array"'),
     ]:
         with pytest.raises(ValueError, match=said):

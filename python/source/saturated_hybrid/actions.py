@@ -100,9 +100,8 @@ class Unshielded(Direct):
 class Shielded(Direct):
     """Demands through the shield, which keeps every row inside a box."""
 
-    def __init__(self, scenario, rows, box):
-        low, high = box
-        self.shield = _core.ShieldRows(scenario, rows, low=low, high=high)
+    def __init__(self, scenario, rows, settings):
+        self.shield = _core.ShieldRows(scenario, rows, **settings)
 
     def step(self, states, demands):
         return self.shield.for_rotors(self.shield.step(states, demands))

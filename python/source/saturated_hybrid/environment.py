@@ -92,7 +92,7 @@ class VectorEnvironment(Task, spaces.Many):
         lost: distance from the reference, m, at which an episode is over.
         action: "wrench", "acceleration" or "attitude": see `saturated_hybrid.actions`.
         scaled: whether actions are in [-1, 1], where zero hovers.
-        shield: two corners (3,), m, of the box that the shield keeps every vehicle in; left out: no shield.
+        shield: arguments of `ShieldRows`, the box to stay in at least: `{"low": [-4, -3, 0.3], "high": [4, 3, 4]}`; left out: none.
         render_mode: "rgb_array" keeps every episode, for `render` and `replay`.
     """
 
