@@ -1,10 +1,10 @@
 """Learns to hover, or to fly through a gate: with the shield from the first episode on, and without it.
 
     python python/examples/learn.py hover --out learnt
-    python python/examples/learn.py gate --out learnt
+    python python/examples/learn.py gate --out learnt --start learnt/hover.toml
 
-It writes the weights that were learnt, the learning curve, and a replay, and flies a thousand episodes each of an untrained, the learnt
-and a malicious policy, with and without the shield. The wheel and numpy are enough; with matplotlib it draws the curve as well.
+It writes the weights that were learnt, the learning curve, and a replay, and flies a thousand episodes each of the policy as it starts, as it is
+learnt, and a malicious one, with and without the shield. The wheel and numpy are enough; with matplotlib it draws the curve as well.
 
 The policy is a small tanh network, and evolution strategies train it: a generation flies every candidate through the same
 episodes and moves the weights towards what earned more (Salimans et al., Evolution strategies as a scalable alternative to
@@ -14,14 +14,14 @@ limits are proven, or a textbook attitude controller's. docs/learning.md has the
 
 import argparse
 import pathlib
-import sys
 import time
+import tomllib
 
 import numpy as np
 from saturated_hybrid.tasks import GateRows, HoverRows
 
 # The box that the shield keeps vehicles in, m, inside the one that ends an episode.
-BOX = {"low": [-4.0, -3.0, 0.3], "high": [4.0, 3.0, 4.0]}
+BOX = {"low": [-4.8, -3.8, 0.3], "high": [4.8, 3.8, 4.8]}
 TASKS = {"hover": HoverRows, "gate": GateRows}
 SIZES = (18, 16, 4)
 OBSERVATION = "target - position (3), velocity (3), rotation by rows (9), body rates (3)"
@@ -30,6 +30,7 @@ DEMAND = "acceleration, m/s^2, and yaw rate, rad/s: the output times [4.905, 4.9
 SCALE = np.repeat(np.array([0.5, 0.5, 1.0, 0.2], np.float32), [3, 3, 9, 3])
 
 PAIRS, EPISODES = 24, 4  # candidates, two of a pair; episodes of each
+EXAMINED = 16  # episodes of the weights themselves, which the learning curve shows
 NOISE, STEP = 0.1, 0.1  # the step falls to a tenth
 # While it learns, the policy gets its vehicle back soon, s.
 PATIENCE = {"patience": 0.3}
@@ -58,6 +59,15 @@ class Network:
         for matrix, bias in self.layers():
             values = np.tanh(values @ np.swapaxes(matrix, -1, -2) + bias[..., None, :])
         return values
+
+    @classmethod
+    def read(cls, path):
+        """From a file that `text` made."""
+        flat, scale = [], SCALE
+        for layer in tomllib.loads(pathlib.Path(path).read_text())["layers"]:
+            flat += [(np.array(layer["weights"]) / scale).ravel(), np.array(layer["bias"])]
+            scale = 1.0
+        return cls(np.concatenate(flat))
 
     @classmethod
     def untrained(cls, seed):
@@ -129,39 +139,40 @@ class Flights:
         return {"earned": earned, "flown": flown, "clipped": clipped, "by_policy": by_policy, "crashed": crashed > 0, "lost": lost, "out": out}
 
 
-def learn(task, shield, generations, seed, report=print):
-    """The network that was learnt, and its learning curve: steps flown, what the mean weights earn, and episodes lost so far."""
-    candidates = 2 * PAIRS + 1
-    flights = Flights(task, candidates * EPISODES, shield, **PATIENCE)
+def learn(task, shield, generations, start, seed, report=print):
+    """The network that was learnt, and its learning curve: steps flown, what the network earns in the same EXAMINED episodes each time, and
+    episodes lost so far."""
+    candidates = 2 * PAIRS
+    flights = Flights(task, EXAMINED + candidates * EPISODES, shield, **PATIENCE)
     random = np.random.default_rng(seed)
-    weights = Network.untrained(seed).weights.astype(float)
+    weights = start.weights.astype(float)
     momentum, square = np.zeros_like(weights), np.zeros_like(weights)
-    curve, steps, crashes, started = [], 0, 0, time.monotonic()
+    curve, steps, lost, started = [], 0, 0, time.monotonic()
     for generation in range(generations):
         noise = random.normal(size=(PAIRS, Network.count))
-        spread = np.concatenate([np.zeros((1, Network.count)), noise, -noise])
-        network = Network(weights + NOISE * spread)
-        starts = np.tile(random.integers(2**31, size=EPISODES), candidates)
+        spread = np.concatenate([noise, -noise])
+        examined, network = Network(weights), Network(weights + NOISE * spread)
+        starts = np.concatenate([np.arange(EXAMINED), np.tile(random.integers(2**31, size=EPISODES), candidates)])
 
         def act(observations):
-            return network.act(observations.reshape(candidates, EPISODES, -1)).reshape(-1, SIZES[-1])
+            others = network.act(observations[EXAMINED:].reshape(candidates, EPISODES, -1))
+            return np.concatenate([examined.act(observations[:EXAMINED]), others.reshape(-1, SIZES[-1])])
 
         seen = flights.fly(act, starts.tolist())
-        earned = seen["earned"].reshape(candidates, EPISODES).mean(axis=1)
-        steps, crashes = steps + int(seen["flown"].sum()), crashes + int(seen["lost"].sum())
-        curve.append((steps, earned[0], crashes))
+        earned = seen["earned"][EXAMINED:].reshape(candidates, EPISODES).mean(axis=1)
+        steps, lost = steps + int(seen["flown"].sum()), lost + int(seen["lost"].sum())
+        curve.append((steps, seen["earned"][:EXAMINED].mean(), lost))
         # By rank, from -1/2 to 1/2, so that no crash outweighs the rest.
-        ranks = np.argsort(np.argsort(earned[1:])) / (2 * PAIRS - 1) - 0.5
-        slope = ranks @ spread[1:] / (2 * PAIRS * NOISE)
+        ranks = np.argsort(np.argsort(earned)) / (candidates - 1) - 0.5
+        slope = ranks @ spread / (candidates * NOISE)
         momentum, square = 0.9 * momentum + 0.1 * slope, 0.99 * square + 0.01 * slope**2
         share = (1 - 0.9 ** (generation + 1)), (1 - 0.99 ** (generation + 1))
-        weights += STEP * (1.0 - 0.9 * generation / generations) * (momentum / share[0]) / (np.sqrt(square / share[1]) + 1e-8)
+        fall = 1.0 - 0.9 * generation / generations
+        weights += fall * STEP * (momentum / share[0]) / (np.sqrt(square / share[1]) + 1e-8)
         if generation % 10 == 9 or generation == 0:
             took = time.monotonic() - started
-            report(f"generation {generation + 1}: earns {earned[0]:.0f}, {steps} steps, {crashes} lost, {took:.0f} s")
+            report(f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, {lost} episodes lost, {took:.0f} s")
     return Network(weights), np.array(curve)
-
-
 
 
 def judge(task, policies, episodes, report=print):
@@ -203,9 +214,7 @@ def draw(curves, path):
     plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "learn", "font.size": 9})
     figure, (above, below) = plt.subplots(2, sharex=True, figsize=(6, 4.2), constrained_layout=True)
     for (name, curve), color, style in zip(curves.items(), ("#0072B2", "#D55E00"), ("-", "--")):
-        # The mean of five generations: one flies four episodes.
-        smooth = np.convolve(np.pad(curve[:, 1], 2, mode="edge"), np.full(5, 0.2), mode="valid")
-        above.plot(curve[:, 0] / 1e6, smooth, style, color=color, label=name)
+        above.plot(curve[:, 0] / 1e6, curve[:, 1], style, color=color, label=name)
         below.plot(curve[:, 0] / 1e6, curve[:, 2], style, color=color, label=name)
     above.set_ylabel("earned in an episode\nof 500 steps")
     below.set_ylabel("episodes that were lost")
@@ -228,38 +237,39 @@ def replay(task, network, path):
     environment.replay(path)
 
 
-def main():
+def main(given=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("task", choices=list(TASKS))
     parser.add_argument("--out", default="learnt", help="directory for what comes out")
     parser.add_argument("--generations", type=int, default=100)
     parser.add_argument("--episodes", type=int, default=1000, help="of each policy in the table")
+    parser.add_argument("--start", help="weights to begin with, a file of an earlier run; left out: small ones, at random")
     parser.add_argument("--seed", type=int, default=1)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(given)
     out = pathlib.Path(arguments.out)
     out.mkdir(parents=True, exist_ok=True)
     task, curves, networks = arguments.task, {}, {}
+    start = Network.read(arguments.start) if arguments.start else Network.untrained(arguments.seed)
     for shield, name in ((True, "with the shield"), (False, "without")):
         print(name)
-        networks[shield], curves[name] = learn(task, shield, arguments.generations, arguments.seed)
+        networks[shield], curves[name] = learn(task, shield, arguments.generations, start, arguments.seed)
         header = "steps,earned,lost"
         np.savetxt(out / f"{task}-{name.split()[0]}.csv", curves[name], delimiter=",", header=header, comments="", fmt="%.6g")
-    (out / "policy.toml").write_text(networks[True].text(task))
+    (out / f"{task}.toml").write_text(networks[True].text(task))
     replay(task, networks[True], out / f"{task}.gif")
-    untrained = Network.untrained(arguments.seed)
     policies = {
-        "untrained": lambda rows: untrained,
+        "as it starts": lambda rows: start,
         "learnt with the shield": lambda rows: networks[True],
         "learnt without": lambda rows: networks[False],
         "malicious": lambda rows: Malicious(rows, arguments.seed),
     }
-    judge(task, policies, arguments.episodes)
+    table = judge(task, policies, arguments.episodes)
     try:
         draw(curves, out / f"{task}.svg")
     except ImportError:
         print("without matplotlib there is no picture of the learning curve")
-    return 0
+    return curves, table
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -1,0 +1,67 @@
+"""The example that learns: a short form of it learns measurably, and the shield keeps what it promises meanwhile."""
+
+import runpy
+import tomllib
+
+import numpy as np
+import pytest
+from conftest import TOP
+
+LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
+
+
+@pytest.fixture(scope="module")
+def learnt(tmp_path_factory):
+    """A dozen generations with the shield and a dozen without, and a short table."""
+    out = tmp_path_factory.mktemp("learnt")
+    curves, table = LEARN["main"](["hover", "--out", str(out), "--generations", "12", "--episodes", "50"])
+    return out, curves, table
+
+
+@pytest.mark.parametrize("name", ["with the shield", "without"])
+def test_it_learns_measurably(learnt, name):
+    _, curves, _ = learnt
+    earned = curves[name][:, 1]
+    assert earned[-1] > 1.6 * earned[0] and earned[-1] > earned[0] + 30.0, earned
+
+
+def test_behind_the_shield_nothing_is_lost_from_the_first_episode_on(learnt):
+    _, curves, table = learnt
+    assert curves["with the shield"][-1, 2] == 0 and curves["without"][-1, 2] > 100
+    names = {name for name, _, _ in table}
+    assert names == {"as it starts", "learnt with the shield", "learnt without", "malicious"}
+    for name, shield, row in table:
+        if shield:
+            assert (row["crashed"], row["lost"], row["clipped"]) == (0, 0, 0.0), (name, row)
+            assert row["farthest"] < 0.05, (name, row)
+    malicious = {shield: row for name, shield, row in table if name == "malicious"}
+    assert malicious[False]["crashed"] > 5 and malicious[False]["lost"] > 20 and malicious[False]["clipped"] > 0.2
+    assert malicious[True]["by_policy"] < 0.9
+
+
+def test_the_file_of_weights_is_the_network(learnt):
+    out, _, _ = learnt
+    read = tomllib.loads((out / "hover.toml").read_text())
+    observations = np.random.default_rng(3).normal(size=(20, 18))
+    values = observations
+    for layer in read["layers"]:
+        values = np.tanh(values @ np.array(layer["weights"]).T + np.array(layer["bias"]))
+    network = LEARN["Network"].read(out / "hover.toml")
+    assert np.allclose(network.act(observations), values, atol=1e-5)
+    assert np.abs(values).max() <= 1.0 and np.ptp(values, axis=0).min() > 0.01
+
+
+def test_curves_pictures_and_replay_are_written(learnt):
+    out, _, _ = learnt
+    rows = np.loadtxt(out / "hover-with.csv", delimiter=",", skiprows=1)
+    assert rows.shape == (12, 3) and (np.diff(rows[:, 0]) > 0).all()
+    assert (out / "hover.svg").read_text().count("steps flown, millions") == 1
+    assert (out / "hover.gif").read_bytes().startswith(b"GIF89a")
+
+
+def test_a_network_of_a_batch_is_each_of_its_networks():
+    random = np.random.default_rng(1)
+    weights, observations = random.normal(size=(3, LEARN["Network"].count)), random.normal(size=(3, 5, 18))
+    together = LEARN["Network"](weights).act(observations)
+    for one, seen, acted in zip(weights, observations, together):
+        assert np.allclose(LEARN["Network"](one).act(seen), acted, atol=1e-6)
