@@ -33,6 +33,7 @@ use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
 use crate::extended::controller::{Controller, Prospect};
 use crate::extended::net;
+use crate::extended::position::Most;
 use crate::heading::Heading;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -82,12 +83,22 @@ enum Pilot {
     },
 }
 
+/// The greatest levels of feedback while the law flies in place of a policy, under `gravity`, m/s^2: 0.4 g down and 0.8
+/// g across. With all of the envelope the law may brake a climb with a third of the weight as thrust, and while it is
+/// tilted such a thrust turns the vehicle too slowly to follow: a Hummingbird in wind then went two metres astray. Up
+/// there is no such limit.
+fn stopping(gravity: f32) -> Most {
+    Most { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
+}
+
 /// A shield, as before a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shield {
     settings: Settings,
     monitor: Monitor,
     heading: HeadingGenerator,
+    /// The greatest levels of feedback while the law flies.
+    most: Most,
     period: f32,
     pilot: Pilot,
     /// The last demand that could be used, and how many ticks ago it came.
@@ -112,6 +123,7 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
+            most: stopping(configuration.vehicle().gravity),
             period,
             pilot: Pilot::Policy,
             demand: None,
@@ -158,7 +170,7 @@ impl Shield {
     }
 
     fn advance(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
-        let prospect = law.prospect(state);
+        let prospect = law.prospect(state, &self.most);
         let against = self.judge(state, &prospect, offers);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
@@ -176,7 +188,7 @@ impl Shield {
                 };
                 self.heading.come_to_rest();
                 let reference = Reference::resting(refuge, *self.heading.heading());
-                let (wrench, diagnostics) = law.step(state, &reference)?;
+                let (wrench, diagnostics) = law.step_within(state, &reference, &self.most)?;
                 Ok(Flown { wrench, diagnostics, reason: Some(reason), reference })
             }
         }

@@ -211,6 +211,9 @@ hand_overs=10)")]
     }
 }
 
+/// A law and its shield after a step, and the wrench.
+type Stepped = (One, [f32; WRENCH]);
+
 /// The shields of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 ///
 /// Arguments as of `Shield`.
@@ -282,7 +285,7 @@ hand_overs=10)")]
         let states = rows::<STATE>(states, count, "states")?;
         let demands = demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?;
         let (ones, demands) = (&self.ones, demands.as_deref());
-        let stepped: PyResult<Result<Vec<(One, [f32; WRENCH])>, String>> = py.detach(|| {
+        let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
             let given = ones.par_iter().zip(&states).enumerate().with_min_len(ROWS_AT_ONCE);
             let one = |(number, (one, state)): (usize, (&One, &[f64; STATE]))| {
                 let mut one = one.clone();

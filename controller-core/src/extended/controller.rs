@@ -18,7 +18,7 @@ use super::demand::Demand;
 use super::heading::{self, HeadingLag};
 use super::learning::Learning;
 use super::memory::{Averages, Estimates, Last, Memory};
-use super::position::{Filters, PositionLaw};
+use super::position::{Filters, Most, PositionLaw};
 use super::thrust_range::ThrustRange;
 use super::turning::{Circumstances, TurningLimit};
 use crate::allocation::Rotors;
@@ -34,6 +34,14 @@ use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
+
+/// Where ubar comes from.
+enum Wanted<'a> {
+    /// The law, with these levels at most.
+    Feedback(&'a Most),
+    /// A policy.
+    Demand(&'a Demand),
+}
 
 /// The extended law for one vehicle, one set of constants and one period.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,7 +123,7 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        self.tick(state, reference, None)
+        self.tick(state, reference, &Wanted::Feedback(&Most::ALL))
     }
 
     /// One tick with a demand in place of the position law's feedback. The reference gives the heading, and where the
@@ -131,7 +139,21 @@ impl Controller {
         demand: &Demand,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         demand.check()?;
-        self.tick(state, reference, Some(demand))
+        self.tick(state, reference, &Wanted::Demand(demand))
+    }
+
+    /// One tick whose feedback has levels of at most `most`. Every theorem on feedback holds for lower levels as well.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s.
+    #[inline(never)]
+    pub fn step_within(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        most: &Most,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        self.tick(state, reference, &Wanted::Feedback(most))
     }
 
     #[inline(always)]
@@ -139,7 +161,7 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        demand: Option<&Demand>,
+        wanted: &Wanted,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
@@ -147,12 +169,16 @@ impl Controller {
         let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
 
         let mut net = self.memory.net;
-        let catches = demand.is_none() && net.catches();
+        let counts = matches!(wanted, Wanted::Feedback(_));
+        let catches = counts && net.catches();
         let filters = if catches { Filters::at(-force) } else { self.memory.filters };
         let greatest = self.greatest(scale);
-        let feedback = match demand {
-            None => self.position.feedback(state, reference, &filters, &force, greatest, net.is_caught()),
-            Some(demand) => {
+        let feedback = match wanted {
+            Wanted::Feedback(most) => {
+                let most = if net.is_caught() { &self.position.net() } else { *most };
+                self.position.feedback(state, reference, &filters, &force, greatest, most)
+            }
+            Wanted::Demand(demand) => {
                 let wanted = self.wanted(state, demand, &force);
                 self.position.demanded(state, reference, &filters, &force, greatest, &wanted)
             }
@@ -210,7 +236,7 @@ impl Controller {
         let torque = self.attitude.torque(&torques, &rate, &acceleration) - bias;
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
-        if demand.is_none() {
+        if counts {
             net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
         }
 

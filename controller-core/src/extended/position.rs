@@ -96,6 +96,28 @@ pub struct Errors {
     pub z_2: Vector3<f32>,
 }
 
+/// The greatest levels of feedback, whatever the envelope leaves, m/s^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Most {
+    /// Upwards.
+    pub up: f32,
+    /// Downwards.
+    pub down: f32,
+    /// Across.
+    pub across: f32,
+}
+
+impl Most {
+    /// What the envelope leaves.
+    pub const ALL: Self = Self::each(f32::MAX);
+
+    /// The same every way.
+    #[must_use]
+    pub const fn each(level: f32) -> Self {
+        Self { up: level, down: level, across: level }
+    }
+}
+
 /// The position law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionLaw {
@@ -164,14 +186,19 @@ impl PositionLaw {
         })
     }
 
+    /// The level of the net.
+    #[must_use]
+    pub fn net(&self) -> Most {
+        Most::each(self.net)
+    }
+
     /// k_f, 1/s.
     #[must_use]
     pub fn k_f(&self) -> f32 {
         self.k_f
     }
 
-    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2;
-    /// `caught`, whether the level is the net's.
+    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2.
     #[must_use]
     #[inline(always)] // into the law's step
     pub fn feedback(
@@ -181,10 +208,9 @@ impl PositionLaw {
         filters: &Filters,
         force: &Vector3<f32>,
         greatest: f32,
-        caught: bool,
+        most: &Most,
     ) -> PositionFeedback {
         let errors = self.errors(state, reference, filters, force);
-        let most = if caught { self.net } else { f32::MAX };
         self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, greatest, most))
     }
 
@@ -220,7 +246,7 @@ impl PositionLaw {
     /// Passes ubar, `feedback`, on to the filters.
     #[inline(always)]
     fn passed_on(&self, errors: &Errors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
-        let Filters { command: c, intermediate: x, smoothed: y } = filters;
+        let Filters { intermediate: x, smoothed: y, .. } = filters;
         let smoothed = y + (feedback - y) * self.smoothing;
         let Errors { position, velocity, z_1, z_2 } = *errors;
         PositionFeedback {
@@ -229,7 +255,7 @@ impl PositionLaw {
             z_1,
             z_2,
             feedback,
-            rate: (x - c) * self.k_f,
+            rate: self.rate(filters),
             smoothed,
             drive: (smoothed - x) * self.k_s_held,
         }
@@ -255,16 +281,16 @@ impl PositionLaw {
     /// and down. Across: the least on the way, for the vertical goes from its command of now to -d_z, and the reach
     /// between two lifts is nowhere below the lesser of theirs.
     #[must_use]
-    pub fn stopping_levels(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> [f32; 3] {
-        let up = math::greater(greatest - self.gravity + force.z, LEVEL_LEAST);
-        let down = math::greater(self.a_down - force.z, LEVEL_LEAST);
+    pub fn stopping_levels(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32, most: &Most) -> Most {
+        let up = math::lesser(math::greater(greatest - self.gravity + force.z, LEVEL_LEAST), most.up);
+        let down = math::lesser(math::greater(self.a_down - force.z, LEVEL_LEAST), most.down);
         let vertical = z_2.z * self.k_v_vertical;
         let level = if vertical > 0.0 { down } else { up };
         let resting = self.gravity - force.z;
         let lift = resting - vertical * unit_factor(level, vertical * vertical);
         let reach = math::lesser(self.reach(lift, greatest), self.reach(resting, greatest));
-        let across = math::greater(reach - math::sqrt(force.xy().norm_squared()), LEVEL_LEAST);
-        [across, up, down]
+        let left = math::greater(reach - math::sqrt(force.xy().norm_squared()), LEVEL_LEAST);
+        Most { up, down, across: math::lesser(left, most.across) }
     }
 
     /// By how far z_1 moves until z_2 has come to rest, at these levels: at most |z_2| / k_v + |z_2|^2 / (2 M).
@@ -272,7 +298,8 @@ impl PositionLaw {
     /// With the reference at z_1, feedback is at least s(k_v z_2; M) long, so |z_2|' <= -M k_v |z_2| / sqrt(M^2 + k_v^2
     /// |z_2|^2), and the way is the integral of sqrt(M^2 + k_v^2 z^2) / (k_v M) from zero to |z_2|.
     #[must_use]
-    pub fn stopping_way(&self, z_2: &Vector3<f32>, [across, up, down]: [f32; 3]) -> Vector3<f32> {
+    pub fn stopping_way(&self, z_2: &Vector3<f32>, levels: &Most) -> Vector3<f32> {
+        let Most { up, down, across } = *levels;
         let time = |speed: f32, level: f32, k_v: f32| 1.0 / k_v + 0.5 * speed / level;
         let horizontal = time(math::sqrt(z_2.xy().norm_squared()), across, self.k_v_across);
         let vertical = time(z_2.z.abs(), if z_2.z > 0.0 { down } else { up }, self.k_v_vertical);
@@ -281,8 +308,8 @@ impl PositionLaw {
 
     /// ubar where the reference is at rest at z_1, m/s^2.
     #[must_use]
-    pub fn stopping(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
-        self.saturated([&Vector3::zeros(), z_2], force, greatest, f32::MAX)
+    pub fn stopping(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32, most: &Most) -> Vector3<f32> {
+        self.saturated([&Vector3::zeros(), z_2], force, greatest, most)
     }
 
     /// The inputs of the filters c, x and y in turn, for a position and its derivatives: p + p' / k_f, and that with
@@ -293,6 +320,13 @@ impl PositionLaw {
         let (p, v) = (state.position, state.velocity);
         let both = p + v * (of_command + of_intermediate) + (filters.command + force) * (of_command * of_intermediate);
         [p + v * of_command, both]
+    }
+
+    /// c', m/s^3.
+    #[must_use]
+    #[inline(always)]
+    pub fn rate(&self, filters: &Filters) -> Vector3<f32> {
+        (filters.intermediate - filters.command) * self.k_f
     }
 
     /// 1/k_f + 1/k_s + 1/k_d, s.
@@ -307,21 +341,21 @@ impl PositionLaw {
         [z_1, z_2]: [&Vector3<f32>; 2],
         force: &Vector3<f32>,
         greatest: f32,
-        most: f32,
+        most: &Most,
     ) -> Vector3<f32> {
         // Above the reference the vehicle descends.
         let descent = if z_1.z > 0.0 { &self.approach_down } else { &self.approach_up };
         let vertical = (z_2.z + z_1.z * descent.factor(z_1.z * z_1.z)) * self.k_v_vertical;
         let level = if vertical > 0.0 { self.a_down - force.z } else { greatest - self.gravity + force.z };
-        let vertical = -vertical
-            * unit_factor(math::lesser(math::greater(level, LEVEL_LEAST), most), vertical * vertical)
-            - force.z;
+        let capped = if vertical > 0.0 { most.down } else { most.up };
+        let level = math::lesser(math::greater(level, LEVEL_LEAST), capped);
+        let vertical = -vertical * unit_factor(level, vertical * vertical) - force.z;
 
         let reach = self.reach(self.gravity + vertical, greatest);
         let (across, wind) = (z_1.xy(), force.xy());
         let wanted = (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
         let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
-        let level = math::lesser(level, most);
+        let level = math::lesser(level, most.across);
         let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;
         Vector3::new(across.x, across.y, vertical)
     }

@@ -1,9 +1,9 @@
 //! A heading that turns as a policy wants it, within the certified bounds.
 //!
 //! The certificate holds for |psi'| <= K_nu' and sqrt(psi''^2 + psi'^4) <= K_nu''. With |psi'| at most R, psi'' may be
-//! sqrt(K_nu''^2 - R^4). psi' goes to the wanted rate at once, as far as psi'' and R let it; towards an angle the wanted
-//! rate is proportional to the sine of what is left, with the slope B / R at most, so that braking takes no more than
-//! half of psi''.
+//! B = sqrt(K_nu''^2 - R^4). psi' goes to the wanted rate at once, as far as B and R let it. Towards an angle, with e the
+//! sine of what is left (one beyond a right angle), the wanted rate is the lesser of 3 e and sqrt(B e), along which
+//! braking takes half of B.
 
 use crate::extended::demand::Demand;
 use crate::heading::{Heading, forwards};
@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 /// The part of the root of K_nu'' that the rate may take.
 const RATE_SHARE: f32 = 0.8;
 
-/// The steepest slope towards an angle, 1/s.
+/// The rate per angle near its end, 1/s.
 const SLOPE: f32 = 3.0;
 
 /// The heading at hand, and how it may turn.
@@ -24,7 +24,6 @@ pub(super) struct HeadingGenerator {
     /// R, rad/s, and the greatest psi'', rad/s^2.
     fastest: f32,
     strongest: f32,
-    slope: f32,
     period: f32,
 }
 
@@ -35,8 +34,7 @@ impl HeadingGenerator {
         let fastest = math::lesser(bounds.heading_rate, RATE_SHARE * math::sqrt(second));
         let square = fastest * fastest;
         let strongest = math::sqrt(math::greater(second * second - square * square, 0.0));
-        let slope = math::lesser(0.5 * strongest / math::greater(fastest, 1e-6), SLOPE);
-        Self { heading: Heading::FORWARD, fastest, strongest, slope, period }
+        Self { heading: Heading::FORWARD, fastest, strongest, period }
     }
 
     /// Starts at rest along `heading`.
@@ -69,13 +67,10 @@ impl HeadingGenerator {
         let (along, across) = (here.dot(direction), here.x * direction.y - here.y * direction.x);
         let length = math::sqrt(along * along + across * across);
         if length < 1e-3 {
-            0.0
-        } else if along > 0.0 {
-            self.slope * across / length
-        } else {
-            // Beyond a right angle the sine falls.
-            self.slope.copysign(across)
+            return 0.0;
         }
+        let left = if along > 0.0 { across.abs() / length } else { 1.0 };
+        math::lesser(SLOPE * left, math::sqrt(self.strongest * left)).copysign(across)
     }
 
     fn turn(&mut self, wanted: f32) {

@@ -9,6 +9,7 @@
 
 use super::{Controller, thrust_axis};
 use crate::extended::memory::Estimates;
+use crate::extended::position::Most;
 use crate::extended::turning::TURNED;
 use crate::heading::Heading;
 use crate::math;
@@ -39,26 +40,26 @@ pub struct Prospect {
 }
 
 impl Controller {
-    /// What is ahead of a vehicle in `state`.
+    /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
     #[must_use]
-    pub fn prospect(&self, state: &State) -> Prospect {
+    pub fn prospect(&self, state: &State, most: &Most) -> Prospect {
         let Estimates { force, scale, .. } = self.estimates();
         let filters = &self.memory.filters;
         let greatest = self.greatest(scale);
         let origin = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let errors = self.position.errors(state, &origin, filters, &force);
         let (z_1, z_2) = (errors.z_1, errors.z_2);
-        let acceleration = filters.command + force;
+        let acceleration = filters.intermediate + force;
         let mut command = filters.command;
         command.z += self.vehicle.gravity;
         let magnitude = math::sqrt(command.norm_squared());
 
-        let reaction = self.reaction(&z_2, &command, &force, greatest);
+        let reaction = self.reaction(&z_2, &command, &force, greatest, most);
         let went_on = z_1 + z_2 * reaction;
         let sped_up = acceleration * reaction;
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
-            let levels = self.position.stopping_levels(&speed, &force, greatest);
-            at + self.position.stopping_way(&speed, levels)
+            let levels = self.position.stopping_levels(&speed, &force, greatest, most);
+            at + self.position.stopping_way(&speed, &levels)
         };
         let [first, second] = self.position.stages(state, filters, &force);
         Prospect {
@@ -77,19 +78,32 @@ impl Controller {
     }
 
     /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.
-    fn reaction(&self, z_2: &Vector3<f32>, command: &Vector3<f32>, force: &Vector3<f32>, greatest: f32) -> f32 {
-        let mut stopping = self.position.stopping(z_2, force, greatest);
+    fn reaction(
+        &self,
+        z_2: &Vector3<f32>,
+        command: &Vector3<f32>,
+        force: &Vector3<f32>,
+        greatest: f32,
+        most: &Most,
+    ) -> f32 {
+        let mut stopping = self.position.stopping(z_2, force, greatest, most);
         stopping.z += self.vehicle.gravity;
         let angle = angle(command, &stopping);
         let parameters = &self.law.parameters;
         let budget = self.budget.acceleration(command.z, FEEDBACK_SHARE * parameters.m_all, SINE);
         let acceleration = TURNED * math::greater(budget, parameters.turn_reserve);
         let rate = parameters.turn_rate;
+        // First it comes to rest, then it turns from rest to rest.
+        let moving = self.position.rate(&self.memory.filters);
+        let turns = math::sqrt(moving.cross(command).norm_squared()) / command.norm_squared();
+        let stops = turns / acceleration;
+        let angle = angle + 0.5 * turns * stops;
         let turning = if angle * acceleration > rate * rate {
             angle / rate + rate / acceleration
         } else {
             2.0 * math::sqrt(angle / acceleration)
         };
+        let turning = stops + turning;
         math::greater(turning - self.position.lag(), 0.0) + self.late + self.period
     }
 

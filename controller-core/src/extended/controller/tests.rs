@@ -2,6 +2,8 @@
 //! exceed.
 
 extern crate std;
+mod demand;
+
 use super::*;
 use crate::allocation::MinimumNorm;
 use crate::certificate::extended::ExtendedCertificate;
@@ -226,7 +228,7 @@ fn what_is_learnt_of_an_interval_is_learnt_with_its_own_length() {
 
 /// The law's commands for `craft` with every constant by its formula, along states that jump, checked against the
 /// bounds and the rotors; whether the craft is certified at rest, without which no bound holds.
-fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random) -> bool {
+fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: bool) -> bool {
     let p = craft.constants(&NOTHING_GIVEN);
     let configuration = craft.configuration(&p, ReferenceBounds::REST);
     let certificate = ExtendedCertificate::new(&configuration, &craft.law(&p)).unwrap();
@@ -248,7 +250,12 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random) -> bool {
                 state.angular_velocity += random.vector(0.5);
             }
         }
-        let (wrench, diagnostics) = controller.step(&state, &hover()).unwrap();
+        let (wrench, diagnostics) = match demands.then(|| random.below(3)) {
+            None | Some(0) => controller.step(&state, &hover()),
+            Some(1) => controller.step_within(&state, &hover(), &Most::each(random.between(0.3, 20.0))),
+            Some(_) => controller.step_on_demand(&state, &hover(), &demand::any(random)),
+        }
+        .unwrap();
         let scale = controller.thrust_scale();
         let Wrench { thrust, torque } = wrench;
         assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.greatest);
@@ -265,7 +272,7 @@ fn no_sequence_of_states_exceeds_the_limits_or_the_rotors() {
     let mut random = Random(81);
     for number in 0..60 {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
-        assert!(kept_to_its_limits(&craft, 1_500, &mut random), "{craft:?}");
+        assert!(kept_to_its_limits(&craft, 1_500, &mut random, false), "{craft:?}");
     }
 }
 
@@ -281,13 +288,13 @@ fn no_rotor_goes_below_its_least_where_the_thrust_limit_is_low() {
     let mut certified = 0;
     for thrust_max in [7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0] {
         let craft = limited(Craft::example(), thrust_max);
-        certified += u32::from(kept_to_its_limits(&craft, 6_000, &mut random));
+        certified += u32::from(kept_to_its_limits(&craft, 6_000, &mut random, false));
     }
     for _ in 0..40 {
         let craft = Craft::random(&mut random);
         let weight = craft.vehicle.mass * craft.vehicle.gravity;
         let craft = limited(craft, weight * random.between(1.5, 3.0));
-        certified += u32::from(kept_to_its_limits(&craft, 1_500, &mut random));
+        certified += u32::from(kept_to_its_limits(&craft, 1_500, &mut random, false));
     }
     assert!(certified > 40, "{certified}");
 }

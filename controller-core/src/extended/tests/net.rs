@@ -98,7 +98,7 @@ fn under_the_nets_level_the_frame_is_never_limited() {
                 state = at(random.vector(1e3), random.vector(1e3));
                 yaw_rate = p.yaw_rate * random.signed().signum();
             }
-            let feedback = position.feedback(&state, &origin, &filter, &d, greatest, true);
+            let feedback = position.feedback(&state, &origin, &filter, &d, greatest, &position.net());
             let wanted = (feedback.drive - feedback.rate) * position.k_f();
             let c = filter.command;
             let desired = DesiredAttitude::new(&Vector3::new(c.x, c.y, c.z + gravity), &Heading::FORWARD);
