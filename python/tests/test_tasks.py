@@ -236,3 +236,50 @@ def test_an_episode_is_written_as_a_moving_picture_and_as_a_page(tmp_path):
         environment.replay(tmp_path / "nowhere" / "flight.gif")
     with pytest.raises(RuntimeError, match='replay: nothing is kept: make the environment with render_mode="rgb_array"'):
         HoverRows(None, 2).replay(tmp_path / "flight.gif")
+
+
+BOX = {"low": [-3.0, -3.0, 0.3], "high": [3.0, 3.0, 4.0]}
+
+
+@pytest.mark.parametrize("action", ["acceleration", "attitude"])
+def test_behind_the_shield_a_dive_ends_above_the_floor_and_says_who_flew(action):
+    rows = HoverRows(None, 3, action=action, shield=BOX)
+    one = gymnasium.make(IDS[0], action=action, shield=BOX)
+    down = np.array([0.0, 0.0, -1.0, 0.0] if action == "acceleration" else [-1.0, 0.0, 0.0, 0.0], np.float32)
+    rows.reset(seed=4), one.reset(seed=5)
+    lowest, reasons, flown = np.inf, set(), []
+    for tick in range(400):
+        # Of the last row nothing is a number.
+        actions = np.array([down, down, np.full(4, np.nan)])
+        _, _, terminated, truncated, info = rows.step(actions)
+        *_, alone = one.step(down)
+        assert not terminated.any() and not info["clipped"].any()
+        assert alone["by_policy"] == info["by_policy"][1] and alone["reasons"] == info["reasons"][1]
+        assert np.array_equal(info["by_policy"], [reason == "" for reason in info["reasons"]])
+        lowest, flown = min(lowest, rows.vehicles.states[:, 2].min()), [*flown, info["by_policy"]]
+        reasons |= set(info["reasons"])
+    assert lowest > BOX["low"][2] - 0.02, lowest
+    assert {"", "stop", "demand"} <= reasons
+    share = np.mean(flown, axis=0)
+    assert 0.02 < share[0] < 0.98 and share[2] < 0.05, share
+
+
+def test_what_the_shield_cannot_be_is_refused():
+    with pytest.raises(ValueError, match="low"):
+        HoverRows(None, 2, shield={"low": [0, 0, 2], "high": [1, 1, 1]})
+    with pytest.raises(ValueError, match="control.law"):
+        HoverRows(sh.Scenario.built_in("paper"), 2, shield=BOX)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'height'"):
+        HoverRows(None, 2, shield=BOX | {"height": 2})
+
+
+@pytest.mark.parametrize("shield", [None, BOX])
+def test_an_episode_flies_the_same_whatever_was_flown_before(shield):
+    environment = HoverRows(None, 2, shield=shield)
+    random = np.random.default_rng(7)
+    actions = random.uniform(-1.0, 1.0, (8, 2, 4)).repeat(20, 0)
+    flights = []
+    for _ in range(2):
+        environment.reset(seed=3)
+        flights.append([environment.step(each)[0] for each in actions])
+    assert np.array_equal(*flights)
