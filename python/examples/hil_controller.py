@@ -18,6 +18,7 @@ import numpy as np  # noqa: E402
 import saturated_hybrid as sh  # noqa: E402
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as m  # noqa: E402
+from saturated_hybrid.textbook import rotations  # noqa: E402
 
 # North, east, down to x, y, z up; forward, right, down to forward, left, up.
 TURN = np.array([1.0, -1.0, -1.0])
@@ -27,15 +28,7 @@ def state_of(odometry):
     """The state (13,) in an ODOMETRY: velocity there is the body's."""
     w, x, y, z = odometry.q
     attitude = np.array([w, *(TURN * [x, y, z])])
-    rotation = np.array(
-        [
-            [1 - 2 * (attitude[2] ** 2 + attitude[3] ** 2), 2 * (attitude[1] * attitude[2] - w * attitude[3])],
-            [2 * (attitude[1] * attitude[2] + w * attitude[3]), 1 - 2 * (attitude[1] ** 2 + attitude[3] ** 2)],
-            [2 * (attitude[1] * attitude[3] - w * attitude[2]), 2 * (attitude[2] * attitude[3] + w * attitude[1])],
-        ]
-    )
-    rotation = np.column_stack([rotation, np.cross(rotation[:, 0], rotation[:, 1])])
-    velocity = rotation @ (TURN * [odometry.vx, odometry.vy, odometry.vz])
+    velocity = rotations(attitude) @ (TURN * [odometry.vx, odometry.vy, odometry.vz])
     rates = TURN * [odometry.rollspeed, odometry.pitchspeed, odometry.yawspeed]
     return sh.state(TURN * [odometry.x, odometry.y, odometry.z], velocity, attitude / np.linalg.norm(attitude), rates)
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from . import _core
 from .environment import Environment, VectorEnvironment
+from .textbook import rotations
 
 # The box that an episode is in, m: a crash, below 0, or lost.
 LOW, HIGH = np.array([-5.0, -4.0, 0.0]), np.array([5.0, 4.0, 5.0])
@@ -42,19 +43,9 @@ def scenario_of(scenario, point):
 def seen(rows, target):
     """The 18 numbers of an observation, for rows (..., 32) and a target (..., 3)."""
     rows = np.asarray(rows, float)
-    rotation = _rotation(rows[..., 6:10])
+    rotation = rotations(rows[..., 6:10])
     flat = rotation.reshape(*rotation.shape[:-2], 9)
     return np.concatenate([target - rows[..., :3], rows[..., 3:6], flat, rows[..., 10:13]], axis=-1)
-
-
-def _rotation(quaternions):
-    w, x, y, z = np.moveaxis(quaternions, -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 class _Hover:
