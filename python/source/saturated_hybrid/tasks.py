@@ -69,7 +69,7 @@ class _Hover:
         away = np.linalg.norm(self.target(rows) - rows[..., :3], axis=-1)
         speed, rates = np.linalg.norm(rows[..., 3:6], axis=-1), np.linalg.norm(rows[..., 10:13], axis=-1)
         effort = np.mean(np.square(np.clip(np.nan_to_num(actions, nan=1.0), -1.0, 1.0)), axis=-1)
-        earned = np.exp(-away) - 0.03 * speed - 0.02 * rates - 0.02 * effort
+        earned = np.exp(-away) - 0.03 * speed - 0.02 * rates - 0.1 * effort
         return np.where(self.terminated(rows), -10.0, earned.astype(float))
 
     def terminated(self, rows):
