@@ -1,11 +1,14 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
 //! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it
-//! an image for a board is built of a vehicle that does not exist, and never arms. `BOOTLOADER=kept` leaves the first
+//! an image for a board is built of a vehicle that does not exist, and never arms. `POLICY=file.toml` builds in a policy,
+//! a network as docs/shield.md has it. `BOOTLOADER=kept` leaves the first
 //! flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]
 mod embed;
+#[path = "build/policy.rs"]
+mod policy;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -51,6 +54,7 @@ fn is_for_a_vehicle() -> bool {
 fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-env-changed=SCENARIO");
     println!("cargo::rerun-if-changed=build/embed.rs");
+    println!("cargo::rerun-if-changed=build/policy.rs");
     let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
     let name = env::var("SCENARIO").unwrap_or_else(|_| STUDY.to_owned());
     let file = top.join(&name);
@@ -66,10 +70,22 @@ fn scenario(target: &Path) -> Result<(), String> {
         println!("cargo::warning=no vehicle: this image never arms; build with SCENARIO=vehicles/yours.toml");
     }
     let source = format!(
-        "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n",
-        embedded.source
+        "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n{}",
+        embedded.source,
+        carried(&top)?
     );
     fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
+}
+
+/// The source of the policy that POLICY names, or of none.
+fn carried(top: &Path) -> Result<String, String> {
+    println!("cargo::rerun-if-env-changed=POLICY");
+    let Ok(name) = env::var("POLICY") else { return Ok(policy::NONE.to_owned()) };
+    let file = top.join(&name);
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = scenario::text::read(&file)
+        .map_err(|error| format!("POLICY {name}: cannot be read from the top of the repository: {error}"))?;
+    policy::source(&text, &name)
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.

@@ -12,6 +12,7 @@
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`]; along files: [`trajectory_files`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
+//! | other people's controllers within the limits | [`shield`] |
 //! | the supervisor, whatever fails or lies; hours of it | [`fault_campaign`], [`lying_poses`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
 //! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_campaign_directory`], [`cli_certify`], [`cli_compare`], [`cli_identify`], |
@@ -59,6 +60,7 @@ mod recovery;
 mod rotor_lag;
 mod sampled_loop;
 mod sharp_derivation;
+mod shield;
 mod steady_circle;
 mod support;
 mod touchdown;

@@ -11,6 +11,7 @@
 //! law's theorem holds from there on.
 //!
 //! - [`monitor`]: when the law has to take over: a table of rules, each with its number and its reason;
+//! - [`network`]: a small network as a policy;
 //! - [`reason`]: those reasons in words;
 //! - [`settings`]: the box, and the numbers of the rules;
 //! - `heading`: a heading that turns within the certified bounds.
@@ -21,6 +22,7 @@
 
 mod heading;
 pub mod monitor;
+pub mod network;
 pub mod reason;
 pub mod settings;
 
@@ -133,6 +135,17 @@ impl Shield {
         })
     }
 
+    /// Other settings from now on.
+    ///
+    /// # Errors
+    /// For one that makes no sense, by its name; nothing has changed then.
+    pub fn confine(&mut self, settings: &Settings) -> Result<(), ParameterError> {
+        settings.check()?;
+        self.settings = *settings;
+        self.monitor.confine(settings);
+        Ok(())
+    }
+
     /// As before a flight, pointing along `heading`.
     pub fn reset(&mut self, heading: &Heading) {
         self.heading.start(heading);
@@ -150,6 +163,12 @@ impl Shield {
     #[must_use]
     pub fn hand_overs(&self) -> u32 {
         self.hand_overs
+    }
+
+    /// Whether the law keeps the vehicle until a person asks again.
+    #[must_use]
+    pub fn keeps(&self) -> bool {
+        self.hand_overs >= self.settings.hand_overs
     }
 
     /// Where the heading generator points.
@@ -224,7 +243,8 @@ impl Shield {
                 let arrived = net::is_near(&(prospect.z_1 - *refuge), &prospect.z_2);
                 *near = if arrived && against.is_none() { near.saturating_add(1) } else { 0 };
                 let waited = *near as f32 * self.period;
-                if self.hand_overs < self.settings.hand_overs && waited >= self.settings.patience(self.hand_overs) {
+                let patience = self.settings.patience(self.hand_overs);
+                if self.hand_overs < self.settings.hand_overs && waited >= patience {
                     self.pilot = Pilot::Policy;
                 }
             }

@@ -7,7 +7,7 @@
 //! and more of the stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration
 //! boots as well: it answers, tests motors, never arms, and names the inequality that fails.
 
-use crate::configuration;
+use crate::configuration::{self, Pilot};
 use crate::outputs::Outputs;
 use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
@@ -18,14 +18,14 @@ use controller_core::error::ParameterError;
 use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Estimator, Settings};
-use flight::{FlightSettings, Memory, Pilot};
+use flight::{FlightSettings, Memory};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// Where a pilot lies, its estimator, and what its governor and mixer work with.
 pub struct Place {
     built: StaticCell<Built>,
     certification: StaticCell<Result<Certified, Refused>>,
-    pilot: StaticCell<Pilot<'static>>,
+    pilot: StaticCell<Pilot>,
     estimator: StaticCell<Estimator>,
     memory: ConstStaticCell<Memory>,
 }
@@ -53,7 +53,7 @@ impl Place {
 pub fn start<M: RawMutex>(
     place: &'static Place,
     shared: BootView<'_, M>,
-) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
     let configuration = configuration::embedded()?;
     let built = Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY };
     start_named(place, shared, built, configuration::IS_NAMED)
@@ -69,7 +69,7 @@ pub fn start_named<M: RawMutex>(
     shared: BootView<'_, M>,
     built: Built,
     is_named: bool,
-) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
     let parameters = shared.parameters();
     let built: &'static Built = place.built.init_with(|| built);
     if parameters.boot(built) {
@@ -107,7 +107,7 @@ pub fn start_with<M: RawMutex>(
     place: &'static Place,
     shared: BootView<'_, M>,
     built: Built,
-) -> Result<(&'static mut Pilot<'static>, Outputs), ParameterError> {
+) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
     start_named(place, shared, built, true)
 }
 
@@ -135,9 +135,11 @@ fn pilot(
     limits: &GovernorLimits,
     settings: &FlightSettings,
     estimator: &'static mut Estimator,
-) -> &'static mut Pilot<'static> {
+) -> &'static mut Pilot {
     let memory = place.memory.take();
-    place.pilot.init_with(|| Pilot::new(certification, limits, settings, estimator, memory))
+    place
+        .pilot
+        .init_with(|| Pilot::carrying(certification, limits, settings, estimator, memory, configuration::policy()))
 }
 
 /// The numbers of every inequality that decides, and the verdict. `host-sim certify` explains them.

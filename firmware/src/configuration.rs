@@ -20,6 +20,9 @@ pub fn embedded() -> Result<Configuration, ParameterError> {
     built()
 }
 
+/// The pilot of this build: it carries the policy that is built in, or none.
+pub type Pilot = flight::Pilot<'static, Policy>;
+
 /// The error of an image that was built for no vehicle in particular: in the words of a refusal to arm.
 pub const NO_VEHICLE: ParameterError =
     ParameterError { field: "no vehicle: build with SCENARIO", reason: Reason::NotPositive };

@@ -10,6 +10,7 @@
 //! are left out, not caught up with. The watchdog is fed by ticks alone that wrote what they decided in time, the stop
 //! command included: a vehicle whose motors do not receive it, or that has no time left, is reset.
 
+use crate::configuration::Pilot;
 use crate::deadline::within;
 use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
@@ -21,7 +22,7 @@ use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, PERIOD, Pilot, Reason, Refusal, Transition};
+use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, PERIOD, Reason, Refusal, Transition};
 use heapless::Vec;
 
 /// How long the motors' frame may take to write, us.
@@ -39,7 +40,7 @@ const TEXT_INTERVAL: u64 = 1_000_000;
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
     shared: ControlView<'a, M>,
-    pilot: &'a mut Pilot<'static>,
+    pilot: &'a mut Pilot,
     outputs: Outputs,
     timing: Timing,
     mission: MissionReport,
@@ -67,7 +68,7 @@ struct Reported {
 
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies by `pilot`, with `outputs` for the motors.
-    pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot<'static>, outputs: Outputs) -> Self {
+    pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
         Self {
             shared,
             pilot,
@@ -231,6 +232,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let Some(streamed) = outcome.streamed {
             self.shared.announce(Event::Streamed(streamed));
         }
+        if let Some(handed) = outcome.handed {
+            self.shared.announce(Event::Handed(handed));
+        }
     }
 
     /// Reports that an armed vehicle's battery is no longer measured: landing for want of a reading would not help.
@@ -281,6 +285,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             wrench: flown.map(|flown| flown.wrench),
             thrust_scale: flown.map(|flown| flown.thrust_scale),
             mission: self.mission,
+            flies_policy: outcome.flies_policy,
             timing: self.timing,
         }
     }

@@ -7,6 +7,7 @@
 //! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
 use super::lift_off::LiftOff;
+use super::policy::{Aboard, Handed};
 use super::refusal::Grounded;
 use super::rules::REFUSALS_MAX;
 use super::sinking::Sinking;
@@ -95,9 +96,7 @@ fn apart<T>(make: impl FnOnce() -> T) -> T {
 
 /// A reference at rest.
 fn resting(position: &Vector3<f32>, heading: &Heading) -> Reference {
-    let zero = Vector3::zeros();
-    let position = *position;
-    Reference { position, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading: heading.at_rest() }
+    Reference::resting(*position, heading.at_rest())
 }
 
 impl<'m> Chain<'m> {
@@ -232,9 +231,35 @@ impl<'m> Chain<'m> {
         self.step(state)
     }
 
+    /// One tick on what a policy aboard demands; who flies, if that is new.
+    ///
+    /// # Errors
+    /// As [`Self::fly`].
+    pub fn fly_policy(
+        &mut self,
+        policy: &mut impl Aboard,
+        state: &State,
+        handed: &mut Option<Handed>,
+    ) -> Result<Flown, InputError> {
+        self.steps(state, |law, reference| {
+            let shielded = policy.fly(law, state)?;
+            (*reference, *handed) = (shielded.reference, shielded.handed);
+            Ok(shielded.command)
+        })
+    }
+
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
+        self.steps(state, |law, reference| law.command(state, reference))
+    }
+
+    #[inline(always)] // without a policy there is one caller
+    fn steps(
+        &mut self,
+        state: &State,
+        step: impl FnOnce(&mut Law, &mut Reference) -> Result<Command, InputError>,
+    ) -> Result<Flown, InputError> {
         self.refusals = self.refusals.saturating_add(1);
-        let flown = self.command(state);
+        let flown = self.command(state, step);
         if flown.is_err() {
             // The rotors keep their last thrusts for a tick that the law knows nothing of.
             self.law.hold_estimates();
@@ -242,8 +267,13 @@ impl<'m> Chain<'m> {
         flown
     }
 
-    fn command(&mut self, state: &State) -> Result<Flown, InputError> {
-        let Command { wrench, mrp } = self.law.command(state, &self.reference)?;
+    #[inline(always)]
+    fn command(
+        &mut self,
+        state: &State,
+        step: impl FnOnce(&mut Law, &mut Reference) -> Result<Command, InputError>,
+    ) -> Result<Flown, InputError> {
+        let Command { wrench, mrp } = step(&mut self.law, &mut self.reference)?;
         let position_error = state.position - self.reference.position;
         let scale = self.law.thrust_scale();
         let allocation = self.mixer.allocate(&wrench.scaled(1.0 / scale))?;

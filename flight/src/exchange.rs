@@ -3,6 +3,7 @@
 use super::chain::Flown;
 use super::mission::{MissionItem, MissionStep};
 use super::motor::Word;
+use super::policy::Handed;
 use super::refusal::Refusal;
 use super::request::Request;
 use super::rules::{Mode, Transition};
@@ -138,4 +139,8 @@ pub struct Outcome {
     pub doubtful_thrust: Option<f32>,
     /// How a stream of setpoints is flown, in the ticks that report it.
     pub streamed: Option<Streamed>,
+    /// Whether a policy is let fly.
+    pub flies_policy: bool,
+    /// Who flies from now on, in the ticks in which that changes while a policy is let fly.
+    pub handed: Option<Handed>,
 }

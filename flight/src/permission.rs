@@ -1,6 +1,7 @@
 //! What arming, turning a motor and the ways of flying need, and why they are refused.
 
 use super::estimate::Estimate;
+use super::policy::Aboard;
 use super::refusal::Refusal;
 use super::rules::Mode;
 use super::tilt::{heading, up};
@@ -62,6 +63,16 @@ pub(super) fn to_fly_setpoints(mode: Mode) -> Result<(), Refusal> {
         Mode::Landing => Err(Refusal::Landing),
         Mode::Descending => Err(Refusal::WithoutPose),
         _ => require(mode.may_arm() || mode == Mode::Idling || mode.is_guided(), Refusal::NotInTheAir),
+    }
+}
+
+/// Letting a policy fly: in the air, where the vehicle holds or flies already.
+pub(super) fn to_fly_policy<P: Aboard>(mode: Mode, airborne: bool) -> Result<(), Refusal> {
+    require(P::EXISTS, Refusal::NoPolicy)?;
+    match mode {
+        Mode::Landing => Err(Refusal::Landing),
+        Mode::Descending => Err(Refusal::WithoutPose),
+        _ => require(airborne && matches!(mode, Mode::Flying | Mode::Holding), Refusal::NotInTheAir),
     }
 }
 

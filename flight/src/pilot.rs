@@ -10,8 +10,10 @@ use super::exchange::{Inputs, Output, PERIOD};
 use super::fall::Fall;
 use super::fence::Fence;
 use super::mission::Progress;
+use super::permission;
+use super::policy::{Aboard, Handed, NoPolicy, corners};
 use super::reason::Reason;
-use super::refusal::Grounded;
+use super::refusal::{Grounded, Refusal};
 use super::request::Newest;
 use super::rules::{self, BRAKING_MAX, Conditions, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
@@ -21,13 +23,15 @@ use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
-use controller_core::governor::{Following, GovernorLimits};
+use controller_core::governor::{Following, GovernorLimits, Motion, Setpoint};
+use controller_core::reference::Reference;
+use core::mem;
 use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 3.5 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
-pub struct Pilot<'m> {
+pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,
     settings: FlightSettings,
     mode: Mode,
@@ -50,14 +54,13 @@ pub struct Pilot<'m> {
     landing_from: f32,
     thrust_check: ThrustCheck,
     stream_check: StreamCheck,
+    policy: P,
+    /// Whether it is let fly.
+    flies_policy: bool,
 }
 
 impl<'m> Pilot<'m> {
-    /// A pilot at boot for the verdict of the certificate on a configuration, to tick every [`PERIOD`]. It flies on the
-    /// state of `estimator`; its governor and mixer lie in `memory`.
-    ///
-    /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
-    /// never arms, and reports why.
+    /// [`Pilot::carrying`] no policy.
     #[must_use]
     pub fn new(
         certification: Result<&Certified, &Refused>,
@@ -66,7 +69,29 @@ impl<'m> Pilot<'m> {
         estimator: &'m mut Estimator,
         memory: &'m mut Memory,
     ) -> Self {
+        Self::carrying(certification, limits, settings, estimator, memory, NoPolicy)
+    }
+}
+
+impl<'m, P: Aboard> Pilot<'m, P> {
+    /// A pilot at boot for the verdict of the certificate on a configuration, to tick every [`PERIOD`]. It flies on the
+    /// state of `estimator`; its governor and mixer lie in `memory`.
+    ///
+    /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
+    /// never arms, and reports why.
+    #[must_use]
+    pub fn carrying(
+        certification: Result<&Certified, &Refused>,
+        limits: &GovernorLimits,
+        settings: &FlightSettings,
+        estimator: &'m mut Estimator,
+        memory: &'m mut Memory,
+        mut policy: P,
+    ) -> Self {
         let settings = settings.within_range();
+        if let Ok(certified) = certification {
+            policy.fit(certified.configuration(), PERIOD as f32 * 1e-6);
+        }
         Self {
             chain: match certification {
                 Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
@@ -88,6 +113,8 @@ impl<'m> Pilot<'m> {
             landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
             stream_check: StreamCheck::default(),
+            policy,
+            flies_policy: false,
         }
     }
 
@@ -185,6 +212,7 @@ impl<'m> Pilot<'m> {
         }
         if transition.to != Mode::Flying {
             self.mission = self.mission.paused();
+            self.take_over(estimate);
         }
         self.must_still_land |= transition.from == Mode::Landing;
         self.must_still_land &= transition.to == Mode::Descending;
@@ -205,7 +233,7 @@ impl<'m> Pilot<'m> {
                 // What is armed was at rest.
                 self.fall = Fall::default();
             }
-            (Mode::Flying, _) if self.mission.is_flown => {}
+            (Mode::Flying, _) if self.mission.is_flown || self.flies_policy => {}
             (Mode::Flying, _) => {
                 if let Some(setpoint) = self.newest.fresh(inputs.now).filter(|setpoint| self.fence.allows(setpoint)) {
                     // It was checked when it came.
@@ -246,20 +274,23 @@ impl<'m> Pilot<'m> {
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> (Output, Option<Result<Flown, InputError>>) {
+    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> Done {
         match self.mode {
-            Mode::MotorTest => return (self.bench.output(now.saturating_sub(self.since)), None),
-            Mode::Idling => return (Output::Idle, None),
+            Mode::MotorTest => return Done::without(self.bench.output(now.saturating_sub(self.since))),
+            Mode::Idling => return Done::without(Output::Idle),
             _ => {}
         }
         // Every mode that flies has both, by the rules.
         let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
-            return (Output::Stop, None);
+            return Done::without(Output::Stop);
         };
+        let mut handed = None;
         let flown = if self.mode == Mode::Descending {
             // Poses that are given up do not come back.
             let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX;
             chain.fly_level(estimated, descends)
+        } else if P::EXISTS && self.flies_policy {
+            chain.fly_policy(&mut self.policy, &estimated.state, &mut handed)
         } else {
             if self.mode == Mode::Landing {
                 chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);
@@ -267,7 +298,52 @@ impl<'m> Pilot<'m> {
             chain.fly(&estimated.state)
         };
         let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
-        (output, Some(flown))
+        Done { output, flown: Some(flown), handed }
+    }
+
+    /// Lets the policy fly, from here, to the newest setpoint's place.
+    fn let_fly(&mut self, now: u64) -> Result<(), Refusal> {
+        permission::to_fly_policy::<P>(self.mode, self.is_airborne())?;
+        let chain = self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
+        let Reference { position, heading, .. } = chain.reference();
+        let goal = self.newest.fresh(now).and_then(place).unwrap_or(*position);
+        let FlightSettings { fence_radius, fence_height, .. } = self.settings;
+        self.policy.begin(corners(&self.fence.home(), fence_radius, fence_height), &goal, heading)?;
+        self.mission = self.mission.paused();
+        self.flies_policy = true;
+        Ok(())
+    }
+
+    /// Flies on without the policy, if it flies: the governor starts where the vehicle is.
+    fn take_over(&mut self, estimate: &Estimate) {
+        if mem::take(&mut self.flies_policy)
+            && let (Ok(chain), Some(estimated)) = (&mut self.chain, &estimate.state)
+        {
+            // Out of its range it goes on from where it was.
+            let _ = chain.regain(&estimated.state);
+        }
+    }
+}
+
+/// The place that a setpoint names, if it does.
+fn place(setpoint: &Setpoint) -> Option<Vector3<f32>> {
+    match setpoint.motion {
+        Motion::Position(position) | Motion::PositionVelocityAcceleration { position, .. } => Some(position),
+        _ => None,
+    }
+}
+
+/// What a mode did in a tick.
+struct Done {
+    output: Output,
+    flown: Option<Result<Flown, InputError>>,
+    handed: Option<Handed>,
+}
+
+impl Done {
+    /// Without the law.
+    fn without(output: Output) -> Self {
+        Self { output, flown: None, handed: None }
     }
 }
 

@@ -94,6 +94,10 @@ pub enum Refusal {
     TakeOffHeight,
     /// The point is outside the fence.
     OutsideFence,
+    /// No policy is built in.
+    NoPolicy,
+    /// The law that flies carries no policy.
+    NoPolicyUnderLaw,
     /// An item of the mission cannot be flown.
     Mission(MissionRefusal),
     /// A motor test was running; the request has ended it.
@@ -153,6 +157,8 @@ impl fmt::Display for Refusal {
             Self::MustLand => "Refused: what made it land is still so",
             Self::NoSetpoints => "Refused: no usable setpoint in the last second",
             Self::TakeOffHeight => "Refused: take-off height not in 0.5 to 50 m",
+            Self::NoPolicy => "Refused: no policy is built in",
+            Self::NoPolicyUnderLaw => "Refused: the paper's law carries no policy",
             Self::OutsideFence => "Refused: outside the fence",
             Self::MotorTestRunning => "Refused: a motor test was running",
             Self::DisarmCommanded => "Refused: disarm commanded",

@@ -23,6 +23,8 @@ pub enum Request {
     Hold,
     /// Fly the mission: from an item on, or from where it was left.
     FlyMission(Option<u8>),
+    /// Let the policy fly that is built in, to the setpoints' places; in the air.
+    FlyPolicy,
     /// Make an item of the mission the next one.
     SetMissionItem(u8),
     /// Fly to a setpoint and hold it.

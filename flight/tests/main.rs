@@ -6,6 +6,7 @@ mod lies;
 mod missions;
 mod modes;
 mod numbers;
+mod policies;
 mod refusals;
 mod requests;
 mod streams;

@@ -24,6 +24,8 @@
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, and from [`stability`],
 //! which is about the small motions of the [`sampled_loop`]; [`board`], whether the firmware can.
+//!
+//! [`policy`] reads the files of policies.
 
 pub mod actuation;
 pub mod board;
@@ -38,6 +40,7 @@ pub mod inertia;
 pub mod initial;
 pub mod number;
 pub mod path;
+pub mod policy;
 pub mod reality;
 pub mod reference;
 pub mod remarks;

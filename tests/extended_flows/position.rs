@@ -7,7 +7,7 @@
 use crate::support::extended::{law, random_configuration, random_parameters};
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::extended::parameters::Extended;
-use controller_core::extended::position::{Filters, PositionFeedback, PositionLaw, net_level};
+use controller_core::extended::position::{Filters, Most, PositionFeedback, PositionLaw, net_level};
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::state::State;
@@ -86,7 +86,8 @@ impl Loop {
             angular_velocity: Vector3::zeros(),
         };
         let filters = Filters { command: x.c.cast(), intermediate: x.x.cast(), smoothed: x.y.cast() };
-        self.law.feedback(&state, &origin(), &filters, &self.believed, self.greatest, self.caught)
+        let most = if self.caught { self.law.net() } else { Most::ALL };
+        self.law.feedback(&state, &origin(), &filters, &self.believed, self.greatest, &most)
     }
 
     /// The core's feedback and drive with a force that is `more` than what is believed.

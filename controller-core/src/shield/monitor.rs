@@ -55,6 +55,12 @@ impl Monitor {
         }
     }
 
+    /// Other settings from now on.
+    pub fn confine(&mut self, settings: &Settings) {
+        self.settings = *settings;
+        self.speed = settings.speed * settings.speed;
+    }
+
     /// What speaks against the policy; `doubtful`, for how long an estimate was in doubt, s.
     #[must_use]
     pub fn against(&self, state: &State, prospect: &Prospect, doubtful: f32) -> Option<Reason> {

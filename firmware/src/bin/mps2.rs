@@ -12,6 +12,7 @@ mod target {
     use firmware::boards::mps2::{self, executors, exit, idle, uart};
     use firmware::boards::recorder;
     use firmware::boot;
+    use firmware::configuration::Pilot;
     use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
     use firmware::link::{receive, transmit};
@@ -19,7 +20,6 @@ mod target {
     use firmware::recorder::ring::Ring;
     use firmware::shared::Shared;
     use firmware::status;
-    use flight::Pilot;
 
     static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
@@ -52,7 +52,7 @@ mod target {
     }
 
     #[embassy_executor::task]
-    async fn control(pilot: &'static mut Pilot<'static>, outputs: Outputs) {
+    async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
         let shared = SHARED.for_control();
         let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock };
         let mut watchdog = BoardWatchdog::start(WATCHDOG);

@@ -5,7 +5,7 @@
 //! | 400 COMPONENT_ARM_DISARM | requests arming (1) or disarming (0); 0 with parameter 2 = 21196 disarms at once, in the air as well |
 //! | 22 NAV_TAKEOFF | requests a take-off, parameter 7 high (m) above where it stands; NaN or 0: as high as `TKO_ALT`. By COMMAND_INT in a global frame, and from here only |
 //! | 21 NAV_LAND | requests a landing here |
-//! | 176 DO_SET_MODE | PX4's custom modes: requests to fly setpoints (6), to hold (4, 3), to fly the mission (4, 4), to take off (4, 2), to land (4, 6). The HIL flag alone: sensors from a simulator, while disarmed |
+//! | 176 DO_SET_MODE | PX4's custom modes: requests to fly setpoints (6), to hold (4, 3), to fly the mission (4, 4), to take off (4, 2), to land (4, 6), to let the policy fly that is built in (4, 11). The HIL flag alone: sensors from a simulator, while disarmed |
 //! | 300 MISSION_START | requests to fly the mission from item parameter 1 on; NaN or below 0: from where it was left |
 //! | 193 DO_PAUSE_CONTINUE | requests to hold (0), to go on with the mission (1) |
 //! | 224 DO_SET_MISSION_CURRENT | makes item parameter 1 the mission's next |
@@ -48,6 +48,7 @@ const AUTO_TAKEOFF: f32 = 2.0;
 const AUTO_LOITER: f32 = 3.0;
 const AUTO_MISSION: f32 = 4.0;
 const AUTO_LAND: f32 = 6.0;
+const AUTO_EXTERNAL1: f32 = 11.0;
 
 /// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one
 /// (MAV_DO_REPOSITION_FLAGS_RELATIVE_YAW).
@@ -364,6 +365,7 @@ fn set_mode(call: &Call, armed: bool) -> Action {
             (AUTO, AUTO_MISSION) => Action::Ask(Request::FlyMission(None)),
             (AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
             (AUTO, AUTO_LAND) => Action::Ask(Request::Land),
+            (AUTO, AUTO_EXTERNAL1) => Action::Ask(Request::FlyPolicy),
             _ => NO_MODE,
         };
     }

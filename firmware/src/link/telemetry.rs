@@ -52,9 +52,7 @@ impl View {
             Kind::EstimatorStatus => writer.write_some(system, Some(motion::estimator_status(time, report))),
             Kind::ExtendedState => writer.write_some(system, Some(vehicle::extended_state(report))),
             Kind::MissionCurrent => writer.write_some(system, Some(vehicle::mission_current(report))),
-            Kind::CurrentMode => {
-                writer.write_some(system, Some(vehicle::current_mode(report.mode, report.mission.is_flown)))
-            }
+            Kind::CurrentMode => writer.write_some(system, Some(vehicle::current_mode(&report.into()))),
             _ => self.write_without_report(kind, system, writer),
         }
     }
@@ -64,10 +62,7 @@ impl View {
         let report = self.report.as_ref().map(|report| &report.value);
         match kind {
             Kind::Heartbeat => {
-                writer.write(
-                    system,
-                    &vehicle::heartbeat(report.map(|report| (report.mode, report.mission.is_flown)), self.simulated),
-                );
+                writer.write(system, &vehicle::heartbeat(report.map(Into::into), self.simulated));
             }
             Kind::SystemStatus => {
                 writer.write(system, &vehicle::status(self.voltage, report, self.traffic, self.is_logged))

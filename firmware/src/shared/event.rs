@@ -4,7 +4,7 @@
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
-use flight::{MissionStep, Reason, Refusal, Streamed};
+use flight::{Handed, MissionStep, Reason, Refusal, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -66,6 +66,8 @@ pub enum Event {
     Thrust(f32),
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
+    /// Who flies, the policy or the law.
+    Handed(Handed),
     /// How a mission goes on.
     Mission(MissionStep),
     /// The motors' frames do not go out.
@@ -93,16 +95,19 @@ impl Event {
         match self {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
             Self::Input(_) | Self::MotorsLost | Self::Mission(MissionStep::Refused(..)) => Severity::Critical,
+            Self::Handed(Handed::ToLawForGood(_)) => Severity::Critical,
             Self::Mission(_)
             | Self::Mode(_)
             | Self::MotorsRegained
             | Self::Pose(Ok(_))
+            | Self::Handed(Handed::ToPolicy)
             | Self::Streamed(Streamed::AsSent) => Severity::Information,
             Self::Refused(_)
             | Self::Pose(Err(_))
             | Self::Estimator(_)
             | Self::Thrust(_)
             | Self::Streamed(_)
+            | Self::Handed(_)
             | Self::BatteryMissing
             | Self::PoseDelayUnknown => Severity::Warning,
             Self::Words(severity, _) => *severity,
@@ -121,6 +126,7 @@ impl fmt::Display for Event {
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
             Self::Streamed(streamed) => streamed.fmt(f),
+            Self::Handed(handed) => handed.fmt(f),
             Self::Mission(step) => step.fmt(f),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),

@@ -38,6 +38,8 @@ pub struct Report {
     pub thrust_scale: Option<f32>,
     /// How far the mission is.
     pub mission: MissionReport,
+    /// Whether a policy is let fly.
+    pub flies_policy: bool,
     /// How well the ticks keep time.
     pub timing: Timing,
 }
@@ -69,6 +71,7 @@ impl Report {
         wrench: None,
         thrust_scale: None,
         mission: MissionReport { next: 0, is_flown: false, done: (0, 0) },
+        flies_policy: false,
         timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
     };
 }

@@ -88,7 +88,7 @@ const fn kind(request: &Request) -> u8 {
         Request::Arm => 0,
         Request::Disarm => 1,
         Request::TakeOff(_) => 2,
-        Request::FlySetpoints | Request::FlyMission(_) => 3,
+        Request::FlySetpoints | Request::FlyMission(_) | Request::FlyPolicy => 3,
         Request::Hold | Request::GoTo(_) => 4,
         Request::Land => 5,
         Request::MotorTest(_) | Request::MotorSetting(_) => 6,

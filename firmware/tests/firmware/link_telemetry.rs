@@ -189,8 +189,9 @@ fn modes_have_names_and_the_heartbeat_says_the_same_number() {
     assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODES + 1).is_none());
     let flown = [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing].map(|mode| (mode, false));
     for (mode, mission) in flown.into_iter().chain([(Mode::Flying, true)]) {
-        let number = vehicle::heartbeat(Some((mode, mission)), false).custom_mode;
+        let shown = vehicle::Shown { mode, mission, policy: false };
+        let number = vehicle::heartbeat(Some(shown), false).custom_mode;
         assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
-        assert_eq!(vehicle::current_mode(mode, mission).custom_mode, number);
+        assert_eq!(vehicle::current_mode(&shown).custom_mode, number);
     }
 }

@@ -1,11 +1,12 @@
 //! Which requests are granted.
 
-use super::Pilot;
+use super::{Pilot, place};
 use crate::bench::Bench;
 use crate::chain::Chain;
 use crate::estimate::Estimate;
 use crate::exchange::{Battery, Inputs};
 use crate::permission::{self, Start, require};
+use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_REQUEST_MAX};
@@ -13,7 +14,7 @@ use crate::watch::Seen;
 use controller_core::allocation::geometry::ROTORS_MIN;
 use controller_core::governor::Setpoint;
 
-impl<'m> Pilot<'m> {
+impl<'m, P: Aboard> Pilot<'m, P> {
     /// Everything that arming needs.
     pub(super) fn may_arm(&self, inputs: &Inputs, estimate: &Estimate) -> Result<Start, Refusal> {
         self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
@@ -71,14 +72,17 @@ impl<'m> Pilot<'m> {
                 if self.mode.is_guided() {
                     self.has_setpoint(inputs.now)?;
                 }
+                self.take_over(estimate);
                 self.end_mission(inputs.now);
                 self.wanted_since = Some(inputs.now);
                 Ok(())
             }
+            Request::FlyPolicy => self.let_fly(inputs.now),
             Request::FlyMission(from) => self.start_mission(from, inputs, estimate),
             Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                self.take_over(estimate);
                 self.with_chain(|chain| {
                     chain.hold();
                     Ok(())
@@ -87,6 +91,8 @@ impl<'m> Pilot<'m> {
             Request::GoTo(setpoint) => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
                 require(self.is_airborne(), Refusal::NotInTheAir)?;
+                self.check(&setpoint)?;
+                self.take_over(estimate);
                 self.accept(&setpoint)
             }
             Request::Land => {
@@ -174,6 +180,11 @@ impl<'m> Pilot<'m> {
         let setpoint = inputs.setpoint?;
         match self.mode {
             Mode::Flying if self.mission.is_flown => None,
+            Mode::Flying if self.flies_policy => Some(self.check(&setpoint).map(|()| {
+                if let Some(goal) = place(&setpoint) {
+                    self.policy.go_to(&goal);
+                }
+            })),
             Mode::Flying => Some(self.accept(&setpoint)),
             Mode::Idling if self.wanted_since.is_some() => {
                 let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));

@@ -5,6 +5,7 @@ use crate::chain::Chain;
 use crate::estimate::Estimate;
 use crate::exchange::Inputs;
 use crate::mission::MissionStep;
+use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::{
@@ -15,7 +16,7 @@ use crate::watch::Seen;
 use estimation::estimator::{EstimatedState, Fault};
 use estimation::measurement::is_fresh;
 
-impl Pilot<'_> {
+impl<P: Aboard> Pilot<'_, P> {
     /// The conditions that a granted request fulfils, or a mission that ends.
     pub(super) fn requested(
         &mut self,
@@ -32,7 +33,7 @@ impl Pilot<'_> {
         let setpoints = wanted && (self.mode != Mode::Idling || self.begin(inputs, estimate).is_ok());
         let holds = matches!(mission, Some(MissionStep::Over | MissionStep::Refused(..)));
         let lands = matches!(mission, Some(MissionStep::Lands(_)));
-        let begins = is(|request| matches!(request, Request::FlyMission(_)));
+        let begins = is(|request| matches!(request, Request::FlyMission(_) | Request::FlyPolicy));
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
             .with(Condition::Killed, inputs.killed)
@@ -98,7 +99,10 @@ impl Pilot<'_> {
             .with(Condition::DescendingOver, elapsed >= DESCENDING_MAX)
             .with(Condition::GroundStationSilent, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
             .with(Condition::GroundStationGone, self.is_silent(inputs, patience))
-            .with(Condition::SetpointsLost, !self.mission.is_flown && self.newest.has_ended(inputs.now))
+            .with(
+                Condition::SetpointsLost,
+                !self.mission.is_flown && !self.flies_policy && self.newest.has_ended(inputs.now),
+            )
             .with(Condition::BatteryLow, seen.battery_low)
             .with(Condition::BatteryCritical, seen.battery_critical)
             .with(Condition::FenceBreached, self.is_outside(estimate))

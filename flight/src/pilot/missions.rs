@@ -5,13 +5,14 @@ use crate::estimate::Estimate;
 use crate::exchange::Inputs;
 use crate::mission::{Leg, MissionItem, MissionRefusal, MissionStep, Progress};
 use crate::permission::{self, require};
+use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::Mode;
 use controller_core::governor::{Motion, Setpoint, Turn};
 use nalgebra::Vector3;
 
-impl Pilot<'_> {
+impl<P: Aboard> Pilot<'_, P> {
     /// The number of the mission's item that the next tick needs, if that brings this request.
     #[must_use]
     pub fn mission_item(&self, request: Option<&Request>) -> Option<u8> {
@@ -38,6 +39,7 @@ impl Pilot<'_> {
         }
         let rises = matches!(self.mode, Mode::Idling | Mode::TakingOff) && item.leg == Leg::Waypoint;
         // One that is flown goes on as it is.
+        self.take_over(estimate);
         if from.is_some() || !self.mission.is_flown {
             self.mission = Progress { is_flown: true, rises, ..self.mission.at(from.unwrap_or(self.mission.next)) };
         }

@@ -7,12 +7,13 @@
 //! setpoint, or a mission's item ------------------------------------------ '
 //! ```
 
-use super::Pilot;
+use super::{Done, Pilot};
 use crate::estimate::Estimate;
 use crate::exchange::{Inputs, Outcome};
+use crate::policy::Aboard;
 use crate::rules::Mode;
 
-impl Pilot<'_> {
+impl<P: Aboard> Pilot<'_, P> {
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         let (armed, airborne, given_up) = (self.mode.is_armed(), self.is_airborne(), self.trust.is_given_up());
@@ -40,7 +41,7 @@ impl Pilot<'_> {
         let transition = self.transit(conditions, inputs, estimate, &seen);
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
-        let (output, flown) = self.output(estimate, seen.touched, now);
+        let Done { output, flown, handed } = self.output(estimate, seen.touched, now);
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
         let streamed = self.stream_check.tick(self.following(), now);
         Outcome {
@@ -53,7 +54,8 @@ impl Pilot<'_> {
             is_airborne: self.is_airborne(),
             may_fall: self.fall.may_fall(),
             setpoint,
-            setpoints_requested: self.mode == Mode::Flying && !self.mission.is_flown || self.wanted_since.is_some(),
+            setpoints_requested: self.mode == Mode::Flying && !self.mission.is_flown && !self.flies_policy
+                || self.wanted_since.is_some(),
             mission: (self.mission.next, self.flies_mission()),
             mission_step: mission,
             estimated: estimate.state,
@@ -62,6 +64,8 @@ impl Pilot<'_> {
             flown,
             doubtful_thrust,
             streamed,
+            flies_policy: self.flies_policy,
+            handed,
         }
     }
 }

@@ -21,8 +21,8 @@ use controller_core::state::Wrench;
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use estimation::imu::ImuFault;
 use flight::{
-    Battery, FlightSettings, Inputs, Memory, MissionItem, Outcome, Output, PERIOD, Pilot, Pose, Reason, Refusal,
-    Request, Stamped, Velocity,
+    Aboard, Battery, FlightSettings, Inputs, Memory, MissionItem, NoPolicy, Outcome, Output, PERIOD, Pilot, Pose,
+    Reason, Refusal, Request, Stamped, Velocity,
 };
 pub use hummingbird::{certified, paper_law as configuration, rotors};
 use nalgebra::UnitQuaternion;
@@ -71,7 +71,7 @@ pub struct Handed {
 }
 
 impl Handed {
-    pub fn to(&self, pilot: &mut Pilot) -> Outcome {
+    pub fn to<P: Aboard>(&self, pilot: &mut Pilot<'_, P>) -> Outcome {
         let Self {
             now,
             increments,
@@ -176,8 +176,8 @@ pub fn displaced(body: &Body, time: u64, offset: &Vector3<f64>, turn: &Vector3<f
 }
 
 /// A flight in the making.
-pub struct Flight {
-    pub pilot: Pilot<'static>,
+pub struct Flight<P = NoPolicy> {
+    pub pilot: Pilot<'static, P>,
     pub body: Body,
     pub present: Present,
     /// The next tick's requests; handed over once.
@@ -204,10 +204,39 @@ pub struct Flight {
 impl Flight {
     /// A disarmed vehicle at rest, level, on ground that is 0.9 m up, heading along x.
     pub fn new() -> Self {
+        Self::of(pilot(), certified())
+    }
+
+    /// The same after two seconds: as long as the estimate takes to begin and to prove itself.
+    pub fn settled() -> Self {
+        Self::new().settle()
+    }
+
+    /// The same, armed and idling.
+    pub fn idling() -> Self {
+        Self::settled().idle()
+    }
+
+    /// The same, flying setpoints, at the first of which it rests, 1 m up; the ground gone from under it.
+    pub fn armed() -> Self {
+        Self::idling().fly()
+    }
+}
+
+impl<P: Aboard> Flight<P> {
+    /// The same of a vehicle under the extended law that carries `policy`.
+    pub fn carrying(policy: P) -> Self {
+        let certified = Certified::new(hummingbird::extended_law()).unwrap();
+        let (limits, settings) = (GovernorLimits::default(), FlightSettings::DEFAULT);
+        let pilot = Pilot::carrying(Ok(&certified), &limits, &settings, estimator(), memory(), policy);
+        Self::of(pilot, certified)
+    }
+
+    fn of(pilot: Pilot<'static, P>, certified: Certified) -> Self {
         let body = Body::resting(Vector3::new(0.0, 0.0, GROUND), Quaternion::new(1.0, 0.0, 0.0, 0.0));
         let inputs = Handed { now: 1_000_000, ..Handed::default() };
         Self {
-            pilot: pilot(),
+            pilot,
             body,
             present: Present { imu: true, pose: true, ground_station: true },
             inputs,
@@ -218,37 +247,31 @@ impl Flight {
             weightless: false,
             mission: Vec::new(),
             mixer: Mixer::new(&rotors()),
-            certified: certified(),
+            certified,
             ground_station: None,
             body_rate: None,
             increments: Vec::new(),
         }
     }
 
-    /// The same after two seconds: as long as the estimate takes to begin and to prove itself.
-    pub fn settled() -> Self {
-        let mut flight = Self::new();
-        flight.ticks(200);
-        flight
+    pub fn settle(mut self) -> Self {
+        self.ticks(200);
+        self
     }
 
-    /// The same, armed and idling.
-    pub fn idling() -> Self {
-        let mut flight = Self::settled();
-        flight.inputs.request = Some(Request::Arm);
-        assert_eq!(flight.tick().answer, Some(Ok(())));
-        flight
+    pub fn idle(mut self) -> Self {
+        self.inputs.request = Some(Request::Arm);
+        assert_eq!(self.tick().answer, Some(Ok(())));
+        self
     }
 
-    /// The same, flying setpoints, at the first of which it rests, 1 m up; the ground gone from under it.
-    pub fn armed() -> Self {
-        let mut flight = Self::idling();
-        flight.inputs.request = Some(Request::FlySetpoints);
-        flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
-        flight.until(Reason::SetpointsCommanded, 1);
-        flight.ticks(SPOOLING + 1_000);
-        flight.ground = f64::NEG_INFINITY;
-        flight
+    pub fn fly(mut self) -> Self {
+        self.inputs.request = Some(Request::FlySetpoints);
+        self.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
+        self.until(Reason::SetpointsCommanded, 1);
+        self.ticks(SPOOLING + 1_000);
+        self.ground = f64::NEG_INFINITY;
+        self
     }
 
     /// One tick and the motion until the next. Whatever the mode, the wrench is within the certificate.
@@ -282,11 +305,12 @@ impl Flight {
             }
         };
         if let Some(Ok(flown)) = &outcome.flown {
-            let proven = self.certified.certificate().paper().unwrap().sharp;
-            assert!(f64::from(flown.wrench.thrust) <= proven.thrust.greatest, "{flown:?}");
-            assert!(f64::from(flown.wrench.thrust) >= proven.thrust.least, "{flown:?}");
+            let certificate = self.certified.certificate();
+            let (thrust, most) = (certificate.thrust(), certificate.torque());
+            assert!(f64::from(flown.wrench.thrust) <= thrust.greatest, "{flown:?}");
+            assert!(f64::from(flown.wrench.thrust) >= thrust.least, "{flown:?}");
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
-            assert!(torque.x <= proven.torque.x && torque.y <= proven.torque.y && torque.z <= proven.torque.z);
+            assert!(torque.x <= most.x && torque.y <= most.y && torque.z <= most.z);
         }
         for start in [now, now + PERIOD / 2] {
             let increment = self.move_on(&wrench, start, start + PERIOD / 2);

@@ -34,7 +34,6 @@ use crate::{boot, card, configuration, imu, link, radio, status};
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use flight::Pilot;
 use static_cell::StaticCell;
 
 type Raw = CriticalSectionRawMutex;
@@ -122,7 +121,7 @@ pub fn run() -> ! {
 async fn control(
     shared: ControlView<'static, Raw>,
     hil: &'static Hil,
-    pilot: &'static mut Pilot<'static>,
+    pilot: &'static mut Pilot,
     outputs: Outputs,
     repeated: &'static Repeated,
     mut watchdog: BoardWatchdog,

@@ -1,10 +1,11 @@
 //! What the vehicle is doing, in MAVLink's words: heartbeat, modes, sensors, battery, events, parameters.
 
+use crate::configuration;
 use crate::parameters::table::{Name, PARAMETERS};
 use crate::shared::{Event, Report, Severity, Text, Traffic};
 use estimation::estimator::{COASTING_AFTER, Fault, Health};
 use estimation::imu::ImuFault;
-use flight::{Mode, PERIOD};
+use flight::{Aboard, Mode, PERIOD};
 use mavlink::dialects::common::{
     AVAILABLE_MODES_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA,
     MISSION_CURRENT_DATA, MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag,
@@ -15,6 +16,23 @@ use mavlink::dialects::common::{
 /// The version of the protocol that HEARTBEAT names.
 const PROTOCOL: u8 = 3;
 
+/// A mode, and whether a mission is flown in it, or a policy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// The mode.
+    pub mode: Mode,
+    /// Whether a mission is flown.
+    pub mission: bool,
+    /// Whether a policy is let fly.
+    pub policy: bool,
+}
+
+impl From<&Report> for Shown {
+    fn from(report: &Report) -> Self {
+        Self { mode: report.mode, mission: report.mission.is_flown, policy: report.flies_policy }
+    }
+}
+
 /// The main and sub-modes of PX4's clients.
 const AUTO: u32 = 4 << 16;
 const AUTO_READY: u32 = AUTO | 1 << 24;
@@ -22,14 +40,17 @@ const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
 const AUTO_LOITER: u32 = AUTO | 3 << 24;
 const AUTO_MISSION: u32 = AUTO | 4 << 24;
 const AUTO_LAND: u32 = AUTO | 6 << 24;
+const AUTO_EXTERNAL1: u32 = AUTO | 11 << 24;
 const OFFBOARD: u32 = 6 << 16;
 
-/// PX4's number for the mode that comes nearest, where a mission is flown or not.
-fn custom_mode(mode: Mode, mission: bool) -> u32 {
+/// PX4's number for the mode that comes nearest.
+fn custom_mode(shown: &Shown) -> u32 {
+    let Shown { mode, mission, policy } = *shown;
     match mode {
         Mode::Boot | Mode::Checks | Mode::Ready | Mode::MotorTest => AUTO_READY,
         Mode::Idling | Mode::Stopped | Mode::Locked => AUTO_READY,
         Mode::TakingOff => AUTO_TAKEOFF,
+        Mode::Flying if policy => AUTO_EXTERNAL1,
         Mode::Flying if mission => AUTO_MISSION,
         Mode::Flying => OFFBOARD,
         Mode::Holding => AUTO_LOITER,
@@ -38,20 +59,22 @@ fn custom_mode(mode: Mode, mission: bool) -> u32 {
 }
 
 /// The modes that may be requested, with their names and MAVLink's standard ones.
-const SELECTABLE: [(u32, &str, MavStandardMode); 5] = [
+const SELECTABLE: [(u32, &str, MavStandardMode); 6] = [
     (OFFBOARD, "Setpoints", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
     (AUTO_LOITER, "Hold", MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD),
     (AUTO_MISSION, "Mission", MavStandardMode::MAV_STANDARD_MODE_MISSION),
     (AUTO_TAKEOFF, "Take-off", MavStandardMode::MAV_STANDARD_MODE_TAKEOFF),
     (AUTO_LAND, "Land", MavStandardMode::MAV_STANDARD_MODE_LAND),
+    (AUTO_EXTERNAL1, "Policy", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
 ];
 
-/// How many modes there are to be named.
-pub const MODES: u8 = SELECTABLE.len() as u8;
+/// How many modes there are to be named: the last one only where a policy is built in.
+pub const MODES: u8 = SELECTABLE.len() as u8 - !configuration::Policy::EXISTS as u8;
 
 /// The mode of this number, from 1 on, with its name.
 #[must_use]
 pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
+    let index = Some(index).filter(|index| *index <= MODES)?;
     let &(custom_mode, name, standard_mode) = SELECTABLE.get(usize::from(index).checked_sub(1)?)?;
     Some(AVAILABLE_MODES_DATA {
         custom_mode,
@@ -63,10 +86,10 @@ pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
     })
 }
 
-/// The mode that is flown, a mission's or not.
+/// The mode that is flown.
 #[must_use]
-pub fn current_mode(mode: Mode, mission: bool) -> CURRENT_MODE_DATA {
-    let custom_mode = custom_mode(mode, mission);
+pub fn current_mode(shown: &Shown) -> CURRENT_MODE_DATA {
+    let custom_mode = custom_mode(shown);
     let standard = SELECTABLE.iter().find(|(custom, ..)| *custom == custom_mode);
     let standard_mode = standard.map_or(MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD, |(.., standard)| *standard);
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
@@ -93,10 +116,10 @@ pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     EXTENDED_SYS_STATE_DATA { vtol_state: MavVtolState::MAV_VTOL_STATE_UNDEFINED, landed_state }
 }
 
-/// The vehicle's type and state; no mode, and whether it is a mission's, without a fresh report.
+/// The vehicle's type and state; no mode without a fresh report.
 #[must_use]
-pub fn heartbeat(flown: Option<(Mode, bool)>, hil: bool) -> HEARTBEAT_DATA {
-    let mode = flown.map(|(mode, _)| mode);
+pub fn heartbeat(shown: Option<Shown>, hil: bool) -> HEARTBEAT_DATA {
+    let mode = shown.map(|shown| shown.mode);
     let system_status = match mode {
         None | Some(Mode::Boot) => MavState::MAV_STATE_BOOT,
         Some(Mode::Checks) => MavState::MAV_STATE_CALIBRATING,
@@ -113,7 +136,7 @@ pub fn heartbeat(flown: Option<(Mode, bool)>, hil: bool) -> HEARTBEAT_DATA {
     base_mode.set(MavModeFlag::MAV_MODE_FLAG_TEST_ENABLED, mode == Some(Mode::MotorTest));
     base_mode.set(MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED, hil);
     HEARTBEAT_DATA {
-        custom_mode: flown.map_or(0, |(mode, mission)| custom_mode(mode, mission)),
+        custom_mode: shown.as_ref().map_or(0, custom_mode),
         mavtype: MavType::MAV_TYPE_QUADROTOR,
         autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC,
         base_mode,
