@@ -32,6 +32,7 @@ SCALE = np.repeat(np.array([0.5, 0.5, 1.0, 0.2], np.float32), [3, 3, 9, 3])
 PAIRS, EPISODES = 24, 4  # candidates, two of a pair; episodes of each
 EXAMINED = 16  # episodes of the weights themselves, which the learning curve shows
 NOISE, STEP = 0.1, 0.1  # the step falls to a tenth
+FINE = 0.3  # of both, where it begins with weights that were learnt
 # What a step costs that the law has to fly.
 TAKEN_OVER = 0.5
 # While it learns, the policy gets its vehicle back soon, s.
@@ -140,10 +141,10 @@ class Flights:
         return {"earned": earned, "flown": flown, "clipped": clipped, "by_policy": by_policy, "crashed": crashed > 0, "lost": lost, "out": out}
 
 
-def learn(task, shield, generations, start, seed, report=print):
+def learn(task, shield, generations, start, seed, fine=1.0, report=print):
     """The network that was learnt, and its learning curve: steps flown, what the network earns in the same EXAMINED episodes each time, and
     episodes lost so far."""
-    candidates = 2 * PAIRS
+    candidates, spreading = 2 * PAIRS, fine * NOISE
     flights = Flights(task, EXAMINED + candidates * EPISODES, shield, **PATIENCE)
     random = np.random.default_rng(seed)
     weights = start.weights.astype(float)
@@ -152,7 +153,7 @@ def learn(task, shield, generations, start, seed, report=print):
     for generation in range(generations):
         noise = random.normal(size=(PAIRS, Network.count))
         spread = np.concatenate([noise, -noise])
-        examined, network = Network(weights), Network(weights + NOISE * spread)
+        examined, network = Network(weights), Network(weights + spreading * spread)
         starts = np.concatenate([np.arange(EXAMINED), np.tile(random.integers(2**31, size=EPISODES), candidates)])
 
         def act(observations):
@@ -165,11 +166,11 @@ def learn(task, shield, generations, start, seed, report=print):
         curve.append((steps, seen["earned"][:EXAMINED].mean(), lost))
         # By rank, from -1/2 to 1/2, so that no crash outweighs the rest.
         ranks = np.argsort(np.argsort(earned)) / (candidates - 1) - 0.5
-        slope = ranks @ spread / (candidates * NOISE)
+        slope = ranks @ spread / (candidates * spreading)
         momentum, square = 0.9 * momentum + 0.1 * slope, 0.99 * square + 0.01 * slope**2
         share = (1 - 0.9 ** (generation + 1)), (1 - 0.99 ** (generation + 1))
         fall = 1.0 - 0.9 * generation / generations
-        weights += fall * STEP * (momentum / share[0]) / (np.sqrt(square / share[1]) + 1e-8)
+        weights += fall * fine * STEP * (momentum / share[0]) / (np.sqrt(square / share[1]) + 1e-8)
         if generation % 10 == 9 or generation == 0:
             took = time.monotonic() - started
             report(f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, {lost} episodes lost, {took:.0f} s")
@@ -251,9 +252,10 @@ def main(given=None):
     out.mkdir(parents=True, exist_ok=True)
     task, curves, networks = arguments.task, {}, {}
     start = Network.read(arguments.start) if arguments.start else Network.untrained(arguments.seed)
+    fine = FINE if arguments.start else 1.0
     for shield, name in ((True, "with the shield"), (False, "without")):
         print(name)
-        networks[shield], curves[name] = learn(task, shield, arguments.generations, start, arguments.seed)
+        networks[shield], curves[name] = learn(task, shield, arguments.generations, start, arguments.seed, fine)
         header = "steps,earned,lost"
         np.savetxt(out / f"{task}-{name.split()[0]}.csv", curves[name], delimiter=",", header=header, comments="", fmt="%.6g")
     (out / f"{task}.toml").write_text(networks[True].text(task))
