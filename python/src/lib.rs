@@ -6,6 +6,7 @@
 //! | [`imports`] | vehicles from the files and dictionaries of other programs |
 //! | [`laws`] | the control law, one vehicle or rows of them |
 //! | [`shields`] | the law behind which a policy flies, one vehicle or rows of them |
+//! | [`networks`] | a small network as a policy |
 //! | [`certificates`] | the certificate and the sampled loops, in numbers and words |
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
@@ -27,6 +28,7 @@ mod flights;
 mod governors;
 mod imports;
 mod laws;
+mod networks;
 mod refused;
 mod replays;
 mod rows;
@@ -55,6 +57,8 @@ mod _core {
     use super::imports::Vehicle;
     #[pymodule_export]
     use super::laws::{Law, LawRows};
+    #[pymodule_export]
+    use super::networks::Network;
     #[pymodule_export]
     use super::replays::{picture, replay};
     #[pymodule_export]

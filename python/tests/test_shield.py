@@ -1,8 +1,11 @@
 """Behind a shield a policy flies what it demands, and the law takes over where the rules of docs/shield.md say so."""
 
+import tomllib
+
 import numpy as np
 import pytest
 import saturated_hybrid as sh
+from conftest import TOP
 
 SCENARIO = sh.Scenario.built_in("hummingbird")
 BOX = {"low": [-4, -4, 0.5], "high": [4, 4, 6]}
@@ -172,5 +175,40 @@ def test_a_state_that_cannot_be_used_changes_nothing():
     ],
 )
 def test_what_makes_no_sense_is_refused_by_name(call, said):
+    with pytest.raises(ValueError, match=said):
+        call()
+
+
+def test_a_network_flies_to_its_goal_and_is_what_numpy_makes_of_its_file():
+    network = sh.Network.read(TOP / "vehicles" / "policies" / "hover.toml")
+    file = tomllib.loads((TOP / "vehicles" / "policies" / "hover.toml").read_text())
+    shields, vehicles = sh.ShieldRows(SCENARIO, 3, **BOX), sh.VehicleRows(SCENARIO, 3)
+    vehicles.place([sh.state([x, 1.0, 2.0], euler=[0, 0, x]) for x in (-1.0, 0.0, 1.0)])
+    goals = np.array([[1.0, -1.0, 3.0], [0.0, 0.0, 2.0], [-2.0, 2.0, 4.0]])
+    outputs, headings = np.zeros((3, 4)), np.array([[np.cos(x), np.sin(x)] for x in (-1.0, 0.0, 1.0)])
+    for _ in range(800):
+        states = vehicles.measured
+        observations = network.observe(states, goals, headings, outputs)
+        outputs = network.act(observations)
+        by_hand = np.tanh(observations.astype(float) @ np.array(file["layers"][0]["weights"]).T + file["layers"][0]["biases"])
+        np.testing.assert_allclose(outputs, by_hand, atol=1e-6)
+        demands = network.demands(outputs, headings)
+        np.testing.assert_allclose(np.hypot(demands[:, 0], demands[:, 1]), 4 * np.hypot(outputs[:, 0], outputs[:, 1]), rtol=1e-5)
+        wrenches = shields.step(states, demands)
+        clipped, _ = vehicles.step(shields.for_rotors(wrenches))
+        assert shields.by_policy.all() and not clipped.any()
+        headings = shields.references[:, 15:17]
+    np.testing.assert_allclose(vehicles.states[:, :3], goals, atol=0.02)
+
+
+@pytest.mark.parametrize(
+    "call, said",
+    [
+        (lambda: sh.Network.parse("scale = [1, 1, 1, 1]"), r"policy: layers: missing; write \[\[layers\]\]"),
+        (lambda: sh.Network.read("nowhere.toml"), "nowhere.toml: "),
+        (lambda: sh.Network.observe([sh.state()], [[0, 0, 0]], [[2, 0]], [[0] * 4]), "row 0: headings: must be a unit vector"),
+    ],
+)
+def test_a_network_that_makes_no_sense_is_refused_by_name(call, said):
     with pytest.raises(ValueError, match=said):
         call()

@@ -175,8 +175,8 @@ impl Controller {
         let greatest = self.greatest(scale);
         let feedback = match wanted {
             Wanted::Feedback(most) => {
-                let most = if net.is_caught() { &self.position.net() } else { *most };
-                self.position.feedback(state, reference, &filters, &force, greatest, most)
+                let most = if net.is_caught() { self.position.net() } else { **most };
+                self.position.feedback(state, reference, &filters, &force, greatest, &most)
             }
             Wanted::Demand(demand) => {
                 let wanted = self.wanted(state, demand, &force);

@@ -18,6 +18,7 @@
 
 use super::{Demand, Observation, Policy};
 use crate::error::{ParameterError, Reason, require, require_finite};
+use crate::heading::Heading;
 use crate::math;
 use nalgebra::{Quaternion, Vector3};
 
@@ -105,11 +106,11 @@ impl<'a> Network<'a> {
         [first, second, third, fourth]
     }
 
-    /// The demand that outputs make, where the heading is as in `observation`.
+    /// The demand that outputs make.
     #[must_use]
-    pub fn demand(&self, outputs: &[f32; OUTPUTS], observation: &Observation) -> Demand {
+    pub fn demand(&self, outputs: &[f32; OUTPUTS], heading: &Heading) -> Demand {
         let ([x, y, z, turn], [of_x, of_y, of_z, of_turn]) = (*outputs, self.scale);
-        let (forwards, heading) = (Vector3::new(x * of_x, y * of_y, z * of_z), observation.heading.direction());
+        let (forwards, heading) = (Vector3::new(x * of_x, y * of_y, z * of_z), heading.direction());
         let acceleration = Vector3::new(
             heading.x * forwards.x - heading.y * forwards.y,
             heading.y * forwards.x + heading.x * forwards.y,
@@ -182,7 +183,7 @@ impl Policy for NetworkPolicy<'_> {
         // A number that is none would stay in its inputs for ever.
         let finite = outputs.iter().all(|output| output.is_finite());
         self.last = if finite { outputs } else { [0.0; OUTPUTS] };
-        Some(self.network.demand(&outputs, observation))
+        Some(self.network.demand(&outputs, &observation.heading))
     }
 }
 

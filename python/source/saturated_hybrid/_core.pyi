@@ -21,6 +21,7 @@ __all__ = [
     "Law",
     "LawRows",
     "Loop",
+    "Network",
     "Scenario",
     "Shield",
     "ShieldRows",
@@ -395,6 +396,28 @@ class ShieldRows:
     @property
     def thrust_scale(self) -> NDArray[np.float32]:
         """(rows,)."""
+
+@final
+class Network:
+    """A network that decides on an acceleration and a yaw rate, from a file as docs/shield.md has it."""
+
+    @staticmethod
+    def read(path: str | PathLike[str]) -> Network:
+        """Reads a TOML file. `ValueError` names the file, the field and the reason."""
+    @staticmethod
+    def parse(text: str, file: str = "policy") -> Network:
+        """Reads TOML text, which errors call `file`."""
+    @property
+    def scale(self) -> NDArray[np.float32]:
+        """(4,): what the outputs are multiplied by, m/s^2 three times and rad/s."""
+    @staticmethod
+    def observe(states: ArrayLike, goals: ArrayLike, headings: ArrayLike, outputs: ArrayLike) -> NDArray[np.float32]:
+        """The inputs (n, 22), float32, for states (n, 13), goals (n, 3), m, world, headings (n, 2), unit vectors, and the
+        last outputs (n, 4), zeros at first. `ShieldRows.references[:, 15:17]` are the headings of a flight."""
+    def act(self, observations: ArrayLike) -> NDArray[np.float32]:
+        """The outputs (n, 4), float32, from -1 to 1, for inputs (n, 22)."""
+    def demands(self, outputs: ArrayLike, headings: ArrayLike) -> NDArray[np.float32]:
+        """The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates."""
 
 @final
 class Allocation:

@@ -3,7 +3,6 @@
 extern crate std;
 use super::*;
 use crate::extended::tests::Random;
-use crate::heading::Heading;
 use crate::state::State;
 use nalgebra::Vector2;
 use std::vec::Vec;
