@@ -18,16 +18,15 @@ import time
 import tomllib
 
 import numpy as np
+from saturated_hybrid.actions import kinds
 from saturated_hybrid.tasks import GateRows, HoverRows
 
 # The box that the shield keeps vehicles in, m, inside the one that ends an episode.
 BOX = {"low": [-4.8, -3.8, 0.3], "high": [4.8, 3.8, 4.8]}
 TASKS = {"hover": HoverRows, "gate": GateRows}
-SIZES = (18, 16, 4)
-OBSERVATION = "target - position (3), velocity (3), rotation by rows (9), body rates (3)"
-DEMAND = "acceleration, m/s^2, and yaw rate, rad/s: the output times [4.905, 4.905, 4.905, 2]"
-# What makes the observation's numbers of order one: m, m/s, of the rotation, rad/s.
-SCALE = np.repeat(np.array([0.5, 0.5, 1.0, 0.2], np.float32), [3, 3, 9, 3])
+SIZES = (22, 16, 4)
+# What makes the observation's numbers of order one: m, m/s, of the rotation, rad/s, of the last action.
+SCALE = np.repeat(np.array([0.5, 0.5, 1.0, 0.2, 1.0], np.float32), [3, 3, 9, 3, 4])
 
 PAIRS, EPISODES = 24, 4  # candidates, two of a pair; episodes of each
 EXAMINED = 16  # episodes of the weights themselves, which the learning curve shows
@@ -57,7 +56,7 @@ class Network:
             place += after
 
     def act(self, observations):
-        """Actions (…, rows, 4) in [-1, 1] for observations (…, rows, 18)."""
+        """Actions (…, rows, 4) in [-1, 1] for observations (…, rows, 22)."""
         values = observations * SCALE
         for matrix, bias in self.layers():
             values = np.tanh(values @ np.swapaxes(matrix, -1, -2) + bias[..., None, :])
@@ -68,7 +67,31 @@ class Network:
         """From a file that `text` made."""
         flat, scale = [], SCALE
         for layer in tomllib.loads(pathlib.Path(path).read_text())["layers"]:
-            flat += [(np.array(layer["weights"]) / scale).ravel(), np.array(layer["bias"])]
+            flat += [(np.array(layer["weights"]) / scale).ravel(), np.array(layer["biases"])]
+            scale = 1.0
+        return cls(np.concatenate(flat))
+
+    @classmethod
+    def untrained(cls, seed):
+        """Small weights, at random."""
+        return cls(np.random.default_rng(seed).normal(size=cls.count) * 0.1)
+
+    def text(self, task, scale):
+        """A policy file, as boards and `saturated_hybrid.Network` read it: what makes the observation's numbers small is part of the first
+        matrix; an output of one demands `scale`."""
+        lines = [f"# Learnt by python/examples/learn.py {task}.", f"scale = [{', '.join(f'{each:.9g}' for each in scale)}]"]
+        for number, (matrix, bias) in enumerate(self.layers()):
+            matrix = matrix * SCALE if number == 0 else matrix
+            rows = ",\n".join("    [" + ", ".join(f"{each:.6g}" for each in row) + "]" for row in matrix)
+            lines += ["", "[[layers]]", f"weights = [\n{rows},\n]", "biases = [" + ", ".join(f"{each:.6g}" for each in bias) + "]"]
+        return "\n".join(lines) + "\n"
+
+    @classmethod
+    def read(cls, path):
+        """From a file that `text` made."""
+        flat, scale = [], SCALE
+        for layer in tomllib.loads(pathlib.Path(path).read_text())["layers"]:
+            flat += [(np.array(layer["weights"]) / scale).ravel(), np.array(layer["biases"])]
             scale = 1.0
         return cls(np.concatenate(flat))
 
@@ -258,7 +281,7 @@ def main(given=None):
         networks[shield], curves[name] = learn(task, shield, arguments.generations, start, arguments.seed, fine)
         header = "steps,earned,lost"
         np.savetxt(out / f"{task}-{name.split()[0]}.csv", curves[name], delimiter=",", header=header, comments="", fmt="%.6g")
-    (out / f"{task}.toml").write_text(networks[True].text(task))
+    (out / f"{task}.toml").write_text(networks[True].text(task, kinds(TASKS[task](None, 1).scenario)["forward"].high))
     replay(task, networks[True], out / f"{task}.gif")
     policies = {
         "as it starts": lambda rows: start,

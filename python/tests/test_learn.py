@@ -1,11 +1,12 @@
 """The example that learns: a short form of it learns measurably, and the shield keeps what it promises meanwhile."""
 
 import runpy
-import tomllib
 
 import numpy as np
 import pytest
+import saturated_hybrid as sh
 from conftest import TOP
+from saturated_hybrid.actions import kinds
 
 LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
 
@@ -39,16 +40,13 @@ def test_behind_the_shield_nothing_is_lost_from_the_first_episode_on(learnt):
     assert malicious[True]["by_policy"] < 0.9
 
 
-def test_the_file_of_weights_is_the_network(learnt):
+def test_the_file_of_weights_is_the_network_that_boards_run(learnt):
     out, _, _ = learnt
-    read = tomllib.loads((out / "hover.toml").read_text())
-    observations = np.random.default_rng(3).normal(size=(20, 18))
-    values = observations
-    for layer in read["layers"]:
-        values = np.tanh(values @ np.array(layer["weights"]).T + np.array(layer["bias"]))
-    network = LEARN["Network"].read(out / "hover.toml")
-    assert np.allclose(network.act(observations), values, atol=1e-5)
-    assert np.abs(values).max() <= 1.0 and np.ptp(values, axis=0).min() > 0.01
+    theirs, ours = sh.Network.read(out / "hover.toml"), LEARN["Network"].read(out / "hover.toml")
+    observations = np.random.default_rng(3).normal(size=(20, 22)).astype(np.float32)
+    assert np.allclose(theirs.act(observations), ours.act(observations), atol=1e-5)
+    assert np.ptp(theirs.act(observations), axis=0).min() > 0.01
+    assert np.allclose(theirs.scale, kinds(sh.Scenario.built_in("hummingbird"))["forward"].high)
 
 
 def test_curves_pictures_and_replay_are_written(learnt):
@@ -61,7 +59,7 @@ def test_curves_pictures_and_replay_are_written(learnt):
 
 def test_a_network_of_a_batch_is_each_of_its_networks():
     random = np.random.default_rng(1)
-    weights, observations = random.normal(size=(3, LEARN["Network"].count)), random.normal(size=(3, 5, 18))
+    weights, observations = random.normal(size=(3, LEARN["Network"].count)), random.normal(size=(3, 5, 22))
     together = LEARN["Network"](weights).act(observations)
     for one, seen, acted in zip(weights, observations, together):
         assert np.allclose(LEARN["Network"](one).act(seen), acted, atol=1e-6)

@@ -7,7 +7,7 @@ import saturated_hybrid as sh
 from gymnasium.utils.env_checker import check_env
 from PIL import Image
 from saturated_hybrid.environment import Environment, Task, VectorEnvironment
-from saturated_hybrid.tasks import GATE, Gate, GateRows, HoverRows, scenario_of
+from saturated_hybrid.tasks import GATE, POINT, Gate, GateRows, HoverRows, scenario_of
 
 HUMMINGBIRD = sh.Scenario.built_in("hummingbird")
 IDS = ["saturated_hybrid/Hover-v0", "saturated_hybrid/Gate-v0"]
@@ -36,7 +36,7 @@ class Mine:
     def begun(self, rows, chosen):
         self.told.append(("begun", np.array(chosen)))
 
-    def moved(self, rows):
+    def moved(self, rows, actions):
         self.told.append(("moved", rows[..., 2]))
 
     def things(self):
@@ -75,7 +75,7 @@ def test_everything_that_a_task_may_define_counts_in_one_vehicle_as_in_rows():
         assert {name for name, _ in environment.told} == {"begun", "moved", "things"}
         assert [name for name, _ in environment.told].count("moved") == tick + 1
     rows.step(np.zeros((3, 4)))
-    assert rows.told[-2][0] == "begun" and rows.told[-2][1].tolist() == [True] * 3
+    assert rows.told[-1][0] == "begun" and rows.told[-1][1].tolist() == [True] * 3
 
 
 def test_an_answer_of_another_shape_is_refused_by_name():
@@ -96,7 +96,7 @@ def test_an_answer_of_another_shape_is_refused_by_name():
             environment.step(actions)
 
 
-@pytest.mark.parametrize("action", ["wrench", "acceleration", "attitude"])
+@pytest.mark.parametrize("action", ["wrench", "acceleration", "forward", "attitude"])
 @pytest.mark.parametrize("name", ["hummingbird", "paper"])
 def test_zero_of_a_scaled_action_hovers_and_its_ends_are_the_bounds(action, name):
     scenario = scenario_of(sh.Scenario.built_in(name).edited({"drag": None} if name == "hummingbird" else {}), [0.0, 0.0, 1.5])
@@ -137,7 +137,7 @@ def test_demands_are_flown_by_the_textbook_controller():
 
 def test_what_no_action_can_be_is_refused():
     for options, said in [
-        ({"action": "speed"}, "action: must be one of wrench, acceleration, attitude, found 'speed'"),
+        ({"action": "speed"}, "action: must be one of wrench, acceleration, forward, attitude, found 'speed'"),
         ({"shield": {"low": [-1] * 3, "high": [1] * 3}}, "shield: carries no wrenches"),
         ({"render_mode": "human"}, 'render_mode: must be None or "rgb_array"'),
     ]:
@@ -271,6 +271,23 @@ def test_what_the_shield_cannot_be_is_refused():
         HoverRows(sh.Scenario.built_in("paper"), 2, shield=BOX)
     with pytest.raises(TypeError, match="unexpected keyword argument 'height'"):
         HoverRows(None, 2, shield=BOX | {"height": 2})
+
+
+@pytest.mark.parametrize("shield", [None, BOX])
+def test_a_task_shows_what_boards_show_a_network_and_forward_is_where_it_faces(shield):
+    rows = HoverRows(None, 3, shield=shield)
+    yaw = np.array([0.0, 2.0, -1.5])
+    observations, _ = rows.reset(seed=2, options={"state": np.array([sh.state(POINT, euler=[0.0, 0.0, each]) for each in yaw])})
+    last, goals = np.zeros((3, 4)), np.tile(POINT, (3, 1))
+    for tick in range(60):
+        wanted = sh.Network.observe(rows.vehicles.states, goals, rows.headings, last)
+        assert np.allclose(observations, wanted, atol=1e-5), tick
+        last = np.tile([0.3, 0.0, 0.0, 0.1], (3, 1))
+        observations, *_ = rows.step(last)
+    velocity = rows.vehicles.states[:, 3:5]
+    assert np.allclose(np.arctan2(velocity[:, 1], velocity[:, 0]), yaw + 0.04, atol=0.12) and (np.hypot(*velocity.T) > 0.2).all()
+    if shield:
+        assert np.array_equal(rows.headings, rows._rows.flier.shield.references[:, 15:17])
 
 
 @pytest.mark.parametrize("shield", [None, BOX])

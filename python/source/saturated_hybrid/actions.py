@@ -3,10 +3,11 @@
     action          columns                                              scaled: zero is     one is
     "wrench"        thrust, N; torque about the body axes, N m           hovering thrust     the scenario's limits
     "acceleration"  (3) of the vehicle, world, m/s^2; yaw rate, rad/s    to stay             half of gravity; 2 rad/s
+    "forward"       the same, forwards, to the left and up               to stay             the same
     "attitude"      thrust, N; roll, pitch, yaw, rad                     level, facing x,    the scenario's limit;
                                                                          hovering thrust     45, 45, 180 degrees
 
-A wrench goes to the rotors as it is. The others are demands: the shield flies them (`ShieldRows`, whose limits are proven), or a
+Forwards is where the heading points, level: the shield's, which turns as demanded, or else the vehicle's own. A wrench goes to the rotors as it is. The others are demands: the shield flies them (`ShieldRows`, whose limits are proven), or a
 textbook attitude controller (`Textbook`, of which nothing is).
 """
 
@@ -28,7 +29,7 @@ TILT = np.pi / 4
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of action: bounds and middle of each column, and the demand that it makes of them."""
+    """A kind of action: bounds and middle of each column, and the demand that it makes of them and of headings (rows, 2)."""
 
     low: Any
     middle: Any
@@ -55,24 +56,50 @@ def kinds(scenario):
     hover = [mass * gravity, 0.0, 0.0, 0.0]
     climb = min(SHARE * gravity, SHARE_OF_CLIMB * (greatest / mass - gravity))
     across = SHARE * gravity
+    accelerations = [-across, -across, -climb, -YAW_RATE], np.zeros(4), [across, across, climb, YAW_RATE]
 
-    def of_attitude(columns):
+    def as_it_is(columns, headings):
+        return columns
+
+    def of_forward(columns, headings):
+        return np.concatenate([turned(columns[:, :3], headings), columns[:, 3:]], axis=1)
+
+    def of_attitude(columns, headings):
         return np.concatenate([quaternions(*np.moveaxis(columns[..., 1:], -1, 0)), columns[..., :1]], axis=-1)
 
-    def kind(low, middle, high, demand=lambda columns: columns):
+    def kind(low, middle, high, demand=as_it_is):
         return Kind(*(np.array(each, float) for each in (low, middle, high)), demand)
 
     return {
         "wrench": kind([0.0, *-torque], hover, [greatest, *torque]),
-        "acceleration": kind([-across, -across, -across, -YAW_RATE], np.zeros(4), [across, across, climb, YAW_RATE]),
+        "acceleration": kind(*accelerations),
+        "forward": kind(*accelerations, of_forward),
         "attitude": kind([0.0, -TILT, -TILT, -np.pi], hover, [greatest, TILT, TILT, np.pi], of_attitude),
     }
+
+
+def turned(vectors, headings, sign=1.0):
+    """Vectors (..., 3) from the frames of headings (..., 2), unit vectors, to the world; with -1 the other way."""
+    (x, y, z), (cos, sin) = np.moveaxis(vectors, -1, 0), np.moveaxis(headings, -1, 0)
+    return np.stack([cos * x - sign * sin * y, sign * sin * x + cos * y, z], axis=-1)
+
+
+def facing(states):
+    """Where vehicles face, level: unit vectors (rows, 2), of states (rows, 13). Along x where they face up or down."""
+    w, x, y, z = states[:, 6:10].T
+    ahead = np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)], axis=1)
+    length = np.linalg.norm(ahead, axis=1, keepdims=True)
+    return np.where(length > 1e-3, ahead / np.maximum(length, 1e-3), [1.0, 0.0])
 
 
 class Direct:
     """Wrenches as they are."""
 
     by_policy, reasons = None, None
+
+    def headings(self, states):
+        """Where "forward" is."""
+        return facing(states)
 
     def step(self, states, demands):
         return demands
@@ -102,12 +129,18 @@ class Shielded(Direct):
 
     def __init__(self, scenario, rows, settings):
         self.shield = _core.ShieldRows(scenario, rows, **settings)
+        self.fresh = np.ones(rows, bool)
+
+    def headings(self, states):
+        return np.where(self.fresh[:, None], facing(states), self.shield.references[:, 15:17])
 
     def step(self, states, demands):
+        self.fresh[:] = False
         return self.shield.for_rotors(self.shield.step(states, demands))
 
     def reset(self, chosen):
         self.shield.reset(chosen.tolist())
+        self.fresh |= chosen
 
     def end(self, clipped):
         if clipped.any():

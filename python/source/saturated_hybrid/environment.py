@@ -66,8 +66,9 @@ class Task:
     def begun(self, rows, chosen):
         """Told of every start: `chosen` is a bool, or (num_envs,): where an episode has just begun, at `rows`."""
 
-    def moved(self, rows):
-        """Told of every step, before it is judged: where every vehicle is now."""
+    def moved(self, rows, actions):
+        """Told of every step, before it is judged: where every vehicle is now, and by which actions. Of those that start anew in
+        it, `begun` tells afterwards."""
 
     def things(self):
         """Lines that stand in the world, for pictures: a list of arrays (k, 3), m."""
@@ -90,7 +91,7 @@ class VectorEnvironment(Task, spaces.Many):
         num_envs: rows.
         start: "random" (any attitude, up to 10 m from the reference, up to 15 rad/s) or "scenario" (its own).
         lost: distance from the reference, m, at which an episode is over.
-        action: "wrench", "acceleration" or "attitude": see `saturated_hybrid.actions`.
+        action: "wrench", "acceleration", "forward" or "attitude": see `saturated_hybrid.actions`.
         scaled: whether actions are in [-1, 1], where zero hovers.
         shield: arguments of `ShieldRows`, the box to stay in at least: `{"low": [-4, -3, 0.3], "high": [4, 3, 4]}`; left out: none.
         render_mode: "rgb_array" keeps every episode, for `render` and `replay`.
@@ -121,6 +122,11 @@ class VectorEnvironment(Task, spaces.Many):
     def vehicles(self):
         """The `VehicleRows` that fly."""
         return self._rows.vehicles
+
+    @property
+    def headings(self):
+        """Where "forward" is: unit vectors (num_envs, 2), world: the shield's headings, or else the vehicles' own."""
+        return self._rows.headings()
 
     @functools.cached_property
     def single_observation_space(self):
@@ -188,6 +194,11 @@ class Environment(Task, spaces.One):
     def vehicles(self):
         """The one row of `VehicleRows` that flies."""
         return self._rows.vehicles
+
+    @property
+    def headings(self):
+        """Where "forward" is: a unit vector (2,), world: the shield's heading, or else the vehicle's own."""
+        return self._rows.headings()
 
     @functools.cached_property
     def observation_space(self):

@@ -69,6 +69,10 @@ class Rows:
     def rows(self):
         return np.concatenate([self.vehicles.measured, self.vehicles.references], axis=1, dtype=np.float32)
 
+    def headings(self):
+        headings = self.flier.headings(self.vehicles.measured)
+        return headings[0] if self.one else headings
+
     def observe(self, rows):
         return np.array(self.ask("observation", rows), np.float32)
 
@@ -86,7 +90,10 @@ class Rows:
             if below:
                 raise ValueError(f"seed: must not be below zero, found {below[0]}")
             self.generators = [np.random.default_rng(each) for each in seeds]
-        rows = self.place(np.ones(self.count, bool), states)
+        chosen = np.ones(self.count, bool)
+        self.place(chosen, states)
+        rows = self.rows()
+        self.ask("begun", rows, chosen)
         return self.observe(rows), {}
 
     def place(self, chosen, states=None):
@@ -105,9 +112,6 @@ class Rows:
         if self.kept is not None:
             for row in np.flatnonzero(chosen):
                 self.kept[row] = []
-        rows = self.rows()
-        self.ask("begun", rows, chosen)
-        return rows
 
     def step(self, actions):
         if self.generators is None:
@@ -119,14 +123,19 @@ class Rows:
             raise ValueError("actions: must be an array of numbers") from None
         if columns.shape != (self.count, 4):
             raise ValueError(f"actions: must have shape ({self.count}, 4), found {columns.shape}")
-        demands = self.kind.demand(self.kind.unscaled(columns) if self.scaled else columns)
-        wrenches = np.asarray(self.flier.step(self.vehicles.measured, demands))
+        measured = self.vehicles.measured
+        columns = self.kind.unscaled(columns) if self.scaled else columns
+        wrenches = np.asarray(self.flier.step(measured, self.kind.demand(columns, self.flier.headings(measured))))
         by_policy, reasons = self.flier.by_policy, self.flier.reasons
         self.keep(wrenches, by_policy)
         clipped, not_finite = self.vehicles.step(wrenches)
         self.flier.end(clipped)
-        rows = self.place(begun) if begun.any() else self.rows()
-        self.ask("moved", rows)
+        if begun.any():
+            self.place(begun)
+        rows = self.rows()
+        self.ask("moved", rows, np.asarray(actions))
+        if begun.any():
+            self.ask("begun", rows, begun)
         finite = np.isfinite(rows).all(axis=1) & ~not_finite
         terminated = (self.judged("terminated", rows) | ~finite) & ~begun
         truncated = (self.vehicles.ticks >= self.scenario.ticks) & ~terminated & ~begun

@@ -4,10 +4,11 @@
     saturated_hybrid/Gate-v0     fly through an opening of 1 m by 1 m in a wall, and on to a point behind it
 
 `gymnasium.make(id, …)` is one vehicle, `gymnasium.make_vec(id, num_envs, …)` rows. Both take a `scenario`, whose reference is replaced
-(left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are accelerations and a yaw rate in [-1, 1]
-unless told otherwise.
+(left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are accelerations forwards, to the left
+and up, and a yaw rate, in [-1, 1], unless told otherwise.
 
-    observation (18,)   target - position, m | velocity, m/s | rotation, body to world, row by row | body rates, rad/s
+    observation (22,)   target - position, m | velocity, m/s | rotation, row by row | body rates, rad/s | the last action
+                        the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network` sees
     terminated          on the ground or beyond it, out of the box, or at the wall
 
 The target is the point; of the gate its middle, until the vehicle is through.
@@ -16,6 +17,7 @@ The target is the point; of the gate its middle, until the vehicle is through.
 import numpy as np
 
 from . import _core
+from .actions import turned
 from .environment import Environment, VectorEnvironment
 from .textbook import rotations
 
@@ -40,12 +42,14 @@ def scenario_of(scenario, point):
     return scenario.edited(changes | {"initial": {"position": list(point)}})
 
 
-def seen(rows, target):
-    """The 18 numbers of an observation, for rows (..., 32) and a target (..., 3)."""
+def seen(rows, headings, target, last):
+    """The 22 numbers of an observation, for rows (..., 32), headings (..., 2), a target (..., 3) and the last action (..., 4)."""
     rows = np.asarray(rows, float)
-    rotation = rotations(rows[..., 6:10])
+    columns = np.moveaxis(rotations(rows[..., 6:10]), -1, 0)
+    rotation = np.moveaxis([turned(column, headings, -1.0) for column in columns], 0, -1)
+    towards, velocity = turned(target - rows[..., :3], headings, -1.0), turned(rows[..., 3:6], headings, -1.0)
     flat = rotation.reshape(*rotation.shape[:-2], 9)
-    return np.concatenate([target - rows[..., :3], rows[..., 3:6], flat, rows[..., 10:13]], axis=-1)
+    return np.concatenate([towards, velocity, flat, rows[..., 10:13], last], axis=-1)
 
 
 class _Hover:
@@ -53,7 +57,8 @@ class _Hover:
 
     point, middle = POINT, POINT
 
-    def __init__(self, scenario=None, *rows, action="acceleration", scaled=True, **options):
+    def __init__(self, scenario=None, *rows, action="forward", scaled=True, **options):
+        self._last = np.zeros(4)
         super().__init__(scenario_of(scenario, self.point), *rows, action=action, scaled=scaled, **options)
 
     def target(self, rows):
@@ -61,8 +66,16 @@ class _Hover:
         return self.point
 
     def observation(self, rows):
-        """Where the target is, seen from the vehicle, and how the vehicle moves: the 18 numbers that the module lists."""
-        return seen(rows, self.target(rows))
+        """Where the target is, seen from the vehicle, and how the vehicle moves: the 22 numbers that the module lists."""
+        return seen(rows, self.headings, self.target(rows), self._last)
+
+    def begun(self, rows, chosen):
+        """Nothing was done yet."""
+        self._last = np.where(np.asarray(chosen)[..., None], 0.0, self._last)
+
+    def moved(self, rows, actions):
+        """Keeps the last action; of what is no number nothing."""
+        self._last = np.where(np.isfinite(actions).all(axis=-1, keepdims=True), np.clip(actions, -1.0, 1.0), 0.0)
 
     def reward(self, rows, actions):
         """One at rest at the target, less with distance, speed, turning and effort; -10 for a crash."""
@@ -91,13 +104,15 @@ class _Gate(_Hover):
 
     def begun(self, rows, chosen):
         """None is through who has just begun."""
+        super().begun(rows, chosen)
         if not hasattr(self, "through"):
             self.through, self.hit, self._before = False, False, 0.0
         self.through, self.hit = self.through & ~chosen, self.hit & ~chosen
         self._before = np.where(chosen, rows[..., 0], self._before)
 
-    def moved(self, rows):
+    def moved(self, rows, actions):
         """Who crosses the wall is through or has hit it."""
+        super().moved(rows, actions)
         crossed = (self._before < GATE[0]) & (rows[..., 0] >= GATE[0])
         inside = np.all(np.abs(rows[..., 1:3] - GATE[1:]) < HALF, axis=-1)
         back = self.through & (rows[..., 0] < GATE[0])
