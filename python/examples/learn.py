@@ -100,15 +100,6 @@ class Network:
         """Small weights, at random."""
         return cls(np.random.default_rng(seed).normal(size=cls.count) * 0.1)
 
-    def text(self, task):
-        """TOML: layer by layer, what scales the observation's numbers first of all, as part of the first matrix."""
-        lines = [f"# Learnt by learn.py for {task}: tanh after each layer.", f'observation = "{OBSERVATION}"', f'demand = "{DEMAND}"']
-        for number, (matrix, bias) in enumerate(self.layers()):
-            matrix = matrix * SCALE if number == 0 else matrix
-            rows = ",\n".join("    [" + ", ".join(f"{each:.9g}" for each in row) + "]" for row in matrix)
-            lines += ["", "[[layers]]", f"weights = [\n{rows},\n]", "bias = [" + ", ".join(f"{each:.9g}" for each in bias) + "]"]
-        return "\n".join(lines) + "\n"
-
 
 class Malicious:
     """A fifth of the rows each: noise, full deflections that change each third of a second, full speed downwards and to a side, a fast

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import saturated_hybrid as sh
 from conftest import TOP
-from saturated_hybrid.actions import kinds
+from saturated_hybrid.actions import facing, kinds
+from saturated_hybrid.tasks import POINT, HoverRows
 
 LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
 
@@ -63,3 +64,24 @@ def test_a_network_of_a_batch_is_each_of_its_networks():
     together = LEARN["Network"](weights).act(observations)
     for one, seen, acted in zip(weights, observations, together):
         assert np.allclose(LEARN["Network"](one).act(seen), acted, atol=1e-6)
+
+
+def test_the_policy_that_was_learnt_and_ships_hovers_as_boards_would_fly_it():
+    """Through the same network, shield and vehicle as anywhere; goals and headings as aboard."""
+    network = sh.Network.read(TOP / "vehicles" / "policies" / "learnt-hover.toml")
+    tasks = HoverRows(None, 100)
+    tasks.reset(seed=10_000)
+    scenario, states = tasks.scenario, tasks.vehicles.states
+    vehicles, shield = sh.VehicleRows(scenario, 100), sh.ShieldRows(scenario, 100, **LEARN["BOX"])
+    vehicles.place(states)
+    headings, outputs, goals, flown = facing(states), np.zeros((100, 4), np.float32), np.tile(POINT, (100, 1)), []
+    for _ in range(600):
+        outputs = network.act(sh.Network.observe(vehicles.states, goals, headings, outputs))
+        wrenches = shield.for_rotors(shield.step(vehicles.states, network.demands(outputs, headings)))
+        clipped, _ = vehicles.step(wrenches)
+        assert not clipped.any()
+        headings = shield.references[:, 15:17]
+        flown.append(shield.by_policy.mean())
+    away = np.linalg.norm(vehicles.states[:, :3] - POINT, axis=1)
+    print(f"policy flew {np.mean(flown):.1%}, median {np.median(away):.2f} m away, at most {away.max():.2f} m")
+    assert np.mean(flown) > 0.9 and np.median(away) < 0.3 and away.max() < 3.0
