@@ -79,7 +79,7 @@ class Network:
     def text(self, task, scale):
         """A policy file, as boards and `saturated_hybrid.Network` read it: what makes the observation's numbers small is part of the first
         matrix; an output of one demands `scale`."""
-        lines = [f"# Learnt by python/examples/learn.py {task}.", f"scale = [{', '.join(f'{each:.9g}' for each in scale)}]"]
+        lines = [f"# Learnt by python/examples/learn.py {task}.", f"scale = [{', '.join(f'{each:.6g}' for each in scale)}]"]
         for number, (matrix, bias) in enumerate(self.layers()):
             matrix = matrix * SCALE if number == 0 else matrix
             rows = ",\n".join("    [" + ", ".join(f"{each:.6g}" for each in row) + "]" for row in matrix)
@@ -99,6 +99,14 @@ class Network:
     def untrained(cls, seed):
         """Small weights, at random."""
         return cls(np.random.default_rng(seed).normal(size=cls.count) * 0.1)
+
+
+class Spring:
+    """What no learning is needed for: a spring to the target and a damper."""
+
+    def act(self, observations):
+        """Actions (rows, 4)."""
+        return np.concatenate([0.8 * observations[:, :3] - 0.6 * observations[:, 3:6], np.zeros_like(observations[:, :1])], axis=1)
 
 
 class Malicious:
@@ -278,6 +286,7 @@ def main(given=None):
         "as it starts": lambda rows: start,
         "learnt with the shield": lambda rows: networks[True],
         "learnt without": lambda rows: networks[False],
+        "spring and damper": lambda rows: Spring(),
         "malicious": lambda rows: Malicious(rows, arguments.seed),
     }
     table = judge(task, policies, arguments.episodes)

@@ -2,7 +2,7 @@
 
     python python/examples/steps_per_second.py
 
-A step is one control period of 10 ms of one vehicle: its simulation and everything that turns an action into rotor commands.
+A step is one control period of 10 ms of one vehicle: its simulation, and everything that turns an action into rotor commands.
 """
 
 import time
@@ -29,11 +29,13 @@ def rate(step, rows):
 def ours():
     """What is measured, by its name."""
     hummingbird, paper = sh.Scenario.built_in("hummingbird"), sh.Scenario.built_in("paper")
+    coarse = hummingbird.edited({"plant.step": 0.005})
     weight = hummingbird.mass * hummingbird.gravity
     for name, scenario, options, action in [
         ("paper's vehicle, wrenches", paper, {}, [paper.mass * paper.gravity, 0.0, 0.0, 0.0]),
         ("Hummingbird, rotors and drag, wrenches", hummingbird, {}, [weight, 0.0, 0.0, 0.0]),
-        ("the same, accelerations, textbook controller", hummingbird, {"action": "acceleration"}, [0.0] * 4),
+        ("the same, five times the plant's step", coarse, {}, [weight, 0.0, 0.0, 0.0]),
+        ("the Hummingbird, accelerations, textbook controller", hummingbird, {"action": "acceleration"}, [0.0] * 4),
         ("the same, accelerations, shield", hummingbird, {"action": "acceleration", "shield": BOX}, [0.0] * 4),
     ]:
         environment = VectorEnvironment(scenario, ROWS, start="scenario", **options)

@@ -14,24 +14,25 @@ LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
 
 @pytest.fixture(scope="module")
 def learnt(tmp_path_factory):
-    """A dozen generations with the shield and a dozen without, and a short table."""
+    """Sixteen generations with the shield and sixteen without, which then has hardly begun to learn; and a short table."""
     out = tmp_path_factory.mktemp("learnt")
-    curves, table = LEARN["main"](["hover", "--out", str(out), "--generations", "12", "--episodes", "50"])
+    curves, table = LEARN["main"](["hover", "--out", str(out), "--generations", "16", "--episodes", "50"])
     return out, curves, table
 
 
-@pytest.mark.parametrize("name", ["with the shield", "without"])
-def test_it_learns_measurably(learnt, name):
-    _, curves, _ = learnt
-    earned = curves[name][:, 1]
-    assert earned[-1] > earned[0] + 30.0, earned
+def test_it_learns_measurably_behind_the_shield(learnt):
+    _, curves, table = learnt
+    earned = curves["with the shield"][:, 1]
+    assert earned[-1] > earned[0] + 60.0, earned
+    flew = {name: row["by_policy"] for name, shield, row in table if shield}
+    assert flew["learnt with the shield"] > flew["as it starts"] + 0.1
 
 
 def test_behind_the_shield_nothing_is_lost_from_the_first_episode_on(learnt):
     _, curves, table = learnt
     assert curves["with the shield"][-1, 2] == 0 and curves["without"][-1, 2] > 100
     names = {name for name, _, _ in table}
-    assert names == {"as it starts", "learnt with the shield", "learnt without", "malicious"}
+    assert names == {"as it starts", "learnt with the shield", "learnt without", "spring and damper", "malicious"}
     for name, shield, row in table:
         if shield:
             assert (row["crashed"], row["lost"], row["clipped"]) == (0, 0, 0.0), (name, row)
@@ -53,7 +54,7 @@ def test_the_file_of_weights_is_the_network_that_boards_run(learnt):
 def test_curves_pictures_and_replay_are_written(learnt):
     out, _, _ = learnt
     rows = np.loadtxt(out / "hover-with.csv", delimiter=",", skiprows=1)
-    assert rows.shape == (12, 3) and (np.diff(rows[:, 0]) > 0).all()
+    assert rows.shape == (16, 3) and (np.diff(rows[:, 0]) > 0).all()
     assert (out / "hover.svg").read_text().count("steps flown, millions") == 1
     assert (out / "hover.gif").read_bytes().startswith(b"GIF89a")
 
