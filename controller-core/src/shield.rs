@@ -34,7 +34,6 @@ use crate::configuration::{Configuration, LawParameters};
 use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
 use crate::extended::controller::{Controller, Prospect};
-use crate::extended::net;
 use crate::extended::position::Most;
 use crate::heading::Heading;
 use crate::reference::Reference;
@@ -92,6 +91,10 @@ enum Pilot {
 fn stopping(gravity: f32) -> Most {
     Most { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
 }
+
+/// How near its refuge a vehicle is to be before a policy gets it back: |z_1|, m, and |z_2|, m/s. The net's 0.05 are too
+/// few where states are noisy and air is rough.
+const NEAR: f32 = 0.2;
 
 /// A shield, as before a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -240,7 +243,8 @@ impl Shield {
                 self.pilot = Pilot::Law { reason, refuge: self.refuge(prospect), near: 0 };
             }
             (Pilot::Law { refuge, near, .. }, against) => {
-                let arrived = net::is_near(&(prospect.z_1 - *refuge), &prospect.z_2);
+                let away = (prospect.z_1 - *refuge).norm_squared();
+                let arrived = away < NEAR * NEAR && prospect.z_2.norm_squared() < NEAR * NEAR;
                 *near = if arrived && against.is_none() { near.saturating_add(1) } else { 0 };
                 let waited = *near as f32 * self.period;
                 let patience = self.settings.patience(self.hand_overs);

@@ -13,6 +13,7 @@
 
 pub mod estimate;
 pub mod recovery;
+pub mod shielded;
 
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::Configuration;

@@ -304,6 +304,11 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     /// Lets the policy fly, from here, to the newest setpoint's place.
     fn let_fly(&mut self, now: u64) -> Result<(), Refusal> {
         permission::to_fly_policy::<P>(self.mode, self.is_airborne())?;
+        if self.flies_policy {
+            // A client that repeats its request does not take the vehicle from the law.
+            self.policy.ask_again();
+            return Ok(());
+        }
         let chain = self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
         let Reference { position, heading, .. } = chain.reference();
         let goal = self.newest.fresh(now).and_then(place).unwrap_or(*position);

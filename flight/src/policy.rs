@@ -64,6 +64,9 @@ pub trait Aboard {
     /// Why it cannot.
     fn begin(&mut self, corners: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal>;
 
+    /// A person asks for it again while it is let fly.
+    fn ask_again(&mut self);
+
     /// Gives it another goal.
     fn go_to(&mut self, goal: &Vector3<f32>);
 
@@ -86,6 +89,8 @@ impl Aboard for NoPolicy {
     fn begin(&mut self, _: [Vector3<f32>; 2], _: &Vector3<f32>, _: &Heading) -> Result<(), Refusal> {
         Err(Refusal::NoPolicy)
     }
+
+    fn ask_again(&mut self) {}
 
     fn go_to(&mut self, _: &Vector3<f32>) {}
 
@@ -130,6 +135,12 @@ impl<P: Policy> Aboard for Guarded<P> {
         Ok(())
     }
 
+    fn ask_again(&mut self) {
+        if let Some(shield) = &mut self.shield {
+            shield.ask_again();
+        }
+    }
+
     fn go_to(&mut self, goal: &Vector3<f32>) {
         self.goal = *goal;
     }
@@ -168,6 +179,12 @@ impl<A: Aboard> Aboard for Option<A> {
 
     fn begin(&mut self, corners: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal> {
         self.as_mut().ok_or(Refusal::NoPolicy)?.begin(corners, goal, heading)
+    }
+
+    fn ask_again(&mut self) {
+        if let Some(aboard) = self {
+            aboard.ask_again();
+        }
     }
 
     fn go_to(&mut self, goal: &Vector3<f32>) {

@@ -118,8 +118,17 @@ fn the_law_takes_over_says_why_and_gives_the_vehicle_back() {
             last = said(&mut flight, 2_000).0.last().copied().or(last);
         }
         assert_eq!(last, Some(Handed::ToLawForGood(reason)));
-        assert_eq!(flight.answer(Request::FlyPolicy), Ok(()));
-        assert!(said(&mut flight, 100).0.is_empty() && flight.pilot.mode() == Mode::Flying);
+        flight.inputs.request = Some(Request::FlyPolicy);
+        assert_eq!(flight.tick().handed, Some(Handed::ToPolicy));
+        // Asked for again and again it still waits for its time.
+        harm.set(does);
+        said(&mut flight, 100);
+        harm.set(Harm::None);
+        for _ in 0..20 {
+            assert_eq!(flight.answer(Request::FlyPolicy), Ok(()));
+            assert_eq!(said(&mut flight, 2).0, []);
+        }
+        assert_eq!(said(&mut flight, 600).0, [Handed::ToPolicy]);
     }
 }
 
@@ -184,4 +193,13 @@ fn without_a_policy_or_under_the_papers_law_none_flies() {
     assert_eq!(refused, Err(Refusal::NoPolicyUnderLaw));
     let none: Option<Guarded<Pilot>> = None;
     assert_eq!({ none }.begin(corners, &Vector3::zeros(), &Heading::FORWARD), Err(Refusal::NoPolicy));
+}
+
+#[test]
+fn every_hand_over_in_words_fits_a_statustext() {
+    for reason in shield::Reason::ALL {
+        for handed in [Handed::ToPolicy, Handed::ToLaw(reason), Handed::ToLawForGood(reason)] {
+            assert!(handed.to_string().len() <= flight::reason::TEXT_MAX, "{handed}");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-"""The code of docs/python.md and docs/learning.md runs as it stands there."""
+"""The code of docs/python.md, docs/learning.md and docs/shield.md runs as it stands there."""
 
 import re
 
@@ -32,3 +32,8 @@ def test_the_pages_code_runs_from_top_to_bottom(tmp_path, monkeypatch):
     assert names["late"].reasons and names["rewards"].shape == (64,)
     assert names["frame"].shape == (420, 480, 3) and (tmp_path / "climb.gif").read_bytes().startswith(b"GIF89a")
     assert names["references"].shape == (500, 19) and len(names["flight"]) == 600
+
+
+def test_the_shields_code_runs():
+    names = run("shield.md")
+    assert names["shields"].hand_overs.max() >= 1 and names["shields"].reasons

@@ -1,9 +1,10 @@
 //! Records the states of the paper's flight and of the embedded scenario's recovery for `firmware::replay`, as
-//! `states.f32` and `recovery.f32`, and prints the numbers of the recovery and of the estimate of it on this machine, a
-//! line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
+//! `states.f32` and `recovery.f32`, and prints the numbers of the recovery, of the estimate of it and of the same behind a
+//! shield on this machine, a line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
 
 use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};
+use firmware::replay::shielded::Shielded;
 use firmware::replay::{TICKS, record};
 use host_sim::flight::Flight;
 use host_sim::tune::trials;
@@ -27,12 +28,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::write(folder.join("recovery.f32"), recovered.concat())?;
     let mut replay = Recovery::new().ok_or("the embedded scenario is not certified")?;
     let mut estimate = Estimate::new().ok_or("the estimator's figures are refused")?;
+    let mut shielded = Shielded::new().ok_or("the embedded scenario cannot be shielded")?;
     for state in &recovered {
+        shielded.tick(state)?;
         replay.tick(state)?;
         estimate.tick(state);
     }
     println!("{}", replay.digest());
     println!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
+    println!("{}", shielded.digest().ok_or("behind the shield law and network do not both fly")?);
     Ok(())
 }
 

@@ -127,6 +127,7 @@ impl AttitudeLaw {
 
     /// P and the damping, for the lifted error, of unit length, and omega~.
     #[must_use]
+    #[inline(always)] // see position.rs
     pub fn feedback(&self, error: &Quaternion<f32>, rate_error: &Vector3<f32>) -> AttitudeFeedback {
         let potential = self.potential(error);
         let r_squared = error.i * error.i + error.j * error.j;

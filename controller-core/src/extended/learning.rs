@@ -42,6 +42,7 @@ impl Learning {
     /// The averages in `memory` brought up to this tick, if the last interval can teach anything;
     /// `axis` is R e3 now.
     #[must_use]
+    #[inline(always)] // likewise: see position.rs
     pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
         let Memory { averages, acted, .. } = memory;
         let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {

@@ -28,12 +28,6 @@ const FORGIVEN: f32 = 0.05;
 /// Near the target: |z_1|, m, and |z_2|, m/s.
 const NEAR: f32 = 0.05;
 
-/// Whether a vehicle with these errors is near its target.
-#[must_use]
-pub fn is_near(z_1: &Vector3<f32>, z_2: &Vector3<f32>) -> bool {
-    z_1.norm_squared() < NEAR * NEAR && z_2.norm_squared() < NEAR * NEAR
-}
-
 /// The net's memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Net {
@@ -78,7 +72,7 @@ impl Net {
             return;
         }
         cold_path();
-        if is_near(z_1, z_2) {
+        if z_1.norm_squared() < NEAR * NEAR && z_2.norm_squared() < NEAR * NEAR {
             (self.acted, self.caught) = (0.0, false);
         } else if limited {
             self.acted += period;

@@ -336,6 +336,7 @@ impl PositionLaw {
     }
 
     /// ubar.
+    #[inline(always)] // into the step, also where a shield has a step of its own
     fn saturated(
         &self,
         [z_1, z_2]: [&Vector3<f32>; 2],

@@ -65,6 +65,7 @@ impl ThrustRange {
 
     /// The thrust nearest to `thrust` that every rotor can take part in, N, for a torque in N m and the thrust scale s.
     #[must_use]
+    #[inline(always)] // see position.rs
     pub fn admitted(&self, thrust: f32, torque: &Vector3<f32>, scale: f32) -> f32 {
         let differences = self.worst.per_torque.dot(&torque.abs()) + self.margin;
         let most = math::lesser(scale * self.worst.greatest - differences, self.thrust_max);
@@ -78,6 +79,7 @@ impl ThrustRange {
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
     #[must_use]
+    #[inline(always)] // see position.rs
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
         least.fold(self.margin, math::greater)
@@ -85,6 +87,7 @@ impl ThrustRange {
 
     /// C(tau), N, likewise; at most T_max.
     #[must_use]
+    #[inline(always)] // see position.rs
     pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let greatest =
             self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));

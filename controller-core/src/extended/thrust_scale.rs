@@ -68,6 +68,7 @@ impl ThrustScale {
 
     /// The estimate after an interval in which `made` was observed and `commanded` acted, both m/s^2, world frame.
     #[must_use]
+    #[inline(always)] // see position.rs
     pub fn learnt(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
         let scale = estimate.scale;
         let Some([slow_made, slow_commanded]) = estimate.slow else {

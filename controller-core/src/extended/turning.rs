@@ -89,6 +89,7 @@ impl TurningLimit {
 
     /// The limited turn for a wanted one.
     #[must_use]
+    #[inline(always)] // likewise: see position.rs
     pub fn limited(&self, turn: &Turn, circumstances: &Circumstances) -> Limited {
         let Circumstances { budget, yaw_rate, up, greatest, vertical: [c, c_rate, c_wanted] } = *circumstances;
         let Turn { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = *turn;

@@ -45,13 +45,13 @@ impl Reason {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Silent => "policy: silent for too long",
-            Self::Demand => "policy: demand cannot be used",
-            Self::Stop => "policy: box too near to stop in",
-            Self::Speed => "policy: too fast",
-            Self::Tilt => "policy: thrust axis too far off",
-            Self::Rate => "policy: turns too fast",
-            Self::Estimate => "policy: estimates in doubt",
+            Self::Silent => "the policy is silent",
+            Self::Demand => "the policy's demand is unusable",
+            Self::Stop => "too near the walls to stop",
+            Self::Speed => "too fast",
+            Self::Tilt => "thrust axis too far off",
+            Self::Rate => "turns too fast",
+            Self::Estimate => "estimates in doubt",
         })
     }
 }

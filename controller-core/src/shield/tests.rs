@@ -133,8 +133,8 @@ fn a_policy_gets_nothing_back_before_it_speaks_and_the_vehicle_is_near() {
     let (mut law, mut shield) = shielded(&settings);
     let said = reasons(&mut shield, &mut law, 100, |_| None);
     assert!(said.iter().all(|reason| *reason == Some(Reason::Silent)));
-    // Ten centimetres from the refuge is not near.
-    let aside = resting(MIDDLE + Vector3::new(0.1, 0.0, 0.0));
+    // A quarter of a metre from the refuge is not near.
+    let aside = resting(MIDDLE + Vector3::new(0.25, 0.0, 0.0));
     for _ in 0..100 {
         assert_eq!(shield.step(&mut law, &aside, Some(&HOVER)).unwrap().reason, Some(Reason::Silent));
     }

@@ -1,4 +1,4 @@
-//! The paper's flight, a recovery and the estimate of it replayed on an emulated board, from the states in the files
+//! The paper's flight, a recovery, the estimate of it and the same behind a shield replayed on an emulated board, from the states in the files
 //! `states.f32` and `recovery.f32` of the emulator's working directory; prints the numbers that [`firmware::replay`]
 //! makes of them, a line each. Run by `.ci/emulated bits`.
 
@@ -10,6 +10,7 @@ mod target {
     use firmware::boards::mps2::exit;
     use firmware::replay::estimate::Estimate;
     use firmware::replay::recovery::{self, Recovery};
+    use firmware::replay::shielded::Shielded;
     use firmware::replay::{RECORD, Replay, TICKS};
     use semihosting::fs::File;
     use semihosting::io::Read;
@@ -23,7 +24,7 @@ mod target {
         exit::end(true)
     }
 
-    fn replay() -> Result<[heapless::String<64>; 3], &'static str> {
+    fn replay() -> Result<[heapless::String<64>; 4], &'static str> {
         let mut file = File::open(c"states.f32").map_err(|_| "states.f32: cannot be opened")?;
         let mut replay = Replay::new().ok_or("Table I is not certified on this machine")?;
         let mut record = [0; RECORD];
@@ -34,13 +35,16 @@ mod target {
         let mut file = File::open(c"recovery.f32").map_err(|_| "recovery.f32: cannot be opened")?;
         let mut recovery = Recovery::new().ok_or("the embedded scenario is not certified on this machine")?;
         let mut estimate = Estimate::new().ok_or("the estimator's figures are refused on this machine")?;
+        let mut shielded = Shielded::new().ok_or("the embedded scenario is shielded on no machine")?;
         for _ in 0..recovery::TICKS {
             file.read_exact(&mut record).map_err(|_| "recovery.f32: too short")?;
             estimate.tick(&record);
             recovery.tick(&record).map_err(|_| "the law refuses a recorded state of the recovery")?;
+            shielded.tick(&record).map_err(|_| "the law refuses a recorded state behind the shield")?;
         }
         let estimate = estimate.digest().ok_or("no estimate at the end of the recovery")?;
-        Ok([replay.digest(), recovery.digest(), estimate])
+        let shielded = shielded.digest().ok_or("behind the shield law and network do not both fly")?;
+        Ok([replay.digest(), recovery.digest(), estimate, shielded])
     }
 }
 

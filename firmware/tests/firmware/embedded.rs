@@ -2,8 +2,11 @@
 
 #[path = "../../build/embed.rs"]
 mod embed;
+#[path = "../../build/policy.rs"]
+mod policy;
 
 use embed::{Embedded, embedded};
+use scenario::policy::PolicyFile;
 use scenario::{Scenario, board};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -107,4 +110,25 @@ fn what_the_boards_cannot_drive_is_refused_by_field() {
     assert!(rate.starts_with("vehicles/hummingbird.toml: control.rate: the firmware flies at 100 Hz"), "{rate}");
     let paper = fs::read_to_string(file("scenarios/paper.toml")).unwrap();
     assert!(embedded(&paper, "paper.toml").unwrap_err().starts_with("paper.toml: rotors: missing"));
+}
+
+#[test]
+fn a_policy_is_built_in_to_the_bit_and_one_that_does_not_fit_is_refused_by_name() {
+    let name = "vehicles/policies/hover.toml";
+    let text = fs::read_to_string(file(name)).unwrap();
+    let source = policy::source(&text, name).unwrap();
+    let weights: Vec<f32> = source
+        .split("weights: &[")
+        .nth(1)
+        .and_then(|rest| rest.split(']').next())
+        .unwrap()
+        .split(',')
+        .filter_map(|number| number.trim().parse().ok())
+        .collect();
+    let PolicyFile { layers, .. } = PolicyFile::parse(&text, name).unwrap();
+    assert_eq!(weights, layers[0].0);
+    let refused = policy::source(&text.replace("0.0, 0.0, 0.0, 0.0]\n", "0.0]\n"), name).unwrap_err();
+    assert_eq!(refused, format!("{name}: layers[0].weights: must have a row for each of 1 biases, found 4"));
+    // An image without one has the type for that.
+    assert!(policy::NONE.contains("flight::NoPolicy"));
 }

@@ -212,6 +212,7 @@ fn modes_are_px4s_or_guided() {
         (set_mode(1.0, 4.0, 3.0), Request::Hold),
         (set_mode(1.0, 4.0, 2.0), Request::TakeOff(None)),
         (set_mode(1.0, 4.0, 6.0), Request::Land),
+        (set_mode(1.0, 4.0, 11.0), Request::FlyPolicy),
     ] {
         assert_eq!(asked(&message), Some(request), "{message:?}");
     }

@@ -194,4 +194,9 @@ fn modes_have_names_and_the_heartbeat_says_the_same_number() {
         assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
         assert_eq!(vehicle::current_mode(&shown).custom_mode, number);
     }
+    // PX4's AUTO, EXTERNAL1: named only where a policy is built in.
+    let shown = vehicle::Shown { mode: Mode::Flying, mission: false, policy: true };
+    let number = vehicle::heartbeat(Some(shown), false).custom_mode;
+    assert_eq!(number, 4 << 16 | 11 << 24);
+    assert_eq!(named.iter().any(|named| named.custom_mode == number), option_env!("POLICY").is_some());
 }

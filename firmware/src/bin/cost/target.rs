@@ -10,6 +10,7 @@ use controller_core::allocation::{Allocation, Mixer};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::configuration::Configuration;
 use controller_core::error::InputError;
+use controller_core::extended::controller::Controller;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::law::Command;
@@ -18,10 +19,13 @@ use controller_core::math;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
+use controller_core::shield::network::{INPUTS, Network, OUTPUTS, inputs as inputs_of};
+use controller_core::shield::{Demand, Flown, Observation, Settings, Shield};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
 use cortex_m_semihosting::hprintln;
 use firmware::boards::mps2::exit;
+use firmware::replay::shielded::network;
 use firmware::{configuration, replay};
 use nalgebra::{Quaternion, Vector3};
 use static_cell::ConstStaticCell;
@@ -32,6 +36,8 @@ const PERIOD_US: u64 = 10_000;
 const PERIOD: f32 = 0.01;
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
+
+type Shielded = fn(&mut Shield, &mut Controller, &State, Option<&Demand>) -> Result<Flown, InputError>;
 
 type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
@@ -75,6 +81,10 @@ fn measure() -> bool {
     let mut flight = Flight { law: papers_law, mixer: None, certified: &papers, counter: &counter };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut Cost::default()) else { return false };
     cost.print("step, circle, the paper's law");
+    if !shielded(&counter, &certified, &settled) {
+        hprintln!("the shield does not let its policy fly");
+        return false;
+    }
     if !govern(&counter, &embedded, &mut governing) {
         return false;
     }
@@ -154,6 +164,36 @@ impl Flight<'_> {
 
         Some((state, cost))
     }
+}
+
+/// A hover behind the shield, and the network that would fly it; whether the policy flew.
+fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
+    let (corner, zero) = (Vector3::repeat(20.0), Vector3::zeros());
+    let shield = Shield::new(certified.configuration(), &Settings::new(-corner, corner), PERIOD);
+    let (Ok(mut law), Ok(mut shield)) = (Law::new(certified, PERIOD), shield) else { return false };
+    let (Some(law), Some(network)) = (law.extended(), network()) else { return false };
+    let step: Shielded = black_box(Shield::step);
+    let outputs: fn(&Network<'static>, &[f32; INPUTS]) -> [f32; OUTPUTS] = black_box(Network::outputs);
+    let (mut cost, mut thinking, mut state) = (Cost::default(), Cost::default(), *from);
+    let observation = Observation { state, goal: zero, heading: Heading::FORWARD };
+    let inputs = inputs_of(&observation, &[0.0; OUTPUTS]);
+    for _ in 0..STEPS {
+        let acceleration = -state.velocity - (state.position - from.position);
+        let demand = Demand::Acceleration { acceleration, yaw_rate: 0.0 };
+        let (instructions, flown) = counter.short(|| step(&mut shield, law, &state, Some(&demand)));
+        let Ok(flown) = flown else { return false };
+        if flown.reason.is_some() {
+            return false;
+        }
+        cost.add(instructions);
+        body::advance(&mut state, certified.configuration().vehicle(), &flown.wrench, PERIOD);
+        let (instructions, answer) = counter.short(|| outputs(&network, &inputs));
+        black_box(answer);
+        thinking.add(instructions);
+    }
+    cost.print("shielded step, the policy's");
+    thinking.print("network, 22, 32, 32, 4");
+    true
 }
 
 /// A circle of 1 m in four seconds, 1.5 m up, the heading turning along.

@@ -17,6 +17,7 @@ use crate::boards::chosen::{
     SERVICES_INTERRUPT,
 };
 use crate::boards::{guard, handover, kept, recorder};
+use crate::configuration::Pilot;
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::last_words::LastWords;

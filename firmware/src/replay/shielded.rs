@@ -1,0 +1,113 @@
+//! The same recovery behind a shield, replayed: the law takes over from an upset start, and from half of the flight on
+//! a network flies. The same states, hence the same bits, of what the network puts out and of what is commanded.
+
+use super::{PERIOD_US, RECORD, digest, state};
+use crate::configuration;
+use controller_core::certificate::certified::Certified;
+use controller_core::error::InputError;
+use controller_core::heading::Heading;
+use controller_core::law::Law;
+use controller_core::shield::network::{INPUTS, Layer, Network, NetworkPolicy, OUTPUTS};
+use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
+use nalgebra::Vector3;
+use sha2::{Digest, Sha256};
+
+/// The ticks that the law flies.
+const UPSET: u64 = 1000;
+
+/// The outputs of the network's middle.
+const MIDDLE: usize = 32;
+
+/// Weights without a pattern that an error could keep, small enough to fly.
+const fn weights<const COUNT: usize>() -> [f32; COUNT] {
+    let (mut weights, mut seed, mut place) = ([0.0; COUNT], 1_u32, 0);
+    while place < COUNT {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        #[allow(clippy::indexing_slicing)] // at build time
+        {
+            weights[place] = ((seed >> 8) as f32 / 8_388_608.0 - 1.0) * 0.2;
+        }
+        place += 1;
+    }
+    weights
+}
+
+static FIRST: [f32; INPUTS * MIDDLE] = weights();
+static SECOND: [f32; MIDDLE * MIDDLE] = weights();
+static THIRD: [f32; MIDDLE * OUTPUTS] = weights();
+static BIASES: [f32; MIDDLE] = weights();
+static LAYERS: [Layer<'static>; 3] = [
+    Layer { weights: &FIRST, biases: &BIASES },
+    Layer { weights: &SECOND, biases: &BIASES },
+    Layer { weights: &THIRD, biases: &[0.1, -0.1, 0.05, -0.05] },
+];
+
+/// A network of 22, 32, 32 and 4. None on no machine.
+#[must_use]
+pub fn network() -> Option<Network<'static>> {
+    Network::new(&LAYERS, [2.0, 2.0, 2.0, 0.5]).ok()
+}
+
+/// The flight, as far as it has been replayed.
+pub struct Shielded {
+    law: Law,
+    shield: Shield,
+    policy: NetworkPolicy<'static>,
+    hash: Sha256,
+    tick: u64,
+    by_policy: u64,
+}
+
+impl Shielded {
+    /// At the start; certifies the embedded scenario. None if that fails, or if it is for another law.
+    #[must_use]
+    pub fn new() -> Option<Self> {
+        let certified = Certified::new(configuration::embedded().ok()?).ok()?;
+        let (period, corner) = (PERIOD_US as f32 * 1e-6, Vector3::repeat(20.0));
+        Some(Self {
+            law: Law::new(&certified, period).ok()?,
+            shield: Shield::new(certified.configuration(), &Settings::new(-corner, corner), period).ok()?,
+            policy: NetworkPolicy::new(network()?),
+            hash: Sha256::new(),
+            tick: 0,
+            by_policy: 0,
+        })
+    }
+
+    /// One tick at a recorded state.
+    ///
+    /// # Errors
+    /// The law's own, for a state that it cannot use.
+    pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<(), InputError> {
+        if self.tick == UPSET {
+            self.shield.reset(&Heading::FORWARD);
+        }
+        let state = state(record);
+        let observation = Observation { state, goal: Vector3::zeros(), heading: *self.shield.heading() };
+        let offers = self.policy.act(&observation);
+        let Some(law) = self.law.extended() else { return Ok(()) };
+        let flown = self.shield.step(law, &state, offers.as_ref())?;
+        if let Some(Demand::Acceleration { acceleration, yaw_rate }) = offers {
+            self.add(acceleration.as_slice());
+            self.add(&[yaw_rate]);
+        }
+        self.add(&[flown.wrench.thrust]);
+        self.add(flown.wrench.torque.as_slice());
+        self.add(flown.reference.position.as_slice());
+        self.add(flown.reference.heading.direction().as_slice());
+        self.hash.update([flown.reason.map_or(0, |reason| reason as u8 + 1)]);
+        self.by_policy += u64::from(flown.reason.is_none());
+        self.tick += 1;
+        Ok(())
+    }
+
+    fn add(&mut self, numbers: &[f32]) {
+        numbers.iter().for_each(|number| self.hash.update(number.to_le_bytes()));
+    }
+
+    /// The number, as 64 hexadecimal digits; none if law and network have not both flown.
+    #[must_use]
+    pub fn digest(self) -> Option<heapless::String<64>> {
+        (0 < self.by_policy && self.by_policy < self.tick).then(|| digest(self.hash))
+    }
+}
