@@ -92,7 +92,7 @@ fn numbers(value: Option<&Value>, field: &str) -> Result<Vec<f32>, String> {
     let number = |(place, value): (usize, &Value)| {
         let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         let single = number.map(|number| number as f32).filter(|single| single.is_finite());
-        single.ok_or_else(|| format!("{field}[{place}]: must be a finite number, found {value}"))
+        single.ok_or_else(|| format!("{field}[{place}]: must be a finite number of single precision"))
     };
     array.iter().enumerate().map(number).collect()
 }
@@ -121,8 +121,14 @@ mod tests {
             (file(4, 21, 4), "policy.toml: network.layers.weights: needs at least 88 elements"),
             (file(3, 22, 3), "policy.toml: network.layers.biases: needs at least 4 elements"),
             (file(4, 22, 3), "policy.toml: layers[0].weights: must have a row for each of 3 biases, found 4"),
-            (good.replace("0.25", "nan"), "policy.toml: layers[0].biases[0]: must be a finite number, found nan"),
-            (good.replace("0.25", "1e39"), "policy.toml: layers[0].biases[0]: must be a finite number, found 1e39"),
+            (
+                good.replace("0.25", "nan"),
+                "policy.toml: layers[0].biases[0]: must be a finite number of single precision",
+            ),
+            (
+                good.replace("0.25", "1e39"),
+                "policy.toml: layers[0].biases[0]: must be a finite number of single precision",
+            ),
             (good.replace("4.0, 1.0]", "4.0]"), "policy.toml: scale: must have 4 numbers, found 3"),
             (good.replace("biases", "bias"), "policy.toml: layers[0].bias: unknown; there are weights and biases"),
             ("scale = [1, 1, 1, 1]".to_owned(), "policy.toml: layers: missing; write [[layers]]"),

@@ -82,7 +82,6 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;
-                self.take_over(estimate);
                 self.with_chain(|chain| {
                     chain.hold();
                     Ok(())
