@@ -169,7 +169,7 @@ fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
         Ok(track) => track,
         Err(error) => return stopped(&scenario, &error),
     };
-    let bytes = gif(&track, stretch).map_err(|error| format!("{}: cannot be drawn: {error}", path.display()))?;
+    let bytes = gif(&track, &[], stretch).map_err(|error| format!("{}: cannot be drawn: {error}", path.display()))?;
     file.write_all(&bytes).and_then(|()| file.finish()).map_err(unwritable)?;
     print_text(&format!(
         "{}: {} s to {} s at {} times life in {}\n",

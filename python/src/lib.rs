@@ -11,6 +11,7 @@
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
 //! | [`vehicles`] | rows of simulated vehicles, for environments |
+//! | [`replays`] | pictures and replays of flights that something else flew |
 //! | [`rows`] | numpy arrays as states, references and wrenches, and back |
 //! | [`whole`] | whole numbers as arguments |
 //! | [`refused`], [`waiting`], [`cores`] | errors; long work that lets other threads run and Ctrl-C through; on which threads |
@@ -29,6 +30,7 @@ mod imports;
 mod laws;
 mod networks;
 mod refused;
+mod replays;
 mod rows;
 mod scenarios;
 mod shields;
@@ -57,6 +59,8 @@ mod _core {
     use super::laws::{Law, LawRows};
     #[pymodule_export]
     use super::networks::Network;
+    #[pymodule_export]
+    use super::replays::{picture, replay};
     #[pymodule_export]
     use super::rows::{reference, state};
     #[pymodule_export]

@@ -75,6 +75,19 @@ pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, count: usize, field: &str)
     Ok(rows.to_vec())
 }
 
+/// Rows of any number.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn counted<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Rows<N>> {
+    let (values, shape) = numbers(array, field)?;
+    if shape.len() != 2 || shape[1] != N {
+        return Err(refused_field(field, format!("must have shape (n, {N}), found {}", shown(&shape))));
+    }
+    let (rows, _) = values.as_chunks();
+    Ok(rows.to_vec())
+}
+
 /// Numbers of any count.
 ///
 /// # Errors

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import saturated_hybrid as sh
-from saturated_hybrid import _core, environment, rotorpy
+from saturated_hybrid import _core, actions, environment, episodes, rotorpy, tasks, textbook
 
 STUB = ast.parse((pathlib.Path(_core.__file__).parent / "_core.pyi").read_text())
 
@@ -43,7 +43,10 @@ def test_the_stub_has_everything_and_nothing_else():
 
 
 def test_python_parts_are_documented_too():
-    for part in (environment.Environment, environment.VectorEnvironment, rotorpy.SaturatedHybridControl):
+    modules = (actions, environment, episodes, rotorpy, tasks, textbook)
+    assert all(module.__doc__ for module in modules)
+    classes = (environment.Task, environment.Environment, environment.VectorEnvironment, rotorpy.SaturatedHybridControl, textbook.Textbook)
+    for part in classes + (tasks.Hover, tasks.HoverRows, tasks.Gate, tasks.GateRows):
         assert part.__doc__
         for name, member in vars(part).items():
             assert name.startswith("_") or not callable(member) or member.__doc__, (part, name)

@@ -19,7 +19,7 @@ HUMMINGBIRD = sh.Scenario.built_in("hummingbird")
 def test_gymnasiums_checker_passes():
     environment = Environment(HUMMINGBIRD)
     assert isinstance(environment, gymnasium.Env)
-    check_env(environment, skip_render_check=True)
+    check_env(environment)
 
 
 def test_the_vector_is_gymnasiums_with_its_spaces():
@@ -108,7 +108,7 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(ValueError, match=r"states: must have shape \(2, 13\)"):
         environment.reset(options={"state": sh.state()})
     environment.reset(seed=1)
-    with pytest.raises(ValueError, match=r"wrenches: must have shape \(2, 4\), found \(2, 3\)"):
+    with pytest.raises(ValueError, match=r"actions: must have shape \(2, 4\), found \(2, 3\)"):
         environment.step(np.zeros((2, 3)))
 
 

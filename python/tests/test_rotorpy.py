@@ -9,8 +9,10 @@ from rotorpy.trajectories.circular_traj import ThreeDCircularTraj
 from rotorpy.trajectories.hover_traj import HoverTraj
 from rotorpy.trajectories.minsnap import MinSnap
 from rotorpy.vehicles.crazyflie_params import quad_params as crazyflie
+from rotorpy.vehicles.crazyfliebrushless_params import quad_params as brushless
 from rotorpy.vehicles.hummingbird_params import quad_params as hummingbird
 from rotorpy.vehicles.multirotor import Multirotor
+from rotorpy.vehicles.px4_sihsim_quadx_params import quad_params as px4_sihsim
 from rotorpy.world import World
 from saturated_hybrid.rotorpy import SaturatedHybridControl
 
@@ -18,8 +20,8 @@ CIRCLE = ThreeDCircularTraj(radius=np.array([1, 1, 0]))
 FREE = World.empty((-50, 50, -50, 50, -50, 50))
 
 
-def flown(controller, trajectory, duration, start=None, **options):
-    vehicle = Multirotor(hummingbird)
+def flown(controller, trajectory, duration, start=None, quad_params=hummingbird, **options):
+    vehicle = Multirotor(quad_params)
     if start is not None:
         vehicle.initial_state.update(start)
     environment = Environment(vehicle, controller, trajectory, world=FREE, **options)
@@ -43,6 +45,31 @@ def test_rotorpys_example_trajectories_are_flown(trajectory, near):
     results = flown(SaturatedHybridControl(hummingbird), trajectory, 7)
     assert distance(results)[-100:].max() < near
     assert str(results["exit"].value).startswith("Timeout")
+
+
+@pytest.mark.parametrize(
+    "quad_params, near",
+    [(crazyflie, 0.05), (brushless, 0.03), (px4_sihsim, 0.03)],
+    ids=["crazyflie", "brushless", "px4_sihsim"],
+)
+def test_any_vehicle_of_rotorpys_flies_with_constants_that_are_certified(quad_params, near):
+    controller = SaturatedHybridControl(quad_params)
+    assert sh.certify(controller.scenario) and controller.scenario.law == "extended"
+    slow = ThreeDCircularTraj(radius=np.array([1, 1, 0]), freq=np.array([0.1, 0.1, 0.0]))
+    results = flown(controller, slow, 12, quad_params=quad_params)
+    assert distance(results)[-200:].max() < near, distance(results)[-200:].max()
+    half = np.sqrt(0.5)
+    upside_down = {"x": np.array([0.0, 0.0, 8.0]), "q": np.array([half, half, 0.0, 0.0])}
+    results = flown(SaturatedHybridControl(quad_params), HoverTraj(x0=np.array([0, 0, 8.0])), 12, upside_down, quad_params=quad_params)
+    assert distance(results)[-100:].max() < 0.1, distance(results)[-100:].max()
+
+
+def test_a_vehicle_that_cannot_be_certified_or_lacks_a_number_is_refused():
+    weak = dict(crazyflie, rotor_speed_max=1850)
+    with pytest.raises(ValueError, match="quad_params: not certified with the constants that follow from it: .*give a scenario"):
+        SaturatedHybridControl(weak)
+    with pytest.raises(ValueError, match="quad_params: 'tau_m' is missing"):
+        SaturatedHybridControl({key: value for key, value in crazyflie.items() if key != "tau_m"})
 
 
 def test_its_own_controllers_keys_and_shapes_are_ours():
@@ -72,8 +99,8 @@ def test_at_a_faster_simulator_the_command_is_held_between_ticks():
 
 
 def test_the_command_is_the_laws_through_the_boards_mixer():
-    scenario = sh.Scenario.built_in("hummingbird")
-    law, controller = sh.Law(scenario), SaturatedHybridControl(hummingbird)
+    controller = SaturatedHybridControl(hummingbird)
+    law = sh.Law(controller.scenario)
     random = np.random.default_rng(2)
     trajectory = CIRCLE
     for tick in range(200):
@@ -109,11 +136,12 @@ def test_a_new_flight_begins_reset_and_times_off_the_clock_are_refused():
         controller.update(0.02, state, flat)
 
 
-def test_another_vehicle_is_refused_by_what_differs():
+def test_another_vehicle_than_the_scenarios_is_refused_by_what_differs():
+    scenario = sh.Scenario.built_in("hummingbird")
     with pytest.raises(ValueError, match="hummingbird: vehicle.mass: 0.5, but RotorPy's vehicle has 0.03"):
-        SaturatedHybridControl(crazyflie)
+        SaturatedHybridControl(crazyflie, scenario)
     turned = dict(hummingbird, rotor_directions=-hummingbird["rotor_directions"])
     with pytest.raises(ValueError, match="rotors.spin"):
-        SaturatedHybridControl(turned)
+        SaturatedHybridControl(turned, scenario)
     with pytest.raises(ValueError, match="paper: rotors: the scenario has no such section"):
         SaturatedHybridControl(hummingbird, sh.Scenario.built_in("paper"))

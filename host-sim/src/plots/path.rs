@@ -192,6 +192,11 @@ impl View {
         self.stroke(drawing, flown.iter().map(|pose| pose.position), (Color::Blue, 2.2));
     }
 
+    /// Lines that stand in the world: a gate, an edge.
+    pub fn draw_things(&self, drawing: &mut Drawing, things: &[Vec<Vector3<f64>>]) {
+        things.iter().for_each(|thing| self.stroke(drawing, thing.iter().copied(), (Color::Axis, 4.0)));
+    }
+
     /// Two crossed arms with rotors, and the thrust axis.
     pub fn draw_vehicle(&self, drawing: &mut Drawing, pose: &Pose) {
         let at = |x: f64, y: f64, z: f64| pose.position + pose.attitude * (Vector3::new(x, y, z) * self.arm);

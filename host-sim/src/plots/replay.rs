@@ -8,6 +8,7 @@ use super::path::{Pose, View, poses};
 use crate::report::plot::Color;
 use crate::report::track::Track;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+use nalgebra::{UnitQuaternion, Vector3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
@@ -39,15 +40,15 @@ pub struct Stretch {
     pub speed: f64,
 }
 
-/// The track's vehicle in motion, as the bytes of a GIF.
+/// The track's vehicle in motion past `things`, lines in the world, as the bytes of a GIF.
 ///
 /// # Errors
 /// If the library refuses, which it does for no picture of this size.
-pub fn gif(track: &Track, stretch: Stretch) -> Result<Vec<u8>, EncodingError> {
+pub fn gif(track: &Track, things: &[Vec<Vector3<f64>>], stretch: Stretch) -> Result<Vec<u8>, EncodingError> {
     let poses = poses(track);
     let row = |time: f64| ((time / track.step).max(0.0) as usize).min(poses.len().saturating_sub(1));
     let shown = poses.get(row(stretch.from)..=row(stretch.to)).unwrap_or_default();
-    let view = View::new(shown, SIZE, ARM);
+    let view = view(shown, things);
     let mut bytes = Vec::new();
     let mut table = Table::new();
     let mut encoder = Encoder::new(&mut bytes, SIZE.0 as u16, SIZE.1 as u16, &table.colors())?;
@@ -57,7 +58,7 @@ pub fn gif(track: &Track, stretch: Stretch) -> Result<Vec<u8>, EncodingError> {
     for number in 0..=pictures {
         let time = stretch.from + (stretch.to - stretch.from) * number as f64 / pictures as f64;
         let flown = row(time).saturating_sub(row(stretch.from)).min(shown.len().saturating_sub(1));
-        let pixels = table.places(&picture(&view, shown, flown, number as f64 / pictures as f64));
+        let pixels = table.places(&picture(&view, things, shown, flown, number as f64 / pictures as f64));
         let mut frame = changed(&pixels, before.as_deref());
         frame.delay = if number == pictures { REST } else { DELAY };
         encoder.write_frame(&frame)?;
@@ -67,14 +68,40 @@ pub fn gif(track: &Track, stretch: Stretch) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-/// The flight up to one of the rows shown, and below it the share of the flight that is over.
-fn picture(view: &View, shown: &[Pose], row: usize, over: f64) -> Drawing {
+/// The last of the poses, the path up to it and `things`, in a picture that also holds `around`.
+#[must_use]
+pub fn still(flown: &[Pose], things: &[Vec<Vector3<f64>>], around: &[Vector3<f64>]) -> Drawing {
+    let held = [things.concat(), around.to_vec()];
     let mut drawing = Drawing::new(SIZE);
-    view.draw_floor(&mut drawing);
-    view.draw_paths(&mut drawing, shown.get(..=row).unwrap_or_default(), shown);
+    draw(&mut drawing, &view(flown, &held), things, flown, flown.len().saturating_sub(1));
+    drawing
+}
+
+/// A view of all poses and of all `things`.
+fn view(poses: &[Pose], things: &[Vec<Vector3<f64>>]) -> View {
+    let points = things.iter().flatten().map(|point| Pose {
+        position: *point,
+        asked: *point,
+        attitude: UnitQuaternion::identity(),
+    });
+    let held: Vec<Pose> = poses.iter().copied().chain(points).collect();
+    View::new(&held, SIZE, ARM)
+}
+
+/// `things` and the flight up to one of the rows shown.
+fn draw(drawing: &mut Drawing, view: &View, things: &[Vec<Vector3<f64>>], shown: &[Pose], row: usize) {
+    view.draw_floor(drawing);
+    view.draw_things(drawing, things);
+    view.draw_paths(drawing, shown.get(..=row).unwrap_or_default(), shown);
     if let Some(pose) = shown.get(row) {
-        view.draw_vehicle(&mut drawing, pose);
+        view.draw_vehicle(drawing, pose);
     }
+}
+
+/// The flight up to one of the rows shown, and below it the share of the flight that is over.
+fn picture(view: &View, things: &[Vec<Vector3<f64>>], shown: &[Pose], row: usize, over: f64) -> Drawing {
+    let mut drawing = Drawing::new(SIZE);
+    draw(&mut drawing, view, things, shown, row);
     let (left, right, y) = (20.0, f64::from(SIZE.0) - 20.0, f64::from(SIZE.1) - 12.0);
     drawing.stroke(vec![(left, y), (right, y)], Color::Grid, 3.0);
     drawing.stroke(vec![(left, y), (left + over * (right - left), y)], Color::Axis, 3.0);

@@ -19,7 +19,8 @@ An input that cannot be used is a `ValueError` that names the field and the reas
 `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a search that finds no gains) is a
 `RuntimeError`, and so is a call of what is at work for another thread. Long work lets other threads run, and Ctrl-C ends it.
 
-`saturated_hybrid.environment` has Gymnasium's environments, `saturated_hybrid.rotorpy` a controller for RotorPy.
+`saturated_hybrid.environment` has Gymnasium's environments, `saturated_hybrid.tasks` two that `gymnasium.make` knows,
+`saturated_hybrid.rotorpy` a controller for RotorPy.
 """
 
 from importlib.metadata import version as _version
@@ -46,10 +47,21 @@ from ._core import (
     certify,
     fly,
     merge,
+    picture,
     reference,
+    replay,
     state,
     tune,
 )
+
+try:
+    from gymnasium import register as _register
+except ImportError:
+    pass
+else:
+    for _task in ("Hover", "Gate"):
+        _where = f"saturated_hybrid.tasks:{_task}"
+        _register(f"saturated_hybrid/{_task}-v0", entry_point=_where, vector_entry_point=f"{_where}Rows")
 
 __version__ = _version("saturated-hybrid")
 
@@ -75,7 +87,9 @@ __all__ = [
     "certify",
     "fly",
     "merge",
+    "picture",
     "reference",
+    "replay",
     "state",
     "tune",
 ]

@@ -32,7 +32,9 @@ __all__ = [
     "certify",
     "fly",
     "merge",
+    "picture",
     "reference",
+    "replay",
     "state",
     "tune",
 ]
@@ -703,6 +705,45 @@ class VehicleRows:
     @property
     def ticks(self) -> NDArray[np.uint64]:
         """(rows,): periods since each was placed."""
+
+def picture(
+    states: ArrayLike,
+    references: ArrayLike,
+    *,
+    things: Sequence[ArrayLike] = ...,
+    around: ArrayLike | None = None,
+) -> NDArray[np.uint8]:
+    """A picture (420, 480, 3) of uint8, as a camera that stands far away: the path of `states` (n, 13) with its shadow on the
+    floor, that of `references` (n, 19), and the vehicle, larger than life, at the last of them.
+
+    Args:
+        states, references: of a flight, row by row.
+        things: lines that stand in the world, each (k, 3), m: a gate.
+        around: points (k, 3), m, that the picture holds as well, so that it stands still while the path grows.
+    """
+
+def replay(
+    scenario: Scenario,
+    path: str | PathLike[str],
+    states: ArrayLike,
+    references: ArrayLike,
+    wrenches: ArrayLike,
+    *,
+    things: Sequence[ArrayLike] = ...,
+    by_policy: ArrayLike | None = None,
+    speed: float = 1.0,
+) -> None:
+    """Writes a flight that something else flew into a file that any browser opens: a moving picture, `.gif`, or a page with
+    a replay and plots, `.html`.
+
+    Args:
+        scenario: its vehicle and its period.
+        path: what to write.
+        states, references, wrenches: of a flight, row by row: (n, 13), (n, 19), (n, 4).
+        things: lines that stand in the world, each (k, 3), m; a page has none.
+        by_policy: (n,), whether a policy flew; the page then shows it.
+        speed: seconds of flight in a second of the moving picture.
+    """
 
 def state(
     position: ArrayLike | None = None,

@@ -24,14 +24,15 @@ class SaturatedHybridControl:
 
     Args:
         quad_params: RotorPy's dictionary of the vehicle, e.g. `rotorpy.vehicles.hummingbird_params.quad_params`.
-        scenario: whose law flies; its vehicle and rotors must be those of `quad_params`. Left out: the built-in Hummingbird.
+        scenario: whose law flies; its vehicle and rotors must be those of `quad_params`. Left out: the extended law at 100 Hz
+            with the constants that follow from the vehicle's numbers, which must be certified.
 
     Raises:
-        ValueError: names what of the vehicle differs.
+        ValueError: names what of the vehicle differs or is missing, or why it is not certified.
     """
 
     def __init__(self, quad_params, scenario=None):
-        self.scenario = _core.Scenario.built_in("hummingbird") if scenario is None else scenario
+        self.scenario = certified_scenario(quad_params) if scenario is None else scenario
         check_vehicle(quad_params, self.scenario)
         self.period = self.scenario.period
         self.law = _core.Law(self.scenario)
@@ -106,6 +107,22 @@ class SaturatedHybridControl:
             "cmd_v": np.array(flat_output["x_dot"], float),
             "cmd_acc": acceleration,
         }
+
+
+def certified_scenario(quad_params):
+    """The scenario of RotorPy's vehicle under the extended law with its default constants, if that is certified."""
+    lacking = [name for name in READ if name not in quad_params]
+    if lacking:
+        raise ValueError(f"quad_params: {lacking[0]!r} is missing")
+    scenario = _core.Vehicle.from_rotorpy(quad_params, "rotorpy").scenario()
+    certificate = _core.certify(scenario)
+    if not certificate:
+        reasons = "; ".join(certificate.reasons)
+        raise ValueError(
+            f"quad_params: not certified with the constants that follow from it: {reasons}; "
+            "give a scenario: Vehicle.from_rotorpy(quad_params).scenario({...}), with other constants or another control.rate"
+        )
+    return scenario
 
 
 def check_vehicle(quad_params, scenario):

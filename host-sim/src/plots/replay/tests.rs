@@ -34,15 +34,17 @@ fn decoded(bytes: &[u8]) -> Vec<Vec<u8>> {
 #[test]
 fn the_gif_decodes_to_the_pictures_that_were_drawn() {
     let track = track();
-    let bytes = gif(&track, Stretch { from: 0.0, to: 2.0, speed: 1.0 }).unwrap();
+    let gate = [vec![Vector3::new(-1.0, 0.0, 1.0), Vector3::new(9.0, 0.0, 1.0)]];
+    let bytes = gif(&track, &gate, Stretch { from: 0.0, to: 2.0, speed: 1.0 }).unwrap();
     let pictures = decoded(&bytes);
     assert_eq!(pictures.len(), 41);
     assert!(pictures.windows(2).all(|pair| pair[0] != pair[1]), "the vehicle stands still");
     let poses = poses(&track);
     let shown = &poses[..=200];
-    let last = Table::new().places(&picture(&View::new(shown, SIZE, ARM), shown, 200, 1.0));
+    let last = Table::new().places(&picture(&view(shown, &gate), &gate, shown, 200, 1.0));
     assert_eq!(pictures.last(), Some(&last));
     assert!(!last.contains(&SAME), "a colour of the table stands for what has not changed");
+    assert_ne!(last, Table::new().places(&picture(&view(shown, &gate), &[], shown, 200, 1.0)), "the gate is not there");
     // The vehicle and both paths are there, in their own colours.
     for place in [0, 1, 3] {
         assert!(last.contains(&((1 + place) * STEPS as u8)), "{:?} is nowhere", COLORS[place as usize]);
@@ -52,7 +54,7 @@ fn the_gif_decodes_to_the_pictures_that_were_drawn() {
 #[test]
 fn a_moment_or_an_empty_track_is_one_still_picture() {
     for (track, from, to) in [(track(), 1.0, 1.0), (track(), 90.0, 91.0), (Track::default(), 0.0, 0.01)] {
-        let pictures = decoded(&gif(&track, Stretch { from, to, speed: 100.0 }).unwrap());
+        let pictures = decoded(&gif(&track, &[], Stretch { from, to, speed: 100.0 }).unwrap());
         assert_eq!(pictures.len(), 2);
     }
 }
