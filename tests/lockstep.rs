@@ -13,6 +13,7 @@ mod line;
 mod losses;
 mod motor_test;
 mod peripherals;
+mod policy;
 mod refusals;
 mod station;
 mod streams;

@@ -5,13 +5,14 @@ use super::line::Line;
 use super::station::Station;
 use super::world::{Dark, SimBattery, SimImu, SimMotors, SimWatchdog, World};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use firmware::configuration::Pilot;
 use firmware::control::Control;
 use firmware::hardware::Clock;
 use firmware::outputs::Outputs;
 use firmware::parameters::table::Name;
 use firmware::shared::{Report, Shared};
 use firmware::{boot, configuration, imu, link, status};
-use flight::{Mode, Pilot};
+use flight::Mode;
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
 use mavlink::dialects::common::MavResult;
@@ -46,7 +47,7 @@ impl Flight {
     }
 
     /// The same with what the firmware boots with.
-    pub fn with(boot: impl FnOnce(&Shared<CriticalSectionRawMutex>) -> (&'static mut Pilot<'static>, Outputs)) -> Self {
+    pub fn with(boot: impl FnOnce(&Shared<CriticalSectionRawMutex>) -> (&'static mut Pilot, Outputs)) -> Self {
         let pool = LocalPool::new();
         let spawner = pool.spawner();
         let clock = SimClock::default();

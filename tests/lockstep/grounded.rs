@@ -6,10 +6,10 @@ use controller_core::configuration::Configuration;
 use controller_core::governor::GovernorLimits;
 use controller_core::reference::ReferenceBounds;
 use estimation::estimator::{Estimator, EstimatorParameters, Settings};
-use firmware::configuration;
+use firmware::configuration::{self, Pilot};
 use firmware::hardware::MotorCommand;
 use firmware::outputs::Outputs;
-use flight::{FlightSettings, Memory, Mode, Pilot};
+use flight::{FlightSettings, Memory, Mode};
 use mavlink::dialects::common::MavResult;
 
 /// The embedded vehicle, with references that its torques are not enough for.
@@ -28,7 +28,14 @@ fn refused() -> (Flight, &'static str) {
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
     let (limits, flight_settings) = (GovernorLimits::default(), FlightSettings::DEFAULT);
-    let pilot = Box::leak(Box::new(Pilot::new(Err(&refused), &limits, &flight_settings, estimator, memory)));
+    let pilot = Box::leak(Box::new(Pilot::carrying(
+        Err(&refused),
+        &limits,
+        &flight_settings,
+        estimator,
+        memory,
+        configuration::policy(),
+    )));
     let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap(), 0.0).unwrap()));
     (flight, failed)
 }

@@ -111,6 +111,11 @@ impl Station {
         self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 3.0, 0.0]);
     }
 
+    /// Asks for the policy's flight: PX4's mode AUTO.EXTERNAL1.
+    pub fn fly_policy(&self) {
+        self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 4.0, 11.0, 0.0]);
+    }
+
     /// Asks for a take-off, m high.
     pub fn take_off(&self, height: f32) {
         self.send(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
