@@ -1,7 +1,7 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! `tick` holds the order; `answers` grants requests, `missions` flies a mission, `policies` lets a policy fly, `conditions` evaluates the rules'
-//! inputs.
+//! `tick` holds the order; `answers` grants requests, `missions` flies a mission, `policies` lets a policy fly,
+//! `conditions` evaluates the rules' inputs.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
