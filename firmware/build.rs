@@ -1,8 +1,8 @@
 //! Embeds the scenario that flies, and hands the linker the board's memory.
 //!
 //! `SCENARIO=file.toml cargo build -p firmware …` chooses the file, relative to the top of the repository. Without it
-//! an image for a board is built of a vehicle that does not exist, and never arms. `POLICY=file.toml` builds in a policy,
-//! a network as docs/shield.md has it. `BOOTLOADER=kept` leaves the first
+//! an image for a board is built of a vehicle that does not exist, and never arms. `POLICY=file.toml` builds in a
+//! policy, a network as docs/shield.md has it. `BOOTLOADER=kept` leaves the first
 //! flash to a board's own bootloader.
 
 #[path = "build/embed.rs"]

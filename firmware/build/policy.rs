@@ -1,5 +1,5 @@
-//! From a policy's file to Rust source: the network that the firmware carries, with all the digits that reading back bit
-//! for bit takes; or that it carries none.
+//! From a policy's file to Rust source: the network that the firmware carries, with all the digits that reading back
+//! bit for bit takes; or that it carries none.
 
 use scenario::policy::PolicyFile;
 

@@ -1,7 +1,7 @@
 //! The pilot: flight rules, governor, law and allocation in one synchronous tick that cannot fail.
 //!
-//! `tick` holds the order; `answers` grants requests, `missions` flies a mission, `conditions` evaluates the rules'
-//! inputs.
+//! `tick` holds the order; `answers` grants requests, `missions` flies a mission, `policies` lets a policy fly,
+//! `conditions` evaluates the rules' inputs.
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
@@ -10,10 +10,9 @@ use super::exchange::{Inputs, Output, PERIOD};
 use super::fall::Fall;
 use super::fence::Fence;
 use super::mission::Progress;
-use super::permission;
-use super::policy::{Aboard, Handed, NoPolicy, corners};
+use super::policy::{Aboard, Handed, NoPolicy};
 use super::reason::Reason;
-use super::refusal::{Grounded, Refusal};
+use super::refusal::Grounded;
 use super::request::Newest;
 use super::rules::{self, BRAKING_MAX, Conditions, LEVELLING_MAX, Mode, Transition};
 use super::settings::FlightSettings;
@@ -23,9 +22,7 @@ use super::trust::Trust;
 use super::watch::{Seen, Watch};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
-use controller_core::governor::{Following, GovernorLimits, Motion, Setpoint};
-use controller_core::reference::Reference;
-use core::mem;
+use controller_core::governor::{Following, GovernorLimits};
 use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
@@ -300,42 +297,6 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
         Done { output, flown: Some(flown), handed }
     }
-
-    /// Lets the policy fly, from here, to the newest setpoint's place.
-    fn let_fly(&mut self, now: u64) -> Result<(), Refusal> {
-        permission::to_fly_policy::<P>(self.mode, self.is_airborne())?;
-        if self.flies_policy {
-            // A client that repeats its request does not take the vehicle from the law.
-            self.policy.ask_again();
-            return Ok(());
-        }
-        let chain = self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
-        let Reference { position, heading, .. } = chain.reference();
-        let goal = self.newest.fresh(now).and_then(place).unwrap_or(*position);
-        let FlightSettings { fence_radius, fence_height, .. } = self.settings;
-        self.policy.begin(corners(&self.fence.home(), fence_radius, fence_height), &goal, heading)?;
-        self.mission = self.mission.paused();
-        self.flies_policy = true;
-        Ok(())
-    }
-
-    /// Flies on without the policy, if it flies: the governor starts where the vehicle is.
-    fn take_over(&mut self, estimate: &Estimate) {
-        if mem::take(&mut self.flies_policy)
-            && let (Ok(chain), Some(estimated)) = (&mut self.chain, &estimate.state)
-        {
-            // Out of its range it goes on from where it was.
-            let _ = chain.regain(&estimated.state);
-        }
-    }
-}
-
-/// The place that a setpoint names, if it does.
-fn place(setpoint: &Setpoint) -> Option<Vector3<f32>> {
-    match setpoint.motion {
-        Motion::Position(position) | Motion::PositionVelocityAcceleration { position, .. } => Some(position),
-        _ => None,
-    }
 }
 
 /// What a mode did in a tick.
@@ -355,6 +316,7 @@ impl Done {
 mod answers;
 mod conditions;
 mod missions;
+mod policies;
 #[cfg(test)]
 mod tests;
 mod tick;

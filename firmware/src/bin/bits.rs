@@ -1,6 +1,6 @@
-//! The paper's flight, a recovery, the estimate of it and the same behind a shield replayed on an emulated board, from the states in the files
-//! `states.f32` and `recovery.f32` of the emulator's working directory; prints the numbers that [`firmware::replay`]
-//! makes of them, a line each. Run by `.ci/emulated bits`.
+//! The paper's flight, a recovery, the estimate of it and the same behind a shield replayed on an emulated board, from
+//! the states in the files `states.f32` and `recovery.f32` of the emulator's working directory; prints the numbers that
+//! [`firmware::replay`] makes of them, a line each. Run by `.ci/emulated bits`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,6 +1,7 @@
 //! Which requests are granted.
 
-use super::{Pilot, place};
+use super::Pilot;
+use super::policies::place;
 use crate::bench::Bench;
 use crate::chain::Chain;
 use crate::estimate::Estimate;
