@@ -6,7 +6,7 @@
 //! | [`Reason::Silent`] | no demand for longer than `silence` | 0.1 s | ten ticks at 100 Hz: a policy that is late by more does not fly |
 //! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
 //! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT M_all / J), or about z faster than [`YAW`] W_max | | M_all stops such a turn within [`TILT`]; 1.15 Omega is the frame's own |
-//! | [`Reason::Speed`] | faster than `speed` | 10 m/s | drag is linear and the estimator is tested up to there |
+//! | [`Reason::Speed`] | faster than `speed` | 10 m/s | chosen; a shield's settings change it |
 //! | [`Reason::Stop`] | a place of the [`Prospect`] is outside the box | | the law would not stop inside any more |
 //! | [`Reason::Estimate`] | force or thrust scale at a level, or held, for longer than [`DOUBT`] | 1 s | the levels for stopping count on them |
 
