@@ -65,7 +65,9 @@ Proof.
     (e_1 t * (j_1 * n_1) + e_2 t * (j_2 * n_2) + e_3 t * (j_3 * n_3))).
   { auto_derive.
     - repeat split; try (eexists; eassumption); exact I.
-    - rewrite (is_derive_unique (fun x : R => e_1 x) t _ rates_1 : Derive (fun x : R => e_1 x) t = _), (is_derive_unique (fun x : R => e_2 x) t _ rates_2 : Derive (fun x : R => e_2 x) t = _), (is_derive_unique (fun x : R => e_3 x) t _ rates_3 : Derive (fun x : R => e_3 x) t = _).
+    - rewrite (is_derive_unique (fun x : R => e_1 x) t _ rates_1 : Derive (fun x : R => e_1 x) t = _),
+              (is_derive_unique (fun x : R => e_2 x) t _ rates_2 : Derive (fun x : R => e_2 x) t = _),
+              (is_derive_unique (fun x : R => e_3 x) t _ rates_3 : Derive (fun x : R => e_3 x) t = _).
       field. }
   assert (Hpull : is_derive (fun s => w * (1 + eta - distance eta (q_0 s) (q_3 s))) t
     (w / (2 * distance eta (q_0 t) (q_3 t)) *
@@ -73,12 +75,16 @@ Proof.
        + ((q_0 t + eta) * q_2 t - q_1 t * q_3 t) * e_2 t + eta * q_3 t * e_3 t))).
   { unfold distance in *. auto_derive.
     - repeat split; try (eexists; eassumption); try exact Hh; exact I.
-    - rewrite (is_derive_unique (fun x : R => q_0 x) t _ motion_0 : Derive (fun x : R => q_0 x) t = _), (is_derive_unique (fun x : R => q_3 x) t _ motion_3 : Derive (fun x : R => q_3 x) t = _). field. lra. }
+    - rewrite (is_derive_unique (fun x : R => q_0 x) t _ motion_0 : Derive (fun x : R => q_0 x) t = _),
+              (is_derive_unique (fun x : R => q_3 x) t _ motion_3 : Derive (fun x : R => q_3 x) t = _).
+      field. lra. }
   assert (Hinner : is_derive (fun s => q_1 s * q_1 s + q_2 s * q_2 s) t
     ((q_0 t * q_1 t + q_2 t * q_3 t) * e_1 t + (q_0 t * q_2 t - q_1 t * q_3 t) * e_2 t)).
   { auto_derive.
     - repeat split; try (eexists; eassumption); exact I.
-    - rewrite (is_derive_unique (fun x : R => q_1 x) t _ motion_1 : Derive (fun x : R => q_1 x) t = _), (is_derive_unique (fun x : R => q_2 x) t _ motion_2 : Derive (fun x : R => q_2 x) t = _). field. }
+    - rewrite (is_derive_unique (fun x : R => q_1 x) t _ motion_1 : Derive (fun x : R => q_1 x) t = _),
+              (is_derive_unique (fun x : R => q_2 x) t _ motion_2 : Derive (fun x : R => q_2 x) t = _).
+      field. }
   assert (Houter : is_derive (fun s => U_t (q_1 s * q_1 s + q_2 s * q_2 s)) t
     (scal ((q_0 t * q_1 t + q_2 t * q_3 t) * e_1 t + (q_0 t * q_2 t - q_1 t * q_3 t) * e_2 t) G)).
   { apply (is_derive_comp U_t (fun s => q_1 s * q_1 s + q_2 s * q_2 s)); assumption. }
