@@ -13,15 +13,18 @@
 //!
 //! Every sample reads both chip identities before it accepts their numbers: a bus stuck high or low would otherwise
 //! read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
-//! [`Fault`]; an accelerometer that does not leaves a sample without a force. After [`RESTART_AFTER`] faults in a row a
-//! device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a
-//! step between two samples, they do not.
+//! [`Fault`]; an accelerometer that does not leaves a sample without a force. After several faults in a row
+//! ([`PowerUp::judge`]) a device is powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the
+//! accelerometer's, a step between two samples, they do not.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Wake, Write};
-use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
+use crate::registers::{
+    ACCESS_WITHIN, POWER_TAKES, POWER_UP_WITHIN, PowerUp, RATE_PER_COUNT, READ, Registers, Step,
+    acceleration_per_count, counts, exchange,
+};
 use crate::spi;
 use estimation::imu::ImuParameters;
 use nalgebra::Vector3;
@@ -29,23 +32,11 @@ use nalgebra::Vector3;
 #[cfg(test)]
 mod tests;
 
-/// rad/s in one count: 2000 deg/s in 2^15 counts.
-pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
-
-/// m/s^2 in one count: 24 standard gravities in 2^15 counts.
-pub const ACCELERATION_PER_COUNT: f32 = 24.0 / 32768.0 * 9.806_65;
-
-/// Faults in a row after which a device is powered up anew.
-pub const RESTART_AFTER: u8 = 5;
+/// m/s^2 in one count, at 24 g.
+pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(24.0);
 
 /// Time between samples, us.
 const PERIOD: u64 = 1_000;
-
-/// The longest a register access or the reading of a sample may take, us; 11 bytes at 5 MHz take 18 us.
-const ACCESS_WITHIN: u64 = 500;
-
-/// The longest a power-up may take, us: 75 ms if every setting sticks at once.
-const POWER_UP_WITHIN: u64 = 150_000;
 
 /// How long an accelerometer that did not power up is left alone, us: on a bus that hangs, asking costs the gyroscope
 /// time.
@@ -108,25 +99,15 @@ const GYROSCOPE: Device = Device {
     ],
 };
 
-/// A device, how far its power-up is, and its faults in a row.
+/// A device, and how far its power-up is.
 struct Part {
     device: &'static Device,
     power_up: PowerUp,
-    faults: u8,
 }
 
 impl Part {
     fn new(device: &'static Device, time: u64) -> Self {
-        Self { device, power_up: PowerUp::new(device.power_up, time), faults: 0 }
-    }
-
-    /// Counts a measurement, and begins anew at `time` after too many faults.
-    fn judge<T>(&mut self, measured: Result<T, Fault>, time: u64) -> Result<T, Fault> {
-        self.faults = if measured.is_ok() { 0 } else { self.faults + 1 };
-        if self.faults >= RESTART_AFTER {
-            *self = Self::new(self.device, time);
-        }
-        measured
+        Self { device, power_up: PowerUp::new(device.power_up, time) }
     }
 }
 
@@ -237,7 +218,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
     async fn rates(&mut self) -> Result<Vector3<f32>, Fault> {
         let Self { devices: [_, spi], clock, gyroscope, .. } = self;
         let measured = Port { spi, clock, device: gyroscope.device }.measure().await;
-        gyroscope.judge(measured, clock.now() + POWER_TAKES)
+        gyroscope.power_up.judge(measured, clock.now() + POWER_TAKES)
     }
 
     /// The accelerations, in counts; none from an accelerometer that does not answer, which is powered up by a step
@@ -250,7 +231,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
         }
         let Self { devices: [spi, _], clock, accelerometer, .. } = self;
         let measured = Port { spi, clock, device: accelerometer.device }.measure().await;
-        accelerometer.judge(measured, clock.now() + LEFT_ALONE).ok()
+        accelerometer.power_up.judge(measured, clock.now() + LEFT_ALONE).ok()
     }
 }
 

@@ -15,13 +15,15 @@
 //! reader: omega_x = x - zx z / 512, zx being a signed number of 7 bits.
 //!
 //! Every sample reads the chip's identity. Every wait is bounded. What does not come in time is a [`Fault`]; after
-//! [`RESTART_AFTER`] in a row the next call powers the sensor up anew, which takes about 90 ms.
+//! several in a row ([`PowerUp::judge`]) the next call powers the sensor up anew, which takes about 90 ms.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
-use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
+use crate::registers::{
+    POWER_TAKES, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts, exchange, read_many,
+};
 use crate::spi;
 use estimation::imu::ImuParameters;
 
@@ -33,11 +35,8 @@ mod tests;
 /// `firmware/licences/BMI270_SensorAPI.txt`.
 pub const CONFIGURATION: &[u8; 328] = include_bytes!("bmi270/configuration.bin");
 
-/// rad/s in one count: 2000 deg/s in 2^15 counts.
-pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
-
-/// m/s^2 in one count: 16 standard gravities in 2^15 counts.
-pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
+/// m/s^2 in one count, at 16 g.
+pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 
 /// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
 /// filter of 190 Hz, which rises by 0.27 of the full scale from one sample to the next.
@@ -51,20 +50,11 @@ pub const PARAMETERS: ImuParameters = ImuParameters {
     late: 1_185,
 };
 
-/// Faults in a row after which the sensor is powered up anew.
-pub const RESTART_AFTER: u8 = 5;
-
 /// Time between samples, us.
 const PERIOD: u64 = 1_250;
 
-/// The longest an access may take, us; 14 bytes at 5 MHz take 22 us.
-const ACCESS_WITHIN: u64 = 500;
-
 /// The longest that writing the file may take, us; at 5 MHz it takes 530 us.
 const UPLOAD_WITHIN: u64 = 2_000;
-
-/// The longest a power-up may take, us.
-const POWER_UP_WITHIN: u64 = 150_000;
 
 const CHIP_ID: u8 = 0x00;
 const ID: u8 = 0x24;
@@ -108,19 +98,9 @@ struct Port<'a, D, C> {
     clock: &'a C,
 }
 
-impl<D: spi::Device, C: Clock> Port<'_, D, C> {
-    /// Reads `N` bytes, of which the first two mean nothing.
-    async fn read_many<const N: usize>(&mut self, register: u8) -> Result<[u8; N], Fault> {
-        let mut bytes = [0; N];
-        *bytes.first_mut().ok_or(Fault)? = READ | register;
-        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut bytes).await?;
-        Ok(bytes)
-    }
-}
-
 impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
     async fn read(&mut self, register: u8) -> Result<u8, Fault> {
-        let [_, _, value] = self.read_many(register).await?;
+        let [_, _, value] = read_many(self.spi, self.clock, register).await?;
         Ok(value)
     }
 
@@ -143,8 +123,6 @@ pub struct Bmi270<D, P, C> {
     pace: Pace<P>,
     mounting: &'static Mounting,
     power_up: PowerUp,
-    /// Faults in a row.
-    faults: u8,
     /// What the gyroscope's x feels of its z; none before it was read.
     cross_sensitivity: Option<f32>,
 }
@@ -154,7 +132,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
     pub fn new(spi: D, data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
         let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_TAKES);
         let pace = Pace::new(data_ready, PERIOD);
-        Self { spi, clock, pace, mounting, power_up, faults: 0, cross_sensitivity: None }
+        Self { spi, clock, pace, mounting, power_up, cross_sensitivity: None }
     }
 
     fn port(&mut self) -> Port<'_, D, C> {
@@ -166,16 +144,8 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
         if let Some(known) = self.cross_sensitivity {
             return Ok(known);
         }
-        let end = self.clock.now() + POWER_UP_WITHIN;
-        while !self.power_up.is_done(self.clock.now()) {
-            let due = self.power_up.due();
-            if due > end {
-                return Err(Fault);
-            }
-            self.clock.until(due).await;
-            let Self { spi, clock, power_up, .. } = self;
-            power_up.advance(&mut Port { spi, clock }, clock).await?;
-        }
+        let Self { spi, clock, power_up, .. } = self;
+        power_up.complete(&mut Port { spi, clock }, clock).await?;
         let bits = self.port().read(CROSS_SENSITIVITY).await?;
         // Seven bits, the highest of them the sign.
         let known = f32::from(((bits << 1) as i8) >> 1) / 512.0;
@@ -187,7 +157,8 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
         if self.port().read(CHIP_ID).await? != ID {
             return Err(Fault);
         }
-        let [_, _, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5] = self.port().read_many(DATA).await?;
+        let [_, _, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5] =
+            read_many(&mut self.spi, &self.clock, DATA).await?;
         let mut rates = counts([g0, g1, g2, g3, g4, g5]);
         rates.x -= cross_sensitivity * rates.z;
         let accelerations = counts([a0, a1, a2, a3, a4, a5]);
@@ -203,10 +174,9 @@ impl<D: spi::Device, P: DataReady, C: Clock> Imu for Bmi270<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let cross_sensitivity = self.ready().await?;
         let sample = self.measure(cross_sensitivity).await;
-        self.faults = if sample.is_ok() { 0 } else { self.faults + 1 };
-        if self.faults >= RESTART_AFTER {
-            self.power_up.restart(self.clock.now() + POWER_TAKES);
-            (self.faults, self.cross_sensitivity) = (0, None);
+        let sample = self.power_up.judge(sample, self.clock.now() + POWER_TAKES);
+        if !self.power_up.is_done(self.clock.now()) {
+            self.cross_sensitivity = None;
         }
         sample
     }

@@ -19,25 +19,25 @@
 //!
 //! Every sample reads the device's identity, and is refused if it is what a device holds that was reset: one that lost
 //! its supply for a moment identifies itself well and measures nothing. Every wait is bounded. What does not come in
-//! time is a [`Fault`]; after [`RESTART_AFTER`] in a row the next call powers the sensor up anew, which takes about 70
-//! ms.
+//! time is a [`Fault`]; after several in a row ([`PowerUp::judge`]) the next call powers the sensor up anew, which
+//! takes about 70 ms.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Write};
-use crate::registers::{POWER_TAKES, PowerUp, READ, Registers, Step, counts, exchange};
+use crate::registers::{
+    ACCESS_WITHIN, POWER_TAKES, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts, exchange,
+    read_many,
+};
 use crate::spi;
 use estimation::imu::ImuParameters;
 
 #[cfg(test)]
 mod tests;
 
-/// rad/s in one count: 2000 deg/s in 2^15 counts.
-pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
-
-/// m/s^2 in one count: 16 standard gravities in 2^15 counts.
-pub const ACCELERATION_PER_COUNT: f32 = 16.0 / 32768.0 * 9.806_65;
+/// m/s^2 in one count, at 16 g.
+pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 
 /// 1000 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
 /// filter of 249 Hz, 0.9 ms, and an eighth of a sample for what follows it. Where half a sine of a millisecond reaches
@@ -52,17 +52,8 @@ pub const PARAMETERS: ImuParameters = ImuParameters {
     late: 1_030,
 };
 
-/// Faults in a row after which the sensor is powered up anew.
-pub const RESTART_AFTER: u8 = 5;
-
 /// Time between samples, us.
 const PERIOD: u64 = 1_000;
-
-/// The longest an access may take, us; 13 bytes at 5 MHz take 21 us.
-const ACCESS_WITHIN: u64 = 500;
-
-/// The longest a power-up may take, us.
-const POWER_UP_WITHIN: u64 = 150_000;
 
 /// WHO_AM_I.
 const IDENTITY: u8 = 0x75;
@@ -160,19 +151,9 @@ struct Port<'a, D, C> {
     clock: &'a C,
 }
 
-impl<D: spi::Device, C: Clock> Port<'_, D, C> {
-    /// Reads `N` bytes, of which the first means nothing.
-    async fn read_many<const N: usize>(&mut self, register: u8) -> Result<[u8; N], Fault> {
-        let mut bytes = [0; N];
-        *bytes.first_mut().ok_or(Fault)? = READ | register;
-        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut bytes).await?;
-        Ok(bytes)
-    }
-}
-
 impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
     async fn read(&mut self, register: u8) -> Result<u8, Fault> {
-        let [_, value] = self.read_many(register).await?;
+        let [_, value] = read_many(self.spi, self.clock, register).await?;
         Ok(value)
     }
 
@@ -190,28 +171,18 @@ pub struct Icm42688<D, P, C> {
     mounting: &'static Mounting,
     model: Model,
     power_up: PowerUp,
-    /// Faults in a row.
-    faults: u8,
 }
 
 impl<D: spi::Device, P: DataReady, C: Clock> Icm42688<D, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up.
     pub fn new(model: Model, spi: D, data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
         let power_up = PowerUp::new(model.steps(), clock.now() + POWER_TAKES);
-        Self { spi, pace: Pace::new(data_ready, PERIOD), clock, mounting, model, power_up, faults: 0 }
+        Self { spi, pace: Pace::new(data_ready, PERIOD), clock, mounting, model, power_up }
     }
 
     async fn power_up(&mut self) -> Result<(), Fault> {
         let Self { spi, clock, power_up, .. } = self;
-        let end = clock.now() + POWER_UP_WITHIN;
-        while !power_up.is_done(clock.now()) {
-            if power_up.due() > end {
-                return Err(Fault);
-            }
-            clock.until(power_up.due()).await;
-            power_up.advance(&mut Port { spi, clock }, clock).await?;
-        }
-        Ok(())
+        power_up.complete(&mut Port { spi, clock }, clock).await
     }
 
     async fn measure(&mut self) -> Result<RawImu, Fault> {
@@ -220,7 +191,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Icm42688<D, P, C> {
         if port.read(IDENTITY).await? != self.model.identity() {
             return Err(Fault);
         }
-        let [_, data @ ..] = port.read_many::<13>(DATA).await?;
+        let [_, data @ ..] = read_many::<13>(port.spi, port.clock, DATA).await?;
         if NOTHING.iter().any(|nothing| data.as_chunks().0.iter().all(|counted| counted == nothing)) {
             return Err(Fault);
         }
@@ -238,12 +209,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Imu for Icm42688<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         self.power_up().await?;
         let sample = self.measure().await;
-        self.faults = if sample.is_ok() { 0 } else { self.faults + 1 };
-        if self.faults >= RESTART_AFTER {
-            self.power_up.restart(self.clock.now() + POWER_TAKES);
-            self.faults = 0;
-        }
-        sample
+        self.power_up.judge(sample, self.clock.now() + POWER_TAKES)
     }
 
     fn parameters(&self) -> ImuParameters {

@@ -3,7 +3,8 @@
 //! An [`exchange`] is bounded in time. A power-up is a table of [`Step`]s. [`PowerUp`] does one of them at a time, when
 //! its time has come, so that a task with other work meanwhile does it. A setting is written, read back a millisecond
 //! later, and written again if it did not stick, up to [`TRIES`] times: the BMI088's accelerometer is known to need
-//! that. Everything before a setting that failed for good is done again by the next attempt.
+//! that. Everything before a setting that failed for good is done again by the next attempt. After [`RESTART_AFTER`]
+//! faulty measurements in a row it is all done again.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault};
@@ -15,6 +16,18 @@ pub const READ: u8 = 0x80;
 
 /// How often a setting is written before it counts as refused.
 pub const TRIES: u8 = 8;
+
+/// Faults in a row after which a device is powered up anew.
+pub const RESTART_AFTER: u8 = 5;
+
+/// The longest a register access or the reading of a sample may take, us; 14 bytes at 5 MHz take 22 us.
+pub const ACCESS_WITHIN: u64 = 500;
+
+/// The longest a power-up may take, us.
+pub const POWER_UP_WITHIN: u64 = 150_000;
+
+/// rad/s in one count of a gyroscope: 2000 deg/s in 2^15 counts.
+pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
 
 /// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
 pub const POWER_TAKES: u64 = 1_000;
@@ -28,6 +41,27 @@ const WRITE_TAKES: u64 = 1_000;
 /// [`Fault`] if bus or chip select fail, or it takes longer.
 pub async fn exchange(device: &mut impl Device, clock: &impl Clock, limit: u64, bytes: &mut [u8]) -> Result<(), Fault> {
     within(clock, limit, device.exchange(bytes)).await?
+}
+
+/// Reads `N` bytes from `register` on, of which the first means nothing.
+///
+/// # Errors
+/// As [`exchange`]'s, within [`ACCESS_WITHIN`].
+pub async fn read_many<const N: usize>(
+    device: &mut impl Device,
+    clock: &impl Clock,
+    register: u8,
+) -> Result<[u8; N], Fault> {
+    let mut bytes = [0; N];
+    *bytes.first_mut().ok_or(Fault)? = READ | register;
+    exchange(device, clock, ACCESS_WITHIN, &mut bytes).await?;
+    Ok(bytes)
+}
+
+/// m/s^2 in one count of an accelerometer: so many standard gravities in 2^15 counts.
+#[must_use]
+pub const fn acceleration_per_count(gravities: f32) -> f32 {
+    gravities / 32768.0 * 9.806_65
 }
 
 /// Three signed 16-bit numbers, low byte first.
@@ -73,17 +107,47 @@ pub struct PowerUp {
     written: bool,
     tries: u8,
     not_before: u64,
+    /// Faulty measurements in a row.
+    faults: u8,
 }
 
 impl PowerUp {
     /// Begins at `time`, us.
     pub fn new(steps: &'static [Step], time: u64) -> Self {
-        Self { steps, next: 0, written: false, tries: 0, not_before: time }
+        Self { steps, next: 0, written: false, tries: 0, not_before: time, faults: 0 }
     }
 
     /// Begins anew at `time`, us.
     pub fn restart(&mut self, time: u64) {
         *self = Self::new(self.steps, time);
+    }
+
+    /// Counts a measurement, and begins anew at `time`, us, after too many faults.
+    ///
+    /// # Errors
+    /// The measurement's.
+    pub fn judge<T>(&mut self, measured: Result<T, Fault>, time: u64) -> Result<T, Fault> {
+        self.faults = if measured.is_ok() { 0 } else { self.faults + 1 };
+        if self.faults >= RESTART_AFTER {
+            self.restart(time);
+        }
+        measured
+    }
+
+    /// Does everything that is left, within [`POWER_UP_WITHIN`].
+    ///
+    /// # Errors
+    /// As [`Self::advance`]'s, or if it takes longer.
+    pub async fn complete(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
+        let end = clock.now() + POWER_UP_WITHIN;
+        while !self.is_done(clock.now()) {
+            if self.due() > end {
+                return Err(Fault);
+            }
+            clock.until(self.due()).await;
+            self.advance(device, clock).await?;
+        }
+        Ok(())
     }
 
     /// Whether the device measures: every step is done, and has had its time.

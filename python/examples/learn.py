@@ -86,20 +86,6 @@ class Network:
             lines += ["", "[[layers]]", f"weights = [\n{rows},\n]", "biases = [" + ", ".join(f"{each:.6g}" for each in bias) + "]"]
         return "\n".join(lines) + "\n"
 
-    @classmethod
-    def read(cls, path):
-        """From a file that `text` made."""
-        flat, scale = [], SCALE
-        for layer in tomllib.loads(pathlib.Path(path).read_text())["layers"]:
-            flat += [(np.array(layer["weights"]) / scale).ravel(), np.array(layer["biases"])]
-            scale = 1.0
-        return cls(np.concatenate(flat))
-
-    @classmethod
-    def untrained(cls, seed):
-        """Small weights, at random."""
-        return cls(np.random.default_rng(seed).normal(size=cls.count) * 0.1)
-
 
 class Spring:
     """What no learning is needed for: a spring to the target and a damper."""

@@ -246,7 +246,12 @@ impl Controller {
         let along = self.vehicle.mass * command.dot(&axis);
         let thrust = self.range.admitted(along, &torque, scale);
         if counts {
-            net.observe(&feedback.z_1, &feedback.z_2, limited.change.is_some() || thrust < along, self.period);
+            net.observe(
+                &feedback.errors.z_1,
+                &feedback.errors.z_2,
+                limited.change.is_some() || thrust < along,
+                self.period,
+            );
         }
 
         if let Some(changed) = self.changed {
@@ -267,10 +272,10 @@ impl Controller {
         memory.acted = self.actuators.advance(&mut memory.actuators);
 
         let diagnostics = Diagnostics {
-            position_error: feedback.position_error,
-            velocity_error: feedback.velocity_error,
-            z_1: feedback.z_1,
-            z_2: feedback.z_2,
+            position_error: feedback.errors.position,
+            velocity_error: feedback.errors.velocity,
+            z_1: feedback.errors.z_1,
+            z_2: feedback.errors.z_2,
             feedback: feedback.feedback,
             filtered: filters.command,
             intermediate: filters.intermediate,

@@ -62,27 +62,6 @@ impl Filters {
     }
 }
 
-/// The position law's command, with the quantities on the way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PositionFeedback {
-    /// p~, m.
-    pub position_error: Vector3<f32>,
-    /// v~, m/s.
-    pub velocity_error: Vector3<f32>,
-    /// z_1, m.
-    pub z_1: Vector3<f32>,
-    /// z_2, m/s.
-    pub z_2: Vector3<f32>,
-    /// ubar, m/s^2.
-    pub feedback: Vector3<f32>,
-    /// c', m/s^3.
-    pub rate: Vector3<f32>,
-    /// y at the next tick, m/s^2.
-    pub smoothed: Vector3<f32>,
-    /// The drive that the law wants, m/s^3.
-    pub drive: Vector3<f32>,
-}
-
 /// The errors that the feedback sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
@@ -94,6 +73,21 @@ pub struct Errors {
     pub z_1: Vector3<f32>,
     /// z_2, m/s.
     pub z_2: Vector3<f32>,
+}
+
+/// The position law's command, with the quantities on the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionFeedback {
+    /// What it answers.
+    pub errors: Errors,
+    /// ubar, m/s^2.
+    pub feedback: Vector3<f32>,
+    /// c', m/s^3.
+    pub rate: Vector3<f32>,
+    /// y at the next tick, m/s^2.
+    pub smoothed: Vector3<f32>,
+    /// The drive that the law wants, m/s^3.
+    pub drive: Vector3<f32>,
 }
 
 /// The greatest levels of feedback, whatever the envelope leaves, m/s^2.
@@ -248,12 +242,8 @@ impl PositionLaw {
     fn passed_on(&self, errors: &Errors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
         let Filters { intermediate: x, smoothed: y, .. } = filters;
         let smoothed = y + (feedback - y) * self.smoothing;
-        let Errors { position, velocity, z_1, z_2 } = *errors;
         PositionFeedback {
-            position_error: position,
-            velocity_error: velocity,
-            z_1,
-            z_2,
+            errors: *errors,
             feedback,
             rate: self.rate(filters),
             smoothed,

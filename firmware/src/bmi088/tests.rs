@@ -4,6 +4,7 @@ mod bench;
 
 use super::*;
 use crate::bench::{Jumping, Pin, X_LEFT, on_one_bus};
+use crate::registers::RESTART_AFTER;
 use bench::{Bench, Part, Registers, bench};
 use core::cell::Cell;
 use core::future::{Future, pending};

@@ -3,6 +3,7 @@
 use super::*;
 use crate::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
 use crate::bmi270;
+use crate::registers::{READ, RESTART_AFTER};
 use core::cell::{Cell, RefCell};
 use embassy_futures::block_on;
 use nalgebra::Vector3;

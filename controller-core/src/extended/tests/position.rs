@@ -131,13 +131,13 @@ fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
         flown(at(Vector3::new(4.0, -3.0, 2.0), Vector3::new(1.0, 2.0, -3.0)), d, 2_000, |now| {
             if let Some(before) = before.replace(*now) {
                 let h = 0.002;
-                let moved = (now.z_1 - before.z_1) / h;
+                let moved = (now.errors.z_1 - before.errors.z_1) / h;
                 // ubar is held for a tick, and x goes to where y will be: half a tick's way of y is ahead. Beside it,
                 // the square of a tick, and rounding of metres or m/s over one.
                 let ahead = (before.feedback - before.smoothed) * (0.5 * (1.0 - kept) / kept);
-                let expected = (before.z_2 + now.z_2) * 0.5 + ahead / k_d;
+                let expected = (before.errors.z_2 + now.errors.z_2) * 0.5 + ahead / k_d;
                 assert!((moved - expected).norm() < 5e-3, "{moved} {expected}");
-                let moved = (now.z_2 - before.z_2) / h;
+                let moved = (now.errors.z_2 - before.errors.z_2) / h;
                 let expected = before.feedback + d + ahead;
                 assert!((moved - expected).norm() < 1e-2 * (1.0 + expected.norm()), "{moved} {expected}");
             }
@@ -167,7 +167,7 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
         for (height, climb) in [(5.0, 0.0), (-5.0, 2.0), (0.3, -4.0), (-30.0, -10.0)] {
             let mut before = f64::INFINITY;
             flown(at(Vector3::new(0.0, 0.0, height), Vector3::new(0.0, 0.0, climb)), d, 10_000, |now| {
-                let (z_1, z_2) = (f64::from(now.z_1.z), f64::from(now.z_2.z));
+                let (z_1, z_2) = (f64::from(now.errors.z_1.z), f64::from(now.errors.z_2.z));
                 let down = z_1 > 0.0;
                 let level = if down { p.a_down - d.z } else { greatest - 9.81 + d.z };
                 let speed = if down { p.v_down } else { p.v_up };
@@ -186,7 +186,7 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
             let left = 0.95 * (greatest * greatest - lift * lift).sqrt();
             let level = p.a_across.min(0.95 * lift * p.tilt_max.tan()).min(left) - d.xy().norm();
             flown(at(Vector3::from(position), Vector3::from(velocity)), d, 10_000, |now| {
-                let (z_1, z_2) = (f64::from(now.z_1.xy().norm()), f64::from(now.z_2.xy().norm()));
+                let (z_1, z_2) = (f64::from(now.errors.z_1.xy().norm()), f64::from(now.errors.z_2.xy().norm()));
                 let constants = [p.k_p_across, p.k_v_across, p.v_across, level].map(f64::from);
                 let energy = 0.5 * z_2 * z_2 + potential(z_1, constants);
                 assert!(energy < before + 1e-3, "{energy} after {before}");

@@ -12,29 +12,16 @@ pub static SENSOR: InterruptExecutor = InterruptExecutor::new();
 /// Everything else but the card.
 pub static SERVICES: InterruptExecutor = InterruptExecutor::new();
 
-/// What the handler of control's interrupt does.
-///
-/// # Safety
-/// For that handler only.
-pub unsafe fn on_control_interrupt() {
-    // SAFETY: called from one handler, which runs no sooner than `start` has unmasked it.
-    unsafe { CONTROL.on_interrupt() }
+/// The handlers of a chip's interrupts, each with its executor.
+macro_rules! handlers {
+    ($($interrupt:ident => $executor:ident),* $(,)?) => {
+        $(
+            #[interrupt]
+            unsafe fn $interrupt() {
+                // SAFETY: called from one handler, which runs no sooner than `start` has unmasked it.
+                unsafe { executors::$executor.on_interrupt() }
+            }
+        )*
+    };
 }
-
-/// What the handler of the sensor's interrupt does.
-///
-/// # Safety
-/// For that handler only.
-pub unsafe fn on_sensor_interrupt() {
-    // SAFETY: as above.
-    unsafe { SENSOR.on_interrupt() }
-}
-
-/// What the handler of the services' interrupt does.
-///
-/// # Safety
-/// For that handler only.
-pub unsafe fn on_services_interrupt() {
-    // SAFETY: as above.
-    unsafe { SERVICES.on_interrupt() }
-}
+pub(crate) use handlers;

@@ -160,7 +160,7 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
         let mut stopped = false;
         for _ in 0..100_000 {
             let feedback = law.feedback(&state, &refuge, &filters, &force, greatest, &levels);
-            stopped |= feedback.z_2.norm() < 0.05;
+            stopped |= feedback.errors.z_2.norm() < 0.05;
             if stopped {
                 break;
             }

@@ -114,20 +114,4 @@ pub fn map_bootloader() {
     SYSCFG.memrm().modify(|w| w.set_mem_mode(1));
 }
 
-#[interrupt]
-unsafe fn UART4() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_control_interrupt() }
-}
-
-#[interrupt]
-unsafe fn UART5() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_sensor_interrupt() }
-}
-
-#[interrupt]
-unsafe fn CAN1_TX() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_services_interrupt() }
-}
+executors::handlers! { UART4 => CONTROL, UART5 => SENSOR, CAN1_TX => SERVICES }

@@ -179,20 +179,4 @@ pub fn has_usb_supply() -> bool {
     (0..POLLS).any(|_| control.read().usb33rdy())
 }
 
-#[interrupt]
-unsafe fn SAI1() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_control_interrupt() }
-}
-
-#[interrupt]
-unsafe fn SAI2() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_sensor_interrupt() }
-}
-
-#[interrupt]
-unsafe fn SAI3() {
-    // SAFETY: this is its handler.
-    unsafe { executors::on_services_interrupt() }
-}
+executors::handlers! { SAI1 => CONTROL, SAI2 => SENSOR, SAI3 => SERVICES }
