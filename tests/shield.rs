@@ -81,7 +81,7 @@ enum Kind {
     Swinging,
     /// Upside down.
     Upturned,
-    /// Numbers that are none, among others.
+    /// NaNs, among other numbers.
     NotFinite,
     /// Nothing more to say after a while.
     Silent,
@@ -295,7 +295,7 @@ fn a_calm_policy_flies_without_a_hand_over() {
 #[test]
 fn without_the_monitor_the_same_policies_crash() {
     for (name, air, kind, shown) in campaign(2, false) {
-        // A hover that nobody contradicts stays where it is.
+        // A hover without another demand stays where it is.
         let harmless = matches!(kind, Kind::BangBang | Kind::Random | Kind::NotFinite | Kind::Swinging);
         assert!(harmless || shown.crashed == shown.flights, "{name} {air:?} {kind:?} {shown:?}");
     }

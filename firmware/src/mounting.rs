@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 /// A rotation from a sensor's axes to the body's, x forward, y left, z up. A board has it as a constant, so that the
-/// compiler refuses what is none:
+/// compiler refuses any other matrix:
 ///
 /// ```
 /// # use firmware::mounting::Mounting;

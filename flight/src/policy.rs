@@ -55,7 +55,7 @@ pub trait Aboard {
     /// Whether there is a policy at all: without one the code for it falls away.
     const EXISTS: bool;
 
-    /// Takes note of what will be flown, with ticks `period` seconds apart.
+    /// Prepares for a configuration, with ticks `period` seconds apart.
     fn fit(&mut self, configuration: &Configuration, period: f32);
 
     /// Lets it fly, with the box from `low` to `high`, to a goal, from a heading.

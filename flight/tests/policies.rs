@@ -8,7 +8,7 @@ use flight::{Aboard, Guarded, Handed, Mode, Outcome, Reason, Refusal, Request};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// Flies to the goal, unless it is told to do harm.
+/// Flies to the goal, or does harm.
 #[derive(Clone, Default)]
 struct Pilot(Rc<Cell<Harm>>);
 

@@ -78,7 +78,7 @@ impl PolicyFile {
     }
 }
 
-/// Refuses keys that nobody knows.
+/// Refuses unknown keys.
 fn only(table: &Table, known: &[&str], path: &str) -> Result<(), String> {
     match table.keys().find(|key| !known.contains(&key.as_str())) {
         Some(key) => Err(format!("{path}{key}: unknown; there are {}", known.join(" and "))),

@@ -61,10 +61,7 @@ class Capture:
 
 def fly(client, capture):
     """Take-off, a square, landing; how far the vehicle really was from each corner, m."""
-    ready = lambda one: one.get_type() == "SYS_STATUS" and (
-        one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
-    )
-    client.until(ready, 20.0, "ready to arm")
+    client.wait_ready()
     east, north, up = capture.truth
     assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED
     assert not any("delay unknown" in text for text in client.texts), client.texts

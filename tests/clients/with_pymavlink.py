@@ -98,6 +98,13 @@ class Client:
         self.line.mav.command_int_send(1, 1, frame, number, 0, 0, *parameters, *[0.0] * (4 - len(parameters)), x, y, z)
         return self.reply("COMMAND_ACK", command=number).result
 
+    def wait_ready(self, patience=20.0):
+        """Waits until it may be armed."""
+        ready = lambda one: one.get_type() == "SYS_STATUS" and (
+            one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
+        )
+        self.until(ready, patience, "ready to arm")
+
     def fly_to(self, target, patience=15.0, within=0.15):
         self.setpoint = (m.MAV_FRAME_LOCAL_NED, POSITION, (*target, 0, 0, 0))
         self.until(lambda _: math.dist(self.position, target) < within, patience, f"there: {target}")
@@ -207,10 +214,7 @@ def tuning(client):
 
 def flight(client):
     """Arm, take off, a square of positions, body velocities, hold, land, disarmed."""
-    ready = lambda one: one.get_type() == "SYS_STATUS" and (
-        one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
-    )
-    client.until(ready, 10.0, "ready to arm")
+    client.wait_ready(10.0)
     assert client.command(m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 2.0) == DENIED, "not armed"
     home = client.position
     assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == ACCEPTED

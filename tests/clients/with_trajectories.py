@@ -106,10 +106,7 @@ def fly_mission(file):
         truth = Truth(port)
         client = with_pymavlink.Client(flown.offboard)
         client.line.wait_heartbeat(timeout=10)
-        ready = lambda one: one.get_type() == "SYS_STATUS" and (
-            one.onboard_control_sensors_health & m.MAV_SYS_STATUS_PREARM_CHECK
-        )
-        client.until(ready, 20.0, "ready to arm")
+        client.wait_ready()
         assert with_pymavlink.upload(client, items) == m.MAV_MISSION_ACCEPTED, client.texts
         assert client.command(m.MAV_CMD_COMPONENT_ARM_DISARM, 1) == m.MAV_RESULT_ACCEPTED
         assert client.command(m.MAV_CMD_MISSION_START) == m.MAV_RESULT_ACCEPTED

@@ -1,4 +1,4 @@
-//! A policy, from the ground station's mode to what it is told. The firmware's usual build carries none and refuses; CI
+//! A policy, from the ground station's mode to the station's texts. The firmware's usual build carries none and refuses; CI
 //! runs this once more with `POLICY=vehicles/policies/hover.toml`, and then the network flies.
 
 use super::flight::Flight;

@@ -2,8 +2,8 @@
 //!
 //! The certificate holds for |psi'| <= K_nu' and sqrt(psi''^2 + psi'^4) <= K_nu''. With |psi'| at most R, psi'' may be
 //! B = sqrt(K_nu''^2 - R^4). psi' goes to the wanted rate at once, as far as B and R let it. Towards an angle, with e
-//! the sine of what is left (one beyond a right angle), the wanted rate is the lesser of 3 e and sqrt(B e), along which
-//! braking takes half of B.
+//! the sine of the angle left (one beyond a right angle), the wanted rate is the lesser of 3 e and sqrt(B e), along
+//! which braking takes half of B.
 
 use crate::extended::demand::Demand;
 use crate::heading::{Heading, forwards};

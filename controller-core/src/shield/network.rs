@@ -180,7 +180,7 @@ impl<'a> NetworkPolicy<'a> {
 impl Policy for NetworkPolicy<'_> {
     fn act(&mut self, observation: &Observation) -> Option<Demand> {
         let outputs = self.network.outputs(&inputs(observation, &self.last));
-        // A number that is none would stay in its inputs for ever.
+        // A NaN would stay in its inputs for ever.
         let finite = outputs.iter().all(|output| output.is_finite());
         self.last = if finite { outputs } else { [0.0; OUTPUTS] };
         Some(self.network.demand(&outputs, &observation.heading))

@@ -213,14 +213,11 @@ impl Reader<'_> {
                 None => 0,
             },
         };
-        // A field may be called as a variable is: then what follows tells.
-        let is_field = self.known.get(&name).is_some()
-            && self.words.get(self.at + 1).is_some_and(|word| matches!(self.known.get(word), Some(Value::Record(_))));
-        if count == 0 && !is_field && !self.proofs.definitions.contains_key(&name) {
+        if count == 0 && !self.proofs.definitions.contains_key(&name) {
             return self.atom();
         }
         self.next();
-        let arguments: Vec<Value> = (0..if is_field { 1 } else { count }).map(|_| self.atom()).collect();
+        let arguments: Vec<Value> = (0..count).map(|_| self.atom()).collect();
         let numbers = || arguments.iter().map(Value::number).collect::<Vec<f64>>();
         match (name.as_str(), arguments.first()) {
             ("sqrt", _) => Value::Number(numbers()[0].sqrt()),

@@ -1,5 +1,5 @@
 //! The same recovery behind a shield, replayed: the law takes over from an upset start, and from half of the flight on
-//! a network flies. The same states, hence the same bits, of what the network puts out and of what is commanded.
+//! a network flies. The same states, hence the same bits of the network's outputs and of the commands.
 
 use super::{PERIOD_US, RECORD, digest, state};
 use crate::configuration;

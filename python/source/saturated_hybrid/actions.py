@@ -19,7 +19,7 @@ import numpy as np
 from . import _core
 from .textbook import Textbook
 
-# Of an acceleration: the share of gravity, and of what the rotors have above it; and a yaw rate, rad/s.
+# The share of gravity, and of the rotors' thrust above it, that an acceleration may take; and a yaw rate, rad/s.
 SHARE = 0.5
 SHARE_OF_CLIMB = 0.8
 YAW_RATE = 2.0

@@ -5,7 +5,7 @@
 
 `gymnasium.make(id, …)` is one vehicle, `gymnasium.make_vec(id, num_envs, …)` rows. Both take a `scenario`, whose reference is replaced
 (left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are accelerations forwards, to the left
-and up, and a yaw rate, in [-1, 1], unless told otherwise.
+and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
 
     observation (22,)   target - position, m | velocity, m/s | rotation, row by row | body rates, rad/s | the last action
                         the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network` sees
@@ -74,7 +74,7 @@ class _Hover:
         self._last = np.where(np.asarray(chosen)[..., None], 0.0, self._last)
 
     def moved(self, rows, actions):
-        """Keeps the last action; of what is no number nothing."""
+        """Keeps the last action; zeros in place of NaN."""
         self._last = np.where(np.isfinite(actions).all(axis=-1, keepdims=True), np.clip(actions, -1.0, 1.0), 0.0)
 
     def reward(self, rows, actions):

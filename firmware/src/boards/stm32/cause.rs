@@ -17,7 +17,7 @@ pub enum Cause {
     Unknown,
 }
 
-/// The chip's flags of what made it start. Every restart also pulls the reset pin, and power raises more of them still.
+/// The chip's flags for why it started. Every restart also pulls the reset pin, and power raises more of them still.
 #[derive(Debug, Clone, Copy)]
 pub struct Flags {
     /// The independent watchdog.
