@@ -1,12 +1,13 @@
-"""The law as a flight controller over MAVLink, for a simulator in lock-step: HIL_ACTUATOR_CONTROLS out, ODOMETRY and HIL_SENSOR in.
+"""The law as a flight controller over MAVLink, for a simulator in lock-step: HIL_ACTUATOR_CONTROLS out, ODOMETRY and
+HIL_SENSOR in.
 
     pip install ./python pymavlink
     host-sim hil --listen 127.0.0.1:5760 --duration 20 vehicles/study.toml &
     python python/examples/hil_controller.py 127.0.0.1:5760 vehicles/study.toml
 
-The simulator moves on by one control period when a command has come, and answers with where the vehicle is then. That is how PX4's
-simulators talk; ODOMETRY, with velocity, stands in for their GPS. Firmware on a board or in an emulator does the same on its serial port
-(docs/firmware.md). World and body are MAVLink's NED and FRD on the line.
+The simulator moves on by one control period when a command has come, and answers with where the vehicle is then. That
+is how PX4's simulators talk; ODOMETRY, with velocity, stands in for their GPS. Firmware on a board or in an emulator
+does the same on its serial port (docs/firmware.md). World and body are MAVLink's NED and FRD on the line.
 """
 
 import argparse
@@ -41,7 +42,8 @@ class Link:
         self.now, self.period = 1_000_000, round(1e6 * period)
 
     def exchange(self, commands):
-        """Sends commands from 0 to 1, and waits for the period's end: the state then, or None when the simulator has gone."""
+        """Sends commands from 0 to 1, and waits for the period's end: the state then, or None when the simulator has
+        gone."""
         armed = m.MAV_MODE_FLAG_SAFETY_ARMED if max(commands) > 0.0 else 0
         self.line.mav.hil_actuator_controls_send(self.now, [*commands, *[0.0] * (16 - len(commands))], armed, 0)
         state, self.now = None, self.now + self.period

@@ -3,13 +3,14 @@
     python python/examples/learn.py hover --out learnt
     python python/examples/learn.py gate --out learnt --start learnt/hover.toml
 
-It writes the weights that were learnt, the learning curve, and a replay, and flies a thousand episodes each of the policy as it starts, as it is
-learnt, and a malicious one, with and without the shield. The wheel and numpy are enough; with matplotlib it draws the curve as well.
+It writes the weights that were learnt, the learning curve, and a replay, and flies a thousand episodes each of the
+policy as it starts, as it is learnt, and a malicious one, with and without the shield. The wheel and numpy are enough;
+with matplotlib it draws the curve as well.
 
-The policy is a small tanh network, and evolution strategies train it: a generation flies every candidate through the same
-episodes and moves the weights towards what earned more (Salimans et al., Evolution strategies as a scalable alternative to
-reinforcement learning, 2017). An action is an acceleration and a yaw rate, scaled. What becomes of it is the shield's to fly, whose
-limits are proven, or a textbook attitude controller's. docs/learning.md has the figures.
+The policy is a small tanh network, and evolution strategies train it: a generation flies every candidate through the
+same episodes and moves the weights towards what earned more (Salimans et al., Evolution strategies as a scalable
+alternative to reinforcement learning, 2017). An action is an acceleration and a yaw rate, scaled. What becomes of it is
+the shield's to fly, whose limits are proven, or a textbook attitude controller's. docs/learning.md has the figures.
 """
 
 import argparse
@@ -77,13 +78,21 @@ class Network:
         return cls(np.random.default_rng(seed).normal(size=cls.count) * 0.1)
 
     def text(self, task, scale):
-        """A policy file, as boards and `saturated_hybrid.Network` read it: what makes the observation's numbers small is part of the first
-        matrix; an output of one demands `scale`."""
-        lines = [f"# Learnt by python/examples/learn.py {task}.", f"scale = [{', '.join(f'{each:.6g}' for each in scale)}]"]
+        """A policy file, as boards and `saturated_hybrid.Network` read it: what makes the observation's numbers small
+        is part of the first matrix; an output of one demands `scale`."""
+        lines = [
+            f"# Learnt by python/examples/learn.py {task}.",
+            f"scale = [{', '.join(f'{each:.6g}' for each in scale)}]",
+        ]
         for number, (matrix, bias) in enumerate(self.layers()):
             matrix = matrix * SCALE if number == 0 else matrix
             rows = ",\n".join("    [" + ", ".join(f"{each:.6g}" for each in row) + "]" for row in matrix)
-            lines += ["", "[[layers]]", f"weights = [\n{rows},\n]", "biases = [" + ", ".join(f"{each:.6g}" for each in bias) + "]"]
+            lines += [
+                "",
+                "[[layers]]",
+                f"weights = [\n{rows},\n]",
+                "biases = [" + ", ".join(f"{each:.6g}" for each in bias) + "]",
+            ]
         return "\n".join(lines) + "\n"
 
 
@@ -92,12 +101,14 @@ class Spring:
 
     def act(self, observations):
         """Actions (rows, 4)."""
-        return np.concatenate([0.8 * observations[:, :3] - 0.6 * observations[:, 3:6], np.zeros_like(observations[:, :1])], axis=1)
+        return np.concatenate(
+            [0.8 * observations[:, :3] - 0.6 * observations[:, 3:6], np.zeros_like(observations[:, :1])], axis=1
+        )
 
 
 class Malicious:
-    """A fifth of the rows each: noise, full deflections that change each third of a second, full speed downwards and to a side, a fast
-    oscillation, and no numbers at all."""
+    """A fifth of the rows each: noise, full deflections that change each third of a second, full speed downwards and to
+    a side, a fast oscillation, and no numbers at all."""
 
     def __init__(self, rows, seed):
         self.random, self.rows, self.tick = np.random.default_rng(seed), rows, 0
@@ -125,7 +136,8 @@ class Flights:
         self.ticks = self.environment.scenario.ticks
 
     def fly(self, act, seeds):
-        """One episode of every row; `act` makes actions of observations. What they earned, and what happened, (rows,) each."""
+        """One episode of every row; `act` makes actions of observations. What they earned, and what happened, (rows,)
+        each."""
         environment = self.environment
         observations, _ = environment.reset(seed=seeds)
         rows = environment.num_envs
@@ -146,12 +158,20 @@ class Flights:
             if not alive.any():
                 break
         lost = ~alive
-        return {"earned": earned, "flown": flown, "clipped": clipped, "by_policy": by_policy, "crashed": crashed > 0, "lost": lost, "out": out}
+        return {
+            "earned": earned,
+            "flown": flown,
+            "clipped": clipped,
+            "by_policy": by_policy,
+            "crashed": crashed > 0,
+            "lost": lost,
+            "out": out,
+        }
 
 
 def learn(task, shield, generations, start, seed, fine=1.0, report=print):
-    """The network that was learnt, and its learning curve: steps flown, what the network earns in the same EXAMINED episodes each time, and
-    episodes lost so far."""
+    """The network that was learnt, and its learning curve: steps flown, what the network earns in the same EXAMINED
+    episodes each time, and episodes lost so far."""
     candidates, spreading = 2 * PAIRS, fine * NOISE
     flights = Flights(task, EXAMINED + candidates * EPISODES, shield, **PATIENCE)
     random = np.random.default_rng(seed)
@@ -181,13 +201,26 @@ def learn(task, shield, generations, start, seed, fine=1.0, report=print):
         weights += fall * fine * STEP * (momentum / share[0]) / (np.sqrt(square / share[1]) + 1e-8)
         if generation % 10 == 9 or generation == 0:
             took = time.monotonic() - started
-            report(f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, {lost} episodes lost, {took:.0f} s")
+            report(
+                f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, {lost} episodes lost, {took:.0f} s"
+            )
     return Network(weights), np.array(curve)
 
 
 def judge(task, policies, episodes, report=print):
-    """Flies episodes of every policy with and without the shield. Rows of the table that it reports: names, and numbers."""
-    head = ("policy", "shield", "earned", "crashed", "lost", "left the box", "farthest out, m", "beyond the rotors", "policy flew")
+    """Flies episodes of every policy with and without the shield. Rows of the table that it reports: names, and
+    numbers."""
+    head = (
+        "policy",
+        "shield",
+        "earned",
+        "crashed",
+        "lost",
+        "left the box",
+        "farthest out, m",
+        "beyond the rotors",
+        "policy flew",
+    )
     table = []
     report("| " + " | ".join(head) + " |")
     report("|" + "---|" * len(head))
@@ -196,7 +229,9 @@ def judge(task, policies, episodes, report=print):
             flights = Flights(task, episodes, shield)
             act = policy(episodes).act
             # Without the shield what is no number is taken for zero: it would stop the simulation.
-            seen = flights.fly(act if shield else lambda observations: np.nan_to_num(act(observations)), list(range(episodes)))
+            seen = flights.fly(
+                act if shield else lambda observations: np.nan_to_num(act(observations)), list(range(episodes))
+            )
             flown = seen["flown"].sum()
             row = {
                 "earned": seen["earned"].mean(),
@@ -253,7 +288,9 @@ def main(given=None):
     parser.add_argument("--out", default="learnt", help="directory for what comes out")
     parser.add_argument("--generations", type=int, default=100)
     parser.add_argument("--episodes", type=int, default=1000, help="of each policy in the table")
-    parser.add_argument("--start", help="weights to begin with, a file of an earlier run; left out: small ones, at random")
+    parser.add_argument(
+        "--start", help="weights to begin with, a file of an earlier run; left out: small ones, at random"
+    )
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args(given)
     out = pathlib.Path(arguments.out)
@@ -265,7 +302,9 @@ def main(given=None):
         print(name)
         networks[shield], curves[name] = learn(task, shield, arguments.generations, start, arguments.seed, fine)
         header = "steps,earned,lost"
-        np.savetxt(out / f"{task}-{name.split()[0]}.csv", curves[name], delimiter=",", header=header, comments="", fmt="%.6g")
+        np.savetxt(
+            out / f"{task}-{name.split()[0]}.csv", curves[name], delimiter=",", header=header, comments="", fmt="%.6g"
+        )
     (out / f"{task}.toml").write_text(networks[True].text(task, kinds(TASKS[task](None, 1).scenario)["forward"].high))
     replay(task, networks[True], out / f"{task}.gif")
     policies = {

@@ -3,9 +3,10 @@
     pip install ./python mujoco
     python python/examples/mujoco_flight.py vehicles/published/x500.toml
 
-The model is written from the scenario's numbers: one free body, a motor at the site of each rotor. MuJoCo moves the body; the law sees
-its state once a control period, and the mixer that boards fly makes rotor thrusts of its wrench. Rotor speeds lag here as they do in
-`sh.fly`. There is no air. What is left between the two flights is how they integrate.
+The model is written from the scenario's numbers: one free body, a motor at the site of each rotor. MuJoCo moves the
+body; the law sees its state once a control period, and the mixer that boards fly makes rotor thrusts of its wrench.
+Rotor speeds lag here as they do in `sh.fly`. There is no air. What is left between the two flights is how they
+integrate.
 """
 
 import argparse

@@ -2,7 +2,8 @@
 
     python python/examples/steps_per_second.py
 
-A step is one control period of 10 ms of one vehicle: its simulation, and everything that turns an action into rotor commands.
+A step is one control period of 10 ms of one vehicle: its simulation, and everything that turns an action into rotor
+commands.
 """
 
 import time

@@ -74,7 +74,22 @@ class Vehicle:
         # East, north, up to north, east, down; a yaw from east, counter-clockwise, to one from north, clockwise.
         yaw = math.remainder(math.pi / 2 - math.radians(row[10]), math.tau)
         self.line.mav.set_position_target_local_ned_send(
-            round(1e3 * (when - self.began)), 1, 1, m.MAV_FRAME_LOCAL_NED, USED, y, x, -z, vy, vx, -vz, ay, ax, -az, yaw, 0
+            round(1e3 * (when - self.began)),
+            1,
+            1,
+            m.MAV_FRAME_LOCAL_NED,
+            USED,
+            y,
+            x,
+            -z,
+            vy,
+            vx,
+            -vz,
+            ay,
+            ax,
+            -az,
+            yaw,
+            0,
         )
 
 

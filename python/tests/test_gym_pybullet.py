@@ -1,8 +1,9 @@
-"""The equations that gym-pybullet-drones publishes for its explicit dynamics (`Physics.DYN`, `BaseAviary._dynamics`), flown by the law.
+"""The equations that gym-pybullet-drones publishes for its explicit dynamics (`Physics.DYN`, `BaseAviary._dynamics`),
+flown by the law.
 
-The package itself is not on PyPI. Its model of the Crazyflie `cf2x`: rotors follow their commands at once, z's weight is `M g`, and
-the step is a semi-implicit Euler's: velocities first, then position and attitude with the new ones. Its own rotors' order: front left,
-back left, back right, front right.
+The package itself is not on PyPI. Its model of the Crazyflie `cf2x`: rotors follow their commands at once, z's weight
+is `M g`, and the step is a semi-implicit Euler's: velocities first, then position and attitude with the new ones. Its
+own rotors' order: front left, back left, back right, front right.
 """
 
 import numpy as np
@@ -16,7 +17,8 @@ RPM = 60.0 / (2.0 * np.pi)
 
 
 def cf2x():
-    """The published file's vehicle with the rotors where the explicit dynamics have them; a circle, from a roll of 90 degrees."""
+    """The published file's vehicle with the rotors where the explicit dynamics have them; a circle, from a roll of 90
+    degrees."""
     side = ARM / np.sqrt(2.0)
     return sh.Scenario.load(TOP / "vehicles" / "published" / "cf2x-pybullet.toml").edited(
         {
@@ -39,7 +41,9 @@ def flown(scenario, frequency):
     attitude, law, mixer, path = scenario.initial[6:10].copy(), sh.Law(scenario), sh.Allocation(scenario), []
     for reference in scenario.reference(np.arange(scenario.ticks) * scenario.period):
         path.append(position.copy())
-        thrusts, clipped = mixer.thrusts(law.for_rotors(law.step(sh.state(position, velocity, attitude, rates), reference)))
+        thrusts, clipped = mixer.thrusts(
+            law.for_rotors(law.step(sh.state(position, velocity, attitude, rates), reference))
+        )
         assert not clipped
         rpm = np.asarray(mixer.speeds(thrusts), float) * RPM
         for _ in range(round(frequency * scenario.period)):
@@ -60,7 +64,14 @@ def turned(attitude, rotation):
     angle = np.linalg.norm(rotation)
     (w, x, y, z), axis = attitude, rotation / max(angle, 1e-12)
     c, (a, b, d) = np.cos(angle / 2), np.sin(angle / 2) * axis
-    return np.array([w * c - x * a - y * b - z * d, w * a + x * c + y * d - z * b, w * b - x * d + y * c + z * a, w * d + x * b - y * a + z * c])
+    return np.array(
+        [
+            w * c - x * a - y * b - z * d,
+            w * a + x * c + y * d - z * b,
+            w * b - x * d + y * c + z * a,
+            w * d + x * b - y * a + z * c,
+        ]
+    )
 
 
 def test_the_numbers_are_the_published_vehicles():
@@ -82,4 +93,6 @@ def test_the_law_flies_their_equations_nearer_to_ours_the_finer_they_step():
         assert off.max() > 0.05 and off[-200:].max() < 0.005, off[-200:].max()
     print({frequency: f"{distance:.2g} m" for frequency, distance in apart.items()})
     assert apart[500] < 0.02 and apart[8000] < 0.0012
-    assert apart[2000] / apart[500] == pytest.approx(0.25, abs=0.05) and apart[8000] / apart[2000] == pytest.approx(0.25, abs=0.05)
+    assert apart[2000] / apart[500] == pytest.approx(0.25, abs=0.05) and apart[8000] / apart[2000] == pytest.approx(
+        0.25, abs=0.05
+    )

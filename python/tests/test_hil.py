@@ -1,4 +1,5 @@
-"""`host-sim hil` is a simulator in lock-step over MAVLink; the wheel's law, with pymavlink, is the flight controller."""
+"""`host-sim hil` is a simulator in lock-step over MAVLink; the wheel's law, with pymavlink, is the flight
+controller."""
 
 import os
 import pathlib

@@ -14,7 +14,8 @@ LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
 
 @pytest.fixture(scope="module")
 def learnt(tmp_path_factory):
-    """Sixteen generations with the shield and sixteen without, which then has hardly begun to learn; and a short table."""
+    """Sixteen generations with the shield and sixteen without, which then has hardly begun to learn; and a short
+    table."""
     out = tmp_path_factory.mktemp("learnt")
     curves, table = LEARN["main"](["hover", "--out", str(out), "--generations", "16", "--episodes", "50"])
     return out, curves, table

@@ -11,7 +11,9 @@ from conftest import TOP
 EXAMPLE = runpy.run_path(str(TOP / "python" / "examples" / "mujoco_flight.py"))
 
 
-FILES = [f"vehicles/published/{name}.toml" for name in ("cf2x-pybullet", "x500", "firefly")] + ["vehicles/hummingbird-paper.toml"]
+FILES = [f"vehicles/published/{name}.toml" for name in ("cf2x-pybullet", "x500", "firefly")] + [
+    "vehicles/hummingbird-paper.toml"
+]
 
 
 @pytest.mark.parametrize("file", FILES)

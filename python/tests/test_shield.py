@@ -128,9 +128,16 @@ def test_rows_of_shields_are_shields():
     states[:, 6:10] /= np.linalg.norm(states[:, 6:10], axis=1, keepdims=True)
     for tick in range(20):
         states[:, :3] += 0.01 * states[:, 3:6]
-        demands = None if tick == 15 else random.normal(size=(300, 4)) if tick < 10 else np.c_[states[:, 6:10], np.full(300, 5.0)]
+        demands = (
+            None
+            if tick == 15
+            else random.normal(size=(300, 4))
+            if tick < 10
+            else np.c_[states[:, 6:10], np.full(300, 5.0)]
+        )
         one_by_one = [
-            shield.step(state, None if demands is None else demands[number]) for number, (shield, state) in enumerate(zip(shields, states))
+            shield.step(state, None if demands is None else demands[number])
+            for number, (shield, state) in enumerate(zip(shields, states))
         ]
         assert np.array_equal(rows.step(states, demands), one_by_one)
         assert rows.reasons == [shield.reason for shield in shields]
@@ -163,15 +170,26 @@ def test_a_state_that_cannot_be_used_changes_nothing():
 @pytest.mark.parametrize(
     "call, said",
     [
-        (lambda: sh.Shield(sh.Scenario.built_in("paper"), **BOX), 'control.law: must be "extended": the paper\'s law carries no policy'),
+        (
+            lambda: sh.Shield(sh.Scenario.built_in("paper"), **BOX),
+            'control.law: must be "extended": the paper\'s law carries no policy',
+        ),
         (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1, 1, 0.5]), "shield.high - shield.low: must be at least 1"),
         (lambda: sh.Shield(SCENARIO, low=[0, 0, np.nan], high=[1, 1, 1]), "shield.low: must be a finite number"),
         (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1e6, 1, 1]), "shield.high: must be at most 100000"),
         (lambda: sh.Shield(SCENARIO, **BOX, silence=-1), "shield.silence: must be greater than zero"),
-        (lambda: sh.Shield(SCENARIO, **BOX, hand_overs=0), "hand_overs: must be a whole number from 1 to 4294967295, found 0"),
-        (lambda: sh.Shield(SCENARIO, **BOX).step(sh.state(), [1, 2, 3]), r"demand: must have shape \(4,\) or \(5,\), found \(3,\)"),
-        (lambda: sh.ShieldRows(SCENARIO, 2, **BOX).step([sh.state()] * 2, [HOVER]),
-         r"demands: must have shape \(2, 4\) or \(2, 5\), found \(1, 4\)"),
+        (
+            lambda: sh.Shield(SCENARIO, **BOX, hand_overs=0),
+            "hand_overs: must be a whole number from 1 to 4294967295, found 0",
+        ),
+        (
+            lambda: sh.Shield(SCENARIO, **BOX).step(sh.state(), [1, 2, 3]),
+            r"demand: must have shape \(4,\) or \(5,\), found \(3,\)",
+        ),
+        (
+            lambda: sh.ShieldRows(SCENARIO, 2, **BOX).step([sh.state()] * 2, [HOVER]),
+            r"demands: must have shape \(2, 4\) or \(2, 5\), found \(1, 4\)",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_refused_by_name(call, said):
@@ -190,10 +208,14 @@ def test_a_network_flies_to_its_goal_and_is_what_numpy_makes_of_its_file():
         states = vehicles.measured
         observations = network.observe(states, goals, headings, outputs)
         outputs = network.act(observations)
-        by_hand = np.tanh(observations.astype(float) @ np.array(file["layers"][0]["weights"]).T + file["layers"][0]["biases"])
+        by_hand = np.tanh(
+            observations.astype(float) @ np.array(file["layers"][0]["weights"]).T + file["layers"][0]["biases"]
+        )
         np.testing.assert_allclose(outputs, by_hand, atol=1e-6)
         demands = network.demands(outputs, headings)
-        np.testing.assert_allclose(np.hypot(demands[:, 0], demands[:, 1]), 4 * np.hypot(outputs[:, 0], outputs[:, 1]), rtol=1e-5)
+        np.testing.assert_allclose(
+            np.hypot(demands[:, 0], demands[:, 1]), 4 * np.hypot(outputs[:, 0], outputs[:, 1]), rtol=1e-5
+        )
         wrenches = shields.step(states, demands)
         clipped, _ = vehicles.step(shields.for_rotors(wrenches))
         assert shields.by_policy.all() and not clipped.any()
@@ -206,7 +228,10 @@ def test_a_network_flies_to_its_goal_and_is_what_numpy_makes_of_its_file():
     [
         (lambda: sh.Network.parse("scale = [1, 1, 1, 1]"), r"policy: layers: missing; write \[\[layers\]\]"),
         (lambda: sh.Network.read("nowhere.toml"), "nowhere.toml: "),
-        (lambda: sh.Network.observe([sh.state()], [[0, 0, 0]], [[2, 0]], [[0] * 4]), "row 0: headings: must be a unit vector"),
+        (
+            lambda: sh.Network.observe([sh.state()], [[0, 0, 0]], [[2, 0]], [[0] * 4]),
+            "row 0: headings: must be a unit vector",
+        ),
     ],
 )
 def test_a_network_that_makes_no_sense_is_refused_by_name(call, said):

@@ -99,7 +99,9 @@ def test_an_answer_of_another_shape_is_refused_by_name():
 @pytest.mark.parametrize("action", ["wrench", "acceleration", "forward", "attitude"])
 @pytest.mark.parametrize("name", ["hummingbird", "paper"])
 def test_zero_of_a_scaled_action_hovers_and_its_ends_are_the_bounds(action, name):
-    scenario = scenario_of(sh.Scenario.built_in(name).edited({"drag": None} if name == "hummingbird" else {}), [0.0, 0.0, 1.5])
+    scenario = scenario_of(
+        sh.Scenario.built_in(name).edited({"drag": None} if name == "hummingbird" else {}), [0.0, 0.0, 1.5]
+    )
     scaled = VectorEnvironment(scenario, 2, start="scenario", action=action, scaled=True)
     plain = VectorEnvironment(scenario, 2, start="scenario", action=action)
     assert np.all(scaled.action_space.low == -1.0) and np.all(scaled.action_space.high == 1.0)
@@ -164,7 +166,9 @@ def test_rows_are_what_gymnasiums_own_vectors_make_of_single_ones(name):
         seen = [environment.reset(seed=6)[0]]
         for each in actions:
             observations, rewards, terminated, truncated, _ = environment.step(each)
-            seen.append(np.concatenate([observations, rewards[:, None], terminated[:, None], truncated[:, None]], axis=1))
+            seen.append(
+                np.concatenate([observations, rewards[:, None], terminated[:, None], truncated[:, None]], axis=1)
+            )
         environment.close()
         return np.array(seen[1:]), seen[0]
 
@@ -228,13 +232,18 @@ def test_an_episode_is_written_as_a_moving_picture_and_as_a_page(tmp_path):
         (lambda: environment.replay(tmp_path / "flight.gif", speed=0.0), "speed: must be from 0.05 to 100, found 0"),
         (lambda: sh.picture(np.zeros((0, 13)), np.zeros((0, 19))), "states: must have a row at least"),
         (lambda: sh.picture([START], np.zeros((2, 19))), r"references: must have shape \(1, 19\)"),
-        (lambda: sh.picture([START], np.zeros((1, 19)), things=[np.zeros((2, 2))]), r"things: must have shape \(n, 3\)"),
+        (
+            lambda: sh.picture([START], np.zeros((1, 19)), things=[np.zeros((2, 2))]),
+            r"things: must have shape \(n, 3\)",
+        ),
     ]:
         with pytest.raises(ValueError, match=said):
             call()
     with pytest.raises(OSError, match="cannot be written"):
         environment.replay(tmp_path / "nowhere" / "flight.gif")
-    with pytest.raises(RuntimeError, match='replay: nothing is kept: make the environment with render_mode="rgb_array"'):
+    with pytest.raises(
+        RuntimeError, match='replay: nothing is kept: make the environment with render_mode="rgb_array"'
+    ):
         HoverRows(None, 2).replay(tmp_path / "flight.gif")
 
 
@@ -277,7 +286,9 @@ def test_what_the_shield_cannot_be_is_refused():
 def test_a_task_shows_what_boards_show_a_network_and_forward_is_where_it_faces(shield):
     rows = HoverRows(None, 3, shield=shield)
     yaw = np.array([0.0, 2.0, -1.5])
-    observations, _ = rows.reset(seed=2, options={"state": np.array([sh.state(POINT, euler=[0.0, 0.0, each]) for each in yaw])})
+    observations, _ = rows.reset(
+        seed=2, options={"state": np.array([sh.state(POINT, euler=[0.0, 0.0, each]) for each in yaw])}
+    )
     last, goals = np.zeros((3, 4)), np.tile(POINT, (3, 1))
     for tick in range(60):
         wanted = sh.Network.observe(rows.vehicles.states, goals, rows.headings, last)
@@ -285,7 +296,10 @@ def test_a_task_shows_what_boards_show_a_network_and_forward_is_where_it_faces(s
         last = np.tile([0.3, 0.0, 0.0, 0.1], (3, 1))
         observations, *_ = rows.step(last)
     velocity = rows.vehicles.states[:, 3:5]
-    assert np.allclose(np.arctan2(velocity[:, 1], velocity[:, 0]), yaw + 0.04, atol=0.12) and (np.hypot(*velocity.T) > 0.2).all()
+    assert (
+        np.allclose(np.arctan2(velocity[:, 1], velocity[:, 0]), yaw + 0.04, atol=0.12)
+        and (np.hypot(*velocity.T) > 0.2).all()
+    )
     if shield:
         assert np.array_equal(rows.headings, rows._rows.flier.shield.references[:, 15:17])
 

@@ -1,4 +1,5 @@
-"""The kinds of trajectories of docs/trajectories.md: certified, flown, and flown once more by the law in a loop of one's own."""
+"""The kinds of trajectories of docs/trajectories.md: certified, flown, and flown once more by the law in a loop of
+one's own."""
 
 import numpy as np
 import pytest
@@ -17,7 +18,9 @@ def eighteen(folder):
     (folder / "eighteen.csv").write_text("x,y,z\n" + "".join(rows))
     text = (SCENARIOS / "gates.toml").read_text()
     head, _ = text.split("points = [")
-    (folder / "eighteen.toml").write_text(head.replace('name = "gates"', 'name = "eighteen"') + 'file = "eighteen.csv"\n')
+    (folder / "eighteen.toml").write_text(
+        head.replace('name = "gates"', 'name = "eighteen"') + 'file = "eighteen.csv"\n'
+    )
     return folder / "eighteen.toml"
 
 

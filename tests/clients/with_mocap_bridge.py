@@ -1,7 +1,7 @@
 """The motion capture bridge: a flight on its poses alone, on time and late; python/examples/mocap_bridge.py.
 
-`sitl --poses link` has no camera, and `--truth-port` is the motion capture: each line is stamped as it comes, held back, and piped into
-the bridge.
+`sitl --poses link` has no camera, and `--truth-port` is the motion capture: each line is stamped as it comes, held
+back, and piped into the bridge.
 """
 
 import json

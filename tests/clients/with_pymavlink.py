@@ -355,7 +355,8 @@ def forced(client):
 
 
 def recording(client):
-    """The flight that was just ended by force is listed, fetched over the link, and read by PX4's own reader of logs."""
+    """The flight that was just ended by force is listed, fetched over the link, and read by PX4's own reader of
+    logs."""
     client.rest(3.0)
     client.line.mav.log_request_list_send(1, 1, 0, 0xFFFF)
     entry = client.reply("LOG_ENTRY")

@@ -1,4 +1,5 @@
-"""Trajectories from files through the firmware's tasks: streamed by python/examples/stream_rows.py, and eighteen points as a mission.
+"""Trajectories from files through the firmware's tasks: streamed by python/examples/stream_rows.py, and eighteen points
+as a mission.
 
 `host-sim reference` makes the rows; `--truth-port` says where the vehicle really was.
 """
@@ -69,7 +70,8 @@ def simulator(*arguments):
 
 
 def stream(file, directory):
-    """On a busy machine a setpoint may come too late to be followed: the vehicle then says so, and it is tried again."""
+    """On a busy machine a setpoint may come too late to be followed: the vehicle then says so, and it is tried
+    again."""
     rows = directory / "rows.csv"
     simulator("reference", file, "--rows", rows)
     for _ in range(TRIES):
@@ -97,9 +99,7 @@ def fly_mission(file):
     points = list(eighteen())
     local = lambda x, y, z: (round(y * 1e4), round(x * 1e4), -z)
     items = [(m.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, m.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, 1.5)]
-    items += [
-        (m.MAV_FRAME_LOCAL_NED, m.MAV_CMD_NAV_WAYPOINT, 0, 0.3, 0, math.nan, *local(*point)) for point in points
-    ]
+    items += [(m.MAV_FRAME_LOCAL_NED, m.MAV_CMD_NAV_WAYPOINT, 0, 0.3, 0, math.nan, *local(*point)) for point in points]
     items.append((m.MAV_FRAME_MISSION, m.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0, 0, 0, math.nan, 0, 0, 0))
     (port,) = free_ports(1)
     with Desk(4.0, file, "--truth-port", port) as flown:

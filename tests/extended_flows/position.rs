@@ -272,7 +272,8 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         let core = flying.core(&x);
         let size = 1.0 + z_1.norm() + z_2.norm() + flying.force.norm();
         assert!(
-            (core.z_1.cast::<f64>() - z_1).norm() < 1e-5 * size && (core.z_2.cast::<f64>() - z_2).norm() < 1e-5 * size
+            (core.errors.z_1.cast::<f64>() - z_1).norm() < 1e-5 * size
+                && (core.errors.z_2.cast::<f64>() - z_2).norm() < 1e-5 * size
         );
         // z is linear in the state, so that any step will do.
         let [after, before] = [0.5, -0.5].map(|time| flying.z(&x.after(&along, time)));

@@ -6,8 +6,8 @@
     print(sh.certify(scenario))                  # certified, or why not
     flight = sh.fly(scenario)                    # flight.columns: what log.csv holds, as numpy arrays
 
-Everywhere: SI units and rad; world frame with z up, body frame x forward, y left, z up; rotations and quaternions body to world,
-quaternions scalar first. Arrays of rows are
+Everywhere: SI units and rad; world frame with z up, body frame x forward, y left, z up; rotations and quaternions body
+to world, quaternions scalar first. Arrays of rows are
 
     state      13   p(3) v(3) world | q(4) scalar first | omega(3) body
     reference  19   p_d(3) v(3) a(3) j(3) s(3) world | heading nu_x nu_y, a unit vector | psi' psi''
@@ -15,9 +15,10 @@ quaternions scalar first. Arrays of rows are
     demand      4   acceleration(3) world, m/s^2 | yaw rate, rad/s
                 5   attitude q(4) scalar first | thrust, N
 
-An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind altogether is a
-`TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a search that finds no gains) is a
-`RuntimeError`, and so is a call of what is at work for another thread. Long work lets other threads run, and Ctrl-C ends it.
+An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind
+altogether is a `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a
+search that finds no gains) is a `RuntimeError`, and so is a call of what is at work for another thread. Long work lets
+other threads run, and Ctrl-C ends it.
 
 `saturated_hybrid.environment` has Gymnasium's environments, `saturated_hybrid.tasks` two that `gymnasium.make` knows,
 `saturated_hybrid.rotorpy` a controller for RotorPy.

@@ -7,7 +7,8 @@
     "attitude"      thrust, N; roll, pitch, yaw, rad                     level, facing x,    the scenario's limit;
                                                                          hovering thrust     45, 45, 180 degrees
 
-Forwards is where the heading points, level: the shield's, which turns as demanded, or else the vehicle's own. A wrench goes to the rotors as it is. The others are demands: the shield flies them (`ShieldRows`, whose limits are proven), or a
+Forwards is where the heading points, level: the shield's, which turns as demanded, or else the vehicle's own. A wrench
+goes to the rotors as it is. The others are demands: the shield flies them (`ShieldRows`, whose limits are proven), or a
 textbook attitude controller (`Textbook`, of which nothing is).
 """
 
@@ -29,7 +30,8 @@ TILT = np.pi / 4
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of action: bounds and middle of each column, and the demand that it makes of them and of headings (rows, 2)."""
+    """A kind of action: bounds and middle of each column, and the demand that it makes of them and of headings (rows,
+    2)."""
 
     low: Any
     middle: Any
@@ -45,7 +47,12 @@ class Kind:
 def quaternions(roll, pitch, yaw):
     """R = Rz(yaw) Ry(pitch) Rx(roll) as quaternions, scalar first, in the last axis."""
     (cr, sr), (cp, sp), (cy, sy) = [(np.cos(0.5 * angle), np.sin(0.5 * angle)) for angle in (roll, pitch, yaw)]
-    each = [cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr]
+    each = [
+        cy * cp * cr + sy * sp * sr,
+        cy * cp * sr - sy * sp * cr,
+        cy * sp * cr + sy * cp * sr,
+        sy * cp * cr - cy * sp * sr,
+    ]
     return np.stack(each, axis=-1)
 
 

@@ -1,8 +1,8 @@
 """Environments in the manner of Gymnasium: simulated vehicles under the commands of an agent.
 
-`VectorEnvironment` is many vehicles, `Environment` one of them: row `k` of a vector that was reset with the seed `s` is the one
-environment that was reset with `s + k`. With gymnasium installed they are a `gymnasium.vector.VectorEnv` and a `gymnasium.Env`;
-without it they work alone, and their spaces have only what is needed.
+`VectorEnvironment` is many vehicles, `Environment` one of them: row `k` of a vector that was reset with the seed `s` is
+the one environment that was reset with `s + k`. With gymnasium installed they are a `gymnasium.vector.VectorEnv` and a
+`gymnasium.Env`; without it they work alone, and their spaces have only what is needed.
 
     observation  (32,) float32   the state's 13 columns, then the reference's 19 (see `saturated_hybrid`)
     action        (4,) float32   held for one control period: a wrench, or what `saturated_hybrid.actions` lists
@@ -10,10 +10,12 @@ without it they work alone, and their spaces have only what is needed.
     terminated                   further than `lost` from the reference, or no longer finite
     truncated                    the scenario's duration is over
 
-A subclass of either defines anything else that is in `Task`. `saturated_hybrid.tasks` has two that are registered with Gymnasium.
+A subclass of either defines anything else that is in `Task`. `saturated_hybrid.tasks` has two that are registered with
+Gymnasium.
 
-The law itself is a policy: with `law = LawRows(scenario, rows)`, `law.for_rotors(law.step(observations[:, :13], observations[:, 13:]))`
-are its actions; report those that were `clipped` to it: `law.hold_estimates(info["clipped"].tolist())`.
+The law itself is a policy: with `law = LawRows(scenario, rows)`, `law.for_rotors(law.step(observations[:, :13],
+observations[:, 13:]))` are its actions; report those that were `clipped` to it:
+`law.hold_estimates(info["clipped"].tolist())`.
 """
 
 import functools
@@ -26,7 +28,8 @@ from .episodes import Rows
 
 STATE = 13
 REFERENCE = 19
-# Where episodes start at random: in balls of these radii about the reference's first point, any attitude, at rest but for its rates.
+# Where episodes start at random: in balls of these radii about the reference's first point, any attitude, at rest but
+# for its rates.
 OFFSET = 10.0  # m
 RATE = 15.0  # rad/s
 
@@ -38,10 +41,11 @@ def _in_ball(random, radius):
 
 
 class Task:
-    """What an environment wants of its agent: a subclass of `Environment` or `VectorEnvironment` may define any of these.
+    """What an environment wants of its agent: a subclass of `Environment` or `VectorEnvironment` may define any of
+    these.
 
-    `rows` are the 32 columns that the module lists, as measured, in the last axis: (32,) of an `Environment`, (num_envs, 32) of a
-    `VectorEnvironment`. A text that writes `rows[..., column]` serves both.
+    `rows` are the 32 columns that the module lists, as measured, in the last axis: (32,) of an `Environment`,
+    (num_envs, 32) of a `VectorEnvironment`. A text that writes `rows[..., column]` serves both.
     """
 
     def observation(self, rows):
@@ -67,8 +71,8 @@ class Task:
         """Told of every start: `chosen` is a bool, or (num_envs,): where an episode has just begun, at `rows`."""
 
     def moved(self, rows, actions):
-        """Told of every step, before it is judged: where every vehicle is now, and by which actions. Of those that start anew in
-        it, `begun` tells afterwards."""
+        """Told of every step, before it is judged: where every vehicle is now, and by which actions. Of those that
+        start anew in it, `begun` tells afterwards."""
 
     def things(self):
         """Lines that stand in the world, for pictures: a list of arrays (k, 3), m."""
@@ -83,8 +87,8 @@ def distance(rows):
 class VectorEnvironment(Task, spaces.Many):
     """Rows of vehicles, stepped together on all cores.
 
-    An episode that ended is started anew by the next step, whose action it does not take (Gymnasium's `NEXT_STEP`); its reward is
-    zero then.
+    An episode that ended is started anew by the next step, whose action it does not take (Gymnasium's `NEXT_STEP`); its
+    reward is zero then.
 
     Args:
         scenario: vehicle, rotors, air, sensors, reference, duration and rate. `[estimator]` is refused.
@@ -93,7 +97,8 @@ class VectorEnvironment(Task, spaces.Many):
         lost: distance from the reference, m, at which an episode is over.
         action: "wrench", "acceleration", "forward" or "attitude": see `saturated_hybrid.actions`.
         scaled: whether actions are in [-1, 1], where zero hovers.
-        shield: arguments of `ShieldRows`, the box to stay in at least: `{"low": [-4, -3, 0.3], "high": [4, 3, 4]}`; left out: none.
+        shield: arguments of `ShieldRows`, the box to stay in at least: `{"low": [-4, -3, 0.3], "high": [4, 3, 4]}`;
+            left out: none.
         render_mode: "rgb_array" keeps every episode, for `render` and `replay`.
     """
 
@@ -112,8 +117,18 @@ class VectorEnvironment(Task, spaces.Many):
         shield=None,
         render_mode=None,
     ):
-        options = {"start": start, "lost": lost, "action": action, "scaled": scaled, "shield": shield, "render_mode": render_mode}
-        self._rows = Rows(self, scenario, num_envs, False, **options)
+        self._rows = Rows(
+            self,
+            scenario,
+            num_envs,
+            False,
+            start=start,
+            lost=lost,
+            action=action,
+            scaled=scaled,
+            shield=shield,
+            render_mode=render_mode,
+        )
         self.num_envs = self._rows.count
         self.single_action_space = self._rows.action_space
         self.action_space = spaces.batch_space(self.single_action_space, self.num_envs)
@@ -157,9 +172,9 @@ class VectorEnvironment(Task, spaces.Many):
             actions: (num_envs, 4).
 
         Returns:
-            observations (num_envs, m), rewards (num_envs,), terminated and truncated (num_envs,) bool, and a dictionary:
-            `clipped` (num_envs,) bool, whether limits or rotors cut anything of the wrench; with the shield `by_policy`
-            (num_envs,) bool, whether the agent's demand flew, and `reasons` (num_envs,), why not, in words.
+            observations (num_envs, m), rewards (num_envs,), terminated and truncated (num_envs,) bool, and a
+            dictionary: `clipped` (num_envs,) bool, whether limits or rotors cut anything of the wrench; with the shield
+            `by_policy` (num_envs,) bool, whether the agent's demand flew, and `reasons` (num_envs,), why not, in words.
         """
         return self._rows.step(actions)
 
@@ -186,8 +201,18 @@ class Environment(Task, spaces.One):
     def __init__(
         self, scenario, *, start="random", lost=100.0, action="wrench", scaled=False, shield=None, render_mode=None
     ):
-        options = {"start": start, "lost": lost, "action": action, "scaled": scaled, "shield": shield, "render_mode": render_mode}
-        self._rows = Rows(self, scenario, 1, True, **options)
+        self._rows = Rows(
+            self,
+            scenario,
+            1,
+            True,
+            start=start,
+            lost=lost,
+            action=action,
+            scaled=scaled,
+            shield=shield,
+            render_mode=render_mode,
+        )
         self.action_space = self._rows.action_space
 
     @property
@@ -214,7 +239,8 @@ class Environment(Task, spaces.One):
         return observations[0], info
 
     def step(self, action):
-        """Holds a command (4,) for one control period. Returns observation, reward, terminated, truncated and a dictionary."""
+        """Holds a command (4,) for one control period. Returns observation, reward, terminated, truncated and a
+        dictionary."""
         observations, rewards, terminated, truncated, info = self._rows.step(np.asarray(action)[None])
         info = {key: value[0] if key == "reasons" else bool(value[0]) for key, value in info.items()}
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info

@@ -1,6 +1,7 @@
 """Episodes of rows of vehicles: what `VectorEnvironment` and `Environment` have in common.
 
-`Rows` moves the vehicles and asks the environment, its `Task`, for everything else: of one vehicle with one row, of a vector with all.
+`Rows` moves the vehicles and asks the environment, its `Task`, for everything else: of one vehicle with one row, of a
+vector with all.
 """
 
 import functools

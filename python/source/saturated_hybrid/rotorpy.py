@@ -1,6 +1,8 @@
-"""The law as a controller for RotorPy (https://github.com/spencerfolk/rotorpy): `update(t, state, flat_output)`, as its SE3Control.
+"""The law as a controller for RotorPy (https://github.com/spencerfolk/rotorpy): `update(t, state, flat_output)`, as its
+SE3Control.
 
-RotorPy's frames are ours (world z up, body x forward, y left), its quaternions are scalar last: they are turned around here.
+RotorPy's frames are ours (world z up, body x forward, y left), its quaternions are scalar last: they are turned around
+here.
 """
 
 import numpy as np
@@ -19,12 +21,14 @@ ROUNDING = 1e-6
 class SaturatedHybridControl:
     """The law of a scenario, at the scenario's rate, for the vehicle of `quad_params`.
 
-    RotorPy may step as fast as the law or a whole number of times faster: between two ticks the last command is held. A time
-    before the last one starts a new flight. Rotor thrusts come from the mixer that boards fly, and are within the rotors' range.
+    RotorPy may step as fast as the law or a whole number of times faster: between two ticks the last command is held. A
+    time before the last one starts a new flight. Rotor thrusts come from the mixer that boards fly, and are within the
+    rotors' range.
 
     Args:
         quad_params: RotorPy's dictionary of the vehicle, e.g. `rotorpy.vehicles.hummingbird_params.quad_params`.
-        scenario: whose law flies; its vehicle and rotors must be those of `quad_params`. Left out: the extended law at 100 Hz
+        scenario: whose law flies; its vehicle and rotors must be those of `quad_params`. Left out: the extended law at
+            100 Hz
             with the constants that follow from the vehicle's numbers, which must be certified.
 
     Raises:
@@ -51,7 +55,8 @@ class SaturatedHybridControl:
         Args:
             t: time, s.
             state: `x` (3,) m, `v` (3,) m/s world; `q` (4,) scalar last, body to world; `w` (3,) rad/s body.
-            flat_output: `x`, `x_dot`, `x_ddot`, `x_dddot`, `x_ddddot` (3,) m … m/s^4 world; `yaw` rad, `yaw_dot` rad/s; and
+            flat_output: `x`, `x_dot`, `x_ddot`, `x_dddot`, `x_ddddot` (3,) m … m/s^4 world; `yaw` rad, `yaw_dot` rad/s;
+                and
                 `yaw_ddot` rad/s^2, zero where it is left out.
 
         Returns:

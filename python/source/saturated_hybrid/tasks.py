@@ -3,12 +3,13 @@
     saturated_hybrid/Hover-v0    fly to a point and stay there, from up to 2 m away, tilted, in motion
     saturated_hybrid/Gate-v0     fly through an opening of 1 m by 1 m in a wall, and on to a point behind it
 
-`gymnasium.make(id, …)` is one vehicle, `gymnasium.make_vec(id, num_envs, …)` rows. Both take a `scenario`, whose reference is replaced
-(left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are accelerations forwards, to the left
-and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
+`gymnasium.make(id, …)` is one vehicle, `gymnasium.make_vec(id, num_envs, …)` rows. Both take a `scenario`, whose
+reference is replaced (left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are
+accelerations forwards, to the left and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
 
     observation (22,)   target - position, m | velocity, m/s | rotation, row by row | body rates, rad/s | the last action
-                        the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network` sees
+                        the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network`
+                        sees
     terminated          on the ground or beyond it, out of the box, or at the wall
 
 The target is the point; of the gate its middle, until the vehicle is through.
@@ -43,7 +44,8 @@ def scenario_of(scenario, point):
 
 
 def seen(rows, headings, target, last):
-    """The 22 numbers of an observation, for rows (..., 32), headings (..., 2), a target (..., 3) and the last action (..., 4)."""
+    """The 22 numbers of an observation, for rows (..., 32), headings (..., 2), a target (..., 3) and the last action
+    (..., 4)."""
     rows = np.asarray(rows, float)
     columns = np.moveaxis(rotations(rows[..., 6:10]), -1, 0)
     rotation = np.moveaxis([turned(column, headings, -1.0) for column in columns], 0, -1)
@@ -66,7 +68,8 @@ class _Hover:
         return self.point
 
     def observation(self, rows):
-        """Where the target is, seen from the vehicle, and how the vehicle moves: the 22 numbers that the module lists."""
+        """Where the target is, seen from the vehicle, and how the vehicle moves: the 22 numbers that the module
+        lists."""
         return seen(rows, self.headings, self.target(rows), self._last)
 
     def begun(self, rows, chosen):

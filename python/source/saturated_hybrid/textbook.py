@@ -1,13 +1,14 @@
 """A geometric attitude controller as textbooks have it: what flies an agent's demands without the shield.
 
-After T. Lee, M. Leok, N. H. McClamroch, Geometric tracking control of a quadrotor UAV on SE(3), 2010. With J the inertia,
-R_d the wanted attitude, omega_d the wanted rates in the body's axes,
+After T. Lee, M. Leok, N. H. McClamroch, Geometric tracking control of a quadrotor UAV on SE(3), 2010. With J the
+inertia, R_d the wanted attitude, omega_d the wanted rates in the body's axes,
 
     e_R = (R_d^T R - R^T R_d)^v / 2,    e_omega = omega - omega_d
     torque = -J (w^2 e_R + 2 zeta w e_omega) + omega x J omega
 
-`w` is as fast as rotor lag and control period allow, and half that about yaw, where rotors are weak. A wanted acceleration a is the
-force m (a + g e3): its direction is the thrust axis, its part along the present one the thrust. Nothing is limited, estimated or
+`w` is as fast as rotor lag and control period allow, and half that about yaw, where rotors are weak. A wanted
+acceleration a is the force m (a + g e3): its direction is the thrust axis, its part along the present one the thrust.
+Nothing is limited, estimated or
 proven: the rotors clip what they cannot do.
 """
 
@@ -40,8 +41,8 @@ class Textbook:
         self.yaw[slice(None) if chosen is None else chosen] = np.nan
 
     def step(self, states, demands):
-        """Wrenches (rows, 4) for states (rows, 13) and demands: (rows, 4) acceleration, m/s^2 world, and yaw rate, rad/s; or
-        (rows, 5) quaternion, scalar first, and thrust, N."""
+        """Wrenches (rows, 4) for states (rows, 13) and demands: (rows, 4) acceleration, m/s^2 world, and yaw rate,
+        rad/s; or (rows, 5) quaternion, scalar first, and thrust, N."""
         demands = np.asarray(demands, float)
         states = np.asarray(states, float)
         attitude, rates = rotations(states[:, 6:10]), states[:, 10:13]
