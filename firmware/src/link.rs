@@ -14,7 +14,7 @@
 //! | [`port`] | which of two lines it is on |
 //! | [`mission`] | the items of a mission |
 //! | [`plans`], [`files`] | which list of items is meant; answers to clients that request files |
-//! | [`acknowledgement`] | answers to commands |
+//! | [`acknowledgement`], [`repetitions`] | answers to commands; commands delivered twice |
 //! | [`signing`] | who may speak: signed frames |
 //! | [`writer`] | messages as frames |
 //!
@@ -37,6 +37,7 @@ pub mod plans;
 pub mod port;
 pub mod pose;
 pub mod receive;
+pub mod repetitions;
 pub mod sender_clock;
 pub mod set_mode;
 pub mod setpoint;

@@ -19,7 +19,6 @@
 
 #![expect(deprecated, reason = "superseded commands and frames: clients still send them")]
 
-use super::frame::{Frame, Header};
 use super::mission::ITEMS;
 use super::origin::{Origin, Place};
 use super::set_mode::SetMode;
@@ -31,7 +30,6 @@ use crate::hardware::MOTORS;
 use crate::shared::{Procedure, Reply};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use flight::{MotorSetting, MotorTest, Request, Setting};
-use heapless::Deque;
 use mavlink::dialects::common::{
     ActuatorConfiguration, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult,
     MotorTestThrottleType,
@@ -53,12 +51,6 @@ const AUTO_EXTERNAL1: f32 = 11.0;
 /// The bit of DO_REPOSITION's parameter 2 by which its yaw counts from the present one
 /// (MAV_DO_REPOSITION_FLAGS_RELATIVE_YAW).
 const RELATIVE_YAW: u32 = 2;
-
-/// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
-const REPETITION: u64 = 1_000_000;
-
-/// Commands that are remembered to detect repetitions.
-const REMEMBERED: usize = 8;
 
 /// The action of a command.
 #[derive(Debug, Clone, PartialEq)]
@@ -374,55 +366,4 @@ fn set_mode(call: &Call, armed: bool) -> Action {
     }
     let guided = base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED);
     if guided { Action::Ask(Request::FlySetpoints) } else { NO_MODE }
-}
-
-/// Detects a command that was delivered twice.
-///
-/// A command sent again on purpose carries a new sequence number and acts again. The same frame twice may be the link's
-/// doing, and must not start a second motor test, nor arm what was disarmed in between: it is acknowledged once more,
-/// and does nothing. One that goes on being delivered acts once a second.
-#[derive(Debug, Default)]
-pub struct Repetitions(Deque<Delivered, REMEMBERED>);
-
-/// A frame that was acted on, with the number of its command.
-#[derive(Debug)]
-struct Delivered {
-    header: Header,
-    checksum: u16,
-    command: u16,
-    time: u64,
-}
-
-/// The kind of a command's frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Delivery {
-    /// One to act on.
-    New,
-    /// One again that was acted on.
-    Again,
-    /// The same, and its sender has sent that command in another frame since.
-    Overtaken,
-}
-
-impl Repetitions {
-    /// The kind of this frame of a command.
-    pub fn look(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
-        let Frame { header, checksum, time, .. } = *frame;
-        let is_same = |before: &Delivered| {
-            (before.header, before.checksum) == (header, checksum) && time.saturating_sub(before.time) < REPETITION
-        };
-        if let Some(place) = self.0.iter().position(is_same) {
-            let sender = (header.system, header.component);
-            let is_later =
-                |later: &Delivered| ((later.header.system, later.header.component), later.command) == (sender, command);
-            let is_overtaken = self.0.iter().skip(place + 1).any(is_later);
-            return if is_overtaken { Delivery::Overtaken } else { Delivery::Again };
-        }
-        if self.0.is_full() {
-            self.0.pop_front();
-        }
-        // There is room for it now.
-        let _ = self.0.push_back(Delivered { header, checksum, command, time });
-        Delivery::New
-    }
 }

@@ -6,10 +6,10 @@
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
 use super::COMPONENT;
-use super::command::Repetitions;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
 use super::pose::{Poses, is_pose};
+use super::repetitions::Repetitions;
 use super::set_mode::SetMode;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;

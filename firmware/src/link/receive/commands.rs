@@ -3,9 +3,10 @@
 use super::Receiver;
 use crate::frames;
 use crate::link::acknowledgement::{Order, command_of};
-use crate::link::command::{Action, Call, Delivery, action};
+use crate::link::command::{Action, Call, action};
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
+use crate::link::repetitions::Delivery;
 use crate::link::set_mode::SetMode;
 use crate::link::telemetry::vehicle;
 use crate::shared::{Calibration, Event, QueuedRequest, Reply, Severity};
