@@ -15,7 +15,7 @@
 //! reader: omega_x = x - zx z / 512, zx being a signed number of 7 bits.
 //!
 //! Every sample reads the chip's identity. Every wait is bounded. What does not come in time is a [`Fault`]; after
-//! several in a row ([`PowerUp::judge`]) the next call powers the sensor up anew, which takes about 90 ms.
+//! several in a row the next call powers the sensor up anew, which takes about 90 ms.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;

@@ -19,7 +19,7 @@
 //!
 //! Every sample reads the device's identity, and is refused if it is what a device holds that was reset: one that lost
 //! its supply for a moment identifies itself well and measures nothing. Every wait is bounded. What does not come in
-//! time is a [`Fault`]; after several in a row ([`PowerUp::judge`]) the next call powers the sensor up anew, which
+//! time is a [`Fault`]; after several in a row the next call powers the sensor up anew, which
 //! takes about 70 ms.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
