@@ -22,6 +22,8 @@ pub mod sharp;
 
 use crate::configuration::{Configuration, LawParameters};
 use crate::error::ParameterError;
+use crate::math::enclosure::Enclosure;
+use crate::math::real::Real;
 use extended::ExtendedCertificate;
 use form::Interval;
 use inequality::Inequality;
@@ -31,19 +33,20 @@ use paper::PaperCertificate;
 /// The certificate of one configuration.
 #[allow(clippy::large_enum_variant)] // without an allocator there is nowhere else to put either
 #[derive(Debug, Clone, PartialEq)]
-pub enum Certificate {
+pub enum Certificate<R = f64> {
     /// Of the paper's law.
-    Paper(PaperCertificate),
+    Paper(PaperCertificate<R>),
     /// Of the extended law.
-    Extended(ExtendedCertificate),
+    Extended(ExtendedCertificate<R>),
 }
 
-impl Certificate {
-    /// Works out every inequality for `configuration`, in a bounded amount of work.
+impl<R: Real> Certificate<R> {
+    /// Works out every inequality for `configuration`, in a bounded amount of work, in the numbers that the caller
+    /// chooses: [`Certificate::new`] in double precision, [`Certificate::enclose`] with its rounding accounted for.
     ///
     /// # Errors
     /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
-    pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
+    pub fn evaluate(configuration: &Configuration) -> Result<Self, ParameterError> {
         Ok(match configuration.law() {
             LawParameters::Paper(law) => Self::Paper(PaperCertificate::new(configuration, law)?),
             LawParameters::Extended(law) => Self::Extended(ExtendedCertificate::new(configuration, law)?),
@@ -52,7 +55,7 @@ impl Certificate {
 
     /// The paper's law's, if this is one.
     #[must_use]
-    pub fn paper(&self) -> Option<&PaperCertificate> {
+    pub fn paper(&self) -> Option<&PaperCertificate<R>> {
         match self {
             Self::Paper(certificate) => Some(certificate),
             Self::Extended(_) => None,
@@ -60,7 +63,7 @@ impl Certificate {
     }
 
     /// Everything that decides.
-    pub fn inequalities(&self) -> impl Iterator<Item = &Inequality> {
+    pub fn inequalities(&self) -> impl Iterator<Item = &Inequality<R>> {
         (0..).map_while(|place| match self {
             Self::Paper(certificate) => certificate.inequality(place),
             Self::Extended(certificate) => certificate.inequalities.get(place),
@@ -73,15 +76,9 @@ impl Certificate {
         self.inequalities().all(Inequality::holds)
     }
 
-    /// The inequality with the least margin.
-    #[must_use]
-    pub fn tightest(&self) -> Option<Inequality> {
-        inequality::tightest(self.inequalities())
-    }
-
     /// Every thrust the law can command, N.
     #[must_use]
-    pub fn thrust(&self) -> Interval {
+    pub fn thrust(&self) -> Interval<R> {
         match self {
             Self::Paper(certificate) => certificate.sharp.thrust,
             Self::Extended(certificate) => certificate.bounds.thrust,
@@ -90,7 +87,7 @@ impl Certificate {
 
     /// Greatest |torque| about each body axis, N m.
     #[must_use]
-    pub fn torque(&self) -> Vector3<f64> {
+    pub fn torque(&self) -> Vector3<R> {
         match self {
             Self::Paper(certificate) => certificate.sharp.torque,
             Self::Extended(certificate) => certificate.bounds.torque,
@@ -99,7 +96,7 @@ impl Certificate {
 
     /// Every thrust the law can command of a rotor, N, the first being rotor 0; none beyond the last.
     #[must_use]
-    pub fn rotor(&self, rotor: usize) -> Option<Interval> {
+    pub fn rotor(&self, rotor: usize) -> Option<Interval<R>> {
         match self {
             Self::Paper(certificate) => {
                 let demand = &certificate.rotors.get(rotor)?.demand;
@@ -107,6 +104,32 @@ impl Certificate {
             }
             Self::Extended(certificate) => certificate.bounds.rotors.get(rotor).copied(),
         }
+    }
+}
+
+impl Certificate {
+    /// [`Certificate::evaluate`] in double precision: what decides.
+    ///
+    /// # Errors
+    /// As [`Certificate::evaluate`].
+    pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
+        Self::evaluate(configuration)
+    }
+
+    /// The inequality with the least margin.
+    #[must_use]
+    pub fn tightest(&self) -> Option<Inequality> {
+        inequality::tightest(self.inequalities())
+    }
+}
+
+impl Certificate<Enclosure> {
+    /// [`Certificate::evaluate`] with every rounding outwards: an inequality that holds here holds for real numbers.
+    ///
+    /// # Errors
+    /// As [`Certificate::evaluate`].
+    pub fn enclose(configuration: &Configuration) -> Result<Self, ParameterError> {
+        Self::evaluate(configuration)
     }
 }
 

@@ -14,6 +14,9 @@
 
 #![allow(unsafe_code)] // one instruction, in `sqrtf`
 
+pub mod enclosure;
+pub mod real;
+
 use core::hint::cold_path;
 pub use libm::{atan, exp, expm1 as exp_m1, floor, hypot, log1p as ln_1p, round, sqrt as sqrt_f64, tan};
 use nalgebra::Vector3;
@@ -216,9 +219,6 @@ fn linear(z: f32) -> f32 {
 
 const A_0: f32 = 1.869_867_2e-3;
 const Q_0: f32 = 8.037_678e-5;
-
-/// The square root of three.
-pub const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 #[cfg(test)]
 mod tests;

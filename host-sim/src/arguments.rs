@@ -87,7 +87,10 @@ docs/certificate.md and docs/sampled-loop.md explain the tables.
 
 Under the extended law the report ends with the vehicle's abilities, and with the inequality that
 limits it or those that fail: their meaning, and which number to change in which direction.
-Constants that the file leaves out follow from the vehicle's numbers; --show prints them all.";
+Constants that the file leaves out follow from the vehicle's numbers; --show prints them all.
+
+--rigorous adds what rounding can have changed, in shares of each figure, and exits with 1 if that
+can have decided an inequality: then CERTIFIED rests on the last digits of double precision.";
 
 /// One command.
 #[derive(Subcommand)]
@@ -121,6 +124,9 @@ pub enum Command {
         /// Print the law's constants and the reference's bounds instead, as sections to paste into a scenario file
         #[arg(long)]
         show: bool,
+        /// Work every inequality out once more, each operation rounded outwards, and show both figures
+        #[arg(long, conflicts_with = "show")]
+        rigorous: bool,
     },
     /// Refine a vehicle's constants by trial flights: certified first, then pleasant to fly. About a minute.
     #[command(after_help = TUNE_HELP)]

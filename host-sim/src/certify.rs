@@ -6,6 +6,7 @@
 mod advice;
 mod blame;
 mod pilot;
+pub mod rigorous;
 pub mod shown;
 
 use crate::table::{aligned, percent, short};

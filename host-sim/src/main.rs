@@ -13,6 +13,7 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::written::above;
 use host_sim::campaign::{self, CampaignError};
+use host_sim::certify::rigorous::Rigorous;
 use host_sim::certify::{certify, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
@@ -49,7 +50,7 @@ fn main() -> ExitCode {
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Replay(arguments)) => run_replay(&arguments),
             Some(Command::Reference(arguments)) => run_reference(&arguments),
-            Some(Command::Certify { file, show }) => run_certify(file.as_deref(), show),
+            Some(Command::Certify { file, show, rigorous }) => run_certify(file.as_deref(), show, rigorous),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
             Some(Command::Log(arguments)) => run_log(&arguments),
@@ -355,9 +356,14 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
     }
 }
 
-fn run_certify(file: Option<&Path>, show: bool) -> Result<ExitCode, String> {
+fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCode, String> {
     let scenario = load(file)?;
-    let (text, certified) = certify(&scenario).map_err(|error| error.to_string())?;
+    let (mut text, mut certified) = certify(&scenario).map_err(|error| error.to_string())?;
+    if rigorous {
+        let rigorous = Rigorous::new(&scenario.configuration).map_err(|error| error.to_string())?;
+        text += &format!("\n{}", rigorous.report());
+        certified &= rigorous.holds();
+    }
     if show {
         // Sections to paste are never folded.
         print(|| io::stdout().write_all(shown::constants(&scenario).as_bytes()))?;

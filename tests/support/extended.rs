@@ -38,7 +38,7 @@ pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, ve
         *value = around.clamp(constant.range.least, constant.range.greatest);
     }
     let delta = random::log_uniform(rng, 0.005, 1.0);
-    let qbar = switching_scalar(delta) as f32;
+    let qbar = switching_scalar::<f64>(delta) as f32;
     let p = ExtendedParameters::from_values(values);
     let a_down = p.a_down.min(0.9 * vehicle.gravity);
     let p = ExtendedParameters {
@@ -55,7 +55,7 @@ pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, ve
         scale_greatest: rng.random_range(1.0..1.4),
         ..p
     };
-    let pull = greatest_potential(&Extended::new(p, vehicle).unwrap()) as f32;
+    let pull = greatest_potential::<f64>(&Extended::new(p, vehicle).unwrap()) as f32;
     Extended::new(ExtendedParameters { m_all: pull * random::log_uniform(rng, 1.01, 4.0), ..p }, vehicle).unwrap()
 }
 

@@ -28,65 +28,62 @@
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
 use crate::error::{ParameterError, Reason, require};
-use crate::math;
+use crate::math::real::Real;
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
 /// Relative to the sum of all contributions: eight times the rounding of single precision.
 pub const ROUNDING: f64 = 1e-6;
 
-/// Newton steps for the largest eigenvalue. Each halves the error at least (quarters it, away from a double root), so
-/// that these reach the rounding of f64.
-const NEWTON_STEPS: usize = 52;
-
 /// A set of torques around zero, N m, body axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum Shape<R = f64> {
     /// All torques up to a length.
     Ball {
         /// Greatest |tau|, N m.
-        radius: f64,
+        radius: R,
     },
     /// A ball stretched along the axes.
     Ellipsoid {
         /// Greatest torque about each axis alone, N m.
-        semi_axes: Vector3<f64>,
+        semi_axes: Vector3<R>,
     },
     /// Every axis by itself.
     Box {
         /// Greatest torque about each axis, N m.
-        half_widths: Vector3<f64>,
+        half_widths: Vector3<R>,
     },
     /// omega x J omega over all angular velocities up to a length.
     Gyroscopic {
         /// Diagonal of J, kg m^2.
-        inertia: Vector3<f64>,
+        inertia: Vector3<R>,
         /// Greatest |omega|, rad/s.
-        rate: f64,
+        rate: R,
     },
 }
 
 /// One term of the law's torque: a name for reports, and the set it fills.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TorqueTerm {
+pub struct TorqueTerm<R = f64> {
     name: &'static str,
-    shape: Shape,
+    shape: Shape<R>,
 }
 
-impl TorqueTerm {
+impl<R: Real> TorqueTerm<R> {
     /// A term whose sizes are finite and not negative.
     ///
     /// # Errors
     /// Gives the term's name as the field.
-    pub fn new(name: &'static str, shape: Shape) -> Result<Self, ParameterError> {
+    pub fn new(name: &'static str, shape: Shape<R>) -> Result<Self, ParameterError> {
+        let zero = R::from(0.0);
         let sizes = match shape {
-            Shape::Ball { radius } => Vector4::new(radius, 0.0, 0.0, 0.0),
-            Shape::Ellipsoid { semi_axes: v } | Shape::Box { half_widths: v } => v.push(0.0),
+            Shape::Ball { radius } => Vector4::new(radius, zero, zero, zero),
+            Shape::Ellipsoid { semi_axes: v } | Shape::Box { half_widths: v } => v.push(zero),
             Shape::Gyroscopic { inertia, rate } => inertia.push(rate),
         };
         for size in sizes.iter() {
-            require(size.is_finite(), name, Reason::NotFinite)?;
-            require(*size >= 0.0, name, Reason::Negative)?;
+            require(size.lower().is_finite() && size.upper().is_finite(), name, Reason::NotFinite)?;
+            require(size.upper() >= 0.0, name, Reason::Negative)?;
         }
         Ok(Self { name, shape })
     }
@@ -99,13 +96,13 @@ impl TorqueTerm {
 
     /// h(d): the greatest d . tau over the set.
     #[must_use]
-    pub fn support(&self, direction: &Vector3<f64>) -> f64 {
-        let length = |v: Vector3<f64>| math::sqrt_f64(v.norm_squared());
+    pub fn support(&self, direction: &Vector3<R>) -> R {
+        let length = |v: Vector3<R>| square(&v).sqrt_of_rounded();
         match &self.shape {
-            Shape::Ball { radius } => radius * length(*direction),
+            Shape::Ball { radius } => *radius * length(*direction),
             Shape::Ellipsoid { semi_axes } => length(semi_axes.component_mul(direction)),
-            Shape::Box { half_widths } => half_widths.dot(&direction.abs()),
-            Shape::Gyroscopic { inertia, rate } => rate * rate * gyroscopic_gain(inertia, direction),
+            Shape::Box { half_widths } => sum(&half_widths.component_mul(&direction.map(R::abs))),
+            Shape::Gyroscopic { inertia, rate } => *rate * *rate * gyroscopic_gain(inertia, direction),
         }
     }
 }
@@ -113,49 +110,47 @@ impl TorqueTerm {
 /// The greatest d . (omega x J omega) over unit vectors omega.
 ///
 /// The form's matrix has a zero diagonal and a, b, c off it, so its eigenvalues solve x^3 - p x - q = 0 with
-/// p = a^2 + b^2 + c^2, q = 2 a b c. All roots are real and none exceeds 2 sqrt(p/3): from there Newton's method falls
-/// towards the largest without passing it, so that every step is an upper bound.
-fn gyroscopic_gain(inertia: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
+/// p = a^2 + b^2 + c^2, q = 2 a b c, and all roots are real.
+fn gyroscopic_gain<R: Real>(inertia: &Vector3<R>, direction: &Vector3<R>) -> R {
     let differences = Vector3::new(inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x);
-    let form = differences.component_mul(direction) * 0.5;
-    let p = form.norm_squared();
-    let q = 2.0 * form.x * form.y * form.z;
-    let mut root = 2.0 * math::sqrt_f64(p / 3.0);
-    for _ in 0..NEWTON_STEPS {
-        let value = root * (root * root - p) - q;
-        let slope = 3.0 * root * root - p;
-        if value <= 0.0 || slope <= 0.0 {
-            break;
-        }
-        root -= value / slope;
-    }
-    root
+    let form = differences.component_mul(direction).map(|product| product * 0.5);
+    R::greatest_cubic_root(square(&form), form.x * 2.0 * form.y * form.z)
+}
+
+fn sum<R: Real>(v: &Vector3<R>) -> R {
+    v.x + v.y + v.z
+}
+
+fn square<R: Real>(v: &Vector3<R>) -> R {
+    sum(&v.component_mul(v))
 }
 
 /// Every wrench the law may command.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Commands<'a> {
-    thrust: (f64, f64),
-    torque: &'a [TorqueTerm],
+pub struct Commands<'a, R = f64> {
+    thrust: (R, R),
+    torque: &'a [TorqueTerm<R>],
 }
 
-impl<'a> Commands<'a> {
+impl<'a, R: Real> Commands<'a, R> {
     /// Thrust from `least` to `greatest`, N, with torques in the sum of the `torque` terms.
     ///
     /// # Errors
     /// Names `thrust` if its bounds are not finite or in the wrong order.
-    pub fn new(least: f64, greatest: f64, torque: &'a [TorqueTerm]) -> Result<Self, ParameterError> {
-        require(least.is_finite() && greatest.is_finite(), "thrust", Reason::NotFinite)?;
-        require(least <= greatest, "thrust", Reason::NotIncreasing)?;
+    pub fn new(least: R, greatest: R, torque: &'a [TorqueTerm<R>]) -> Result<Self, ParameterError> {
+        let (lower, upper) = (least.lower(), greatest.upper());
+        require(lower.is_finite() && upper.is_finite(), "thrust", Reason::NotFinite)?;
+        require(lower <= upper, "thrust", Reason::NotIncreasing)?;
         Ok(Self { thrust: (least, greatest), torque })
     }
 
     /// The greatest row . (T, tau), rounded outwards.
-    fn greatest(&self, row: &Vector4<f64>) -> f64 {
-        let thrust = (row.x * self.thrust.0).max(row.x * self.thrust.1);
-        let direction = torque_part(row);
-        let torque: f64 = self.torque.iter().map(|term| term.support(&direction)).sum();
-        thrust + torque + ROUNDING * (thrust.abs() + torque)
+    fn greatest(&self, row: &Vector4<f64>) -> R {
+        let (least, greatest) = self.thrust;
+        let thrust = (least * row.x).greater(greatest * row.x);
+        let direction = torque_part(row).map(R::from);
+        let torque = self.torque.iter().fold(R::from(0.0), |sum, term| sum + term.support(&direction));
+        thrust + torque + (thrust.abs() + torque) * ROUNDING
     }
 }
 
@@ -167,21 +162,21 @@ pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
 
 /// The extremes of one rotor's thrust over a set of commands, and what it has. All in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RotorDemand {
+pub struct RotorDemand<R = f64> {
     /// Least commanded thrust.
-    pub least: f64,
+    pub least: R,
     /// Greatest commanded thrust.
-    pub greatest: f64,
+    pub greatest: R,
     /// Least thrust it can give.
     pub available_min: f64,
     /// Greatest thrust it can give.
     pub available_max: f64,
 }
 
-impl RotorDemand {
+impl<R: Real> RotorDemand<R> {
     /// The demand of `commands` on `rotor`, whose thrust is `row` of B+ times the wrench.
     #[must_use]
-    pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands) -> Self {
+    pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands<R>) -> Self {
         Self {
             least: -commands.greatest(&-row),
             greatest: commands.greatest(row),
@@ -193,13 +188,13 @@ impl RotorDemand {
     /// Whether the rotor's range covers its demand.
     #[must_use]
     pub fn fits(&self) -> bool {
-        self.least >= self.available_min && self.greatest <= self.available_max
+        self.least.lower() >= self.available_min && self.greatest.upper() <= self.available_max
     }
 }
 
 /// The demand of `commands` on each rotor, in the rotors' order.
 #[must_use]
-pub fn demands(rotors: &Rotors, commands: &Commands) -> Vec<RotorDemand, ROTORS_MAX> {
+pub fn demands<R: Real>(rotors: &Rotors, commands: &Commands<R>) -> Vec<RotorDemand<R>, ROTORS_MAX> {
     let all = rotors.iter().zip(rotors.pseudo_inverse());
     collected(all.map(|(rotor, row)| RotorDemand::new(rotor, row, commands)))
 }

@@ -27,7 +27,7 @@ use crate::extended::budget::{RATE_BEYOND, ROWS, THRUST_LEFT, TorqueBudget};
 use crate::extended::parameters::Extended;
 use crate::extended::position::net_level;
 use crate::extended::turning;
-use crate::math;
+use crate::math::real::Real;
 use crate::reference::ReferenceBounds;
 use heapless::Vec;
 use nalgebra::Vector3;
@@ -40,27 +40,27 @@ const MOST: usize = 11 + ROWS;
 
 /// Everything the extended law can command.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExtendedBounds {
+pub struct ExtendedBounds<R = f64> {
     /// Greatest |omega_d12| and |omega'_d12|, rad/s and rad/s^2.
-    pub rates: [f64; 2],
+    pub rates: [R; 2],
     /// Every thrust, N.
-    pub thrust: Interval,
+    pub thrust: Interval<R>,
     /// Greatest |torque| about each body axis, N m.
-    pub torque: Vector3<f64>,
+    pub torque: Vector3<R>,
     /// Every thrust of each rotor as commanded, divided by the thrust scale, N.
-    pub rotors: Vec<Interval, ROTORS_MAX>,
+    pub rotors: Vec<Interval<R>, ROTORS_MAX>,
 }
 
 /// Every inequality about one configuration of the extended law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExtendedCertificate {
+pub struct ExtendedCertificate<R = f64> {
     /// The law's greatest commands.
-    pub bounds: ExtendedBounds,
+    pub bounds: ExtendedBounds<R>,
     /// The inequalities, in the order of this module's table.
-    pub inequalities: Vec<Inequality, MOST>,
+    pub inequalities: Vec<Inequality<R>, MOST>,
 }
 
-impl ExtendedCertificate {
+impl<R: Real> ExtendedCertificate<R> {
     /// Works out every inequality for `law`, the one of `configuration`.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl ExtendedCertificate {
     pub fn new(configuration: &Configuration, law: &ExtendedLaw) -> Result<Self, ParameterError> {
         let parameters = &law.parameters;
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-        let budget = TorqueBudget::new(parameters, vehicle, limits, configuration.rotors());
+        let budget = TorqueBudget::evaluate(parameters, vehicle, limits, configuration.rotors());
         let all = feasibility(configuration, parameters, &budget)
             .into_iter()
             .chain(heading(configuration, parameters))
@@ -80,34 +80,39 @@ impl ExtendedCertificate {
 }
 
 /// The reference with its drag, and room for it.
-fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> [Inequality; 6] {
+fn feasibility<R: Real>(
+    configuration: &Configuration,
+    parameters: &Extended,
+    budget: &TorqueBudget<R>,
+) -> [Inequality<R>; 6] {
     let (vehicle, bounds) = (configuration.vehicle(), configuration.bounds());
-    let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(f64::from);
+    let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(R::from);
     let p = parameters;
     let reference = with_drag(bounds, p.drag_across);
-    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
-    let [across, vertical] = [reference.horizontal_acceleration, bounds.vertical_acceleration].map(f64::from);
-    let [force_across, up, down] = [p.force_across, p.force_up, p.force_down].map(f64::from);
+    let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
+    let left = R::from(1.0) - THRUST_LEFT;
+    let [across, vertical] = [reference.horizontal_acceleration, bounds.vertical_acceleration].map(R::from);
+    let [force_across, up, down] = [p.force_across, p.force_up, p.force_down].map(R::from);
 
     let [each, taken] = budget.ceiling;
-    let limit = f64::from(configuration.limits().thrust_max);
-    let available = (1.0 - THRUST_LEFT) * math::lesser_f64(f64::from(p.scale_least) * each - taken, limit);
-    let thrust = |across: f64, vertical: f64| mass * math::hypot(across, gravity + vertical) * raised;
+    let limit = R::from(configuration.limits().thrust_max);
+    let available = left * (R::from(p.scale_least) * each - taken).lesser(limit);
+    let thrust = |across: R, vertical: R| mass * across.hypot(gravity + vertical) * raised;
 
     // Across and along the vertical the net's level is reached at once.
-    let net = math::sqrt_f64(2.0) * net_level(p, vehicle.gravity);
-    let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
-    let jerk = f64::from(reference.jerk) + 2.0 * k_f * net;
-    let snap = f64::from(reference.snap) + 2.0 * k_f * (k_s + k_f) * net;
+    let net = R::from(2.0).sqrt() * net_level::<R>(p, vehicle.gravity);
+    let [k_f, k_s] = [p.k_f, p.k_s].map(R::from);
+    let jerk = R::from(reference.jerk) + k_f * 2.0 * net;
+    let snap = R::from(reference.snap) + k_f * 2.0 * (k_s + k_f) * net;
     let least = gravity - vertical - up - net;
     let rate = jerk / least * raised;
     // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
-    let acceleration = (snap / least + rate * rate) * raised / f64::from(turning::TURNED);
-    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(f64::from);
+    let acceleration = (snap / least + rate * rate) * raised / R::from(turning::TURNED);
+    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(R::from);
     let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
-    let weakest = (1.0 - THRUST_LEFT) * mass * (gravity - vertical - up);
+    let weakest = left * mass * (gravity - vertical - up);
     [
-        Inequality::new("T1 fall A_- < g - K_a3", "m/s^2", f64::from(p.a_down), gravity - vertical),
+        Inequality::new("T1 fall A_- < g - K_a3", "m/s^2", R::from(p.a_down), gravity - vertical),
         Inequality::new("A1 thrust against force across", "N", thrust(across + force_across, vertical), available),
         Inequality::new("A1 thrust against force down", "N", thrust(across, vertical + down), available),
         Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
@@ -117,8 +122,8 @@ fn feasibility(configuration: &Configuration, parameters: &Extended, budget: &To
 }
 
 /// `value` where its divisor `least` is positive; otherwise a value with which no inequality holds.
-fn positive(value: f64, least: f64) -> f64 {
-    if least > 0.0 { value } else { f64::INFINITY }
+fn positive<R: Real>(value: R, least: R) -> R {
+    if least.lower() > 0.0 { value } else { R::from(f64::INFINITY) }
 }
 
 /// `bounds` of p_d'' + kappa p_d' and its derivatives, `drag` being kappa, 1/s.
@@ -132,108 +137,115 @@ fn with_drag(bounds: &ReferenceBounds, drag: f32) -> ReferenceBounds {
 }
 
 /// The heading of the reference, with the force that tilts u.
-fn heading(configuration: &Configuration, parameters: &Extended) -> [Inequality; 2] {
+fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [Inequality<R>; 2] {
     let reference = with_drag(configuration.bounds(), parameters.drag_across);
     let forced = ReferenceBounds {
         horizontal_acceleration: reference.horizontal_acceleration + parameters.force_heading,
         ..reference
     };
-    let gravity = f64::from(configuration.vehicle().gravity) - f64::from(parameters.force_up);
+    let gravity = R::from(configuration.vehicle().gravity) - R::from(parameters.force_up);
+    let one = R::from(1.0);
     // With a feedback of zero the filters stay at zero, whatever their bandwidths.
-    let alone = Reachable::new(1.0, 1.0, 0.0, gravity, &forced);
-    let fastest = if alone.vertical_least > 0.0 { sharp::turning_rates(&alone, &forced) } else { [f64::INFINITY; 2] };
-    let [rate, acceleration] = fastest.map(|rate| rate * (1.0 + ARITHMETIC_ALLOWANCE));
+    let alone = Reachable::new(one, one, R::from(0.0), gravity, &forced);
+    let infinite = [R::from(f64::INFINITY); 2];
+    let fastest = if alone.vertical_least.lower() > 0.0 { sharp::turning_rates(&alone, &forced) } else { infinite };
+    let [rate, acceleration] = fastest.map(|rate| rate * (one + ARITHMETIC_ALLOWANCE));
     // The part of alpha_0 that q leaves carries the frame about rho; the law divides it by sqrt(5/4) |p| at most.
-    let turned = math::sqrt_f64(1.25) * f64::from(reference.jerk) / alone.vertical_least;
-    let carried =
-        (1.0 - f64::from(turning::TURNED)) * f64::from(parameters.turn_reserve) / math::greater_f64(turned, 1e-9);
-    let most = math::lesser_f64(f64::from(parameters.yaw_rate), carried);
+    let turned = R::from(1.25).sqrt() * R::from(reference.jerk) / alone.vertical_least;
+    let carried = (one - R::from(turning::TURNED)) * R::from(parameters.turn_reserve) / turned.greater(R::from(1e-9));
+    let most = R::from(parameters.yaw_rate).lesser(carried);
     [
         Inequality::new("A1 heading rate for the reference", "rad/s", rate, most),
-        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, f64::from(parameters.yaw_acceleration)),
+        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, R::from(parameters.yaw_acceleration)),
     ]
 }
 
 /// qbar, at whose negative the lift switches.
 #[must_use]
-pub fn switching_scalar(delta: f32) -> f64 {
-    let square = (1.0 + f64::from(delta)) * (1.0 + f64::from(delta));
+pub fn switching_scalar<R: Real>(delta: f32) -> R {
+    let radius = R::from(delta) + 1.0;
+    let square = radius * radius;
     (square - 1.0) / (square + 1.0)
 }
 
 /// Section 6 of the document: no attitude but the target is an equilibrium, and damping always has a share.
-fn attitude(parameters: &Extended) -> [Inequality; 3] {
-    let qbar = switching_scalar(parameters.delta);
+fn attitude<R: Real>(parameters: &Extended) -> [Inequality<R>; 3] {
+    let qbar: R = switching_scalar(parameters.delta);
     let [w, eta, m_t, eta_t, m_all] =
-        [parameters.w, parameters.eta, parameters.m_t, parameters.eta_t, parameters.m_all].map(f64::from);
-    let pull = w * eta_t * math::sqrt_of_rounded(1.0 - qbar * qbar);
-    let potential = greatest_potential(parameters) * (1.0 + ARITHMETIC_ALLOWANCE);
+        [parameters.w, parameters.eta, parameters.m_t, parameters.eta_t, parameters.m_all].map(R::from);
+    let one = R::from(1.0);
+    let pull = w * eta_t * (one - qbar * qbar).sqrt_of_rounded();
+    let potential = greatest_potential::<R>(parameters) * (one + ARITHMETIC_ALLOWANCE);
     [
         Inequality::new("E switch qbar < eta", "1", qbar, eta),
-        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", 2.0 * qbar * m_t, pull),
+        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", qbar * 2.0 * m_t, pull),
         Inequality::new("D potential |P| < M_all", "N m", potential, m_all),
     ]
 }
 
 /// Greatest w r / 2 + G r sqrt(1 - r^2), N m, over r in [0, 1]: in cells, each term at the end where it is greatest.
 #[must_use]
-pub fn greatest_potential(parameters: &Extended) -> f64 {
+pub fn greatest_potential<R: Real>(parameters: &Extended) -> R {
     let p = parameters;
-    let [w, k_t, m_t, eta_t] = [p.w, p.k_t, p.m_t, p.eta_t].map(f64::from);
-    let rest = |r: f64| math::sqrt_of_rounded(1.0 - r * r);
+    let [w, k_t, m_t, eta_t] = [p.w, p.k_t, p.m_t, p.eta_t].map(R::from);
+    let rest = |r: R| (R::from(1.0) - r * r).sqrt_of_rounded();
     let of = |cell: usize| {
-        let [near, far] = [cell, cell + 1].map(|end| end as f64 / POTENTIAL_CELLS as f64);
+        let [near, far] = [cell, cell + 1].map(|end| R::from(end as f64 / POTENTIAL_CELLS as f64));
         // k_t r / sqrt(M_t^2 + k_t^2 r^2) rises with r, sqrt(1 - r^2) / sqrt(1 - r^2 + eta_t^2) falls.
-        let rising = m_t * k_t * far / math::hypot(m_t, k_t * far);
-        0.5 * w * far + rising * rest(near) / math::hypot(rest(near), eta_t)
+        let rising = m_t * k_t * far / m_t.hypot(k_t * far);
+        w * 0.5 * far + rising * rest(near) / rest(near).hypot(eta_t)
     };
-    (0..POTENTIAL_CELLS).map(of).fold(0.0, math::greater_f64)
+    (0..POTENTIAL_CELLS).map(of).fold(R::from(0.0), R::greater)
 }
 
 /// The rows of the budget, with the reserve.
-fn torques(parameters: &Extended, budget: &TorqueBudget) -> impl Iterator<Item = Inequality> {
+fn torques<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>) -> impl Iterator<Item = Inequality<R>> {
     const NAMES: [&str; ROWS] =
         ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range", "T1 thrust floor at the greatest torque"];
     const UNITS: [&str; ROWS] = ["N m", "N m", "N", "N"];
-    let reserves: Vec<[f64; 2], ROWS> =
-        collected(budget.reserves(f64::from(parameters.m_all), f64::from(parameters.turn_reserve)));
+    let reserves: Vec<[R; 2], ROWS> =
+        collected(budget.reserves(R::from(parameters.m_all), R::from(parameters.turn_reserve)));
     reserves.into_iter().zip(NAMES).zip(UNITS).map(|(([required, available], name), unit)| {
-        Inequality::new(name, unit, required * (1.0 + ARITHMETIC_ALLOWANCE), available)
+        Inequality::new(name, unit, required * (R::from(1.0) + ARITHMETIC_ALLOWANCE), available)
     })
 }
 
 /// The greatest commands if every inequality holds.
-fn bounds(configuration: &Configuration, parameters: &Extended, budget: &TorqueBudget) -> ExtendedBounds {
+fn bounds<R: Real>(
+    configuration: &Configuration,
+    parameters: &Extended,
+    budget: &TorqueBudget<R>,
+) -> ExtendedBounds<R> {
     let p = parameters;
-    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+    let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
     let [tilt_inertia, yaw_inertia] = budget.inertia;
-    let turning = f64::from(p.turn_acceleration);
-    let (mut tilt, mut yaw) = (f64::from(p.m_all) + tilt_inertia * turning, yaw_inertia * turning);
+    let turning = R::from(p.turn_acceleration);
+    let (mut tilt, mut yaw) = (R::from(p.m_all) + tilt_inertia * turning, yaw_inertia * turning);
     for row in &budget.rows {
-        if row.tilt > 0.0 {
-            tilt = math::lesser_f64(tilt, row.room / row.tilt);
+        if row.tilt.lower() > 0.0 {
+            tilt = tilt.lesser(row.room / row.tilt);
         }
-        if row.yaw > 0.0 {
-            yaw = math::lesser_f64(yaw, row.room / row.yaw);
+        if row.yaw.lower() > 0.0 {
+            yaw = yaw.lesser(row.room / row.yaw);
         }
     }
-    let across = tilt + budget.fixed[0] + f64::from(p.torque_tilt);
-    let about = yaw + budget.fixed[1] + f64::from(p.torque_yaw);
+    let across = tilt + budget.fixed[0] + R::from(p.torque_tilt);
+    let about = yaw + budget.fixed[1] + R::from(p.torque_yaw);
     let mut rotors = Vec::new();
-    let mut together = f64::from(configuration.limits().thrust_max);
+    let mut together = R::from(configuration.limits().thrust_max);
     if let Some(all) = configuration.rotors() {
         for rotor in all.iter() {
-            let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(f64::from);
+            let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(R::from);
             // As many as there are rotors: it fits.
             let _ = rotors.push(Interval { least, greatest });
         }
-        let thrust: f64 = rotors.iter().map(|rotor| rotor.greatest).sum();
-        together = math::lesser_f64(together, thrust * f64::from(p.scale_greatest));
+        let thrust = rotors.iter().fold(R::from(0.0), |sum, rotor: &Interval<R>| sum + rotor.greatest);
+        together = together.lesser(thrust * R::from(p.scale_greatest));
     }
     ExtendedBounds {
-        rates: [f64::from(p.turn_rate * RATE_BEYOND) * raised, turning * raised],
-        thrust: Interval { least: f64::from(p.floor_margin) / raised, greatest: together },
-        torque: Vector3::new(across, across, about) * raised,
+        rates: [R::from(p.turn_rate * RATE_BEYOND) * raised, turning * raised],
+        thrust: Interval { least: R::from(p.floor_margin) / raised, greatest: together },
+        torque: Vector3::new(across * raised, across * raised, about * raised),
         rotors,
     }
 }

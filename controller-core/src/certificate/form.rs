@@ -16,7 +16,7 @@ use super::reachable::Reachable;
 use super::sharp::{self, DesiredRates};
 use crate::configuration::{Configuration, PaperLaw};
 use crate::gains::Gains;
-use crate::math;
+use crate::math::real::Real;
 use nalgebra::Vector3;
 
 /// By how much, relative, bounds are raised to cover the single-precision arithmetic of the law. One evaluation's
@@ -26,26 +26,26 @@ pub const ARITHMETIC_ALLOWANCE: f64 = 1e-4;
 
 /// Least and greatest of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
+pub struct Interval<R = f64> {
     /// Least value.
-    pub least: f64,
+    pub least: R,
     /// Greatest value.
-    pub greatest: f64,
+    pub greatest: R,
 }
 
 /// One evaluation of all inequalities on the wrench.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Form {
+pub struct Form<R = f64> {
     /// Lemma 1: bounds on omega_d and omega_d', and the torque they take.
-    pub rates: DesiredRates,
+    pub rates: DesiredRates<R>,
     /// Every thrust the law can command, N.
-    pub thrust: Interval,
+    pub thrust: Interval<R>,
     /// Greatest |torque| about each body axis, N m.
-    pub torque: Vector3<f64>,
+    pub torque: Vector3<R>,
     /// iota: the greatest length of the attitude and body-rate feedback together, N m.
-    pub feedback_torque: f64,
+    pub feedback_torque: R,
     /// Assumption 1, Theorem 1 and Theorem 2, in that order.
-    pub inequalities: [Inequality; 11],
+    pub inequalities: [Inequality<R>; 11],
 }
 
 impl Form {
@@ -70,11 +70,15 @@ pub(super) enum Derivation {
 }
 
 /// Bounds on the desired rates with the position feedback at `m_p` (zero: the reference alone).
-fn desired_rates(configuration: &Configuration, gains: &Gains, m_p: f64, derivation: Derivation) -> DesiredRates {
+fn desired_rates<R: Real>(
+    configuration: &Configuration,
+    gains: &Gains,
+    m_p: R,
+    derivation: Derivation,
+) -> DesiredRates<R> {
     let bounds = configuration.bounds();
-    let gravity = f64::from(configuration.vehicle().gravity);
-    let inertia = configuration.vehicle().inertia.map(f64::from);
-    let (k_f, k_s) = (f64::from(gains.k_f), f64::from(gains.k_s));
+    let inertia = configuration.vehicle().inertia.map(R::from);
+    let [gravity, k_f, k_s] = [configuration.vehicle().gravity, gains.k_f, gains.k_s].map(R::from);
     let printed = printed::desired_rates(k_f, k_s, m_p, gravity, bounds, &inertia);
     match derivation {
         Derivation::Printed => printed,
@@ -86,31 +90,31 @@ fn desired_rates(configuration: &Configuration, gains: &Gains, m_p: f64, derivat
 }
 
 /// The inequalities of `law`, the one of `configuration`, after `derivation`.
-pub(super) fn form(configuration: &Configuration, law: &PaperLaw, derivation: Derivation) -> Form {
+pub(super) fn form<R: Real>(configuration: &Configuration, law: &PaperLaw, derivation: Derivation) -> Form<R> {
     let PaperLaw { gains, thrust_floor } = law;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let bounds = configuration.bounds();
-    let (mass, gravity, m_p) = (f64::from(vehicle.mass), f64::from(vehicle.gravity), f64::from(gains.m_p));
-    let (horizontal, vertical) = (f64::from(bounds.horizontal_acceleration), f64::from(bounds.vertical_acceleration));
-    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+    let [mass, gravity, m_p] = [vehicle.mass, vehicle.gravity, gains.m_p].map(R::from);
+    let [horizontal, vertical] = [bounds.horizontal_acceleration, bounds.vertical_acceleration].map(R::from);
+    let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
 
-    let reach = Reachable::new(f64::from(gains.k_f), f64::from(gains.k_s), m_p, gravity, bounds);
+    let reach = Reachable::new(R::from(gains.k_f), R::from(gains.k_s), m_p, gravity, bounds);
     let magnitude = match derivation {
-        Derivation::Printed => math::SQRT_3 * m_p + math::hypot(horizontal, vertical + gravity),
+        Derivation::Printed => R::from(3.0).sqrt() * m_p + horizontal.hypot(vertical + gravity),
         Derivation::Sharp => reach.magnitude(),
     };
     let least_law = mass * reach.vertical_least;
-    let floor = thrust_floor.map_or(0.0, f64::from);
-    let least = if floor > 0.0 { floor } else { least_law };
+    let floor = R::from(thrust_floor.unwrap_or(0.0));
+    let least = if floor.lower() > 0.0 { floor } else { least_law };
     let thrust = Interval { least: least / raised, greatest: mass * magnitude * raised };
 
-    let alone = desired_rates(configuration, gains, 0.0, derivation).feedforward_torque * raised;
+    let alone = desired_rates(configuration, gains, R::from(0.0), derivation).feedforward_torque * raised;
     let rates = desired_rates(configuration, gains, m_p, derivation);
     let feedback_torque = feedback_torque(gains, derivation);
-    let torque = rates.feedforward_torque.add_scalar(feedback_torque) * raised;
-    let available = limits.torque_max.map(f64::from);
-    let thrust_max = f64::from(limits.thrust_max);
-    let feasible = mass * (gravity + math::hypot(horizontal, vertical)) * raised;
+    let torque = rates.feedforward_torque.map(|torque| (torque + feedback_torque) * raised);
+    let available = limits.torque_max.map(R::from);
+    let thrust_max = R::from(limits.thrust_max);
+    let feasible = mass * (gravity + horizontal.hypot(vertical)) * raised;
 
     let inequalities = [
         Inequality::new("A1 vertical acceleration K_a3 < g", "m/s^2", vertical, gravity),
@@ -129,15 +133,15 @@ pub(super) fn form(configuration: &Configuration, law: &PaperLaw, derivation: De
 }
 
 /// iota of Theorem 2. The sharp form uses what the saturation reaches at |theta| = 1 + delta instead of its limit.
-fn feedback_torque(gains: &Gains, derivation: Derivation) -> f64 {
-    let (m_theta, m_omega) = (f64::from(gains.m_theta), f64::from(gains.m_omega));
-    let radius = 1.0 + f64::from(gains.delta);
+fn feedback_torque<R: Real>(gains: &Gains, derivation: Derivation) -> R {
+    let [m_theta, m_omega, k_theta] = [gains.m_theta, gains.m_omega, gains.k_theta].map(R::from);
+    let radius = R::from(gains.delta) + 1.0;
     let attitude = match derivation {
         Derivation::Printed => m_theta,
         Derivation::Sharp => {
-            let argument = f64::from(gains.k_theta) * radius;
-            m_theta * argument / math::hypot(m_theta, argument)
+            let argument = k_theta * radius;
+            m_theta * argument / m_theta.hypot(argument)
         }
     };
-    (1.0 + radius * radius) * attitude / 4.0 + m_omega
+    (radius * radius + 1.0) * attitude / 4.0 + m_omega
 }

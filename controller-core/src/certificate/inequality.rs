@@ -1,25 +1,26 @@
 //! One inequality of the certificate: what is required, what is available, and the margin between.
 
+use crate::math::real::Real;
 use core::fmt;
 
 /// `required < available`, or `<=` where the paper's inequality is not strict.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inequality {
+pub struct Inequality<R = f64> {
     /// Where it comes from (A1: Assumption 1, T1 and T2: Theorems 1 and 2, R: a rotor) and what it is about.
     pub name: &'static str,
     /// Unit of both sides.
     pub unit: &'static str,
     /// The left side.
-    pub required: f64,
+    pub required: R,
     /// The right side.
-    pub available: f64,
+    pub available: R,
     strict: bool,
 }
 
-impl Inequality {
+impl<R: Real> Inequality<R> {
     /// `required < available`.
     #[must_use]
-    pub fn new(name: &'static str, unit: &'static str, required: f64, available: f64) -> Self {
+    pub fn new(name: &'static str, unit: &'static str, required: R, available: R) -> Self {
         Self { name, unit, required, available, strict: true }
     }
 
@@ -29,12 +30,15 @@ impl Inequality {
         Self { strict: false, ..self }
     }
 
-    /// Whether it holds; a NaN on either side does not.
+    /// Whether it holds, whatever numbers the sides enclose; with a NaN on either side it does not.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.required < self.available || (!self.strict && self.required == self.available)
+        let (required, available) = (self.required.upper(), self.available.lower());
+        required < available || (!self.strict && required == available)
     }
+}
 
+impl Inequality {
     /// The margin as a share of what is available; negative where the inequality fails.
     #[must_use]
     pub fn margin(&self) -> f64 {

@@ -7,20 +7,21 @@ use super::rotors::{self, RotorReport};
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::configuration::{Configuration, PaperLaw};
 use crate::error::ParameterError;
+use crate::math::real::Real;
 use heapless::Vec;
 
 /// Every inequality about one configuration of the paper's law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PaperCertificate {
+pub struct PaperCertificate<R = f64> {
     /// The paper's own bounds, x_f(0) = 0.
-    pub printed: Form,
+    pub printed: Form<R>,
     /// The bounds of `docs/sharp-bound.md`; they decide.
-    pub sharp: Form,
+    pub sharp: Form<R>,
     /// Every rotor under the sharp form's bounds; empty for a configuration without rotors.
-    pub rotors: Vec<RotorReport, ROTORS_MAX>,
+    pub rotors: Vec<RotorReport<R>, ROTORS_MAX>,
 }
 
-impl PaperCertificate {
+impl<R: Real> PaperCertificate<R> {
     /// Works out every inequality for `law`, the one of `configuration`.
     ///
     /// # Errors
@@ -34,7 +35,7 @@ impl PaperCertificate {
     }
 
     /// The inequality at `place`: the sharp form's, then two for each rotor.
-    pub(super) fn inequality(&self, place: usize) -> Option<&Inequality> {
+    pub(super) fn inequality(&self, place: usize) -> Option<&Inequality<R>> {
         let wrench = &self.sharp.inequalities;
         wrench.get(place).or_else(|| {
             let of_rotors = place.checked_sub(wrench.len())?;

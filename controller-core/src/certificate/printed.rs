@@ -12,34 +12,35 @@
 
 use super::reachable::half_l1_norm;
 use super::sharp::{DesiredRates, feedforward_torque};
-use crate::math;
+use crate::math::real::Real;
 use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
 /// Lemma 1's bounds for filters of bandwidth `k_f`, `k_s` fed with a feedback of level `m_p`.
 #[must_use]
-pub fn desired_rates(
-    k_f: f64,
-    k_s: f64,
-    m_p: f64,
-    gravity: f64,
+pub fn desired_rates<R: Real>(
+    k_f: R,
+    k_s: R,
+    m_p: R,
+    gravity: R,
     bounds: &ReferenceBounds,
-    inertia: &Vector3<f64>,
-) -> DesiredRates {
+    inertia: &Vector3<R>,
+) -> DesiredRates<R> {
     let half_l1 = half_l1_norm(k_f, k_s);
-    let jerk = 2.0 * math::SQRT_3 * k_f * half_l1 * m_p + f64::from(bounds.jerk);
-    let snap = 2.0 * math::SQRT_3 * k_f * m_p * (k_f * half_l1 + k_s) + f64::from(bounds.snap);
-    let vertical = gravity - m_p - f64::from(bounds.vertical_acceleration);
-    let horizontal = core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration);
-    let projection = vertical / math::hypot(vertical, horizontal);
-    let (heading_rate, heading_second) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
+    let [both, all] = [2.0, 3.0].map(|axes| R::from(axes).sqrt());
+    let jerk = all * 2.0 * k_f * half_l1 * m_p + R::from(bounds.jerk);
+    let snap = all * 2.0 * k_f * m_p * (k_f * half_l1 + k_s) + R::from(bounds.snap);
+    let vertical = gravity - m_p - R::from(bounds.vertical_acceleration);
+    let horizontal = both * m_p + R::from(bounds.horizontal_acceleration);
+    let projection = vertical / vertical.hypot(horizontal);
+    let [heading_rate, heading_second] = [bounds.heading_rate, bounds.heading_second_derivative].map(R::from);
 
     let rho_1 = jerk / vertical;
-    let rho_2 = snap / vertical + 3.0 * rho_1 * rho_1;
+    let rho_2 = snap / vertical + rho_1 * 3.0 * rho_1;
     let upsilon_1 = (rho_1 + heading_rate) / projection;
-    let upsilon_2 = (rho_2 + heading_second + 2.0 * rho_1 * heading_rate) / projection + 3.0 * upsilon_1 * upsilon_1;
-    let angular_velocity = math::hypot(rho_1, upsilon_1);
-    let angular_acceleration = rho_1 * upsilon_1 + math::hypot(rho_2, upsilon_2);
+    let upsilon_2 = (rho_2 + heading_second + rho_1 * 2.0 * heading_rate) / projection + upsilon_1 * 3.0 * upsilon_1;
+    let angular_velocity = rho_1.hypot(upsilon_1);
+    let angular_acceleration = rho_1 * upsilon_1 + rho_2.hypot(upsilon_2);
     let feedforward_torque = feedforward_torque(inertia, angular_velocity, angular_acceleration);
     DesiredRates { angular_velocity, angular_acceleration, feedforward_torque }
 }

@@ -17,62 +17,65 @@
 //! Single axes stay single axes here: the horizontal pair is bounded by its Euclidean norm, sqrt(2) times an axis, and
 //! the vertical axis by itself.
 
-use crate::math;
+use crate::math::real::Real;
 use crate::reference::ReferenceBounds;
 
 /// Bounds on u and its derivatives over everything reachable after a reset, m/s^2, m/s^3, m/s^4.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reachable {
+pub struct Reachable<R = f64> {
     /// Least u_z = g - M_p - K_a3; the law is defined while it is positive.
-    pub vertical_least: f64,
+    pub vertical_least: R,
     /// Greatest u_z = g + M_p + K_a3.
-    pub vertical_greatest: f64,
+    pub vertical_greatest: R,
     /// Greatest |(u_x, u_y)| = sqrt(2) M_p + K_a12.
-    pub horizontal: f64,
+    pub horizontal: R,
     /// Greatest |u'|.
-    pub jerk: f64,
+    pub jerk: R,
     /// Greatest |(u'_x, u'_y)|.
-    pub horizontal_jerk: f64,
+    pub horizontal_jerk: R,
     /// Greatest |u'_z|.
-    pub vertical_jerk: f64,
+    pub vertical_jerk: R,
     /// Greatest |(u''_x, u''_y)|.
-    pub horizontal_snap: f64,
+    pub horizontal_snap: R,
     /// Greatest |u''_z|.
-    pub vertical_snap: f64,
+    pub vertical_snap: R,
 }
 
 /// U_l of Lemma 1: half the L1 norm of the impulse response from ubar to u_f - u_s.
 #[must_use]
-pub fn half_l1_norm(k_f: f64, k_s: f64) -> f64 {
+pub fn half_l1_norm<R: Real>(k_f: R, k_s: R) -> R {
     // (k_f / k_s)^(k_f / (k_s - k_f)) = exp(-ln(1 + x) / x) with x = k_s / k_f - 1.
     let x = k_s / k_f - 1.0;
-    if x.abs() < 1e-9 { math::exp(-1.0) } else { math::exp(-math::ln_1p(x) / x) }
+    let exponent = if k_s == k_f { R::from(-1.0) } else { -x.ln_1p() / x };
+    exponent.exp()
 }
 
-impl Reachable {
+impl<R: Real> Reachable<R> {
     /// For filters of bandwidth `k_f`, `k_s` (1/s), feedback level `m_p` (m/s^2) and a reference within `bounds`.
     #[must_use]
-    pub fn new(k_f: f64, k_s: f64, m_p: f64, gravity: f64, bounds: &ReferenceBounds) -> Self {
+    pub fn new(k_f: R, k_s: R, m_p: R, gravity: R, bounds: &ReferenceBounds) -> Self {
         let half_l1 = half_l1_norm(k_f, k_s);
-        let axis_jerk = 2.0 * k_f * half_l1 * m_p;
-        let axis_snap = 2.0 * k_f * m_p * (k_s + k_f * half_l1 * half_l1);
-        let (jerk, snap) = (f64::from(bounds.jerk), f64::from(bounds.snap));
-        let vertical = f64::from(bounds.vertical_acceleration);
+        let axis_jerk = k_f * 2.0 * half_l1 * m_p;
+        let axis_snap = k_f * 2.0 * m_p * (k_s + k_f * half_l1 * half_l1);
+        let [jerk, snap, vertical, horizontal] =
+            [bounds.jerk, bounds.snap, bounds.vertical_acceleration, bounds.horizontal_acceleration].map(R::from);
+        // The Euclidean norms of two and of three axes.
+        let [both, all] = [2.0, 3.0].map(|axes| R::from(axes).sqrt());
         Self {
             vertical_least: gravity - m_p - vertical,
             vertical_greatest: gravity + m_p + vertical,
-            horizontal: core::f64::consts::SQRT_2 * m_p + f64::from(bounds.horizontal_acceleration),
-            jerk: math::SQRT_3 * axis_jerk + jerk,
-            horizontal_jerk: core::f64::consts::SQRT_2 * axis_jerk + jerk,
+            horizontal: both * m_p + horizontal,
+            jerk: all * axis_jerk + jerk,
+            horizontal_jerk: both * axis_jerk + jerk,
             vertical_jerk: axis_jerk + jerk,
-            horizontal_snap: core::f64::consts::SQRT_2 * axis_snap + snap,
+            horizontal_snap: both * axis_snap + snap,
             vertical_snap: axis_snap + snap,
         }
     }
 
     /// Greatest |u|.
     #[must_use]
-    pub fn magnitude(&self) -> f64 {
-        math::hypot(self.horizontal, self.vertical_greatest)
+    pub fn magnitude(&self) -> R {
+        self.horizontal.hypot(self.vertical_greatest)
     }
 }

@@ -21,6 +21,7 @@ use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::support::{Commands, RotorDemand, Shape, TorqueTerm, demands};
 use crate::configuration::Configuration;
 use crate::error::ParameterError;
+use crate::math::real::Real;
 use heapless::Vec;
 
 /// Names of the inequalities, by rotor.
@@ -37,22 +38,25 @@ const NAMES: [(&str, &str); ROTORS_MAX] = [
 
 /// The law's demand on one rotor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RotorReport {
+pub struct RotorReport<R = f64> {
     /// Its extremes, and what it has.
-    pub demand: RotorDemand,
+    pub demand: RotorDemand<R>,
     /// How far below hovering the law may take it, against the room there, N.
-    pub least: Inequality,
+    pub least: Inequality<R>,
     /// How far above, N.
-    pub greatest: Inequality,
+    pub greatest: Inequality<R>,
 }
 
 /// The sets that the law's torque is a sum of, under the bounds of `form`.
 ///
 /// # Errors
 /// If the form's bounds are not finite; the constructors before it leave no way to that.
-pub fn torque_terms(configuration: &Configuration, form: &Form) -> Result<[TorqueTerm; 3], ParameterError> {
-    let inertia = configuration.vehicle().inertia.map(f64::from);
-    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
+pub fn torque_terms<R: Real>(
+    configuration: &Configuration,
+    form: &Form<R>,
+) -> Result<[TorqueTerm<R>; 3], ParameterError> {
+    let inertia = configuration.vehicle().inertia.map(R::from);
+    let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
     let rate = form.rates.angular_velocity * raised;
     let semi_axes = inertia * (form.rates.angular_acceleration * raised);
     Ok([
@@ -66,21 +70,25 @@ pub fn torque_terms(configuration: &Configuration, form: &Form) -> Result<[Torqu
 ///
 /// # Errors
 /// As [`torque_terms`].
-pub fn reports(configuration: &Configuration, form: &Form) -> Result<Vec<RotorReport, ROTORS_MAX>, ParameterError> {
+pub fn reports<R: Real>(
+    configuration: &Configuration,
+    form: &Form<R>,
+) -> Result<Vec<RotorReport<R>, ROTORS_MAX>, ParameterError> {
     let mut reports = Vec::new();
     let Some(rotors) = configuration.rotors() else {
         return Ok(reports);
     };
     let terms = torque_terms(configuration, form)?;
     let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
-    let hover = f64::from(configuration.vehicle().mass) * f64::from(configuration.vehicle().gravity);
+    let hover = R::from(configuration.vehicle().mass) * R::from(configuration.vehicle().gravity);
     for ((demand, row), (least, greatest)) in demands(rotors, &commands).iter().zip(rotors.pseudo_inverse()).zip(&NAMES)
     {
-        let share = row.x * hover;
+        let share = hover * row.x;
+        let [available_min, available_max] = [demand.available_min, demand.available_max].map(R::from);
         let report = RotorReport {
             demand: *demand,
-            least: Inequality::new(least, "N", share - demand.least, share - demand.available_min).or_equal(),
-            greatest: Inequality::new(greatest, "N", demand.greatest - share, demand.available_max - share).or_equal(),
+            least: Inequality::new(least, "N", share - demand.least, share - available_min).or_equal(),
+            greatest: Inequality::new(greatest, "N", demand.greatest - share, available_max - share).or_equal(),
         };
         // As many reports as rotors: it fits.
         let _ = reports.push(report);

@@ -27,7 +27,7 @@
 //! not looked into: rounding is monotone, so the result is the same to the last bit.
 
 use super::reachable::Reachable;
-use crate::math;
+use crate::math::real::Real;
 use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
@@ -47,70 +47,73 @@ pub const HEADING_CELLS: usize = 80;
 
 /// Bounds on the desired attitude's motion, and on the torque it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DesiredRates {
+pub struct DesiredRates<R = f64> {
     /// U_omega: greatest |omega_d|, rad/s.
-    pub angular_velocity: f64,
+    pub angular_velocity: R,
     /// U_omega': greatest |omega_d'|, rad/s^2.
-    pub angular_acceleration: f64,
+    pub angular_acceleration: R,
     /// Greatest J_ii |omega_d'| + |J_jj - J_kk| |omega_d|^2 / 2 about each body axis, N m.
-    pub feedforward_torque: Vector3<f64>,
+    pub feedforward_torque: Vector3<R>,
 }
 
-impl DesiredRates {
+impl<R: Real> DesiredRates<R> {
     /// The componentwise lesser of two bounds.
     #[must_use]
     pub fn min(&self, other: &Self) -> Self {
         Self {
-            angular_velocity: self.angular_velocity.min(other.angular_velocity),
-            angular_acceleration: self.angular_acceleration.min(other.angular_acceleration),
-            feedforward_torque: self.feedforward_torque.inf(&other.feedforward_torque),
+            angular_velocity: self.angular_velocity.lesser(other.angular_velocity),
+            angular_acceleration: self.angular_acceleration.lesser(other.angular_acceleration),
+            feedforward_torque: self.feedforward_torque.zip_map(&other.feedforward_torque, R::lesser),
         }
     }
 
-    /// Whether any of these bounds is greater than the other's.
+    /// Whether any of these bounds may be greater than the other's.
     fn exceed(&self, other: &Self) -> bool {
+        let exceeds = |ours: R, theirs: R| ours.upper() > theirs.upper();
         let torque = self.feedforward_torque.iter().zip(other.feedforward_torque.as_slice());
-        self.angular_velocity > other.angular_velocity
-            || self.angular_acceleration > other.angular_acceleration
-            || torque.into_iter().any(|(ours, theirs)| ours > theirs)
+        exceeds(self.angular_velocity, other.angular_velocity)
+            || exceeds(self.angular_acceleration, other.angular_acceleration)
+            || torque.into_iter().any(|(ours, theirs)| exceeds(*ours, *theirs))
     }
 
     /// These bounds raised to hold for another cell too.
-    fn with(&self, inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Self {
+    fn with(&self, inertia: &Vector3<R>, velocity: R, acceleration: R) -> Self {
         Self {
-            angular_velocity: math::greater_f64(self.angular_velocity, velocity),
-            angular_acceleration: math::greater_f64(self.angular_acceleration, acceleration),
-            feedforward_torque: self.feedforward_torque.sup(&feedforward_torque(inertia, velocity, acceleration)),
+            angular_velocity: self.angular_velocity.greater(velocity),
+            angular_acceleration: self.angular_acceleration.greater(acceleration),
+            feedforward_torque: self
+                .feedforward_torque
+                .zip_map(&feedforward_torque(inertia, velocity, acceleration), R::greater),
         }
     }
 }
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: the bound under |omega_d'| <= a and |omega_d| <= v in any body frame.
 #[must_use]
-pub fn feedforward_torque(inertia: &Vector3<f64>, velocity: f64, acceleration: f64) -> Vector3<f64> {
-    let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).abs();
-    inertia * acceleration + differences * (0.5 * velocity * velocity)
+pub fn feedforward_torque<R: Real>(inertia: &Vector3<R>, velocity: R, acceleration: R) -> Vector3<R> {
+    let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).map(R::abs);
+    inertia * acceleration + differences * (velocity * 0.5 * velocity)
 }
 
 /// A part of omega_d or omega_d': what tilts rho (axes 1 and 2) and what turns about it (axis 3), as magnitudes.
 #[derive(Clone, Copy)]
-struct Parts {
-    tilting: f64,
-    yawing: f64,
+struct Parts<R> {
+    tilting: R,
+    yawing: R,
 }
 
-impl Parts {
+impl<R: Real> Parts<R> {
     /// The greatest of each part.
     fn worst(all: &[Self]) -> Self {
-        let nothing = Self { tilting: 0.0, yawing: 0.0 };
+        let nothing = Self { tilting: R::from(0.0), yawing: R::from(0.0) };
         all.iter().fold(nothing, |worst, parts| Self {
-            tilting: math::greater_f64(worst.tilting, parts.tilting),
-            yawing: math::greater_f64(worst.yawing, parts.yawing),
+            tilting: worst.tilting.greater(parts.tilting),
+            yawing: worst.yawing.greater(parts.yawing),
         })
     }
 
     /// |self + other|^2 at most.
-    fn square_of_sum(&self, other: &Self) -> f64 {
+    fn square_of_sum(&self, other: &Self) -> R {
         let (tilting, yawing) = (self.tilting + other.tilting, self.yawing + other.yawing);
         tilting * tilting + yawing * yawing
     }
@@ -118,60 +121,61 @@ impl Parts {
 
 /// A vector's part orthogonal to rho, divided by n: its length |v| and what it can turn the yaw by, \[v\].
 #[derive(Clone, Copy)]
-struct Tangential {
-    length: f64,
-    mixed: f64,
+struct Tangential<R> {
+    length: R,
+    mixed: R,
 }
 
 /// One cell of how u' splits into p, orthogonal to rho, and r along it; every part at its greatest, over n.
 #[derive(Clone, Copy)]
-struct Shares {
+struct Shares<R> {
     /// r / n.
-    stretch: f64,
+    stretch: R,
     /// p / n.
-    length: f64,
+    length: R,
     /// p r / n^2.
-    product: f64,
+    product: R,
     /// \[p\] / n.
-    mixed: f64,
+    mixed: R,
 }
 
-impl Shares {
+impl<R: Real> Shares<R> {
     /// The greatest of each part.
     fn worst(all: &[Self]) -> Self {
-        let nothing = Self { stretch: 0.0, length: 0.0, product: 0.0, mixed: 0.0 };
+        let zero = R::from(0.0);
+        let nothing = Self { stretch: zero, length: zero, product: zero, mixed: zero };
         all.iter().fold(nothing, |worst, shares| Self {
-            stretch: math::greater_f64(worst.stretch, shares.stretch),
-            length: math::greater_f64(worst.length, shares.length),
-            product: math::greater_f64(worst.product, shares.product),
-            mixed: math::greater_f64(worst.mixed, shares.mixed),
+            stretch: worst.stretch.greater(shares.stretch),
+            length: worst.length.greater(shares.length),
+            product: worst.product.greater(shares.product),
+            mixed: worst.mixed.greater(shares.mixed),
         })
     }
 }
 
 /// One cell of the tilt, with each function of it at both ends or at its worst one.
-struct Tilt {
+struct Tilt<R> {
     /// Greatest tangent and sine, at the tilted end.
-    tan: f64,
-    sin: f64,
+    tan: R,
+    sin: R,
     /// Least sine and greatest cosine, at the upright end.
-    sin_least: f64,
-    cos_greatest: f64,
+    sin_least: R,
+    cos_greatest: R,
     /// Greatest 1 / cos, at the tilted end.
-    secant: f64,
+    secant: R,
     /// Least n.
-    magnitude: f64,
+    magnitude: R,
 }
 
-impl Tilt {
-    fn between(upright_end: f64, tilted_end: f64, vertical_least: f64) -> Self {
-        let secant = math::hypot(1.0, tilted_end);
-        let secant_least = math::hypot(1.0, upright_end);
+impl<R: Real> Tilt<R> {
+    fn between(upright_end: R, tilted_end: R, vertical_least: R) -> Self {
+        let one = R::from(1.0);
+        let [secant, secant_least] = [tilted_end, upright_end].map(|tangent| one.hypot(tangent));
         Self {
             tan: tilted_end,
             sin: tilted_end / secant,
             sin_least: upright_end / secant_least,
-            cos_greatest: 1.0 / secant_least,
+            cos_greatest: one / secant_least,
             secant,
             magnitude: vertical_least * secant_least,
         }
@@ -181,76 +185,76 @@ impl Tilt {
     /// of the slope, and whose vertical part is at most `vertical`.
     ///
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
-    fn tangential(&self, horizontal: f64, vertical: f64, direction: &Direction) -> Tangential {
+    fn tangential(&self, horizontal: R, vertical: R, direction: &Direction<R>) -> Tangential<R> {
         let climbing = self.sin * vertical;
         let flattened = self.sin_least * horizontal * direction.cos_least;
         let square = horizontal * horizontal + climbing * climbing - flattened * flattened
-            + 2.0 * self.cos_greatest * horizontal * direction.cos_greatest * climbing;
-        let length = math::sqrt_of_rounded(square) / self.magnitude;
-        Tangential { length, mixed: 0.5 * (length + horizontal * direction.sin_greatest / self.magnitude) }
+            + self.cos_greatest * 2.0 * horizontal * direction.cos_greatest * climbing;
+        let length = square.sqrt_of_rounded() / self.magnitude;
+        Tangential { length, mixed: (length + horizontal * direction.sin_greatest / self.magnitude) * 0.5 }
     }
 
     /// L u'' for a direction of u''.
-    fn linear_part(&self, reach: &Reachable, direction: &Direction) -> Parts {
+    fn linear_part(&self, reach: &Reachable<R>, direction: &Direction<R>) -> Parts<R> {
         let Tangential { length, mixed } = self.tangential(reach.horizontal_snap, reach.vertical_snap, direction);
         Parts { tilting: length, yawing: self.tan * mixed }
     }
 
     /// omega_d for u' and |psi'| = `yaw_rate`.
-    fn velocity(&self, jerk: &Tangential, yaw_rate: f64) -> Parts {
+    fn velocity(&self, jerk: &Tangential<R>, yaw_rate: R) -> Parts<R> {
         let Tangential { length, mixed } = *jerk;
         Parts { tilting: length, yawing: yaw_rate * self.secant + self.tan * mixed }
     }
 
     /// The shares of u' in the cell `split`, for p at most `longest`.
-    fn shares(&self, reach: &Reachable, longest: f64, split: usize) -> Shares {
+    fn shares(&self, reach: &Reachable<R>, longest: R, split: usize) -> Shares<R> {
         let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
         let total = reach.jerk * reach.jerk;
         let length = most / self.magnitude;
         Shares {
-            stretch: math::sqrt_f64(total - least * least) / self.magnitude,
+            stretch: (total - least * least).sqrt_of_rounded() / self.magnitude,
             length,
             product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
-            mixed: 0.5 * (length + math::lesser_f64(most, reach.horizontal_jerk) / self.magnitude),
+            mixed: (length + most.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
         }
     }
 
     /// N for |psi'| and |psi''| at most those of `heading` and u' shared out as `shares`. Grows with each of their
     /// parts.
-    fn quadratic_part(&self, heading: &HeadingCell, shares: &Shares) -> Parts {
+    fn quadratic_part(&self, heading: &HeadingCell<R>, shares: &Shares<R>) -> Parts<R> {
         let HeadingCell { rate, acceleration } = *heading;
         let Shares { stretch, length, product, mixed } = *shares;
         let yaw = rate * self.secant + self.tan * mixed;
         let yawing = acceleration * self.secant
-            + 2.0 * self.tan * stretch * mixed
+            + self.tan * 2.0 * stretch * mixed
             + rate * rate * self.tan * self.tan
-            + 2.0 * rate * length * self.sin * self.secant * self.secant
-            + 0.5 * length * length * (1.0 + 2.0 * self.tan * self.tan);
-        let (twice, turned) = (2.0 * product, length * yaw);
-        Parts { tilting: math::sqrt_f64(twice * twice + turned * turned), yawing }
+            + rate * 2.0 * length * self.sin * self.secant * self.secant
+            + length * 0.5 * length * (self.tan * 2.0 * self.tan + 1.0);
+        let (twice, turned) = (product * 2.0, length * yaw);
+        Parts { tilting: (twice * twice + turned * turned).sqrt_of_rounded(), yawing }
     }
 }
 
 /// The greatest |L u'' + N|^2 of one cell of the tilt: every direction, heading and share, with those left out of which
 /// an upper bound shows that they change nothing.
-fn acceleration_square(
-    tilt: &Tilt,
-    linear: &[Parts; ANGLE_CELLS],
-    headings: &[HeadingCell; HEADING_CELLS],
-    shares: &[Shares; SPLIT_CELLS],
-) -> f64 {
+fn acceleration_square<R: Real>(
+    tilt: &Tilt<R>,
+    linear: &[Parts<R>; ANGLE_CELLS],
+    headings: &[HeadingCell<R>; HEADING_CELLS],
+    shares: &[Shares<R>; SPLIT_CELLS],
+) -> R {
     let (worst_linear, worst_shares) = (Parts::worst(linear), Shares::worst(shares));
-    let mut greatest: f64 = 0.0;
+    let mut greatest = R::from(0.0);
     for heading in headings {
-        if worst_linear.square_of_sum(&tilt.quadratic_part(heading, &worst_shares)) <= greatest {
+        if worst_linear.square_of_sum(&tilt.quadratic_part(heading, &worst_shares)).upper() <= greatest.upper() {
             continue;
         }
         for shares in shares {
             let quadratic = tilt.quadratic_part(heading, shares);
-            let is_covered = worst_linear.square_of_sum(&quadratic) <= greatest;
+            let is_covered = worst_linear.square_of_sum(&quadratic).upper() <= greatest.upper();
             if !is_covered {
                 for linear in linear {
-                    greatest = math::greater_f64(greatest, linear.square_of_sum(&quadratic));
+                    greatest = greatest.greater(linear.square_of_sum(&quadratic));
                 }
             }
         }
@@ -259,56 +263,56 @@ fn acceleration_square(
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
-fn greatest_product(total: f64, least: f64, most: f64) -> f64 {
-    let x = math::lesser_f64(math::greater_f64(0.5 * total, least), most);
-    math::sqrt_of_rounded(x * (total - x))
+fn greatest_product<R: Real>(total: R, least: R, most: R) -> R {
+    let x = (total * 0.5).greater(least).lesser(most);
+    (x * (total - x)).sqrt_of_rounded()
 }
 
 /// One cell of a horizontal vector's angle to the slope.
 #[derive(Clone, Copy)]
-struct Direction {
-    cos_greatest: f64,
-    cos_least: f64,
-    sin_greatest: f64,
+struct Direction<R> {
+    cos_greatest: R,
+    cos_least: R,
+    sin_greatest: R,
 }
 
-impl Direction {
+impl<R: Real> Direction<R> {
     /// The cells of [0, pi/2]; the other quadrants mirror it. From end to end the angle is turned on by one cell; what
     /// rounding does to that is far below [`OUTWARDS`], by which every value is moved to its safe side.
     fn quarter_turn() -> [Self; ANGLE_CELLS] {
-        let (mut cos, mut sin) = (1.0, 0.0);
+        let (mut cos, mut sin) = (R::from(1.0), R::from(0.0));
         core::array::from_fn(|_| {
             let cos_greatest = cos + OUTWARDS;
             (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
             // A cosine below zero must not come out: it is squared.
-            Self { cos_greatest, cos_least: math::greater_f64(cos - OUTWARDS, 0.0), sin_greatest: sin + OUTWARDS }
+            Self { cos_greatest, cos_least: (cos - OUTWARDS).greater(R::from(0.0)), sin_greatest: sin + OUTWARDS }
         })
     }
 }
 
 /// One cell of |psi'|, with |psi''| as large as it leaves it.
 #[derive(Clone, Copy)]
-struct HeadingCell {
-    rate: f64,
-    acceleration: f64,
+struct HeadingCell<R> {
+    rate: R,
+    acceleration: R,
 }
 
-impl HeadingCell {
+impl<R: Real> HeadingCell<R> {
     /// The cells of |psi'| <= K_nu' with psi''^2 + psi'^4 <= K_nu''^2: psi' at the far end, psi'' as at the near end.
     /// The fastest first: they are the likeliest to matter.
     fn all(bounds: &ReferenceBounds) -> [Self; HEADING_CELLS] {
-        let (rate_bound, second_bound) = (f64::from(bounds.heading_rate), f64::from(bounds.heading_second_derivative));
+        let [rate_bound, second_bound] = [bounds.heading_rate, bounds.heading_second_derivative].map(R::from);
         // No heading turns faster than K_nu'' allows.
-        let fastest = math::lesser_f64(rate_bound, math::sqrt_f64(second_bound));
+        let fastest = rate_bound.lesser(second_bound.sqrt());
         core::array::from_fn(|place| Self::new(HEADING_CELLS - 1 - place, fastest, second_bound))
     }
 
     /// The cell of this number from the slowest, of headings no faster than `fastest`.
     #[inline(never)] // unrolled, it would take more of a board's stack than anything around it
-    fn new(cell: usize, fastest: f64, second_bound: f64) -> Self {
+    fn new(cell: usize, fastest: R, second_bound: R) -> Self {
         let [near, far] = [cell, cell + 1].map(|end| fastest * end as f64 / HEADING_CELLS as f64);
         let room = second_bound * second_bound - near * near * near * near;
-        Self { rate: far, acceleration: math::sqrt_of_rounded(room) }
+        Self { rate: far, acceleration: room.sqrt_of_rounded() }
     }
 }
 
@@ -316,35 +320,36 @@ impl HeadingCell {
 /// everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
 #[inline(never)] // a board's stack is not to hold it beside the other bounds
-pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
+pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) -> [R; 2] {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
-    let (mut rate, mut acceleration) = (0.0_f64, 0.0_f64);
+    let (mut rate, mut acceleration) = (R::from(0.0), R::from(0.0));
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
         let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
         for tangential in &tangential {
-            rate = math::greater_f64(rate, tilt.velocity(tangential, worst_heading.rate).yawing);
+            rate = rate.greater(tilt.velocity(tangential, worst_heading.rate).yawing);
         }
-        let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(0.0, math::greater_f64);
-        let longest = math::lesser_f64(longest, reach.jerk);
+        let longest = tangential.iter().map(|t| t.length * tilt.magnitude).fold(R::from(0.0), R::greater);
+        let longest = longest.lesser(reach.jerk);
         let linear = Parts::worst(&directions.map(|direction| tilt.linear_part(reach, &direction)));
         let shares: [_; SPLIT_CELLS] = core::array::from_fn(|split| tilt.shares(reach, longest, split));
         let worst_shares = Shares::worst(&shares);
-        let at_most = |heading, shares| linear.yawing + tilt.quadratic_part(heading, shares).yawing;
-        if at_most(&worst_heading, &worst_shares) <= acceleration {
+        let at_most =
+            |heading: &HeadingCell<R>, shares: &Shares<R>| linear.yawing + tilt.quadratic_part(heading, shares).yawing;
+        if at_most(&worst_heading, &worst_shares).upper() <= acceleration.upper() {
             continue;
         }
         for heading in &headings {
-            if at_most(heading, &worst_shares) <= acceleration {
+            if at_most(heading, &worst_shares).upper() <= acceleration.upper() {
                 continue;
             }
             let all = shares.iter().map(|shares| at_most(heading, shares));
-            acceleration = all.fold(acceleration, math::greater_f64);
+            acceleration = all.fold(acceleration, R::greater);
         }
     }
     [rate, acceleration]
@@ -352,38 +357,39 @@ pub fn turning_rates(reach: &Reachable, bounds: &ReferenceBounds) -> [f64; 2] {
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
-pub fn desired_rates(reach: &Reachable, bounds: &ReferenceBounds, inertia: &Vector3<f64>) -> DesiredRates {
+pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, inertia: &Vector3<R>) -> DesiredRates<R> {
     let steepest = reach.horizontal / reach.vertical_least;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     // |psi'| is greatest in the first cell, |psi''| in the last, where nothing is left to |psi'|.
     let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
-    let nothing = Parts { tilting: 0.0, yawing: 0.0 };
+    let zero = R::from(0.0);
+    let nothing = Parts { tilting: zero, yawing: zero };
     let mut greatest =
-        DesiredRates { angular_velocity: 0.0, angular_acceleration: 0.0, feedforward_torque: Vector3::zeros() };
+        DesiredRates { angular_velocity: zero, angular_acceleration: zero, feedforward_torque: Vector3::repeat(zero) };
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
         let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
 
-        let mut velocity_square: f64 = 0.0;
-        let mut longest: f64 = 0.0;
+        let (mut velocity_square, mut longest) = (zero, zero);
         for direction in &directions {
             let tangential = tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, direction);
             let velocity = tilt.velocity(&tangential, worst_heading.rate);
-            velocity_square = math::greater_f64(velocity_square, velocity.square_of_sum(&nothing));
-            longest = math::greater_f64(longest, tangential.length * tilt.magnitude);
+            velocity_square = velocity_square.greater(velocity.square_of_sum(&nothing));
+            longest = longest.greater(tangential.length * tilt.magnitude);
         }
-        let velocity = math::sqrt_f64(velocity_square);
-        let longest = math::lesser_f64(longest, reach.jerk);
+        let velocity = velocity_square.sqrt_of_rounded();
+        let longest = longest.lesser(reach.jerk);
         let linear = directions.map(|direction| tilt.linear_part(reach, &direction));
         let shares = core::array::from_fn(|split| tilt.shares(reach, longest, split));
 
         let quadratic = tilt.quadratic_part(&worst_heading, &Shares::worst(&shares));
-        let at_most = greatest.with(inertia, velocity, math::sqrt_f64(Parts::worst(&linear).square_of_sum(&quadratic)));
+        let at_most =
+            greatest.with(inertia, velocity, Parts::worst(&linear).square_of_sum(&quadratic).sqrt_of_rounded());
         if at_most.exceed(&greatest) {
             let square = acceleration_square(&tilt, &linear, &headings, &shares);
-            greatest = greatest.with(inertia, velocity, math::sqrt_f64(square));
+            greatest = greatest.with(inertia, velocity, square.sqrt_of_rounded());
         }
     }
     greatest

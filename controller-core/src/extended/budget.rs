@@ -30,6 +30,7 @@ use super::parameters::ExtendedParameters;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::{Rotors, collected};
 use crate::math;
+use crate::math::real::Real;
 use crate::vehicle::{Limits, Vehicle};
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
@@ -42,13 +43,13 @@ const ROOM_LEFT: f64 = 0.01;
 
 /// t, y and the rest of R.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct Row<R = f64> {
     /// t.
-    pub tilt: f64,
+    pub tilt: R,
     /// y.
-    pub yaw: f64,
+    pub yaw: R,
     /// R without the fixed parts.
-    pub room: f64,
+    pub room: R,
 }
 
 impl Row {
@@ -64,115 +65,128 @@ pub const RATE_BEYOND: f32 = 1.15;
 /// The greatest number of rows.
 pub const ROWS: usize = 4;
 
-/// Everything about the budget that does not change from tick to tick, in double precision.
+/// Everything about the budget that does not change from tick to tick.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TorqueBudget {
+pub struct TorqueBudget<R = f64> {
     /// The rows.
-    pub rows: Vec<Row, ROWS>,
+    pub rows: Vec<Row<R>, ROWS>,
     /// The greatest moment of inertia of the tilt, and J_33, kg m^2.
-    pub inertia: [f64; 2],
+    pub inertia: [R; 2],
     /// Tilt and yaw torque beside the feedback and the frame's turning, N m.
-    pub fixed: [f64; 2],
+    pub fixed: [R; 2],
     /// N_0, N.
-    pub floor: f64,
+    pub floor: R,
     /// L, N per rad/s^2.
-    pub floor_per_acceleration: f64,
+    pub floor_per_acceleration: R,
     /// The thrust of all rotors for each unit of s, infinite without rotors, and the thrust that bias and yaw use up,
     /// N.
-    pub ceiling: [f64; 2],
+    pub ceiling: [R; 2],
 }
 
 /// Rows of B+ over b_T with the rotor's range.
-struct Share {
-    least: f64,
-    greatest: f64,
-    torque: Vector3<f64>,
+struct Share<R> {
+    least: R,
+    greatest: R,
+    torque: Vector3<R>,
 }
 
 /// The greatest of some directions of torque: across, about z, and across with both biases at their levels.
-struct Reach {
-    tilt: f64,
-    yaw: f64,
-    corner: f64,
+struct Reach<R> {
+    tilt: R,
+    yaw: R,
+    corner: R,
 }
 
-impl Reach {
-    fn of(directions: impl Iterator<Item = Vector3<f64>>) -> Self {
-        directions.fold(Self { tilt: 0.0, yaw: 0.0, corner: 0.0 }, |reach, b| Self {
-            tilt: math::greater_f64(reach.tilt, math::hypot(b.x, b.y)),
-            yaw: math::greater_f64(reach.yaw, b.z.abs()),
-            corner: math::greater_f64(reach.corner, b.x.abs() + b.y.abs()),
+impl<R: Real> Reach<R> {
+    fn of(directions: impl Iterator<Item = Vector3<R>>) -> Self {
+        let zero = R::from(0.0);
+        directions.fold(Self { tilt: zero, yaw: zero, corner: zero }, |reach, b| Self {
+            tilt: reach.tilt.greater(b.x.hypot(b.y)),
+            yaw: reach.yaw.greater(b.z.abs()),
+            corner: reach.corner.greater(b.x.abs() + b.y.abs()),
         })
     }
 
     /// The row of `range` without the `fixed` torques and the biases' levels.
-    fn row(&self, range: f64, fixed: [f64; 2], [bias_tilt, bias_yaw]: [f64; 2]) -> Row {
+    fn row(&self, range: R, fixed: [R; 2], [bias_tilt, bias_yaw]: [R; 2]) -> Row<R> {
         let Self { tilt, yaw, corner } = *self;
         let room = range - corner * bias_tilt - yaw * (fixed[1] + bias_yaw) - tilt * fixed[0];
         Row { tilt, yaw, room }
     }
 }
 
-impl TorqueBudget {
+impl<R: Real> TorqueBudget<R> {
     /// For a vehicle, its limits, its rotors if it has any, and the law's constants.
     #[must_use]
-    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
+    pub fn evaluate(
+        parameters: &ExtendedParameters,
+        vehicle: &Vehicle,
+        limits: &Limits,
+        rotors: Option<&Rotors>,
+    ) -> Self {
         let p = parameters;
-        let j = vehicle.inertia.map(f64::from);
-        let inertia = [math::greater_f64(j.x, j.y), j.z];
-        let [acceleration, rate, turn_rate] =
-            [p.yaw_acceleration, p.yaw_rate, p.turn_rate * RATE_BEYOND].map(f64::from);
-        let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(f64::from);
+        let (zero, one) = (R::from(0.0), R::from(1.0));
+        let j = vehicle.inertia.map(R::from);
+        let inertia = [j.x.greater(j.y), j.z];
+        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate * RATE_BEYOND].map(R::from);
+        let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(R::from);
         // Half of |omega_d|^2: the greatest product of two orthogonal components.
-        let product = 0.5 * (turn_rate * turn_rate + rate * rate);
-        let across = math::greater_f64((j.z - j.x).abs(), (j.z - j.y).abs());
-        let yaw_feedback = 0.5 * f64::from(p.w) * f64::from(p.eta) + f64::from(p.m_omega_z);
+        let product = (turn_rate * turn_rate + rate * rate) * 0.5;
+        let across = (j.z - j.x).abs().greater((j.z - j.y).abs());
+        let yaw_feedback = R::from(p.w) * 0.5 * R::from(p.eta) + R::from(p.m_omega_z);
         let fixed = [
             inertia[0] * acceleration + across * product,
             j.z * acceleration + (j.x - j.y).abs() * product + yaw_feedback,
         ];
 
-        let torque_max = limits.torque_max.map(f64::from);
+        let torque_max = limits.torque_max.map(R::from);
         let mut rows = Vec::new();
         // There are at most that many: they fit.
-        let mut push = |row: Row| {
+        let mut push = |row: Row<R>| {
             let _ = rows.push(row);
         };
-        push(Row { tilt: 1.0, yaw: 0.0, room: math::lesser_f64(torque_max.x, torque_max.y) - fixed[0] - bias_tilt });
-        push(Row { tilt: 0.0, yaw: 1.0, room: torque_max.z - fixed[1] - bias_yaw });
+        push(Row { tilt: one, yaw: zero, room: torque_max.x.lesser(torque_max.y) - fixed[0] - bias_tilt });
+        push(Row { tilt: zero, yaw: one, room: torque_max.z - fixed[1] - bias_yaw });
         let shares = shares(rotors);
-        let scales = [p.scale_least, p.scale_greatest].map(f64::from);
-        let margin = f64::from(p.floor_margin);
+        let scales = [p.scale_least, p.scale_greatest].map(R::from);
+        let margin = R::from(p.floor_margin);
         if let Some(room) = least_range(&shares, scales, margin) {
             let spread = Reach::of(shares.iter().flat_map(|a| shares.iter().map(move |b| a.torque - b.torque)));
             push(spread.row(room, fixed, [bias_tilt, bias_yaw]));
-            let least = shares.iter().map(|share| scales[1] * share.least).fold(0.0, math::greater_f64);
-            let below = f64::from(limits.thrust_max) - least - 2.0 * margin;
+            let least = shares.iter().map(|share| scales[1] * share.least).fold(zero, R::greater);
+            let below = R::from(limits.thrust_max) - least - margin * 2.0;
             push(Reach::of(shares.iter().map(|share| share.torque)).row(below, fixed, [bias_tilt, bias_yaw]));
         }
 
-        let beside = |torque: &Vector3<f64>| {
+        let beside = |torque: &Vector3<R>| {
             (torque.x.abs() + torque.y.abs()) * bias_tilt + torque.z.abs() * (bias_yaw + j.z * acceleration)
         };
-        let (mut floor, mut per_acceleration) = (0.0, 0.0);
-        let mut ceiling = [f64::INFINITY, 0.0];
+        let (mut floor, mut per_acceleration) = (zero, zero);
+        let mut ceiling = [R::from(f64::INFINITY), zero];
         for share in &shares {
-            floor = math::greater_f64(floor, scales[1] * share.least + beside(&share.torque));
-            per_acceleration =
-                math::greater_f64(per_acceleration, math::hypot(j.x * share.torque.x, j.y * share.torque.y));
-            ceiling[0] = math::lesser_f64(ceiling[0], share.greatest);
-            ceiling[1] = math::greater_f64(ceiling[1], beside(&share.torque) + margin);
+            floor = floor.greater(scales[1] * share.least + beside(&share.torque));
+            per_acceleration = per_acceleration.greater((j.x * share.torque.x).hypot(j.y * share.torque.y));
+            ceiling[0] = ceiling[0].lesser(share.greatest);
+            ceiling[1] = ceiling[1].greater(beside(&share.torque) + margin);
         }
         Self { rows, inertia, fixed, floor: floor + margin, floor_per_acceleration: per_acceleration, ceiling }
     }
 
     /// The needed and the available torque of each row with a tilt feedback of `feedback`, N m, and the frame turning
     /// with `acceleration`, rad/s^2, at the worst angle.
-    pub fn reserves(&self, feedback: f64, acceleration: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub fn reserves(&self, feedback: R, acceleration: R) -> impl Iterator<Item = [R; 2]> + '_ {
         let [tilt, yaw] = self.inertia;
         self.rows
             .iter()
             .map(move |row| [row.tilt * (feedback + tilt * acceleration) + row.yaw * yaw * acceleration, row.room])
+    }
+}
+
+impl TorqueBudget {
+    /// [`TorqueBudget::evaluate`] in double precision.
+    #[must_use]
+    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
+        Self::evaluate(parameters, vehicle, limits, rotors)
     }
 
     /// The greatest feedback about the tilt's axes with which every row has room for `acceleration`, N m.
@@ -184,12 +198,13 @@ impl TorqueBudget {
     }
 }
 
-fn shares(rotors: Option<&Rotors>) -> Vec<Share, ROTORS_MAX> {
+/// The rows are in double precision, as the mixer is made of them: they are exact here.
+fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
     let mut shares = Vec::new();
     for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
         let row: &Vector4<f64> = row;
-        let torque = Vector3::new(row.y, row.z, row.w) / row.x;
-        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| f64::from(thrust) / row.x);
+        let torque = Vector3::new(row.y, row.z, row.w).map(|part| R::from(part) / row.x);
+        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
         // As many as there are rotors: it fits.
         let _ = shares.push(Share { least, greatest, torque });
     }
@@ -197,10 +212,10 @@ fn shares(rotors: Option<&Rotors>) -> Vec<Share, ROTORS_MAX> {
 }
 
 /// The least of s_lo f_max,k / b_T,k - s_hi f_min,i / b_T,i, less both margins; none without rotors.
-fn least_range(shares: &[Share], [least_scale, greatest_scale]: [f64; 2], margin: f64) -> Option<f64> {
-    let greatest = shares.iter().map(|share| share.greatest).reduce(math::lesser_f64)?;
-    let least = shares.iter().map(|share| share.least).reduce(math::greater_f64)?;
-    Some(least_scale * greatest - greatest_scale * least - 2.0 * margin)
+fn least_range<R: Real>(shares: &[Share<R>], [least_scale, greatest_scale]: [R; 2], margin: R) -> Option<R> {
+    let greatest = shares.iter().map(|share| share.greatest).reduce(R::lesser)?;
+    let least = shares.iter().map(|share| share.least).reduce(R::greater)?;
+    Some(least_scale * greatest - greatest_scale * least - margin * 2.0)
 }
 
 /// The budget as a tick spends it.

@@ -297,7 +297,7 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     let spare = 0.5 * (held_beyond - f64::from(p.force_down));
     let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), spare);
     // The rest of Omega and alpha_0 beside the net, at the least |u|.
-    let net = math::sqrt_f64(2.0) * net_level(p, airframe.vehicle.gravity);
+    let net = math::sqrt_f64(2.0) * net_level::<f64>(p, airframe.vehicle.gravity);
     let [k_f, k_s] = [p.k_f, p.k_s].map(f64::from);
     let least = gravity - up - vertical - net;
     let jerk = lesser_f64(8.0, 0.5 * lesser_f64(rate, math::sqrt_f64(0.2 * reserve)) * least - 2.0 * k_f * net);

@@ -26,6 +26,7 @@ use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::math;
+use crate::math::real::Real;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
 use crate::state::State;
@@ -176,7 +177,7 @@ impl PositionLaw {
             a_down: p.a_down,
             tangent: math::tan(f64::from(p.tilt_max)) as f32 * SHARE_ACROSS,
             gravity,
-            net: net_level(p, gravity) as f32,
+            net: net_level::<f64>(p, gravity) as f32,
         })
     }
 
@@ -319,12 +320,12 @@ impl PositionLaw {
 /// The level of the net, m/s^2: with it c' and c'' take three tenths of alpha_0 and half of Omega at the least |u|, so
 /// that the frame is never limited.
 #[must_use]
-pub fn net_level(parameters: &ExtendedParameters, gravity: f32) -> f64 {
+pub fn net_level<R: Real>(parameters: &ExtendedParameters, gravity: f32) -> R {
     let p = parameters;
-    let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(f64::from);
-    let least = f64::from(gravity - p.a_down);
+    let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
+    let least = R::from(gravity - p.a_down);
     // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d, x + d and y + d start within M.
-    math::lesser_f64(0.3 * reserve * least / (2.0 * k_f * (k_s + k_f)), 0.5 * rate * least / (2.0 * k_f))
+    (reserve * 0.3 * least / (k_f * 2.0 * (k_s + k_f))).lesser(rate * 0.5 * least / (k_f * 2.0))
 }
 
 /// What makes s(x; `level`) of a vector x with this `square`.

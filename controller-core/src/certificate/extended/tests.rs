@@ -77,7 +77,7 @@ fn references_that_turn_the_frame_too_fast_or_too_suddenly_fail_their_rows() {
     assert!(failing(&p, jerky).contains(&"A1 turning rate for the reference"));
     let [.., rate, _, _] = feasible_rows(&p, example::REFERENCES);
     // All there is of |u'|: the reference's with its drag, and the net's across and along the vertical.
-    let net = 2.0_f64.sqrt() * net_level(&p, 9.81);
+    let net = 2.0_f64.sqrt() * net_level::<f64>(&p, 9.81);
     let least = 9.81 - 0.1755 - f64::from(p.force_up) - net;
     let expected = (3.876 + 0.47 * 2.4675 + 2.0 * f64::from(p.k_f) * net) / least;
     assert!((rate.required / expected - 1.0).abs() < 1e-4 && rate.available == f64::from(p.turn_rate), "{rate}");
@@ -107,7 +107,7 @@ fn headings_that_turn_too_fast_or_too_suddenly_fail_their_rows() {
     let tilted = |force_heading: f32| {
         let parameters = ExtendedParameters { force_heading, ..p };
         let craft = Craft::example();
-        heading(&craft.configuration(&parameters, example::REFERENCES), &craft.law(&parameters).parameters)
+        heading::<f64>(&craft.configuration(&parameters, example::REFERENCES), &craft.law(&parameters).parameters)
     };
     let ([rate, acceleration], [faster, sooner]) = (tilted(0.0), tilted(5.0));
     assert!(rate.required < faster.required && acceleration.required < sooner.required);
@@ -143,17 +143,17 @@ fn a_hysteresis_with_another_equilibrium_fails_the_rows_of_e() {
     is(switch.available, f64::from(p.eta));
     is(tilt.required, 2.0 * qbar * f64::from(p.m_t));
     is(tilt.available, f64::from(p.w * p.eta_t) * (1.0 - qbar * qbar).sqrt());
-    let eta = 0.99 * switching_scalar(p.delta) as f32;
+    let eta = 0.99 * switching_scalar::<f64>(p.delta) as f32;
     assert!(failing(&ExtendedParameters { eta, ..p }, example::REFERENCES).contains(&"E switch qbar < eta"));
     let name = "E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)";
-    let m_t = (0.5 * tilt.available / switching_scalar(p.delta)) as f32;
+    let m_t = (0.5 * tilt.available / switching_scalar::<f64>(p.delta)) as f32;
     assert!(failing(&ExtendedParameters { m_t: 1.1 * m_t, ..p }, example::REFERENCES).contains(&name));
 }
 
 #[test]
 fn a_potential_that_leaves_no_damping_fails_its_row() {
     let p = example::parameters();
-    let most = greatest_potential(&Craft::example().law(&p).parameters) as f32;
+    let most = greatest_potential::<f64>(&Craft::example().law(&p).parameters) as f32;
     let with = |m_all: f32| failing(&ExtendedParameters { m_all, ..p }, example::REFERENCES);
     assert!(with(1.01 * most).is_empty());
     assert_eq!(with(0.99 * most)[..], ["D potential |P| < M_all"]);
@@ -170,7 +170,7 @@ fn the_greatest_potential_bounds_the_laws_own_and_not_by_much() {
         let mut greatest = 0.0_f64;
         for _ in 0..5_000 {
             let q = random.attitude();
-            let q = if f64::from(q.w) < -switching_scalar(parameters.delta) { -q } else { q };
+            let q = if f64::from(q.w) < -switching_scalar::<f64>(parameters.delta) { -q } else { q };
             greatest = greatest.max(f64::from(law.feedback(&q, &Vector3::zeros()).tilt()));
         }
         // The bound takes each term where it is greatest in its cell.

@@ -17,7 +17,7 @@ fn bounds_exceed_others_by_any_single_one_of_them() {
 #[test]
 fn every_cell_of_the_quarter_turn_holds_its_cosines_and_sines_by_a_hair() {
     let cell = core::f64::consts::FRAC_PI_2 / ANGLE_CELLS as f64;
-    for (i, direction) in Direction::quarter_turn().iter().enumerate() {
+    for (i, direction) in Direction::<f64>::quarter_turn().iter().enumerate() {
         let (near, far) = (cell * i as f64, cell * (i + 1) as f64);
         let outwards = [
             direction.cos_greatest - libm::cos(near),

@@ -339,7 +339,7 @@ fn a_flight_that_stays_limited_is_caught_once_and_let_go_at_its_target() {
     }
     assert!(ticks as f32 * craft.period >= PATIENCE);
     // The filters started afresh, and away from the target c stays within the net's level.
-    let net = net_level(&p, craft.vehicle.gravity) as f32;
+    let net = net_level::<f64>(&p, craft.vehicle.gravity) as f32;
     for _ in 0..500 {
         controller.hold_estimates();
         controller.step(&resting(random.vector(50.0)), &hover()).unwrap();
