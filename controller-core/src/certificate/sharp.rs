@@ -77,6 +77,7 @@ impl<R: Real> DesiredRates<R> {
     }
 
     /// These bounds raised to hold for another cell too.
+    #[inline(never)] // twice in a board's image is once too often
     fn with(&self, inertia: &Vector3<R>, velocity: R, acceleration: R) -> Self {
         Self {
             angular_velocity: self.angular_velocity.greater(velocity),

@@ -205,6 +205,10 @@ impl Real for Enclosure {
         Self { lower: math::greater_f64(lower, 0.0), upper }
     }
 
+    fn sqrt_of_rounded(self) -> Self {
+        self.greater(Self::from(0.0)).sqrt()
+    }
+
     fn hypot(self, other: Self) -> Self {
         (self.square() + other.square()).sqrt_of_rounded()
     }

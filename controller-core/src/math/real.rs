@@ -63,9 +63,7 @@ pub trait Real:
     fn greatest_cubic_root(p: Self, q: Self) -> Self;
 
     /// The square root of a number that only rounding can have taken below zero.
-    fn sqrt_of_rounded(self) -> Self {
-        self.greater(Self::from(0.0)).sqrt()
-    }
+    fn sqrt_of_rounded(self) -> Self;
 }
 
 /// Newton steps for a cubic's greatest root. Each halves the error at least (quarters it, away from a double root), so
@@ -95,6 +93,10 @@ impl Real for f64 {
 
     fn sqrt(self) -> Self {
         math::sqrt_f64(self)
+    }
+
+    fn sqrt_of_rounded(self) -> Self {
+        math::sqrt_of_rounded(self)
     }
 
     fn hypot(self, other: Self) -> Self {
