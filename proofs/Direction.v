@@ -2,7 +2,8 @@
 
     d = v / |v| of a vector v that moves, and bounds on |d'| and |d''|, as the
     proof of the paper's Lemma 1 uses them twice: for rho = u / |u|, and for
-    upsilon, the desired body x axis. *)
+    upsilon, the desired body x axis. [turn] in controller-core/src/
+    attitude_reference.rs. *)
 
 From Coq Require Import Reals Lra.
 From Coquelicot Require Import Coquelicot.

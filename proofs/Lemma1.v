@@ -4,7 +4,7 @@
     it, from x_f(0) = 0. u is the acceleration command, m/s^2; nu the heading, a
     horizontal unit vector; omega_d, rad/s, and omega_d', rad/s^2, are those of
     [DesiredFrame], which proves that they turn R_d and that one is the other's
-    derivative. Nothing is assumed of their formulas here. *)
+    derivative: their formulas are no hypotheses. *)
 
 From Coq Require Import Reals Lra List.
 From Coquelicot Require Import Coquelicot.
@@ -165,7 +165,7 @@ End Bounds.
 
     u = u_f + a + g e3: u_f and u_s of three axes filtered from an input in the
     box of M, flown from rest until t; a the reference's acceleration. The input
-    may have jumped before t, and may not at t, where omega_d' would not exist. *)
+    may have jumped before t. *)
 
 Section Flown.
 
@@ -277,19 +277,27 @@ Proof.
     apply three_axes; [exact Hb | | |]; components; (eapply Rle_trans; [|exact Hle]); assumption.
 Qed.
 
-(** Lemma 1. *)
+Let omega := omega command command_1 nu nu_1.
+Let omega_1 := omega_1 command command_1 nu nu_1 t command_2 nu_2.
+
+Lemma vertical_least_positive : 0 < vertical_least.
+Proof. unfold vertical_least. lra. Qed.
+
+(** Lemma 1; no derivatives of the filters at t are needed, so it holds of the
+    formulas where the input jumps, too. *)
 Theorem lemma_1 :
-  let omega := omega command command_1 nu nu_1 in
-  let omega_1 := omega_1 command command_1 nu nu_1 t command_2 nu_2 in
-  let U := omega_bound jerk_bound vertical_least horizontal_greatest K_nu_1 in
-  let U_1 := omega_1_bound jerk_bound snap_bound vertical_least horizontal_greatest K_nu_1 K_nu_2 in
-  moves omega t omega_1 /\ length (omega t) <= U /\ length omega_1 <= U_1.
+  length (omega t) <= omega_bound jerk_bound vertical_least horizontal_greatest K_nu_1 /\
+  length omega_1 <= omega_1_bound jerk_bound snap_bound vertical_least horizontal_greatest K_nu_1 K_nu_2.
 Proof.
-  destruct command_moves as (M1 & M2). destruct command_levels as (L1 & L2 & L3 & L4).
-  assert (Hz : 0 < vertical_least) by (unfold vertical_least; lra).
-  split.
-  - apply omega_moves; try assumption. lra.
-  - apply desired_rates_bounded; assumption.
+  destruct command_levels as (L1 & L2 & L3 & L4). pose proof vertical_least_positive as Hz.
+  apply desired_rates_bounded; assumption.
+Qed.
+
+(** Where it does not jump, the one is the other's derivative. *)
+Theorem rates_in_flight : moves omega t omega_1.
+Proof.
+  destruct command_moves as (M1 & M2). destruct command_levels as (L1 & _). pose proof vertical_least_positive.
+  apply omega_moves; try assumption. lra.
 Qed.
 
 End Flown.

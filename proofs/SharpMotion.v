@@ -2,20 +2,54 @@
 
     The numbers of [SharpBound] are those of the frame that flies: omega_d and
     omega_d' of [DesiredFrame], for a command u, m/s^2, and a heading psi, rad,
-    that move. docs/sharp-bound.md, steps 3 to 6. *)
+    with u', u'', psi' and psi'' at the time t, also where these are derivatives
+    from one side only. docs/sharp-bound.md, steps 3 to 6. *)
 
 From Coq Require Import Reals Lra.
 From Coquelicot Require Import Coquelicot.
 From SaturatedHybrid Require Import Space Direction DesiredFrame ExactRates Slope SharpBound.
 Open Scope R_scope.
 
+(** [yaw_acceleration_exact] of any values at an instant, whether anything moves
+    by them or not: there is a motion that does. *)
+Theorem yaw_acceleration_of_values : forall (u u_1 : R -> space) (psi psi_1 : R -> R) t u_2 psi_2,
+  0 < z (u t) ->
+  let n := length (u t) in let r := dot (rho u t) (u_1 t) in
+  let w := omega u u_1 (nu psi) (nu_1 psi psi_1) t in
+  let c_p := cos_pitch u psi t in let s_p := sin_pitch u psi t in
+  let c_r := cos_roll u psi t in let s_r := sin_roll u psi t in
+  z (omega_1 u u_1 (nu psi) (nu_1 psi psi_1) t u_2 (nu_2 psi psi_1 t psi_2))
+  = psi_2 * c_p / c_r - s_r / c_r * (along_x u psi t u_2 / n - 2 * r / n * y w)
+    + (2 * (psi_1 t * psi_1 t) * s_p * c_p * s_r - 2 * psi_1 t * s_p * y w + 2 * psi_1 t * c_p * s_r * x w
+       - x w * y w * (1 + s_r * s_r)) / (c_r * c_r).
+Proof.
+  intros u u_1 psi psi_1 t u_2 psi_2 Hup.
+  set (v := fun s => add (u t) (add (scaled (s - t) (u_1 t)) (scaled ((s - t) * (s - t) / 2) u_2))).
+  set (v_1 := fun s => add (u_1 t) (scaled (s - t) u_2)).
+  set (q := fun s => psi t + ((s - t) * psi_1 t + (s - t) * (s - t) / 2 * psi_2)).
+  set (q_1 := fun s => psi_1 t + (s - t) * psi_2).
+  assert (Ev : v t = u t) by (unfold v; apply same; components; field).
+  assert (Ev1 : v_1 t = u_1 t) by (unfold v_1; apply same; components; ring).
+  assert (Eq : q t = psi t) by (unfold q; field).
+  assert (Eq1 : q_1 t = psi_1 t) by (unfold q_1; ring).
+  assert (Hd : forall a b c : R, is_derive (fun s => a + ((s - t) * b + (s - t) * (s - t) / 2 * c)) t b).
+  { intros a b c. auto_derive; [exact I | field]. }
+  assert (Hd1 : forall a b : R, is_derive (fun s => a + (s - t) * b) t b).
+  { intros a b. auto_derive; [exact I | ring]. }
+  assert (M1 : moves v t (v_1 t)) by (rewrite Ev1; exact (conj (Hd _ _ _) (conj (Hd _ _ _) (Hd _ _ _)))).
+  assert (M2 : moves v_1 t u_2) by exact (conj (Hd1 _ _) (conj (Hd1 _ _) (Hd1 _ _))).
+  assert (M3 : is_derive q t (q_1 t)) by (rewrite Eq1; apply Hd).
+  pose proof (yaw_acceleration_exact v v_1 q q_1 t u_2 psi_2 M1 M2 M3 (Hd1 _ _)) as H.
+  rewrite Ev in H at 1. specialize (H Hup). revert H.
+  clearbody v v_1 q q_1. clear Hd Hd1 M1 M2 M3.
+  unfold omega_1, omega, turning, products, upsilon_2, upsilon_1, varpi_2, varpi_1, rho_2, rho_1, along_x, cos_pitch,
+    sin_pitch, cos_roll, sin_roll, nu, nu_1, nu_2, upsilon, varpi, rho.
+  rewrite Ev, Ev1, Eq, Eq1. exact (fun H => H).
+Qed.
+
 Section Motion.
 
 Variables (u u_1 : R -> space) (psi psi_1 : R -> R) (t : R) (u_2 : space) (psi_2 : R).
-Hypothesis u_moves : moves u t (u_1 t).
-Hypothesis u_1_moves : moves u_1 t u_2.
-Hypothesis psi_moves : is_derive psi t (psi_1 t).
-Hypothesis psi_1_moves : is_derive psi_1 t psi_2.
 Hypothesis upwards : 0 < z (u t).
 
 Let omega := omega u u_1 (nu psi) (nu_1 psi psi_1) t.
@@ -106,19 +140,12 @@ Qed.
 
 Theorem tangential_is_across : forall v, within_across v (tangential v).
 Proof.
-  intros v. unfold within_across. rewrite <- across_in_body, <- tangential_in_body.
-  pose proof (plane_cauchy_schwarz (- uphill_y cos_pitch sin_roll) (uphill_x sin_pitch)
-    (along_x u psi t v) (along_y u psi t v)) as H.
-  replace (- uphill_y cos_pitch sin_roll * along_x u psi t v + uphill_x sin_pitch * along_y u psi t v)
-    with (uphill_x sin_pitch * along_y u psi t v - uphill_y cos_pitch sin_roll * along_x u psi t v) in H by ring.
-  replace (plane_length (- uphill_y cos_pitch sin_roll) (uphill_x sin_pitch)) with sin_tilt in H; [exact H|].
-  rewrite <- (uphill_length cos_tilt sin_tilt cos_pitch sin_pitch cos_roll sin_roll).
-  - unfold plane_length. f_equal. ring.
-  - exact tilt_on_circle.
-  - exact (ExactRates.pitch_on_circle u psi t upwards).
-  - exact (roll_on_circle u psi t upwards).
-  - split; [apply magnitude_of_tilt | split; [apply plane_length_nonneg | now apply cos_roll_positive]].
-  - exact tilt_of_turns.
+  intros v. unfold within_across, tangential.
+  pose proof (cauchy_schwarz {| x := y rho; y := - x rho; z := 0 |} (across (u t) v)) as H.
+  replace (dot {| x := y rho; y := - x rho; z := 0 |} (across (u t) v)) with (y rho * x v - x rho * y v) in H.
+  - replace (length {| x := y rho; y := - x rho; z := 0 |}) with sin_tilt in H; [exact H|].
+    unfold sin_tilt, plane_length, length. f_equal. change (direction (u t)) with rho. components. ring.
+  - unfold across. change (direction (u t)) with rho. components. ring.
 Qed.
 
 (** omega_d and omega_d' at t. *)
@@ -136,7 +163,7 @@ Proof.
   intros perp_1 perp_2 H1 H2 tan secant p w r mixed.
   pose proof n_positive as Hn. assert (Hi : 0 < / n) by (now apply Rinv_0_lt_compat).
   destruct (tilting_exact u u_1 psi psi_1 t u_2 psi_2 upwards) as (E1 & E2 & E3 & E4).
-  pose proof (yaw_acceleration_exact u u_1 psi psi_1 t u_2 psi_2 u_moves u_1_moves psi_moves psi_1_moves upwards) as E5.
+  pose proof (yaw_acceleration_of_values u u_1 psi psi_1 t u_2 psi_2 upwards) as E5.
   pose proof (yaw_rate_exact u u_1 psi psi_1 t upwards) as E6.
   cbv zeta in E1, E2, E3, E4, E5. fold n in E1, E2, E3, E4, E5.
   change (dot (DesiredFrame.rho u t) (u_1 t)) with radial in E3, E4, E5. fold omega in E1, E2, E3, E4, E5, E6.
