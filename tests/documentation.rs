@@ -1,6 +1,6 @@
-//! The documentation speaks of what exists: the tests that the map of the paper names, the files and headings that the
-//! Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the columns of log.csv,
-//! the scenario examples and refusals. The front page stays short.
+//! The documentation speaks of what exists: the tests and theorems that the map of the paper names, the files and
+//! headings that the Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the
+//! columns of log.csv, the scenario examples and refusals. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
@@ -25,8 +25,18 @@ fn tests_of(path: &str) -> BTreeSet<String> {
     text.split("#[test]\n").skip(1).filter_map(name).collect()
 }
 
+/// The names of the theorems in a file of Coq's.
+fn theorems_of(path: &str) -> BTreeSet<String> {
+    let text = fs::read_to_string(Path::new(ROOT).join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let name = |line: &str| line.strip_prefix("Theorem ")?.split([' ', ':']).next().map(str::to_owned);
+    text.lines().filter_map(name).collect()
+}
+
 /// The path, from the top of the repository, of a file as the map names it.
 fn path_of(file: &str) -> String {
+    if file.ends_with(".v") {
+        return format!("proofs/{file}");
+    }
     match file.split('/').next() {
         Some("core") => format!("controller-{file}"),
         Some("tests" | "estimation" | "flight" | "host-sim" | "scenario" | "firmware") => file.to_owned(),
@@ -35,23 +45,35 @@ fn path_of(file: &str) -> String {
 }
 
 #[test]
-fn every_test_the_map_names_is_where_it_says() {
+fn every_test_and_theorem_the_map_names_is_where_it_says() {
     let map = read("docs/map.md");
-    let mut named = 0;
+    let (mut named, mut theorems) = (0, BTreeSet::new());
     let rows = map.lines().filter(|line| line.starts_with('|'));
     for checked in rows.filter_map(|row| row.trim_end_matches([' ', '|']).rsplit('|').next()) {
         for (files, tests) in checked.split("; ").filter_map(|part| part.rsplit_once(": ")) {
-            let files: Vec<&str> = files.split([' ', ',']).filter(|word| word.ends_with(".rs")).collect();
+            let is_file = |word: &&str| word.ends_with(".rs") || word.ends_with(".v");
+            let files: Vec<&str> = files.split([' ', ',']).filter(is_file).collect();
             for test in tests.split('`').skip(1).step_by(2) {
                 assert!(!files.is_empty(), "{test}: no file is named");
                 for file in &files {
-                    assert!(tests_of(&path_of(file)).contains(test), "{file} has no test {test}");
+                    let path = path_of(file);
+                    let of_coq = file.ends_with(".v");
+                    let there = if of_coq { theorems_of(&path) } else { tests_of(&path) };
+                    assert!(there.contains(test), "{file} has no test or theorem {test}");
+                    theorems.extend(of_coq.then(|| format!("{path}: {test}")));
                 }
                 named += 1;
             }
         }
     }
     assert!(named > 60, "{named}: the map has lost its tests");
+
+    // No theorem is without its row.
+    let files = fs::read_dir(Path::new(ROOT).join("proofs")).unwrap();
+    let files = files.map(|entry| format!("proofs/{}", entry.unwrap().file_name().into_string().unwrap()));
+    let proven = files.filter(|file| file.ends_with(".v"));
+    let proven = proven.flat_map(|file| theorems_of(&file).into_iter().map(move |name| format!("{file}: {name}")));
+    assert_eq!(theorems, proven.collect());
 }
 
 /// What a heading is called in a link.

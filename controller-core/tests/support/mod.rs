@@ -1,6 +1,7 @@
 //! What the reference tests share: random numbers with a fixed seed, and a reference's derivatives as numbers.
 
 pub mod coq;
+pub mod gappa;
 pub mod hummingbird;
 
 use controller_core::reference::{Reference, ReferenceBounds};

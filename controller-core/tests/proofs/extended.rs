@@ -1,0 +1,418 @@
+//! The extended law: `Allocation.v`, `Budget.v`, `Limiter.v`, `Envelope.v`, `Damping.v`, `Attitude.v`, `Descent.v`.
+
+use super::{TRIALS, constants, direction, extended_law, lifted, near, of, plane, rotors, same, signed, torque};
+use crate::support::coq::{Proofs, Value};
+use crate::support::gappa::Rounding;
+use crate::support::{Random, hummingbird};
+use controller_core::allocation::{MinimumNorm, Rotors};
+use controller_core::attitude_reference::Turn;
+use controller_core::certificate::Certificate;
+use controller_core::certificate::extended::{ExtendedCertificate, switching_scalar};
+use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
+use controller_core::certificate::inequality::Inequality;
+use controller_core::extended::attitude::{AttitudeFeedback, AttitudeLaw};
+use controller_core::extended::budget::{RATE_BEYOND, TorqueBudget, TurningBudget};
+use controller_core::extended::parameters::ExtendedParameters;
+use controller_core::extended::thrust_range::ThrustRange;
+use controller_core::extended::turning::{Circumstances, Limited, TurningLimit};
+use controller_core::state::Wrench;
+use nalgebra::{Vector2, Vector3};
+
+/// The potential's constants.
+fn potential(p: &ExtendedParameters) -> Vec<(&'static str, f64)> {
+    of(&[("w", p.w), ("eta", p.eta), ("M_t", p.m_t), ("k_t", p.k_t), ("eta_t", p.eta_t)])
+}
+
+/// The rotors as the proofs have them.
+fn rotors_of(rotors: &Rotors) -> Vec<Value> {
+    let all = rotors.iter().zip(rotors.pseudo_inverse()).map(|(rotor, row)| {
+        let ends = [rotor.thrust_min, rotor.thrust_max].map(f64::from);
+        let numbers = Value::record(&[("b", row.x), ("least", ends[0]), ("greatest", ends[1])]);
+        let Value::Record(mut fields) = numbers else { unreachable!() };
+        fields.insert("beta".to_owned(), torque(&(Vector3::new(row.y, row.z, row.w) / row.x)));
+        Value::Record(fields)
+    });
+    all.collect()
+}
+
+fn field<'a>(record: &'a Value, name: &str) -> &'a Value {
+    let Value::Record(fields) = record else { panic!("a record") };
+    &fields[name]
+}
+
+#[test]
+pub(super) fn the_potential_and_the_share_of_damping_are_those_of_the_proofs() {
+    let p = constants();
+    let law = AttitudeLaw::new(&p, &hummingbird::vehicle().inertia);
+    let (level, greatest) = (f64::from(p.m_all), row(&certificate(), "D potential").required);
+    let mut random = Random(1);
+    let mut cut = 0;
+    for _ in 0..TRIALS {
+        let q = lifted(&mut random);
+        let rate = direction(&mut random) * 30.0;
+        let feedback = law.feedback(&q, &rate);
+        let [q_0, q_1, q_2, q_3] = [q.w, q.i, q.j, q.k].map(f64::from);
+        let attitude = Proofs::read("Attitude").with(&potential(&p)).with(&[
+            ("q_0", q_0),
+            ("q_1", q_1),
+            ("q_2", q_2),
+            ("q_3", q_3),
+        ]);
+        let proven = [
+            attitude.number("P_1", &[q_0, q_1, q_2, q_3]),
+            attitude.number("P_2", &[q_0, q_1, q_2, q_3]),
+            attitude.number("P_3", &[q_0, q_3]),
+        ];
+        for (found, proven) in feedback.potential.iter().zip(proven) {
+            near(*found, proven, level, "potential");
+        }
+        let [tilt, most] = attitude.sides("tilt_level", "<= w / 2 * r")[..] else { panic!("two sides") };
+        near(feedback.potential.xy().norm(), tilt, level, "|P|");
+        assert!(tilt <= most && most <= greatest, "{tilt} {most} {greatest}");
+        let [yaw, most] = attitude.sides("yaw_level", "<= w * eta / 2")[..] else { panic!("two sides") };
+        near(feedback.potential.z.abs(), yaw, level, "|P_3|");
+        assert!(yaw <= most);
+
+        let eased = (1.0 + (q.i * q.i + q.j * q.j) / (p.r_0 * p.r_0)).powf(0.25);
+        let wanted = rate.xy() * (p.k_omega_t / eased);
+        let damping = Proofs::read("Damping").with(&of(&[
+            ("p_1", feedback.potential.x),
+            ("p_2", feedback.potential.y),
+            ("d_1", wanted.x),
+            ("d_2", wanted.y),
+            ("level", p.m_all),
+        ]));
+        let share = damping.number("share", &[]);
+        cut += usize::from(share < 1.0);
+        near(feedback.damping.x, share * f64::from(wanted.x), level, "damping");
+        near(feedback.damping.y, share * f64::from(wanted.y), level, "damping");
+        let [square, _] = damping.sides("feedback_within_level", "<= level * level")[..] else { panic!("two sides") };
+        near(feedback.tilt(), square.sqrt(), level, "|P + lambda D|");
+
+        // Damping is a share of each rate that is not negative.
+        let falls = Proofs::read("Descent")
+            .with(&[("lambda", share), ("t", 0.0)])
+            .with(&of(&[("c", p.k_omega_t / eased), ("factor", feedback.damping.z / rate.z)]))
+            .with(&of(&[("d_1", feedback.damping.x), ("d_2", feedback.damping.y), ("d_3", feedback.damping.z)]))
+            .with_value("e_1", Value::Moving(f64::from(rate.x)))
+            .with_value("e_2", Value::Moving(f64::from(rate.y)))
+            .with_value("e_3", Value::Moving(f64::from(rate.z)));
+        for premise in ["d_1 = lambda", "d_2 = lambda", "d_3 = factor"] {
+            let [found, proven] = falls.sides("no_rise", premise)[..] else { panic!("two sides") };
+            near(found as f32, proven, level, premise);
+        }
+        for holds in ["0 <= lambda", "0 <= c", "0 <= factor", "<= 0"] {
+            assert!(falls.sides("no_rise", holds).is_sorted(), "{holds}");
+        }
+    }
+    assert!(cut > TRIALS / 20 && cut < TRIALS, "{cut} of {TRIALS} with a share");
+}
+
+#[test]
+pub(super) fn the_thrust_range_is_that_of_the_proofs() {
+    let (rotors, p) = (rotors(), constants());
+    let thrust_max = 30.0;
+    let range = ThrustRange::new(Some(&rotors), p.floor_margin, thrust_max);
+    let allocation = MinimumNorm::new(&rotors);
+    let mut random = Random(2);
+    let mut delivered = 0;
+    for _ in 0..TRIALS {
+        let tau = Vector3::new(signed(&mut random), signed(&mut random), 0.1 * signed(&mut random));
+        let scale = random.within(0.9, 1.15) as f32;
+        let proofs = Proofs::read("Allocation")
+            .with(&of(&[("s", scale), ("margin", p.floor_margin), ("T_max", thrust_max)]))
+            .with_value("tau", torque(&tau.cast()))
+            .with_value("rotors", Value::List(rotors_of(&rotors)));
+        near(range.least(&tau, scale), proofs.number("floor", &[]), 10.0, "floor");
+        near(range.greatest(&tau, scale), proofs.number("ceiling", &[]), 10.0, "ceiling");
+        let wanted = 40.0 * signed(&mut random);
+        near(range.admitted(wanted, &tau, scale), proofs.number("thrust", &[f64::from(wanted)]), 10.0, "thrust");
+
+        // What a rotor is commanded.
+        let wrench = Wrench { thrust: 10.0 + 5.0 * signed(&mut random), torque: tau * 0.2 };
+        let asked = allocation.allocate(&wrench).unwrap();
+        delivered += usize::from(!asked.clipped);
+        for (rotor, thrust) in rotors_of(&rotors).into_iter().zip(asked.thrusts).filter(|_| !asked.clipped) {
+            let of = [rotor, Value::Number(f64::from(wrench.thrust)), torque(&wrench.torque.cast())];
+            near(thrust, proofs.value("command", &of).number(), 10.0, "command");
+        }
+    }
+    assert!(delivered > TRIALS / 4, "{delivered} of {TRIALS} within the rotors' ranges");
+    for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+        let proofs = Proofs::read("Allocation")
+            .with_value("rotors", Value::List(rotors_of(&rotors)))
+            .with_value("v", torque(&axis));
+        let [sum, _] = proofs.sides("balanced", "= 0")[..] else { panic!("two sides") };
+        assert!(sum.abs() < 1e-9, "{sum}: torques change the thrust");
+    }
+}
+
+fn budget() -> TorqueBudget {
+    let configuration = extended_law();
+    TorqueBudget::new(&constants(), configuration.vehicle(), configuration.limits(), configuration.rotors())
+}
+
+fn certificate() -> ExtendedCertificate {
+    let Certificate::Extended(found) = Certificate::new(&extended_law()).unwrap() else { panic!("the extended law") };
+    found
+}
+
+fn row<'a>(certificate: &'a ExtendedCertificate, name: &str) -> &'a Inequality {
+    certificate.inequalities.iter().find(|row| row.name.starts_with(name)).unwrap()
+}
+
+#[test]
+pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
+    let configuration = extended_law();
+    let (p, rotors, limits) = (constants(), rotors_of(&rotors()), configuration.limits());
+    let [j_1, j_2, j_3] = <[f64; 3]>::from(configuration.vehicle().inertia.map(f64::from));
+
+    // What is fixed: the gyroscopic torque, yaw's feedback at its level, and A.
+    let gyroscopic = Proofs::read("Budget")
+        .with(&[("j_1", j_1), ("j_2", j_2), ("j_3", j_3)])
+        .with(&of(&[("rate", p.turn_rate * RATE_BEYOND), ("yaw_rate", p.yaw_rate)]))
+        .with(&[("r_1", 0.0), ("r_2", 0.0), ("r_3", 0.0), ("across", f64::NAN)]);
+    let across = ["Rabs ( j_3 - j_2 ) <=", "Rabs ( j_1 - j_3 ) <="]
+        .map(|difference| gyroscopic.sides("gyroscopic_bound", difference)[0])
+        .into_iter()
+        .fold(0.0, f64::max);
+    let gyroscopic = gyroscopic.with(&[("across", across)]);
+    let gyro_tilt = gyroscopic.sides("gyroscopic_bound", "<= across * product")[1];
+    let gyro_yaw = gyroscopic.sides("gyroscopic_bound", "<= Rabs ( j_1 - j_2 ) *")[1];
+    let potential = Proofs::read("Attitude").with(&potential(&p)).with(&[("q_0", 1.0), ("q_3", 0.0)]);
+    let damping =
+        Proofs::read("Torque").with(&of(&[("M", p.m_omega_z), ("k", p.k_omega_z), ("x", 0.0), ("y", 0.0), ("z", 0.0)]));
+    let feedback_yaw =
+        potential.sides("yaw_level", "<= w * eta / 2")[1] + damping.sides("saturation_level", ") < M")[1];
+    let acceleration = f64::from(p.yaw_acceleration);
+    let fixed = Proofs::read("Budget")
+        .with(&[("feedback_tilt", 0.0), ("feedback_yaw", feedback_yaw)])
+        .with(&[("turning_tilt", j_1.max(j_2) * acceleration), ("turning_yaw", j_3 * acceleration)])
+        .with(&[("gyro_tilt", gyro_tilt), ("gyro_yaw", gyro_yaw)])
+        .with(&of(&[("bias_tilt", p.torque_tilt), ("bias_yaw", p.torque_yaw)]));
+
+    // The right sides: of two rotors, of the floor, and the limits.
+    let ends = Proofs::read("Allocation").with(&of(&[
+        ("s_lo", p.scale_least),
+        ("s_hi", p.scale_greatest),
+        ("margin", p.floor_margin),
+        ("T_max", limits.thrust_max),
+    ]));
+    let nothing = || torque(&Vector3::zeros());
+    let (mut top, mut bottom) = (f64::INFINITY, 0.0_f64);
+    let mut ends = ends.with(&[("range_top", 0.0), ("range_bottom", 0.0)]);
+    for rotor in &rotors {
+        ends = ends.with_value("r", rotor.clone()).with_value("r'", rotor.clone()).with_value("tau", nothing());
+        top = top.min(ends.sides("range_top_least", "range_top <=")[1]);
+        bottom = bottom.max(ends.sides("range_bottom_greatest", "<= range_bottom")[0]);
+    }
+    let ends = ends.with(&[("range_top", top), ("range_bottom", bottom)]);
+    let both = ends.sides("rows_hold", "<= range_top - range_bottom")[1];
+    let floor = ends.sides("rows_hold", "<= T_max - range_bottom")[1];
+
+    let betas: Vec<Value> = rotors.iter().map(|rotor| field(rotor, "beta").clone()).collect();
+    let pairs = betas.iter().flat_map(|a| betas.iter().map(move |b| [a.clone(), b.clone()]));
+    let differences: Vec<Value> = pairs.map(|pair| ends.value("minus", &pair)).collect();
+    let [roll, pitch, yaw] = <[f64; 3]>::from(limits.torque_max.map(f64::from));
+    let axis = |axis: Vector3<f64>| vec![torque(&axis)];
+    let rows = [(axis(Vector3::x()), roll.min(pitch)), (axis(Vector3::z()), yaw), (differences, both), (betas, floor)];
+    let (budget, certificate) = (budget(), certificate());
+    assert_eq!(budget.rows.len(), rows.len());
+    let mut fixed = fixed.with(&[("t", 0.0), ("y", 0.0), ("corner", 0.0)]);
+    for zero in ["feedback", "turning", "gyro", "bias"] {
+        fixed = fixed.with_value(zero, nothing());
+    }
+    let [reserve, all] = [p.turn_reserve, p.m_all].map(f64::from);
+    let reserves = budget.reserves(all, reserve).zip(["T2 roll", "T2 yaw", "R ", "T1 thrust floor"]);
+    for ((found, (directions, range)), (reserve_found, name)) in budget.rows.iter().zip(rows).zip(reserves) {
+        let (mut t, mut y, mut corner) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for beta in directions {
+            fixed = fixed.with_value("beta", beta);
+            let left = |premise| fixed.sides("parts_add_up", premise)[0];
+            t = t.max(left("tilt_length beta <= t"));
+            y = y.max(left("Rabs ( about_z beta ) <= y"));
+            corner = corner.max(left("<= corner"));
+        }
+        fixed = fixed.with(&[("t", t), ("y", y), ("corner", corner)]);
+        let room = range - fixed.sides("parts_add_up", "corner * bias_tilt")[1];
+        same(found.tilt, t, name);
+        same(found.yaw, y, name);
+        same(found.room, room, name);
+        // The certificate's row, with the reserve.
+        let proofs = Proofs::read("Limiter")
+            .with(&[("t", t), ("y", y), ("room", room), ("feedback_max", all), ("reserve", reserve)])
+            .with(&[("inertia_tilt", j_1.max(j_2)), ("inertia_yaw", j_3)]);
+        let sides = proofs.sides("reserve_keeps_the_row", "feedback_max + inertia_tilt");
+        same(reserve_found[0], sides[0], name);
+        same(reserve_found[1], sides[1], name);
+        same(row(&certificate, name).required, sides[0] * (1.0 + ARITHMETIC_ALLOWANCE), name);
+        same(row(&certificate, name).available, sides[1], name);
+    }
+}
+
+#[test]
+pub(super) fn the_budget_of_a_tick_is_that_of_the_proofs() {
+    let (budget, mass, p) = (budget(), hummingbird::vehicle().mass, constants());
+    // Thrust enough for any turn: the rows decide.
+    let turning = TurningBudget::new(&budget, mass, f32::MAX);
+    let of_tick = |feedback: f32, sine: f32| f64::from(turning.acceleration(1e6, feedback, sine));
+    let sides = |feedback: f32, sine: f32, left: f64, alpha: f64, holds: &str| {
+        let [inertia_tilt, inertia_yaw] = budget.inertia;
+        let sides = budget.rows.iter().map(|row| {
+            let proofs = Proofs::read("Limiter")
+                .with(&[("t", row.tilt), ("y", row.yaw), ("room", left * row.room), ("alpha", alpha)])
+                .with(&[("inertia_tilt", inertia_tilt), ("inertia_yaw", inertia_yaw)])
+                .with(&of(&[("feedback", feedback), ("sine", sine)]));
+            proofs.sides("budget_keeps_the_row", holds)
+        });
+        sides.collect::<Vec<_>>()
+    };
+    let least = |sides: Vec<Vec<f64>>| sides.into_iter().map(|sides| sides[1]).fold(f64::INFINITY, f64::min);
+    // What a tick leaves unused of a row takes up the rounding of the limiter.
+    let left = of_tick(0.0, 0.5) / least(sides(0.0, 0.5, 1.0, 0.0, "alpha <="));
+    let [_, rounding] = Rounding::read("limiter.gappa").interval("|shortened -/ EXACT|");
+    assert!(left < 1.0 - 1000.0 * rounding && left > 0.98, "{left}");
+    let mut random = Random(9);
+    for _ in 0..TRIALS {
+        let (feedback, sine) = (random.within(0.0, f64::from(p.m_all)) as f32, random.within(0.0, 1.0) as f32);
+        let alpha = of_tick(feedback, sine);
+        near(alpha as f32, least(sides(feedback, sine, left, alpha, "alpha <=")), 10.0 * alpha.abs(), "alpha");
+        for kept in sides(feedback, sine, 1.0, alpha, "t * ( feedback + inertia_tilt * alpha )") {
+            assert!(kept.is_sorted(), "{kept:?}");
+        }
+    }
+}
+
+fn limited(limit: &TurningLimit, turn: &Turn, most: f32, yaw_rate: f32, vertical: [f32; 3]) -> Limited {
+    limit.limited(turn, &Circumstances { budget: most, yaw_rate, up: Vector3::z(), greatest: 30.0, vertical })
+}
+
+#[test]
+pub(super) fn the_limiter_is_that_of_the_proofs() {
+    let p = constants();
+    let (period, most) = (0.01_f32, 40.0_f32.max(p.turn_reserve));
+    let limit = TurningLimit::new(&p, period);
+    let mut random = Random(3);
+    let mut cut = 0;
+    for _ in 0..TRIALS {
+        // Shorter than the first step allows, and upright: steps one and two do nothing.
+        let wanted = Vector2::new(signed(&mut random), signed(&mut random)) * (0.4 * most);
+        let rate = Vector2::new(signed(&mut random), signed(&mut random)) * p.turn_rate;
+        let yaw_rate = signed(&mut random) * 12.0;
+        let turn = Turn { rate, acceleration: wanted, magnitude: 9.81, radial_rate: 0.0, radial_acceleration: 0.0 };
+        let found = limited(&limit, &turn, most, yaw_rate, [0.0; 3]);
+        let proofs = Proofs::read("Limiter")
+            .with(&of(&[("yaw_rate", yaw_rate), ("period", period), ("rate_max", p.turn_rate), ("most", most)]))
+            .with_value("rate", plane(&rate))
+            .with_value("wanted", plane(&wanted));
+        let proven = proofs.value("limited", &[]);
+        cut += usize::from(found.acceleration != wanted);
+        // Divided by the period, a rounding of the rate counts a hundred times.
+        near(found.acceleration.x, field(&proven, "x").number(), 10.0 * f64::from(most), "limited");
+        near(found.acceleration.y, field(&proven, "y").number(), 10.0 * f64::from(most), "limited");
+    }
+    assert!(cut > TRIALS / 20, "{cut} of {TRIALS} limited");
+}
+
+/// y'' at the least, for y, y' and the limiter's k.
+fn least(k: f32, y: f32, y_1: f32) -> f64 {
+    let proofs = Proofs::read("Envelope")
+        .with(&[("k", f64::from(k)), ("s", 0.0)])
+        .with_value("y", Value::Moving(f64::from(y)))
+        .with_value("y_1", Value::Moving(f64::from(y_1)))
+        .with_value("y_2", Value::Moving(0.0));
+    proofs.sides("stays_inside", "<= y_2 s")[0]
+}
+
+#[test]
+pub(super) fn the_ends_of_u_are_those_of_the_proofs() {
+    const FAR: f32 = 1e6;
+    let p = constants();
+    let limit = TurningLimit::new(&p, 0.01);
+    let still = |magnitude, radial_rate, radial_acceleration| Turn {
+        rate: Vector2::zeros(),
+        acceleration: Vector2::zeros(),
+        magnitude,
+        radial_rate,
+        radial_acceleration,
+    };
+    // c_z'' as limited, for y = c_z + A_-: far below U, where n has all room. It falls without end as wanted.
+    let falling = |c: f32, c_rate: f32| {
+        let found = limited(&limit, &still(-FAR, 0.0, 0.0), 40.0, 0.0, [c, c_rate, -FAR]);
+        found.change.unwrap().z - FAR
+    };
+    // n'' as limited, for y = U - n: c_z'' is wanted far above its end.
+    let swelling = |n: f32, rate: f32| {
+        let found = limited(&limit, &still(n, rate, FAR), 40.0, 0.0, [0.0, 0.0, FAR]);
+        found.change.unwrap().z + FAR
+    };
+    // It holds for every k: the limiter's is half of what a rate of one changes at the end.
+    let k = -0.5 * falling(-p.a_down, 1.0);
+    let mut random = Random(10);
+    for _ in 0..TRIALS {
+        let (y, rate) = (random.within(0.0, 10.0) as f32, 20.0 * signed(&mut random));
+        near(falling(y - p.a_down, rate), least(k, y, rate), 5e4, "c_z''");
+        near(swelling(30.0 - y, rate), -least(k, y, -rate), 5e4, "n''");
+    }
+}
+
+#[test]
+pub(super) fn the_torques_beside_the_feedback_are_those_of_the_proofs() {
+    let inertia = hummingbird::vehicle().inertia;
+    let law = AttitudeLaw::new(&constants(), &inertia);
+    let mut random = Random(13);
+    for _ in 0..TRIALS {
+        let (rate, acceleration) = (direction(&mut random) * 20.0, direction(&mut random) * 100.0);
+        let (potential, damping) = (direction(&mut random) * 0.1, direction(&mut random) * 0.1);
+        let found = law.torque(&AttitudeFeedback { potential, damping }, &rate, &acceleration);
+        let f = potential + damping;
+        let proofs = Proofs::read("Attitude")
+            .with(&of(&[("j_1", inertia.x), ("j_2", inertia.y), ("j_3", inertia.z)]))
+            .with(&of(&[("r_1", rate.x), ("r_2", rate.y), ("r_3", rate.z)]))
+            .with(&of(&[("a_1", acceleration.x), ("a_2", acceleration.y), ("a_3", acceleration.z)]))
+            .with(&of(&[("f_1", f.x), ("f_2", f.y), ("f_3", f.z)]));
+        for (found, name) in found.iter().zip(["tau_1", "tau_2", "tau_3"]) {
+            near(*found, proofs.bound("feed_forward_cancels", name), 1.0, name);
+        }
+        let nothing = AttitudeFeedback { potential: Vector3::zeros(), damping: Vector3::zeros() };
+        let found = law.torque(&nothing, &rate, &Vector3::zeros());
+        let numbers = [inertia, rate].map(<[f32; 3]>::from).concat();
+        let numbers: Vec<Value> = numbers.into_iter().map(|x| Value::Number(f64::from(x))).collect();
+        let gyroscopic = Proofs::read("Budget").value("gyroscopic", &numbers);
+        for (found, name) in found.iter().zip(["about_x", "about_y", "about_z"]) {
+            near(*found, field(&gyroscopic, name).number(), 1.0, "gyroscopic");
+        }
+    }
+}
+
+#[test]
+pub(super) fn the_certificates_rows_of_the_attitude_are_those_of_the_proofs() {
+    let (p, certificate) = (constants(), certificate());
+    let delta = Proofs::read("Mrp").with(&of(&[("delta", p.delta), ("a", 0.0)]));
+    let q_bar = -delta.sides("switch_without_division", "<= a")[0];
+    same(switching_scalar(p.delta), q_bar, "qbar");
+    let proofs = Proofs::read("Attitude").with(&potential(&p)).with(&[("q_bar", q_bar)]);
+
+    // Rows E.
+    let [_, required, available] = proofs.sides("only_the_target", "q_bar < eta")[..] else { panic!("three sides") };
+    let switch = row(&certificate, "E switch");
+    same(switch.required, required, "E switch");
+    same(switch.available, available, "E switch");
+    let [required, available] = proofs.sides("only_the_target", "2 * q_bar * M_t <")[..] else { panic!("two sides") };
+    let tilt = row(&certificate, "E tilt");
+    same(tilt.required, required, "E tilt");
+    same(tilt.available, available, "E tilt");
+
+    // Row D: however many cells there are, the level is the greatest of theirs.
+    let level = |cells: u32| {
+        let cell = |near: u32| proofs.number("cell", &[near, near + 1].map(|end| f64::from(end) / f64::from(cells)));
+        (0..cells).map(cell).fold(0.0, f64::max)
+    };
+    let row_d = row(&certificate, "D potential");
+    let greatest = row_d.required / (1.0 + ARITHMETIC_ALLOWANCE);
+    let cells = (1..=256).find(|cells| (level(*cells) / greatest - 1.0).abs() < 1e-9);
+    assert!(cells.is_some_and(|cells| cells >= 32), "{greatest} is the level of no number of cells: {cells:?}");
+    let damping = Proofs::read("Damping").with(&[("p_1", greatest), ("p_2", 0.0), ("level", row_d.available)]);
+    assert!(damping.sides("row_D", "0 < room").is_sorted());
+    same(row_d.available, f64::from(p.m_all), "M_all");
+}

@@ -1,0 +1,66 @@
+//! Parts of a tick under names that `../no_panic` finds in the library. `checked_…` is searched, for any arguments;
+//! `make_…` of the same name makes what its first argument points to, for the Hummingbird.
+
+#[path = "../../../controller-core/tests/support/hummingbird.rs"]
+mod hummingbird;
+
+use controller_core::configuration::LawParameters;
+use controller_core::extended::budget::{TorqueBudget, TurningBudget};
+use controller_core::extended::parameters::ExtendedParameters;
+use controller_core::math;
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_whole(x: f32) -> i64 {
+    math::whole(x)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_single(x: i64) -> f32 {
+    math::single(x)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_within_rate(acceleration: f32, rate: f32, level: f32, period: f32) -> f32 {
+    math::within_rate(acceleration, rate, level, period)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_turns(phase: u64) -> f32 {
+    let (sine, cosine) = math::sin_cos_turns(phase);
+    sine + cosine
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_tanh(z: f32) -> f32 {
+    math::tanh_of_scaled(z)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn checked_budget(budget: &TurningBudget, magnitude: f32, feedback: f32, sine: f32) -> f32 {
+    budget.acceleration(magnitude, feedback, sine)
+}
+
+fn constants() -> ExtendedParameters {
+    let LawParameters::Extended(law) = *hummingbird::extended_law().law() else { panic!("the extended law") };
+    *law.parameters
+}
+
+/// Puts `made` where there is room for it; how many bytes it has.
+unsafe fn put<T>(made: T, room: *mut T) -> usize {
+    unsafe { room.write(made) };
+    size_of::<T>()
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn make_budget(room: *mut TurningBudget) -> usize {
+    let configuration = hummingbird::extended_law();
+    let (vehicle, p) = (configuration.vehicle(), constants());
+    let budget = TorqueBudget::new(&p, vehicle, configuration.limits(), configuration.rotors());
+    unsafe { put(TurningBudget::new(&budget, vehicle.mass, p.turn_acceleration), room) }
+}
+
+/// One that can panic, so that a search that finds nothing is noticed.
+#[unsafe(no_mangle)]
+extern "C" fn can_panic(a: i32, x: f32) -> i32 {
+    if x > 3.0 { a + 1 } else { a }
+}
