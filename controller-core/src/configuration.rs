@@ -143,13 +143,15 @@ impl Configuration {
     /// Carries the certificate to the rotors.
     ///
     /// # Errors
-    /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it.
+    /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it; for the extended law also
+    /// if thrust does not reach one of them, or the thrust floor's margin is within rounding.
     pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
         rotors.check_hover(self.vehicle.mass * self.vehicle.gravity)?;
-        if let LawParameters::Extended(_) = self.law {
+        if let LawParameters::Extended(law) = &self.law {
             // Its thrust floor lifts every rotor: a rotor that thrust does not reach cannot be lifted by it.
             let lifted = rotors.pseudo_inverse().iter().all(|row| row.x > 0.0);
             require(lifted, "rotors.position", Reason::DoesNotSpan)?;
+            law.parameters.check_margin(&rotors)?;
         }
         Ok(Self { rotors: Some(rotors), ..self })
     }

@@ -64,7 +64,7 @@ const NOT_COMPARED: [(&str, &str); 21] = [
     ("Mrp.both_lifts", OF_WHAT_IS_COMPARED),
     ("Mrp.rotation_of_phi", OF_WHAT_IS_COMPARED),
     ("Mrp.rotation_of_shadow", OF_WHAT_IS_COMPARED),
-    ("rounding.gappa.b_1 * t_1 + b_2 * t_2", "a partial sum, within ten weights as the whole is"),
+    ("rounding.gappa.b_1 * t_1 + b_2 * t_2", "a partial sum, bounded as the whole is"),
     ("rounding.gappa.b_2 * t_2", "as b_1 * t_1"),
     ("rounding.gappa.b_3 * t_3", "as b_1 * t_1"),
 ];

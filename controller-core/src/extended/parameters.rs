@@ -1,8 +1,10 @@
 //! The constants of the extended law, declared once and validated. Every one has a default from the vehicle's numbers:
 //! [`super::defaults`].
 
+use crate::allocation::Rotors;
 use crate::constants::{Range, constants};
 use crate::error::{ParameterError, Reason, require};
+use crate::math;
 use crate::vehicle::Vehicle;
 use core::ops::Deref;
 
@@ -111,9 +113,9 @@ constants! {
 pub struct Extended(ExtendedParameters);
 
 impl Extended {
-    /// The least margin of the thrust floor, in weights: rounding in single precision moves floor and ceiling by less
-    /// than half of it, up to ten times the thrust that hovers (`proofs/rounding.gappa`).
-    pub const FLOOR_MARGIN_LEAST: f32 = 1e-5;
+    /// The least margin of the thrust floor, as a share of the greatest thrust: rounding in single precision takes less
+    /// of it from floor and ceiling together (`proofs/rounding.gappa`).
+    pub const FLOOR_MARGIN_LEAST: f32 = 2e-6;
 
     /// Checks every constant, and that the command never pushes down.
     ///
@@ -121,8 +123,6 @@ impl Extended {
     /// Names the first field that is out of its range.
     pub fn new(parameters: ExtendedParameters, vehicle: &Vehicle) -> Result<Self, ParameterError> {
         parameters.check()?;
-        let least = Self::FLOOR_MARGIN_LEAST * vehicle.mass * vehicle.gravity;
-        require(parameters.floor_margin >= least, "gains.floor_margin", Reason::Below(least))?;
         for (value, bound, field) in [
             (parameters.a_down, vehicle.gravity, "gains.a_down"),
             (parameters.force_up, parameters.a_down, "estimates.force_up"),
@@ -133,6 +133,17 @@ impl Extended {
         let most = parameters.turn_acceleration;
         require(parameters.turn_reserve <= most, "gains.turn_reserve", Reason::Above(most))?;
         Ok(Self(parameters))
+    }
+
+    /// Checks that the margin of the thrust floor takes up what rounding may do to `rotors`.
+    ///
+    /// # Errors
+    /// Names `gains.floor_margin`.
+    pub fn check_margin(&self, rotors: &Rotors) -> Result<(), ParameterError> {
+        let all = rotors.iter().zip(rotors.pseudo_inverse());
+        let greatest = all.map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x).fold(0.0, math::greater_f64);
+        let least = Self::FLOOR_MARGIN_LEAST * self.scale_greatest * greatest as f32;
+        require(self.floor_margin >= least, "gains.floor_margin", Reason::Below(least))
     }
 }
 

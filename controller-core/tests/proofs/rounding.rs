@@ -1,8 +1,8 @@
 //! Rounding: `limiter.gappa` and `rounding.gappa`. The same steps in the same order give the same bits.
 
 use super::{TRIALS, constants, direction, rotors};
+use crate::support::Random;
 use crate::support::gappa::Rounding;
-use crate::support::{Random, hummingbird};
 use controller_core::attitude_reference::Turn;
 use controller_core::extended::parameters::Extended;
 use controller_core::extended::thrust_range::ThrustRange;
@@ -63,23 +63,25 @@ pub(super) fn floor_ceiling_and_filters_round_as_in_the_proofs() {
     let proofs = Rounding::read("rounding.gappa");
     let [least_margin, greatest_margin] = proofs.interval("margin");
     let [of_floor, of_ceiling] = ["|n - N|", "|c - C|"].map(|error| proofs.interval(error)[1]);
-    // The least margin is one of those for which it is proven, and takes up both errors.
+    // The least margin is one of those for which it is proven, and takes up both errors. Units are those of the proof.
     let least = f64::from(Extended::FLOOR_MARGIN_LEAST);
     assert!((least_margin..=greatest_margin).contains(&least));
     assert!(of_floor + of_ceiling < least, "{of_floor} {of_ceiling} of {least}");
 
-    let [_, weights] = proofs.interval("scale * greatest");
-    assert_eq!(weights, proofs.interval("scale * least")[1]);
+    let [_, part] = proofs.interval("scale * greatest");
+    assert_eq!(part, proofs.interval("scale * least")[1]);
     let torques = ["b_1 * t_1", "DOT"].map(|part| proofs.interval(part));
-    assert!(torques.iter().all(|&[least, greatest]| (least, greatest) == (-weights, weights)));
+    assert!(torques.iter().all(|&[least, greatest]| (least, greatest) == (-part, part)));
 
     let (rotors, mut random) = (rotors(), Random(12));
-    let vehicle = hummingbird::vehicle();
-    let weight = f64::from(vehicle.mass * vehicle.gravity);
+    let thrust = rotors.iter().zip(rotors.pseudo_inverse()).map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x);
+    let thrust = 1.5 * thrust.fold(0.0, f64::max);
+    // The power of two below it.
+    let unit = thrust.log2().floor().exp2();
     for _ in 0..TRIALS {
         let torque = direction(&mut random);
         let scale = random.within(0.5, 1.5) as f32;
-        let margin = (weight * random.magnitude(least, 1.0)) as f32;
+        let margin = (thrust * random.magnitude(least, 0.5)) as f32;
         let range = ThrustRange::new(Some(&rotors), margin, 1e6);
         let (mut floor, mut ceiling) = (f64::from(margin), 1e6_f64);
         for (rotor, row) in rotors.iter().zip(rotors.pseudo_inverse()) {
@@ -99,8 +101,8 @@ pub(super) fn floor_ceiling_and_filters_round_as_in_the_proofs() {
             ];
             let [n, exact_n, c, exact_c] = ["n", "N", "c", "C"].map(|formula| proofs.number(formula, &inputs));
             let parts = [f64::from(scale * ends[1]), proofs.number("DOT", &inputs)];
-            if parts.iter().all(|part| part.abs() <= weights * weight) {
-                assert!((n - exact_n).abs() <= of_floor * weight && (c - exact_c).abs() <= of_ceiling * weight);
+            if parts.iter().all(|size| size.abs() <= part * unit) {
+                assert!((n - exact_n).abs() <= of_floor * unit && (c - exact_c).abs() <= of_ceiling * unit);
             }
             (floor, ceiling) = (floor.max(n), ceiling.min(c));
         }

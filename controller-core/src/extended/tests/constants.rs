@@ -3,7 +3,7 @@
 use crate::error::{ParameterError, Reason};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::parameters::{Extended, ExtendedParameters};
-use crate::extended::tests::example;
+use crate::extended::tests::example::{self, Craft};
 
 #[test]
 fn a_lag_longer_than_anything_is_held_for_as_long_as_can_be_counted() {
@@ -38,9 +38,20 @@ fn constants_that_leave_nothing_of_one_another_are_refused_by_name() {
     assert_eq!(refused("force_across", p.a_across), beyond("estimates.force_across", Reason::NotBelow(p.a_across)));
     let most = p.turn_acceleration;
     assert_eq!(refused("turn_reserve", most.next_up()), beyond("gains.turn_reserve", Reason::Above(most)));
-    // Below it the rounding of a rotor's thrust would show.
-    let least = Extended::FLOOR_MARGIN_LEAST * 0.5 * 9.81;
-    assert_eq!(refused("floor_margin", least.next_down()), beyond("gains.floor_margin", Reason::Below(least)));
+}
+
+#[test]
+fn a_margin_that_rounding_could_use_up_is_refused_with_the_rotors() {
+    let craft = Craft::example();
+    let with = |floor_margin: f32| {
+        let law = craft.law(&ExtendedParameters { floor_margin, ..example::parameters() });
+        law.parameters.check_margin(&craft.rotors)
+    };
+    let greatest = craft.rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>();
+    let least = Extended::FLOOR_MARGIN_LEAST * example::parameters().scale_greatest * greatest;
+    assert_eq!(with(1.001 * least), Ok(()));
+    let ParameterError { field, reason } = with(0.999 * least).unwrap_err();
+    assert!(field == "gains.floor_margin" && matches!(reason, Reason::Below(_)), "{reason:?}");
 }
 
 #[test]
