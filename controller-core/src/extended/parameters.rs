@@ -114,7 +114,7 @@ pub struct Extended(ExtendedParameters);
 
 impl Extended {
     /// The least margin of the thrust floor, as a share of the greatest thrust: rounding in single precision takes less
-    /// of it from floor and ceiling together (`proofs/rounding.gappa`).
+    /// of it on the way from thrust and torque to a rotor's command (`proofs/Rounding.v`).
     pub const FLOOR_MARGIN_LEAST: f32 = 2e-6;
 
     /// Checks every constant, and that the command never pushes down.
