@@ -22,7 +22,7 @@ use std::path::Path;
 const TRIALS: usize = 2_000;
 
 /// Every comparison.
-const COMPARISONS: [fn(); 15] = [
+const COMPARISONS: [fn(); 16] = [
     extended::the_potential_and_the_share_of_damping_are_those_of_the_proofs,
     extended::the_thrust_range_is_that_of_the_proofs,
     extended::the_budgets_rows_are_those_of_the_proofs,
@@ -37,15 +37,17 @@ const COMPARISONS: [fn(); 15] = [
     paper::the_torque_is_that_of_the_proofs,
     paper::the_certificates_thrust_and_torque_are_those_of_the_proofs,
     rounding::the_limiter_rounds_as_in_the_proofs,
-    rounding::floor_ceiling_and_filters_round_as_in_the_proofs,
+    rounding::a_rotors_command_rounds_as_in_the_proofs,
+    rounding::filters_round_as_in_the_proofs,
 ];
 
 const OF_WHAT_IS_COMPARED: &str = "it says something of definitions that are compared, for all numbers";
 const OF_ALL_FUNCTIONS: &str = "it is about every function of time";
+const OF_THE_PROOF: &str = "a notion of the proof alone";
 const NOT_COMPUTED: &str = "no code computes V: the torque is its slope, and tests/extended_flows differentiates it";
 
 /// What stands in no number of the code, with the reason.
-const NOT_COMPARED: [(&str, &str); 21] = [
+const NOT_COMPARED: [(&str, &str); 22] = [
     ("Allocation.torque_fits", "the rows imply it: rows_suffice; nothing asks for it"),
     ("Allocation.rotors_within_range", OF_WHAT_IS_COMPARED),
     ("Allocation.rows_suffice", OF_WHAT_IS_COMPARED),
@@ -64,9 +66,10 @@ const NOT_COMPARED: [(&str, &str); 21] = [
     ("Mrp.both_lifts", OF_WHAT_IS_COMPARED),
     ("Mrp.rotation_of_phi", OF_WHAT_IS_COMPARED),
     ("Mrp.rotation_of_shadow", OF_WHAT_IS_COMPARED),
-    ("rounding.gappa.b_1 * t_1 + b_2 * t_2", "a partial sum, bounded as the whole is"),
-    ("rounding.gappa.b_2 * t_2", "as b_1 * t_1"),
-    ("rounding.gappa.b_3 * t_3", "as b_1 * t_1"),
+    ("Rounding.near", OF_THE_PROOF),
+    ("Rounding.share", OF_THE_PROOF),
+    ("Rounding.rounded_command_at_least", OF_WHAT_IS_COMPARED),
+    ("Rounding.rounded_command_at_most", OF_WHAT_IS_COMPARED),
 ];
 
 /// The names of all definitions, theorems, formulas and bounds.

@@ -1,13 +1,16 @@
-//! Rounding: `limiter.gappa` and `rounding.gappa`. The same steps in the same order give the same bits.
+//! Rounding: `Rounding.v`, `limiter.gappa`, `filters.gappa`. The same steps in the same order give the same bits.
 
-use super::{TRIALS, constants, direction, rotors};
+use super::{TRIALS, constants, direction, of, rotors};
 use crate::support::Random;
+use crate::support::coq::Proofs;
 use crate::support::gappa::Rounding;
+use controller_core::allocation::MinimumNorm;
 use controller_core::attitude_reference::Turn;
 use controller_core::extended::parameters::Extended;
 use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::extended::turning::{Circumstances, TURNED, TurningLimit};
 use controller_core::position::FilterTransition;
+use controller_core::state::Wrench;
 use nalgebra::{Vector2, Vector3};
 
 /// Anywhere in an interval, all magnitudes equally likely.
@@ -59,57 +62,52 @@ pub(super) fn the_limiter_rounds_as_in_the_proofs() {
 }
 
 #[test]
-pub(super) fn floor_ceiling_and_filters_round_as_in_the_proofs() {
-    let proofs = Rounding::read("rounding.gappa");
-    let [least_margin, greatest_margin] = proofs.interval("margin");
-    let [of_floor, of_ceiling] = ["|n - N|", "|c - C|"].map(|error| proofs.interval(error)[1]);
-    // The least margin is one of those for which it is proven, and takes up both errors. Units are those of the proof.
-    let least = f64::from(Extended::FLOOR_MARGIN_LEAST);
-    assert!((least_margin..=greatest_margin).contains(&least));
-    assert!(of_floor + of_ceiling < least, "{of_floor} {of_ceiling} of {least}");
-
-    let [_, part] = proofs.interval("scale * greatest");
-    assert_eq!(part, proofs.interval("scale * least")[1]);
-    let torques = ["b_1 * t_1", "DOT"].map(|part| proofs.interval(part));
-    assert!(torques.iter().all(|&[least, greatest]| (least, greatest) == (-part, part)));
+pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
+    let proofs = Proofs::read("Rounding");
+    let [unit, margin_least] = ["unit", "margin_least"].map(|name| proofs.number(name, &[]));
+    assert!(unit > 0.5 * f64::from(f32::EPSILON) * (1.0 + f64::from(f32::EPSILON)), "{unit}");
+    assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_LEAST), "{margin_least}");
 
     let (rotors, mut random) = (rotors(), Random(12));
-    let thrust = rotors.iter().zip(rotors.pseudo_inverse()).map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x);
-    let thrust = 1.5 * thrust.fold(0.0, f64::max);
-    // The power of two below it.
-    let unit = thrust.log2().floor().exp2();
+    let allocation = MinimumNorm::new(&rotors);
+    let mut delivered = 0;
     for _ in 0..TRIALS {
-        let torque = direction(&mut random);
+        let torque = 0.2 * direction(&mut random);
         let scale = random.within(0.5, 1.5) as f32;
-        let margin = (thrust * random.magnitude(least, 0.5)) as f32;
+        let margin = random.magnitude(1e-5, 1.0) as f32;
         let range = ThrustRange::new(Some(&rotors), margin, 1e6);
+        let wrench = Wrench { thrust: random.within(5.0, 15.0) as f32, torque };
+        let allocated = allocation.allocate(&wrench.scaled(1.0 / scale)).unwrap();
+        delivered += usize::from(!allocated.clipped);
+        let asked = [
+            ("s", scale),
+            ("T", wrench.thrust),
+            ("t_1", torque.x),
+            ("t_2", torque.y),
+            ("t_3", torque.z),
+            ("margin", margin),
+        ];
         let (mut floor, mut ceiling) = (f64::from(margin), 1e6_f64);
-        for (rotor, row) in rotors.iter().zip(rotors.pseudo_inverse()) {
-            let ends = [rotor.thrust_min, rotor.thrust_max].map(|end| (f64::from(end) / row.x) as f32);
-            let b = [row.y, row.z, row.w].map(|of_torque| (of_torque / row.x) as f32);
-            let inputs = [
-                ("scale", scale),
-                ("margin", margin),
-                ("least", ends[0]),
-                ("greatest", ends[1]),
-                ("b_1", b[0]),
-                ("b_2", b[1]),
-                ("b_3", b[2]),
-                ("t_1", torque.x),
-                ("t_2", torque.y),
-                ("t_3", torque.z),
-            ];
-            let [n, exact_n, c, exact_c] = ["n", "N", "c", "C"].map(|formula| proofs.number(formula, &inputs));
-            let parts = [f64::from(scale * ends[1]), proofs.number("DOT", &inputs)];
-            if parts.iter().all(|size| size.abs() <= part * unit) {
-                assert!((n - exact_n).abs() <= of_floor * unit && (c - exact_c).abs() <= of_ceiling * unit);
+        for ((rotor, row), thrust) in rotors.iter().zip(rotors.pseudo_inverse()).zip(allocated.thrusts) {
+            let proofs = Proofs::read("Rounding")
+                .with(&of(&asked))
+                .with(&of(&[("thrust_min", rotor.thrust_min), ("thrust_max", rotor.thrust_max)]))
+                .with(&[("B", row.x), ("Q_1", row.y / row.x), ("Q_2", row.z / row.x), ("Q_3", row.w / row.x)]);
+            floor = floor.max(proofs.number("floor", &[]));
+            ceiling = ceiling.min(proofs.number("ceiling", &[]));
+            if !allocated.clipped {
+                assert_eq!(f64::from(thrust), proofs.number("command", &[]), "{wrench:?} {scale}");
             }
-            (floor, ceiling) = (floor.max(n), ceiling.min(c));
         }
         assert_eq!(f64::from(range.least(&torque, scale)), floor, "{torque} {scale} {margin}");
         assert_eq!(f64::from(range.greatest(&torque, scale)), ceiling, "{torque} {scale} {margin}");
     }
+    assert!(delivered > TRIALS / 4, "{delivered} of {TRIALS} within the rotors' ranges");
+}
 
+#[test]
+pub(super) fn filters_round_as_in_the_proofs() {
+    let (proofs, mut random) = (Rounding::read("filters.gappa"), Random(13));
     let [[least, greatest], [least_v, greatest_v], [_, whole]] = ["u", "v", "k"].map(|name| proofs.interval(name));
     let [_, most] = proofs.interval("|next - NEXT|");
     for _ in 0..TRIALS {

@@ -1,8 +1,8 @@
 //! Definitions and statements of `proofs/*.v`, evaluated in double precision: what Coq proves something of is what the
 //! code computes.
 //!
-//! It reads the terms that those files use: numbers, `+ - * /`, `sqrt`, `exp`, `Rabs`, `Rmax`, `Rmin`, records with
-//! their fields, `if R…_dec … then … else …`, `fold_right (fun …)`, and other definitions, those of the files they
+//! It reads the terms that those files use: numbers, `+ - * /`, `sqrt`, `exp`, `Rabs`, `Rmax`, `Rmin`, `rnd` (to single
+//! precision), records with their fields, `if R…_dec … then … else …`, `fold_right (fun …)`, and other definitions, those of the files they
 //! require too. Of a statement it evaluates the sides of each inequality and equation, premises and conclusions alike.
 //! Variables of a section, and what a statement is for all of, are given by the caller. Whatever is evaluated is noted:
 //! [`compared`].
@@ -419,7 +419,7 @@ impl Reader<'_> {
         let name = self.peek().to_owned();
         let defined = self.proofs.contents.definitions.get(&name);
         let count = match name.as_str() {
-            "sqrt" | "exp" | "Rabs" => 1,
+            "sqrt" | "exp" | "Rabs" | "rnd" => 1,
             "Rmax" | "Rmin" => 2,
             _ => match self.known.get(&name) {
                 Some(Value::Moving(_)) => 1,
@@ -442,6 +442,7 @@ impl Reader<'_> {
             ("sqrt", ..) => self.step(numbers()[0].sqrt()),
             ("exp", ..) => Value::Number(numbers()[0].exp()),
             ("Rabs", ..) => Value::Number(numbers()[0].abs()),
+            ("rnd", ..) => Value::Number(f64::from(numbers()[0] as f32)),
             ("Rmax", ..) => Value::Number(numbers()[0].max(numbers()[1])),
             ("Rmin", ..) => Value::Number(numbers()[0].min(numbers()[1])),
             (_, Some(Value::Moving(now)), _) => Value::Number(*now),
