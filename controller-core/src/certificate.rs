@@ -124,7 +124,8 @@ impl Certificate {
 }
 
 impl Certificate<Enclosure> {
-    /// [`Certificate::evaluate`] with every rounding outwards: an inequality that holds here holds for real numbers.
+    /// [`Certificate::evaluate`] with every rounding outwards: an inequality that holds here holds in exact
+    /// arithmetic, for the numbers that the configuration stores.
     ///
     /// # Errors
     /// As [`Certificate::evaluate`].

@@ -19,6 +19,7 @@
 //! positive.
 
 use crate::math;
+use crate::math::real::Real;
 use crate::mrp;
 use crate::state::length_squared;
 use core::hint::cold_path;
@@ -46,11 +47,18 @@ pub struct Lifted {
     pub lift: Lift,
 }
 
-/// The scalar part at which |phi(q)| = 1 + `delta`.
+/// qbar: |phi(q)| = 1 + `delta` where the scalar part of q is its negative.
+#[must_use]
+pub fn switching_magnitude<R: Real>(delta: f32) -> R {
+    let radius = R::from(delta) + 1.0;
+    let square = radius * radius;
+    (square - 1.0) / (square + 1.0)
+}
+
+/// The scalar part at which |phi(q)| = 1 + `delta`, to the nearest number in single precision.
 #[must_use]
 pub fn switching_scalar(delta: f32) -> f32 {
-    let square = (1.0 + delta) * (1.0 + delta);
-    (1.0 - square) / (1.0 + square)
+    -switching_magnitude::<f64>(delta) as f32
 }
 
 /// Lifts the attitude error `error`, continuing from `lift` or starting afresh.

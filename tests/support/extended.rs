@@ -6,11 +6,12 @@ pub mod rounding;
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::allocation::{QuadX, Rotors};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::extended::{ExtendedBounds, greatest_potential, switching_scalar};
+use controller_core::certificate::extended::{ExtendedBounds, greatest_potential};
 use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters};
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
+use controller_core::path_lifting::switching_magnitude;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -38,7 +39,7 @@ pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, ve
         *value = around.clamp(constant.range.least, constant.range.greatest);
     }
     let delta = random::log_uniform(rng, 0.005, 1.0);
-    let qbar = switching_scalar::<f64>(delta) as f32;
+    let qbar = switching_magnitude::<f64>(delta) as f32;
     let p = ExtendedParameters::from_values(values);
     let a_down = p.a_down.min(0.9 * vehicle.gravity);
     let p = ExtendedParameters {

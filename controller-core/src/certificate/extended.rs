@@ -28,6 +28,7 @@ use crate::extended::parameters::Extended;
 use crate::extended::position::net_level;
 use crate::extended::turning;
 use crate::math::real::Real;
+use crate::path_lifting::switching_magnitude;
 use crate::reference::ReferenceBounds;
 use heapless::Vec;
 use nalgebra::Vector3;
@@ -129,18 +130,23 @@ fn positive<R: Real>(value: R, least: R) -> R {
 /// `bounds` of p_d'' + kappa p_d' and its derivatives, `drag` being kappa, 1/s.
 fn with_drag(bounds: &ReferenceBounds, drag: f32) -> ReferenceBounds {
     ReferenceBounds {
-        horizontal_acceleration: bounds.horizontal_acceleration + drag * bounds.horizontal_speed,
-        jerk: bounds.jerk + drag * bounds.horizontal_acceleration,
-        snap: bounds.snap + drag * bounds.jerk,
+        horizontal_acceleration: at_least(bounds.horizontal_acceleration, drag, bounds.horizontal_speed),
+        jerk: at_least(bounds.jerk, drag, bounds.horizontal_acceleration),
+        snap: at_least(bounds.snap, drag, bounds.jerk),
         ..*bounds
     }
+}
+
+/// value + factor by, none of them negative: the next number is not below it, whatever two roundings took.
+fn at_least(value: f32, factor: f32, by: f32) -> f32 {
+    if factor > 0.0 { (value + factor * by).next_up() } else { value }
 }
 
 /// The heading of the reference, with the force that tilts u.
 fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [Inequality<R>; 2] {
     let reference = with_drag(configuration.bounds(), parameters.drag_across);
     let forced = ReferenceBounds {
-        horizontal_acceleration: reference.horizontal_acceleration + parameters.force_heading,
+        horizontal_acceleration: at_least(reference.horizontal_acceleration, parameters.force_heading, 1.0),
         ..reference
     };
     let gravity = R::from(configuration.vehicle().gravity) - R::from(parameters.force_up);
@@ -152,7 +158,8 @@ fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [In
     let [rate, acceleration] = fastest.map(|rate| rate * (one + ARITHMETIC_ALLOWANCE));
     // The part of alpha_0 that q leaves carries the frame about rho; the law divides it by sqrt(5/4) |p| at most.
     let turned = R::from(1.25).sqrt() * R::from(reference.jerk) / alone.vertical_least;
-    let carried = (one - R::from(turning::TURNED)) * R::from(parameters.turn_reserve) / turned.greater(R::from(1e-9));
+    let carried =
+        (one - R::from(turning::TURNED)) * R::from(parameters.turn_reserve) / turned.greater(R::from(turning::SLOWEST));
     let most = R::from(parameters.yaw_rate).lesser(carried);
     [
         Inequality::new("A1 heading rate for the reference", "rad/s", rate, most),
@@ -160,25 +167,18 @@ fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [In
     ]
 }
 
-/// qbar, at whose negative the lift switches.
-#[must_use]
-pub fn switching_scalar<R: Real>(delta: f32) -> R {
-    let radius = R::from(delta) + 1.0;
-    let square = radius * radius;
-    (square - 1.0) / (square + 1.0)
-}
-
 /// Section 6 of the document: no attitude but the target is an equilibrium, and damping always has a share.
 fn attitude<R: Real>(parameters: &Extended) -> [Inequality<R>; 3] {
-    let qbar: R = switching_scalar(parameters.delta);
+    let qbar: R = switching_magnitude(parameters.delta);
     let [w, eta, m_t, eta_t, m_all] =
         [parameters.w, parameters.eta, parameters.m_t, parameters.eta_t, parameters.m_all].map(R::from);
     let one = R::from(1.0);
+    let raised = one + ARITHMETIC_ALLOWANCE;
     let pull = w * eta_t * (one - qbar * qbar).sqrt_of_rounded();
-    let potential = greatest_potential::<R>(parameters) * (one + ARITHMETIC_ALLOWANCE);
+    let potential = greatest_potential::<R>(parameters) * raised;
     [
-        Inequality::new("E switch qbar < eta", "1", qbar, eta),
-        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", qbar * 2.0 * m_t, pull),
+        Inequality::new("E switch qbar < eta", "1", qbar * raised, eta),
+        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", qbar * 2.0 * m_t * raised, pull),
         Inequality::new("D potential |P| < M_all", "N m", potential, m_all),
     ]
 }
@@ -243,7 +243,7 @@ fn bounds<R: Real>(
         together = together.lesser(thrust * R::from(p.scale_greatest));
     }
     ExtendedBounds {
-        rates: [R::from(p.turn_rate * RATE_BEYOND) * raised, turning * raised],
+        rates: [R::from(p.turn_rate) * RATE_BEYOND * raised, turning * raised],
         thrust: Interval { least: R::from(p.floor_margin) / raised, greatest: together },
         torque: Vector3::new(across * raised, across * raised, about * raised),
         rotors,

@@ -69,7 +69,8 @@ impl<R: Real> DesiredRates<R> {
 
     /// Whether any of these bounds may be greater than the other's.
     fn exceed(&self, other: &Self) -> bool {
-        let exceeds = |ours: R, theirs: R| ours.upper() > theirs.upper();
+        // What is undefined exceeds everything.
+        let exceeds = |ours: R, theirs: R| ours.upper() > theirs.upper() || ours.upper().is_nan();
         let torque = self.feedforward_torque.iter().zip(other.feedforward_torque.as_slice());
         exceeds(self.angular_velocity, other.angular_velocity)
             || exceeds(self.angular_acceleration, other.angular_acceleration)

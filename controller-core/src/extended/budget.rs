@@ -60,7 +60,7 @@ impl Row {
 }
 
 /// How far beyond Omega a tick may take the thrust direction: alpha is cut after Omega.
-pub const RATE_BEYOND: f32 = 1.15;
+pub const RATE_BEYOND: f64 = 1.15;
 
 /// The greatest number of rows.
 pub const ROWS: usize = 4;
@@ -128,7 +128,8 @@ impl<R: Real> TorqueBudget<R> {
         let (zero, one) = (R::from(0.0), R::from(1.0));
         let j = vehicle.inertia.map(R::from);
         let inertia = [j.x.greater(j.y), j.z];
-        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate * RATE_BEYOND].map(R::from);
+        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate].map(R::from);
+        let turn_rate = turn_rate * RATE_BEYOND;
         let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(R::from);
         // Half of |omega_d|^2: the greatest product of two orthogonal components.
         let product = (turn_rate * turn_rate + rate * rate) * 0.5;

@@ -323,7 +323,7 @@ impl PositionLaw {
 pub fn net_level<R: Real>(parameters: &ExtendedParameters, gravity: f32) -> R {
     let p = parameters;
     let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
-    let least = R::from(gravity - p.a_down);
+    let least = R::from(gravity) - R::from(p.a_down);
     // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d, x + d and y + d start within M.
     (reserve * 0.3 * least / (k_f * 2.0 * (k_s + k_f))).lesser(rate * 0.5 * least / (k_f * 2.0))
 }

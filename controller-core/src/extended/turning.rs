@@ -31,6 +31,9 @@ const SOFTNESS: f32 = 10.0;
 /// The part of alpha that q may take.
 pub const TURNED: f32 = 0.6;
 
+/// What |p| counts as at least where the frame is carried about rho, rad/s.
+pub const SLOWEST: f32 = 1e-3;
+
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningLimit {
@@ -131,7 +134,7 @@ impl TurningLimit {
         // An upper bound of |p| without a root, at most an eighth too large.
         let (x, y) = (rate.x.abs(), rate.y.abs());
         let speed = if x > y { x + 0.5 * y } else { y + 0.5 * x };
-        let yaw_rate = most * (1.0 - TURNED) / math::greater(speed, 1e-3);
+        let yaw_rate = most * (1.0 - TURNED) / math::greater(speed, SLOWEST);
         Limited { acceleration: q, yaw_rate, change: changed.then(|| Vector3::new(tangential.x, tangential.y, along)) }
     }
 

@@ -31,6 +31,11 @@ impl Enclosure {
         Self::outwards(rest.into_iter().fold(first, math::lesser_f64), rest.into_iter().fold(first, math::greater_f64))
     }
 
+    /// Itself, if it has both ends.
+    fn whole(self) -> Self {
+        if self.lower.is_nan() || self.upper.is_nan() { Self::UNDEFINED } else { self }
+    }
+
     /// Its square, which is never below zero.
     fn square(self) -> Self {
         let magnitude = self.abs();
@@ -202,7 +207,7 @@ impl Real for Enclosure {
 
     fn sqrt(self) -> Self {
         let Self { lower, upper } = Self::outwards(math::sqrt_f64(self.lower), math::sqrt_f64(self.upper));
-        Self { lower: math::greater_f64(lower, 0.0), upper }
+        Self { lower: math::greater_f64(lower, 0.0), upper }.whole()
     }
 
     fn sqrt_of_rounded(self) -> Self {
@@ -214,11 +219,11 @@ impl Real for Enclosure {
     }
 
     fn exp(self) -> Self {
-        Self { lower: exponential(self.lower).lower, upper: exponential(self.upper).upper }
+        Self { lower: exponential(self.lower).lower, upper: exponential(self.upper).upper }.whole()
     }
 
     fn ln_1p(self) -> Self {
-        Self { lower: logarithm(self.lower).lower, upper: logarithm(self.upper).upper }
+        Self { lower: logarithm(self.lower).lower, upper: logarithm(self.upper).upper }.whole()
     }
 
     /// Beyond sqrt(p/3), where it turns, the cubic rises: where it is positive there, the greatest root is below, and

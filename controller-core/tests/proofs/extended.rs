@@ -7,7 +7,7 @@ use crate::support::{Random, hummingbird};
 use controller_core::allocation::{MinimumNorm, Rotors};
 use controller_core::attitude_reference::Turn;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::extended::{ExtendedCertificate, switching_scalar};
+use controller_core::certificate::extended::ExtendedCertificate;
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::certificate::inequality::Inequality;
 use controller_core::extended::attitude::{AttitudeFeedback, AttitudeLaw};
@@ -15,6 +15,7 @@ use controller_core::extended::budget::{RATE_BEYOND, TorqueBudget, TurningBudget
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::extended::turning::{Circumstances, Limited, TurningLimit};
+use controller_core::path_lifting::switching_magnitude;
 use controller_core::state::Wrench;
 use nalgebra::{Vector2, Vector3};
 
@@ -170,7 +171,7 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
     // What is fixed: the gyroscopic torque, yaw's feedback at its level, and A.
     let gyroscopic = Proofs::read("Budget")
         .with(&[("j_1", j_1), ("j_2", j_2), ("j_3", j_3)])
-        .with(&of(&[("rate", p.turn_rate * RATE_BEYOND), ("yaw_rate", p.yaw_rate)]))
+        .with(&of(&[("rate", p.turn_rate * RATE_BEYOND as f32), ("yaw_rate", p.yaw_rate)]))
         .with(&[("r_1", 0.0), ("r_2", 0.0), ("r_3", 0.0), ("across", f64::NAN)]);
     let across = ["Rabs ( j_3 - j_2 ) <=", "Rabs ( j_1 - j_3 ) <="]
         .map(|difference| gyroscopic.sides("gyroscopic_bound", difference)[0])
@@ -390,17 +391,18 @@ pub(super) fn the_certificates_rows_of_the_attitude_are_those_of_the_proofs() {
     let (p, certificate) = (constants(), certificate());
     let delta = Proofs::read("Mrp").with(&of(&[("delta", p.delta), ("a", 0.0)]));
     let q_bar = -delta.sides("switch_without_division", "<= a")[0];
-    same(switching_scalar(p.delta), q_bar, "qbar");
+    same(switching_magnitude::<f64>(p.delta), q_bar, "qbar");
     let proofs = Proofs::read("Attitude").with(&potential(&p)).with(&[("q_bar", q_bar)]);
 
     // Rows E.
+    let raised = 1.0 + ARITHMETIC_ALLOWANCE;
     let [_, required, available] = proofs.sides("only_the_target", "q_bar < eta")[..] else { panic!("three sides") };
     let switch = row(&certificate, "E switch");
-    same(switch.required, required, "E switch");
+    same(switch.required, required * raised, "E switch");
     same(switch.available, available, "E switch");
     let [required, available] = proofs.sides("only_the_target", "2 * q_bar * M_t <")[..] else { panic!("two sides") };
     let tilt = row(&certificate, "E tilt");
-    same(tilt.required, required, "E tilt");
+    same(tilt.required, required * raised, "E tilt");
     same(tilt.available, available, "E tilt");
 
     // Row D: however many cells there are, the level is the greatest of theirs.
@@ -409,7 +411,7 @@ pub(super) fn the_certificates_rows_of_the_attitude_are_those_of_the_proofs() {
         (0..cells).map(cell).fold(0.0, f64::max)
     };
     let row_d = row(&certificate, "D potential");
-    let greatest = row_d.required / (1.0 + ARITHMETIC_ALLOWANCE);
+    let greatest = row_d.required / raised;
     let cells = (1..=256).find(|cells| (level(*cells) / greatest - 1.0).abs() < 1e-9);
     assert!(cells.is_some_and(|cells| cells >= 32), "{greatest} is the level of no number of cells: {cells:?}");
     let damping = Proofs::read("Damping").with(&[("p_1", greatest), ("p_2", 0.0), ("level", row_d.available)]);

@@ -67,9 +67,9 @@ impl Rigorous {
         let follows = if !undecided.is_empty() {
             format!("rigorous: rounding decides {}", undecided.join(", "))
         } else if self.holds() {
-            "rigorous: every inequality holds for real numbers".to_owned()
+            "rigorous: every inequality holds in exact arithmetic".to_owned()
         } else {
-            "rigorous: the same inequalities fail".to_owned()
+            "rigorous: the same inequalities are not shown to hold".to_owned()
         };
         format!(
             "{}\n{follows}; rounding outwards takes {:.0e} of what is available at most\n",

@@ -1,4 +1,5 @@
 use super::*;
+use crate::math::enclosure::Enclosure;
 
 #[test]
 fn bounds_exceed_others_by_any_single_one_of_them() {
@@ -26,4 +27,15 @@ fn every_cell_of_the_quarter_turn_holds_its_cosines_and_sines_by_a_hair() {
         ];
         assert!(outwards.iter().all(|by| (0.0..2.0 * OUTWARDS).contains(by)), "{i}: {outwards:?}");
     }
+}
+
+#[test]
+fn a_bound_that_is_undefined_stays_undefined() {
+    let bounds = ReferenceBounds { vertical_acceleration: 1.0, ..ReferenceBounds::REST };
+    let [k_f, k_s, m_p, gravity] = [5.0, 10.0, 8.81_f32, 9.81].map(Enclosure::from);
+    let reach = Reachable::new(k_f, k_s, m_p, gravity, &bounds);
+    assert!(reach.vertical_least.lower() < 0.0 && reach.vertical_least.upper() > 0.0, "{reach:?}");
+    let rates = desired_rates(&reach, &bounds, &Vector3::repeat(Enclosure::from(1.0)));
+    assert!(rates.angular_velocity.upper().is_nan() && rates.feedforward_torque.x.upper().is_nan(), "{rates:?}");
+    assert!(turning_rates(&reach, &bounds)[1].upper().is_nan());
 }

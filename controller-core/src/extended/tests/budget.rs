@@ -90,7 +90,7 @@ fn a_turn_within_the_budget_fits_every_row_with_all_that_is_fixed() {
                 let (sin, cos) = random.between(0.0, core::f32::consts::TAU).sin_cos();
                 Vector3::new(cos, sin, 0.0) * length
             };
-            let (tilt, turn, rate) = (turned(feedback), turned(alpha), turned(p.turn_rate * RATE_BEYOND));
+            let (tilt, turn, rate) = (turned(feedback), turned(alpha), turned(p.turn_rate * RATE_BEYOND as f32));
             // omega_d' turned by R~ with the sine given: what tilts leaks into yaw.
             let turn = turn * (1.0 - sine * sine).sqrt() + Vector3::z() * (alpha * sine);
             let mut side = || random.signed().signum();

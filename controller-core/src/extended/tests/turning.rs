@@ -95,7 +95,7 @@ fn the_frame_turns_within_its_budget_and_rate_and_never_falls_too_fast() {
         let worst = driven(&craft, &craft.constants(&NOTHING_GIVEN), &mut random);
         assert!(worst.changed > 1_000, "{worst:?}");
         // A tick's q is that of its start, and alpha is cut after Omega.
-        assert!(worst.rate < RATE_BEYOND, "{craft:?}: {worst:?}");
+        assert!(worst.rate < RATE_BEYOND as f32, "{craft:?}: {worst:?}");
         // A tick's end is not its start: measured, half a percent in ticks of 10 ms.
         assert!(worst.carried < 1.0 + craft.period, "{craft:?}: {worst:?}");
         // Even where rho leaves its cone: what a tick adds to |u| is well within what is left of the thrust.
