@@ -168,28 +168,27 @@ pub(super) fn the_bounds_on_the_third_axis_are_the_greatest_of_the_proofs_cells(
             let tilt = Tilt::new(&given, cell);
             let all = &tilt.proofs;
             let [near, far] = ["near", "far"].map(|end| all.bound_of("covered", end, &[cell as f64]));
-            let [secant, sine] = ["secant", "tilt_sin"].map(|name| all.number(name, &[far]));
-            let magnitude = all.number("magnitude", &[near, reach.vertical_least]);
             let mixed = |horizontal: f64, vertical: f64| {
                 tilt.of_directions(|at, k| at.bound_of("covered", "mixed", &[cell as f64, k, horizontal, vertical]))
             };
             let jerk = mixed(reach.horizontal_jerk, reach.vertical_jerk);
             let snap = mixed(reach.horizontal_snap, reach.vertical_snap);
             let fastest = all.number("fastest", &[]);
-            rate = rate.max(all.number("yaw_bound", &[far, secant, fastest, jerk]));
+            rate = rate.max(all.number("velocity_square", &[far, 0.0, jerk, fastest]).sqrt());
 
-            // What tilts is nothing here.
             let of = |[splits, headings]: [usize; 2], [l, j]: [usize; 2]| {
                 let end = |greatest, cells: usize, k: usize| all.number("end_of", &[greatest, cells as f64, k as f64]);
                 let [least, most] = [l, l + 1].map(|k| end(tilt.longest, splits, k));
                 let [slow, fast] = [j, j + 1].map(|k| end(fastest, headings, k));
                 let heading_second = f64::from(given.bounds.heading_second_derivative);
                 let turning = all.number("heading_acceleration", &[heading_second, slow]);
-                let stretch = all.number("share_stretch", &[near, reach.vertical_least, reach.jerk, least]);
-                let share = all.number("share_mixed", &[near, reach.vertical_least, reach.horizontal_jerk, most]);
-                let yawing = [far, sine, secant, fast, turning, stretch, most / magnitude, share];
-                let yawing = all.number("yawing_bound", &yawing);
-                all.number("square_of_sum", &[0.0, far * snap, 0.0, yawing]).sqrt()
+                let shares = [fast, turning, reach.jerk, reach.horizontal_jerk, least, most];
+                let cell = [&[near, far, reach.vertical_least, f64::NAN, snap], &shares[..]].concat();
+                // What turns about the third axis, without u'' and with it.
+                ["yawing_bound", "far * snap_mixed"]
+                    .map(|part| all.part("acceleration_square", &cell, part))
+                    .iter()
+                    .sum()
             };
             look_into([SPLIT_CELLS, HEADING_CELLS], &of, &mut |bound, is_found| {
                 let raises = bound > acceleration;

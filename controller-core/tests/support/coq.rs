@@ -9,6 +9,7 @@
 
 mod reader;
 mod statement;
+mod text;
 
 use reader::Reader;
 use statement::{Statement, arguments};
@@ -16,6 +17,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::rc::Rc;
+use text::without_comments;
+pub(super) use text::words;
 
 /// Where the proofs are.
 pub const PROOFS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../proofs");
@@ -182,8 +185,28 @@ impl Proofs {
         self.applied(name, arguments, &BTreeMap::new())
     }
 
-    /// The same, where the caller knows what the variables of its section are.
+    /// The part of a definition's term that is in parentheses and begins with these words.
+    pub fn part(&self, name: &str, given: &[f64], begins: &str) -> f64 {
+        let term = &self.contents.definitions[name].term;
+        let begins = words(begins);
+        let mut places = (1..term.len()).filter(|&at| term[at - 1] == "(" && term[at..].starts_with(&begins));
+        let (Some(place), None) = (places.next(), places.next()) else { panic!("{name}: one part with {begins:?}") };
+        let given: Vec<Value> = given.iter().map(|x| Value::Number(*x)).collect();
+        self.read_in(name, &given, &BTreeMap::new(), |reader| reader.parenthesis(place)).number()
+    }
+
+    /// A definition, where the caller knows what the variables of its section are.
     fn applied(&self, name: &str, given: &[Value], caller: &BTreeMap<String, Value>) -> Value {
+        self.read_in(name, given, caller, |reader| reader.whole())
+    }
+
+    fn read_in(
+        &self,
+        name: &str,
+        given: &[Value],
+        caller: &BTreeMap<String, Value>,
+        read: impl FnOnce(Reader) -> Value,
+    ) -> Value {
         let definition = self.contents.definitions.get(name).unwrap_or_else(|| panic!("no definition {name}"));
         let Definition { file, variables, arguments, term, rounded } = definition;
         note(file, name);
@@ -197,7 +220,7 @@ impl Proofs {
             known.extend(variables.iter().cloned().zip(given.iter().cloned()));
         }
         known.extend(arguments.iter().cloned().zip(given[own..].iter().cloned()));
-        Reader { proofs: self, known: &known, lets: &BTreeMap::new(), words: term, at: 0, rounded: *rounded }.whole()
+        read(Reader { proofs: self, known: &known, lets: &BTreeMap::new(), words: term, at: 0, rounded: *rounded })
     }
 
     fn defines(&self, name: &str) -> bool {
@@ -263,27 +286,4 @@ fn sentences(file: &str) -> Vec<Vec<String>> {
     let path = format!("{PROOFS}/{file}.v");
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     words(&without_comments(&text)).split(|word| word == ".").map(<[String]>::to_vec).collect()
-}
-
-fn without_comments(text: &str) -> String {
-    let mut parts = text.split("(*");
-    let first = parts.next().unwrap_or_default().to_owned();
-    first + &parts.map(|part| part.split_once("*)").expect("comments do not nest").1).collect::<String>()
-}
-
-/// The signs of more than one character, longer ones first.
-const SIGNS: [&str; 10] = ["<->", ":=", "{|", "|}", "->", "=>", "/\\", "<=", ">=", "<>"];
-
-/// Words and signs; a full stop ends a sentence.
-pub(super) fn words(text: &str) -> Vec<String> {
-    let part_of_name = |sign: char| sign.is_alphanumeric() || sign == '_' || sign == '\'';
-    let (mut words, mut rest) = (Vec::new(), text.trim_start());
-    while let Some(first) = rest.chars().next() {
-        let name = rest.find(|sign| !part_of_name(sign)).unwrap_or(rest.len());
-        let sign = SIGNS.iter().find(|sign| rest.starts_with(**sign)).map_or(first.len_utf8(), |sign| sign.len());
-        let (word, after) = rest.split_at(if name > 0 { name } else { sign });
-        words.push(word.to_owned());
-        rest = after.trim_start();
-    }
-    words
 }

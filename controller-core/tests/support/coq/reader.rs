@@ -29,6 +29,13 @@ impl<'a> Reader<'a> {
         value
     }
 
+    /// What is in the parentheses that open before this word.
+    pub fn parenthesis(mut self, place: usize) -> Value {
+        self.at = place;
+        let words = &self.words[place..self.closing()];
+        Reader { words, at: 0, ..self }.whole()
+    }
+
     fn peek(&self) -> &'a str {
         self.words.get(self.at).map_or("", String::as_str)
     }
