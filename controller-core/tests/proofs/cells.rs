@@ -122,8 +122,16 @@ fn some_vehicles() -> Vec<Given> {
     // Its reference at rest, and with a heading that K_nu'' alone limits.
     let resting = Given { bounds: ReferenceBounds::REST, ..given };
     let limited = Given { bounds: ReferenceBounds { heading_rate: 5.0, ..given.bounds }, ..given };
+    // With a snap so great, and u' so little, that an even split of u' decides.
+    let even = Given { m_p: 0.0, bounds: ReferenceBounds { jerk: 0.5, snap: 100.0, ..ReferenceBounds::REST }, ..given };
     let mut random = Random(20);
-    [given, resting, limited].into_iter().chain([0; 2].map(|_| Given::random(&mut random))).collect()
+    [given, resting, limited, even].into_iter().chain([0; 2].map(|_| Given::random(&mut random))).collect()
+}
+
+/// The cells of the tilt, the steepest first; without a tilt they are all the same.
+fn tilts(given: &Given) -> impl Iterator<Item = usize> {
+    let cells = if given.reach().horizontal > 0.0 { TILT_CELLS } else { 1 };
+    (0..cells).rev()
 }
 
 #[test]
@@ -138,7 +146,7 @@ pub(super) fn the_sharp_bound_is_the_greatest_of_the_proofs_cells() {
     };
     for given in some_vehicles() {
         let (mut velocity, mut acceleration, mut torques) = (0.0_f64, 0.0_f64, Vector3::zeros());
-        for cell in (0..TILT_CELLS).rev() {
+        for cell in tilts(&given) {
             let tilt = Tilt::new(&given, cell);
             let fastest = tilt.velocity();
             velocity = velocity.max(fastest);
@@ -164,7 +172,7 @@ pub(super) fn the_bounds_on_the_third_axis_are_the_greatest_of_the_proofs_cells(
     for given in some_vehicles() {
         let reach = given.reach();
         let (mut rate, mut acceleration) = (0.0_f64, 0.0_f64);
-        for cell in (0..TILT_CELLS).rev() {
+        for cell in tilts(&given) {
             let tilt = Tilt::new(&given, cell);
             let all = &tilt.proofs;
             let [near, far] = ["near", "far"].map(|end| all.bound_of("covered", end, &[cell as f64]));
