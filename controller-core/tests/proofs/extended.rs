@@ -95,9 +95,9 @@ pub(super) fn the_potential_and_the_share_of_damping_are_those_of_the_proofs() {
             .with(&[("lambda", share), ("t", 0.0)])
             .with(&of(&[("c", p.k_omega_t / eased), ("factor", feedback.damping.z / rate.z)]))
             .with(&of(&[("d_1", feedback.damping.x), ("d_2", feedback.damping.y), ("d_3", feedback.damping.z)]))
-            .with_value("e_1", Value::Moving(f64::from(rate.x)))
-            .with_value("e_2", Value::Moving(f64::from(rate.y)))
-            .with_value("e_3", Value::Moving(f64::from(rate.z)));
+            .with_value("e_1", Value::Number(f64::from(rate.x)).moving())
+            .with_value("e_2", Value::Number(f64::from(rate.y)).moving())
+            .with_value("e_3", Value::Number(f64::from(rate.z)).moving());
         for premise in ["d_1 = lambda", "d_2 = lambda", "d_3 = factor"] {
             let [found, proven] = falls.sides("no_rise", premise)[..] else { panic!("two sides") };
             near(found as f32, proven, level, premise);
@@ -319,9 +319,9 @@ pub(super) fn the_limiter_is_that_of_the_proofs() {
 fn least(k: f32, y: f32, y_1: f32) -> f64 {
     let proofs = Proofs::read("Envelope")
         .with(&[("k", f64::from(k)), ("s", 0.0)])
-        .with_value("y", Value::Moving(f64::from(y)))
-        .with_value("y_1", Value::Moving(f64::from(y_1)))
-        .with_value("y_2", Value::Moving(0.0));
+        .with_value("y", Value::Number(f64::from(y)).moving())
+        .with_value("y_1", Value::Number(f64::from(y_1)).moving())
+        .with_value("y_2", Value::Number(0.0).moving());
     proofs.sides("stays_inside", "<= y_2 s")[0]
 }
 

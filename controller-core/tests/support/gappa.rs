@@ -26,8 +26,8 @@ impl Rounding {
             let rounded = name.ends_with(" f");
             let name = name.trim_end_matches(" f").trim();
             if !name.starts_with('@') && !term.trim().starts_with("f(") {
-                let (file, arguments, term) = (file.to_owned(), Vec::new(), words(term));
-                read.insert(name.to_owned(), Definition { file, arguments, term, rounded });
+                let (file, variables, arguments, term) = (file.to_owned(), Vec::new(), Vec::new(), words(term));
+                read.insert(name.to_owned(), Definition { file, variables, arguments, term, rounded });
             }
         }
         let bounds = proven.split("->").flat_map(|part| part.split("/\\")).map(interval).collect();
