@@ -46,7 +46,11 @@ fn constants() -> ExtendedParameters {
 }
 
 /// Puts `made` where there is room for it; how many bytes it has.
+///
+/// # Safety
+/// `room` is aligned and has that many bytes.
 unsafe fn put<T>(made: T, room: *mut T) -> usize {
+    // SAFETY: as the caller promises.
     unsafe { room.write(made) };
     size_of::<T>()
 }
@@ -56,6 +60,7 @@ unsafe extern "C" fn make_budget(room: *mut TurningBudget) -> usize {
     let configuration = hummingbird::extended_law();
     let (vehicle, p) = (configuration.vehicle(), constants());
     let budget = TorqueBudget::new(&p, vehicle, configuration.limits(), configuration.rotors());
+    // SAFETY: `no_panic` gives ROOM bytes of its own, more than any budget has.
     unsafe { put(TurningBudget::new(&budget, vehicle.mass, p.turn_acceleration), room) }
 }
 
