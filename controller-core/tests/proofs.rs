@@ -22,11 +22,12 @@ use std::path::Path;
 const TRIALS: usize = 2_000;
 
 /// Every comparison.
-const COMPARISONS: [fn(); 16] = [
+const COMPARISONS: [fn(); 17] = [
     extended::the_potential_and_the_share_of_damping_are_those_of_the_proofs,
     extended::the_thrust_range_is_that_of_the_proofs,
     extended::the_budgets_rows_are_those_of_the_proofs,
     extended::the_budget_of_a_tick_is_that_of_the_proofs,
+    extended::a_ticks_torque_is_that_of_the_proofs,
     extended::the_limiter_is_that_of_the_proofs,
     extended::the_ends_of_u_are_those_of_the_proofs,
     extended::the_torques_beside_the_feedback_are_those_of_the_proofs,
@@ -47,7 +48,7 @@ const OF_THE_PROOF: &str = "a notion of the proof alone";
 const NOT_COMPUTED: &str = "no code computes V: the torque is its slope, and tests/extended_flows differentiates it";
 
 /// What stands in no number of the code, with the reason.
-const NOT_COMPARED: [(&str, &str); 22] = [
+const NOT_COMPARED: [(&str, &str); 31] = [
     ("Allocation.torque_fits", "the rows imply it: rows_suffice; nothing asks for it"),
     ("Allocation.rotors_within_range", OF_WHAT_IS_COMPARED),
     ("Allocation.rows_suffice", OF_WHAT_IS_COMPARED),
@@ -58,6 +59,12 @@ const NOT_COMPARED: [(&str, &str); 22] = [
     ("Envelope.turned_inwards", OF_WHAT_IS_COMPARED),
     ("Envelope.never_positive", OF_ALL_FUNCTIONS),
     ("Envelope.rate_is_bounded", OF_ALL_FUNCTIONS),
+    ("Envelope.rate_of_the_limiter", OF_ALL_FUNCTIONS),
+    ("Tick.kept", OF_THE_PROOF),
+    ("Tick.a_tick_keeps_a_row", OF_WHAT_IS_COMPARED),
+    ("Tick.a_tick_keeps_the_rows", OF_WHAT_IS_COMPARED),
+    ("Tick.a_tick_keeps_rotors_in_range", OF_WHAT_IS_COMPARED),
+    ("Tick.covered_row_holds", "a tick leaves covered rows out: its budget is compared with that of all rows"),
     ("Damping.share_positive", OF_WHAT_IS_COMPARED),
     ("Attitude.level_in_a_cell", OF_WHAT_IS_COMPARED),
     ("Attitude.jump_falls", NOT_COMPUTED),
@@ -70,6 +77,9 @@ const NOT_COMPARED: [(&str, &str); 22] = [
     ("Rounding.share", OF_THE_PROOF),
     ("Rounding.rounded_command_at_least", OF_WHAT_IS_COMPARED),
     ("Rounding.rounded_command_at_most", OF_WHAT_IS_COMPARED),
+    ("Rounding.rounded_floor_below_ceiling", OF_WHAT_IS_COMPARED),
+    ("Rounding.rounded_floor_below_limit", OF_WHAT_IS_COMPARED),
+    ("Rounding.thrust_meets_all", OF_WHAT_IS_COMPARED),
 ];
 
 /// The names of all definitions, theorems, formulas and bounds.
