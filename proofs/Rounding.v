@@ -281,7 +281,8 @@ Proof.
   assert (N' := added _ _ _ _ _ _ _ _ _
     (part_near (B * Q_1) t_1 (Hrow _ Q1) ltac:(lra)) (part_near (B * Q_3) t_3 (Hrow _ Q3) ltac:(lra))).
   apply rounded in N; [|lra]. apply rounded in N'; [|lra].
-  assert (N2 := added _ _ _ _ _ _ _ _ _ N N'). clear N N'. rename N2 into N. apply rounded in N; [|lra]. destruct N as [_ N]. fold command in N.
+  apply (added _ _ _ _ _ _ _ _ _ N) in N'. clear N. rename N' into N. apply rounded in N; [|lra].
+  destruct N as [_ N]. fold command in N.
   assert (Z : forall z, Rabs (B / s * z) = B / s * Rabs z).
   { intros z. rewrite Rabs_mult, (Rabs_right (B / s)); [reflexivity | lra]. }
   replace (B * (T * (1 / s))) with (B / s * T) in N by (field; lra).
