@@ -6,8 +6,8 @@
 
     A rotor's command is f = b (T + beta . tau) with b > 0. The law chooses tau
     first; [rows_hold] says what the certificate's last two rows and the budget
-    of a tick promise of it. T is then the nearest to the wanted thrust between
-    [floor] and [ceiling]. *)
+    of a tick promise of it: Tick.v proves that. T is then the nearest to the
+    wanted thrust between [floor] and [ceiling]. *)
 
 From Coq Require Import Reals Lra List.
 Import ListNotations.
@@ -48,15 +48,6 @@ Proof.
   - eapply Rle_trans; [apply IH, H | apply Rmax_r].
 Qed.
 
-Lemma floor_least : forall m,
-  margin <= m -> (forall r, In r rotors -> needs r <= m) -> floor <= m.
-Proof.
-  unfold floor. induction rotors as [|r' rest IH]; intros m Hm H; cbn; [exact Hm|].
-  apply Rmax_lub.
-  - apply H. now left.
-  - apply IH; [exact Hm|]. intros r Hr. apply H. now right.
-Qed.
-
 Lemma ceiling_covers : forall r, In r rotors -> ceiling <= gives r.
 Proof.
   unfold ceiling. induction rotors as [|r' rest IH]; intros r H; [contradiction|].
@@ -80,37 +71,31 @@ Proof.
   eapply Rle_trans; [apply Rmin_r | exact IH].
 Qed.
 
-(** What the torque has to leave, pair by pair: N <= C. *)
+(** What the torque has to leave, pair by pair: no rotor needs more than any
+    gives. So N <= C, but for the margin that N begins with: where C is less
+    than that, T is C. *)
 Definition torque_fits : Prop :=
-  margin <= ceiling /\
   (forall r, In r rotors -> needs r <= T_max) /\
   (forall r r', In r rotors -> In r' rotors -> needs r <= gives r').
 
-Lemma floor_below_ceiling : torque_fits -> floor <= ceiling.
-Proof.
-  intros (Hm & Ht & Hp). apply floor_least; [exact Hm|].
-  intros r Hr. apply ceiling_greatest; [now apply Ht|].
-  intros r' Hr'. now apply Hp.
-Qed.
-
-(** The first claim: between both ends of T every rotor is within its range,
-    by the margin. *)
+(** The first claim: whatever thrust is wanted, every rotor is within its
+    range, by the margin. *)
 Theorem rotors_within_range : forall wanted,
-  0 <= margin -> (forall r, In r rotors -> 0 < b r) -> torque_fits ->
+  (forall r, In r rotors -> 0 < b r) -> torque_fits ->
   forall r, In r rotors ->
     s * least r + b r * margin <= command r (thrust wanted) tau
     <= s * greatest r - b r * margin
     /\ thrust wanted <= T_max.
 Proof.
-  intros wanted Hmargin Hb Hfits r Hr.
-  pose proof (floor_below_ceiling Hfits) as Hnc.
+  intros wanted Hb (Ht & Hp) r Hr.
   pose proof (floor_covers r Hr) as Hn.
   pose proof (ceiling_covers r Hr) as Hc.
   pose proof ceiling_within_limit as Hmax.
   pose proof (Hb r Hr) as Hbr.
   assert (Hlow : needs r <= thrust wanted).
-  { unfold thrust. apply Rmin_glb; [|lra].
-    eapply Rle_trans; [exact Hn | apply Rmax_r]. }
+  { unfold thrust. apply Rmin_glb.
+    - eapply Rle_trans; [exact Hn | apply Rmax_r].
+    - apply ceiling_greatest; [now apply Ht|]. intros r' Hr'. now apply Hp. }
   assert (Hhigh : thrust wanted <= gives r).
   { unfold thrust. eapply Rle_trans; [apply Rmin_r | exact Hc]. }
   assert (Hlimit : thrust wanted <= T_max).
@@ -181,10 +166,6 @@ Hypothesis ranges : forall r, In r rotors -> 0 <= least r /\ 0 <= greatest r.
 Hypothesis range_top_least : forall r, In r rotors -> range_top <= s_lo * greatest r / b r.
 Hypothesis range_bottom_greatest : forall r, In r rotors -> s_hi * least r / b r <= range_bottom.
 Hypothesis margin_nonneg : 0 <= margin.
-Hypothesis scales : 0 < s_lo <= s_hi.
-Hypothesis some_rotor : rotors <> [].
-(** Torques share the collective thrust among the rotors without changing it. *)
-Hypothesis balanced : forall v, fold_right (fun r sum => b r * dot (beta r) v + sum) 0 rotors = 0.
 
 (** Both rows, for the torque at hand: "two rotors at their ends at once" and
     "the thrust floor and T_max". [parts_add_up] of Budget.v bounds the left
@@ -201,29 +182,6 @@ Lemma over_b : forall x y r, In r rotors -> x <= y -> x / b r <= y / b r.
 Proof.
   intros x y r Hr H. unfold Rdiv. apply Rmult_le_compat_r; [|exact H].
   left. apply Rinv_0_lt_compat, b_positive, Hr.
-Qed.
-
-(** Some rotor's share of a torque is not positive. *)
-Lemma some_rotor_slows : forall v, exists r, In r rotors /\ dot (beta r) v <= 0.
-Proof.
-  intros v.
-  assert (H : forall rs, rs <> [] -> (forall r, In r rs -> 0 < b r) ->
-    (forall r, In r rs -> 0 < dot (beta r) v) ->
-    0 < fold_right (fun r sum => b r * dot (beta r) v + sum) 0 rs).
-  { induction rs as [|r rest IH]; intros Hne Hb Hpos; [congruence|]. cbn.
-    assert (0 < b r * dot (beta r) v) by (apply Rmult_lt_0_compat; [apply Hb | apply Hpos]; now left).
-    destruct rest as [|r' rest']; [cbn; lra|].
-    assert (0 < fold_right (fun r0 sum => b r0 * dot (beta r0) v + sum) 0 (r' :: rest')).
-    { apply IH; [discriminate | intros; apply Hb; now right | intros; apply Hpos; now right]. }
-    lra. }
-  destruct (Exists_dec (fun r => dot (beta r) v <= 0) rotors) as [Hyes | Hno].
-  - intros r. destruct (Rle_dec (dot (beta r) v) 0); [now left | now right].
-  - apply Exists_exists in Hyes. exact Hyes.
-  - exfalso. rewrite <- Forall_Exists_neg in Hno. rewrite Forall_forall in Hno.
-    specialize (H rotors some_rotor b_positive).
-    assert (forall r, In r rotors -> 0 < dot (beta r) v) as Hpos.
-    { intros r Hr. specialize (Hno r Hr). lra. }
-    specialize (H Hpos). rewrite balanced in H. lra.
 Qed.
 
 Theorem rows_suffice : forall s tau,
@@ -243,18 +201,7 @@ Proof.
   { intros r r' Hr Hr'. unfold needs, gives.
     pose proof (Hlow r Hr). pose proof (Hhigh r' Hr').
     pose proof (Hpair r' r Hr' Hr) as Hd. apply abs_bounds in Hd. rewrite dot_minus in Hd. lra. }
-  destruct (some_rotor_slows tau) as (slow & Hslow & Hdot).
-  assert (Hmargin : margin <= needs s margin tau slow).
-  { unfold needs.
-    assert (0 <= s * least slow / b slow).
-    { unfold Rdiv. apply Rmult_le_pos.
-      - apply Rmult_le_pos; [lra | apply (ranges slow Hslow)].
-      - left. now apply Rinv_0_lt_compat, b_positive. }
-    lra. }
-  repeat split; [|exact Hneeds | exact Hpairs].
-  apply ceiling_greatest.
-  - eapply Rle_trans; [exact Hmargin | now apply Hneeds].
-  - intros r Hr. eapply Rle_trans; [exact Hmargin | now apply Hpairs].
+  split; [exact Hneeds | exact Hpairs].
 Qed.
 
 (** Claim (d) of section 4 as a whole: a torque that keeps the rows, with any
@@ -268,7 +215,7 @@ Theorem no_rotor_beyond_its_range : forall s tau wanted,
     /\ thrust s margin T_max rotors tau wanted <= T_max.
 Proof.
   intros s tau wanted Hs Hrows. apply rotors_within_range;
-    [exact margin_nonneg | exact b_positive | now apply rows_suffice].
+    [exact b_positive | now apply rows_suffice].
 Qed.
 
 End Rows.

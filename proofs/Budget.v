@@ -28,34 +28,31 @@ Proof.
   apply Rsqr_incr_0_var; [|lra]. unfold Rsqr. rewrite tilt_squared. cbn. lra.
 Qed.
 
-(** The gyroscopic torque of a frame that turns with r: (J_3 - J_2) r_2 r_3 and
-    so on, for |r_12| <= rate and |r_3| <= yaw_rate. Products of two components
-    are at most half of the sum of the squares: [product]. *)
+(** The gyroscopic torque of a frame that turns with r = R~^T omega_d, in the
+    body's axes: (J_3 - J_2) r_2 r_3 and so on. R~ mixes tilting and yaw, so only
+    |r| is known: |r|^2 is at most the greatest |omega_d12|^2 and omega_d3^2
+    together. Products of two components are at most half of that: [product]. *)
 Definition gyroscopic (j_1 j_2 j_3 r_1 r_2 r_3 : R) : torque :=
   {| about_x := (j_3 - j_2) * r_2 * r_3; about_y := (j_1 - j_3) * r_3 * r_1; about_z := (j_2 - j_1) * r_1 * r_2 |}.
 Definition product (rate yaw_rate : R) : R := (rate * rate + yaw_rate * yaw_rate) / 2.
 
 Theorem gyroscopic_bound : forall j_1 j_2 j_3 r_1 r_2 r_3 rate yaw_rate across,
   Rabs (j_3 - j_2) <= across -> Rabs (j_1 - j_3) <= across ->
-  r_1 * r_1 + r_2 * r_2 <= rate * rate -> Rabs r_3 <= yaw_rate ->
+  r_1 * r_1 + r_2 * r_2 + r_3 * r_3 <= rate * rate + yaw_rate * yaw_rate ->
   tilt_length (gyroscopic j_1 j_2 j_3 r_1 r_2 r_3) <= across * product rate yaw_rate
   /\ Rabs (about_z (gyroscopic j_1 j_2 j_3 r_1 r_2 r_3)) <= Rabs (j_1 - j_2) * product rate yaw_rate.
 Proof.
-  intros j_1 j_2 j_3 r_1 r_2 r_3 rate yaw_rate across H32 H13 Hr Hw.
-  pose proof (Rabs_pos r_3) as Hp3. pose proof (Rabs_pos (j_3 - j_2)) as Hpa.
-  assert (Hw2 : r_3 * r_3 <= yaw_rate * yaw_rate).
-  { replace (r_3 * r_3) with (Rabs r_3 * Rabs r_3) by (rewrite <- Rabs_mult; apply Rabs_pos_eq; apply Rle_0_sqr).
-    apply Rmult_le_compat; lra. }
-  assert (Hprod : 0 <= product rate yaw_rate).
-  { unfold product. pose proof (Rle_0_sqr rate). pose proof (Rle_0_sqr yaw_rate). unfold Rsqr in *. lra. }
+  intros j_1 j_2 j_3 r_1 r_2 r_3 rate yaw_rate across H32 H13 Hr.
+  pose proof (Rabs_pos (j_3 - j_2)) as Hpa.
+  assert (H1 : 0 <= r_1 * r_1) by apply Rle_0_sqr. assert (H2 : 0 <= r_2 * r_2) by apply Rle_0_sqr.
+  assert (H3 : 0 <= r_3 * r_3) by apply Rle_0_sqr.
+  assert (Hprod : (r_1 * r_1 + r_2 * r_2 + r_3 * r_3) / 2 <= product rate yaw_rate) by (unfold product; lra).
   split.
   - apply Rsqr_incr_0_var; [|apply Rmult_le_pos; lra]. unfold Rsqr. rewrite tilt_squared. cbn.
     assert (Hsq : forall x, Rabs x <= across -> x * x <= across * across).
     { intros x Hx. replace (x * x) with (Rabs x * Rabs x) by (rewrite <- Rabs_mult; apply Rabs_pos_eq; apply Rle_0_sqr).
       pose proof (Rabs_pos x). apply Rmult_le_compat; lra. }
     pose proof (Hsq _ H32) as Ha. pose proof (Hsq _ H13) as Hb.
-    assert (H1 : 0 <= r_1 * r_1) by apply Rle_0_sqr. assert (H2 : 0 <= r_2 * r_2) by apply Rle_0_sqr.
-    assert (H3 : 0 <= r_3 * r_3) by apply Rle_0_sqr.
     assert (Hsum : (j_3 - j_2) * r_2 * r_3 * ((j_3 - j_2) * r_2 * r_3) + (j_1 - j_3) * r_3 * r_1 * ((j_1 - j_3) * r_3 * r_1)
       <= across * across * ((r_1 * r_1 + r_2 * r_2) * (r_3 * r_3))).
     { assert ((j_3 - j_2) * (j_3 - j_2) * (r_2 * r_2 * (r_3 * r_3)) <= across * across * (r_2 * r_2 * (r_3 * r_3)))
@@ -63,16 +60,16 @@ Proof.
       assert ((j_1 - j_3) * (j_1 - j_3) * (r_1 * r_1 * (r_3 * r_3)) <= across * across * (r_1 * r_1 * (r_3 * r_3)))
         by (apply Rmult_le_compat_r; [now apply Rmult_le_pos | exact Hb]). lra. }
     assert (Hmean : (r_1 * r_1 + r_2 * r_2) * (r_3 * r_3) <= product rate yaw_rate * product rate yaw_rate).
-    { apply Rle_trans with (rate * rate * (yaw_rate * yaw_rate)); [apply Rmult_le_compat; lra|].
-      unfold product. pose proof (Rle_0_sqr (rate * rate - yaw_rate * yaw_rate)) as Hq. unfold Rsqr in Hq. lra. }
+    { apply Rle_trans with ((r_1 * r_1 + r_2 * r_2 + r_3 * r_3) / 2 * ((r_1 * r_1 + r_2 * r_2 + r_3 * r_3) / 2)).
+      - pose proof (Rle_0_sqr (r_1 * r_1 + r_2 * r_2 - r_3 * r_3)) as Hq. unfold Rsqr in Hq. lra.
+      - apply Rmult_le_compat; lra. }
     assert (across * across * ((r_1 * r_1 + r_2 * r_2) * (r_3 * r_3))
       <= across * across * (product rate yaw_rate * product rate yaw_rate))
       by (apply Rmult_le_compat_l; [apply Rle_0_sqr | exact Hmean]).
     lra.
   - cbn. rewrite Rmult_assoc, Rabs_mult.
     replace (Rabs (j_2 - j_1)) with (Rabs (j_1 - j_2)) by apply Rabs_minus_sym.
-    apply Rmult_le_compat_l; [apply Rabs_pos|]. unfold product.
-    pose proof (Rle_0_sqr yaw_rate) as Hyy. unfold Rsqr in Hyy.
+    apply Rmult_le_compat_l; [apply Rabs_pos|].
     pose proof (Rle_0_sqr (r_1 - r_2)) as Hm. pose proof (Rle_0_sqr (r_1 + r_2)) as Hq. unfold Rsqr in *.
     unfold Rabs. destruct (Rcase_abs (r_1 * r_2)); lra.
 Qed.

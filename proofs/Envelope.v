@@ -21,8 +21,12 @@ Proof.
   - specialize (Hpos c Hin). assert (0 <= df c * (b - a)) by (apply Rmult_le_pos; lra). lra.
 Qed.
 
-(** c_z >= -A_-, and |u| <= U: y is c_z + A_-, or U - n. Both limits leave
-    y'' >= -2 k y' - k^2 y, and both start with y > 0, y' + k y >= 0. *)
+(** c_z >= -A_-, and |u| <= U: y is c_z + A_-, or U - |u|. Both limits leave
+    y'' >= -2 k y' - k^2 y, and both start with y > 0, y' + k y >= 0: for |u| that
+    is rho . u' <= k (U - |u|). U is constant here: the thrust scale is at rest.
+    The limit on |u| has the last word, so the one on c_z acts as written only
+    while that does nothing, as it does wherever |u| is below U and not about to
+    pass it. *)
 Theorem stays_inside : forall (y y_1 y_2 : R -> R) k,
   (forall s, 0 <= s -> is_derive y s (y_1 s)) ->
   (forall s, 0 <= s -> is_derive y_1 s (y_2 s)) ->
@@ -113,8 +117,7 @@ Proof.
   apply Rnot_lt_le. intros Hlt. assert (0 < period * (x rate * x q + y rate * y q)) by nra. lra.
 Qed.
 
-(** So the rate of the thrust direction never passes Omega: p' is q of the
-    limiter. *)
+(** A rate that is not turned outwards beyond Omega never passes it. *)
 Theorem rate_is_bounded : forall (p_1 p_2 q_1 q_2 : R -> R) rate_max, 0 <= rate_max ->
   (forall s, 0 <= s -> is_derive p_1 s (q_1 s)) -> (forall s, 0 <= s -> is_derive p_2 s (q_2 s)) ->
   (forall s, 0 <= s -> rate_max * rate_max < p_1 s * p_1 s + p_2 s * p_2 s ->
@@ -133,4 +136,23 @@ Proof.
     - intros s Hs Hpos. specialize (Hin s Hs ltac:(lra)). lra.
     - lra. }
   lra.
+Qed.
+
+(** So the rate p of the thrust direction never passes Omega. In the axes of the
+    frame, which turns about rho by W, p' is the limiter's q, carried by W:
+    q + W (p_2, -p_1). Whatever is wanted, whatever W and the budget are. *)
+Theorem rate_of_the_limiter : forall (p wanted : R -> plane) (W most : R -> R) period rate_max,
+  0 < period -> 0 <= rate_max -> (forall s, 0 <= s -> 0 <= most s) ->
+  (forall s, 0 <= s -> is_derive (fun r => x (p r)) s
+     (x (limited (p s) (wanted s) (W s) period rate_max (most s)) + W s * y (p s))) ->
+  (forall s, 0 <= s -> is_derive (fun r => y (p r)) s
+     (y (limited (p s) (wanted s) (W s) period rate_max (most s)) - W s * x (p s))) ->
+  square (p 0) <= rate_max * rate_max ->
+  forall t, 0 <= t -> square (p t) <= rate_max * rate_max.
+Proof.
+  intros p wanted W most period rate_max Hh Hmax Hmost Hx Hy H0 t Ht. unfold square in *.
+  refine (rate_is_bounded _ _ _ _ rate_max Hmax Hx Hy _ H0 t Ht).
+  intros s Hs Hout.
+  pose proof (turned_inwards (p s) (wanted s) rate_max period Hh Hmax Hout) as Hin. cbv zeta in Hin.
+  pose proof (last_step_does_not_speed_up (p s) (wanted s) (W s) period rate_max (most s) (Hmost s Hs) Hin). lra.
 Qed.

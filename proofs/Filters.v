@@ -1,8 +1,7 @@
 (** * The filters stay in their box
 
-    The paper's cascade (7) with its input held, and the extended law's c, in
-    exact arithmetic; controller-core/src/position.rs and
-    controller-core/src/extended/position.rs. *)
+    The paper's cascade (7) with its input held, and Theorem 1's thrust interval,
+    in exact arithmetic; controller-core/src/position.rs. *)
 
 From Coq Require Import Reals Lra.
 Open Scope R_scope.
@@ -93,7 +92,8 @@ Qed.
 (** ** Theorem 1's thrust interval
 
     u = u_f + g e3 + a with u_f in the box of M and the reference's acceleration
-    within K_12 across and K_3 along the vertical. T = m |u|. *)
+    within K_12 across and K_3 along the vertical. T = m |u|. The sharp interval
+    first: it is reached. Then the paper's, which has the same lower end. *)
 
 Section Thrust.
 
@@ -130,6 +130,40 @@ Proof.
           unfold Rsqr in *; lra. }
     assert (u_3 * u_3 <= (g + M + K_3) * (g + M + K_3)) by (apply Rmult_le_compat; lra).
     unfold u_1, u_2. nra.
+Qed.
+
+(** The longest u is (sqrt 2 M, M) and (K_12, g + K_3), one after the other. *)
+Lemma no_longer_than_both : forall a b c d, 0 <= a -> 0 <= b -> 0 <= c -> 0 <= d ->
+  sqrt ((a + c) * (a + c) + (b + d) * (b + d)) <= sqrt (a * a + b * b) + sqrt (c * c + d * d).
+Proof.
+  intros a b c d Ha Hb Hc Hd.
+  assert (Hu : 0 <= a * a + b * b) by nra. assert (Hv : 0 <= c * c + d * d) by nra.
+  pose proof (sqrt_pos (a * a + b * b)). pose proof (sqrt_pos (c * c + d * d)).
+  pose proof (sqrt_def _ Hu). pose proof (sqrt_def _ Hv).
+  apply Rsqr_incr_0_var; [|lra]. unfold Rsqr. rewrite sqrt_def by nra.
+  assert (a * c + b * d <= sqrt (a * a + b * b) * sqrt (c * c + d * d)).
+  { rewrite <- sqrt_mult_alt by lra. rewrite <- (sqrt_square (a * c + b * d)) by nra. apply sqrt_le_1_alt.
+    pose proof (Rle_0_sqr (a * d - b * c)) as Hq. unfold Rsqr in Hq. lra. }
+  lra.
+Qed.
+
+Theorem thrust_interval_as_printed : forall m f_1 f_2 f_3 a_1 a_2 a_3,
+  0 < m ->
+  - M <= f_1 <= M -> - M <= f_2 <= M -> - M <= f_3 <= M ->
+  a_1 * a_1 + a_2 * a_2 <= K_12 * K_12 -> - K_3 <= a_3 <= K_3 ->
+  let u_1 := f_1 + a_1 in let u_2 := f_2 + a_2 in let u_3 := f_3 + g + a_3 in
+  let T := m * sqrt (u_1 * u_1 + u_2 * u_2 + u_3 * u_3) in
+  m * (g - M - K_3) <= T <= m * (sqrt 3 * M + sqrt (K_12 * K_12 + (g + K_3) * (g + K_3))).
+Proof.
+  intros m f_1 f_2 f_3 a_1 a_2 a_3 Hm H1 H2 H3 Ha Ha3 u_1 u_2 u_3 T.
+  destruct (thrust_interval m f_1 f_2 f_3 a_1 a_2 a_3 Hm H1 H2 H3 Ha Ha3) as [Hlow Hhigh].
+  split; [exact Hlow|]. eapply Rle_trans; [exact Hhigh|]. apply Rmult_le_compat_l; [lra|].
+  replace (g + M + K_3) with (M + (g + K_3)) by ring.
+  pose proof (sqrt_pos 2). eapply Rle_trans; [apply no_longer_than_both; nra|].
+  apply Rplus_le_compat_r. right.
+  replace (sqrt 2 * M * (sqrt 2 * M) + M * M) with (3 * (M * M))
+    by (replace (sqrt 2 * M * (sqrt 2 * M)) with (sqrt 2 * sqrt 2 * (M * M)) by ring; rewrite sqrt_def by lra; ring).
+  rewrite sqrt_mult_alt by lra. rewrite sqrt_square by lra. reflexivity.
 Qed.
 
 End Thrust.

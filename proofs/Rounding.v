@@ -8,13 +8,18 @@
     and the ends of the rotor's range over it.
 
     [rnd] is rounding to nearest. It changes no number by more than a share
-    [unit]: 2^-24, and a little for what double precision rounded before. Numbers
-    below 1e-37, for which single precision has fewer digits, are left out. *)
+    [unit], 2^-24 and a little for what double precision rounded before, and
+    [tiny], half of the least number above zero and a little: that is what
+    numbers below 1e-37 lose, which have fewer digits. [sizes] says within what
+    the inputs are, in SI units: so nothing comes near the greatest number of
+    single precision. *)
 
-From Coq Require Import Reals Lra.
+From Coq Require Import Reals Lra Lia List.
 Open Scope R_scope.
 
 Definition unit : R := 6 / 100000000.
+Definition tiny : R := 1 / 1000000000000000000000000000000000000000000000.
+Definition greatest_size : R := 10000.
 
 (** The margin of the thrust floor, as a share of the greatest thrust. The
     constructor asks for a little more, Extended::FLOOR_MARGIN_LEAST. *)
@@ -26,15 +31,15 @@ Proof. intros a b. unfold Rabs. destruct (Rcase_abs a); lra. Qed.
 Section Rounding.
 
 Variable rnd : R -> R.
-Hypothesis rnd_close : forall x, Rabs (rnd x - x) <= unit * Rabs x.
+Hypothesis rnd_close : forall x, Rabs (rnd x - x) <= unit * Rabs x + tiny.
 
 (** What n roundings make of a share. *)
 Definition share (n : nat) : R := (1 + unit) ^ n - 1.
 
 (** [y] is what n roundings made of [x], a sum of numbers whose sizes add up to
-    no more than [size]. *)
-Definition near (n : nat) (size x y : R) : Prop :=
-  Rabs x <= size /\ Rabs (y - x) <= share n * size.
+    no more than [size]; beside their share they changed it by [dust]. *)
+Definition near (n : nat) (size dust x y : R) : Prop :=
+  Rabs x <= size /\ Rabs (y - x) <= share n * size + dust.
 
 Lemma share_nonneg : forall n, 0 <= share n.
 Proof.
@@ -51,57 +56,68 @@ Qed.
 Lemma share_of_six : share 6 <= 361 / 1000000000.
 Proof. unfold share, unit. cbn [pow]. lra. Qed.
 
-Lemma exact : forall x size, Rabs x <= size -> near 0 size x x.
+Lemma exact : forall x, near 0 (Rabs x) 0 x x.
 Proof.
-  intros x size H. split; [exact H|]. unfold share.
+  intros x. split; [lra|]. unfold share.
   rewrite Rminus_diag_eq, Rabs_R0 by reflexivity. cbn [pow]. lra.
 Qed.
 
-Lemma later : forall n size x y, near n size x y -> near (S n) size x y.
+Lemma share_monotone : forall n m, (n <= m)%nat -> share n <= share m.
 Proof.
-  intros n size x y [H E]. split; [exact H|].
-  pose proof (share_grows n). pose proof (Rabs_pos x). nra.
+  intros n m H. induction H as [|m H IH]; [lra|]. pose proof (share_grows m). lra.
 Qed.
 
-Lemma rounded : forall n size x y, near n size x y -> near (S n) size x (rnd y).
+Lemma later : forall n m size dust dust' x y, (n <= m)%nat -> dust <= dust' ->
+  near n size dust x y -> near m size dust' x y.
 Proof.
-  intros n size x y [H E]. split; [exact H|].
+  intros n m size dust dust' x y Hn Hd [H E]. split; [exact H|].
+  pose proof (share_monotone n m Hn). pose proof (Rabs_pos x). nra.
+Qed.
+
+(** Dust at most doubles, and [tiny] comes in. *)
+Lemma rounded : forall n size dust x y, 0 <= dust -> near n size dust x y ->
+  near (S n) size (2 * dust + tiny) x (rnd y).
+Proof.
+  intros n size dust x y Hd [H E]. split; [exact H|].
   pose proof (rnd_close y) as R. pose proof (share_nonneg n).
-  assert (Hy : Rabs y <= size + share n * size).
+  assert (Hy : Rabs y <= size + (share n * size + dust)).
   { replace y with (x + (y - x)) by ring. eapply Rle_trans; [apply Rabs_triang | lra]. }
   replace (rnd y - x) with ((rnd y - y) + (y - x)) by ring.
   eapply Rle_trans; [apply Rabs_triang|].
-  assert (unit * Rabs y <= unit * (size + share n * size)).
+  assert (unit * Rabs y <= unit * (size + (share n * size + dust))).
   { apply Rmult_le_compat_l; [unfold unit; lra | exact Hy]. }
   replace (share (S n)) with (share n + unit + share n * unit) by (unfold share; cbn [pow]; ring).
-  lra.
+  assert (unit * dust <= dust) by (unfold unit; lra). lra.
 Qed.
 
-Lemma added : forall n a b x y x' y',
-  near n a x y -> near n b x' y' -> near n (a + b) (x + x') (y + y').
+Lemma added : forall n a b dust dust' x y x' y',
+  near n a dust x y -> near n b dust' x' y' -> near n (a + b) (dust + dust') (x + x') (y + y').
 Proof.
-  intros n a b x y x' y' [H E] [H' E']. split.
+  intros n a b dust dust' x y x' y' [H E] [H' E']. split.
   - eapply Rle_trans; [apply Rabs_triang | lra].
   - replace (y + y' - (x + x')) with ((y - x) + (y' - x')) by ring.
     eapply Rle_trans; [apply Rabs_triang | lra].
 Qed.
 
-Lemma negated : forall n size x y, near n size x y -> near n size (- x) (- y).
+Lemma negated : forall n size dust x y, near n size dust x y -> near n size dust (- x) (- y).
 Proof.
-  intros n size x y [H E]. split; [now rewrite Rabs_Ropp|].
+  intros n size dust x y [H E]. split; [now rewrite Rabs_Ropp|].
   replace (- y - - x) with (- (y - x)) by ring. now rewrite Rabs_Ropp.
 Qed.
 
-Lemma subtracted : forall n a b x y x' y',
-  near n a x y -> near n b x' y' -> near n (a + b) (x - x') (y - y').
+Lemma subtracted : forall n a b dust dust' x y x' y',
+  near n a dust x y -> near n b dust' x' y' -> near n (a + b) (dust + dust') (x - x') (y - y').
 Proof. intros. apply added; [assumption | now apply negated]. Qed.
 
-Lemma multiplied : forall n m x y x' y',
-  near n (Rabs x) x y -> near m (Rabs x') x' y' ->
-  near (n + m) (Rabs (x * x')) (x * x') (y * y').
+(** Dust of one factor comes in as often as the other is large. *)
+Lemma multiplied : forall n m L dust dust' x y x' y', (n <= 6)%nat -> (m <= 6)%nat -> 1 <= L ->
+  Rabs x <= L -> Rabs x' <= L -> 0 <= dust <= 1 -> 0 <= dust' <= 1 ->
+  near n (Rabs x) dust x y -> near m (Rabs x') dust' x' y' ->
+  near (n + m) (Rabs (x * x')) (3 * L * (dust + dust')) (x * x') (y * y').
 Proof.
-  intros n m x y x' y' [_ E] [_ E']. split; [lra|].
-  pose proof (share_nonneg n). pose proof (share_nonneg m).
+  intros n m L dust dust' x y x' y' Hn Hm HL Hx Hx' Hd Hd' [_ E] [_ E']. split; [lra|].
+  pose proof (share_nonneg n). pose proof (share_nonneg m). pose proof share_of_six.
+  pose proof (share_monotone n 6 Hn). pose proof (share_monotone m 6 Hm).
   pose proof (Rabs_pos x). pose proof (Rabs_pos x').
   replace (y * y' - x * x') with ((y - x) * x' + (x * (y' - x') + (y - x) * (y' - x'))) by ring.
   eapply Rle_trans; [apply Rabs_triang|].
@@ -109,12 +125,21 @@ Proof.
   rewrite !Rabs_mult.
   replace (share (n + m)) with (share n + share m + share n * share m)
     by (unfold share; rewrite pow_add; ring).
-  assert (Rabs (y - x) * Rabs x' <= share n * Rabs x * Rabs x') by (apply Rmult_le_compat_r; lra).
-  assert (Rabs x * Rabs (y' - x') <= Rabs x * (share m * Rabs x')) by (apply Rmult_le_compat_l; lra).
-  assert (Rabs (y - x) * Rabs (y' - x') <= (share n * Rabs x) * (share m * Rabs x')).
+  assert (Rabs (y - x) * Rabs x' <= (share n * Rabs x + dust) * Rabs x') by (apply Rmult_le_compat_r; lra).
+  assert (Rabs x * Rabs (y' - x') <= Rabs x * (share m * Rabs x' + dust')) by (apply Rmult_le_compat_l; lra).
+  assert (Rabs (y - x) * Rabs (y' - x') <= (share n * Rabs x + dust) * (share m * Rabs x' + dust')).
   { apply Rmult_le_compat; try apply Rabs_pos; lra. }
-  lra.
+  assert (dust * Rabs x' <= dust * L) by (apply Rmult_le_compat_l; lra).
+  assert (dust' * Rabs x <= dust' * L) by (apply Rmult_le_compat_l; lra).
+  assert (share n * (dust' * Rabs x) <= dust' * L).
+  { assert (0 <= dust' * Rabs x) by (apply Rmult_le_pos; lra). nra. }
+  assert (share m * (dust * Rabs x') <= dust * L).
+  { assert (0 <= dust * Rabs x') by (apply Rmult_le_pos; lra). nra. }
+  assert (dust * dust' <= dust' * L) by nra. assert (0 <= dust * L) by (apply Rmult_le_pos; lra). lra.
 Qed.
+
+Lemma tiny_size : 0 < tiny /\ 100000000000000000000000000000000000 * tiny <= / 1000000000.
+Proof. unfold tiny. split; lra. Qed.
 
 Section Steps.
 
@@ -134,99 +159,178 @@ Definition command : R :=
 (** The greatest thrust of all rotors, N. The certificate's rows bound the torques by it, and the mean of all
     rotors' torque parts is zero: so a thrust that some ceiling admits is not above it. *)
 Variable G : R.
-Hypothesis row_lifts : 0 < B.
-Hypothesis scale_positive : 0 < s.
-Hypothesis thrust_range : 0 <= T <= 11 / 10 * G.
-Hypothesis torque_parts : Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3) <= 3 / 2 * G.
-Hypothesis margin_enough : margin_least * G <= margin.
+Definition within (x : R) : Prop := Rabs x <= greatest_size.
+Definition sizes : Prop :=
+  (/ greatest_size <= s <= greatest_size /\ / greatest_size <= B <= greatest_size
+   /\ / greatest_size <= G <= greatest_size)
+  /\ (within Q_1 /\ within Q_2 /\ within Q_3) /\ (within t_1 /\ within t_2 /\ within t_3)
+  /\ Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3) <= 3 / 2 * G.
+Hypothesis within_sizes : sizes.
 
-Lemma own_size : forall x, near 0 (Rabs x) x x.
-Proof. intros x. apply exact. lra. Qed.
+Lemma part_positive : 0 < B / s.
+Proof.
+  destruct within_sizes as ((Hs & HB & _) & _). unfold greatest_size in *.
+  apply Rdiv_lt_0_compat; lra.
+Qed.
+
+Lemma constant_near : forall x, near 1 (Rabs x) tiny x (rnd x).
+Proof.
+  intros x. apply (later 1 1 _ (2 * 0 + tiny)); [lia | lra|]. apply rounded; [lra | apply exact].
+Qed.
 
 Lemma dot_near :
-  near 4 (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3))
+  near 4 (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3)) (2000000 * tiny)
     (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) dot.
 Proof.
-  assert (P : forall Q t, near 2 (Rabs (Q * t)) (Q * t) (rnd (rnd Q * t))).
-  { intros Q t. apply rounded. change 1%nat with (1 + 0)%nat.
-    apply multiplied; [apply rounded, own_size | apply own_size]. }
-  unfold dot. apply rounded, added; [|apply later, P].
-  apply rounded, added; apply P.
+  destruct tiny_size as [H0 H1]. destruct within_sizes as (_ & (Q1 & Q2 & Q3) & (T1 & T2 & T3) & _).
+  assert (P : forall Q t, within Q -> within t -> near 2 (Rabs (Q * t)) (100000 * tiny) (Q * t) (rnd (rnd Q * t))).
+  { intros Q t HQ Ht. apply (later 2 2 _ (2 * (3 * greatest_size * (tiny + 0)) + tiny));
+      [lia | unfold greatest_size; lra|].
+    apply rounded; [unfold greatest_size; lra|]. change 1%nat with (1 + 0)%nat.
+    apply multiplied; try assumption; try (unfold greatest_size; lra); try lia;
+      [apply constant_near | apply exact]. }
+  pose proof (P _ _ Q1 T1) as P1. pose proof (P _ _ Q2 T2) as P2. pose proof (P _ _ Q3 T3) as P3.
+  assert (S12 := added _ _ _ _ _ _ _ _ _ P1 P2). apply rounded in S12; [|lra].
+  apply (later 2 3 _ _ _ _ _ ltac:(lia) (Rle_refl _)) in P3.
+  assert (S := added _ _ _ _ _ _ _ _ _ S12 P3). apply rounded in S; [|lra].
+  eapply later; [| |exact S]; [lia | lra].
 Qed.
 
-Lemma end_near : forall e, near 2 (Rabs (s * (e / B))) (s * (e / B)) (rnd (s * rnd (e / B))).
+Lemma end_near : forall e, Rabs (s * (e / B)) <= G ->
+  near 2 (Rabs (s * (e / B))) (1000000000 * tiny) (s * (e / B)) (rnd (s * rnd (e / B))).
 Proof.
-  intros e. apply rounded. change 1%nat with (0 + 1)%nat.
-  apply multiplied; [apply own_size | apply rounded, own_size].
+  intros e He. destruct tiny_size as [H0 H1]. destruct within_sizes as ((Hs & _ & HG) & _).
+  unfold greatest_size in *.
+  assert (Hsize : Rabs (e / B) <= 100000000).
+  { rewrite Rabs_mult, (Rabs_right s) in He by lra. pose proof (Rabs_pos (e / B)). nra. }
+  apply (later 2 2 _ (2 * (3 * 100000000 * (0 + tiny)) + tiny)); [lia | lra|].
+  apply rounded; [lra|]. change 1%nat with (0 + 1)%nat.
+  apply multiplied; try lra; try lia; try apply exact; try apply constant_near.
+  rewrite Rabs_right; lra.
 Qed.
 
-Lemma part_near : forall row asked,
-  near 4 (Rabs (row * (asked * (1 / s)))) (row * (asked * (1 / s))) (part row asked).
+Lemma part_near : forall row asked, Rabs row <= 1000000000 -> Rabs asked <= 20000 ->
+  near 4 (Rabs (row * (asked * (1 / s)))) (4000000000000000 * tiny) (row * (asked * (1 / s))) (part row asked).
 Proof.
-  intros row asked. unfold part. apply rounded. change 3%nat with (1 + 2)%nat.
-  apply multiplied; [apply rounded, own_size|]. apply rounded. change 1%nat with (0 + 1)%nat.
-  apply multiplied; [apply own_size|]. unfold inverse. apply rounded, own_size.
+  intros row asked Hrow Hasked. destruct tiny_size as [H0 H1]. destruct within_sizes as ((Hs & _) & _).
+  unfold greatest_size in *.
+  assert (Hinv : Rabs (1 / s) <= 10000).
+  { rewrite Rabs_right by (apply Rle_ge, Rlt_le, Rdiv_lt_0_compat; lra).
+    apply Rmult_le_reg_r with s; [lra|]. replace (1 / s * s) with 1 by (field; lra). lra. }
+  assert (Hsize : Rabs (asked * (1 / s)) <= 1000000000).
+  { rewrite Rabs_mult. apply Rle_trans with (20000 * 10000); [|lra].
+    apply Rmult_le_compat; try apply Rabs_pos; assumption. }
+  unfold part, inverse.
+  apply (later 4 4 _ (2 * (3 * 1000000000 * (tiny + (2 * (3 * 20000 * (0 + tiny)) + tiny))) + tiny));
+    [lia | lra|].
+  apply rounded; [lra|]. change 3%nat with (1 + 2)%nat.
+  apply multiplied; try assumption; try lra; try lia; try apply constant_near.
+  apply rounded; [lra|]. change 1%nat with (0 + 1)%nat.
+  apply multiplied; try assumption; try lra; try lia; try apply exact; try apply constant_near.
 Qed.
+
+Lemma floor_near : Rabs (s * (thrust_min / B)) <= G -> 0 <= margin ->
+  Rabs (floor - (s * (thrust_min / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) + margin))
+  <= share 6 * (25 / 10 * G + margin) + 10000000000 * tiny.
+Proof.
+  intros Hend Hm. destruct tiny_size as [H0 H1]. destruct within_sizes as (_ & _ & _ & Hparts).
+  assert (M := subtracted _ _ _ _ _ _ _ _ _
+    (later 0 4 _ 0 0 _ _ ltac:(lia) (Rle_refl _) (exact margin)) dot_near).
+  apply rounded in M; [|lra].
+  assert (N := added _ _ _ _ _ _ _ _ _
+    (later 2 5 _ _ _ _ _ ltac:(lia) (Rle_refl _) (end_near thrust_min Hend)) M).
+  apply rounded in N; [|lra]. destruct N as [_ N]. fold floor in N. rewrite (Rabs_right margin) in N by lra.
+  replace (s * (thrust_min / B) + (margin - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3)))
+    with (s * (thrust_min / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) + margin) in N by ring.
+  eapply Rle_trans; [exact N|]. apply Rplus_le_compat; [|lra].
+  apply Rmult_le_compat_l; [apply share_nonneg | lra].
+Qed.
+
+Lemma ceiling_near : Rabs (s * (thrust_max / B)) <= G -> 0 <= margin ->
+  Rabs (ceiling - (s * (thrust_max / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) - margin))
+  <= share 6 * (25 / 10 * G + margin) + 10000000000 * tiny.
+Proof.
+  intros Hend Hm. destruct tiny_size as [H0 H1]. destruct within_sizes as (_ & _ & _ & Hparts).
+  assert (M := added _ _ _ _ _ _ _ _ _ dot_near
+    (later 0 4 _ 0 0 _ _ ltac:(lia) (Rle_refl _) (exact margin))).
+  apply rounded in M; [|lra].
+  assert (N := subtracted _ _ _ _ _ _ _ _ _
+    (later 2 5 _ _ _ _ _ ltac:(lia) (Rle_refl _) (end_near thrust_max Hend)) M).
+  apply rounded in N; [|lra]. destruct N as [_ N]. fold ceiling in N. rewrite (Rabs_right margin) in N by lra.
+  replace (s * (thrust_max / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3 + margin))
+    with (s * (thrust_max / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) - margin) in N by ring.
+  eapply Rle_trans; [exact N|]. apply Rplus_le_compat; [|lra].
+  apply Rmult_le_compat_l; [apply share_nonneg | lra].
+Qed.
+
+Hypothesis thrust_range : Rabs T <= 11 / 10 * G.
+Hypothesis margin_enough : margin_least * G <= margin.
 
 Lemma command_near :
   Rabs (command - B / s * (T + (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3)))
-  <= share 6 * (B / s * (26 / 10 * G)).
+  <= share 6 * (B / s * (26 / 10 * G)) + 100000000000000000 * tiny.
 Proof.
-  assert (N := added 5 _ _ _ _ _ _
-    (rounded 4 _ _ _ (added 4 _ _ _ _ _ _ (part_near B T) (part_near (B * Q_2) t_2)))
-    (rounded 4 _ _ _ (added 4 _ _ _ _ _ _ (part_near (B * Q_1) t_1) (part_near (B * Q_3) t_3)))).
-  apply rounded in N. destruct N as [_ N]. fold command in N.
-  pose proof (share_nonneg 6).
-  assert (Hk : 0 < B / s) by (apply Rdiv_lt_0_compat; assumption).
+  destruct tiny_size as [H0 H1].
+  destruct within_sizes as ((Hs & HB & HG) & (Q1 & Q2 & Q3) & (T1 & T2 & T3) & Hparts).
+  pose proof part_positive as Hk. pose proof (share_nonneg 6). unfold within, greatest_size in *.
+  assert (Hrow : forall Q, Rabs Q <= 10000 -> Rabs (B * Q) <= 1000000000).
+  { intros Q HQ. rewrite Rabs_mult, (Rabs_right B) by lra. pose proof (Rabs_pos Q).
+    apply Rle_trans with (10000 * 10000); [apply Rmult_le_compat|]; lra. }
+  assert (N := added _ _ _ _ _ _ _ _ _
+    (part_near B T ltac:(rewrite Rabs_right; lra) ltac:(lra)) (part_near (B * Q_2) t_2 (Hrow _ Q2) ltac:(lra))).
+  assert (N' := added _ _ _ _ _ _ _ _ _
+    (part_near (B * Q_1) t_1 (Hrow _ Q1) ltac:(lra)) (part_near (B * Q_3) t_3 (Hrow _ Q3) ltac:(lra))).
+  apply rounded in N; [|lra]. apply rounded in N'; [|lra].
+  apply (added _ _ _ _ _ _ _ _ _ N) in N'. clear N. rename N' into N. apply rounded in N; [|lra].
+  destruct N as [_ N]. fold command in N.
   assert (Z : forall z, Rabs (B / s * z) = B / s * Rabs z).
   { intros z. rewrite Rabs_mult, (Rabs_right (B / s)); [reflexivity | lra]. }
   replace (B * (T * (1 / s))) with (B / s * T) in N by (field; lra).
   replace (B * Q_1 * (t_1 * (1 / s))) with (B / s * (Q_1 * t_1)) in N by (field; lra).
   replace (B * Q_2 * (t_2 * (1 / s))) with (B / s * (Q_2 * t_2)) in N by (field; lra).
   replace (B * Q_3 * (t_3 * (1 / s))) with (B / s * (Q_3 * t_3)) in N by (field; lra).
-  rewrite !Z in N. rewrite (Rabs_right T) in N by lra.
+  rewrite !Z in N.
   replace (B / s * (T + (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3)))
     with (B / s * T + B / s * (Q_2 * t_2) + (B / s * (Q_1 * t_1) + B / s * (Q_3 * t_3))) by ring.
-  eapply Rle_trans; [exact N|]. apply Rmult_le_compat_l; [assumption|].
-  replace (B / s * T + B / s * Rabs (Q_2 * t_2) + (B / s * Rabs (Q_1 * t_1) + B / s * Rabs (Q_3 * t_3)))
-    with (B / s * (T + (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3)))) by ring.
+  eapply Rle_trans; [exact N|]. apply Rplus_le_compat; [|lra]. apply Rmult_le_compat_l; [assumption|].
+  replace (B / s * Rabs T + B / s * Rabs (Q_2 * t_2) + (B / s * Rabs (Q_1 * t_1) + B / s * Rabs (Q_3 * t_3)))
+    with (B / s * (Rabs T + (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3)))) by ring.
   apply Rmult_le_compat_l; lra.
 Qed.
 
-Lemma margin_pays : share 6 * (25 / 10 * G + margin) + share 6 * (26 / 10 * G) <= margin.
+(** What the margin pays for: the rounding of either end, and the command's. *)
+Lemma margin_pays :
+  100000000000000000 * tiny
+  <= B / s * (margin - (share 6 * (25 / 10 * G + margin) + 10000000000 * tiny) - share 6 * (26 / 10 * G)).
 Proof.
+  destruct tiny_size as [H0 H1]. destruct within_sizes as ((Hs & HB & HG) & _). unfold greatest_size in *.
   pose proof share_of_six. pose proof (share_nonneg 6). unfold margin_least in *.
-  assert (HG : 0 <= G) by lra. nra.
+  assert (Hk : / 100000000 <= B / s).
+  { apply Rmult_le_reg_r with s; [lra|]. replace (B / s * s) with B by (field; lra). lra. }
+  assert (Hleft : 10000000000000000000000000 * tiny
+    <= margin - (share 6 * (25 / 10 * G + margin) + 10000000000 * tiny) - share 6 * (26 / 10 * G)).
+  { assert (share 6 * (51 / 10 * G + margin) <= 361 / 1000000000 * (51 / 10 * G + margin))
+      by (apply Rmult_le_compat_r; lra). lra. }
+  apply Rle_trans with (/ 100000000 * (10000000000000000000000000 * tiny)); [lra|].
+  apply Rmult_le_compat; lra.
 Qed.
+
+Lemma margin_positive : 0 <= margin.
+Proof. destruct within_sizes as ((_ & _ & HG) & _). unfold greatest_size, margin_least in *. lra. Qed.
 
 (** A thrust that the rounded floor admits leaves the rotor at its least, at
     least. *)
 Theorem rounded_command_at_least : Rabs (s * (thrust_min / B)) <= G ->
   floor <= T -> thrust_min <= command.
 Proof.
-  intros Hend Hfloor.
-  assert (N := added 5 _ _ _ _ _ _
-    (later 4 _ _ _ (later 3 _ _ _ (later 2 _ _ _ (end_near thrust_min))))
-    (rounded 4 _ _ _ (subtracted 4 _ _ _ _ _ _
-      (later 3 _ _ _ (later 2 _ _ _ (later 1 _ _ _ (later 0 _ _ _ (own_size margin))))) dot_near))).
-  apply rounded in N. destruct N as [_ N]. fold floor in N.
-  pose proof command_near as C. pose proof margin_pays as P. pose proof (share_nonneg 6).
-  assert (Hk : 0 < B / s) by (apply Rdiv_lt_0_compat; assumption).
-  assert (HG : 0 <= G) by lra. assert (Hm : 0 <= margin) by (unfold margin_least in *; nra).
-  rewrite (Rabs_right margin) in N by lra.
-  set (D := Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) in *.
-  assert (HN : s * (thrust_min / B) + (margin - D) - share 6 * (25 / 10 * G + margin) <= T).
-  { apply both_sides in N.
-    assert (share 6 * (Rabs (s * (thrust_min / B)) + (margin + (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3))))
-      <= share 6 * (25 / 10 * G + margin)) by (apply Rmult_le_compat_l; lra).
-    lra. }
-  apply both_sides in C.
-  assert (HT : B / s * (s * (thrust_min / B) + margin - share 6 * (25 / 10 * G + margin)) <= B / s * (T + D))
+  intros Hend Hfloor. pose proof (floor_near Hend margin_positive) as N. pose proof command_near as C.
+  pose proof margin_pays as P. pose proof part_positive as Hk. destruct within_sizes as ((Hs & HB & _) & _).
+  unfold greatest_size in *. apply both_sides in N. apply both_sides in C.
+  set (D := Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) in *. set (e := share 6 * (25 / 10 * G + margin) + _) in *.
+  assert (HT : B / s * (s * (thrust_min / B) + (margin - e)) <= B / s * (T + D))
     by (apply Rmult_le_compat_l; lra).
-  assert (HP : 0 <= B / s * (margin - share 6 * (25 / 10 * G + margin) - share 6 * (26 / 10 * G)))
-    by (apply Rmult_le_pos; lra).
-  replace (B / s * (s * (thrust_min / B) + margin - share 6 * (25 / 10 * G + margin)))
-    with (thrust_min + B / s * (margin - share 6 * (25 / 10 * G + margin))) in HT by (field; lra).
+  replace (B / s * (s * (thrust_min / B) + (margin - e))) with (thrust_min + B / s * (margin - e)) in HT
+    by (field; lra).
   lra.
 Qed.
 
@@ -234,31 +338,97 @@ Qed.
 Theorem rounded_command_at_most : Rabs (s * (thrust_max / B)) <= G ->
   T <= ceiling -> command <= thrust_max.
 Proof.
-  intros Hend Hceiling.
-  assert (N := subtracted 5 _ _ _ _ _ _
-    (later 4 _ _ _ (later 3 _ _ _ (later 2 _ _ _ (end_near thrust_max))))
-    (rounded 4 _ _ _ (added 4 _ _ _ _ _ _ dot_near
-      (later 3 _ _ _ (later 2 _ _ _ (later 1 _ _ _ (later 0 _ _ _ (own_size margin)))))))).
-  apply rounded in N. destruct N as [_ N]. fold ceiling in N.
-  pose proof command_near as C. pose proof margin_pays as P. pose proof (share_nonneg 6).
-  assert (Hk : 0 < B / s) by (apply Rdiv_lt_0_compat; assumption).
-  assert (HG : 0 <= G) by lra. assert (Hm : 0 <= margin) by (unfold margin_least in *; nra).
-  rewrite (Rabs_right margin) in N by lra.
-  set (D := Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) in *.
-  assert (HN : T <= s * (thrust_max / B) - (D + margin) + share 6 * (25 / 10 * G + margin)).
-  { apply both_sides in N.
-    assert (share 6 * (Rabs (s * (thrust_max / B)) + (Rabs (Q_1 * t_1) + Rabs (Q_2 * t_2) + Rabs (Q_3 * t_3) + margin))
-      <= share 6 * (25 / 10 * G + margin)) by (apply Rmult_le_compat_l; lra).
-    lra. }
-  apply both_sides in C.
-  assert (HT : B / s * (T + D) <= B / s * (s * (thrust_max / B) - margin + share 6 * (25 / 10 * G + margin)))
+  intros Hend Hceiling. pose proof (ceiling_near Hend margin_positive) as N. pose proof command_near as C.
+  pose proof margin_pays as P. pose proof part_positive as Hk. destruct within_sizes as ((Hs & HB & _) & _).
+  unfold greatest_size in *. apply both_sides in N. apply both_sides in C.
+  set (D := Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) in *. set (e := share 6 * (25 / 10 * G + margin) + _) in *.
+  assert (HT : B / s * (T + D) <= B / s * (s * (thrust_max / B) - (margin - e)))
     by (apply Rmult_le_compat_l; lra).
-  assert (HP : 0 <= B / s * (margin - share 6 * (25 / 10 * G + margin) - share 6 * (26 / 10 * G)))
-    by (apply Rmult_le_pos; lra).
-  replace (B / s * (s * (thrust_max / B) - margin + share 6 * (25 / 10 * G + margin)))
-    with (thrust_max - B / s * (margin - share 6 * (25 / 10 * G + margin))) in HT by (field; lra).
+  replace (B / s * (s * (thrust_max / B) - (margin - e))) with (thrust_max - B / s * (margin - e)) in HT
+    by (field; lra).
   lra.
 Qed.
 
 End Steps.
+
+(** ** Some thrust meets both
+
+    What the exact rows have to leave beside, as a share of the greatest thrust,
+    for the rounded floor to be below the rounded ceiling. *)
+Definition slack : R := 3 / 1000000.
+
+Lemma slack_pays : forall G margin, / greatest_size <= G -> 0 <= margin <= G ->
+  2 * (share 6 * (25 / 10 * G + margin) + 10000000000 * tiny) <= slack * G.
+Proof.
+  intros G margin HG Hm. destruct tiny_size as [H0 H1]. pose proof share_of_six. pose proof (share_nonneg 6).
+  unfold greatest_size, slack in *.
+  assert (share 6 * (25 / 10 * G + margin) <= 361 / 1000000000 * (35 / 10 * G)) by (apply Rmult_le_compat; lra).
+  lra.
+Qed.
+
+Section Together.
+
+Variables (s margin t_1 t_2 t_3 G B Q_1 Q_2 Q_3 thrust_min : R).
+Hypothesis rotors_sizes : sizes s t_1 t_2 t_3 B Q_1 Q_2 Q_3 G.
+Hypothesis least_end : Rabs (s * (thrust_min / B)) <= G.
+Hypothesis margin_range : 0 <= margin <= G.
+
+(** One rotor's floor and another's ceiling. *)
+Theorem rounded_floor_below_ceiling : forall B' Q_1' Q_2' Q_3' thrust_max,
+  sizes s t_1 t_2 t_3 B' Q_1' Q_2' Q_3' G -> Rabs (s * (thrust_max / B')) <= G ->
+  s * (thrust_min / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) + margin + slack * G
+  <= s * (thrust_max / B') - (Q_1' * t_1 + Q_2' * t_2 + Q_3' * t_3) - margin ->
+  floor s margin t_1 t_2 t_3 B Q_1 Q_2 Q_3 thrust_min <= ceiling s margin t_1 t_2 t_3 B' Q_1' Q_2' Q_3' thrust_max.
+Proof.
+  intros B' Q_1' Q_2' Q_3' thrust_max Hsizes Hmost H.
+  pose proof (floor_near s margin t_1 t_2 t_3 B Q_1 Q_2 Q_3 thrust_min G rotors_sizes least_end
+    (proj1 margin_range)) as N.
+  pose proof (ceiling_near s margin t_1 t_2 t_3 B' Q_1' Q_2' Q_3' thrust_max G Hsizes Hmost
+    (proj1 margin_range)) as C.
+  destruct rotors_sizes as ((_ & _ & HG) & _). pose proof (slack_pays G margin (proj1 HG) margin_range).
+  apply both_sides in N. apply both_sides in C. lra.
+Qed.
+
+(** One rotor's floor and T_max. *)
+Theorem rounded_floor_below_limit : forall T_max,
+  s * (thrust_min / B) - (Q_1 * t_1 + Q_2 * t_2 + Q_3 * t_3) + margin + slack * G <= T_max ->
+  floor s margin t_1 t_2 t_3 B Q_1 Q_2 Q_3 thrust_min <= T_max.
+Proof.
+  intros T_max H.
+  pose proof (floor_near s margin t_1 t_2 t_3 B Q_1 Q_2 Q_3 thrust_min G rotors_sizes least_end
+    (proj1 margin_range)) as N.
+  destruct rotors_sizes as ((_ & _ & HG) & _). pose proof (slack_pays G margin (proj1 HG) margin_range).
+  pose proof share_of_six. pose proof (share_nonneg 6). destruct tiny_size as [Htiny Hsmall].
+  apply both_sides in N. assert (0 <= share 6 * (25 / 10 * G + margin)).
+  { apply Rmult_le_pos; [assumption|]. unfold greatest_size in *. lra. } lra.
+Qed.
+
+End Together.
+
+(** So T, as the code forms it of all rotors' floors and ceilings, meets all of
+    them: the greater and the lesser of two numbers round nothing. *)
+Theorem thrust_meets_all : forall (floors ceilings : list R) margin T_max wanted,
+  (forall f, In f floors -> f <= T_max) -> (forall f c, In f floors -> In c ceilings -> f <= c) ->
+  let T := Rmin (Rmax wanted (fold_right Rmax margin floors)) (fold_right Rmin T_max ceilings) in
+  (forall f, In f floors -> f <= T) /\ (forall c, In c ceilings -> T <= c).
+Proof.
+  intros floors ceilings margin T_max wanted Hmax Hboth T.
+  assert (Hfloors : forall f, In f floors -> f <= fold_right Rmax margin floors).
+  { clear. induction floors as [|g rest IH]; cbn; intros f [].
+    - subst. apply Rmax_l.
+    - eapply Rle_trans; [now apply IH | apply Rmax_r]. }
+  assert (Hceilings : forall c, In c ceilings -> fold_right Rmin T_max ceilings <= c).
+  { clear. induction ceilings as [|g rest IH]; cbn; intros c [].
+    - subst. apply Rmin_l.
+    - eapply Rle_trans; [apply Rmin_r | now apply IH]. }
+  assert (Hleast : forall m, m <= T_max -> (forall c, In c ceilings -> m <= c) -> m <= fold_right Rmin T_max ceilings).
+  { clear. induction ceilings as [|g rest IH]; cbn; intros m Hm H; [exact Hm|].
+    apply Rmin_glb; [apply H; now left | apply IH; [exact Hm | intros c Hc; apply H; now right]]. }
+  split.
+  - intros f Hf. apply Rmin_glb.
+    + eapply Rle_trans; [now apply Hfloors | apply Rmax_r].
+    + apply Hleast; [now apply Hmax | intros c Hc; now apply Hboth].
+  - intros c Hc. eapply Rle_trans; [apply Rmin_r | now apply Hceilings].
+Qed.
+
 End Rounding.

@@ -25,11 +25,12 @@ use std::path::Path;
 const TRIALS: usize = 2_000;
 
 /// Every comparison.
-const COMPARISONS: [fn(); 24] = [
+const COMPARISONS: [fn(); 25] = [
     extended::the_potential_and_the_share_of_damping_are_those_of_the_proofs,
     extended::the_thrust_range_is_that_of_the_proofs,
     extended::the_budgets_rows_are_those_of_the_proofs,
     extended::the_budget_of_a_tick_is_that_of_the_proofs,
+    extended::a_ticks_torque_is_that_of_the_proofs,
     extended::the_limiter_is_that_of_the_proofs,
     extended::the_ends_of_u_are_those_of_the_proofs,
     extended::the_torques_beside_the_feedback_are_those_of_the_proofs,
@@ -59,7 +60,7 @@ const NOT_COMPUTED: &str = "no code computes V: the torque is its slope, and tes
 const ONLY_PROOFS_NEED_IT: &str = "only a proof needs it: where a bound is reached, or by which weights it is shown";
 
 /// What stands in no number of the code: the file, the names, and the reason.
-const NOT_COMPARED: [(&str, &[&str], &str); 29] = [
+const NOT_COMPARED: [(&str, &[&str], &str); 33] = [
     ("Allocation", &["torque_fits"], "the rows imply it: rows_suffice; nothing asks for it"),
     ("Allocation", &["rotors_within_range", "rows_suffice", "no_rotor_beyond_its_range"], OF_WHAT_IS_COMPARED),
     (
@@ -68,7 +69,10 @@ const NOT_COMPARED: [(&str, &[&str], &str); 29] = [
         OF_WHAT_IS_COMPARED,
     ),
     ("Envelope", &["turned_inwards"], OF_WHAT_IS_COMPARED),
-    ("Envelope", &["never_positive", "rate_is_bounded"], OF_ALL_FUNCTIONS),
+    ("Envelope", &["never_positive", "rate_is_bounded", "rate_of_the_limiter"], OF_ALL_FUNCTIONS),
+    ("Tick", &["kept"], OF_THE_PROOF),
+    ("Tick", &["a_tick_keeps_a_row", "a_tick_keeps_the_rows", "a_tick_keeps_rotors_in_range"], OF_WHAT_IS_COMPARED),
+    ("Tick", &["covered_row_holds"], "a tick leaves covered rows out: its budget is compared with that of all rows"),
     ("Damping", &["share_positive"], OF_WHAT_IS_COMPARED),
     ("Attitude", &["level_in_a_cell"], OF_WHAT_IS_COMPARED),
     ("Attitude", &["jump_falls"], NOT_COMPUTED),
@@ -104,6 +108,11 @@ const NOT_COMPARED: [(&str, &[&str], &str); 29] = [
     ("SharpFlight", &["sharp_bound_of_a_flight"], OF_ALL_FUNCTIONS),
     ("Rounding", &["near", "share"], OF_THE_PROOF),
     ("Rounding", &["rounded_command_at_least", "rounded_command_at_most"], OF_WHAT_IS_COMPARED),
+    (
+        "Rounding",
+        &["rounded_floor_below_ceiling", "rounded_floor_below_limit", "thrust_meets_all"],
+        OF_WHAT_IS_COMPARED,
+    ),
 ];
 
 /// The names of all definitions, theorems, formulas and bounds.

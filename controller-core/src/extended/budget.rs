@@ -39,7 +39,7 @@ use nalgebra::{Vector3, Vector4};
 pub const THRUST_LEFT: f64 = 0.05;
 
 /// The part of a row's room that a tick leaves unused, for the change between two ticks.
-const ROOM_LEFT: f64 = 0.01;
+pub const ROOM_LEFT: f64 = 0.01;
 
 /// t, y and the rest of R.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,14 @@
-//! The extended law: `Allocation.v`, `Budget.v`, `Limiter.v`, `Envelope.v`, `Damping.v`, `Attitude.v`, `Descent.v`.
+//! The extended law: `Allocation.v`, `Budget.v`, `Limiter.v`, `Tick.v`, `Envelope.v`, `Damping.v`, `Attitude.v`,
+//! `Descent.v`.
 
-use super::{TRIALS, constants, direction, extended_law, lifted, near, of, plane, rotors, same, signed, torque};
+use super::{
+    TRIALS, constants, direction, extended_law, lifted, near, of, plane, rotors, same, signed, torque, unit_quaternion,
+};
 use crate::support::coq::{Proofs, Value};
 use crate::support::gappa::Rounding;
 use crate::support::{Random, hummingbird};
 use controller_core::allocation::{MinimumNorm, Rotors};
+use controller_core::attitude::rotate_back;
 use controller_core::attitude_reference::Turn;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::extended::ExtendedCertificate;
@@ -15,6 +19,7 @@ use controller_core::extended::budget::{RATE_BEYOND, TorqueBudget, TurningBudget
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::extended::turning::{Circumstances, Limited, TurningLimit};
+use controller_core::mrp;
 use controller_core::path_lifting::switching_magnitude;
 use controller_core::state::Wrench;
 use nalgebra::{Vector2, Vector3};
@@ -139,26 +144,19 @@ pub(super) fn the_thrust_range_is_that_of_the_proofs() {
         }
     }
     assert!(delivered > TRIALS / 4, "{delivered} of {TRIALS} within the rotors' ranges");
-    for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-        let proofs = Proofs::read("Allocation")
-            .with_value("rotors", Value::List(rotors_of(&rotors)))
-            .with_value("v", torque(&axis));
-        let [sum, _] = proofs.sides("balanced", "= 0")[..] else { panic!("two sides") };
-        assert!(sum.abs() < 1e-9, "{sum}: torques change the thrust");
-    }
 }
 
-fn budget() -> TorqueBudget {
+pub(super) fn budget() -> TorqueBudget {
     let configuration = extended_law();
     TorqueBudget::new(&constants(), configuration.vehicle(), configuration.limits(), configuration.rotors())
 }
 
-fn certificate() -> ExtendedCertificate {
+pub(super) fn certificate() -> ExtendedCertificate {
     let Certificate::Extended(found) = Certificate::new(&extended_law()).unwrap() else { panic!("the extended law") };
     found
 }
 
-fn row<'a>(certificate: &'a ExtendedCertificate, name: &str) -> &'a Inequality {
+pub(super) fn row<'a>(certificate: &'a ExtendedCertificate, name: &str) -> &'a Inequality {
     certificate.inequalities.iter().find(|row| row.name.starts_with(name)).unwrap()
 }
 
@@ -219,6 +217,9 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
     let rows = [(axis(Vector3::x()), roll.min(pitch)), (axis(Vector3::z()), yaw), (differences, both), (betas, floor)];
     let (budget, certificate) = (budget(), certificate());
     assert_eq!(budget.rows.len(), rows.len());
+    for (found, name) in budget.fixed.iter().zip(["fixed_tilt", "fixed_yaw"]) {
+        same(*found, of_tick(&p).number(name, &[]), name);
+    }
     let mut fixed = fixed.with(&[("t", 0.0), ("y", 0.0), ("corner", 0.0)]);
     for zero in ["feedback", "turning", "gyro", "bias"] {
         fixed = fixed.with_value(zero, nothing());
@@ -239,6 +240,11 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
         same(found.tilt, t, name);
         same(found.yaw, y, name);
         same(found.room, room, name);
+        let tick = of_tick(&p).with(&[("t", t), ("y", y), ("feedback_max", all), ("reserve", reserve), ("room", room)]);
+        same(found.room, tick.number("room", &[t, y, corner, range]), name);
+        let sides = tick.sides("reserved", "feedback_max + inertia_tilt");
+        same(reserve_found[0], sides[0], name);
+        same(reserve_found[1], sides[1], name);
         // The certificate's row, with the reserve.
         let proofs = Proofs::read("Limiter")
             .with(&[("t", t), ("y", y), ("room", room), ("feedback_max", all), ("reserve", reserve)])
@@ -251,12 +257,78 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
     }
 }
 
+/// A tick's constants.
+fn of_tick(p: &ExtendedParameters) -> Proofs {
+    let j = hummingbird::vehicle().inertia;
+    let feedback_yaw = 0.5 * f64::from(p.w) * f64::from(p.eta) + f64::from(p.m_omega_z);
+    Proofs::read("Tick")
+        .with(&of(&[("j_1", j.x), ("j_2", j.y), ("j_3", j.z)]))
+        .with(&of(&[("yaw_acceleration", p.yaw_acceleration), ("rate", p.turn_rate * RATE_BEYOND as f32)]))
+        .with(&of(&[("yaw_rate", p.yaw_rate), ("bias_tilt", p.torque_tilt), ("bias_yaw", p.torque_yaw)]))
+        .with(&[("feedback_yaw", feedback_yaw)])
+}
+
+/// R~ anywhere, and omega_d, omega_d' and the rest as great as they may be.
+#[test]
+pub(super) fn a_ticks_torque_is_that_of_the_proofs() {
+    let (p, inertia) = (constants(), hummingbird::vehicle().inertia);
+    let law = AttitudeLaw::new(&p, &inertia);
+    let mut random = Random(14);
+    for _ in 0..TRIALS {
+        let error = unit_quaternion(&mut random);
+        let mut long = |across: f32, along: f32| {
+            let v = direction(&mut random).xy().normalize() * across;
+            Vector3::new(v.x, v.y, along * signed(&mut random).signum())
+        };
+        let turn = 100.0;
+        let omega = long(p.turn_rate * RATE_BEYOND as f32, p.yaw_rate);
+        let omega_1 = long(turn, p.yaw_acceleration);
+        let (feedback, bias) = (direction(&mut random) * 0.1, direction(&mut random) * 0.1);
+        let (rate, acceleration) = (rotate_back(&error, &omega), rotate_back(&error, &omega_1));
+
+        let columns = mrp::rotation(&error).cast::<f64>();
+        let of_torque = |v: &Vector3<f32>| torque(&v.cast());
+        let mut proofs = of_tick(&p).with(&of(&[("turn", turn)])).with_value("omega_1", of_torque(&omega_1));
+        for (name, place) in [("c_1", 0), ("c_2", 1), ("c_3", 2)] {
+            proofs = proofs.with_value(name, torque(&columns.column(place).into()));
+        }
+        let turned = proofs.value("turned_back", &[of_torque(&omega)]);
+        let asked = [-feedback, omega, omega_1, -bias].map(|v| of_torque(&v));
+        let proven = proofs.value("tick_torque", &asked);
+        let parts = AttitudeFeedback { potential: feedback, damping: Vector3::zeros() };
+        let found = law.torque(&parts, &rate, &acceleration) - bias;
+        for (axis, name) in ["about_x", "about_y", "about_z"].into_iter().enumerate() {
+            near(rate[axis], field(&turned, name).number(), 20.0, "R~^T omega_d");
+            near(found[axis], field(&proven, name).number(), 10.0, "tau");
+        }
+
+        // The bounds, with the sine of the angle from b to rho.
+        let sine = proofs.clone().with(&[("sine", 0.0)]).sides("torque_of_turning", "tilt_length c_3 <=")[0];
+        let proofs = proofs.with(&[("sine", sine)]).with_value("omega", of_torque(&omega));
+        let bounds = [
+            ("torque_of_turning", "tilt_length ( with_inertia"),
+            ("torque_of_turning", "Rabs ( about_z ( with_inertia"),
+            ("torque_of_rates", "tilt_length ( turned_gyroscopic"),
+            ("torque_of_rates", "Rabs ( about_z ( turned_gyroscopic"),
+        ];
+        for (theorem, bound) in bounds {
+            assert!(proofs.sides(theorem, bound).is_sorted(), "{bound} {error}");
+        }
+        let [r_1, r_2, r_3] = <[f32; 3]>::from(rate);
+        let sides = Proofs::read("Budget")
+            .with(&of(&[("r_1", r_1), ("r_2", r_2), ("r_3", r_3)]))
+            .with(&of(&[("rate", p.turn_rate * RATE_BEYOND as f32), ("yaw_rate", p.yaw_rate)]))
+            .sides("gyroscopic_bound", "+ r_3 * r_3 <=");
+        near(sides[0] as f32, sides[1], sides[1], "|omega_d|");
+    }
+}
+
 #[test]
 pub(super) fn the_budget_of_a_tick_is_that_of_the_proofs() {
     let (budget, mass, p) = (budget(), hummingbird::vehicle().mass, constants());
     // Thrust enough for any turn: the rows decide.
     let turning = TurningBudget::new(&budget, mass, f32::MAX);
-    let of_tick = |feedback: f32, sine: f32| f64::from(turning.acceleration(1e6, feedback, sine));
+    let spent = |feedback: f32, sine: f32| f64::from(turning.acceleration(1e6, feedback, sine));
     let sides = |feedback: f32, sine: f32, left: f64, alpha: f64, holds: &str| {
         let [inertia_tilt, inertia_yaw] = budget.inertia;
         let sides = budget.rows.iter().map(|row| {
@@ -268,18 +340,25 @@ pub(super) fn the_budget_of_a_tick_is_that_of_the_proofs() {
         });
         sides.collect::<Vec<_>>()
     };
-    let least = |sides: Vec<Vec<f64>>| sides.into_iter().map(|sides| sides[1]).fold(f64::INFINITY, f64::min);
+    // The sides at alpha = 1 are a row's cost and what is left of its room.
+    let least = |sides: Vec<Vec<f64>>| sides.into_iter().map(|sides| sides[1] / sides[0]).fold(f64::INFINITY, f64::min);
     // What a tick leaves unused of a row takes up the rounding of the limiter.
-    let left = of_tick(0.0, 0.5) / least(sides(0.0, 0.5, 1.0, 0.0, "alpha <="));
+    let left = spent(0.0, 0.5) / least(sides(0.0, 0.5, 1.0, 1.0, "alpha * ("));
     let [_, rounding] = Rounding::read("limiter.gappa").interval("|shortened -/ EXACT|");
     assert!(left < 1.0 - 1000.0 * rounding && left > 0.98, "{left}");
     let mut random = Random(9);
     for _ in 0..TRIALS {
         let (feedback, sine) = (random.within(0.0, f64::from(p.m_all)) as f32, random.within(0.0, 1.0) as f32);
-        let alpha = of_tick(feedback, sine);
-        near(alpha as f32, least(sides(feedback, sine, left, alpha, "alpha <=")), 10.0 * alpha.abs(), "alpha");
+        let alpha = spent(feedback, sine);
+        near(alpha as f32, least(sides(feedback, sine, left, 1.0, "alpha * (")), 10.0 * alpha.abs(), "alpha");
         for kept in sides(feedback, sine, 1.0, alpha, "t * ( feedback + inertia_tilt * alpha )") {
             assert!(kept.is_sorted(), "{kept:?}");
+        }
+        for row in &budget.rows {
+            let proofs = of_tick(&p)
+                .with(&[("t", row.tilt), ("y", row.yaw), ("spent", row.room), ("alpha", alpha)])
+                .with(&of(&[("feedback_tilt", feedback), ("sine", sine)]));
+            assert!(proofs.sides("within_budget", "alpha * (").is_sorted(), "{feedback} {sine}");
         }
     }
 }

@@ -215,6 +215,10 @@ pub(super) fn the_certificates_thrust_and_torque_are_those_of_the_proofs() {
         assert!(sides.is_sorted());
         same(sharp.thrust.least * raised, sides[0], "the least thrust");
         same(sharp.thrust.greatest / raised, sides[2], "the greatest thrust");
+        let wider = proofs.sides("thrust_interval_as_printed", "<= T <=");
+        assert!(sides[0] == wider[0] && sides[2] <= wider[2]);
+        same(printed.thrust.least * raised, wider[0], "the least thrust as printed");
+        same(printed.thrust.greatest / raised, wider[2], "the greatest thrust as printed");
     }
     let left = Proofs::read("Filters").with(&levels).sides("hover_is_left", "M + K_3 <");
     let level = row(&sharp, "T1 saturation level");

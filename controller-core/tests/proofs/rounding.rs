@@ -1,11 +1,14 @@
 //! Rounding: `Rounding.v`, `limiter.gappa`, `filters.gappa`. The same steps in the same order give the same bits.
 
+use super::extended::{budget, certificate};
 use super::{TRIALS, constants, direction, of, rotors};
 use crate::support::Random;
 use crate::support::coq::Proofs;
 use crate::support::gappa::Rounding;
 use controller_core::allocation::MinimumNorm;
 use controller_core::attitude_reference::Turn;
+use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
+use controller_core::extended::budget::ROOM_LEFT;
 use controller_core::extended::parameters::Extended;
 use controller_core::extended::thrust_range::ThrustRange;
 use controller_core::extended::turning::{Circumstances, TURNED, TurningLimit};
@@ -67,6 +70,9 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
     let [unit, margin_least] = ["unit", "margin_least"].map(|name| proofs.number(name, &[]));
     assert!(unit > 0.5 * f64::from(f32::EPSILON) * (1.0 + f64::from(f32::EPSILON)), "{unit}");
     assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_LEAST), "{margin_least}");
+    let tiny = proofs.number("tiny", &[]);
+    assert!(tiny > 0.5 * f64::from(f32::from_bits(1)) * (1.0 + f64::from(f32::EPSILON)), "{tiny}");
+    the_slack_is_there(proofs.number("slack", &[]));
 
     let (rotors, mut random) = (rotors(), Random(12));
     let allocation = MinimumNorm::new(&rotors);
@@ -87,12 +93,20 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
             ("t_3", torque.z),
             ("margin", margin),
         ];
+        let greatest = rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>() * 1.5;
         let (mut floor, mut ceiling) = (f64::from(margin), 1e6_f64);
         for ((rotor, row), thrust) in rotors.iter().zip(rotors.pseudo_inverse()).zip(allocated.thrusts) {
             let proofs = Proofs::read("Rounding")
                 .with(&of(&asked))
                 .with(&of(&[("thrust_min", rotor.thrust_min), ("thrust_max", rotor.thrust_max)]))
                 .with(&[("B", row.x), ("Q_1", row.y / row.x), ("Q_2", row.z / row.x), ("Q_3", row.w / row.x)]);
+            let proofs = proofs.with(&of(&[("G", greatest)]));
+            for quantity in ["s", "B", "G"] {
+                assert!(proofs.sides("sizes", &format!("<= {quantity} <=")).is_sorted(), "{quantity}");
+            }
+            for x in [row.y / row.x, row.z / row.x, row.w / row.x].into_iter().chain(torque.cast().iter().copied()) {
+                assert!(proofs.clone().with(&[("x", x)]).sides("within", "Rabs x <=").is_sorted(), "{x}");
+            }
             floor = floor.max(proofs.number("floor", &[]));
             ceiling = ceiling.min(proofs.number("ceiling", &[]));
             if !allocated.clipped {
@@ -103,6 +117,18 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
         assert_eq!(f64::from(range.greatest(&torque, scale)), ceiling, "{torque} {scale} {margin}");
     }
     assert!(delivered > TRIALS / 4, "{delivered} of {TRIALS} within the rotors' ranges");
+}
+
+/// What the certificate and a tick leave of the rotors' rows is more than rounding takes.
+fn the_slack_is_there(slack: f64) {
+    let (budget, certificate, rotors) = (budget(), certificate(), rotors());
+    let ends = rotors.iter().zip(rotors.pseudo_inverse()).map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x);
+    let greatest = f64::from(constants().scale_greatest) * ends.fold(0.0, f64::max);
+    for (row, name) in budget.rows.iter().skip(2).zip(["R ", "T1 thrust floor"]) {
+        let required = super::extended::row(&certificate, name).required;
+        let by_the_certificate = required * (1.0 - 1.0 / (1.0 + ARITHMETIC_ALLOWANCE));
+        assert!(slack * greatest < by_the_certificate.min(ROOM_LEFT * row.room), "{name}: {slack} of {greatest}");
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::Random;
 use crate::allocation::{MinimumNorm, QuadX, Rotors};
+use crate::attitude::rotate_back;
 use crate::extended::budget::{RATE_BEYOND, TorqueBudget, TurningBudget};
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::parameters::ExtendedParameters;
@@ -81,8 +82,11 @@ fn a_turn_within_the_budget_fits_every_row_with_all_that_is_fixed() {
         let range = ThrustRange::new(rotors, p.floor_margin, craft.limits.thrust_max);
         let (j, yaw_feedback) = (craft.vehicle.inertia, 0.5 * p.w * p.eta + p.m_omega_z);
         for _ in 0..200 {
+            // R~, and the sine of the angle from b = R~ e3 to rho; one beyond a right angle.
+            let error = random.attitude();
+            let axis = rotate_back(&error.conjugate(), &Vector3::z());
+            let sine = if axis.z < 0.0 { 1.0 } else { axis.xy().norm().min(1.0) };
             let feedback = p.m_all * random.between(0.0, 1.0);
-            let sine = random.between(0.0, 1.0);
             let alpha = turning.acceleration(random.between(1.0, 40.0), feedback, sine).max(p.turn_reserve);
             assert!(alpha <= p.turn_acceleration);
             // Vectors of these lengths in random directions, all at their greatest.
@@ -91,12 +95,11 @@ fn a_turn_within_the_budget_fits_every_row_with_all_that_is_fixed() {
                 Vector3::new(cos, sin, 0.0) * length
             };
             let (tilt, turn, rate) = (turned(feedback), turned(alpha), turned(p.turn_rate * RATE_BEYOND as f32));
-            // omega_d' turned by R~ with the sine given: what tilts leaks into yaw.
-            let turn = turn * (1.0 - sine * sine).sqrt() + Vector3::z() * (alpha * sine);
             let mut side = || random.signed().signum();
-            let rate = rate + Vector3::z() * (p.yaw_rate * side());
-            let yaw =
-                Vector3::z() * (yaw_feedback * side()) + j.component_mul(&(Vector3::z() * p.yaw_acceleration)) * side();
+            // omega_d and omega_d' in the body's axes: R~ mixes what tilts with what yaws.
+            let rate = rotate_back(&error, &(rate + Vector3::z() * (p.yaw_rate * side())));
+            let turn = rotate_back(&error, &(turn + Vector3::z() * (p.yaw_acceleration * side())));
+            let yaw = Vector3::z() * (yaw_feedback * side());
             let bias = Vector3::new(p.torque_tilt * side(), p.torque_tilt * side(), p.torque_yaw * side());
             let torque = tilt + yaw + j.component_mul(&turn) - j.component_mul(&rate).cross(&rate) + bias;
             let scale = random.between(p.scale_least, p.scale_greatest);
