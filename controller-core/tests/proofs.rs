@@ -10,6 +10,7 @@ mod extended;
 mod motion;
 mod paper;
 mod rounding;
+mod tick;
 
 use crate::support::coq::{self, PROOFS, Value};
 use crate::support::gappa::Rounding;
@@ -27,10 +28,10 @@ const TRIALS: usize = 2_000;
 /// Every comparison.
 const COMPARISONS: [fn(); 25] = [
     extended::the_potential_and_the_share_of_damping_are_those_of_the_proofs,
-    extended::the_thrust_range_is_that_of_the_proofs,
-    extended::the_budgets_rows_are_those_of_the_proofs,
-    extended::the_budget_of_a_tick_is_that_of_the_proofs,
-    extended::a_ticks_torque_is_that_of_the_proofs,
+    tick::the_thrust_range_is_that_of_the_proofs,
+    tick::the_budgets_rows_are_those_of_the_proofs,
+    tick::the_budget_of_a_tick_is_that_of_the_proofs,
+    tick::a_ticks_torque_is_that_of_the_proofs,
     extended::the_limiter_is_that_of_the_proofs,
     extended::the_ends_of_u_are_those_of_the_proofs,
     extended::the_torques_beside_the_feedback_are_those_of_the_proofs,
@@ -106,7 +107,7 @@ const NOT_COMPARED: [(&str, &[&str], &str); 33] = [
     ("SharpInCell", &["velocity_in_cell", "acceleration_in_cell"], OF_WHAT_IS_COMPARED),
     ("SharpCover", &["sharp_bound_covers"], OF_ALL_FUNCTIONS),
     ("SharpFlight", &["sharp_bound_of_a_flight"], OF_ALL_FUNCTIONS),
-    ("Rounding", &["near", "share"], OF_THE_PROOF),
+    ("Near", &["near", "share"], OF_THE_PROOF),
     ("Rounding", &["rounded_command_at_least", "rounded_command_at_most"], OF_WHAT_IS_COMPARED),
     (
         "Rounding",

@@ -1,6 +1,6 @@
 //! Rounding: `Rounding.v`, `limiter.gappa`, `filters.gappa`. The same steps in the same order give the same bits.
 
-use super::extended::{budget, certificate};
+use super::tick::{budget, certificate};
 use super::{TRIALS, constants, direction, of, rotors};
 use crate::support::Random;
 use crate::support::coq::Proofs;
@@ -125,7 +125,7 @@ fn the_slack_is_there(slack: f64) {
     let ends = rotors.iter().zip(rotors.pseudo_inverse()).map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x);
     let greatest = f64::from(constants().scale_greatest) * ends.fold(0.0, f64::max);
     for (row, name) in budget.rows.iter().skip(2).zip(["R ", "T1 thrust floor"]) {
-        let required = super::extended::row(&certificate, name).required;
+        let required = super::tick::row(&certificate, name).required;
         let by_the_certificate = required * (1.0 - 1.0 / (1.0 + ARITHMETIC_ALLOWANCE));
         assert!(slack * greatest < by_the_certificate.min(ROOM_LEFT * row.room), "{name}: {slack} of {greatest}");
     }
