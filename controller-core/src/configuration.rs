@@ -149,9 +149,7 @@ impl Configuration {
         rotors.check_hover(self.vehicle.mass * self.vehicle.gravity)?;
         if let LawParameters::Extended(law) = &self.law {
             // Its thrust floor lifts every rotor: a rotor that thrust does not reach cannot be lifted by it.
-            let lifted = rotors.pseudo_inverse().iter().all(|row| row.x > 0.0);
-            require(lifted, "rotors.position", Reason::DoesNotSpan)?;
-            law.parameters.check_margin(&rotors)?;
+            law.parameters.check_rotors(&rotors)?;
         }
         Ok(Self { rotors: Some(rotors), ..self })
     }

@@ -117,6 +117,10 @@ impl Extended {
     /// of it on the way from thrust and torque to a rotor's command (`proofs/Rounding.v`).
     pub const FLOOR_MARGIN_LEAST: f32 = 2e-6;
 
+    /// What a number of the thrust range's constants is at least, in SI units, and its inverse at most
+    /// (`proofs/Rounding.v`).
+    const SIZE_LEAST: f64 = 1e-4;
+
     /// Checks every constant, and that the command never pushes down.
     ///
     /// # Errors
@@ -135,11 +139,18 @@ impl Extended {
         Ok(Self(parameters))
     }
 
-    /// Checks that the margin of the thrust floor takes up what rounding may do to `rotors`.
+    /// Checks that thrust lifts every one of `rotors`, and that the margin of the thrust floor takes up what rounding may
+    /// do to them. Sizes are those of the proof: a rotor's share of the thrust is at least [`Self::SIZE_LEAST`], and no
+    /// torque per thrust beyond its inverse.
     ///
     /// # Errors
-    /// Names `gains.floor_margin`.
-    pub fn check_margin(&self, rotors: &Rotors) -> Result<(), ParameterError> {
+    /// Names `rotors.position` or `gains.floor_margin`.
+    pub fn check_rotors(&self, rotors: &Rotors) -> Result<(), ParameterError> {
+        let lifted = rotors.pseudo_inverse().iter().all(|row| {
+            let most = row.y.abs() + row.z.abs() + row.w.abs();
+            row.x >= Self::SIZE_LEAST && Self::SIZE_LEAST * most <= row.x
+        });
+        require(lifted, "rotors.position", Reason::DoesNotSpan)?;
         let all = rotors.iter().zip(rotors.pseudo_inverse());
         let greatest = all.map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x).fold(0.0, math::greater_f64);
         let least = Self::FLOOR_MARGIN_LEAST * self.scale_greatest * greatest as f32;

@@ -1,5 +1,6 @@
 //! The declaration of the constants, and what their ranges refuse.
 
+use crate::allocation::{QuadX, Rotors};
 use crate::error::{ParameterError, Reason};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::parameters::{Extended, ExtendedParameters};
@@ -45,13 +46,25 @@ fn a_margin_that_rounding_could_use_up_is_refused_with_the_rotors() {
     let craft = Craft::example();
     let with = |floor_margin: f32| {
         let law = craft.law(&ExtendedParameters { floor_margin, ..example::parameters() });
-        law.parameters.check_margin(&craft.rotors)
+        law.parameters.check_rotors(&craft.rotors)
     };
     let greatest = craft.rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>();
     let least = Extended::FLOOR_MARGIN_LEAST * example::parameters().scale_greatest * greatest;
     assert_eq!(with(1.001 * least), Ok(()));
     let ParameterError { field, reason } = with(0.999 * least).unwrap_err();
     assert!(field == "gains.floor_margin" && matches!(reason, Reason::Below(_)), "{reason:?}");
+}
+
+#[test]
+fn rotors_whose_drag_hardly_yaws_are_refused() {
+    let craft = Craft::example();
+    let with = |share: f32| {
+        let rotors =
+            Rotors::quad_x(QuadX { drag_coefficient: share * example::QUAD.drag_coefficient, ..example::QUAD });
+        craft.law(&example::parameters()).parameters.check_rotors(&rotors.unwrap())
+    };
+    assert_eq!(with(0.1), Ok(()));
+    assert_eq!(with(1e-6).unwrap_err(), ParameterError { field: "rotors.position", reason: Reason::DoesNotSpan });
 }
 
 #[test]
