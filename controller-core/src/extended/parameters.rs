@@ -140,8 +140,8 @@ impl Extended {
     }
 
     /// Checks that thrust lifts every one of `rotors`, and that the margin of the thrust floor takes up what rounding may
-    /// do to them. Sizes are those of the proof: a rotor's share of the thrust is at least [`Self::SIZE_LEAST`], and no
-    /// torque per thrust beyond its inverse.
+    /// do to them. Sizes are those of the proof: a rotor's share of the thrust is at least 1e-4, and no torque per
+    /// thrust beyond 1e4.
     ///
     /// # Errors
     /// Names `rotors.position` or `gains.floor_margin`.
