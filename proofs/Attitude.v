@@ -140,8 +140,10 @@ Proof.
   assert (Hsq : a * a <= b * b) by (apply Rmult_le_compat; lra).
   assert (Hcross : a * sqrt (c + b * b) <= b * sqrt (c + a * a)).
   { apply Rsqr_incr_0_var; [|apply Rmult_le_pos; lra]. unfold Rsqr.
-    replace (a * sqrt (c + b * b) * (a * sqrt (c + b * b))) with (a * a * (sqrt (c + b * b) * sqrt (c + b * b))) by ring.
-    replace (b * sqrt (c + a * a) * (b * sqrt (c + a * a))) with (b * b * (sqrt (c + a * a) * sqrt (c + a * a))) by ring.
+    replace (a * sqrt (c + b * b) * (a * sqrt (c + b * b))) with (a * a * (sqrt (c + b * b) * sqrt (c + b * b))) by
+      ring.
+    replace (b * sqrt (c + a * a) * (b * sqrt (c + a * a))) with (b * b * (sqrt (c + a * a) * sqrt (c + a * a))) by
+      ring.
     rewrite Haa, Hbb.
     assert (a * a * c <= b * b * c) by (apply Rmult_le_compat_r; lra). lra. }
   apply Rmult_le_reg_r with (sqrt (c + a * a) * sqrt (c + b * b)); [now apply Rmult_lt_0_compat|].

@@ -53,7 +53,8 @@ Proof.
     { intros x Hx. replace (x * x) with (Rabs x * Rabs x) by (rewrite <- Rabs_mult; apply Rabs_pos_eq; apply Rle_0_sqr).
       pose proof (Rabs_pos x). apply Rmult_le_compat; lra. }
     pose proof (Hsq _ H32) as Ha. pose proof (Hsq _ H13) as Hb.
-    assert (Hsum : (j_3 - j_2) * r_2 * r_3 * ((j_3 - j_2) * r_2 * r_3) + (j_1 - j_3) * r_3 * r_1 * ((j_1 - j_3) * r_3 * r_1)
+    assert (Hsum : (j_3 - j_2) * r_2 * r_3 * ((j_3 - j_2) * r_2 * r_3) + (j_1 - j_3) * r_3 * r_1 * ((j_1 - j_3) * r_3
+      * r_1)
       <= across * across * ((r_1 * r_1 + r_2 * r_2) * (r_3 * r_3))).
     { assert ((j_3 - j_2) * (j_3 - j_2) * (r_2 * r_2 * (r_3 * r_3)) <= across * across * (r_2 * r_2 * (r_3 * r_3)))
         by (apply Rmult_le_compat_r; [now apply Rmult_le_pos | exact Ha]).
@@ -101,7 +102,8 @@ Proof.
   assert (Hy0 : 0 <= y) by (pose proof (Rabs_pos (about_z beta)); lra).
   pose proof (dot_bound beta (plus (plus feedback turning) gyro) t y Ht Hy) as Hdot.
   assert (t * tilt_length (plus (plus feedback turning) gyro) <= t * (ft + tt + gt)) by (now apply Rmult_le_compat_l).
-  assert (y * Rabs (about_z (plus (plus feedback turning) gyro)) <= y * (fy + ty + gy)) by (now apply Rmult_le_compat_l).
+  assert (y * Rabs (about_z (plus (plus feedback turning) gyro)) <= y * (fy + ty + gy)) by (now apply
+    Rmult_le_compat_l).
   assert (Hbias : Rabs (dot beta bias) <= corner * bt + y * bw).
   { unfold dot. eapply Rle_trans; [apply Rabs_triang|].
     assert (Rabs (about_z beta * about_z bias) <= y * bw).
@@ -109,8 +111,10 @@ Proof.
     assert (Rabs (about_x beta * about_x bias + about_y beta * about_y bias) <= corner * bt).
     { eapply Rle_trans; [apply Rabs_triang|]. rewrite !Rabs_mult.
       pose proof (Rabs_pos (about_x beta)). pose proof (Rabs_pos (about_y beta)). pose proof (Rabs_pos (about_x bias)).
-      assert (Rabs (about_x beta) * Rabs (about_x bias) <= Rabs (about_x beta) * bt) by (apply Rmult_le_compat_l; assumption).
-      assert (Rabs (about_y beta) * Rabs (about_y bias) <= Rabs (about_y beta) * bt) by (apply Rmult_le_compat_l; assumption).
+      assert (Rabs (about_x beta) * Rabs (about_x bias) <= Rabs (about_x beta) * bt) by (apply Rmult_le_compat_l;
+        assumption).
+      assert (Rabs (about_y beta) * Rabs (about_y bias) <= Rabs (about_y beta) * bt) by (apply Rmult_le_compat_l;
+        assumption).
       assert ((Rabs (about_x beta) + Rabs (about_y beta)) * bt <= corner * bt) by (apply Rmult_le_compat_r; lra). lra. }
     lra. }
   lra.

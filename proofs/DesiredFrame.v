@@ -214,7 +214,8 @@ Lemma upsilon_moves : moves upsilon t (upsilon_1 t).
 Proof. apply direction_moves; [apply varpi_positive | exact varpi_moves]. Qed.
 
 Lemma upsilon_1_moves : moves upsilon_1 t upsilon_2.
-Proof. apply (direction_rate_moves varpi varpi_1 t varpi_2); [apply varpi_positive | exact varpi_moves | exact varpi_1_moves]. Qed.
+Proof. apply (direction_rate_moves varpi varpi_1 t varpi_2); [apply varpi_positive | exact varpi_moves |
+  exact varpi_1_moves]. Qed.
 
 (** R_d is a rotation, and stays one. *)
 Lemma frame_at_t :
@@ -231,7 +232,8 @@ Proof.
   unfold upsilon_1, direction_rate, across. fold (upsilon t).
   assert (Hrate : dot (rho t) (varpi_1 t) = - dot (varpi t) (rho_1 t)).
   { rewrite varpi_is_a_product. unfold varpi_1. components. ring. }
-  replace (dot (rho t) (scaled (/ length (varpi t)) (sub (varpi_1 t) (scaled (dot (upsilon t) (varpi_1 t)) (upsilon t)))))
+  replace (dot (rho t) (scaled (/ length (varpi t)) (sub (varpi_1 t) (scaled (dot (upsilon t) (varpi_1 t)) (upsilon
+    t)))))
     with (/ length (varpi t) * (dot (rho t) (varpi_1 t) - dot (upsilon t) (varpi_1 t) * dot (rho t) (upsilon t)))
     by (generalize (dot (upsilon t) (varpi_1 t)); intros m; components; ring).
   rewrite Hrate, Hacross. unfold upsilon, direction. components. ring.
@@ -257,7 +259,8 @@ Theorem omega_moves : moves omega t omega_1.
 Proof.
   destruct frame_at_t as (F1 & F2 & F3 & F4 & F5 & F6).
   destruct (turning_products _ _ _ _ F1 F2 F3 F4 F5 F6) as (P1 & P2 & P3).
-  pose proof rho_moves as Hr. pose proof upsilon_moves as Hu. pose proof rho_1_moves as Hr1. pose proof upsilon_1_moves as Hu1.
+  pose proof rho_moves as Hr. pose proof upsilon_moves as Hu. pose proof rho_1_moves as Hr1.
+  pose proof upsilon_1_moves as Hu1.
   fold (omega t) in P1, P2, P3. unfold omega_1, omega, turning, products.
   split; [|split]; cbn [x y z add].
   - eapply derive_as; [exact (moves_dot _ _ _ _ _ Hu (moves_cross _ _ _ _ _ Hr Hr1))|].
@@ -265,10 +268,12 @@ Proof.
     change (dot (upsilon t) (cross (rho t) (rho_1 t))) with (x (omega t)). rewrite P1.
     unfold omega, turning. cbn [x y z].
     generalize (rho_1 t) (upsilon t) (rho t) rho_2 (upsilon_1 t). intros a b c d e. components. ring.
-  - eapply derive_as; [exact (moves_dot _ _ _ _ _ Hu Hr1)|]. cbn beta. rewrite P2. unfold omega, turning. cbn [x y z]. ring.
+  - eapply derive_as; [exact (moves_dot _ _ _ _ _ Hu Hr1)|]. cbn beta. rewrite P2. unfold omega, turning.
+  cbn [x y z]. ring.
   - eapply derive_as.
     + exact (derive_opposite _ _ _ (moves_dot _ _ _ _ _ Hu (moves_cross _ _ _ _ _ Hr Hu1))).
-    + cbn beta. transitivity (- dot (upsilon t) (cross (rho_1 t) (upsilon_1 t)) + - dot (upsilon t) (cross (rho t) upsilon_2)).
+    + cbn beta. transitivity (- dot (upsilon t) (cross (rho_1 t) (upsilon_1 t)) + - dot (upsilon t) (cross (rho t)
+      upsilon_2)).
       * generalize (rho_1 t) (upsilon t) (rho t) upsilon_2 (upsilon_1 t). intros a b c d e. components. ring.
       * rewrite P3. unfold omega, turning. cbn [x y z]. ring.
 Qed.

@@ -118,7 +118,8 @@ Proof.
       with (dot (side s) (upsilon_1 u u_1 nu nu_1 s))
       by (unfold side; generalize (upsilon s) (rho s) (upsilon_1 u u_1 nu nu_1 s); intros a b c; components; ring).
     unfold upsilon_1, direction_rate, across. fold varpi varpi_1. fold (upsilon s). fold (cos_roll s).
-    transitivity ((dot (side s) (varpi_1 s) - dot (direction (varpi s)) (varpi_1 s) * dot (side s) (upsilon s)) / cos_roll s).
+    transitivity ((dot (side s) (varpi_1 s) - dot (direction (varpi s)) (varpi_1 s) * dot (side s) (upsilon s)) /
+      cos_roll s).
     - change (direction (varpi s)) with (upsilon s).
       generalize (dot (upsilon s) (varpi_1 s)). intros m.
       generalize (side s) (upsilon s) (varpi_1 s). intros a b c. components. field. lra.
@@ -137,7 +138,8 @@ Proof.
   destruct (three_turns s Hs) as (Hu & _ & _).
   assert (E1 : dot (upsilon s) (nu s) = cos_pitch s).
   { rewrite Hu. pose proof (circle (psi s)) as Hcircle. unfold nu. components.
-    transitivity (cos_pitch s * (cos (psi s) * cos (psi s) + sin (psi s) * sin (psi s))); [ring | rewrite Hcircle; ring]. }
+    transitivity (cos_pitch s * (cos (psi s) * cos (psi s) + sin (psi s) * sin (psi s))); [ring | rewrite Hcircle;
+      ring]. }
   assert (E2 : dot (upsilon s) (rho_1 s) = y (omega s)) by reflexivity.
   rewrite E1, E2. unfold sin_roll. rewrite (dot_symmetric (rho s) (sideways (nu s))). ring.
 Qed.
@@ -192,7 +194,8 @@ Ltac in_angles := destruct (three_turns t upwards) as (Hu & Hside & Hrho);
 Lemma sin_roll_moves : is_derive sin_roll t (cos_roll t * (x (omega t) + psi_1 t * sin_pitch t)).
 Proof.
   eapply derive_as.
-  - exact (derive_opposite _ _ _ (moves_dot _ _ _ _ _ (moves_sideways t _ _ nu_moves) (rho_moves u u_1 t u_moves upwards))).
+  - exact (derive_opposite _ _ _ (moves_dot _ _ _ _ _ (moves_sideways t _ _ nu_moves) (rho_moves u u_1 t u_moves
+    upwards))).
   - cbv beta. fold rho_1 rho. rewrite sideways_nu_1, rho_1_in_frame. in_angles. rewrite Hu, Hside, Hrho.
     unfold sideways, nu. components. revert Hcircle Hpitch Hroll.
     generalize (cos_pitch t) (sin_pitch t) (cos_roll t) (sin_roll t) (cos (psi t)) (sin (psi t))

@@ -126,7 +126,8 @@ Proof.
       - pose proof (Rle_0_sqr (f_1 * a_2 - f_2 * a_1)) as Hq. unfold Rsqr in Hq. lra.
       - replace (sqrt 2 * M * K_12 * (sqrt 2 * M * K_12)) with ((sqrt 2 * M * (sqrt 2 * M)) * (K_12 * K_12)) by ring.
         apply Rmult_le_compat; try assumption;
-          [pose proof (Rle_0_sqr f_1); pose proof (Rle_0_sqr f_2) | pose proof (Rle_0_sqr a_1); pose proof (Rle_0_sqr a_2)];
+          [pose proof (Rle_0_sqr f_1); pose proof (Rle_0_sqr f_2) | pose proof (Rle_0_sqr a_1);
+            pose proof (Rle_0_sqr a_2)];
           unfold Rsqr in *; lra. }
     assert (u_3 * u_3 <= (g + M + K_3) * (g + M + K_3)) by (apply Rmult_le_compat; lra).
     unfold u_1, u_2. nra.

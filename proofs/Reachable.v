@@ -149,7 +149,8 @@ Proof.
   intros Hu.
   assert (H : Rabs (k_f * (u_f T - u_s T) + - k_s * u_s T)
     <= M * (2 * k_f * exp (- (k_f * (2 * peak))) - - k_s)).
-  { pose proof peak_positive. apply (linear_function_within k_f (- k_s) (2 * peak)) with ubar jumps; try lra; [|exact flown].
+  { pose proof peak_positive. apply (linear_function_within k_f (- k_s) (2 * peak)) with ubar jumps; try lra;
+    [|exact flown].
     intros s. unfold W, G. replace (s - (s - 2 * peak)) with (2 * peak) by ring.
     destruct (Req_EM_T k_f k_s) as [E|Hne].
     - assert (Hone : k_s * peak = 1).

@@ -202,8 +202,10 @@ Proof.
         [rewrite <- roll_on_circle; ring | unfold k; field; lra]. }
     assert (Ht : sin_roll / cos_roll * (sin_roll / cos_roll) <= tangent * tangent).
     { rewrite roll_tangent. unfold tangent, Rdiv.
-      replace (uphill_y * / cos_tilt * (uphill_y * / cos_tilt)) with (uphill_y * uphill_y * (s * s)) by (unfold s; ring).
-      replace (sin_tilt * / cos_tilt * (sin_tilt * / cos_tilt)) with (sin_tilt * sin_tilt * (s * s)) by (unfold s; ring).
+      replace (uphill_y * / cos_tilt * (uphill_y * / cos_tilt)) with (uphill_y * uphill_y * (s * s)) by (unfold s;
+        ring).
+      replace (sin_tilt * / cos_tilt * (sin_tilt * / cos_tilt)) with (sin_tilt * sin_tilt * (s * s)) by (unfold s;
+        ring).
       apply Rmult_le_compat_r; [apply squared|]. pose proof (squared uphill_x). lra. }
     pose proof (squared (sin_roll / cos_roll)).
     rewrite Rabs_mult, E, (Rabs_pos_eq (1 + _)) by lra.

@@ -83,7 +83,8 @@ Definition velocity_square (jerk_length jerk_mixed rate : R) : R :=
   jerk_length * jerk_length + yaw_bound far secant rate jerk_mixed * yaw_bound far secant rate jerk_mixed.
 Definition acceleration_square (snap_length snap_mixed rate acceleration jerk horizontal_jerk least most : R) : R :=
   square_of_sum snap_length (far * snap_mixed)
-    (tilting_bound far secant rate (most / magnitude) (share_product jerk least most) (share_mixed horizontal_jerk most))
+    (tilting_bound far secant rate (most / magnitude) (share_product jerk least most) (share_mixed horizontal_jerk
+      most))
     (yawing_bound far tilt_sin secant rate acceleration (share_stretch jerk least) (most / magnitude)
        (share_mixed horizontal_jerk most)).
 
@@ -191,7 +192,8 @@ Proof.
       apply Rmult_le_compat; lra. }
     lra. }
   assert (H5 : sin_least * H * dl * (sin_least * H * dl) <= H * H * (sine * sine * (a * a))).
-  { rewrite <- Haa. replace (H * H * (sine * sine * (Rabs a * Rabs a))) with (sine * H * Rabs a * (sine * H * Rabs a)) by ring.
+  { rewrite <- Haa. replace (H * H * (sine * sine * (Rabs a * Rabs a))) with (sine * H * Rabs a * (sine * H * Rabs
+    a)) by ring.
     assert (Hsh : 0 <= sin_least * H <= sine * H).
     { split; [apply Rmult_le_pos; lra | apply Rmult_le_compat_r; lra]. }
     apply squares_below; [apply Rmult_le_pos; lra | apply Rmult_le_compat; lra]. }

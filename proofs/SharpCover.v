@@ -53,7 +53,8 @@ Proof.
     rewrite plane_length_over by exact Hn. field. lra. }
   unfold tangent, steepest. split; [apply Rmult_le_pos; [exact Hs0 | left; now apply Rinv_0_lt_compat]|].
   replace (sin_tilt / cos_tilt) with (n * sin_tilt / (n * cos_tilt)) by (field; lra).
-  rewrite Hs, E. apply Rmult_le_compat; [apply plane_length_nonneg | left; apply Rinv_0_lt_compat; lra | exact within_horizontal |].
+  rewrite Hs, E. apply Rmult_le_compat; [apply plane_length_nonneg | left; apply Rinv_0_lt_compat; lra |
+    exact within_horizontal |].
   apply Rinv_le_contravar; lra.
 Qed.
 
@@ -74,7 +75,8 @@ Definition covered (tilts angles splits headings : nat) (longest : nat -> R) : P
   let length i k h v := tangential_length (near i) (far i) vertical_least h v (cosine k) (cosine (S k)) in
   let mixed i k h v := tangential_mixed (near i) (far i) vertical_least h v (cosine k) (cosine (S k)) (sine (S k)) in
   (forall i q, (i < tilts)%nat -> q <= jerk ->
-     (exists k, (k < angles)%nat /\ q <= length i k horizontal_jerk vertical_jerk * magnitude (near i) vertical_least) ->
+     (exists k, (k < angles)%nat /\ q <= length i k horizontal_jerk vertical_jerk * magnitude (near i)
+       vertical_least) ->
      q <= longest i) ->
   exists i, (i < tilts)%nat /\
   (exists k, (k < angles)%nat /\
@@ -103,7 +105,8 @@ Proof.
   { split; [apply length_nonneg|]. apply Hlongest; [exact Hi | | exists k; split; [exact Hk | exact Hp]].
     eapply Rle_trans; [apply across_shorter; exact (n_positive u t upwards) | exact within_jerk]. }
   destruct (in_some_cell splits _ _ Hsplits Hp0) as (l & Hl & Hleast & Hmost).
-  destruct (in_some_cell headings fastest _ Hheadings (conj (Rabs_pos (psi_1 t)) rate_within)) as (j & Hj & Hnear & Hfar).
+  destruct (in_some_cell headings fastest _ Hheadings (conj (Rabs_pos (psi_1 t)) rate_within)) as (j & Hj & Hnear &
+    Hfar).
   destruct (acceleration_in_cell u u_1 psi psi_1 t u_2 psi_2 _ _ _ _ _ _
     vertical_positive within_vertical within_jerk within_horizontal_jerk within_horizontal_snap within_vertical_snap
     within_heading_second _ _ Hcell angles _ _ _ _ Hangles Hnear Hfar Hleast Hmost) as (k' & Hk' & Ha).

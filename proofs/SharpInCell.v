@@ -51,13 +51,15 @@ Proof.
     pose proof (squared (x (rho u t))). pose proof (squared (y (rho u t))).
     destruct (Req_dec s 0) as [Hz|Hz].
     - exists 1, 0. rewrite Hz in *. split; [ring|].
-      split; [destruct (Rmult_integral (x (rho u t)) (x (rho u t))) | destruct (Rmult_integral (y (rho u t)) (y (rho u t)))]; lra.
+      split; [destruct (Rmult_integral (x (rho u t)) (x (rho u t))) |
+        destruct (Rmult_integral (y (rho u t)) (y (rho u t)))]; lra.
     - exists (x (rho u t) / s), (y (rho u t) / s). split; [|split; field; exact Hz].
       replace (x (rho u t) / s * (x (rho u t) / s) + y (rho u t) / s * (y (rho u t) / s))
         with ((x (rho u t) * x (rho u t) + y (rho u t) * y (rho u t)) / (s * s)) by (field; exact Hz).
       rewrite <- Hs. field. exact Hz. }
   destruct Hslope as (d_x & d_y & Hd & Hx & Hy).
-  pose proof (plane_length_nonneg (x v) (y v)) as Hh0. pose proof (plane_length_squared (x v) (y v)) as Hh. fold h in Hh0, Hh.
+  pose proof (plane_length_nonneg (x v) (y v)) as Hh0. pose proof (plane_length_squared (x v) (y v)) as Hh.
+  fold h in Hh0, Hh.
   assert (Hangle : exists a_cos a_sin, a_cos * a_cos + a_sin * a_sin = 1 /\
     d_x * x v + d_y * y v = h * a_cos /\ d_y * x v - d_x * y v = h * a_sin).
   { pose proof (squared (x v)). pose proof (squared (y v)).
@@ -96,7 +98,8 @@ Let m := magnitude near vertical_least.
 
 Lemma cell_facts : 0 < m /\ m <= n /\ 0 < / n <= / m /\ / cos_tilt <= secant far /\ 0 <= sin_tilt <= tilt_sin far.
 Proof.
-  destruct (SharpCells.tilt_in_cell near far vertical_least cos_tilt sin_tilt on_circle not_flat tilt_in_cell vertical_positive)
+  destruct (SharpCells.tilt_in_cell near far vertical_least cos_tilt sin_tilt on_circle not_flat tilt_in_cell
+    vertical_positive)
     as (H1 & H2 & _ & H4 & _ & H6). fold m in H4, H6.
   assert (Hmn : m <= n).
   { apply H6. pose proof (proj1 (magnitude_of_tilt u t upwards)) as E. fold n cos_tilt in E. lra. }
@@ -149,8 +152,10 @@ Proof.
   exists k. split; [exact Hk|]. split.
   { assert (Hp0 : 0 <= p) by apply length_nonneg.
     unfold tangential_length. fold m.
-    replace (sqrt (tangential_square near far horizontal_jerk vertical_jerk (cos (angle angles k)) (cos (angle angles (S k)))) / m * m)
-      with (sqrt (tangential_square near far horizontal_jerk vertical_jerk (cos (angle angles k)) (cos (angle angles (S k)))))
+    replace (sqrt (tangential_square near far horizontal_jerk vertical_jerk (cos (angle angles k)) (cos (angle angles
+      (S k)))) / m * m)
+      with (sqrt (tangential_square near far horizontal_jerk vertical_jerk (cos (angle angles k)) (cos (angle angles
+        (S k)))))
       by (field; lra).
     rewrite <- (sqrt_square p) by exact Hp0. apply sqrt_le_1_alt. unfold p. rewrite Hsq.
     apply (tangential_within near far vertical_least cos_tilt sin_tilt) with s; auto; try lra.
@@ -218,8 +223,10 @@ Proof.
     { rewrite Rinv_mult. split; [apply squared | apply squares_below; lra]. }
     replace (p / n * (r / n)) with (p * r * (/ n * / n)) by (field; lra). unfold Rdiv.
     apply Rmult_le_compat; try lra. now apply Rmult_le_pos. }
-  assert (Hmixed : 0 <= (p / n + Rmin p horizontal_jerk / n) / 2 <= share_mixed near vertical_least horizontal_jerk most).
-  { assert (Hh0 : 0 <= horizontal_jerk) by (eapply Rle_trans; [apply plane_length_nonneg | exact within_horizontal_jerk]).
+  assert (Hmixed : 0 <= (p / n + Rmin p horizontal_jerk / n) / 2 <= share_mixed near vertical_least horizontal_jerk
+    most).
+  { assert (Hh0 : 0 <= horizontal_jerk) by (eapply Rle_trans; [apply plane_length_nonneg |
+    exact within_horizontal_jerk]).
     assert (Hmin : 0 <= Rmin p horizontal_jerk <= Rmin most horizontal_jerk).
     { split; [apply Rmin_glb; lra|]. apply Rmin_glb; [eapply Rle_trans; [apply Rmin_l | lra] | apply Rmin_r]. }
     assert (H : 0 <= Rmin p horizontal_jerk / n <= Rmin most horizontal_jerk / m).
@@ -229,13 +236,16 @@ Proof.
   { split; [apply Rabs_pos|]. unfold heading_acceleration. rewrite <- (sqrt_square (Rabs psi_2)) by apply Rabs_pos.
     apply sqrt_le_1_alt. rewrite <- Rabs_mult, Rabs_pos_eq by apply squared.
     assert (Hq : near_rate * near_rate <= psi_1 t * psi_1 t).
-    { replace (psi_1 t * psi_1 t) with (Rabs (psi_1 t) * Rabs (psi_1 t)) by (rewrite <- Rabs_mult; apply Rabs_pos_eq, squared).
+    { replace (psi_1 t * psi_1 t) with (Rabs (psi_1 t) * Rabs (psi_1 t)) by (rewrite <- Rabs_mult;
+      apply Rabs_pos_eq, squared).
       apply squares_below; lra. }
     pose proof (squares_below _ _ (squared near_rate) Hq). lra. }
   pose proof (tilting_bound_grows _ _ _ _ _ _ _ _ _ _ _ _ Htan Hsecant Hrate Hlength Hproduct Hmixed) as T.
-  pose proof (yawing_bound_grows _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ Htan Hsin Hsecant Hrate Hacceleration Hstretch Hlength Hmixed) as Y.
+  pose proof (yawing_bound_grows _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ Htan Hsin Hsecant Hrate Hacceleration Hstretch
+    Hlength Hmixed) as Y.
   unfold acceleration_square, square_of_sum. fold m.
-  assert (Hlin : 0 <= tangent cos_tilt sin_tilt * ((tangential u t u_2 / n + plane_length (x u_2) (y u_2) * Rabs s / n) / 2)
+  assert (Hlin : 0 <= tangent cos_tilt sin_tilt * ((tangential u t u_2 / n + plane_length (x u_2) (y u_2) * Rabs s /
+    n) / 2)
     <= far * tangential_mixed near far vertical_least horizontal_snap vertical_snap
       (cos (angle angles k)) (cos (angle angles (S k))) (sin (angle angles (S k)))).
   { split; [apply Rmult_le_pos; lra | apply Rmult_le_compat; lra]. }

@@ -110,7 +110,8 @@ Let cos_roll := cos_roll u psi t.
 Let sin_roll := sin_roll u psi t.
 
 Lemma tilt_of_turns : cos_tilt = cos_pitch * cos_roll.
-Proof. destruct (three_turns u psi t upwards) as (_ & _ & H). unfold cos_tilt. change (direction (u t)) with (DesiredFrame.rho u t). now rewrite H. Qed.
+Proof. destruct (three_turns u psi t upwards) as (_ & _ & H). unfold cos_tilt.
+  change (direction (u t)) with (DesiredFrame.rho u t). now rewrite H. Qed.
 
 Lemma across_in_body : forall v,
   uphill_x sin_pitch * along_y u psi t v - uphill_y cos_pitch sin_roll * along_x u psi t v

@@ -72,7 +72,8 @@ Proof.
       assert (E : 2 * n * (s * s) = n + Rabs b) by (rewrite Hss; field; lra).
       replace (1 * (4 * (n * n) * (s * s))) with (2 * n * (2 * n * (s * s))) by ring.
       rewrite E. assert (Rabs b * Rabs b = b * b) by (rewrite <- Rabs_mult; apply Rabs_pos_eq, squared). lra.
-    + replace (s * (a * (- g * a / (2 * n * s)) - b * s)) with (- (g * (a * a) / (2 * n) + b * (s * s))) by (field; lra).
+    + replace (s * (a * (- g * a / (2 * n * s)) - b * s)) with (- (g * (a * a) / (2 * n) + b * (s * s))) by (field;
+      lra).
       assert (E : g * (a * a) / (2 * n) + b * (s * s) = g * ((n + Rabs b) / 2)).
       { rewrite Hss. replace b with (g * Rabs b) at 1 by (rewrite Hb, <- Rmult_assoc, Hg; ring).
         assert (E2 : Rabs b * Rabs b = b * b) by (rewrite <- Rabs_mult; apply Rabs_pos_eq, squared).

@@ -29,7 +29,8 @@ Lemma squared : forall a : R, 0 <= a * a.
 Proof. intros. apply Rle_0_sqr. Qed.
 
 Lemma square_nonneg : forall v, 0 <= square v.
-Proof. intros v. components. pose proof (squared (x v)). pose proof (squared (y v)). pose proof (squared (z v)). lra. Qed.
+Proof. intros v. components. pose proof (squared (x v)). pose proof (squared (y v)). pose proof (squared (z v)). lra.
+  Qed.
 
 Lemma length_nonneg : forall v, 0 <= length v.
 Proof. intros v. apply sqrt_pos. Qed.
@@ -112,22 +113,26 @@ Definition moves (v : R -> space) (t : R) (d : space) : Prop :=
 
 Lemma derive_product : forall (f g : R -> R) (t a b : R), is_derive f t a -> is_derive g t b ->
   is_derive (fun s => f s * g s) t (a * g t + f t * b).
-Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals. now apply derivable_pt_lim_mult. Qed.
+Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals.
+  now apply derivable_pt_lim_mult. Qed.
 
 Lemma derive_sum : forall (f g : R -> R) (t a b : R), is_derive f t a -> is_derive g t b ->
   is_derive (fun s => f s + g s) t (a + b).
-Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals. now apply derivable_pt_lim_plus. Qed.
+Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals.
+  now apply derivable_pt_lim_plus. Qed.
 
 Lemma derive_difference : forall (f g : R -> R) (t a b : R), is_derive f t a -> is_derive g t b ->
   is_derive (fun s => f s - g s) t (a - b).
-Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals. now apply derivable_pt_lim_minus. Qed.
+Proof. intros f g t a b Hf Hg. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals.
+  now apply derivable_pt_lim_minus. Qed.
 
 Lemma derive_opposite : forall (f : R -> R) (s l : R), is_derive f s l -> is_derive (fun t => - f t) s (- l).
 Proof. intros f s l H. apply is_derive_Reals in H. apply is_derive_Reals. now apply derivable_pt_lim_opp. Qed.
 
 Lemma derive_quotient : forall (f g : R -> R) (t a b : R), is_derive f t a -> is_derive g t b -> g t <> 0 ->
   is_derive (fun s => f s / g s) t ((a * g t - b * f t) / (g t * g t)).
-Proof. intros f g t a b Hf Hg H. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals. now apply derivable_pt_lim_div. Qed.
+Proof. intros f g t a b Hf Hg H. apply is_derive_Reals in Hf, Hg. apply is_derive_Reals.
+  now apply derivable_pt_lim_div. Qed.
 
 Lemma derive_constant : forall c t : R, is_derive (fun _ : R => c) t 0.
 Proof. intros c t. apply is_derive_Reals, derivable_pt_lim_const. Qed.

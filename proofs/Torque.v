@@ -32,9 +32,11 @@ Proof.
   assert (HMM : 0 < M * M) by (now apply Rmult_lt_0_compat).
   assert (Hkk : 0 <= k * k * square x y z) by (apply Rmult_le_pos; [apply Rle_0_sqr | exact Hs]).
   assert (Hroot : 0 < sqrt (M * M + k * k * square x y z)) by (apply sqrt_lt_R0; lra).
-  assert (Hrr : sqrt (M * M + k * k * square x y z) * sqrt (M * M + k * k * square x y z) = M * M + k * k * square x y z)
+  assert (Hrr : sqrt (M * M + k * k * square x y z) * sqrt (M * M + k * k * square x y z) = M * M + k * k * square x
+    y z)
     by (apply sqrt_def; lra).
-  apply Rlt_le_trans with (sqrt (M * M)); [|right; apply sqrt_square; lra]. apply sqrt_lt_1_alt. split; [apply square_nonneg|].
+  apply Rlt_le_trans with (sqrt (M * M)); [|right; apply sqrt_square; lra]. apply sqrt_lt_1_alt. split;
+    [apply square_nonneg|].
   unfold saturated.
   remember (sqrt (M * M + k * k * square x y z)) as root eqn:E. clear E.
   assert (Hform : square (M * k * x / root) (M * k * y / root) (M * k * z / root)

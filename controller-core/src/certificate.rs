@@ -41,12 +41,7 @@ pub enum Certificate<R = f64> {
 }
 
 impl<R: Real> Certificate<R> {
-    /// Works out every inequality for `configuration`, in a bounded amount of work, in the numbers that the caller
-    /// chooses: [`Certificate::new`] in double precision, [`Certificate::enclose`] with its rounding accounted for.
-    ///
-    /// # Errors
-    /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
-    pub fn evaluate(configuration: &Configuration) -> Result<Self, ParameterError> {
+    fn evaluate(configuration: &Configuration) -> Result<Self, ParameterError> {
         Ok(match configuration.law() {
             LawParameters::Paper(law) => Self::Paper(PaperCertificate::new(configuration, law)?),
             LawParameters::Extended(law) => Self::Extended(ExtendedCertificate::new(configuration, law)?),
@@ -108,10 +103,10 @@ impl<R: Real> Certificate<R> {
 }
 
 impl Certificate {
-    /// [`Certificate::evaluate`] in double precision: what decides.
+    /// Works out every inequality for `configuration`, in double precision and a bounded amount of work: what decides.
     ///
     /// # Errors
-    /// As [`Certificate::evaluate`].
+    /// If a bound is beyond double precision; no configuration that its constructors accept leads there.
     pub fn new(configuration: &Configuration) -> Result<Self, ParameterError> {
         Self::evaluate(configuration)
     }
@@ -124,11 +119,11 @@ impl Certificate {
 }
 
 impl Certificate<Enclosure> {
-    /// [`Certificate::evaluate`] with every rounding outwards: an inequality that holds here holds in exact
-    /// arithmetic, for the numbers that the configuration stores.
+    /// [`Certificate::new`] with every rounding outwards: an inequality that holds here holds in exact arithmetic, for
+    /// the numbers that the configuration stores.
     ///
     /// # Errors
-    /// As [`Certificate::evaluate`].
+    /// As [`Certificate::new`].
     pub fn enclose(configuration: &Configuration) -> Result<Self, ParameterError> {
         Self::evaluate(configuration)
     }

@@ -143,8 +143,8 @@ impl Configuration {
     /// Carries the certificate to the rotors.
     ///
     /// # Errors
-    /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it; for the extended law also
-    /// if thrust does not reach one of them, or the thrust floor's margin is within rounding.
+    /// If the rotors at full thrust cannot hover the vehicle, or at least thrust still lift it. For the extended law
+    /// also if thrust does not reach one of them, or the thrust floor's margin is within rounding.
     pub fn with_rotors(self, rotors: Rotors) -> Result<Self, ParameterError> {
         rotors.check_hover(self.vehicle.mass * self.vehicle.gravity)?;
         if let LawParameters::Extended(law) = &self.law {

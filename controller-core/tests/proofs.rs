@@ -2,7 +2,7 @@
 //! code stands in, against the function here, at random points.
 //!
 //! The formulas and the bounds are read from the proofs themselves, so none is typed a second time.
-//! [`everything_in_the_proofs_is_compared_or_says_why_not`] finds what nobody compares.
+//! [`everything_in_the_proofs_is_compared_or_says_why_not`] finds what no test compares.
 
 mod bounds;
 mod cells;

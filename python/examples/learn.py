@@ -202,7 +202,8 @@ def learn(task, shield, generations, start, seed, fine=1.0, report=print):
         if generation % 10 == 9 or generation == 0:
             took = time.monotonic() - started
             report(
-                f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, {lost} episodes lost, {took:.0f} s"
+                f"generation {generation + 1}: earns {curve[-1][1]:.0f}, {steps} steps, "
+                f"{lost} episodes lost, {took:.0f} s"
             )
     return Network(weights), np.array(curve)
 

@@ -70,7 +70,7 @@ impl<R: Real> ExtendedCertificate<R> {
     pub fn new(configuration: &Configuration, law: &ExtendedLaw) -> Result<Self, ParameterError> {
         let parameters = &law.parameters;
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-        let budget = TorqueBudget::evaluate(parameters, vehicle, limits, configuration.rotors());
+        let budget = TorqueBudget::new(parameters, vehicle, limits, configuration.rotors());
         let all = feasibility(configuration, parameters, &budget)
             .into_iter()
             .chain(heading(configuration, parameters))

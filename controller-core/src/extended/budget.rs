@@ -118,12 +118,7 @@ impl<R: Real> Reach<R> {
 impl<R: Real> TorqueBudget<R> {
     /// For a vehicle, its limits, its rotors if it has any, and the law's constants.
     #[must_use]
-    pub fn evaluate(
-        parameters: &ExtendedParameters,
-        vehicle: &Vehicle,
-        limits: &Limits,
-        rotors: Option<&Rotors>,
-    ) -> Self {
+    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
         let p = parameters;
         let (zero, one) = (R::from(0.0), R::from(1.0));
         let j = vehicle.inertia.map(R::from);
@@ -184,12 +179,6 @@ impl<R: Real> TorqueBudget<R> {
 }
 
 impl TorqueBudget {
-    /// [`TorqueBudget::evaluate`] in double precision.
-    #[must_use]
-    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
-        Self::evaluate(parameters, vehicle, limits, rotors)
-    }
-
     /// The greatest feedback about the tilt's axes with which every row has room for `acceleration`, N m.
     #[must_use]
     pub fn feedback(&self, acceleration: f64) -> f64 {

@@ -99,7 +99,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let a_down = or("a_down", FALL * gravity);
     let up = or("force_up", 0.36 * a_down);
     let least = (1.0 - THRUST_LEFT) * mass * (gravity - up - FALL_LEAST);
-    let raised = |by: Numbers| TorqueBudget::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
+    let raised = |by: Numbers| TorqueBudget::<f64>::new(&by.parameters(), vehicle, limits, rotors).floor - free.floor;
     let by_tilt = raised(Numbers { torque_tilt: 1.0, ..bare });
     let by_yaw = greater_f64(raised(Numbers { torque_yaw: 1.0, ..bare }), 1e-12);
     let light = lesser_f64(0.056 * yaw_most, 0.15 * mass * gravity / by_yaw);

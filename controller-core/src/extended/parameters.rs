@@ -139,8 +139,8 @@ impl Extended {
         Ok(Self(parameters))
     }
 
-    /// Checks that thrust lifts every one of `rotors`, and that the margin of the thrust floor takes up what rounding may
-    /// do to them. Sizes are those of the proof: a rotor's share of the thrust is at least 1e-4, and no torque per
+    /// Checks that thrust lifts every one of `rotors`, and that the margin of the thrust floor covers the rounding of
+    /// their commands. Sizes are those of the proof: a rotor's share of the thrust is at least 1e-4, and no torque per
     /// thrust beyond 1e4.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub trait Real:
     /// |x|.
     fn abs(self) -> Self;
 
-    /// The square root; of a number below zero there is none.
+    /// The square root, undefined below zero.
     fn sqrt(self) -> Self;
 
     /// sqrt(x^2 + y^2).

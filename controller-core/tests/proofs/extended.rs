@@ -148,7 +148,7 @@ pub(super) fn the_ends_of_u_are_those_of_the_proofs() {
         let found = limited(&limit, &still(n, rate, FAR), 40.0, 0.0, [0.0, 0.0, FAR]);
         found.change.unwrap().z + FAR
     };
-    // It holds for every k: the limiter's is half of what a rate of one changes at the end.
+    // The theorem holds for every k. A rate of one changes the limiter's end by twice its k.
     let k = -0.5 * falling(-p.a_down, 1.0);
     let mut random = Random(10);
     for _ in 0..TRIALS {

@@ -1,4 +1,5 @@
-//! A tick of the extended law, from the budget to the rotors: `Allocation.v`, `Budget.v`, `Limiter.v`'s budget, `Tick.v`.
+//! A tick of the extended law, from the budget to the rotors: `Allocation.v`, `Budget.v`, `Tick.v`, the budget of
+//! `Limiter.v`.
 
 use super::extended::potential;
 use super::{TRIALS, constants, direction, extended_law, near, of, rotors, same, signed, torque, unit_quaternion};

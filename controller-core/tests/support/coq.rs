@@ -1,11 +1,11 @@
 //! Definitions and statements of `proofs/*.v`, evaluated in double precision: what Coq proves something of is what the
 //! code computes.
 //!
-//! It reads the terms that those files use: numbers, `+ - * /`, functions of the library, records with their fields, `if
-//! R…_dec … then … else …`, `let`, `fold_right (fun …)`, and other definitions, those of the files they require too. Of
-//! a statement it evaluates the sides of each inequality and equation, premises and conclusions alike. Variables of a
-//! section, and what a statement is for all of, are given by the caller; outside its section a definition takes those
-//! variables that it uses as arguments, before its own. Whatever is evaluated is noted: [`compared`].
+//! It reads the terms that those files use: numbers, `+ - * /`, functions of the library, records with their fields,
+//! `if R…_dec … then … else …`, `let`, `fold_right (fun …)`, and other definitions, those of the files they require
+//! too. From a statement it evaluates the sides of each inequality and equation, premises and conclusions alike. The
+//! caller gives a section's variables, and those that a statement quantifies over. Outside its section a definition
+//! takes the variables that it uses as arguments, before its own. Whatever is evaluated is noted: [`compared`].
 
 mod reader;
 mod statement;

@@ -4,7 +4,7 @@ use super::coq::{Definition, PROOFS, Proofs, note, words};
 use std::collections::BTreeMap;
 use std::fs;
 
-/// A file's formulas, and the intervals of what it proves.
+/// A file's formulas, and the intervals that it assumes and proves.
 pub struct Rounding {
     file: String,
     formulas: Proofs,

@@ -39,7 +39,7 @@ impl Rigorous {
         self.rows.iter().all(|(_, enclosed)| enclosed.holds())
     }
 
-    /// The greatest share of what is available by which rounding outwards changes a figure.
+    /// The greatest share of its available side by which rounding outwards changes a figure.
     #[must_use]
     pub fn greatest_difference(&self) -> f64 {
         self.rows.iter().flat_map(|(nearest, enclosed)| differences(nearest, enclosed)).fold(0.0, f64::max)
@@ -72,14 +72,14 @@ impl Rigorous {
             "rigorous: the same inequalities are not shown to hold".to_owned()
         };
         format!(
-            "{}\n{follows}; rounding outwards takes {:.0e} of what is available at most\n",
+            "{}\n{follows}; rounding outwards takes {:.0e} of an available side at most\n",
             aligned(&table),
             self.greatest_difference()
         )
     }
 }
 
-/// How much worse an inequality's sides can be than to nearest, as shares of what is available: required, available.
+/// How much worse an inequality's sides can be than to nearest, as shares of the available one: required, available.
 fn differences(nearest: &Inequality, enclosed: &Inequality<Enclosure>) -> [f64; 2] {
     let share =
         |worse: f64, better: f64| if worse == better { 0.0 } else { (worse - better) / nearest.available.abs() };

@@ -126,7 +126,7 @@ fn a_floor_above_the_thrust_at_the_target_fails_its_row() {
     let [.., raised] =
         feasible_rows(&ExtendedParameters { turn_reserve: 2.0 * p.turn_reserve, ..p }, example::REFERENCES);
     let craft = Craft::example();
-    let budget = TorqueBudget::new(&p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
+    let budget = TorqueBudget::<f64>::new(&p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
     let expected = budget.floor_per_acceleration * f64::from(p.turn_reserve);
     assert!(((raised.required - floor.required) / expected - 1.0).abs() < 1e-3, "{raised} {floor}");
 }

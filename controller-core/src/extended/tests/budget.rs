@@ -33,7 +33,7 @@ fn every_torque_in_the_rotors_row_leaves_each_rotor_in_its_range_at_some_thrust(
         let scales = [random.between(0.7, 1.0), random.between(1.0, 1.3)];
         let margin = 1e-3 * craft.vehicle.mass * craft.vehicle.gravity;
         let parameters = nothing_fixed(scales, margin);
-        let budget = TorqueBudget::new(&parameters, &craft.vehicle, &craft.limits, Some(&craft.rotors));
+        let budget = TorqueBudget::<f64>::new(&parameters, &craft.vehicle, &craft.limits, Some(&craft.rotors));
         let range = ThrustRange::new(Some(&craft.rotors), margin, craft.limits.thrust_max);
         let row = budget.rows[2];
         for _ in 0..300 {
@@ -58,7 +58,7 @@ fn the_rotors_row_is_no_narrower_than_some_torque_needs() {
     for _ in 0..100 {
         let craft = Craft::random(&mut random);
         let budget =
-            TorqueBudget::new(&nothing_fixed([1.0; 2], 0.0), &craft.vehicle, &craft.limits, Some(&craft.rotors));
+            TorqueBudget::<f64>::new(&nothing_fixed([1.0; 2], 0.0), &craft.vehicle, &craft.limits, Some(&craft.rotors));
         let range = ThrustRange::new(Some(&craft.rotors), 0.0, f32::MAX);
         let row = budget.rows[2];
         // A hundredth more than the row allows, all of it tilt or all of it yaw: no thrust suits every rotor.

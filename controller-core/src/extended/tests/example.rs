@@ -125,7 +125,7 @@ pub(crate) fn place(key: &str) -> usize {
 
 /// U where the rotors deliver the least thrust scale, and the most, m/s^2.
 pub(crate) fn greatest_accelerations(craft: &Craft, p: &ExtendedParameters) -> [f32; 2] {
-    let budget = TorqueBudget::new(p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
+    let budget = TorqueBudget::<f64>::new(p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
     let [each, taken] = budget.ceiling;
     [p.scale_least, p.scale_greatest].map(|scale| {
         let thrust = (f64::from(scale) * each - taken).min(f64::from(craft.limits.thrust_max));

@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         if holds { yes } else { no }
     }
 
-    /// `let name := term in …`, to the end of what is in the same parentheses.
+    /// `let name := term in …`, up to where the parentheses around it close.
     fn binding(&mut self) -> Value {
         self.expect("let");
         let name = self.next();
