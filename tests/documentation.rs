@@ -1,4 +1,4 @@
-//! The documentation speaks of what exists: the tests and theorems that the map of the paper names, the files and
+//! Whatever the documentation names exists: the tests and theorems that the map of the paper names, the files and
 //! headings that the Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the
 //! columns of log.csv, the scenario examples and refusals. The front page stays short.
 

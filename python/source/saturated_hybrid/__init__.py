@@ -17,7 +17,7 @@ to world, quaternions scalar first. Arrays of rows are
 
 An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind
 altogether is a `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a
-search that finds no gains) is a `RuntimeError`, and so is a call of what is at work for another thread. Long work lets
+search that finds no gains) is a `RuntimeError`, and so is a call of an object that another thread uses. Long work lets
 other threads run, and Ctrl-C ends it.
 
 `saturated_hybrid.environment` has Gymnasium's environments, `saturated_hybrid.tasks` two that `gymnasium.make` knows,
