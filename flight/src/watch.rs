@@ -9,8 +9,8 @@
 //!   false speed.
 //! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the ground's,
 //!   or the vehicle does not come upright, or turns on.
-//! - *Crashed*: tilted by 60 degrees or more, or by 30 beside where the law wants it, and still. In the air such a
-//!   vehicle turns or falls.
+//! - *Crashed*: still, and by 30 degrees or more beside where the law wants it, or tilted by 80, or by 60 while no law
+//!   flies it. In the air such a vehicle turns or falls; one that the law tilts holds against a wind.
 //! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
 //!   thrown out of its place, where its frame seems to move just after it was struck: a crash looks like that.
 //!
@@ -97,8 +97,9 @@ const TURNING_DEBOUNCE: u64 = 800_000;
 /// How long the IMU may disagree, us.
 const DOUBT_DEBOUNCE: u64 = 300_000;
 
-/// The cosine of the least tilt of a crash, 60 degrees.
+/// The cosine of the least tilt of a crash: 60 degrees, and 80 where the law wants the vehicle so.
 const LYING_COSINE: f32 = 0.5;
+const LYING_WANTED_COSINE: f32 = 0.173_648_2;
 
 /// The least part of theta~ across, of a vehicle that lies beside where the law wants it: tan(30 degrees / 4).
 const LYING_BESIDE: f32 = 0.131_652_5;
@@ -177,9 +178,13 @@ impl Look<'_> {
 
     /// Whether the vehicle lies still on its side or its back, or does not turn to where the law wants it.
     fn lies(&self) -> bool {
-        let beside = self.flown.is_some_and(|flown| flown.mrp.xy().norm_squared() > LYING_BESIDE * LYING_BESIDE);
-        let lies = |state| is_still(state) && (beside || up(&state.state.attitude) < LYING_COSINE);
-        self.mode.is_armed() && self.state.is_some_and(lies)
+        let beside = self.flown.map(|flown| flown.mrp.xy().norm_squared() > LYING_BESIDE * LYING_BESIDE);
+        let tilted = |state: &EstimatedState, cosine| up(&state.state.attitude) < cosine;
+        let lies = |state| match beside {
+            Some(beside) => beside || tilted(state, LYING_WANTED_COSINE),
+            None => tilted(state, LYING_COSINE),
+        };
+        self.mode.is_armed() && self.state.is_some_and(|state| is_still(state) && lies(state))
     }
 
     /// Whether it stands still where it should be going down, by the estimate.

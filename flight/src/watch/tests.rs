@@ -6,6 +6,7 @@ use super::*;
 use crate::chain::Memory;
 use crate::exchange::PERIOD;
 use crate::hummingbird;
+use controller_core::certificate::certified::Certified;
 use controller_core::governor::GovernorLimits;
 use controller_core::heading::Heading;
 use controller_core::state::State;
@@ -15,10 +16,14 @@ use std::boxed::Box;
 /// The greatest distance from the reference that is in order, m.
 const FAR: f32 = 3.0;
 
-/// A chain whose reference rests at the origin.
+/// A chain of the paper's law whose reference rests at the origin.
 fn chain() -> Chain<'static> {
+    chain_of(&hummingbird::certified())
+}
+
+fn chain_of(certified: &Certified) -> Chain<'static> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), 0.01, memory).unwrap();
+    let mut chain = Chain::new(certified, &GovernorLimits::default(), 0.01, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain
 }
@@ -110,6 +115,18 @@ fn a_vehicle_that_lies_still_has_crashed_and_one_that_turns_has_not() {
     let mut turning = leaning(61.0);
     turning.state.angular_velocity.y = 0.6;
     assert!(!crashed(Mode::Holding, &turning));
+}
+
+/// Held where it stands by a wind that needs such a tilt.
+#[test]
+fn a_vehicle_that_the_law_tilts_has_not_crashed() {
+    let mut held = leaning(61.0);
+    held.state.position.y = 100.0;
+    let mut chain = chain_of(&Certified::new(hummingbird::extended_law()).unwrap());
+    (0..200).for_each(|_| _ = chain.fly(&held.state));
+    assert!(!seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE)).crashed);
+    held.state.attitude = leaning(81.0).state.attitude;
+    assert!(seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE)).crashed);
 }
 
 #[test]
