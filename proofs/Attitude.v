@@ -1,323 +1,369 @@
-(** * The attitude law: levels, descent, jumps, equilibria
+(** * The attitude law: the tilt alone
 
-    Section 6 of docs/extended-law.md, in exact arithmetic and continuous
-    time; controller-core/src/extended/attitude.rs. *)
+    Section 6 of docs/extended-law.md, in exact arithmetic and continuous time;
+    controller-core/src/extended/attitude.rs. b is the thrust axis, rho the
+    desired one, theta the angle between them. Axes of the body, where b = e3. *)
 
 From Coq Require Import Reals Lra.
+From Coquelicot Require Import Coquelicot.
+From SaturatedHybrid Require Import Space Envelope.
 Open Scope R_scope.
 
-Lemma squared : forall x, 0 <= x * x.
-Proof. intros x. apply Rle_0_sqr. Qed.
+(** ** Angles, and the axis about which the vehicle has turned
 
-(** ** The potential and its slope *)
+    [v] is rho in the body's axes, or near half a turn the side m that is held
+    there: b . rho = cos theta, b . m = sin theta_s. *)
 
-Section Potential.
+(** The cosine of theta / 2, and vartheta = e tan (theta / 4). *)
+Definition half (cosine : R) : R := sqrt ((1 + cosine) / 2).
+Definition mrp (v_1 v_2 cosine : R) : space :=
+  scaled (/ (2 * half cosine * (1 + half cosine))) {| x := v_2; y := - v_1; z := 0 |}.
+(** The same of theta_s. *)
+Definition held_half (sine : R) : R := sine / sqrt (2 * (1 + sqrt (1 - sine * sine))).
+Definition held_mrp (v_1 v_2 sine : R) : space :=
+  scaled (sqrt (1 - held_half sine * held_half sine) / (1 + held_half sine) / sqrt (1 - sine * sine))
+    {| x := v_2; y := - v_1; z := 0 |}.
 
-(** w, eta, M_t, k_t, eta_t. *)
-Variables (w eta M_t k_t eta_t : R).
-Hypothesis w_positive : 0 < w.
-Hypothesis eta_between : 0 < eta < 1.
-Hypothesis M_t_positive : 0 < M_t.
-Hypothesis k_t_positive : 0 < k_t.
-Hypothesis eta_t_positive : 0 < eta_t.
+(** e: of length one across b. [u] is the cosine or the sine. *)
+Definition axis (v_1 v_2 u : R) : space := scaled (/ sqrt (1 - u * u)) {| x := v_2; y := - v_1; z := 0 |}.
 
-(** h. *)
-Definition distance (q_0 q_3 : R) : R := sqrt ((q_0 + eta) * (q_0 + eta) + q_3 * q_3).
+Lemma beside_one : forall u, -1 < u < 1 -> 0 < 1 - u * u.
+Proof. intros u H. apply Rlt_le_trans with ((1 - u) * (1 + u)); [apply Rmult_lt_0_compat; lra | lra]. Qed.
 
-(** G of r^2, with 1 - r^2 as q_0^2 + q_3^2. *)
-Definition slope (r_square rest : R) : R :=
-  M_t * k_t / (sqrt (M_t * M_t + k_t * k_t * r_square) * sqrt (rest + eta_t * eta_t)).
-
-(** P, in the code's form. *)
-Definition P_1 (q_0 q_1 q_2 q_3 : R) : R :=
-  w / (2 * distance q_0 q_3) * ((q_0 + eta) * q_1 + q_2 * q_3)
-  + slope (q_1 * q_1 + q_2 * q_2) (q_0 * q_0 + q_3 * q_3) * (q_0 * q_1 + q_2 * q_3).
-Definition P_2 (q_0 q_1 q_2 q_3 : R) : R :=
-  w / (2 * distance q_0 q_3) * ((q_0 + eta) * q_2 - q_1 * q_3)
-  + slope (q_1 * q_1 + q_2 * q_2) (q_0 * q_0 + q_3 * q_3) * (q_0 * q_2 - q_1 * q_3).
-Definition P_3 (q_0 q_3 : R) : R := w / (2 * distance q_0 q_3) * (eta * q_3).
-
-Lemma distance_squared : forall q_0 q_3,
-  distance q_0 q_3 * distance q_0 q_3 = (q_0 + eta) * (q_0 + eta) + q_3 * q_3.
+Lemma axis_length : forall v_1 v_2 u, v_1 * v_1 + v_2 * v_2 + u * u = 1 -> -1 < u < 1 -> square (axis v_1 v_2 u) = 1.
 Proof.
-  intros q_0 q_3. apply sqrt_def. pose proof (squared (q_0 + eta)). pose proof (squared q_3). lra.
+  intros v_1 v_2 u H Hu. pose proof (beside_one u Hu). assert (0 < sqrt (1 - u * u)) by now apply sqrt_lt_R0.
+  unfold axis, square, dot, scaled. cbn.
+  transitivity ((v_1 * v_1 + v_2 * v_2) / (sqrt (1 - u * u) * sqrt (1 - u * u))); [field; lra|].
+  rewrite sqrt_def by lra. replace (v_1 * v_1 + v_2 * v_2) with (1 - u * u) by lra. field. lra.
 Qed.
 
-(** The lift keeps q_0 above -q_bar, and row E has q_bar < eta. *)
-Lemma distance_positive : forall q_0 q_3, 0 < q_0 + eta -> 0 < distance q_0 q_3.
+Lemma tan_quarter : forall angle h, 0 <= angle < 2 * PI -> cos (angle / 2) = h ->
+  tan (angle / 4) = sqrt (1 - h * h) / (1 + h) /\ 0 < 1 + h /\ sqrt (1 - h * h) = sin (angle / 2).
 Proof.
-  intros q_0 q_3 H. apply sqrt_lt_R0.
-  assert (0 < (q_0 + eta) * (q_0 + eta)) by (now apply Rmult_lt_0_compat). pose proof (squared q_3). lra.
+  intros angle h Ha <-. pose proof PI_RGT_0.
+  assert (E1 : 1 + cos (angle / 2) = 2 * (cos (angle / 4) * cos (angle / 4)))
+    by (replace (angle / 2) with (2 * (angle / 4)) by field; rewrite cos_2a_cos; ring).
+  assert (Hc : 0 < cos (angle / 4)) by (apply cos_gt_0; lra). pose proof (Rmult_lt_0_compat _ _ Hc Hc).
+  assert (Hs : 0 <= sin (angle / 2)) by (apply sin_ge_0; lra).
+  assert (E : sqrt (1 - cos (angle / 2) * cos (angle / 2)) = sin (angle / 2)).
+  { pose proof (sin2_cos2 (angle / 2)) as Hp. unfold Rsqr in Hp.
+    replace (1 - cos (angle / 2) * cos (angle / 2)) with (sin (angle / 2) * sin (angle / 2)) by lra.
+    now apply sqrt_square. }
+  split; [|lra]. rewrite E, E1. unfold tan. replace (angle / 2) with (2 * (angle / 4)) by field. rewrite sin_2a.
+  field. lra.
 Qed.
 
-Lemma slope_positive : forall r_square rest, 0 <= r_square -> 0 <= rest -> 0 < slope r_square rest.
+(** vartheta is tan (theta / 4) along e. *)
+Theorem mrp_of_the_angle : forall v_1 v_2 cosine, -1 < cosine < 1 ->
+  mrp v_1 v_2 cosine = scaled (tan (acos cosine / 4)) (axis v_1 v_2 cosine).
 Proof.
-  intros r_square rest Hr Hrest. unfold slope. apply Rmult_lt_0_compat; [nra|].
-  assert (0 < eta_t * eta_t) by nra. assert (0 < M_t * M_t) by nra.
-  assert (0 <= k_t * k_t * r_square) by (apply Rmult_le_pos; nra).
-  apply Rinv_0_lt_compat, Rmult_lt_0_compat; apply sqrt_lt_R0; lra.
+  intros v_1 v_2 c Hc. pose proof (acos_bound_lt c Hc). pose proof PI_RGT_0.
+  assert (Hhalf : 0 < cos (acos c / 2)) by (apply cos_gt_0; lra).
+  assert (E : cos (acos c / 2) * cos (acos c / 2) = (1 + c) / 2).
+  { rewrite <- (cos_acos c) at 3 by lra. replace (acos c) with (2 * (acos c / 2)) at 3 by field.
+    rewrite cos_2a_cos. field. }
+  assert (Ehalf : cos (acos c / 2) = half c) by (unfold half; rewrite <- E; symmetry; apply sqrt_square; lra).
+  destruct (tan_quarter (acos c) (half c) ltac:(lra) Ehalf) as (Et & Hp & Es). rewrite Et, Es.
+  assert (Esin : sqrt (1 - c * c) = 2 * sin (acos c / 2) * half c).
+  { rewrite <- Ehalf, <- sin_2a. replace (2 * (acos c / 2)) with (acos c) by field. now rewrite sin_acos by lra. }
+  assert (0 < sin (acos c / 2)) by (apply sin_gt_0; lra). rewrite Ehalf in Hhalf.
+  unfold mrp, axis, scaled. cbn. rewrite Esin. f_equal; field; lra.
 Qed.
 
-(** *** Levels *)
-
-(** Yaw's feedback from the potential: at most w eta / 2. *)
-Theorem yaw_level : forall q_0 q_3, 0 < q_0 + eta -> Rabs (P_3 q_0 q_3) <= w * eta / 2.
+Theorem held_mrp_of_the_angle : forall v_1 v_2 sine, -1 < sine < 1 ->
+  held_mrp v_1 v_2 sine = scaled (tan ((PI - asin sine) / 4)) (axis v_1 v_2 sine)
+  /\ cos ((PI - asin sine) / 2) = held_half sine.
 Proof.
-  intros q_0 q_3 H. pose proof (distance_positive q_0 q_3 H) as Hd.
-  assert (Hq : Rabs q_3 <= distance q_0 q_3).
-  { rewrite <- sqrt_Rsqr_abs. apply sqrt_le_1_alt. unfold Rsqr. nra. }
-  unfold P_3.
-  replace (w / (2 * distance q_0 q_3) * (eta * q_3)) with (w * eta / 2 * (q_3 / distance q_0 q_3)) by (field; lra).
-  assert (0 < w * eta) by nra.
-  rewrite Rabs_mult, (Rabs_pos_eq (w * eta / 2)) by lra.
-  rewrite <- (Rmult_1_r (w * eta / 2)) at 2. apply Rmult_le_compat_l; [lra|].
-  unfold Rdiv. rewrite Rabs_mult, (Rabs_pos_eq (/ _)) by (left; now apply Rinv_0_lt_compat).
-  apply Rmult_le_reg_r with (distance q_0 q_3); [exact Hd|].
-  rewrite Rmult_assoc, Rinv_l by lra. lra.
+  intros v_1 v_2 s Hs. pose proof PI_RGT_0. pose proof (asin_bound_lt s Hs).
+  assert (Hc : 0 < cos (asin s / 2)) by (apply cos_gt_0; lra).
+  assert (E : cos ((PI - asin s) / 2) = held_half s).
+  { replace ((PI - asin s) / 2) with (PI / 2 - asin s / 2) by field. rewrite cos_shift. unfold held_half.
+    replace (sqrt (1 - s * s)) with (cos (asin s)) by (rewrite cos_asin by lra; reflexivity).
+    replace (asin s) with (2 * (asin s / 2)) at 2 by field. rewrite cos_2a_cos.
+    replace (2 * (1 + (2 * cos (asin s / 2) * cos (asin s / 2) - 1)))
+      with (2 * cos (asin s / 2) * (2 * cos (asin s / 2))) by ring.
+    rewrite sqrt_square by lra. rewrite <- (sin_asin s) at 2 by lra.
+    replace (asin s) with (2 * (asin s / 2)) at 2 by field. rewrite sin_2a. field. lra. }
+  split; [|exact E]. destruct (tan_quarter (PI - asin s) _ ltac:(lra) E) as (Et & _). rewrite Et.
+  unfold held_mrp, axis, scaled. cbn. f_equal; unfold Rdiv; ring.
 Qed.
 
-(** Two vectors across, and the length of their sum. *)
-Lemma plane_triangle : forall a_1 a_2 c_1 c_2 a c, 0 <= a -> 0 <= c ->
-  a_1 * a_1 + a_2 * a_2 = a * a -> c_1 * c_1 + c_2 * c_2 = c * c ->
-  sqrt ((a_1 + c_1) * (a_1 + c_1) + (a_2 + c_2) * (a_2 + c_2)) <= a + c.
+(** How b . v moves, for a v that turns with omega_rho, as rho and m do: c_1 and
+    c_2 are the body's other axes. Only rates about these count. *)
+Theorem tilt_moves : forall (b v : R -> space) (c_1 c_2 omega omega_rho : space) t,
+  b t = cross c_1 c_2 -> moves b t (cross omega (b t)) -> moves v t (cross omega_rho (v t)) ->
+  let e := sub omega omega_rho in
+  is_derive (fun s => dot (b s) (v s)) t (dot e c_2 * dot c_1 (v t) - dot e c_1 * dot c_2 (v t)).
 Proof.
-  intros a_1 a_2 c_1 c_2 a c Ha Hc Haa Hcc.
-  assert (Hcs : a_1 * c_1 + a_2 * c_2 <= a * c).
-  { apply Rsqr_incr_0_var; [|now apply Rmult_le_pos]. unfold Rsqr.
-    replace (a * c * (a * c)) with ((a * a) * (c * c)) by ring. rewrite <- Haa, <- Hcc.
-    pose proof (Rle_0_sqr (a_1 * c_2 - a_2 * c_1)) as Hq. unfold Rsqr in Hq. lra. }
-  rewrite <- (sqrt_square (a + c)) by lra. apply sqrt_le_1_alt. lra.
+  intros b v c_1 c_2 omega omega_rho t Hb Mb Mv e.
+  eapply derive_as; [exact (moves_dot _ _ _ _ _ Mb Mv)|]. rewrite Hb. unfold e. components. ring.
 Qed.
 
-(** The tilt's: |P| <= (w/2) r + G r sqrt (1 - r^2). *)
-Theorem tilt_level : forall q_0 q_1 q_2 q_3, 0 < q_0 + eta ->
-  let r := sqrt (q_1 * q_1 + q_2 * q_2) in
-  let rest := q_0 * q_0 + q_3 * q_3 in
-  sqrt (P_1 q_0 q_1 q_2 q_3 * P_1 q_0 q_1 q_2 q_3 + P_2 q_0 q_1 q_2 q_3 * P_2 q_0 q_1 q_2 q_3)
-  <= w / 2 * r + slope (q_1 * q_1 + q_2 * q_2) rest * (r * sqrt rest).
+(** So the angles grow by omega~ . e. *)
+Theorem angle_moves : forall (v_3 : R -> R) (t v_1 v_2 e_1 e_2 : R), -1 < v_3 t < 1 ->
+  is_derive v_3 t (e_2 * v_1 - e_1 * v_2) -> let rate := dot {| x := e_1; y := e_2; z := 0 |} (axis v_1 v_2 (v_3 t)) in
+  is_derive (fun s => acos (v_3 s)) t rate /\ is_derive (fun s => PI - asin (v_3 s)) t rate.
 Proof.
-  intros q_0 q_1 q_2 q_3 H r rest.
-  pose proof (distance_positive q_0 q_3 H) as Hd.
-  pose proof (distance_squared q_0 q_3) as Hdd.
-  assert (Hr : r * r = q_1 * q_1 + q_2 * q_2) by (apply sqrt_def; nra).
-  assert (Hrest : sqrt rest * sqrt rest = rest) by (apply sqrt_def; unfold rest; nra).
-  assert (Hr0 : 0 <= r) by apply sqrt_pos.
-  pose proof (sqrt_pos rest) as Hs0.
-  assert (HG : 0 < slope (q_1 * q_1 + q_2 * q_2) rest) by (apply slope_positive; unfold rest; nra).
-  unfold P_1, P_2. fold rest.
-  generalize dependent (slope (q_1 * q_1 + q_2 * q_2) rest). intros G HG.
-  apply plane_triangle.
+  intros v_3 t v_1 v_2 e_1 e_2 Hu H rate. set (u := v_3 t) in *.
+  assert (0 < sqrt (1 - u * u)) by now apply sqrt_lt_R0, beside_one. split.
+  - evar_last; [apply (is_derive_comp acos v_3); [|exact H]|].
+    + apply is_derive_Reals, derive_pt_eq_1 with (pr := derivable_pt_acos _ Hu), derive_pt_acos.
+    + unfold rate, scal, axis, scaled, dot, Rsqr. cbn. unfold mult. cbn. fold u. field. lra.
+  - evar_last; [apply @is_derive_minus; [apply @is_derive_const|]; apply (is_derive_comp asin v_3); [|exact H]|].
+    + apply is_derive_Reals, derive_pt_eq_1 with (pr := derivable_pt_asin _ Hu), derive_pt_asin.
+    + unfold rate, scal, minus, plus, opp, zero, axis, scaled, dot, Rsqr. cbn. unfold mult. cbn. fold u. field. lra.
+Qed.
+
+(** ** The pull of the error *)
+
+Section Pull.
+
+(** k_theta and M. *)
+Variables (k M : R).
+Hypothesis k_positive : 0 < k.
+Hypothesis M_positive : 0 < M.
+
+(** P, as the code has it, and its size as a function of the angle. *)
+Definition pull (vartheta : space) : space :=
+  scaled (M / sqrt (M * M + square (scaled k vartheta))) (scaled k vartheta).
+Definition strength (theta : R) : R :=
+  k * tan (theta / 4) * M / sqrt (M * M + k * tan (theta / 4) * (k * tan (theta / 4))).
+
+Lemma M_squared : 0 < M * M.
+Proof. now apply Rmult_lt_0_compat. Qed.
+
+Theorem pull_of_the_angle : forall theta e, square e = 1 ->
+  pull (scaled (tan (theta / 4)) e) = scaled (strength theta) e.
+Proof.
+  intros theta e He. unfold pull, strength. set (t := tan (theta / 4)).
+  replace (square (scaled k (scaled t e))) with (k * t * (k * t) * square e)
+    by (components; ring).
+  rewrite He, Rmult_1_r. unfold scaled. cbn. f_equal; unfold Rdiv; ring.
+Qed.
+
+(** It never reaches its level. *)
+Theorem pull_below_level : forall v, length (pull v) < M.
+Proof.
+  intros v. unfold pull. set (w := scaled k v). pose proof (square_nonneg w). pose proof M_squared.
+  assert (Hroot : 0 < sqrt (M * M + square w)) by (apply sqrt_lt_R0; lra).
+  rewrite length_scaled, Rabs_pos_eq by (apply Rmult_le_pos; [lra | left; now apply Rinv_0_lt_compat]).
+  assert (Hless : length w < sqrt (M * M + square w)) by (apply sqrt_lt_1_alt; lra).
+  apply Rmult_lt_reg_r with (sqrt (M * M + square w)); [exact Hroot|].
+  replace (M / sqrt (M * M + square w) * length w * sqrt (M * M + square w)) with (M * length w) by (field; lra).
+  now apply Rmult_lt_compat_l.
+Qed.
+
+(** Without a pull there is no error: the target is the only equilibrium. *)
+Theorem only_the_target : forall theta, 0 <= theta < 2 * PI -> strength theta = 0 -> theta = 0.
+Proof.
+  intros theta H E. destruct (proj1 H) as [Hpos|<-]; [exfalso | reflexivity].
+  assert (Ht : 0 < tan (theta / 4)) by (apply tan_gt_0; lra). revert E. apply Rgt_not_eq.
+  apply Rdiv_lt_0_compat; [apply Rmult_lt_0_compat; [apply Rmult_lt_0_compat|]; assumption|].
+  apply sqrt_lt_R0. pose proof M_squared. pose proof (squared (k * tan (theta / 4))). lra.
+Qed.
+
+Lemma tan_rises : forall a c, 0 <= a <= c -> c < 2 * PI -> 0 <= tan (a / 4) <= tan (c / 4).
+Proof.
+  intros a c H Hc. pose proof PI_RGT_0. split.
+  - destruct (proj1 H) as [Ha|<-]; [left; apply tan_gt_0; lra|]. unfold Rdiv. rewrite Rmult_0_l, tan_0. lra.
+  - destruct (proj2 H) as [Hac|<-]; [left; apply tan_increasing; lra | lra].
+Qed.
+
+Lemma strength_nonneg : forall theta, 0 <= theta < 2 * PI -> 0 <= strength theta.
+Proof.
+  intros theta H. destruct (tan_rises theta theta) as [Htan _]; [lra | lra |]. unfold strength.
+  apply Rmult_le_pos; [apply Rmult_le_pos; [apply Rmult_le_pos|]; lra|]. left. apply Rinv_0_lt_compat, sqrt_lt_R0.
+  pose proof M_squared. pose proof (squared (k * tan (theta / 4))). lra.
+Qed.
+
+(** The pull rises with the angle. *)
+Lemma saturation_rises : forall u v, 0 <= u <= v -> u * M / sqrt (M * M + u * u) <= v * M / sqrt (M * M + v * v).
+Proof.
+  intros u v Huv. pose proof M_squared. pose proof (squared u). pose proof (squared v).
+  assert (Hr : forall w, 0 < sqrt (M * M + w * w)) by (intros w; apply sqrt_lt_R0; pose proof (squared w); lra).
+  pose proof (Hr u). pose proof (Hr v).
+  assert (Hcross : u * sqrt (M * M + v * v) <= v * sqrt (M * M + u * u)).
+  { assert (Hin : forall p c, 0 <= p -> p * sqrt c = sqrt (p * p * c))
+      by (intros; rewrite sqrt_mult_alt by apply squared; now rewrite sqrt_square).
+    rewrite !Hin by lra. apply sqrt_le_1_alt. assert (u * u <= v * v) by (apply Rmult_le_compat; lra). nra. }
+  apply Rmult_le_reg_r with (sqrt (M * M + u * u) * sqrt (M * M + v * v)); [now apply Rmult_lt_0_compat|].
+  apply Rmult_le_compat_l with (r := M) in Hcross; [|lra]. unfold Rdiv. field_simplify; lra.
+Qed.
+
+Lemma strength_rises : forall a c, 0 <= a <= c -> c < 2 * PI -> strength a <= strength c.
+Proof.
+  intros a c H Hc. destruct (tan_rises a c H Hc) as [Ha Ht]. apply saturation_rises. split.
   - apply Rmult_le_pos; lra.
-  - apply Rmult_le_pos; [lra | now apply Rmult_le_pos].
-  - replace (w / 2 * r * (w / 2 * r)) with (w * w / 4 * (r * r)) by field. rewrite Hr.
-    generalize dependent (distance q_0 q_3). intros h Hh Hhh.
-    transitivity (w * w / (4 * (h * h)) * (((q_0 + eta) * (q_0 + eta) + q_3 * q_3) * (q_1 * q_1 + q_2 * q_2))).
-    { field. lra. }
-    rewrite <- Hhh. field. lra.
-  - replace (G * (r * sqrt rest) * (G * (r * sqrt rest)))
-      with (G * G * ((r * r) * (sqrt rest * sqrt rest))) by ring.
-    rewrite Hr, Hrest. unfold rest. ring.
+  - apply Rmult_le_compat_l; lra.
 Qed.
 
-(** *** Row D: the tilt's level over cells of r *)
+(** The potential: any function of the angle with the slope |P|. *)
+Variable potential : R -> R.
+Hypothesis potential_slope : forall theta, 0 <= theta < 2 * PI -> is_derive potential theta (strength theta).
 
-(** The level of the cell from [near] to [far], each term at the end where it
-    is greatest: [greatest_potential] of the certificate. *)
-Definition cell (near far : R) : R :=
-  w / 2 * far
-  + M_t * k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far))
-    * (sqrt (1 - near * near) / sqrt (1 - near * near + eta_t * eta_t)).
-
-(** a / sqrt (c + a^2) rises with a. *)
-Lemma ratio_rises : forall a b c, 0 < c -> 0 <= a <= b ->
-  a / sqrt (c + a * a) <= b / sqrt (c + b * b).
+Lemma potential_rises : forall a c, 0 <= a <= c -> c < 2 * PI -> potential a <= potential c.
 Proof.
-  intros a b c Hc Hab.
-  assert (Ha : 0 < sqrt (c + a * a)) by (apply sqrt_lt_R0; pose proof (squared a); lra).
-  assert (Hb : 0 < sqrt (c + b * b)) by (apply sqrt_lt_R0; pose proof (squared b); lra).
-  assert (Haa : sqrt (c + a * a) * sqrt (c + a * a) = c + a * a) by (apply sqrt_def; pose proof (squared a); lra).
-  assert (Hbb : sqrt (c + b * b) * sqrt (c + b * b) = c + b * b) by (apply sqrt_def; pose proof (squared b); lra).
-  assert (Hsq : a * a <= b * b) by (apply Rmult_le_compat; lra).
-  assert (Hcross : a * sqrt (c + b * b) <= b * sqrt (c + a * a)).
-  { apply Rsqr_incr_0_var; [|apply Rmult_le_pos; lra]. unfold Rsqr.
-    replace (a * sqrt (c + b * b) * (a * sqrt (c + b * b))) with (a * a * (sqrt (c + b * b) * sqrt (c + b * b))) by
-      ring.
-    replace (b * sqrt (c + a * a) * (b * sqrt (c + a * a))) with (b * b * (sqrt (c + a * a) * sqrt (c + a * a))) by
-      ring.
-    rewrite Haa, Hbb.
-    assert (a * a * c <= b * b * c) by (apply Rmult_le_compat_r; lra). lra. }
-  apply Rmult_le_reg_r with (sqrt (c + a * a) * sqrt (c + b * b)); [now apply Rmult_lt_0_compat|].
-  replace (a / sqrt (c + a * a) * (sqrt (c + a * a) * sqrt (c + b * b))) with (a * sqrt (c + b * b)) by (field; lra).
-  replace (b / sqrt (c + b * b) * (sqrt (c + a * a) * sqrt (c + b * b))) with (b * sqrt (c + a * a)) by (field; lra).
-  exact Hcross.
+  intros a c H Hc. apply (does_not_fall potential strength a c (proj2 H)).
+  - intros s Hs. apply potential_slope. lra.
+  - intros s Hs. apply strength_nonneg. lra.
 Qed.
 
-Theorem level_in_a_cell : forall near r far, 0 <= near <= r -> r <= far -> r <= 1 ->
-  w / 2 * r + slope (r * r) (1 - r * r) * (r * sqrt (1 - r * r)) <= cell near far.
+Lemma asin_nonneg : forall a, 0 <= a <= 1 -> 0 <= asin a.
 Proof.
-  intros near r far Hnear Hfar H1.
-  assert (Hrr : r * r <= 1) by (rewrite <- (Rmult_1_r 1); apply Rmult_le_compat; lra).
-  assert (Hnn : near * near <= r * r) by (apply Rmult_le_compat; lra).
-  assert (He : 0 < eta_t * eta_t) by (now apply Rmult_lt_0_compat).
-  assert (HM : 0 < M_t * M_t) by (now apply Rmult_lt_0_compat).
-  set (rest := sqrt (1 - r * r)). set (rest_near := sqrt (1 - near * near)).
-  assert (Hrest : rest * rest = 1 - r * r) by (apply sqrt_def; lra).
-  assert (Hrest_near : rest_near * rest_near = 1 - near * near) by (apply sqrt_def; lra).
-  assert (Hpos : 0 <= rest) by apply sqrt_pos.
-  assert (Hless : rest <= rest_near) by (apply sqrt_le_1_alt; lra).
-  pose proof (ratio_rises rest rest_near (eta_t * eta_t) He ltac:(lra)) as Hfall.
-  rewrite Hrest, Hrest_near, !(Rplus_comm (eta_t * eta_t)) in Hfall.
-  pose proof (ratio_rises (k_t * r) (k_t * far) (M_t * M_t) HM
-    ltac:(split; [apply Rmult_le_pos | apply Rmult_le_compat_l]; lra)) as Hrise.
-  replace (k_t * r * (k_t * r)) with (k_t * k_t * (r * r)) in Hrise by ring.
-  replace (k_t * far * (k_t * far)) with (k_t * k_t * (far * far)) in Hrise by ring.
-  assert (Hsr : 0 < sqrt (M_t * M_t + k_t * k_t * (r * r))).
-  { apply sqrt_lt_R0. assert (0 <= k_t * k_t * (r * r)) by (apply Rmult_le_pos; apply squared). lra. }
-  assert (Hse : 0 < sqrt (1 - r * r + eta_t * eta_t)) by (apply sqrt_lt_R0; lra).
-  unfold cell, slope. fold rest_near. fold rest in Hfall. fold rest_near in Hfall.
-  set (a := k_t * r / sqrt (M_t * M_t + k_t * k_t * (r * r))) in *.
-  set (b := k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far))) in *.
-  set (c := rest / sqrt (1 - r * r + eta_t * eta_t)) in *.
-  set (d := rest_near / sqrt (1 - near * near + eta_t * eta_t)) in *.
-  replace (M_t * k_t / (sqrt (M_t * M_t + k_t * k_t * (r * r)) * sqrt (1 - r * r + eta_t * eta_t)) * (r * rest))
-    with (M_t * (a * c)) by (unfold a, c; field; lra).
-  replace (M_t * k_t * far / sqrt (M_t * M_t + k_t * k_t * (far * far)) * d) with (M_t * (b * d))
-    by (unfold b; unfold Rdiv; ring).
-  assert (Ha : 0 <= a).
-  { unfold a. apply Rmult_le_pos; [apply Rmult_le_pos; lra | left; now apply Rinv_0_lt_compat]. }
-  assert (Hc : 0 <= c).
-  { unfold c. apply Rmult_le_pos; [exact Hpos | left; now apply Rinv_0_lt_compat]. }
-  assert (a * c <= b * d) by (apply Rmult_le_compat; assumption).
-  assert (M_t * (a * c) <= M_t * (b * d)) by (apply Rmult_le_compat_l; lra).
-  assert (w / 2 * r <= w / 2 * far) by (apply Rmult_le_compat_l; lra). lra.
+  intros a Ha. apply Rnot_lt_le. intros Hn. pose proof (asin_bound a). pose proof PI_RGT_0.
+  assert (Hs : sin (asin a) < sin 0) by (apply sin_increasing_1; lra).
+  rewrite sin_asin, sin_0 in Hs; lra.
 Qed.
 
-(** *** Equilibria: rows E *)
+Lemma below_one : forall a, a * a <= 1 -> Rabs a <= 1.
+Proof. intros a H. apply below_by_squares; [lra|]. rewrite <- Rabs_mult, Rabs_pos_eq by apply squared. lra. Qed.
 
-(** G r is at most M_t / eta_t. *)
-Lemma slope_bound : forall r r_square rest, 0 < r -> r * r = r_square -> 0 <= rest ->
-  slope r_square rest * r <= M_t / eta_t.
+(** b . m is at most sin theta in size: m is across rho. *)
+Theorem side_within_sine : forall b rho m : space, square b = 1 -> square rho = 1 -> square m = 1 -> dot rho m = 0 ->
+  dot b rho * dot b rho + dot b m * dot b m <= 1.
 Proof.
-  intros r r_square rest Hr <- Hrest. unfold slope.
-  assert (Hkr : 0 < k_t * r) by nra.
-  assert (H1 : k_t * r <= sqrt (M_t * M_t + k_t * k_t * (r * r))).
-  { rewrite <- (sqrt_square (k_t * r)) at 1 by lra. apply sqrt_le_1_alt. nra. }
-  assert (H2 : eta_t <= sqrt (rest + eta_t * eta_t)).
-  { rewrite <- (sqrt_square eta_t) at 1 by lra. apply sqrt_le_1_alt. lra. }
-  generalize dependent (sqrt (M_t * M_t + k_t * k_t * (r * r))). intros a Ha.
-  generalize dependent (sqrt (rest + eta_t * eta_t)). intros c Hc.
-  assert (0 < a) by lra. assert (0 < c) by lra.
-  assert (Hac : 0 < a * c) by nra.
-  apply Rmult_le_reg_r with (a * c * eta_t); [nra|].
-  replace (M_t * k_t / (a * c) * r * (a * c * eta_t)) with (M_t * (k_t * r * eta_t)) by (field; lra).
-  replace (M_t / eta_t * (a * c * eta_t)) with (M_t * (a * c)) by (field; lra).
-  apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat; lra.
+  intros b rho m Hb Hr Hm Ho.
+  pose proof (square_nonneg (sub b (add (scaled (dot b rho) rho) (scaled (dot b m) m)))) as H.
+  replace (square (sub b (add (scaled (dot b rho) rho) (scaled (dot b m) m))))
+    with (square b - 2 * (dot b rho * dot b rho + dot b m * dot b m)
+      + dot b rho * dot b rho * square rho + dot b m * dot b m * square m
+      + 2 * (dot b rho * dot b m) * dot rho m) in H by (components; ring).
+  rewrite Hb, Hr, Hm, Ho in H. lra.
 Qed.
 
-(** Without torque there is no error: no equilibrium but the target. *)
-Theorem only_the_target : forall q_bar q_0 q_1 q_2 q_3,
-  q_0 * q_0 + q_1 * q_1 + q_2 * q_2 + q_3 * q_3 = 1 ->
-  0 <= q_bar < eta -> - q_bar <= q_0 ->
-  2 * q_bar * M_t < w * eta_t * sqrt (1 - q_bar * q_bar) ->
-  P_1 q_0 q_1 q_2 q_3 = 0 -> P_2 q_0 q_1 q_2 q_3 = 0 -> P_3 q_0 q_3 = 0 ->
-  q_1 = 0 /\ q_2 = 0 /\ q_3 = 0.
+(** So theta_s is never below theta, and what is left beyond half a turn is never
+    above the other way round. *)
+Theorem angle_below : forall cosine sine, cosine * cosine + sine * sine <= 1 ->
+  acos cosine <= PI - asin (Rabs sine).
 Proof.
-  intros q_bar q_0 q_1 q_2 q_3 Hunit Hbar Hq0 Hrow H1 H2 H3.
-  assert (Hpos : 0 < q_0 + eta) by lra.
-  pose proof (distance_positive q_0 q_3 Hpos) as Hd.
-  assert (Hz : q_3 = 0).
-  { unfold P_3 in H3. apply Rmult_integral in H3. destruct H3 as [H3|H3].
-    - assert (0 < w / (2 * distance q_0 q_3)) by (apply Rmult_lt_0_compat; [lra | apply Rinv_0_lt_compat; lra]). lra.
-    - apply Rmult_integral in H3. destruct H3; lra. }
-  subst q_3.
-  assert (Hdist : distance q_0 0 = q_0 + eta).
-  { unfold distance. replace ((q_0 + eta) * (q_0 + eta) + 0 * 0) with ((q_0 + eta) * (q_0 + eta)) by ring.
-    apply sqrt_square. lra. }
-  unfold P_1 in H1. unfold P_2 in H2. rewrite Hdist in H1, H2.
-  destruct (Rle_lt_or_eq_dec 0 (q_1 * q_1 + q_2 * q_2) ltac:(nra)) as [Hr|Hr].
-  2: { assert (Hs : Rsqr q_1 + Rsqr q_2 = 0) by (unfold Rsqr; lra).
-       destruct (Rplus_sqr_eq_0 q_1 q_2 Hs). repeat split; assumption. }
-  exfalso.
-  set (r := sqrt (q_1 * q_1 + q_2 * q_2)).
-  assert (Hrr : r * r = q_1 * q_1 + q_2 * q_2) by (apply sqrt_def; lra).
-  assert (Hr0 : 0 < r) by (now apply sqrt_lt_R0).
-  assert (HG : 0 < slope (q_1 * q_1 + q_2 * q_2) (q_0 * q_0 + 0 * 0)) by (apply slope_positive; nra).
-  pose proof (slope_bound r (q_1 * q_1 + q_2 * q_2) (q_0 * q_0 + 0 * 0) Hr0 Hrr ltac:(nra)) as Hbound.
-  generalize dependent (slope (q_1 * q_1 + q_2 * q_2) (q_0 * q_0 + 0 * 0)). intros G H1 H2 HG Hbound.
-  assert (Hsum : w / 2 + G * q_0 = 0).
-  { apply Rmult_eq_reg_r with (q_1 * q_1 + q_2 * q_2); [|lra]. rewrite Rmult_0_l.
-    transitivity (q_1 * (w / (2 * (q_0 + eta)) * ((q_0 + eta) * q_1 + q_2 * 0) + G * (q_0 * q_1 + q_2 * 0))
-          + q_2 * (w / (2 * (q_0 + eta)) * ((q_0 + eta) * q_2 - q_1 * 0) + G * (q_0 * q_2 - q_1 * 0))).
-    - field. lra.
-    - rewrite H1, H2. ring. }
-  assert (Hneg : q_0 < 0).
-  { apply Rnot_le_lt. intros Hge. assert (0 <= G * q_0) by (apply Rmult_le_pos; lra). lra. }
-  assert (Hcos : sqrt (1 - q_bar * q_bar) <= r).
-  { apply sqrt_le_1_alt. assert (q_0 * q_0 <= q_bar * q_bar) by nra. lra. }
-  assert (Hhalf : w / 2 <= G * q_bar).
-  { assert (G * - q_0 <= G * q_bar) by (apply Rmult_le_compat_l; lra). lra. }
-  assert (Hlow : w / 2 * sqrt (1 - q_bar * q_bar) <= M_t / eta_t * q_bar).
-  { apply Rle_trans with (w / 2 * r); [apply Rmult_le_compat_l; lra|].
-    apply Rle_trans with (G * q_bar * r); [apply Rmult_le_compat_r; lra|].
-    replace (G * q_bar * r) with (G * r * q_bar) by ring. apply Rmult_le_compat_r; lra. }
-  apply Rmult_le_compat_l with (r := 2 * eta_t) in Hlow; [|lra].
-  replace (2 * eta_t * (M_t / eta_t * q_bar)) with (2 * q_bar * M_t) in Hlow by (field; lra).
-  lra.
+  intros c s H. pose proof (squared c). pose proof (squared s). pose proof PI_RGT_0. pose proof (acos_bound c).
+  assert (Ha : 0 <= Rabs s <= 1) by (split; [apply Rabs_pos | apply below_one; lra]).
+  assert (Hc : -1 <= c <= 1) by (apply Rabs_le_between, below_one; lra).
+  pose proof (asin_nonneg _ Ha). pose proof (asin_bound (Rabs s)). apply Rnot_lt_le. intros Hlt.
+  (* The cosine falls. *)
+  assert (Hcos : cos (acos c) < cos (PI - asin (Rabs s))) by (apply cos_decreasing_1; lra).
+  rewrite cos_acos, Rtrigo_facts.cos_pi_minus, cos_asin, <- Rsqr_abs in Hcos by lra. unfold Rsqr in Hcos.
+  pose proof (sqrt_def (1 - s * s) ltac:(lra)). pose proof (sqrt_pos (1 - s * s)). nra.
 Qed.
 
-(** *** Jumps: the switch to the shadow *)
-
-(** At q_0 = -c the switch takes q to -q; the potential falls by at least
-    2 w eta c / sqrt (1 + 2 eta c + eta^2). U_t, of r^2, stays. *)
-Theorem jump_falls : forall c q_3,
-  0 <= c -> c * c + q_3 * q_3 <= 1 ->
-  w * (1 + eta - distance c q_3)
-  <= w * (1 + eta - distance (- c) q_3) - 2 * w * eta * c / sqrt (1 + 2 * eta * c + eta * eta).
+(** Leaving the region where m is held does not raise the potential. *)
+Theorem leaving_falls : forall cosine sine, cosine * cosine + sine * sine <= 1 ->
+  potential (acos cosine) <= potential (PI - asin sine).
 Proof.
-  intros c q_3 Hc Hunit.
-  pose proof (distance_squared c q_3) as Ha. pose proof (distance_squared (- c) q_3) as Hb.
-  assert (Ha0 : 0 < distance c q_3) by (apply distance_positive; lra).
-  assert (Hb0 : 0 <= distance (- c) q_3) by apply sqrt_pos.
-  assert (Hec : 0 <= eta * c) by (apply Rmult_le_pos; lra).
-  assert (Htop0 : 0 < sqrt (1 + 2 * eta * c + eta * eta)) by (apply sqrt_lt_R0; nra).
-  assert (Htop : distance c q_3 <= sqrt (1 + 2 * eta * c + eta * eta)) by (apply sqrt_le_1_alt; nra).
-  assert (Hba : distance (- c) q_3 <= distance c q_3) by (apply sqrt_le_1_alt; nra).
-  remember (sqrt (1 + 2 * eta * c + eta * eta)) as top eqn:E. clear E.
-  remember (distance c q_3) as a eqn:E. clear E.
-  remember (distance (- c) q_3) as d eqn:E. clear E.
-  assert (Hdiff : (a - d) * (a + d) = 4 * (eta * c)).
-  { replace ((a - d) * (a + d)) with (a * a - d * d) by ring. rewrite Ha, Hb. ring. }
-  assert (Hgain : 2 * (eta * c) / top <= a - d).
-  { apply Rmult_le_reg_r with top; [exact Htop0|].
-    replace (2 * (eta * c) / top * top) with (2 * (eta * c)) by (field; lra).
-    assert ((a - d) * (a + d) <= (a - d) * (2 * top)) by (apply Rmult_le_compat_l; lra). lra. }
-  apply Rmult_le_compat_l with (r := w) in Hgain; [|lra].
-  replace (w * (2 * (eta * c) / top)) with (2 * w * eta * c / top) in Hgain by (field; lra).
-  lra.
+  intros c s H. pose proof (angle_below c s H) as Hb. pose proof PI_RGT_0. pose proof (acos_bound c).
+  pose proof (squared c). assert (Hs : -1 <= s <= 1) by (apply Rabs_le_between, below_one; lra).
+  pose proof (asin_bound s).
+  apply potential_rises; [split; [lra|] | lra].
+  eapply Rle_trans; [exact Hb|]. unfold Rabs. destruct (Rcase_abs s); [|lra].
+  pose proof (asin_nonneg (- s) ltac:(lra)). rewrite asin_opp in *. lra.
 Qed.
 
-End Potential.
-
-(** ** Nothing of the feed-forward works on the error
-
-    omega~ . J omega~' is omega~ . (feedback) alone, for every diagonal J,
-    every omega_r = R~^T omega_d and every acceleration a = R~^T omega_d'. *)
-
-Theorem feed_forward_cancels :
-  forall j_1 j_2 j_3 e_1 e_2 e_3 r_1 r_2 r_3 a_1 a_2 a_3 f_1 f_2 f_3 n_1 n_2 n_3 : R,
-  (* omega = omega~ + omega_r *)
-  let o_1 := e_1 + r_1 in let o_2 := e_2 + r_2 in let o_3 := e_3 + r_3 in
-  (* tau = J a - [J omega_r]x omega_r - feedback: the code's [torque] *)
-  let tau_1 := j_1 * a_1 + (j_3 - j_2) * r_2 * r_3 - f_1 in
-  let tau_2 := j_2 * a_2 + (j_1 - j_3) * r_3 * r_1 - f_2 in
-  let tau_3 := j_3 * a_3 + (j_2 - j_1) * r_1 * r_2 - f_3 in
-  (* J omega' = tau - omega x J omega, and n = omega~' = omega' - a + omega~ x omega_r *)
-  j_1 * n_1 = tau_1 - (o_2 * (j_3 * o_3) - o_3 * (j_2 * o_2)) - j_1 * a_1 + j_1 * (e_2 * r_3 - e_3 * r_2) ->
-  j_2 * n_2 = tau_2 - (o_3 * (j_1 * o_1) - o_1 * (j_3 * o_3)) - j_2 * a_2 + j_2 * (e_3 * r_1 - e_1 * r_3) ->
-  j_3 * n_3 = tau_3 - (o_1 * (j_2 * o_2) - o_2 * (j_1 * o_1)) - j_3 * a_3 + j_3 * (e_1 * r_2 - e_2 * r_1) ->
-  e_1 * (j_1 * n_1) + e_2 * (j_2 * n_2) + e_3 * (j_3 * n_3) = - (e_1 * f_1 + e_2 * f_2 + e_3 * f_3).
+(** At theta_s = pi + 2 a, with sin a = q_bar, the switch takes the other way
+    round: the potential falls by at least 4 a times the pull there. *)
+Theorem switch_falls : forall a theta, 0 <= a < PI / 2 -> 0 <= theta <= PI - 2 * a ->
+  potential theta <= potential (PI + 2 * a) - 4 * a * strength (PI - 2 * a).
 Proof.
-  intros j_1 j_2 j_3 e_1 e_2 e_3 r_1 r_2 r_3 a_1 a_2 a_3 f_1 f_2 f_3 n_1 n_2 n_3
-    o_1 o_2 o_3 tau_1 tau_2 tau_3 H_1 H_2 H_3.
-  rewrite H_1, H_2, H_3. unfold tau_1, tau_2, tau_3, o_1, o_2, o_3. ring.
+  intros a theta Ha Htheta. pose proof PI_RGT_0.
+  apply Rle_trans with (potential (PI - 2 * a)); [apply potential_rises; lra|].
+  pose proof (does_not_fall (fun r => potential r - strength (PI - 2 * a) * r)
+    (fun r => strength r - strength (PI - 2 * a)) (PI - 2 * a) (PI + 2 * a) ltac:(lra)) as Hfall.
+  enough (potential (PI - 2 * a) - strength (PI - 2 * a) * (PI - 2 * a)
+    <= potential (PI + 2 * a) - strength (PI - 2 * a) * (PI + 2 * a)) by lra.
+  apply Hfall; intros s Hs.
+  - apply @is_derive_minus; [apply potential_slope; lra|]. auto_derive; [exact I | ring].
+  - assert (strength (PI - 2 * a) <= strength s) by (apply strength_rises; lra). lra.
 Qed.
+
+End Pull.
+
+(** ** V falls, whatever the vehicle does about its thrust axis *)
+
+(** g, and what does no work. *)
+Definition gyroscopic (j_1 j_2 j_3 o_3 r_1 r_2 r_3 e_1 e_2 : R) : space :=
+  {| x := r_2 * ((j_3 + j_1 - j_2) * o_3 - j_1 * r_3) + / 2 * (j_1 - j_2) * (o_3 - r_3) * e_2;
+     y := - r_1 * ((j_3 + j_2 - j_1) * o_3 - j_2 * r_3) + / 2 * (j_1 - j_2) * (o_3 - r_3) * e_1;
+     z := 0 |}.
+Definition kappa (j_1 j_2 j_3 o_3 r_3 : R) : R := / 2 * (j_1 + j_2) * (o_3 + r_3) - j_3 * o_3.
+
+(** h: at right angles to omega~. *)
+Definition precession (j_3 o_3 : R) (e : space) : space := scaled (j_3 * o_3) {| x := y e; y := - x e; z := 0 |}.
+
+(** D: [sine] is that of theta / 2. *)
+Definition damping (k_omega r_0 sine : R) (e : space) : space :=
+  scaled (k_omega / sqrt (sqrt (1 + sine / r_0 * (sine / r_0)))) e.
+
+Section Descent.
+
+(** A motion: the body's rates, r = R^T omega_rho, and the angle, theta or
+    theta_s, about the axis e. *)
+Variables (j_1 j_2 j_3 : R) (o_1 o_2 o_3 r_1 r_2 r_3 angle : R -> R) (t : R) (e : space).
+Hypothesis inertia_positive : 0 < j_1 /\ 0 < j_2.
+Definition e_1 (s : R) : R := o_1 s - r_1 s.
+Definition e_2 (s : R) : R := o_2 s - r_2 s.
+
+(** R^T omega_rho', the shares of damping and of h, the bias, and what the torque lacks: of g
+    where it does not fit, of the bias where its estimate is wrong. *)
+Variables (a_1 a_2 k M lambda nu : R) (D bias lack : space).
+Definition P : space := scaled (strength k M (angle t)) e.
+Definition g : space := gyroscopic j_1 j_2 j_3 (o_3 t) (r_1 t) (r_2 t) (r_3 t) (e_1 t) (e_2 t).
+Definition h : space := precession j_3 (o_3 t) {| x := e_1 t; y := e_2 t; z := 0 |}.
+Definition tau_1 : R := j_1 * a_1 + x g - x P - lambda * x D + nu * x h - x bias - x lack.
+Definition tau_2 : R := j_2 * a_2 + y g - y P - lambda * y D + nu * y h - y bias - y lack.
+
+(** Euler's equations about the tilt's axes, with the bias; r' = R^T omega_rho' -
+    omega x r; [angle_moves]. *)
+Hypothesis euler_1 : is_derive o_1 t ((tau_1 + x bias - (j_3 - j_2) * o_2 t * o_3 t) / j_1).
+Hypothesis euler_2 : is_derive o_2 t ((tau_2 + y bias - (j_1 - j_3) * o_3 t * o_1 t) / j_2).
+Hypothesis frame_1 : is_derive r_1 t (a_1 - (o_2 t * r_3 t - o_3 t * r_2 t)).
+Hypothesis frame_2 : is_derive r_2 t (a_2 - (o_3 t * r_1 t - o_1 t * r_3 t)).
+Hypothesis motion : is_derive angle t (e_1 t * x e + e_2 t * y e).
+Variable potential : R -> R.
+Hypothesis potential_slope : is_derive potential (angle t) (strength k M (angle t)).
+
+Definition V (s : R) : R := (j_1 * (e_1 s * e_1 s) + j_2 * (e_2 s * e_2 s)) / 2 + potential (angle s).
+
+(** J omega~': the terms with kappa and h do no work. *)
+Theorem error_rates : let carried := kappa j_1 j_2 j_3 (o_3 t) (r_3 t) + nu * (j_3 * o_3 t) in
+  is_derive e_1 t ((- x P - lambda * x D - x lack + carried * e_2 t) / j_1)
+  /\ is_derive e_2 t ((- y P - lambda * y D - y lack - carried * e_1 t) / j_2).
+Proof.
+  intros carried. split.
+  - evar_last; [apply @is_derive_minus; [exact euler_1 | exact frame_1]|].
+    unfold minus, plus, opp, carried, kappa, tau_1, h, precession, scaled, g, gyroscopic, e_1, e_2. cbn. field. lra.
+  - evar_last; [apply @is_derive_minus; [exact euler_2 | exact frame_2]|].
+    unfold minus, plus, opp, carried, kappa, tau_2, h, precession, scaled, g, gyroscopic, e_1, e_2. cbn. field. lra.
+Qed.
+
+(** V' = - lambda omega~ . D, less what is lacking: whatever J, reference and spin
+    are. *)
+Theorem descent : is_derive V t
+  (- (lambda * (e_1 t * x D + e_2 t * y D)) - (e_1 t * x lack + e_2 t * y lack)).
+Proof.
+  destruct error_rates as [H1 H2]. unfold V.
+  evar_last.
+  - apply @is_derive_plus; [|apply (is_derive_comp potential angle); [exact potential_slope | exact motion]].
+    apply (is_derive_ext (fun s => / 2 * (j_1 * (e_1 s * e_1 s) + j_2 * (e_2 s * e_2 s)))); [intros; apply Rmult_comm|].
+    apply is_derive_scal. apply @is_derive_plus; apply is_derive_scal.
+    + apply is_derive_Reals. apply is_derive_Reals in H1. exact (derivable_pt_lim_mult _ _ _ _ _ H1 H1).
+    + apply is_derive_Reals. apply is_derive_Reals in H2. exact (derivable_pt_lim_mult _ _ _ _ _ H2 H2).
+  - unfold plus, scal. cbn. unfold mult. cbn. unfold P, scaled. cbn. field. lra.
+Qed.
+
+(** So where nothing lacks V falls, unless omega~ is zero about the tilt's axes. *)
+Theorem v_falls : forall k_omega r_0 sine, 0 < lambda -> 0 < k_omega ->
+  D = damping k_omega r_0 sine {| x := e_1 t; y := e_2 t; z := 0 |} -> lack = {| x := 0; y := 0; z := 0 |} ->
+  (e_1 t <> 0 \/ e_2 t <> 0) ->
+  - (lambda * (e_1 t * x D + e_2 t * y D)) - (e_1 t * x lack + e_2 t * y lack) < 0.
+Proof.
+  intros k_omega r_0 sine Hl Hk -> -> Hmoves. unfold damping, scaled. cbn [x y].
+  assert (Hroot : 0 < sqrt (sqrt (1 + sine / r_0 * (sine / r_0))))
+    by (apply sqrt_lt_R0, sqrt_lt_R0; pose proof (squared (sine / r_0)); lra).
+  set (c := k_omega / _). assert (Hc : 0 < c) by now apply Rdiv_lt_0_compat.
+  assert (Hsum : 0 < e_1 t * e_1 t + e_2 t * e_2 t).
+  { pose proof (squared (e_1 t)). pose proof (squared (e_2 t)).
+    destruct Hmoves as [Hm|Hm]; pose proof (Rsqr_pos_lt _ Hm) as Hs; unfold Rsqr in Hs; lra. }
+  pose proof (Rmult_lt_0_compat _ _ (Rmult_lt_0_compat _ _ Hl Hc) Hsum). lra.
+Qed.
+
+End Descent.

@@ -5,7 +5,7 @@
 
 From Coq Require Import Reals Lra.
 From Coquelicot Require Import Coquelicot.
-From SaturatedHybrid Require Import Limiter.
+From SaturatedHybrid Require Import Space Limiter.
 Open Scope R_scope.
 
 (** A function whose derivative is not negative does not fall. *)
@@ -98,61 +98,35 @@ Proof.
     lra.
 Qed.
 
-(** |omega_d12| <= Omega: outside, the third step turns p inwards, and the
-    fourth does not undo it. *)
-Theorem turned_inwards : forall rate wanted rate_max period, 0 < period -> 0 <= rate_max ->
-  rate_max * rate_max < square rate ->
-  let q := within_rate rate wanted period rate_max in
-  x rate * x q + y rate * y q <= 0.
+(** What is not turned outwards beyond a length never passes it. *)
+Theorem length_is_bounded : forall (p p_1 : R -> space) most, (forall s, 0 <= s -> moves p s (p_1 s)) ->
+  (forall s, 0 <= s -> most * most < square (p s) -> dot (p s) (p_1 s) <= 0) ->
+  square (p 0) <= most * most -> forall t, 0 <= t -> square (p t) <= most * most.
 Proof.
-  intros rate wanted rate_max period Hh Hmax Hout q.
-  pose proof (rate_after_third_step rate wanted period rate_max Hmax Hh) as H. fold q in H.
-  assert (Hsq : square (add rate (scaled period q)) <= rate_max * rate_max).
-  { rewrite <- length_squared. pose proof (length_nonneg (add rate (scaled period q))).
-    apply Rmult_le_compat; assumption. }
-  generalize dependent q. intros q _ Hsq. unfold square, add, scaled in *. cbn in Hsq.
-  assert (0 <= period * x q * (period * x q)) by apply Rle_0_sqr.
-  assert (0 <= period * y q * (period * y q)) by apply Rle_0_sqr.
-  assert (period * (x rate * x q + y rate * y q) <= 0) by lra.
-  apply Rnot_lt_le. intros Hlt. assert (0 < period * (x rate * x q + y rate * y q)) by nra. lra.
+  intros p p_1 most Hp Hin H0 t Ht. enough (square (p t) - most * most <= 0) by lra.
+  apply (never_positive (fun s => square (p s) - most * most) (fun s => 2 * dot (p s) (p_1 s)));
+    [intros s Hs | intros s Hs Hout | lra | lra].
+  - eapply derive_as; [|apply Rminus_0_r].
+    apply derive_difference; [|apply derive_constant]. unfold square.
+    eapply derive_as; [exact (moves_dot _ _ _ _ _ (Hp s Hs) (Hp s Hs)) | components; ring].
+  - specialize (Hin s Hs ltac:(lra)). lra.
 Qed.
 
-(** A rate that is not turned outwards beyond Omega never passes it. *)
-Theorem rate_is_bounded : forall (p_1 p_2 q_1 q_2 : R -> R) rate_max, 0 <= rate_max ->
-  (forall s, 0 <= s -> is_derive p_1 s (q_1 s)) -> (forall s, 0 <= s -> is_derive p_2 s (q_2 s)) ->
-  (forall s, 0 <= s -> rate_max * rate_max < p_1 s * p_1 s + p_2 s * p_2 s ->
-     p_1 s * q_1 s + p_2 s * q_2 s <= 0) ->
-  p_1 0 * p_1 0 + p_2 0 * p_2 0 <= rate_max * rate_max ->
-  forall t, 0 <= t -> p_1 t * p_1 t + p_2 t * p_2 t <= rate_max * rate_max.
+(** So the rate p of the thrust direction never passes Omega: the last step takes
+    a share of the third's. In the axes of the frame, which turns about rho by W,
+    p' is the limiter's q, carried by W: q + W (p_2, -p_1). Whatever is wanted,
+    whatever share there is, whatever W, alpha and the cone are. *)
+Theorem rate_of_the_limiter : forall (p wanted across : R -> space) (W share alpha along : R -> R)
+    period rate_max closing cosine,
+  0 < period -> 0 <= rate_max -> (forall s, 0 <= s -> 0 <= share s /\ 0 <= alpha s) ->
+  let q s := limited (p s) (wanted s) period (alpha s) rate_max closing cosine (across s) (along s) (share s) in
+  (forall s, 0 <= s -> moves p s (add (q s) (scaled (W s) (quarter (p s))))) ->
+  square (p 0) <= rate_max * rate_max -> forall t, 0 <= t -> square (p t) <= rate_max * rate_max.
 Proof.
-  intros p_1 p_2 q_1 q_2 rate_max Hmax H1 H2 Hin H0 t Ht.
-  assert (H : p_1 t * p_1 t + p_2 t * p_2 t - rate_max * rate_max <= 0).
-  { apply (never_positive (fun s => p_1 s * p_1 s + p_2 s * p_2 s - rate_max * rate_max)
-      (fun s => 2 * (p_1 s * q_1 s + p_2 s * q_2 s))); try assumption.
-    - intros s Hs. specialize (H1 s Hs). specialize (H2 s Hs).
-      auto_derive; [repeat split; try (eexists; eassumption); exact I|].
-      rewrite (is_derive_unique (fun x : R => p_1 x) s _ H1 : Derive (fun x : R => p_1 x) s = _),
-        (is_derive_unique (fun x : R => p_2 x) s _ H2 : Derive (fun x : R => p_2 x) s = _). ring.
-    - intros s Hs Hpos. specialize (Hin s Hs ltac:(lra)). lra.
-    - lra. }
-  lra.
-Qed.
-
-(** So the rate p of the thrust direction never passes Omega. In the axes of the
-    frame, which turns about rho by W, p' is the limiter's q, carried by W:
-    q + W (p_2, -p_1). Whatever is wanted, whatever W and the budget are. *)
-Theorem rate_of_the_limiter : forall (p wanted : R -> plane) (W most : R -> R) period rate_max,
-  0 < period -> 0 <= rate_max -> (forall s, 0 <= s -> 0 <= most s) ->
-  (forall s, 0 <= s -> is_derive (fun r => x (p r)) s
-     (x (limited (p s) (wanted s) (W s) period rate_max (most s)) + W s * y (p s))) ->
-  (forall s, 0 <= s -> is_derive (fun r => y (p r)) s
-     (y (limited (p s) (wanted s) (W s) period rate_max (most s)) - W s * x (p s))) ->
-  square (p 0) <= rate_max * rate_max ->
-  forall t, 0 <= t -> square (p t) <= rate_max * rate_max.
-Proof.
-  intros p wanted W most period rate_max Hh Hmax Hmost Hx Hy H0 t Ht. unfold square in *.
-  refine (rate_is_bounded _ _ _ _ rate_max Hmax Hx Hy _ H0 t Ht).
-  intros s Hs Hout.
-  pose proof (turned_inwards (p s) (wanted s) rate_max period Hh Hmax Hout) as Hin. cbv zeta in Hin.
-  pose proof (last_step_does_not_speed_up (p s) (wanted s) (W s) period rate_max (most s) (Hmost s Hs) Hin). lra.
+  intros p wanted across W share alpha along period rate_max closing cosine Hh Hmax Hshare q Hp H0.
+  refine (length_is_bounded _ _ rate_max Hp _ H0). intros s Hs Hout.
+  pose proof (share_turns_inwards (p s) (wanted s) period (alpha s) rate_max closing cosine (across s) (along s)
+    (proj2 (Hshare s Hs)) Hmax Hh (share s) (proj1 (Hshare s Hs)) Hout) as Hin. fold (q s) in Hin.
+  replace (dot (p s) (add (q s) (scaled (W s) (quarter (p s))))) with (dot (p s) (q s))
+    by (unfold quarter; components; ring). exact Hin.
 Qed.

@@ -1,161 +1,231 @@
-(** * The limiter: how fast the desired frame turns
+(** * The limiter: how fast the thrust direction turns
 
-    Sections 3 and 4 of docs/extended-law.md, in exact arithmetic;
-    controller-core/src/extended/turning.rs. *)
+    Section 3 of docs/extended-law.md, in exact arithmetic;
+    controller-core/src/extended/turning.rs. p is the direction's rate, q its
+    acceleration, both across it. *)
 
 From Coq Require Import Reals Lra.
+From SaturatedHybrid Require Import Space.
 Open Scope R_scope.
 
-(** ** Vectors across the thrust direction *)
-
-Record plane := { x : R; y : R }.
-
-Definition add (u v : plane) : plane := {| x := x u + x v; y := y u + y v |}.
-Definition sub (u v : plane) : plane := {| x := x u - x v; y := y u - y v |}.
-Definition scaled (k : R) (v : plane) : plane := {| x := k * x v; y := k * y v |}.
-Definition square (v : plane) : R := x v * x v + y v * y v.
-Definition length (v : plane) : R := sqrt (square v).
 (** (p_2, -p_1): by what a frame that turns about rho carries p. *)
-Definition quarter (p : plane) : plane := {| x := y p; y := - x p |}.
-
-Lemma square_nonneg : forall v, 0 <= square v.
-Proof. intros v. unfold square. nra. Qed.
-
-Lemma length_nonneg : forall v, 0 <= length v.
-Proof. intros v. apply sqrt_pos. Qed.
-
-Lemma length_squared : forall v, length v * length v = square v.
-Proof. intros v. apply sqrt_def, square_nonneg. Qed.
-
-Lemma length_scaled : forall k v, 0 <= k -> length (scaled k v) = k * length v.
-Proof.
-  intros k v Hk. unfold length.
-  replace (square (scaled k v)) with ((k * k) * square v) by (unfold square, scaled; cbn; ring).
-  rewrite sqrt_mult_alt by nra. now rewrite sqrt_square.
-Qed.
-
-Lemma triangle : forall u v, length (add u v) <= length u + length v.
-Proof.
-  intros u v.
-  pose proof (length_nonneg u). pose proof (length_nonneg v).
-  apply Rsqr_incr_0_var; [|lra]. unfold Rsqr. rewrite length_squared.
-  pose proof (length_squared u) as Hu. pose proof (length_squared v) as Hv.
-  assert (x u * x v + y u * y v <= length u * length v) as Hcs.
-  { apply Rsqr_incr_0_var; [|nra]. unfold Rsqr.
-    replace (length u * length v * (length u * length v)) with (square u * square v)
-      by (rewrite <- Hu, <- Hv; ring).
-    unfold square. pose proof (Rle_0_sqr (x u * y v - y u * x v)) as H1. unfold Rsqr in H1. nra. }
-  unfold square, add in *. cbn. nra.
-Qed.
+Definition quarter (p : space) : space := {| x := y p; y := - x p; z := 0 |}.
 
 (** [shortened v most]: v, at most so long. *)
-Definition shortened (v : plane) (most : R) : plane :=
+Definition shortened (v : space) (most : R) : space :=
   if Rlt_dec (most * most) (square v) then scaled (most / length v) v else v.
 
 Lemma shortened_length : forall v most, 0 <= most -> length (shortened v most) <= most.
 Proof.
   intros v most Hm. unfold shortened. destruct (Rlt_dec (most * most) (square v)) as [H|H].
-  - assert (Hpos : 0 < length v).
-    { apply sqrt_lt_R0. nra. }
-    rewrite length_scaled; [|apply Rmult_le_pos; [lra | left; now apply Rinv_0_lt_compat]].
+  - assert (Hpos : 0 < length v) by (apply sqrt_lt_R0; pose proof (squared most); lra).
+    rewrite length_scaled, Rabs_pos_eq by (apply Rmult_le_pos; [lra | left; now apply Rinv_0_lt_compat]).
     right. field. lra.
-  - apply Rsqr_incr_0_var; [|exact Hm]. unfold Rsqr. rewrite length_squared. lra.
+  - apply length_below; lra.
 Qed.
 
-(** A shortened vector is a share of the vector, from zero to one. *)
-Lemma shortened_share : forall v most, 0 <= most ->
-  exists k, 0 <= k <= 1 /\ x (shortened v most) = k * x v /\ y (shortened v most) = k * y v.
+(** It is a share of v. *)
+Lemma shortened_share : forall v most, 0 <= most -> exists share, 0 <= share <= 1 /\ shortened v most = scaled share v.
 Proof.
   intros v most Hm. unfold shortened. destruct (Rlt_dec (most * most) (square v)) as [H|H].
-  - assert (Hpos : 0 < length v) by (apply sqrt_lt_R0; nra).
-    exists (most / length v). repeat split.
-    + apply Rmult_le_pos; [lra | left; now apply Rinv_0_lt_compat].
-    + apply Rmult_le_reg_r with (length v); [exact Hpos|].
-      replace (most / length v * length v) with most by (field; lra).
-      rewrite Rmult_1_l. apply Rsqr_incr_0_var; [|lra].
-      unfold Rsqr. rewrite length_squared. lra.
-  - exists 1. repeat split; lra.
+  - exists (most / length v). split; [|reflexivity].
+    assert (Hpos : 0 < length v) by (apply sqrt_lt_R0; pose proof (squared most); lra).
+    assert (most <= length v) by (apply below_by_squares; [apply length_nonneg | rewrite length_squared; lra]).
+    split; [apply Rmult_le_pos; [exact Hm | left; now apply Rinv_0_lt_compat]|].
+    apply Rmult_le_reg_r with (length v); [exact Hpos|].
+    replace (most / length v * length v) with most by (field; lra). lra.
+  - exists 1. split; [lra | apply same; components; ring].
 Qed.
-
-(** ** One tick *)
 
 Section Tick.
 
-(** p, the wanted q after the first two steps, W, h, Omega, and the greater of
-    the budget and the reserve. *)
-Variables (rate wanted : plane) (yaw_rate period rate_max most : R).
-Hypothesis most_positive : 0 <= most.
+(** p, the wanted q, h; alpha, Omega, alpha_0 / Omega, cos gamma; e3 in the axes
+    of the desired frame, across rho and along it. *)
+Variables (rate wanted : space) (period alpha rate_max closing cosine : R) (across : space) (along : R).
+Hypothesis alpha_positive : 0 <= alpha.
 Hypothesis rate_max_positive : 0 <= rate_max.
 Hypothesis period_positive : 0 < period.
 
-(** Third step: |p + h q| <= Omega. *)
-Definition within_rate : plane :=
-  scaled (/ period) (sub (shortened (add rate (scaled period wanted)) rate_max) rate).
+(** First step: |q| <= alpha. Second: towards the vertical, and less across it.
+    Third: |p + h q| <= Omega. The least divisor 1e-6 is for the edge of the cone
+    alone. *)
+Definition rising (q : space) : R := dot (add rate (scaled period q)) across.
+Definition least_rising : R := - closing * (along - cosine).
+Definition reach : R := sqrt (Rmax (square across) (1 / 1000000)).
+Definition uphill : space := scaled (/ reach) across.
+Definition asked_uphill : R := (least_rising / reach - dot rate uphill) / period.
+Definition got_uphill : R := Rmin alpha (Rmax (- alpha) asked_uphill).
+Definition left_across : R := sqrt (Rmax (alpha * alpha - got_uphill * got_uphill) 0).
+Definition kept_in_cone (q : space) : space :=
+  if Rle_dec least_rising (rising q) then q
+  else add (shortened (sub q (scaled (dot q uphill) uphill)) left_across) (scaled got_uphill uphill).
+Definition within_rate (q : space) : space :=
+  if Rlt_dec (rate_max * rate_max) (square (add rate (scaled period q)))
+  then shortened (scaled (/ period) (sub (shortened (add rate (scaled period q)) rate_max) rate)) alpha
+  else q.
+Definition turned : space := within_rate (kept_in_cone (shortened wanted alpha)).
 
-(** Fourth and last step: |q + W (p_2, -p_1)| <= most. *)
-Definition carried : plane := scaled yaw_rate (quarter rate).
-Definition limited : plane := sub (shortened (add within_rate carried) most) carried.
+Lemma got_within : - alpha <= got_uphill <= alpha.
+Proof. unfold got_uphill. split; [apply Rmin_glb; [lra | apply Rmax_l] | apply Rmin_l]. Qed.
 
-Theorem rate_after_third_step : length (add rate (scaled period within_rate)) <= rate_max.
+(** Where e3 is not along rho: [uphill] has length one, and the rest is across it. *)
+Lemma uphill_parts : 1 / 1000000 <= square across -> 0 < reach /\ square uphill = 1 /\ dot uphill across = reach
+  /\ forall q, dot (shortened (sub q (scaled (dot q uphill) uphill)) left_across) uphill = 0.
 Proof.
-  replace (add rate (scaled period within_rate))
-    with (shortened (add rate (scaled period wanted)) rate_max).
-  - now apply shortened_length.
-  - unfold within_rate, add, sub, scaled. cbn.
-    destruct (shortened _ _) as [a c]. cbn. f_equal; field; lra.
+  intros Hsquare. assert (Hpos : 0 < reach) by (apply sqrt_lt_R0; rewrite Rmax_left; lra).
+  assert (E : reach * reach = square across) by (unfold reach; rewrite Rmax_left, sqrt_def by lra; reflexivity).
+  assert (Hone : square uphill = 1).
+  { unfold uphill. replace (square (scaled (/ reach) across)) with (/ reach * / reach * square across)
+      by (components; ring). rewrite <- E. field. lra. }
+  repeat split; [exact Hpos | exact Hone | |].
+  - unfold uphill. replace (dot (scaled (/ reach) across) across) with (/ reach * square across)
+      by (components; ring). rewrite <- E. field. lra.
+  - intros q. destruct (shortened_share (sub q (scaled (dot q uphill) uphill)) left_across (sqrt_pos _))
+      as (share & _ & ->).
+    replace (dot (scaled share (sub q (scaled (dot q uphill) uphill))) uphill)
+      with (share * dot q uphill * (1 - square uphill)) by (components; ring). rewrite Hone. ring.
 Qed.
 
-(** Claim (c), first line: the acceleration of the desired frame, exactly. *)
-Theorem turning_within_budget : length (add limited carried) <= most.
+(** What the second step asks for holds where alpha suffices for it. *)
+Theorem cone_is_kept : forall q, 1 / 1000000 <= square across -> asked_uphill <= alpha ->
+  least_rising <= rising (kept_in_cone q).
 Proof.
-  replace (add limited carried) with (shortened (add within_rate carried) most).
-  - now apply shortened_length.
-  - unfold limited, add, sub, scaled. cbn.
-    destruct (shortened _ _) as [a c]. cbn. f_equal; ring.
+  intros q Hsquare Henough. unfold kept_in_cone. destruct (Rle_dec _ _) as [H|H]; [exact H|].
+  destruct (uphill_parts Hsquare) as (Hpos & _ & Hacross & Hrest). specialize (Hrest q).
+  set (rest := shortened _ left_across) in *.
+  assert (E : across = scaled reach uphill) by (apply same; unfold uphill; components; field; lra).
+  replace (rising (add rest (scaled got_uphill uphill)))
+    with (reach * dot rate uphill + period * (reach * dot rest uphill + got_uphill * dot uphill across))
+    by (unfold rising; rewrite E; components; ring).
+  rewrite Hrest, Hacross.
+  assert (Hgot : asked_uphill <= got_uphill) by (unfold got_uphill; apply Rmin_glb; [exact Henough | apply Rmax_r]).
+  apply Rmult_le_compat_l with (r := period * reach) in Hgot; [|apply Rmult_le_pos; lra].
+  replace (period * reach * asked_uphill) with (least_rising - reach * dot rate uphill) in Hgot
+    by (unfold asked_uphill; field; lra). lra.
 Qed.
 
-(** Claim (c), third line, in continuous time: beyond |p| = Omega the third step
-    leaves p . q <= 0, and the fourth keeps that sign, since p . (p_2, -p_1) is
-    zero. *)
-Theorem last_step_does_not_speed_up :
-  x rate * x within_rate + y rate * y within_rate <= 0 ->
-  x rate * x limited + y rate * y limited <= 0.
+(** No step goes beyond alpha: only where rho is out of its cone and vertical to a
+    thousandth at once is nothing said. *)
+Theorem turn_within_alpha :
+  1 / 1000000 <= square across \/ least_rising <= rising (shortened wanted alpha) -> length turned <= alpha.
 Proof.
-  unfold limited. generalize within_rate as q. intros q H.
-  destruct (shortened_share (add q carried) most most_positive) as (k & Hk & Hx & Hy).
-  unfold sub. cbn [x y]. rewrite Hx, Hy. unfold add, carried, scaled, quarter. cbn [x y].
-  replace (x rate * (k * (x q + yaw_rate * y rate) - yaw_rate * y rate) +
-           y rate * (k * (y q + yaw_rate * - x rate) - yaw_rate * - x rate))
-    with (k * (x rate * x q + y rate * y q)) by ring.
-  nra.
+  intros Hcase. unfold turned, within_rate. destruct (Rlt_dec _ _) as [_|_]; [now apply shortened_length|].
+  unfold kept_in_cone. destruct (Rle_dec _ _) as [_|Hout]; [now apply shortened_length|].
+  destruct Hcase as [Hsquare|]; [|contradiction].
+  destruct (uphill_parts Hsquare) as (_ & Hone & _ & Hrest). specialize (Hrest (shortened wanted alpha)).
+  assert (Hlength := shortened_length (sub (shortened wanted alpha) (scaled (dot (shortened wanted alpha) uphill) uphill))
+    left_across (sqrt_pos _)).
+  set (rest := shortened _ left_across) in *. pose proof got_within.
+  assert (Hleft : left_across * left_across = alpha * alpha - got_uphill * got_uphill).
+  { assert (0 <= (alpha - got_uphill) * (alpha + got_uphill)) by (apply Rmult_le_pos; lra).
+    unfold left_across. rewrite Rmax_left by lra. apply sqrt_def. lra. }
+  apply length_below; [exact alpha_positive|].
+  replace (square (add rest (scaled got_uphill uphill)))
+    with (square rest + 2 * got_uphill * dot rest uphill + got_uphill * got_uphill * square uphill)
+    by (components; ring).
+  rewrite Hrest, Hone. pose proof (square_below _ _ Hlength). lra.
+Qed.
+
+Lemma share_of_a_step : forall share q, 0 <= share <= 1 -> length rate <= rate_max ->
+  length (add rate (scaled period q)) <= rate_max -> length (add rate (scaled period (scaled share q))) <= rate_max.
+Proof.
+  intros share q Hs Hin H.
+  replace (add rate (scaled period (scaled share q)))
+    with (add (scaled (1 - share) rate) (scaled share (add rate (scaled period q))))
+    by (apply same; components; ring).
+  eapply Rle_trans; [apply triangle|]. rewrite !length_scaled, !Rabs_pos_eq by lra.
+  assert ((1 - share) * length rate <= (1 - share) * rate_max) by (apply Rmult_le_compat_l; lra).
+  assert (share * length (add rate (scaled period q)) <= share * rate_max) by (apply Rmult_le_compat_l; lra). lra.
+Qed.
+
+(** The third step is a share of one that comes to Omega. *)
+Lemma third_step : forall q, exists share q', 0 <= share <= 1 /\ within_rate q = scaled share q'
+  /\ length (add rate (scaled period q')) <= rate_max.
+Proof.
+  intros q. unfold within_rate. destruct (Rlt_dec _ _) as [H|H].
+  - set (q' := scaled (/ period) _). destruct (shortened_share q' alpha alpha_positive) as (share & Hs & ->).
+    exists share, q'. repeat split; try apply Hs.
+    replace (add rate (scaled period q')) with (shortened (add rate (scaled period q)) rate_max)
+      by (unfold q'; apply same; components; field; lra).
+    now apply shortened_length.
+  - exists 1, q. repeat split; [lra | lra | apply same; components; ring | apply length_below; lra].
+Qed.
+
+Theorem rate_after_third_step : forall q, length rate <= rate_max ->
+  length (add rate (scaled period (within_rate q))) <= rate_max.
+Proof.
+  intros q Hin. destruct (third_step q) as (share & q' & Hs & -> & H). now apply share_of_a_step.
+Qed.
+
+(** Beyond Omega it turns p inwards, whatever is wanted. *)
+Theorem turned_inwards : forall q, rate_max * rate_max < square rate -> dot rate (within_rate q) <= 0.
+Proof.
+  intros q Hout. destruct (third_step q) as (share & v & Hs & -> & H). pose proof (square_below _ _ H) as Hsq.
+  replace (square (add rate (scaled period v)))
+    with (square rate + 2 * (period * dot rate v) + period * period * square v) in Hsq
+    by (components; ring).
+  pose proof (Rmult_le_pos _ _ (squared period) (square_nonneg v)).
+  replace (dot rate (scaled share v)) with (share * dot rate v) by (components; ring).
+  apply Rnot_lt_le. intros Hlt. assert (Hpos : 0 < dot rate v).
+  { apply Rnot_le_lt. intros Hle. assert (0 <= share * - dot rate v) by (apply Rmult_le_pos; lra). lra. }
+  pose proof (Rmult_lt_0_compat _ _ period_positive Hpos). lra.
+Qed.
+
+(** Last, the tick takes a share of it: that keeps the sign, and what is within
+    Omega. *)
+Definition limited (share : R) : space := scaled share turned.
+
+Theorem share_turns_inwards : forall share, 0 <= share -> rate_max * rate_max < square rate ->
+  dot rate (limited share) <= 0.
+Proof.
+  intros share Hs Hout. unfold limited.
+  replace (dot rate (scaled share turned)) with (share * dot rate turned) by (components; ring).
+  pose proof (turned_inwards (kept_in_cone (shortened wanted alpha)) Hout) as H. fold turned in H.
+  assert (0 <= share * - dot rate turned) by (apply Rmult_le_pos; lra). lra.
+Qed.
+
+Theorem share_keeps_the_rate : forall share, 0 <= share <= 1 -> length rate <= rate_max ->
+  length (add rate (scaled period (limited share))) <= rate_max.
+Proof.
+  intros share Hs Hin. apply share_of_a_step; [exact Hs | exact Hin | now apply rate_after_third_step].
 Qed.
 
 End Tick.
 
-(** ** The budget of a tick pays for it
+(** ** What a command asks for: rows "A1 turning" of the certificate
 
-    Section 4: alpha times its cost t J_max + y J_33 sin is at most what the
-    feedback leaves, 0.99 R - t |tau_fb|. So the row holds for the feedback and
-    the turning together. Where the cost is zero nothing is divided. *)
-
-Theorem budget_keeps_the_row : forall t y room feedback alpha inertia_tilt inertia_yaw sine,
-  alpha * (t * inertia_tilt + y * (inertia_yaw * sine)) <= room - t * feedback ->
-  t * (feedback + inertia_tilt * alpha) + y * (inertia_yaw * alpha * sine) <= room.
-Proof. intros t y room fb alpha jt jy sine H. lra. Qed.
-
-(** The certificate's reserve row: with all feedback and alpha_0 at a right
-    angle the row holds, so alpha_0 is always paid for. *)
-Theorem reserve_keeps_the_row : forall t y room feedback feedback_max reserve inertia_tilt inertia_yaw sine,
-  0 <= t -> 0 <= y -> 0 <= inertia_tilt -> 0 <= inertia_yaw -> 0 <= sine <= 1 -> 0 <= reserve ->
-  feedback <= feedback_max ->
-  t * (feedback_max + inertia_tilt * reserve) + y * inertia_yaw * reserve <= room ->
-  t * (feedback + inertia_tilt * reserve) + y * (inertia_yaw * reserve * sine) <= room.
+    With u' and u'' across rho and along it: |p| and |q| of a command whose
+    derivatives are bounded. *)
+Theorem turning_of_a_command : forall (u_1 u_2 : space) radial radial_2 n jerk snap least,
+  square u_1 + radial * radial <= jerk * jerk -> square u_2 + radial_2 * radial_2 <= snap * snap ->
+  0 < least <= n -> 0 <= jerk -> 0 <= snap ->
+  let p := scaled (/ n) u_1 in
+  let q := scaled (/ n) (sub u_2 (scaled (2 * radial) p)) in
+  length p <= jerk / least /\ length q <= snap / least + jerk / least * (jerk / least).
 Proof.
-  intros t y room fb fb_max reserve jt jy sine Ht Hy Hjt Hjy Hs Hr Hfb H.
-  assert (y * (jy * reserve * sine) <= y * jy * reserve).
-  { replace (y * (jy * reserve * sine)) with (y * jy * reserve * sine) by ring.
-    rewrite <- (Rmult_1_r (y * jy * reserve)) at 2.
-    apply Rmult_le_compat_l; [|lra]. apply Rmult_le_pos; [|exact Hr]. now apply Rmult_le_pos. }
-  assert (t * fb <= t * fb_max) by (apply Rmult_le_compat_l; lra).
-  lra.
+  intros u_1 u_2 r r_2 n jerk snap least H1 H2 Hn Hj Hs p q.
+  assert (Hinv : 0 < / n <= / least) by (split; [apply Rinv_0_lt_compat | apply Rinv_le_contravar]; lra).
+  pose proof (square_nonneg u_1). pose proof (squared r). pose proof (squared r_2).
+  assert (Hu1 : length u_1 <= jerk) by (apply length_below; lra).
+  assert (Hu2 : length u_2 <= snap) by (apply length_below; lra).
+  assert (Hn1 : forall v, length (scaled (/ n) v) = / n * length v)
+    by (intros; rewrite length_scaled, Rabs_pos_eq; lra).
+  pose proof (length_nonneg u_1). pose proof (length_nonneg u_2).
+  assert (Hp : length p <= jerk / least).
+  { unfold p. rewrite Hn1, Rmult_comm. apply Rmult_le_compat; lra. }
+  split; [exact Hp|]. unfold q. rewrite Hn1.
+  assert (Hsum : length (sub u_2 (scaled (2 * r) p)) <= snap + Rabs (2 * r) * length p).
+  { eapply Rle_trans; [apply triangle_sub|]. rewrite length_scaled. lra. }
+  (* 2 |r| |u'_12| is at most the square of both. *)
+  assert (Hboth : Rabs (2 * r) * length u_1 <= jerk * jerk).
+  { rewrite Rabs_mult, (Rabs_pos_eq 2) by lra. pose proof (squared (Rabs r - length u_1)) as Hq.
+    pose proof (length_squared u_1). assert (Rabs r * Rabs r = r * r) by (rewrite <- Rabs_mult; now apply Rabs_pos_eq).
+    lra. }
+  apply Rle_trans with (/ n * (snap + Rabs (2 * r) * length p)); [apply Rmult_le_compat_l; lra|].
+  replace (/ n * (snap + Rabs (2 * r) * length p)) with (snap * / n + / n * / n * (Rabs (2 * r) * length u_1))
+    by (unfold p; rewrite Hn1; ring).
+  apply Rplus_le_compat; [apply Rmult_le_compat_l; lra|].
+  replace (jerk / least * (jerk / least)) with (/ least * / least * (jerk * jerk)) by (unfold Rdiv; ring).
+  apply Rmult_le_compat; [apply Rmult_le_pos; lra | apply Rmult_le_pos; [apply Rabs_pos | assumption] | | exact Hboth].
+  apply Rmult_le_compat; lra.
 Qed.

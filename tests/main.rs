@@ -9,7 +9,7 @@
 //! | a vehicle's numbers from a flight and a bench; from other programs' files | [`identify`], [`identify_px4`]; [`vehicle_import`] |
 //! | the estimated state | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
-//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`]; along files: [`trajectory_files`] |
+//! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`], [`progress`]; along files: [`trajectory_files`] |
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | other people's controllers within the limits | [`shield`] |
@@ -54,6 +54,7 @@ mod lyapunov;
 mod lying_poses;
 mod paper;
 mod pilots_table;
+mod progress;
 mod published;
 mod reality;
 mod recovery;

@@ -41,7 +41,7 @@ fn published(name: &str) -> Scenario {
 }
 
 #[test]
-fn every_format_becomes_a_vehicle_that_is_certified_and_comes_back_from_upside_down() {
+fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down_where_it_can() {
     let alternate = "rotors.spin=[\"ccw\", \"cw\", \"ccw\", \"cw\"]";
     let measured = ["vehicle.mass=2.064", "vehicle.inertia=[0.0217, 0.0217, 0.04]", "rotors.thrust_max=8.5"];
     let px4 = [&measured[..], &["rotors.torque_per_thrust=0.016", LAG]].concat();
@@ -63,13 +63,15 @@ fn every_format_becomes_a_vehicle_that_is_certified_and_comes_back_from_upside_d
         let (named, ..) = imported("named", &source(name), &[&more[..], &["--format", format]].concat());
         assert_eq!(named, 0, "{name}");
         let output = host_sim(&directory, &["certify", "mine.toml"]);
-        assert!(stdout(&output).starts_with("mine: CERTIFIED"), "{name}: {}", stdout(&output) + &stderr(&output));
+        // The Crazyflie of cf2.xml is given 1e-5 N m of torque: it holds a hover, and falls for minutes until it is
+        // upright.
+        let weak = name == "cf2.xml";
+        let decision = if weak { "mine: NOT certified: model flight from " } else { "mine: CERTIFIED" };
+        assert!(stdout(&output).starts_with(decision), "{name}: {}", stdout(&output) + &stderr(&output));
 
         let read = Scenario::load(&directory.join("mine.toml")).unwrap();
         let verdict = scenario::verdict::Verdict::of(&read).unwrap();
-        // The Crazyflie of cf2.xml is given 1e-5 N m of torque: it holds a hover, and falls for minutes until it is
-        // upright.
-        let flown = if name == "cf2.xml" { read.clone() } else { recovery(&read, 15.0).unwrap() };
+        let flown = if weak { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
         let course = host_sim::course::Course::over(&flown, flight, 0.1).unwrap();
         let settled = course.settled.unwrap_or(f64::INFINITY);

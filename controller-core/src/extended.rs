@@ -1,6 +1,6 @@
 //! The extended law: the paper's structure for vehicles with weak yaw, lagging rotors, a sagging battery and wind.
 //!
-//! What it keeps: a saturated position feedback behind two filters makes a bounded thrust vector; a desired attitude
+//! What it keeps: a saturated position feedback behind filters makes a bounded thrust vector; a desired attitude
 //! follows from it in closed form; a saturated attitude law tracks it through the path lifting; every limit is proven
 //! before take-off. What it changes, and where:
 //!
@@ -8,15 +8,15 @@
 //! |---|---|---|
 //! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; a capped approach speed | 1 |
 //! | [`force`] | an estimate of the unmodelled force | 2 |
-//! | [`turning`] | the thrust direction turns as fast as the vehicle can follow | 3 |
-//! | [`budget`] | how fast that is: the thrust and torque at hand | 4 |
-//! | [`heading`] | the desired frame may lag in heading, so that yaw never needs more torque than it has | 5 |
-//! | [`attitude`] | levels for tilt and yaw; damping takes what the potential leaves; errors projected over the rotors' lag | 6 |
+//! | [`turning`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
+//! | [`budget`] | a tick's torque about the tilt's axes, spent part by part | 4 |
+//! | [`heading`] | yaw takes what tilt and thrust leave, and brakes a spin before thrust | 5 |
+//! | [`attitude`] | the tilt alone, whatever the heading does; errors projected over the rotors' lag | 6 |
 //! | [`torque_bias`] | an estimate of a constant torque | 7 |
-//! | [`thrust_range`] | a least and a greatest thrust that follow the torque | 8 |
+//! | [`thrust_range`] | a least and a greatest thrust that follow the torque, and the yaw torque that is left | 8 |
 //! | [`thrust_scale`] | an estimate of the delivered thrust over the commanded thrust | 9 |
 //! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
-//! | [`net`] | proven gains, if a flight does not arrive with the own ones | 13 |
+//! | [`fallback`] | the same law, slowed down, if a flight makes no progress | 13 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
 //! | [`demand`] | an acceleration, or an attitude and a thrust, in place of the feedback | |
@@ -33,11 +33,11 @@ pub mod budget;
 pub mod controller;
 pub mod defaults;
 pub mod demand;
+pub mod fallback;
 pub mod force;
 pub mod heading;
 pub mod learning;
 pub mod memory;
-pub mod net;
 pub mod parameters;
 pub mod position;
 pub mod saturation;

@@ -95,12 +95,12 @@ impl Law {
         }
     }
 
-    /// How often the [net](crate::extended::net) came into force since the reset; the paper's law needs none.
+    /// How often the [fallback](crate::extended::fallback) came since the reset; the paper's law has none.
     #[must_use]
-    pub fn net_times(&self) -> u32 {
+    pub fn fallback_times(&self) -> u32 {
         match self {
             Self::Paper(_) => 0,
-            Self::Extended(law) => law.memory().net.times(),
+            Self::Extended(law) => law.memory().fallback.times(),
         }
     }
 

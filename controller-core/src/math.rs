@@ -50,18 +50,6 @@ pub fn between(x: f32, least: f32, greatest: f32) -> f32 {
     if x < least { least } else { x }
 }
 
-/// `acceleration`, or as much of it as takes a rate to ± `level` in `period`.
-#[must_use]
-pub fn within_rate(acceleration: f32, rate: f32, level: f32, period: f32) -> f32 {
-    let reached = rate + acceleration * period;
-    if reached.abs() > level {
-        cold_path();
-        (level.copysign(reached) - rate) / period
-    } else {
-        acceleration
-    }
-}
-
 /// The greater of two numbers; the first where they cannot be compared.
 #[must_use]
 pub fn greater(a: f32, b: f32) -> f32 {

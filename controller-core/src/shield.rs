@@ -92,8 +92,8 @@ fn stopping(gravity: f32) -> Most {
     Most { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
 }
 
-/// How near its refuge a vehicle is to be before a policy gets it back: |z_1|, m, and |z_2|, m/s. The net's 0.05 are
-/// too few where states are noisy and air is rough.
+/// How near its refuge a vehicle is to be before a policy gets it back: |z_1|, m, and |z_2|, m/s. A quarter of it is
+/// too little where states are noisy and air is rough.
 const NEAR: f32 = 0.2;
 
 /// A shield, as before a flight.

@@ -14,9 +14,8 @@ pub mod judged;
 use crate::allocation::{Rotor, Rotors, collected};
 use crate::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use crate::error::{ParameterError, Reason, require};
-use crate::extended::parameters::{Extended, ExtendedParameters};
+use crate::extended::parameters::Extended;
 use crate::gains::{GainParameters, Gains};
-use crate::math;
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use heapless::Vec;
@@ -67,9 +66,9 @@ impl Percent {
 /// Factors on the gains that were built, by what they answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Factors {
-    /// An attitude error: k_theta; of the extended law the tilt's stiffness: w and k_t below 100 %, k_t above.
+    /// An attitude error: k_theta; of the extended law k_tilt.
     pub attitude: Percent,
-    /// A body rate: k_omega; of the extended law k_omega_t and k_omega_z.
+    /// A body rate: k_omega; of the extended law k_omega_t and c_2.
     pub rate: Percent,
     /// A horizontal position error: k_p across. The paper's law has one k_p for all axes.
     pub position_across: Percent,
@@ -115,10 +114,10 @@ impl Factors {
             }
             LawParameters::Extended(ExtendedLaw { parameters, actuators }) => {
                 let mut constants = **parameters;
-                stiffened(&mut constants, self.attitude);
                 for (gain, factor) in [
+                    (&mut constants.k_tilt, self.attitude),
                     (&mut constants.k_omega_t, self.rate),
-                    (&mut constants.k_omega_z, self.rate),
+                    (&mut constants.c_2, self.rate),
                     (&mut constants.k_p_across, self.position_across),
                     (&mut constants.k_v_across, self.velocity_across),
                     (&mut constants.k_p_vertical, self.position_vertical),
@@ -130,19 +129,6 @@ impl Factors {
                 Ok(LawParameters::Extended(ExtendedLaw { parameters, actuators: *actuators }))
             }
         }
-    }
-}
-
-/// Multiplies the tilt's stiffness, w/4 + k_t / (2 sqrt(1 + eta_t^2)), by `factor`. A softer one takes its part of
-/// both; a stiffer one is k_t's alone: |P| < M_all and the rows of yaw have no room for a greater w.
-fn stiffened(constants: &mut ExtendedParameters, factor: Percent) {
-    let ExtendedParameters { w, k_t, eta_t, .. } = constants;
-    let scaled = factor.of(*w);
-    *k_t = factor.of(*k_t);
-    if scaled <= *w {
-        *w = scaled;
-    } else {
-        *k_t += (scaled - *w) * 0.5 * math::sqrt(1.0 + *eta_t * *eta_t);
     }
 }
 

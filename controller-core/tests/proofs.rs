@@ -16,6 +16,9 @@ use crate::support::coq::{self, PROOFS, Value};
 use crate::support::gappa::Rounding;
 use crate::support::{Random, hummingbird};
 use controller_core::allocation::{QuadX, Rotors};
+use controller_core::certificate::Certificate;
+use controller_core::certificate::extended::ExtendedCertificate;
+use controller_core::certificate::inequality::Inequality;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::extended::parameters::ExtendedParameters;
 use nalgebra::{Quaternion, Vector2, Vector3};
@@ -26,16 +29,21 @@ use std::path::Path;
 const TRIALS: usize = 2_000;
 
 /// Every comparison.
-const COMPARISONS: [fn(); 25] = [
-    extended::the_potential_and_the_share_of_damping_are_those_of_the_proofs,
+const COMPARISONS: [fn(); 31] = [
     tick::the_thrust_range_is_that_of_the_proofs,
     tick::the_budgets_rows_are_those_of_the_proofs,
-    tick::the_budget_of_a_tick_is_that_of_the_proofs,
-    tick::a_ticks_torque_is_that_of_the_proofs,
+    tick::the_certificates_rows_of_torque_are_those_of_the_proofs,
+    tick::a_ticks_spending_is_that_of_the_proofs,
+    tick::the_laws_parts_and_their_order_are_those_of_the_proofs,
+    tick::no_tick_takes_a_rotor_out_of_its_range,
     extended::the_limiter_is_that_of_the_proofs,
+    extended::what_a_command_asks_of_the_frame_is_that_of_the_proofs,
     extended::the_ends_of_u_are_those_of_the_proofs,
-    extended::the_torques_beside_the_feedback_are_those_of_the_proofs,
-    extended::the_certificates_rows_of_the_attitude_are_those_of_the_proofs,
+    extended::the_tilts_error_and_its_pull_are_those_of_the_proofs,
+    extended::the_tilts_torque_is_that_of_the_proofs,
+    extended::the_heading_is_that_of_the_proofs,
+    extended::the_slowed_law_is_that_of_the_proofs,
+    extended::progress_is_that_of_the_proofs,
     paper::the_filters_are_those_of_the_proofs,
     paper::rotations_and_parameters_are_those_of_the_proofs,
     paper::the_switch_is_that_of_the_proofs,
@@ -51,33 +59,58 @@ const COMPARISONS: [fn(); 25] = [
     cells::the_bounds_on_the_third_axis_are_the_greatest_of_the_proofs_cells,
     rounding::the_limiter_rounds_as_in_the_proofs,
     rounding::a_rotors_command_rounds_as_in_the_proofs,
+    rounding::the_margins_size_is_that_of_the_proofs,
     rounding::filters_round_as_in_the_proofs,
 ];
 
 const OF_WHAT_IS_COMPARED: &str = "it says something of definitions that are compared, for all numbers";
 const OF_ALL_FUNCTIONS: &str = "it is about every function of time";
 const OF_THE_PROOF: &str = "a notion of the proof alone";
-const NOT_COMPUTED: &str = "no code computes V: the torque is its slope, and tests/extended_flows differentiates it";
+const NOT_COMPUTED: &str = "no code computes it: tests/extended_flows differentiates V along flows";
 const ONLY_PROOFS_NEED_IT: &str = "only a proof needs it: where a bound is reached, or by which weights it is shown";
 
 /// What stands in no number of the code: the file, the names, and the reason.
-const NOT_COMPARED: [(&str, &[&str], &str); 33] = [
+const NOT_COMPARED: [(&str, &[&str], &str); 37] = [
     ("Allocation", &["torque_fits"], "the rows imply it: rows_suffice; nothing asks for it"),
-    ("Allocation", &["rotors_within_range", "rows_suffice", "no_rotor_beyond_its_range"], OF_WHAT_IS_COMPARED),
     (
-        "Limiter",
-        &["rate_after_third_step", "turning_within_budget", "last_step_does_not_speed_up"],
+        "Allocation",
+        &["zero_is_left", "braking_is_left", "thrust_is_upwards", "rows_suffice", "floor_share_keeps"],
         OF_WHAT_IS_COMPARED,
     ),
-    ("Envelope", &["turned_inwards"], OF_WHAT_IS_COMPARED),
-    ("Envelope", &["never_positive", "rate_is_bounded", "rate_of_the_limiter"], OF_ALL_FUNCTIONS),
-    ("Tick", &["kept"], OF_THE_PROOF),
-    ("Tick", &["a_tick_keeps_a_row", "a_tick_keeps_the_rows", "a_tick_keeps_rotors_in_range"], OF_WHAT_IS_COMPARED),
-    ("Tick", &["covered_row_holds"], "a tick leaves covered rows out: its budget is compared with that of all rows"),
-    ("Damping", &["share_positive"], OF_WHAT_IS_COMPARED),
-    ("Attitude", &["level_in_a_cell"], OF_WHAT_IS_COMPARED),
-    ("Attitude", &["jump_falls"], NOT_COMPUTED),
-    ("Descent", &["V", "descent"], NOT_COMPUTED),
+    ("Allocation", &["total"], "of a pseudo-inverse: allocation/geometry/tests.rs multiplies it out"),
+    (
+        "Allocation",
+        &["implied_row_holds"],
+        "a tick leaves such rows out: its spending is compared with that of all rows",
+    ),
+    ("Spending", &["spares"], OF_THE_PROOF),
+    (
+        "Spending",
+        &[
+            "row_after_spending",
+            "spares_after",
+            "kept_is_there",
+            "share_positive",
+            "a_tick_keeps_the_rows",
+            "a_turn_keeps_the_reserve",
+            "a_tick_keeps_rotors_in_range",
+        ],
+        OF_WHAT_IS_COMPARED,
+    ),
+    (
+        "Limiter",
+        &["cone_is_kept", "rate_after_third_step", "turned_inwards", "share_turns_inwards", "share_keeps_the_rate"],
+        OF_WHAT_IS_COMPARED,
+    ),
+    ("Envelope", &["never_positive", "length_is_bounded", "rate_of_the_limiter"], OF_ALL_FUNCTIONS),
+    ("Attitude", &["tilt_moves", "angle_moves", "error_rates"], OF_ALL_FUNCTIONS),
+    ("Attitude", &["side_within_sine"], "it is about every two vectors across each other"),
+    ("Attitude", &["pull_of_the_angle", "only_the_target", "angle_below"], OF_WHAT_IS_COMPARED),
+    ("Attitude", &["leaving_falls", "switch_falls", "kappa", "V", "descent", "v_falls"], NOT_COMPUTED),
+    ("Heading", &["speed_is_braked", "got_has_the_sign", "braking_is_part"], OF_WHAT_IS_COMPARED),
+    ("Heading", &["energy", "energy_falls"], NOT_COMPUTED),
+    ("Fallback", &["filter_stays"], OF_ALL_FUNCTIONS),
+    ("Fallback", &["progress", "progress_ends", "progress_is_bounded"], OF_WHAT_IS_COMPARED),
     ("Mrp", &["both_lifts", "rotation_of_phi", "rotation_of_shadow"], OF_WHAT_IS_COMPARED),
     ("Adjoint", &["flight", "greatest_linear_function"], OF_ALL_FUNCTIONS),
     ("Reachable", &["G", "W", "peak"], ONLY_PROOFS_NEED_IT),
@@ -108,10 +141,17 @@ const NOT_COMPARED: [(&str, &[&str], &str); 33] = [
     ("SharpCover", &["sharp_bound_covers"], OF_ALL_FUNCTIONS),
     ("SharpFlight", &["sharp_bound_of_a_flight"], OF_ALL_FUNCTIONS),
     ("Near", &["near", "share"], OF_THE_PROOF),
-    ("Rounding", &["rounded_command_at_least", "rounded_command_at_most"], OF_WHAT_IS_COMPARED),
+    ("Rounding", &["taken", "yaw_takes"], OF_THE_PROOF),
     (
         "Rounding",
-        &["rounded_floor_below_ceiling", "rounded_floor_below_limit", "thrust_meets_all"],
+        &[
+            "rounded_command_within",
+            "rounded_floor_below_ceiling",
+            "rounded_floor_below_limit",
+            "rounded_margin_below_ceiling",
+            "thrust_meets_all",
+            "yaw_meets_all",
+        ],
         OF_WHAT_IS_COMPARED,
     ),
 ];
@@ -174,12 +214,27 @@ fn of(numbers: &[(&'static str, f32)]) -> Vec<(&'static str, f64)> {
     numbers.iter().map(|(name, x)| (*name, f64::from(*x))).collect()
 }
 
-fn torque(v: &Vector3<f64>) -> Value {
-    Value::record(&[("about_x", v.x), ("about_y", v.y), ("about_z", v.z)])
+fn field<'a>(record: &'a Value, name: &str) -> &'a Value {
+    let Value::Record(fields) = record else { panic!("a record") };
+    &fields[name]
 }
 
+fn certificate() -> ExtendedCertificate {
+    let Certificate::Extended(found) = Certificate::new(&extended_law()).unwrap() else { panic!("the extended law") };
+    found
+}
+
+fn row<'a>(certificate: &'a ExtendedCertificate, name: &str) -> &'a Inequality {
+    certificate.inequalities.iter().find(|row| row.name.starts_with(name)).unwrap()
+}
+
+/// A vector across an axis.
 fn plane(v: &Vector2<f32>) -> Value {
-    Value::record(&[("x", f64::from(v.x)), ("y", f64::from(v.y))])
+    across([v.x, v.y].map(f64::from))
+}
+
+fn across([x, y]: [f64; 2]) -> Value {
+    Value::record(&[("x", x), ("y", y), ("z", 0.0)])
 }
 
 fn unit_quaternion(random: &mut Random) -> Quaternion<f32> {

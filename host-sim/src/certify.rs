@@ -1,7 +1,8 @@
 //! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
 //! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
-//! extended law's. The sampled loops below them decide about small motions. A scenario is certified if both hold
-//! ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies.
+//! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones. A scenario
+//! is certified if all three hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a
+//! vehicle flies.
 
 mod advice;
 mod blame;
@@ -18,6 +19,7 @@ use controller_core::certificate::paper::PaperCertificate;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
+use scenario::large_motions::Farthest;
 use scenario::remarks::remarks;
 use scenario::stability::{LoopMargin, Shortfall};
 use scenario::verdict::Verdict;
@@ -39,7 +41,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
         Certificate::Extended(certificate) => text += &extended(certificate),
     }
     text += "\n";
-    text += &loops(scenario, &verdict);
+    text += &loops(scenario, &verdict)?;
     if let LawParameters::Extended(law) = scenario.configuration.law() {
         text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
     }
@@ -54,16 +56,17 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::of(scenario)?))
 }
 
-/// The failing inequalities and loops; without any, the tightest inequality.
+/// The failing inequalities, loop and flight; without any, the tightest inequality.
 fn limits(verdict: &Verdict) -> String {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();
     let what = |inequality: &Inequality| advice::of_inequality(inequality.name).to_owned();
-    let (begins, mut all): (_, Vec<String>) = match (certificate.tightest(), verdict.lacking()) {
-        (Some(tightest), None) if failing.is_empty() => ("What limits it", vec![what(&tightest)]),
+    let (begins, mut all): (_, Vec<String>) = match certificate.tightest() {
+        Some(tightest) if verdict.refusal().is_none() => ("What limits it", vec![what(&tightest)]),
         _ => ("What it fails in", failing.into_iter().map(what).collect()),
     };
     all.extend(verdict.lacking().map(|lack| advice::of_loop(&lack)));
+    all.extend(verdict.astray().map(|_| advice::OF_FLIGHT.to_owned()));
     all.iter().map(|what| format!("{begins}: {what}\n")).collect()
 }
 
@@ -94,13 +97,10 @@ fn extended(certificate: &ExtendedCertificate) -> String {
         row.extend(required(inequality));
         rows.push(row);
     }
-    let ExtendedBounds { rates: [rate, swing], thrust, torque, .. } = &certificate.bounds;
+    let ExtendedBounds { thrust, torque, .. } = &certificate.bounds;
     aligned(&rows)
         + &format!(
-            "Across the thrust axis |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in \
-             [{}, {}] N, torques {}, {}, {} N m\n",
-            short(*rate),
-            short(*swing),
+            "thrust in [{}, {}] N, torques {}, {}, {} N m\n",
             short(thrust.least),
             short(thrust.greatest),
             short(torque.x),
@@ -127,6 +127,14 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         Some(Shortfall::Unstable { .. }) => "NOT stable about hover".to_owned(),
         Some(_) => "stable about hover, but with too LITTLE margin".to_owned(),
     };
+    let flights = match verdict.flights() {
+        Some(Ok(Farthest { start, distance })) => format!(
+            "large motions (flights of a model without air): every one arrives; on its way at most {} m off, from {start}\n",
+            short(distance)
+        ),
+        Some(Err(_)) => "large motions (flights of a model): one does NOT arrive\n".to_owned(),
+        None => String::new(),
+    };
     let tightest = certificate.tightest().map_or(String::new(), |tightest| {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
@@ -143,7 +151,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         Certificate::Extended(certificate) => format!("extended law: {}", failing(&certificate.inequalities)),
     };
     format!(
-        "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{forms}\n\
+        "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{flights}{forms}\n\
          {tightest}{projection}{remarks}",
         scenario.name,
     )
@@ -190,7 +198,7 @@ fn rotors(certificate: &PaperCertificate) -> String {
     aligned(&rows)
 }
 
-fn loops(scenario: &Scenario, verdict: &Verdict) -> String {
+fn loops(scenario: &Scenario, verdict: &Verdict) -> Result<String, ParameterError> {
     let configuration = &scenario.configuration;
     let head = ["sampled loop, small motions", "spectral radius", "gain down to", "gain up to", "more delay", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
@@ -214,7 +222,16 @@ fn loops(scenario: &Scenario, verdict: &Verdict) -> String {
         short(1e3 * scenario.delay()),
         short(f64::from(configuration.vehicle().mass))
     );
-    aligned(&rows) + &timing
+    let lag = if scenario.rotor_lag > 0.0 && verdict.lacking().is_none() { lag(scenario)? } else { String::new() };
+    Ok(aligned(&rows) + &timing + &lag)
+}
+
+/// The rotor lags that small motions bear, as the law believes in the file's.
+fn lag(scenario: &Scenario) -> Result<String, ParameterError> {
+    let [least, greatest] = scenario.loops()?.lag_factors();
+    let from = if least > 0.0 { format!("{} times that lag", short(least)) } else { "none at all".to_owned() };
+    let to = if greatest.is_finite() { format!("{} times", short(greatest)) } else { "ten times and more".to_owned() };
+    Ok(format!("rotors whose lag is not what the file says: stable from {from} to {to}\n"))
 }
 
 #[cfg(test)]

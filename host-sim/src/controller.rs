@@ -4,9 +4,9 @@ use crate::rivals::pilot::RivalPilot;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::extended::memory::Estimates;
-use controller_core::law::Law;
+use controller_core::law::{Command, Law};
 use controller_core::reference::Reference;
-use controller_core::state::{State, Wrench};
+use controller_core::state::State;
 
 /// A controller in a flight.
 #[allow(clippy::large_enum_variant)] // ours flies by the million: nothing stands between it and the flight
@@ -24,22 +24,23 @@ impl Controller {
     /// # Errors
     /// Names the field of `state` or `reference` that cannot be used.
     #[inline(always)]
-    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        match self {
+    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Command, Diagnostics), InputError> {
+        let (wrench, diagnostics) = match self {
             Self::Ours(law) => law.step(state, reference),
             Self::Rival(rival) => rival.step(state, reference),
-        }
+        }?;
+        Ok((Command { wrench, mrp: diagnostics.mrp }, diagnostics))
     }
 
-    /// One tick, with the wrench alone.
+    /// One tick, with the command alone.
     ///
     /// # Errors
     /// As [`Self::step`].
     #[inline]
-    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, ()), InputError> {
+    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<(Command, ()), InputError> {
         match self {
-            Self::Ours(law) => law.command(state, reference).map(|command| (command.wrench, ())),
-            Self::Rival(rival) => rival.step(state, reference).map(|(wrench, _)| (wrench, ())),
+            Self::Ours(law) => law.command(state, reference).map(|command| (command, ())),
+            Self::Rival(_) => self.step(state, reference).map(|(command, _)| (command, ())),
         }
     }
 
@@ -61,11 +62,11 @@ impl Controller {
         }
     }
 
-    /// How often the extended law's net came into force.
+    /// How often the extended law's fallback came.
     #[must_use]
-    pub fn net_times(&self) -> u32 {
+    pub fn fallback_times(&self) -> u32 {
         match self {
-            Self::Ours(law) => law.net_times(),
+            Self::Ours(law) => law.fallback_times(),
             Self::Rival(_) => 0,
         }
     }

@@ -17,9 +17,10 @@ use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
 use controller_core::error::{InputError, ParameterError};
 use controller_core::extended::memory::Estimates;
-use controller_core::law::Law;
+use controller_core::law::{Command, Law};
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};
+use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::BodyState;
 use std::fmt;
@@ -76,6 +77,8 @@ pub struct Brief {
     pub reference: Reference,
     /// The law's command, as in [`Tick::wrench`].
     pub wrench: Wrench,
+    /// theta~, the error from the law's desired attitude.
+    pub mrp: Vector3<f32>,
     /// Whether the limits or the rotors cut something of it.
     pub clipped: bool,
     /// Thrust commanded of each rotor, N; empty without rotors.
@@ -84,8 +87,8 @@ pub struct Brief {
     pub standing: bool,
 }
 
-/// A law's wrench, and its diagnostics.
-type Answer<D> = Result<(Wrench, D), InputError>;
+/// A law's command, and its diagnostics.
+type Answer<D> = Result<(Command, D), InputError>;
 
 /// A flight that could not go on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -188,10 +191,10 @@ impl Flight {
         }
     }
 
-    /// How often the extended law's net came into force so far.
+    /// How often the extended law's fallback came so far.
     #[must_use]
-    pub fn net_times(&self) -> u32 {
-        self.controller.net_times()
+    pub fn fallback_times(&self) -> u32 {
+        self.controller.fallback_times()
     }
 
     /// One control tick and the plant's motion until the next.
@@ -239,7 +242,7 @@ impl Flight {
         let reference = self.trajectory.at(time_us);
         let measured = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
         let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &reference);
-        let (wrench, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
+        let (Command { wrench, mrp }, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
         let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         // The motion was then another than the wrench alone would have made it.
@@ -247,7 +250,7 @@ impl Flight {
             self.controller.hold_estimates();
         }
         self.tick += 1;
-        Ok((measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, standing }, more))
+        Ok((measured, Brief { time_us, state, reference, wrench, mrp, clipped, rotor_thrusts, standing }, more))
     }
 
     #[inline]

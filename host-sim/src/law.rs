@@ -143,6 +143,12 @@ impl LawServer {
         Ok(())
     }
 
+    /// What the last answer was divided by: the wrench that acts is so many times the answer, as far as the law knows.
+    #[must_use]
+    pub fn thrust_scale(&self) -> f32 {
+        self.law.thrust_scale()
+    }
+
     /// The wrench for one line, or why the line is invalid.
     ///
     /// # Errors

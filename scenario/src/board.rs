@@ -30,11 +30,11 @@ pub const ROTORS: usize = 4;
 /// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not
 /// arm: why, if so.
 ///
-/// One whose sampled loops are unstable or without margin is refused: no board works that out, so nothing else would
-/// keep it on the ground.
+/// One whose sampled loops are unstable or without margin, or whose model goes astray, is refused: no board works that
+/// out, so nothing else would keep it on the ground.
 ///
 /// # Errors
-/// One line: the file, the field or the loop, and what is wrong.
+/// One line: the file, the field, the loop or the flight, and what is wrong.
 pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> {
     let rate = 1.0 / scenario.timing.period();
     if (rate - RATE).abs() > 1e-9 {
@@ -55,6 +55,9 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
         return Err(format!(
             "{name}: {lack}; what cannot be flown is not built (a board's body rates are up to {late:.1} ms late)"
         ));
+    }
+    if let Some(astray) = verdict.astray() {
+        return Err(format!("{name}: {astray}; what cannot be flown is not built"));
     }
     Ok(verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
 }
@@ -221,7 +224,7 @@ mod tests {
             let law = factors.law(study.configuration.law(), study.configuration.vehicle()).unwrap();
             let LawParameters::Extended(law) = law else { panic!() };
             let p = &law.parameters;
-            p.w / 4.0 + p.k_t / (2.0 * p.eta_t.hypot(1.0))
+            p.k_tilt
         };
         for percent in Percent::all() {
             let factor = stiffness(percent) / stiffness(Percent::FULL);

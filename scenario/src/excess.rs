@@ -4,12 +4,10 @@ use crate::file::Scenario;
 use crate::path::Place;
 use crate::trajectory::stretch::{stretch, stretched};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::airframe::flyable;
-use controller_core::configuration::LawParameters;
 use controller_core::reference::{Reference, ReferenceBounds};
 use std::fmt;
 
-/// The greatest stretch that is looked for under the paper's law, and how finely.
+/// The greatest stretch that is looked for, and how finely.
 const MOST: f64 = 50.0;
 const HALVINGS: u32 = 12;
 /// Instants looked at.
@@ -49,12 +47,8 @@ impl Excess {
     }
 }
 
-/// Bounds that certify: under the extended law those of the vehicle itself, so that a path's beginning and end fit as
-/// well; under the paper's, which has none, those of the reference flown as slowly as it takes.
+/// Bounds that certify: those of the reference flown as slowly as it takes.
 fn allowed(scenario: &Scenario, own: &ReferenceBounds) -> Option<ReferenceBounds> {
-    if let (LawParameters::Extended(law), Some(airframe)) = (scenario.configuration.law(), scenario.airframe()) {
-        return Some(flyable(&airframe, *law, &ReferenceBounds::REST)).filter(|bounds| certifies(scenario, bounds));
-    }
     let (mut fails, mut holds) = (1.0_f64, MOST);
     for _ in 0..HALVINGS {
         let middle = (fails * holds).sqrt();

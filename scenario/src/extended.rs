@@ -16,6 +16,19 @@ use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 
+/// Constants that the law had once, and what is in their place.
+const RETIRED: [(&str, &str); 9] = [
+    ("w", "k_tilt is the tilt's stiffness, c_1 the heading's"),
+    ("eta", "nothing is needed in its place"),
+    ("k_t", "k_tilt is the tilt's stiffness"),
+    ("m_t", "m_tilt is the level of the tilt's feedback"),
+    ("eta_t", "nothing is needed in its place"),
+    ("m_all", "m_tilt is the level of the tilt's feedback; damping takes what torque is left"),
+    ("k_omega_z", "c_2 is the heading's damping"),
+    ("m_omega_z", "yaw takes what torque is left"),
+    ("turn_acceleration", "it follows from the rotors' torque"),
+];
+
 /// Reads both sections for `airframe`, from which missing constants follow.
 ///
 /// # Errors
@@ -24,6 +37,7 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
     let mut given = NOTHING_GIVEN;
     for name in ["gains", "estimates"] {
         let Some(section) = root.optional_section(name)? else { continue };
+        refuse_retired(&section, name)?;
         let read = constants::read(root, &section, name, &ExtendedParameters::TABLE)?;
         given = core::array::from_fn(|place| read[place].or(given[place]));
     }
@@ -32,6 +46,17 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
     Controller::check_period(&parameters, airframe.period).map_err(|error| root.refused(&error))?;
     check_delay(root, &airframe.actuators, airframe.period)?;
     Ok(ExtendedLaw { parameters, actuators: airframe.actuators })
+}
+
+/// Refuses a constant that the law no longer has, and names what is in its place.
+fn refuse_retired(section: &Section, name: &str) -> Result<(), FieldError> {
+    match RETIRED.iter().find(|(key, _)| section.has(key)) {
+        Some((key, instead)) => {
+            let problem = format!("the law no longer has it: {instead}; leave it out, and a formula takes its place");
+            Err(FieldError::new(format!("{name}.{key}"), problem))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses a delay longer than the memory of the law's actuator model.

@@ -39,6 +39,10 @@ use slopes::Slopes;
 /// The longest period between ticks, s; the law's own limit.
 const LONGEST_PERIOD: f32 = 0.1;
 
+/// The factors on the lag that are looked at: powers of this, and of its inverse.
+const LAG_STEP: f64 = 1.05;
+const LAG_STEPS: i32 = 47;
+
 /// The greatest delay looked at, samples: the delay line is part of the matrix.
 pub const GREATEST_DELAY: f32 = 64.0;
 
@@ -115,7 +119,6 @@ pub struct LoopReport {
 /// A vehicle, its law and its timing, as far as small motions are concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopModel {
-    inertia: [f64; 3],
     slopes: Slopes,
     timing: Timing,
     /// Of the filter that the velocity comes from, rad/s; none if it is known.
@@ -139,7 +142,7 @@ impl LoopModel {
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
         require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::Above(GREATEST_DELAY))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        Ok(Self { inertia, slopes: Slopes::of(law), timing, velocity_bandwidth: None })
+        Ok(Self { slopes: Slopes::of(law, inertia), timing, velocity_bandwidth: None })
     }
 
     /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`,
@@ -149,11 +152,11 @@ impl LoopModel {
         Self { velocity_bandwidth: Some(bandwidth), ..*self }
     }
 
-    /// The same loops with k_p and k_v multiplied by `factor`: stable for all factors from one to a number, they have
-    /// that gain margin at the position feedback. The gains need not be ones that may fly.
+    /// The same loops with k_p and k_v multiplied by these factors: stable for all pairs of equal factors from one to a
+    /// number, they have that gain margin at the position feedback. The gains need not be ones that may fly.
     #[must_use]
-    pub fn with_position_feedback(&self, factor: f64) -> Self {
-        Self { slopes: self.slopes.with_position_feedback(factor), ..*self }
+    pub fn with_position_feedback(&self, factors: [f64; 2]) -> Self {
+        Self { slopes: self.slopes.with_position_feedback(factors), ..*self }
     }
 
     /// Spectral radius and margins of one loop.
@@ -176,6 +179,18 @@ impl LoopModel {
         LoopReport { axis, spectral_radius, margins }
     }
 
+    /// The least and the greatest factor on the rotors' lag, while the law believes in the one it was given, between
+    /// which every loop is stable; zero or infinite where none destabilises it.
+    #[must_use]
+    pub fn lag_factors(&self) -> [f64; 2] {
+        let is_stable = |factor: f64| {
+            let timing = Timing { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
+            Axis::ALL.into_iter().all(|axis| Self { timing, ..*self }.spectral_radius(axis) < 1.0)
+        };
+        let first_unstable = |step: f64| (1..=LAG_STEPS).map(|n| step.powi(n)).find(|factor| !is_stable(*factor));
+        [first_unstable(1.0 / LAG_STEP).unwrap_or(0.0), first_unstable(LAG_STEP).unwrap_or(f64::INFINITY)]
+    }
+
     /// All loops, in the order of [`Axis::ALL`].
     #[must_use]
     pub fn reports(&self) -> [LoopReport; 6] {
@@ -195,7 +210,7 @@ impl LoopModel {
         let (slopes, period) = (&self.slopes, self.timing.period);
         let actuator = slopes.actuator(period);
         let (across, vertical) = (slopes.estimated_across(period), slopes.estimated_vertical(period));
-        let torque = |body: usize| slopes.torque(body, self.inertia[body], period);
+        let torque = |body: usize| slopes.torque(body, period);
         let tracker = self.velocity_bandwidth.map(|bandwidth| Tracker::new(bandwidth * period));
         match axis {
             Axis::Roll => Law::attitude(torque(0), across, actuator),

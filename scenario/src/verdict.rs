@@ -1,38 +1,47 @@
 //! Whether a scenario may fly.
 //!
-//! Two things must hold, and neither says anything about the other:
+//! Three things must hold, and none says anything about the others:
 //!
 //! - the *certificate* is a proof about commands: whatever the vehicle does, the law never asks for more than it has. A
 //!   vehicle whose rotors follow a second late falls with every command within its limits.
 //! - the [sampled loops](crate::sampled_loop) are an analysis of small motions about hover: with this period, delay and
 //!   lag they die out, with [`LoopMargin::LEAST`] to spare. It knows nothing of limits and large angles.
+//! - the [model flights](crate::large_motions) of the extended law show that large motions die out too, from a few starts.
+//!   The paper's law, which swings for minutes about a target that is far away, has its theorem.
 //!
-//! Together they are what can be said without flying. Neither is a proof that a recovery succeeds.
+//! Together they are what can be said without the vehicle. None is a proof that a recovery succeeds.
 
 use crate::file::Scenario;
+use crate::large_motions::{self, Astray, Farthest};
 use crate::sampled_loop::LoopReport;
 use crate::stability::{Lack, LoopMargin};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
+use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use std::fmt;
 
-/// Certificate and sampled loops of one scenario.
+/// Certificate, sampled loops and model flights of one scenario.
 #[derive(Debug, Clone)]
 pub struct Verdict {
     /// The certificate, and with it the key to flight where it holds.
     proof: Result<Box<Certified>, Box<Certificate>>,
     loops: [LoopReport; 6],
+    /// The model flights; none are flown where one of the others does not hold.
+    flights: Option<Result<Farthest, Astray>>,
 }
 
-/// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin.
+/// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin, or else the first
+/// model flight that does not arrive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// An inequality of the certificate.
     Inequality(Inequality),
     /// A sampled loop.
     Loop(Lack),
+    /// A model flight.
+    Flight(Astray),
 }
 
 impl Verdict {
@@ -46,14 +55,23 @@ impl Verdict {
             Err(Refused::Fails(certificate)) => Err(Box::new(certificate)),
             Err(Refused::Undefined(error)) => return Err(error),
         };
-        Ok(Self { proof, loops: scenario.loops()?.reports() })
+        let loops = scenario.loops()?.reports();
+        let is_extended = matches!(scenario.configuration.law(), LawParameters::Extended(_));
+        let flights = match &proof {
+            Ok(certified) if is_extended && LoopMargin::LEAST.first_lacking(&loops).is_none() => {
+                Some(large_motions::flown(certified, &scenario.loop_timing())?)
+            }
+            _ => None,
+        };
+        Ok(Self { proof, loops, flights })
     }
 
     /// Why the scenario may not fly; none if it may.
     #[must_use]
     pub fn refusal(&self) -> Option<Refusal> {
         let failing = self.certificate().inequalities().find(|inequality| !inequality.holds());
-        failing.copied().map(Refusal::Inequality).or_else(|| self.lacking().map(Refusal::Loop))
+        let failing = failing.copied().map(Refusal::Inequality);
+        failing.or_else(|| self.lacking().map(Refusal::Loop)).or_else(|| self.astray().map(Refusal::Flight))
     }
 
     /// The certificate, whether it holds or not.
@@ -74,6 +92,18 @@ impl Verdict {
         &self.loops
     }
 
+    /// The model flights, if any were flown: the one that was farthest off, or the first that does not arrive.
+    #[must_use]
+    pub fn flights(&self) -> Option<Result<Farthest, Astray>> {
+        self.flights
+    }
+
+    /// The first model flight that does not arrive.
+    #[must_use]
+    pub fn astray(&self) -> Option<Astray> {
+        self.flights?.err()
+    }
+
     /// The first loop that is unstable, or else without [`LoopMargin::LEAST`].
     #[must_use]
     pub fn lacking(&self) -> Option<Lack> {
@@ -89,6 +119,7 @@ impl fmt::Display for Refusal {
                 write!(f, "certificate, {name}: requires {required:.4} {unit}, available {available:.4} {unit}")
             }
             Self::Loop(lack) => write!(f, "{lack}"),
+            Self::Flight(astray) => write!(f, "{astray}"),
         }
     }
 }

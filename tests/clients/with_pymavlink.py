@@ -196,7 +196,7 @@ def tuning(client):
     assert asked("GAIN_ATT_P", 130.0) == (130.0, ["GAIN_ATT_P: may be flown, from the next boot on"])
     kept, texts = asked("ROT_THR_MAX", 2.0)
     assert kept > 3.5 and texts[0] == "ROT_THR_MAX: refused, cannot be flown", (kept, texts)
-    assert "A1 thrust against force across: needs " in texts[1], texts
+    assert "R rotors' range: needs " in texts[1], texts
     kept, texts = asked("GAIN_ATT_D", 95.0)
     assert kept == 100.0 and texts == ["GAIN_ATT_D: allowed are 70 to 130 % by 10"], (kept, texts)
     assert asked("GAIN_ATT_P", 100.0)[0] == 100.0

@@ -41,7 +41,7 @@ pub enum Failure {
     Updraft,
     /// An updraft that the law holds against, with poses and without.
     Thermal,
-    /// Wind that is more than the law can hold against, for 15 s.
+    /// Wind that blows the vehicle out of its place before the law leans into it, for 12 s.
     Wind,
     /// A rotor gives 80 % of its command.
     RotorWeak,
@@ -107,12 +107,12 @@ const TIPPING: f64 = 0.5;
 /// How long hands take to stop what they take hold of, s.
 const GRASPING: f64 = 0.05;
 
-/// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study has 24 m/s^2 across, of
-/// which it leaves the last ones to its feedback, metres off, and 6.2 m/s^2 downwards.
+/// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study holds 27.5 m/s^2 across,
+/// beyond which it is carried away, and has 6.2 m/s^2 downwards.
 const GUST: (f64, f64) = (28.0, 2.5);
 const UPDRAFT: (f64, f64) = (7.2, 5.0);
 const THERMAL: (f64, f64) = (2.8, 5.0);
-const WIND: (f64, f64) = (23.0, 15.0);
+const WIND: (f64, f64) = (26.0, 12.0);
 
 /// What holds a vehicle down, m/s^2: more than its thrust.
 const HELD_DOWN: f64 = 30.0;

@@ -281,14 +281,14 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
     let configuration = without_estimates(&paper_vehicle().configuration);
     assert_eq!(*configuration.vehicle(), vehicle());
     let ExtendedLaw { parameters: p, .. } = extended(&configuration);
-    let tilt = p.w / 4.0 + p.k_t / (2.0 * p.eta_t.hypot(1.0));
-    let yaw = p.w * p.eta / (4.0 * (1.0 + p.eta));
+    let inertia = vehicle().inertia.z;
+    let [tilt, yaw] = [[p.k_tilt / 4.0, p.k_omega_t], [inertia * p.c_1, inertia * p.c_2]];
     let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL };
     let model = LoopModel::new(&vehicle(), configuration.law(), timing).unwrap();
     for axis in Axis::ALL {
         let (across, vertical) = ([p.k_p_across, p.k_v_across], [p.k_p_vertical, p.k_v_vertical]);
         let [k_p, k_v] = if axis == Axis::Vertical { vertical } else { across };
-        let (stiffness, k_omega) = if axis == Axis::Yaw { (yaw, p.k_omega_z) } else { (tilt, p.k_omega_t) };
+        let [stiffness, k_omega] = if axis == Axis::Yaw { yaw } else { tilt };
         let k_theta = 16.0 * stiffness;
         let (k_f, k_s) = (p.k_f, p.k_s);
         let gains = GainParameters { k_p, k_v, k_f, k_s, k_theta, k_omega, ..GainParameters::TABLE_1 };

@@ -4,14 +4,14 @@ pub mod oracle;
 pub mod rounding;
 
 use crate::support::random::{self, ChaCha8Rng};
+use controller_core::allocation::geometry::{Rotor, Spin};
 use controller_core::allocation::{QuadX, Rotors};
 use controller_core::certificate::Certificate;
-use controller_core::certificate::extended::{ExtendedBounds, greatest_potential};
+use controller_core::certificate::extended::ExtendedBounds;
 use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters};
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
-use controller_core::path_lifting::switching_magnitude;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -24,31 +24,35 @@ pub fn vehicle(name: &str) -> Scenario {
     Scenario::load(&folder.join(format!("{name}.toml"))).unwrap()
 }
 
+/// The vehicles of `vehicles/published/`, in the order of their names.
+pub fn published() -> Vec<Scenario> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles/published");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files.iter().map(|file| Scenario::load(file).unwrap()).collect()
+}
+
 /// The paper's vehicle and flight under the extended law, without rotors.
 pub fn paper_vehicle() -> Scenario {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     Scenario::load(&folder.join("paper-extended.toml")).unwrap()
 }
 
-/// Constants within a factor of four of `formulas` wherever the law allows, with any hysteresis and any share of yaw
-/// above what the hysteresis asks for; the potential below M_all, as the certificate has it.
+/// Constants within a factor of four of `formulas` wherever the law allows, with any hysteresis that leaves the side to
+/// the region beyond a quarter turn.
 pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, vehicle: &Vehicle) -> Extended {
     let mut values = formulas.values();
     for (value, constant) in values.iter_mut().zip(&ExtendedParameters::TABLE) {
         let around = *value * random::log_uniform(rng, 0.25, 4.0);
         *value = around.clamp(constant.range.least, constant.range.greatest);
     }
-    let delta = random::log_uniform(rng, 0.005, 1.0);
-    let qbar = switching_magnitude::<f64>(delta) as f32;
     let p = ExtendedParameters::from_values(values);
     let a_down = p.a_down.min(0.9 * vehicle.gravity);
     let p = ExtendedParameters {
-        delta,
-        eta: (qbar * random::log_uniform(rng, 1.1, 8.0)).min(0.5 + 0.5 * qbar),
+        delta: random::log_uniform(rng, 0.005, 0.4),
         alpha: formulas.alpha,
         a_down,
-        turn_reserve: p.turn_reserve.min(p.turn_acceleration),
-        c_1: p.c_1.min(20.0 * p.c_2),
+        c_1: p.c_1.min(8.0 * p.c_2),
         force_up: p.force_up.min(0.9 * a_down),
         force_across: p.force_across.min(0.9 * p.a_across),
         drag_across: if rng.random_bool(0.3) { 0.0 } else { random::log_uniform(rng, 0.1, 1.0) },
@@ -56,8 +60,7 @@ pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, ve
         scale_greatest: rng.random_range(1.0..1.4),
         ..p
     };
-    let pull = greatest_potential::<f64>(&Extended::new(p, vehicle).unwrap()) as f32;
-    Extended::new(ExtendedParameters { m_all: pull * random::log_uniform(rng, 1.01, 4.0), ..p }, vehicle).unwrap()
+    Extended::new(p, vehicle).unwrap()
 }
 
 /// A body of about half a kilogram.
@@ -79,11 +82,36 @@ pub fn random_configuration(rng: &mut ChaCha8Rng) -> Configuration {
 }
 
 fn configured(rng: &mut ChaCha8Rng) -> Option<Configuration> {
-    let vehicle = random_vehicle(rng);
     let [arm, slowest] = [random::log_uniform(rng, 0.08, 0.3), rng.random_range(0.0..300.0)];
     let quad =
         QuadX { arm, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: slowest, speed_max: 1500.0 };
-    let rotors = Rotors::quad_x(quad).unwrap();
+    with_rotors(Rotors::quad_x(quad).unwrap(), rng)
+}
+
+/// The same with four to eight rotors that differ from each other, about a centre of mass that is not their middle, if
+/// the law has constants for them.
+pub fn uneven(rng: &mut ChaCha8Rng) -> Option<Configuration> {
+    let number = rng.random_range(4..=8);
+    let rotors: Vec<Rotor> = (0..number)
+        .map(|place| {
+            let mut around = |value: f32, by: f32| value * random::log_uniform(rng, 1.0 / by, by);
+            let angle = (place as f32 + 0.5) / number as f32 * std::f32::consts::TAU * around(1.0, 1.05);
+            let [arm, coefficient, greatest] = [around(0.17, 1.3), around(5.57e-6, 1.2), around(12.0, 1.4)];
+            Rotor {
+                position: Vector3::new(angle.cos(), angle.sin(), 0.0) * arm,
+                spin: if place % 2 == 0 { Spin::Clockwise } else { Spin::CounterClockwise },
+                thrust_coefficient: coefficient,
+                drag_coefficient: around(1.36e-7, 2.0),
+                thrust_min: around(0.03, 2.0),
+                thrust_max: greatest,
+            }
+        })
+        .collect();
+    with_rotors(Rotors::new(&rotors).ok()?, rng)
+}
+
+fn with_rotors(rotors: Rotors, rng: &mut ChaCha8Rng) -> Option<Configuration> {
+    let vehicle = random_vehicle(rng);
     let thrust_max = vehicle.mass * vehicle.gravity * random::log_uniform(rng, 1.5, 12.0);
     let torque_max = Vector3::from_fn(|_, _| random::log_uniform(rng, 0.1, 3.0));
     let limits = Limits::new(LimitParameters { thrust_max, torque_max }, &vehicle).unwrap();
@@ -100,7 +128,7 @@ fn configured(rng: &mut ChaCha8Rng) -> Option<Configuration> {
     let parameters = defaults::constants(&airframe, &NOTHING_GIVEN);
     let bounds = defaults::reference_bounds(&airframe, &parameters);
     let law = ExtendedLaw { parameters: Extended::new(parameters, &vehicle).ok()?, actuators };
-    Some(Configuration::extended(vehicle, limits, law, bounds).unwrap().with_rotors(rotors).unwrap())
+    Configuration::extended(vehicle, limits, law, bounds).ok()?.with_rotors(rotors).ok()
 }
 
 /// The same with constants anywhere near the formulas': nothing is certified. In one case of five it has no rotors.
@@ -118,8 +146,20 @@ pub fn with_constants(configuration: &Configuration, change: impl FnOnce(&mut Ex
     let ExtendedLaw { parameters, actuators } = law(configuration);
     let mut changed = *parameters;
     change(&mut changed);
+    let parameters = Extended::new(changed, configuration.vehicle()).unwrap();
+    with_law(configuration, ExtendedLaw { parameters, actuators })
+}
+
+/// A configuration whose rotors deliver at once.
+pub fn with_ideal_actuators(configuration: &Configuration) -> Configuration {
+    let ExtendedLaw { parameters, .. } = law(configuration);
+    let law = ExtendedLaw { parameters, actuators: ActuatorParameters { lag: 0.0, delay: 0.0 } };
+    with_law(configuration, law)
+}
+
+/// A configuration with another law.
+fn with_law(configuration: &Configuration, law: ExtendedLaw) -> Configuration {
     let (vehicle, limits) = (*configuration.vehicle(), *configuration.limits());
-    let law = ExtendedLaw { parameters: Extended::new(changed, &vehicle).unwrap(), actuators };
     let changed = Configuration::extended(vehicle, limits, law, *configuration.bounds()).unwrap();
     match configuration.rotors() {
         Some(rotors) => changed.with_rotors(rotors.clone()).unwrap(),

@@ -9,6 +9,7 @@
 //! - [`Trial::noisy`]: the same, but the error is drawn anew each tick, normal.
 
 use controller_core::heading::Heading;
+use controller_core::law::Command;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::controller::Controller;
@@ -97,7 +98,8 @@ impl Trial {
             };
             let mut measured = state;
             measured.attitude = state.attitude * about_x(error);
-            let (wrench, _) = controller.step(&measured.measured(), &hover.at(tick * start.timing.period_us)).ok()?;
+            let (Command { wrench, .. }, _) =
+                controller.step(&measured.measured(), &hover.at(tick * start.timing.period_us)).ok()?;
             let torque = f64::from(wrench.torque.x);
             if (roll - PI).abs() < 0.1 {
                 course.left_after = time + period;

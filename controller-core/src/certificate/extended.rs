@@ -4,13 +4,13 @@
 //! | inequality | consequence |
 //! |---|---|
 //! | A_- < g - K_a3 | T1: u_z > 0, the law is defined |
-//! | (with d up to its levels) m \|g e3 + p_d'' - d\| < the rotors' thrust less the share of the torques near the target | A1: near the target the thrust is not cut |
-//! | \|p\| < Omega, \|q\| < 0.6 alpha_0 for the reference and the net's level | A1: near the target, and in the net, the frame is not limited |
-//! | \|w*_3\| < W_max and 0.4 alpha_0 over \|p\|, \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
-//! | N_0 + L alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
-//! | qbar < eta, 2 qbar M_t < w eta_t sqrt(1 - qbar^2) | E: the only equilibrium of the attitude is the target |
-//! | \|P\| < M_all | D: damping always has a share |
-//! | t (M_all + J_max alpha) + y J_33 alpha <= R with the reserve alpha = alpha_0 | T2: roll, pitch and yaw within the limits; R: every rotor within its range; T1: the thrust floor below T_max |
+//! | m \|g e3 + p_d'' + kappa p_d'\| < (1 - mu) m U at s_lo | A1: near the target the thrust is not cut |
+//! | \|p\| < Omega, \|q\| < alpha_0 for the reference and the slowed law | A1: near the target, and slowed, the thrust direction turns as it is wanted to |
+//! | the floor beside J_33 A and J_max alpha_0 < (1 - mu) m n | G: near the target the thrust is not raised |
+//! | \|w*_3'\| < A for the reference, with d up to F_h across and D_z+ | A1: the heading arrives |
+//! | M_theta + J_max alpha_0 < R(s) in every row | T2: roll and pitch within their limits; R: each rotor within its range; T1: the floor below T_max |
+//! | sqrt(2) D_t + J_max alpha_0 < R(s) | D: the greatest bias, about both axes, leaves the reserve |
+//! | J_33 A < the limit of yaw, and what the reference's thrust leaves | T2: yaw |
 //!
 //! Everything else about commands holds by construction ([`crate::extended`]): a tick uses only the available thrust
 //! and torque.
@@ -23,27 +23,21 @@ use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::error::ParameterError;
-use crate::extended::budget::{RATE_BEYOND, ROWS, THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{Bound, Row, THRUST_LEFT, TorqueBudget};
+use crate::extended::fallback::Slowed;
 use crate::extended::parameters::Extended;
-use crate::extended::position::net_level;
-use crate::extended::turning;
 use crate::math::real::Real;
-use crate::path_lifting::switching_magnitude;
 use crate::reference::ReferenceBounds;
+use crate::vehicle::Vehicle;
 use heapless::Vec;
 use nalgebra::Vector3;
 
-/// The number of cells of the tilt in the search for the potential's greatest torque.
-const POTENTIAL_CELLS: usize = 64;
-
 /// The greatest number of inequalities.
-const MOST: usize = 11 + ROWS;
+const MOST: usize = 11;
 
 /// Everything the extended law can command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExtendedBounds<R = f64> {
-    /// Greatest |omega_d12| and |omega'_d12|, rad/s and rad/s^2.
-    pub rates: [R; 2],
     /// Every thrust, N.
     pub thrust: Interval<R>,
     /// Greatest |torque| about each body axis, N m.
@@ -69,13 +63,11 @@ impl<R: Real> ExtendedCertificate<R> {
     #[inline(never)] // as the paper law's
     pub fn new(configuration: &Configuration, law: &ExtendedLaw) -> Result<Self, ParameterError> {
         let parameters = &law.parameters;
-        let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-        let budget = TorqueBudget::new(parameters, vehicle, limits, configuration.rotors());
+        let budget = TorqueBudget::new(parameters.floor_margin, configuration.limits(), configuration.rotors());
         let all = feasibility(configuration, parameters, &budget)
             .into_iter()
-            .chain(heading(configuration, parameters))
-            .chain(attitude(parameters))
-            .chain(torques(parameters, &budget));
+            .chain([heading(configuration, parameters)])
+            .chain(torques(configuration, parameters, &budget));
         Ok(Self { bounds: bounds(configuration, parameters, &budget), inequalities: collected(all) })
     }
 }
@@ -85,41 +77,57 @@ fn feasibility<R: Real>(
     configuration: &Configuration,
     parameters: &Extended,
     budget: &TorqueBudget<R>,
-) -> [Inequality<R>; 6] {
+) -> [Inequality<R>; 5] {
     let (vehicle, bounds) = (configuration.vehicle(), configuration.bounds());
     let [mass, gravity] = [vehicle.mass, vehicle.gravity].map(R::from);
     let p = parameters;
     let reference = with_drag(bounds, p.drag_across);
     let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
     let left = R::from(1.0) - THRUST_LEFT;
-    let [across, vertical] = [reference.horizontal_acceleration, bounds.vertical_acceleration].map(R::from);
-    let [force_across, up, down] = [p.force_across, p.force_up, p.force_down].map(R::from);
+    let vertical = R::from(bounds.vertical_acceleration);
+    let up = R::from(p.force_up);
 
-    let [each, taken] = budget.ceiling;
-    let limit = R::from(configuration.limits().thrust_max);
-    let available = left * (R::from(p.scale_least) * each - taken).lesser(limit);
-    let thrust = |across: R, vertical: R| mass * across.hypot(gravity + vertical) * raised;
+    let [tilt_reach, yaw_reach] = budget.reach;
+    let yaw = yaw_reach * R::from(vehicle.inertia.z) * R::from(p.yaw_acceleration);
+    let [bottom, _] = budget.ends;
+    let available = mass * budget.held(vehicle, configuration.limits(), R::from(p.scale_least));
 
-    // Across and along the vertical the net's level is reached at once.
-    let net = R::from(2.0).sqrt() * net_level::<R>(p, vehicle.gravity);
-    let [k_f, k_s] = [p.k_f, p.k_s].map(R::from);
-    let jerk = R::from(reference.jerk) + k_f * 2.0 * net;
-    let snap = R::from(reference.snap) + k_f * 2.0 * (k_s + k_f) * net;
-    let least = gravity - vertical - up - net;
+    let slowed = Slowed::<R>::of(p, vehicle.gravity);
+    let [slow_jerk, slow_snap] = slowed.derivatives(p);
+    let jerk = R::from(reference.jerk) + slow_jerk;
+    let snap = R::from(reference.snap) + slow_snap;
+    let least = gravity - vertical - up - slowed.level;
     let rate = jerk / least * raised;
     // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
-    let acceleration = (snap / least + rate * rate) * raised / R::from(turning::TURNED);
+    let acceleration = (snap / least + rate * rate) * raised;
     let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(R::from);
-    let floor = (budget.floor + budget.floor_per_acceleration * most) * raised;
+    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * most;
+    let floor = (R::from(p.scale_greatest) * bottom + budget.margin + yaw + turning) * raised;
     let weakest = left * mass * (gravity - vertical - up);
     [
         Inequality::new("T1 fall A_- < g - K_a3", "m/s^2", R::from(p.a_down), gravity - vertical),
-        Inequality::new("A1 thrust against force across", "N", thrust(across + force_across, vertical), available),
-        Inequality::new("A1 thrust against force down", "N", thrust(across, vertical + down), available),
+        Inequality::new(
+            "A1 thrust for the reference",
+            "N",
+            reference_thrust::<R>(configuration, p) * raised,
+            available,
+        ),
         Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
         Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), most),
         Inequality::new("G floor at the target < thrust", "N", floor, weakest),
     ]
+}
+
+/// The greatest thrust for the reference with its drag, N.
+fn reference_thrust<R: Real>(configuration: &Configuration, parameters: &Extended) -> R {
+    let (vehicle, bounds) = (configuration.vehicle(), configuration.bounds());
+    let across = R::from(with_drag(bounds, parameters.drag_across).horizontal_acceleration);
+    R::from(vehicle.mass) * across.hypot(R::from(vehicle.gravity) + R::from(bounds.vertical_acceleration))
+}
+
+/// J_max, kg m^2.
+fn tilt_inertia<R: Real>(vehicle: &Vehicle) -> R {
+    R::from(vehicle.inertia.x).greater(R::from(vehicle.inertia.y))
 }
 
 /// `value` where its divisor `least` is positive; otherwise a value with which no inequality holds.
@@ -143,7 +151,7 @@ fn at_least(value: f32, factor: f32, by: f32) -> f32 {
 }
 
 /// The heading of the reference, with the force that tilts u.
-fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [Inequality<R>; 2] {
+fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> Inequality<R> {
     let reference = with_drag(configuration.bounds(), parameters.drag_across);
     let forced = ReferenceBounds {
         horizontal_acceleration: at_least(reference.horizontal_acceleration, parameters.force_heading, 1.0),
@@ -155,59 +163,47 @@ fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> [In
     let alone = Reachable::new(one, one, R::from(0.0), gravity, &forced);
     let infinite = [R::from(f64::INFINITY); 2];
     let fastest = if alone.vertical_least.lower() > 0.0 { sharp::turning_rates(&alone, &forced) } else { infinite };
-    let [rate, acceleration] = fastest.map(|rate| rate * (one + ARITHMETIC_ALLOWANCE));
-    // The part of alpha_0 that q leaves carries the frame about rho; the law divides it by sqrt(5/4) |p| at most.
-    let turned = R::from(1.25).sqrt() * R::from(reference.jerk) / alone.vertical_least;
-    let carried =
-        (one - R::from(turning::TURNED)) * R::from(parameters.turn_reserve) / turned.greater(R::from(turning::SLOWEST));
-    let most = R::from(parameters.yaw_rate).lesser(carried);
-    [
-        Inequality::new("A1 heading rate for the reference", "rad/s", rate, most),
-        Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, R::from(parameters.yaw_acceleration)),
-    ]
+    let acceleration = fastest[1] * (one + ARITHMETIC_ALLOWANCE);
+    Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, R::from(parameters.yaw_acceleration))
 }
 
-/// Section 6 of the document: no attitude but the target is an equilibrium, and damping always has a share.
-fn attitude<R: Real>(parameters: &Extended) -> [Inequality<R>; 3] {
-    let qbar: R = switching_magnitude(parameters.delta);
-    let [w, eta, m_t, eta_t, m_all] =
-        [parameters.w, parameters.eta, parameters.m_t, parameters.eta_t, parameters.m_all].map(R::from);
-    let one = R::from(1.0);
-    let raised = one + ARITHMETIC_ALLOWANCE;
-    let pull = w * eta_t * (one - qbar * qbar).sqrt_of_rounded();
-    let potential = greatest_potential::<R>(parameters) * raised;
-    [
-        Inequality::new("E switch qbar < eta", "1", qbar * raised, eta),
-        Inequality::new("E tilt 2 qbar M_t < w eta_t sqrt(1 - qbar^2)", "N m", qbar * 2.0 * m_t * raised, pull),
-        Inequality::new("D potential |P| < M_all", "N m", potential, m_all),
-    ]
+/// The least R(s) of the rows about `bound`, N m; infinite without any.
+fn least_room<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>, bound: Bound) -> R {
+    let ends = [parameters.scale_least, parameters.scale_greatest].map(R::from);
+    let rows = budget.rows.iter().filter(|row| row.bound == bound);
+    rows.flat_map(|row| ends.map(|scale| row.room(scale))).fold(R::from(f64::INFINITY), R::lesser)
 }
 
-/// Greatest w r / 2 + G r sqrt(1 - r^2), N m, over r in [0, 1]: in cells, each term at the end where it is greatest.
-#[must_use]
-pub fn greatest_potential<R: Real>(parameters: &Extended) -> R {
+/// The torque of the tilt's feedback beside the reserve, and that of the greatest bias; yaw's beside the thrust for the
+/// reference.
+fn torques<R: Real>(
+    configuration: &Configuration,
+    parameters: &Extended,
+    budget: &TorqueBudget<R>,
+) -> impl Iterator<Item = Inequality<R>> {
+    let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let p = parameters;
-    let [w, k_t, m_t, eta_t] = [p.w, p.k_t, p.m_t, p.eta_t].map(R::from);
-    let rest = |r: R| (R::from(1.0) - r * r).sqrt_of_rounded();
-    let of = |cell: usize| {
-        let [near, far] = [cell, cell + 1].map(|end| R::from(end as f64 / POTENTIAL_CELLS as f64));
-        // k_t r / sqrt(M_t^2 + k_t^2 r^2) rises with r, sqrt(1 - r^2) / sqrt(1 - r^2 + eta_t^2) falls.
-        let rising = m_t * k_t * far / m_t.hypot(k_t * far);
-        w * 0.5 * far + rising * rest(near) / rest(near).hypot(eta_t)
-    };
-    (0..POTENTIAL_CELLS).map(of).fold(R::from(0.0), R::greater)
-}
-
-/// The rows of the budget, with the reserve.
-fn torques<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>) -> impl Iterator<Item = Inequality<R>> {
-    const NAMES: [&str; ROWS] =
-        ["T2 roll and pitch torque", "T2 yaw torque", "R rotors' range", "T1 thrust floor at the greatest torque"];
-    const UNITS: [&str; ROWS] = ["N m", "N m", "N", "N"];
-    let reserves: Vec<[R; 2], ROWS> =
-        collected(budget.reserves(R::from(parameters.m_all), R::from(parameters.turn_reserve)));
-    reserves.into_iter().zip(NAMES).zip(UNITS).map(|(([required, available], name), unit)| {
-        Inequality::new(name, unit, required * (R::from(1.0) + ARITHMETIC_ALLOWANCE), available)
-    })
+    let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
+    let taken = tilt_inertia::<R>(vehicle) * R::from(p.turn_reserve);
+    let rooms = [
+        ("T2 roll and pitch torque", Bound::Limit),
+        ("R rotors' range", Bound::Rotors),
+        ("T1 thrust floor at the greatest torque", Bound::Floor),
+    ]
+    .map(|(name, bound)| (name, least_room(p, budget, bound)));
+    let feedback = rooms.map(|(name, room)| Inequality::new(name, "N m", (R::from(p.m_tilt) + taken) * raised, room));
+    let least = rooms.into_iter().map(|(_, room)| room).fold(R::from(f64::INFINITY), R::lesser);
+    // The level is each axis's.
+    let bias = R::from(p.torque_tilt) * R::from(2.0).sqrt();
+    let bias = Inequality::new("D greatest torque bias", "N m", (bias + taken) * raised, least);
+    let yaw = R::from(vehicle.inertia.z) * R::from(p.yaw_acceleration) * raised;
+    let beside =
+        R::from(p.scale_least) * budget.ends[1] - budget.margin - reference_thrust::<R>(configuration, p) * raised;
+    let limit = R::from(limits.torque_max.z);
+    let left = if budget.reach[1].lower() > 0.0 { limit.lesser(beside / budget.reach[1]) } else { limit };
+    let yaw = Inequality::new("T2 yaw torque", "N m", yaw, left);
+    // Without rotors there are none of their rows.
+    feedback.into_iter().filter(|row| row.available.lower() < f64::INFINITY).chain([bias, yaw])
 }
 
 /// The greatest commands if every inequality holds.
@@ -218,36 +214,51 @@ fn bounds<R: Real>(
 ) -> ExtendedBounds<R> {
     let p = parameters;
     let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
-    let [tilt_inertia, yaw_inertia] = budget.inertia;
-    let turning = R::from(p.turn_acceleration);
-    let (mut tilt, mut yaw) = (R::from(p.m_all) + tilt_inertia * turning, yaw_inertia * turning);
-    for row in &budget.rows {
-        if row.tilt.lower() > 0.0 {
-            tilt = tilt.lesser(row.room / row.tilt);
-        }
-        if row.yaw.lower() > 0.0 {
-            yaw = yaw.lesser(row.room / row.yaw);
-        }
-    }
-    let across = tilt + budget.fixed[0] + R::from(p.torque_tilt);
-    let about = yaw + budget.fixed[1] + R::from(p.torque_yaw);
+    let scales = [p.scale_least, p.scale_greatest].map(R::from);
+    let zero = R::from(0.0);
+    let axes = [[R::from(1.0), zero], [zero, R::from(1.0)]];
+    let [roll, pitch] = axes.map(|axis| greatest_along(&budget.rows, axis, scales));
+    let limits = configuration.limits();
+    let [mut together, mut yaw] = [limits.thrust_max, limits.torque_max.z].map(R::from);
     let mut rotors = Vec::new();
-    let mut together = R::from(configuration.limits().thrust_max);
     if let Some(all) = configuration.rotors() {
-        for rotor in all.iter() {
+        let mut thrust = R::from(0.0);
+        // What all rotors together make about the thrust axis, either way.
+        let mut twist = [R::from(0.0); 2];
+        for (rotor, column) in all.iter().zip(all.effectiveness()) {
             let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(R::from);
+            let parts = [least, greatest].map(|thrust| thrust * R::from(column.w));
+            thrust += greatest;
+            twist = [twist[0] + parts[0].greater(parts[1]), twist[1] - parts[0].lesser(parts[1])];
             // As many as there are rotors: it fits.
             let _ = rotors.push(Interval { least, greatest });
         }
-        let thrust = rotors.iter().fold(R::from(0.0), |sum, rotor: &Interval<R>| sum + rotor.greatest);
-        together = together.lesser(thrust * R::from(p.scale_greatest));
+        together = together.lesser(thrust * scales[1]);
+        yaw = yaw.lesser(twist[0].greater(twist[1]) * scales[1]);
     }
     ExtendedBounds {
-        rates: [R::from(p.turn_rate) * RATE_BEYOND * raised, turning * raised],
         thrust: Interval { least: R::from(p.floor_margin) / raised, greatest: together },
-        torque: Vector3::new(across * raised, across * raised, about * raised),
+        torque: Vector3::new(roll * raised, pitch * raised, yaw * raised),
         rotors,
     }
+}
+
+/// The greatest torque along `axis` that all rows allow between two thrust scales, N m: `axis` is a sum of the directions
+/// of two rows, and the torque along it at most the sum of their rooms with the same weights.
+fn greatest_along<R: Real>(rows: &[Row<R>], axis: [R; 2], scales: [R; 2]) -> R {
+    let mut least = R::from(f64::INFINITY);
+    for (place, a) in rows.iter().enumerate() {
+        for b in rows.iter().skip(place + 1) {
+            let determinant = a.direction[0] * b.direction[1] - a.direction[1] * b.direction[0];
+            if determinant.abs().lower() > 1e-6 {
+                let of_a = ((axis[0] * b.direction[1] - axis[1] * b.direction[0]) / determinant).abs();
+                let of_b = ((a.direction[0] * axis[1] - a.direction[1] * axis[0]) / determinant).abs();
+                let [low, high] = scales.map(|scale| of_a * a.room(scale) + of_b * b.room(scale));
+                least = least.lesser(low.greater(high));
+            }
+        }
+    }
+    least
 }
 
 #[cfg(test)]

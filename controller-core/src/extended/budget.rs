@@ -1,260 +1,305 @@
-//! The budget for turning the desired frame: the thrust and torque available in a tick. Section 4 of
+//! The budget of a tick: the torque about the tilt's axes that limits and rotors leave, spent part by part. Section 4 of
 //! `docs/extended-law.md`.
 //!
-//! Tilt and yaw torques fit the rotors, and the limits, if for each of at most four rows
+//! With (b_T, b_tau) a rotor's row of the inverse allocation and beta = b_tau / b_T, a torque tau about the tilt's axes
+//! fits at the thrust scale s if for every row
 //!
 //! ```text
-//! t |tau_tilt| + y |tau_yaw| <= R
+//! |w . tau| <= R(s)
 //! ```
 //!
-//! | row | t | y | R |
-//! |---|---|---|---|
-//! | two rotors k, i at their ends at once | max \|b_12,k/b_T,k - b_12,i/b_T,i\| | the same of b_3 | min (s_lo f_max,k/b_T,k - s_hi f_min,i/b_T,i) - 2 margin |
-//! | the thrust floor N and T_max | max \|b_12,i\|/b_T,i | the same of b_3 | T_max - max s_hi f_min,i/b_T,i - 2 margin |
-//! | limits of roll and pitch | 1 | 0 | the lesser of the two |
-//! | limit of yaw | 0 | 1 | the limit |
+//! | row | w | R(s) |
+//! |---|---|---|
+//! | limit of roll, limit of pitch | e_1, e_2 | the limit |
+//! | two rotors k, i at their ends at once | beta_12,k - beta_12,i | s (min f_max / b_T - max f_min / b_T) - 2 margin |
+//! | the thrust floor and T_max | beta_12,i | T_max - s max f_min / b_T - 2 margin |
 //!
-//! The parts that do not change from tick to tick are subtracted beforehand: the bias estimate at its level, yaw's
-//! feedback, J_33 A, and the gyroscopic torque at Omega and W_max. The remaining parts are the tilt feedback's |P +
-//! lambda D| of this tick and J R~^T omega_d', which tilts by at most J_max |omega'| and leaks J_33 |omega'| sin theta
-//! into yaw, with theta the angle from b to rho. So the frame may turn with
-//!
-//! ```text
-//! |omega'_12| <= alpha = min( alpha_max, ((1 - mu) m n - N_0) / L, min over rows (R - t |tau_fb|) / (t J_max + y J_33 sin theta) )
-//! ```
-//!
-//! and with at least alpha_0, for which the certificate's rows reserve torque. The second term keeps the thrust floor
-//! below the thrust near the target.
+//! Here w has length one: both sides are divided by its length, so that R is a torque. With the rows every rotor has a
+//! thrust within its range ([`super::thrust_range`]). A tick adds the parts of its torque up in their order, each as
+//! much of it as the rows allow ([`Spending`]): nothing is subtracted beforehand, and no part is taken at its worst.
 
-use super::parameters::ExtendedParameters;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::math::real::Real;
 use crate::vehicle::{Limits, Vehicle};
+use core::hint::cold_path;
 use heapless::Vec;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Vector2, Vector3, Vector4};
 
-/// mu: the part of a thrust that the budget leaves.
+/// mu: the part of a thrust that torques may use near the target.
 pub const THRUST_LEFT: f64 = 0.05;
 
-/// The part of a row's room that a tick leaves unused, for the change between two ticks.
-pub const ROOM_LEFT: f64 = 0.01;
+/// The part of a row that a tick leaves unused: more than the rounding of what it adds up.
+const ROW_LEFT: f64 = 1e-3;
 
-/// t, y and the rest of R.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row<R = f64> {
-    /// t.
-    pub tilt: R,
-    /// y.
-    pub yaw: R,
-    /// R without the fixed parts.
-    pub room: R,
+/// The greatest number of rows: pairs of rotors, rotors, two limits.
+const ROWS: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
+
+/// The source of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    /// The limit of roll or pitch.
+    Limit,
+    /// Two rotors at their ends at once.
+    Rotors,
+    /// The thrust floor and T_max.
+    Floor,
 }
 
-impl Row {
-    /// Whether `other` holds wherever this row does: it costs no more of its room.
-    fn covers(&self, other: &Self) -> bool {
-        other.tilt * self.room <= self.tilt * other.room && other.yaw * self.room <= self.yaw * other.room
+/// |w . tau| <= R(s) = per_scale s - fixed, w of length one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row<R = f64> {
+    /// Its source.
+    pub bound: Bound,
+    /// w.
+    pub direction: [R; 2],
+    /// The part of R that is proportional to the thrust scale, N m.
+    pub per_scale: R,
+    /// The part that is subtracted, N m.
+    pub fixed: R,
+}
+
+impl<R: Real> Row<R> {
+    /// R(s), N m.
+    pub fn room(&self, scale: R) -> R {
+        self.per_scale * scale - self.fixed
     }
 }
 
-/// How far beyond Omega a tick may take the thrust direction: alpha is cut after Omega.
-pub const RATE_BEYOND: f64 = 1.15;
-
-/// The greatest number of rows.
-pub const ROWS: usize = 4;
-
-/// Everything about the budget that does not change from tick to tick.
+/// The rows, and what follows from the rotors besides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorqueBudget<R = f64> {
     /// The rows.
     pub rows: Vec<Row<R>, ROWS>,
-    /// The greatest moment of inertia of the tilt, and J_33, kg m^2.
-    pub inertia: [R; 2],
-    /// Tilt and yaw torque beside the feedback and the frame's turning, N m.
-    pub fixed: [R; 2],
-    /// N_0, N.
-    pub floor: R,
-    /// L, N per rad/s^2.
-    pub floor_per_acceleration: R,
-    /// The thrust of all rotors for each unit of s, infinite without rotors, and the thrust that bias and yaw use up,
+    /// |beta_12| and |beta_3|, the greatest of all rotors, 1/m; none without rotors.
+    pub reach: [R; 2],
+    /// max f_min / b_T and min f_max / b_T, N; without rotors none and infinitely much.
+    pub ends: [R; 2],
     /// N.
-    pub ceiling: [R; 2],
+    pub margin: R,
 }
 
-/// Rows of B+ over b_T with the rotor's range.
+/// Row of B+ over b_T with the rotor's range.
 struct Share<R> {
     least: R,
     greatest: R,
     torque: Vector3<R>,
 }
 
-/// The greatest of some directions of torque: across, about z, and across with both biases at their levels.
-struct Reach<R> {
-    tilt: R,
-    yaw: R,
-    corner: R,
-}
-
-impl<R: Real> Reach<R> {
-    fn of(directions: impl Iterator<Item = Vector3<R>>) -> Self {
-        let zero = R::from(0.0);
-        directions.fold(Self { tilt: zero, yaw: zero, corner: zero }, |reach, b| Self {
-            tilt: reach.tilt.greater(b.x.hypot(b.y)),
-            yaw: reach.yaw.greater(b.z.abs()),
-            corner: reach.corner.greater(b.x.abs() + b.y.abs()),
-        })
-    }
-
-    /// The row of `range` without the `fixed` torques and the biases' levels.
-    fn row(&self, range: R, fixed: [R; 2], [bias_tilt, bias_yaw]: [R; 2]) -> Row<R> {
-        let Self { tilt, yaw, corner } = *self;
-        let room = range - corner * bias_tilt - yaw * (fixed[1] + bias_yaw) - tilt * fixed[0];
-        Row { tilt, yaw, room }
-    }
-}
-
 impl<R: Real> TorqueBudget<R> {
-    /// For a vehicle, its limits, its rotors if it has any, and the law's constants.
+    /// For the margin of the law's thrust range, N, limits, and rotors if there are any.
     #[must_use]
-    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, rotors: Option<&Rotors>) -> Self {
-        let p = parameters;
+    pub fn new(margin: f32, limits: &Limits, rotors: Option<&Rotors>) -> Self {
         let (zero, one) = (R::from(0.0), R::from(1.0));
-        let j = vehicle.inertia.map(R::from);
-        let inertia = [j.x.greater(j.y), j.z];
-        let [acceleration, rate, turn_rate] = [p.yaw_acceleration, p.yaw_rate, p.turn_rate].map(R::from);
-        let turn_rate = turn_rate * RATE_BEYOND;
-        let [bias_tilt, bias_yaw] = [p.torque_tilt, p.torque_yaw].map(R::from);
-        // Half of |omega_d|^2: the greatest product of two orthogonal components.
-        let product = (turn_rate * turn_rate + rate * rate) * 0.5;
-        let across = (j.z - j.x).abs().greater((j.z - j.y).abs());
-        let yaw_feedback = R::from(p.w) * 0.5 * R::from(p.eta) + R::from(p.m_omega_z);
-        let fixed = [
-            inertia[0] * acceleration + across * product,
-            j.z * acceleration + (j.x - j.y).abs() * product + yaw_feedback,
-        ];
-
-        let torque_max = limits.torque_max.map(R::from);
+        let margin = R::from(margin);
         let mut rows = Vec::new();
         // There are at most that many: they fit.
-        let mut push = |row: Row<R>| {
-            let _ = rows.push(row);
+        let mut push = |bound, [x, y]: [R; 2], per_scale: R, fixed: R| {
+            let length = x.hypot(y);
+            if length.lower() > 0.0 {
+                let row = Row {
+                    bound,
+                    direction: [x / length, y / length],
+                    per_scale: per_scale / length,
+                    fixed: fixed / length,
+                };
+                let _ = rows.push(row);
+            }
         };
-        push(Row { tilt: one, yaw: zero, room: torque_max.x.lesser(torque_max.y) - fixed[0] - bias_tilt });
-        push(Row { tilt: zero, yaw: one, room: torque_max.z - fixed[1] - bias_yaw });
-        let shares = shares(rotors);
-        let scales = [p.scale_least, p.scale_greatest].map(R::from);
-        let margin = R::from(p.floor_margin);
-        if let Some(room) = least_range(&shares, scales, margin) {
-            let spread = Reach::of(shares.iter().flat_map(|a| shares.iter().map(move |b| a.torque - b.torque)));
-            push(spread.row(room, fixed, [bias_tilt, bias_yaw]));
-            let least = shares.iter().map(|share| scales[1] * share.least).fold(zero, R::greater);
-            let below = R::from(limits.thrust_max) - least - margin * 2.0;
-            push(Reach::of(shares.iter().map(|share| share.torque)).row(below, fixed, [bias_tilt, bias_yaw]));
-        }
+        let torque_max = limits.torque_max.map(R::from);
+        push(Bound::Limit, [one, zero], zero, -torque_max.x);
+        push(Bound::Limit, [zero, one], zero, -torque_max.y);
 
-        let beside = |torque: &Vector3<R>| {
-            (torque.x.abs() + torque.y.abs()) * bias_tilt + torque.z.abs() * (bias_yaw + j.z * acceleration)
-        };
-        let (mut floor, mut per_acceleration) = (zero, zero);
-        let mut ceiling = [R::from(f64::INFINITY), zero];
-        for share in &shares {
-            floor = floor.greater(scales[1] * share.least + beside(&share.torque));
-            per_acceleration = per_acceleration.greater((j.x * share.torque.x).hypot(j.y * share.torque.y));
-            ceiling[0] = ceiling[0].lesser(share.greatest);
-            ceiling[1] = ceiling[1].greater(beside(&share.torque) + margin);
+        let shares = shares::<R>(rotors);
+        let top = shares.iter().map(|share| share.greatest).fold(R::from(f64::INFINITY), R::lesser);
+        let bottom = shares.iter().map(|share| share.least).fold(zero, R::greater);
+        for (place, share) in shares.iter().enumerate() {
+            for other in shares.iter().skip(place + 1) {
+                let difference = share.torque - other.torque;
+                push(Bound::Rotors, [difference.x, difference.y], top - bottom, margin * 2.0);
+            }
+            let fixed = margin * 2.0 - R::from(limits.thrust_max);
+            push(Bound::Floor, [share.torque.x, share.torque.y], -bottom, fixed);
         }
-        Self { rows, inertia, fixed, floor: floor + margin, floor_per_acceleration: per_acceleration, ceiling }
+        let reach = shares.iter().fold([zero; 2], |[tilt, yaw], share| {
+            [tilt.greater(share.torque.x.hypot(share.torque.y)), yaw.greater(share.torque.z.abs())]
+        });
+        Self { rows, reach, ends: [bottom, top], margin }
     }
 
-    /// The needed and the available torque of each row with a tilt feedback of `feedback`, N m, and the frame turning
-    /// with `acceleration`, rad/s^2, at the worst angle.
-    pub fn reserves(&self, feedback: R, acceleration: R) -> impl Iterator<Item = [R; 2]> + '_ {
-        let [tilt, yaw] = self.inertia;
-        self.rows
-            .iter()
-            .map(move |row| [row.tilt * (feedback + tilt * acceleration) + row.yaw * yaw * acceleration, row.room])
+    /// (1 - mu) U for a thrust scale and no bias, m/s^2.
+    #[must_use]
+    pub fn held(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
+        let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
+        most * (1.0 - THRUST_LEFT) / R::from(vehicle.mass)
+    }
+
+    /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
+    pub fn radius(&self, scale: R) -> R {
+        self.rows.iter().map(|row| row.room(scale)).fold(R::from(f64::INFINITY), R::lesser)
     }
 }
 
 impl TorqueBudget {
-    /// The greatest feedback about the tilt's axes with which every row has room for `acceleration`, N m.
+    /// U as a tick works it out.
     #[must_use]
-    pub fn feedback(&self, acceleration: f64) -> f64 {
-        let [tilt, yaw] = self.inertia;
-        let of = |row: &Row| (row.room - row.yaw * yaw * acceleration) / row.tilt - tilt * acceleration;
-        self.rows.iter().filter(|row| row.tilt > 0.0).map(of).fold(f64::INFINITY, math::lesser_f64)
+    pub fn ceiling(&self, vehicle: &Vehicle, limits: &Limits) -> Ceiling {
+        let mass = f64::from(vehicle.mass);
+        Ceiling {
+            per_scale: (self.ends[1] / mass) as f32,
+            fixed: (self.margin / mass) as f32,
+            per_bias: self.reach.map(|reach| (reach / mass) as f32),
+            most: (f64::from(limits.thrust_max) / mass) as f32,
+        }
+    }
+}
+
+/// U = min(s min f_max / b_T - margin - |beta_12| |tau_b,12| - |beta_3| |tau_b,3|, T_max) / m: the acceleration that the
+/// rotors hold near the target beside the torque bias tau_b.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ceiling {
+    per_scale: f32,
+    fixed: f32,
+    per_bias: [f32; 2],
+    most: f32,
+}
+
+impl Ceiling {
+    /// U, m/s^2, for a thrust scale and a bias in N m.
+    #[must_use]
+    #[inline(always)] // see position.rs
+    pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
+        let [lean, twist] = self.per_bias;
+        let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
+        math::lesser(scale * self.per_scale - taken, self.most)
     }
 }
 
 /// The rows are in double precision, as the mixer is made of them: they are exact here.
 fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
-    let mut shares = Vec::new();
-    for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
+    collected(rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())).map(|(rotor, row)| {
         let row: &Vector4<f64> = row;
         let torque = Vector3::new(row.y, row.z, row.w).map(|part| R::from(part) / row.x);
         let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
-        // As many as there are rotors: it fits.
-        let _ = shares.push(Share { least, greatest, torque });
-    }
-    shares
+        Share { least, greatest, torque }
+    }))
 }
 
-/// The least of s_lo f_max,k / b_T,k - s_hi f_min,i / b_T,i, less both margins; none without rotors.
-fn least_range<R: Real>(shares: &[Share<R>], [least_scale, greatest_scale]: [R; 2], margin: R) -> Option<R> {
-    let greatest = shares.iter().map(|share| share.greatest).reduce(R::lesser)?;
-    let least = shares.iter().map(|share| share.least).reduce(R::greater)?;
-    Some(least_scale * greatest - greatest_scale * least - margin * 2.0)
-}
-
-/// The budget as a tick spends it.
+/// The rows as a tick reads them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TurningBudget {
-    /// t, y and R of each row that can bind.
-    rows: Vec<[f32; 3], ROWS>,
-    inertia: [f32; 2],
-    /// (1 - mu) m / L, per s^2/m, and N_0 / L, rad/s^2.
-    thrust: f32,
-    floor: f32,
-    most: f32,
+pub struct TickBudget {
+    /// w, and R's two parts.
+    rows: Vec<[f32; 4], ROWS>,
 }
 
-impl TurningBudget {
-    /// Of `budget` for a vehicle of `mass`, kg, and at most `most`, rad/s^2.
+impl TickBudget {
+    /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
     #[must_use]
-    pub fn new(budget: &TorqueBudget, mass: f32, most: f32) -> Self {
-        let rotors = budget.rows.get(2);
-        let binding = budget.rows.iter().enumerate().filter(|(place, row)| {
-            let covered = rotors.is_some_and(|rotors| rotors.covers(row));
-            *place == 2 || !covered
-        });
-        let rounded = |row: &Row| [row.tilt, row.yaw, row.room * (1.0 - ROOM_LEFT)].map(|x| x as f32);
-        let per_acceleration = math::greater_f64(budget.floor_per_acceleration, 1e-12);
-        Self {
-            rows: collected(binding.map(|(_, row)| rounded(row))),
-            inertia: budget.inertia.map(|x| x as f32),
-            thrust: ((1.0 - THRUST_LEFT) * f64::from(mass) / per_acceleration) as f32,
-            floor: (budget.floor / per_acceleration) as f32,
-            most,
-        }
-    }
-
-    /// alpha, rad/s^2, at |u| = `magnitude`, m/s^2, with `feedback` N m about the tilt's axes and the sine of the angle
-    /// from b to rho (one beyond a right angle). It may be negative: the caller adds the reserve.
-    #[must_use]
-    pub fn acceleration(&self, magnitude: f32, feedback: f32, sine: f32) -> f32 {
-        let [tilt, yaw] = self.inertia;
-        let leak = yaw * sine;
-        let mut alpha = math::lesser(self.most, self.thrust * magnitude - self.floor);
-        for [t, y, room] in &self.rows {
-            let left = room - t * feedback;
-            let cost = t * tilt + y * leak;
-            // Without a division where the row does not bind.
-            if left < alpha * cost {
-                alpha = left / cost;
+    pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
+        let mut binding: Vec<Row, ROWS> = Vec::new();
+        for (place, row) in budget.rows.iter().enumerate() {
+            let others = || binding.iter().chain(budget.rows.iter().skip(place + 1));
+            if !implied(row, others, scales.map(f64::from)) {
+                // At most as many as there are.
+                let _ = binding.push(*row);
             }
         }
-        alpha
+        let single = |row: &Row| {
+            let left = 1.0 - ROW_LEFT;
+            [row.direction[0], row.direction[1], left * row.per_scale, left * row.fixed].map(|x| x as f32)
+        };
+        Self { rows: collected(binding.iter().map(single)) }
+    }
+
+    /// The greatest torque that fits in every direction at a thrust scale, N m.
+    #[must_use]
+    #[inline(always)] // see position.rs
+    pub fn radius(&self, scale: f32) -> f32 {
+        self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::lesser)
+    }
+
+    /// A tick's spending at a thrust scale, nothing spent.
+    #[must_use]
+    #[inline(always)]
+    pub fn spending(&self, scale: f32) -> Spending<'_> {
+        Spending { rows: &self.rows, scale, radius: self.radius(scale), spent: Vector2::zeros() }
+    }
+}
+
+/// Whether two of the `others` imply `row` between the two scales: w is a sum of theirs with weights that are not
+/// negative, and R is at least the sum of theirs with these weights.
+fn implied<'a, I: Iterator<Item = &'a Row>>(row: &Row, others: impl Fn() -> I, scales: [f64; 2]) -> bool {
+    let [x, y] = row.direction;
+    others().any(|a| {
+        others().any(|b| {
+            let determinant = a.direction[0] * b.direction[1] - a.direction[1] * b.direction[0];
+            // Of a parallel one, itself.
+            let weights = if determinant.abs() < 1e-9 {
+                let along = a.direction[0] * x + a.direction[1] * y;
+                if along.abs() < 1.0 - 1e-12 {
+                    return false;
+                }
+                [1.0, 0.0]
+            } else {
+                let of_a = (x * b.direction[1] - y * b.direction[0]) / determinant;
+                let of_b = (a.direction[0] * y - a.direction[1] * x) / determinant;
+                [of_a.abs(), of_b.abs()]
+            };
+            scales.iter().all(|s| weights[0] * a.room(*s) + weights[1] * b.room(*s) <= row.room(*s))
+        })
+    })
+}
+
+/// What a tick has spent of its torque about the tilt's axes.
+#[derive(Debug, Clone, Copy)]
+pub struct Spending<'a> {
+    rows: &'a [[f32; 4]],
+    scale: f32,
+    radius: f32,
+    /// N m.
+    pub spent: Vector2<f32>,
+}
+
+impl Spending<'_> {
+    /// The greatest torque that fits in every direction if nothing is spent, N m.
+    #[must_use]
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// Spends as much of `wanted`, N m, as leaves `kept`, N m, in every direction; returns the share.
+    #[inline(always)]
+    pub fn spend(&mut self, wanted: &Vector2<f32>, kept: f32) -> f32 {
+        let whole = self.spent + wanted;
+        let round = self.radius - kept;
+        if round > 0.0 && whole.norm_squared() <= round * round {
+            self.spent = whole;
+            return 1.0;
+        }
+        cold_path();
+        let share = self.share(wanted, kept);
+        let part = wanted * share;
+        // Inputs in range can overflow together: of a torque that is no number nothing is spent.
+        if !(part.x.is_finite() & part.y.is_finite()) {
+            return 0.0;
+        }
+        self.spent += part;
+        share
+    }
+
+    /// The greatest share of `wanted`, at most one, for which every row holds with `kept` to spare.
+    #[inline(never)]
+    fn share(&self, wanted: &Vector2<f32>, kept: f32) -> f32 {
+        let mut share = 1.0;
+        for [x, y, per_scale, fixed] in self.rows {
+            let room = per_scale * self.scale - fixed - kept;
+            let (spent, more) = (x * self.spent.x + y * self.spent.y, x * wanted.x + y * wanted.y);
+            if (spent + more).abs() > room {
+                let left = if more > 0.0 { room - spent } else { room + spent };
+                share = math::lesser(share, math::greater(left, 0.0) / more.abs());
+            }
+        }
+        share
     }
 }

@@ -11,7 +11,11 @@
 
 use super::parameters::ExtendedParameters;
 use crate::math;
+use core::hint::cold_path;
 use nalgebra::Vector3;
+
+/// The part of U that a force may use up together with the reference.
+const HELD: f32 = 0.99;
 
 /// The constants of learning from an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,4 +78,25 @@ impl ForceObserver {
         let share = if square > self.across * self.across { self.across / math::sqrt(square) } else { 1.0 };
         Vector3::new(average.x * share, average.y * share, math::between(average.z, -self.down, self.up))
     }
+}
+
+/// The part of `force` that the greatest |u|, m/s^2, holds where u at the target is `rest` - d, world frame: the
+/// vertical first, across what it leaves.
+#[must_use]
+#[inline(always)] // see position.rs
+pub fn held(force: &Vector3<f32>, rest: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+    let most = greatest * HELD;
+    let lift = rest.z - force.z;
+    let (wind, across) = (force.xy().norm_squared(), rest.xy().norm_squared());
+    // (a + b)^2 <= 2 (a^2 + b^2).
+    if lift <= most && lift * lift + 2.0 * (wind + across) <= most * most {
+        return *force;
+    }
+    cold_path();
+    let lift = math::lesser(lift, most);
+    let left = math::sqrt(math::greater(most * most - lift * lift, 0.0)) - math::sqrt(across);
+    let length = math::sqrt(wind);
+    // Without a wind there is nothing to cut, whatever the reference takes.
+    let share = if length > left { math::greater(left, 0.0) / math::greater(length, f32::MIN_POSITIVE) } else { 1.0 };
+    Vector3::new(force.x * share, force.y * share, rest.z - lift)
 }

@@ -1,59 +1,24 @@
-//! The heading generator: the desired frame may lag in heading, so that its motion about the thrust axis is bounded by
-//! design. Section 5 of `docs/extended-law.md`.
+//! The heading: yaw takes what tilt and thrust leave. Section 5 of `docs/extended-law.md`.
 //!
-//! R_d = R_d*(rho, nu_d) R_z(chi), where R_d* is the paper's frame with rates w* and accelerations w*':
+//! R_d is the paper's frame, which turns with omega_d = omega_rho + w_3 rho; f = R~^T omega_d. q is the lifted error.
 //!
 //! | here | equation |
 //! |---|---|
-//! | chi | chi' = W - w*_3, kept as (cos, sin) of chi / 2, cos >= 0 |
-//! | W, [`Turning::velocity`]'s third | W' = sat(w*_3' - c_2 (W - w*_3) - 2 c_1 sin(chi / 2); A), \|W\| <= W_max |
-//! | omega_d | (R_z(-chi) (w*_1, w*_2), W) |
-//! | omega_d' | (R_z(-chi) (w*_1', w*_2') + chi' (omega_d2, -omega_d1), W') |
+//! | psi | 2 q_3: the angle about the body's z, from the desired heading, for small ones |
+//! | v(psi) | k psi / sqrt(1 + \|psi\| k^2 / (2 A) + (k psi / W_max)^2), k = c_1 / c_2: the rate at which psi comes to zero; it can be braked with A |
+//! | y | (R~^T omega_d')_3 - (omega x f)_3 - c_2 (omega_3 - f_3 + v(psi)): the wanted angular acceleration |
+//! | `torque` | J_3 y - (J_1 - J_2) omega_1 omega_2, less the bias: what yaw asks for |
 //!
-//! The thrust's direction does not depend on chi. Exact heading under a changing tilt can need more yaw torque than a
-//! vehicle has; here yaw needs at most J_33 A and a gyroscopic term, and the heading catches up. For small chi, 2 c_1
-//! sin(chi/2) is c_1 chi; at half a turn it is greatest, and its sign there follows that of sin(chi / 2), which only
-//! then changes at once.
+//! What it gets is between the ends that tilt and thrust leave ([`super::thrust_range`]). To brake, it has J_3 A before
+//! thrust ([`HeadingLaw::braking`]): a spin comes to rest under full thrust as well. The tilt's feedback does not know yaw,
+//! so that nothing else depends on what it gets.
 
 use super::parameters::ExtendedParameters;
-use crate::attitude_reference::AngularMotion;
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
-use nalgebra::{Quaternion, Vector2, Vector3};
+use nalgebra::Vector3;
 
-/// chi and W.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeadingLag {
-    /// (cos, sin) of chi / 2, the cosine not negative.
-    pub half_angle: Vector2<f32>,
-    /// W, rad/s.
-    pub rate: f32,
-}
-
-impl HeadingLag {
-    /// No lag, turning at `rate`, rad/s, as far as the generator may.
-    #[must_use]
-    pub fn none(rate: f32, parameters: &ExtendedParameters) -> Self {
-        Self { half_angle: Vector2::new(1.0, 0.0), rate: math::within(rate, parameters.yaw_rate) }
-    }
-
-    /// R_z(-chi) of the first two components.
-    fn across(&self, v: &Vector3<f32>) -> Vector2<f32> {
-        let (c, s) = (self.half_angle.x, self.half_angle.y);
-        let (cos, sin) = (c * c - s * s, 2.0 * c * s);
-        Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
-    }
-
-    /// R_z(-chi) times the paper's error: R~ as a quaternion of any length along R_d^T R.
-    #[must_use]
-    pub fn turned_back(&self, error: &Quaternion<f32>) -> Quaternion<f32> {
-        let (c, s) = (self.half_angle.x, self.half_angle.y);
-        let (w, x, y, z) = (error.w, error.i, error.j, error.k);
-        Quaternion::new(c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w)
-    }
-}
-
-/// Checks the gains for ticks `period` seconds apart. In samples, small chi and W - w*_3 follow
+/// Checks the gains for ticks `period` seconds apart. In samples, small psi follow
 /// z^2 - (2 - h c_2) z + 1 - h c_2 + h^2 c_1, whose roots are inside the unit circle if h c_1 < c_2 and
 /// 2 h c_2 < 4 + h^2 c_1. The law requires half of either.
 ///
@@ -66,58 +31,76 @@ pub fn check(parameters: &ExtendedParameters, period: f32) -> Result<(), Paramet
     require(c_1 <= most, "gains.c_1", Reason::Above(most))
 }
 
-/// The desired frame's motion, and the lag's.
+/// The part of the torque at hand that a turn is to be braked with.
+const BRAKED: f32 = 0.7;
+
+/// The heading law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turning {
-    /// omega_d, rad/s, axes of the desired body frame.
-    pub velocity: Vector3<f32>,
-    /// omega_d', rad/s^2, axes of the desired body frame.
-    pub acceleration: Vector3<f32>,
-    /// chi', rad/s.
-    pub lag_rate: f32,
+pub struct HeadingLaw {
+    /// c_2, 1/s.
+    damping: f32,
+    /// c_1 / c_2, 1/s.
+    approach: f32,
+    /// k^2 / 2, 1/s^2, and k^2 / W_max^2.
+    braking: f32,
+    cruising: f32,
+    /// A, rad/s^2.
+    acceleration: f32,
+    inertia: f32,
+    /// J_1 - J_2, kg m^2.
+    difference: f32,
 }
 
-/// omega_d, rad/s, axes of the desired body frame, where the paper's is `paper`.
-#[must_use]
-pub fn velocity(lag: &HeadingLag, paper: &Vector3<f32>) -> Vector3<f32> {
-    let across = lag.across(paper);
-    Vector3::new(across.x, across.y, lag.rate)
+/// How the desired frame moves, seen from the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// f, rad/s.
+    pub rate: Vector3<f32>,
+    /// (R~^T omega_d')_3, rad/s^2.
+    pub acceleration: f32,
 }
 
-/// The desired motion for the paper's frame's `motion` and the lag at hand, with ticks `period` seconds apart.
-#[must_use]
-pub fn turning(lag: &HeadingLag, motion: &AngularMotion, parameters: &ExtendedParameters, period: f32) -> Turning {
-    let ExtendedParameters { yaw_acceleration: most, yaw_rate: fastest, c_1, c_2, .. } = *parameters;
-    let AngularMotion { velocity: w, acceleration: a } = motion;
-    let s = lag.half_angle.y;
-    let lag_rate = lag.rate - w.z;
-    let wanted = math::within(a.z - c_2 * lag_rate - 2.0 * c_1 * s, most);
-    // The rate at the end of the period is what W_max bounds.
-    let turn = math::within_rate(wanted, lag.rate, fastest, period);
-
-    let (velocity, acceleration) = (lag.across(w), lag.across(a));
-    Turning {
-        velocity: Vector3::new(velocity.x, velocity.y, lag.rate),
-        acceleration: Vector3::new(
-            acceleration.x + lag_rate * velocity.y,
-            acceleration.y - lag_rate * velocity.x,
-            turn,
-        ),
-        lag_rate,
+impl HeadingLaw {
+    /// For the diagonal of J, kg m^2.
+    #[must_use]
+    pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>) -> Self {
+        let p = parameters;
+        let k = p.c_1 / p.c_2;
+        Self {
+            damping: p.c_2,
+            approach: k,
+            braking: 0.5 * k * k,
+            acceleration: p.yaw_acceleration,
+            cruising: (k / p.yaw_rate) * (k / p.yaw_rate),
+            inertia: inertia.z,
+            difference: inertia.x - inertia.y,
+        }
     }
-}
 
-/// The lag one period later, with W at most `fastest`, rad/s: where the thrust direction turns fast, a faster W would
-/// exceed the frame's budget.
-#[must_use]
-pub fn advanced(lag: &HeadingLag, turning: &Turning, period: f32, fastest: f32) -> HeadingLag {
-    let half = 0.5 * period * turning.lag_rate;
-    let (c, s) = (lag.half_angle.x, lag.half_angle.y);
-    let (cos, sin) = (c - half * s, s + half * c);
-    let length = math::sqrt(cos * cos + sin * sin);
-    let scale = if cos < 0.0 { -1.0 / length } else { 1.0 / length };
-    HeadingLag {
-        half_angle: Vector2::new(cos * scale, sin * scale),
-        rate: math::within(lag.rate + turning.acceleration.z * period, fastest),
+    /// The acceleration fed forward, rad/s^2, for omega.
+    #[must_use]
+    #[inline(always)] // see position.rs
+    pub fn forward(&self, seen: &Seen, velocity: &Vector3<f32>) -> f32 {
+        let Seen { rate, acceleration } = seen;
+        acceleration - (velocity.x * rate.y - velocity.y * rate.x)
+    }
+
+    /// The wanted yaw torque beside the bias, N m: for psi and omega_3 - f_3, both projected, the acceleration fed
+    /// forward and omega.
+    #[must_use]
+    #[inline(always)]
+    pub fn torque(&self, angle: f32, rate_error: f32, forward: f32, velocity: &Vector3<f32>, room: f32) -> f32 {
+        let braked = math::greater(BRAKED * room, self.acceleration * self.inertia);
+        let braking = self.braking * self.inertia / braked;
+        let slowed = math::sqrt(1.0 + angle.abs() * braking + angle * angle * self.cruising);
+        let wanted = forward - self.damping * (rate_error + self.approach * angle / slowed);
+        self.inertia * wanted - self.difference * velocity.x * velocity.y
+    }
+
+    /// The part of a yaw `torque` that comes before thrust, N m: what brakes omega_3 - f_3, up to J_3 A.
+    #[must_use]
+    #[inline(always)]
+    pub fn braking(&self, torque: f32, rate_error: f32) -> f32 {
+        if torque * rate_error < 0.0 { math::within(torque, self.inertia * self.acceleration) } else { 0.0 }
     }
 }

@@ -1,13 +1,12 @@
 //! What the extended law remembers from one tick to the next.
 
 use super::actuators::ActuatorState;
-use super::heading::HeadingLag;
-use super::net::Net;
+use super::fallback::Fallback;
 use super::position::Filters;
 use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::vehicle::Vehicle;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Vector2, Vector3, Vector4};
 
 /// The estimates, cut to their levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,8 +50,8 @@ pub(super) struct Last {
     /// R e3.
     pub thrust_axis: Vector3<f32>,
     pub angular_velocity: Vector3<f32>,
-    /// R~^T omega_d', rad/s^2.
-    pub wanted: Vector3<f32>,
+    /// The acceleration fed forward, rad/s^2.
+    pub forward: Vector3<f32>,
 }
 
 /// Everything the law remembers from one tick to the next.
@@ -62,12 +61,14 @@ pub struct Memory {
     pub filters: Filters,
     /// The path lifting's memory; none before the first step.
     pub lift: Option<Lift>,
-    /// The heading's lag; none before the first step.
-    pub heading: Option<HeadingLag>,
+    /// The side that the thrust axis came from; none before the first step.
+    pub side: Option<Vector2<f32>>,
+    /// The torque about z, either way, that was left in the last tick, N m.
+    pub yaw_room: f32,
     /// The averages behind the estimates.
     pub averages: Averages,
-    /// The net.
-    pub net: Net,
+    /// The fallback.
+    pub fallback: Fallback,
     /// Ticks for which the estimates are still held.
     pub(super) held: u32,
     pub(super) last: Option<Last>,
@@ -83,9 +84,10 @@ impl Memory {
         Self {
             filters: Filters::at(Vector3::zeros()),
             lift: None,
-            heading: None,
+            side: None,
+            yaw_room: 0.0,
             averages,
-            net: Net::FRESH,
+            fallback: Fallback::FRESH,
             held: 0,
             last: None,
             actuators: ActuatorState::steady(hover),

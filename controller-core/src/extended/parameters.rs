@@ -7,6 +7,7 @@ use crate::error::{ParameterError, Reason, require};
 use crate::math;
 use crate::vehicle::Vehicle;
 use core::ops::Deref;
+use nalgebra::Vector4;
 
 constants! {
     /// All constants of the extended law; see [`Extended`] for the validated form. "Across" is both horizontal axes
@@ -40,41 +41,27 @@ constants! {
         gains.v_down: Range::POSITIVE, FIXED;
         /// Omega, rad/s: greatest rate of the thrust direction.
         gains.turn_rate: Range::POSITIVE, SEARCHED;
-        /// alpha_max, rad/s^2: greatest acceleration of the thrust direction.
-        gains.turn_acceleration: Range::POSITIVE, SEARCHED;
         /// alpha_0, rad/s^2: the acceleration of the thrust direction that is always there.
         gains.turn_reserve: Range::POSITIVE, FIXED;
-        /// w, N m: weight of the potential that knows no axis.
-        gains.w: Range::POSITIVE, SEARCHED;
-        /// eta: the share of w that turns about the thrust axis.
-        gains.eta: Range::SHARE, FIXED;
-        /// k_t, N m: gain of the tilt's own potential.
-        gains.k_t: Range::POSITIVE, FIXED;
-        /// M_t, N m: its level.
-        gains.m_t: Range::POSITIVE, FIXED;
-        /// eta_t: how far from a half turn it eases.
-        gains.eta_t: Range::SHARE, FIXED;
-        /// M_all, N m: greatest feedback about the tilt's axes, potential and damping together.
-        gains.m_all: Range::POSITIVE, FIXED;
+        /// k_theta, N m: gain of the tilt's modified Rodrigues parameters; a quarter of it is the stiffness.
+        gains.k_tilt: Range::POSITIVE, SEARCHED;
+        /// M_theta, N m: greatest torque by which the tilt's error pulls.
+        gains.m_tilt: Range::POSITIVE, SEARCHED;
         /// k_omega_t, N m s: damping of the tilt.
         gains.k_omega_t: Range::POSITIVE, SEARCHED;
         /// r_0: sine of half the tilt error beyond which its damping eases.
         gains.r_0: Range::between(1e-3, 1e3), FIXED;
-        /// k_omega_z, N m s: damping about the thrust axis.
-        gains.k_omega_z: Range::POSITIVE, FIXED;
-        /// M_omega_z, N m: its level.
-        gains.m_omega_z: Range::POSITIVE, FIXED;
-        /// delta: hysteresis of the path lifting.
-        gains.delta: Range::SHARE, FIXED;
+        /// delta: hysteresis of the path lifting; beyond 0.73 the target itself would count as half a turn.
+        gains.delta: Range::between(1e-7, 0.7), FIXED;
         /// alpha: distance at which the path lifting's memory follows.
         gains.alpha: Range::between(1e-7, 0.999), FIXED;
-        /// A, rad/s^2: greatest acceleration of the heading generator.
+        /// A, rad/s^2: the acceleration about the thrust axis that is always there near the target.
         gains.yaw_acceleration: Range::POSITIVE, FIXED;
-        /// W_max, rad/s: greatest rate of the heading generator.
+        /// W_max, rad/s: greatest rate at which a heading error comes to zero.
         gains.yaw_rate: Range::POSITIVE, FIXED;
-        /// c_1, 1/s^2: stiffness of the heading generator.
+        /// c_1, 1/s^2: stiffness of the heading.
         gains.c_1: Range::POSITIVE, FIXED;
-        /// c_2, 1/s: damping of the heading generator.
+        /// c_2, 1/s: damping of the heading.
         gains.c_2: Range::POSITIVE, FIXED;
         /// mu_N, N: distance of all rotors together from their least thrust; without rotors the least thrust.
         gains.floor_margin: Range::POSITIVE, FIXED;
@@ -114,8 +101,8 @@ pub struct Extended(ExtendedParameters);
 
 impl Extended {
     /// The least margin of the thrust floor, as a share of the greatest thrust: rounding in single precision takes less
-    /// of it on the way from thrust and torque to a rotor's command (`proofs/Rounding.v`).
-    pub const FLOOR_MARGIN_LEAST: f32 = 2e-6;
+    /// of it on the way from a wanted thrust and yaw torque to a rotor's command (`proofs/Rounding.v`).
+    pub const FLOOR_MARGIN_LEAST: f32 = 4e-6;
 
     /// What a number of the thrust range's constants is at least, in SI units, and its inverse at most
     /// (`proofs/Rounding.v`).
@@ -134,8 +121,6 @@ impl Extended {
         ] {
             require(value < bound, field, Reason::NotBelow(bound))?;
         }
-        let most = parameters.turn_acceleration;
-        require(parameters.turn_reserve <= most, "gains.turn_reserve", Reason::Above(most))?;
         Ok(Self(parameters))
     }
 
@@ -151,8 +136,18 @@ impl Extended {
             row.x >= Self::SIZE_LEAST && Self::SIZE_LEAST * most <= row.x
         });
         require(lifted, "rotors.position", Reason::DoesNotSpan)?;
+        // All rotors' torques together, which are more than what the tilt may get.
+        let most = |arm: fn(&Vector4<f64>) -> f64| -> f64 {
+            let all = rotors.iter().zip(rotors.effectiveness());
+            all.map(|(rotor, column)| f64::from(rotor.thrust_max) * arm(column).abs()).sum()
+        };
+        let [roll, pitch] = [most(|column| column.y), most(|column| column.z)];
         let all = rotors.iter().zip(rotors.pseudo_inverse());
-        let greatest = all.map(|(rotor, row)| f64::from(rotor.thrust_max) / row.x).fold(0.0, math::greater_f64);
+        let sizes = all.map(|(rotor, row)| {
+            let parts = (row.y.abs() * roll + row.z.abs() * pitch) / row.x;
+            math::greater_f64(f64::from(rotor.thrust_max) / row.x, 0.5 * parts)
+        });
+        let greatest = sizes.fold(0.0, math::greater_f64);
         let least = Self::FLOOR_MARGIN_LEAST * self.scale_greatest * greatest as f32;
         require(self.floor_margin >= least, "gains.floor_margin", Reason::Below(least))
     }

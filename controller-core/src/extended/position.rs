@@ -26,7 +26,6 @@ use super::parameters::ExtendedParameters;
 use super::saturation::Saturation;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::math;
-use crate::math::real::Real;
 use crate::position::FilterTransition;
 use crate::reference::Reference;
 use crate::state::State;
@@ -62,6 +61,9 @@ impl Filters {
         Self { command: value, intermediate: value, smoothed: value }
     }
 }
+
+/// How far x may be, in U: a reference within what the rotors hold needs two at most.
+const FARTHEST: f32 = 2.0;
 
 /// The errors that the feedback sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,8 +142,6 @@ pub struct PositionLaw {
     a_down: f32,
     tangent: f32,
     gravity: f32,
-    /// The level of the net, m/s^2.
-    net: f32,
 }
 
 impl PositionLaw {
@@ -177,14 +177,7 @@ impl PositionLaw {
             a_down: p.a_down,
             tangent: math::tan(f64::from(p.tilt_max)) as f32 * SHARE_ACROSS,
             gravity,
-            net: net_level::<f64>(p, gravity) as f32,
         })
-    }
-
-    /// The level of the net.
-    #[must_use]
-    pub fn net(&self) -> Most {
-        Most::each(self.net)
     }
 
     /// k_f, 1/s.
@@ -301,13 +294,21 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`. c_z never falls below -A_-, to the
-    /// last bit; x_z does not lead it there.
+    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never falls
+    /// below -A_-, to the last bit; x_z does not lead it there. x stays within `FARTHEST` U along each axis, and c with
+    /// it: a reference whose derivatives fit no motion cannot drive them away.
     #[must_use]
-    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>) -> Filters {
+    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, greatest: f32) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
+        let (mut drive, mut intermediate) = (*drive, x + drive * self.period);
+        let farthest = FARTHEST * greatest;
+        let near = intermediate.amax() <= farthest;
+        if !near {
+            cold_path();
+            intermediate = intermediate.map(|x| math::within(x, farthest));
+            drive = (intermediate - x) / self.period;
+        }
         let mut command = c + ((x - c) * self.towards + drive * self.ramp);
-        let mut intermediate = x + drive * self.period;
         if command.z < -self.a_down {
             cold_path();
             command.z = -self.a_down;
@@ -315,17 +316,6 @@ impl PositionLaw {
         }
         Filters { command, intermediate, smoothed: *smoothed }
     }
-}
-
-/// The level of the net, m/s^2: with it c' and c'' take three tenths of alpha_0 and half of Omega at the least |u|, so
-/// that the frame is never limited.
-#[must_use]
-pub fn net_level<R: Real>(parameters: &ExtendedParameters, gravity: f32) -> R {
-    let p = parameters;
-    let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
-    let least = R::from(gravity) - R::from(p.a_down);
-    // |c'| <= 2 k_f M and |c''| <= 2 k_f (k_s + k_f) M where c + d, x + d and y + d start within M.
-    (reserve * 0.3 * least / (k_f * 2.0 * (k_s + k_f))).lesser(rate * 0.5 * least / (k_f * 2.0))
 }
 
 /// What makes s(x; `level`) of a vector x with this `square`.

@@ -1,30 +1,32 @@
-//! A least and a greatest thrust that follow the torque: every rotor stays within its range by construction. Section 8
-//! of `docs/extended-law.md`.
+//! A least and a greatest thrust that follow the torque, and the yaw torque that is left: every rotor stays within its
+//! range by construction. Section 8 of `docs/extended-law.md`.
 //!
-//! The thrust command of rotor i is f_i = b_T,i T + b_tau,i . tau, with (b_T,i, b_tau,i) its row of B+. So it is within
-//! its range as long as T is between
+//! The thrust command of rotor i is f_i = b_T,i (T + beta_i . tau), with beta = b_tau / b_T and (b_T, b_tau) its row of
+//! the inverse allocation. So it is within its range as long as T is between
 //!
 //! ```text
-//! N(tau) = max_i ((s f_min,i - b_tau,i . tau) / b_T,i) + margin,
-//! C(tau) = min_i ((s f_max,i - b_tau,i . tau) / b_T,i) - margin,
+//! N(tau) = max_i (s f_min,i / b_T,i - beta_i . tau) + margin,
+//! C(tau) = min_i (s f_max,i / b_T,i - beta_i . tau) - margin.
 //! ```
 //!
-//! and T = min(C(tau), max(N(tau), m u . R e3)), at most T_max. The certificate's row (R) proves N <= C for every
-//! torque that the law can command. A rotor commanded f / s turns at its least or greatest speed when f is s f_min,i or
-//! s f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
+//! Tilt comes first, then thrust, then yaw. With y what yaw [brakes](super::heading) with,
 //!
-//! The command is nearly always far inside. One comparison on each side for all rotors shows that: the same
-//! formulas with the worst of each constant among the rotors and the magnitude of each component of tau. Rounding is
-//! monotone, so that the bound is on the safe side of any rotor's part, to the last bit.
+//! T = max(N(tau_12), min(C(tau_12), C(tau_12, y), T_max, m u . R e3)),
+//!
+//! where [the budget](super::budget) keeps N(tau_12) <= C(tau_12); and tau_3 is the nearest to the wanted one with which
+//! every rotor stays in its range at this thrust. So yaw never raises the thrust that tilting needs, and only a turn that
+//! has to be braked cuts the thrust that is wanted. A rotor commanded f / s turns at its least or greatest speed when f is
+//! s f_min,i or s f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
 
 use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::math;
+use crate::state::Wrench;
 use core::hint::cold_path;
 use heapless::Vec;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
-/// One rotor's part: f_min,i / b_T,i, f_max,i / b_T,i and b_tau,i / b_T,i.
+/// One rotor's part: f_min,i / b_T,i, f_max,i / b_T,i and beta_i.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Part {
     least: f32,
@@ -36,16 +38,16 @@ struct Part {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThrustRange {
     rotors: Vec<Part, ROTORS_MAX>,
-    /// The greatest least thrust, the least greatest one, the greatest magnitudes per torque.
-    worst: Part,
     margin: f32,
     thrust_max: f32,
+    /// The limit of yaw, N m.
+    yaw_max: f32,
 }
 
 impl ThrustRange {
-    /// For `rotors`, if there are any, a margin and a greatest thrust in N.
+    /// For `rotors`, if there are any, a margin and a greatest thrust in N, and the limit of yaw in N m.
     #[must_use]
-    pub fn new(rotors: Option<&Rotors>, margin: f32, thrust_max: f32) -> Self {
+    pub fn new(rotors: Option<&Rotors>, margin: f32, thrust_max: f32, yaw_max: f32) -> Self {
         let mut parts = Vec::new();
         for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
             let per_torque = Vector3::new(row.y / row.x, row.z / row.x, row.w / row.x).map(|x| x as f32);
@@ -54,32 +56,80 @@ impl ThrustRange {
             // As many as there are rotors: it fits.
             let _ = parts.push(Part { least, greatest, per_torque });
         }
-        let mut worst = Part { least: 0.0, greatest: f32::MAX, per_torque: Vector3::zeros() };
-        for part in &parts {
-            worst.least = math::greater(worst.least, part.least);
-            worst.greatest = math::lesser(worst.greatest, part.greatest);
-            worst.per_torque = worst.per_torque.zip_map(&part.per_torque.abs(), math::greater);
-        }
-        Self { rotors: parts, worst, margin, thrust_max }
+        Self { rotors: parts, margin, thrust_max, yaw_max }
     }
 
-    /// The thrust nearest to `thrust` that every rotor can take part in, N, for a torque in N m and the thrust scale s.
+    /// T nearest to `thrust`, N, and tau_3 nearest to `yaw`, N m, of which `braking` comes before thrust, for a torque
+    /// about the tilt's axes that the budget allows and the thrust scale s; and how much of tau_3 either way there is.
     #[must_use]
     #[inline(always)] // see position.rs
-    pub fn admitted(&self, thrust: f32, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let differences = self.worst.per_torque.dot(&torque.abs()) + self.margin;
-        let most = math::lesser(scale * self.worst.greatest - differences, self.thrust_max);
-        if thrust >= scale * self.worst.least + differences && thrust <= most {
-            thrust
-        } else {
-            cold_path();
-            math::lesser(math::greater(thrust, self.least(torque, scale)), self.greatest(torque, scale))
+    pub fn admitted(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
+        let (mut least, mut most) = (self.margin, self.thrust_max);
+        for part in &self.rotors {
+            let tilted = part.per_torque.xy().dot(tilt);
+            least = math::greater(least, scale * part.least + (self.margin - tilted));
+            // Of the rotor's greatest, what tilting takes, or tilting and braking together if that is more.
+            let taken = math::greater(tilted, tilted + part.per_torque.z * braking);
+            most = math::lesser(most, scale * part.greatest - (taken + self.margin));
         }
+        // A thrust or a yaw torque that is no number becomes the least one.
+        let thrust = math::lesser(math::greater(least, most), math::greater(least, thrust));
+        let [least, most] = self.yaw(thrust, tilt, scale);
+        let torque = Vector3::new(tilt.x, tilt.y, math::lesser(most, math::greater(least, yaw)));
+        (Wrench { thrust, torque }, math::lesser(most, -least))
+    }
+
+    /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is at
+    /// most `thrust`, N, or what it is already.
+    #[must_use]
+    #[inline(always)]
+    pub fn share(&self, spent: &Vector2<f32>, wanted: &Vector2<f32>, thrust: f32, scale: f32) -> f32 {
+        let least = |part: &Part| scale * part.least + (self.margin - part.per_torque.xy().dot(spent));
+        let raised = |part: &Part| -part.per_torque.xy().dot(wanted);
+        let (mut floor, mut whole) = (self.margin, self.margin);
+        for part in &self.rotors {
+            let least = least(part);
+            floor = math::greater(floor, least);
+            whole = math::greater(whole, least + raised(part));
+        }
+        let most = math::greater(thrust, floor);
+        if whole <= most {
+            return 1.0;
+        }
+        cold_path();
+        let mut share = 1.0;
+        for part in &self.rotors {
+            let (least, raised) = (least(part), raised(part));
+            if least + raised > most {
+                share = math::lesser(share, (most - least) / raised);
+            }
+        }
+        share
+    }
+
+    /// The interval of tau_3, N m, with which no rotor leaves its range; zero is inside.
+    #[inline(always)]
+    fn yaw(&self, thrust: f32, tilt: &Vector2<f32>, scale: f32) -> [f32; 2] {
+        let (mut least, mut most) = (-self.yaw_max, self.yaw_max);
+        for part in &self.rotors {
+            let share = thrust + part.per_torque.xy().dot(tilt);
+            let per_torque = part.per_torque.z;
+            if per_torque == 0.0 {
+                cold_path();
+                continue;
+            }
+            let [a, b] = [scale * part.least + self.margin - share, scale * part.greatest - self.margin - share]
+                .map(|left| left / per_torque);
+            let (low, high) = if per_torque > 0.0 { (a, b) } else { (b, a) };
+            least = math::greater(least, low);
+            most = math::lesser(most, high);
+        }
+        [math::lesser(least, 0.0), math::greater(most, 0.0)]
     }
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
     #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)]
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
         least.fold(self.margin, math::greater)
@@ -87,7 +137,7 @@ impl ThrustRange {
 
     /// C(tau), N, likewise; at most T_max.
     #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)]
     pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let greatest =
             self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));

@@ -16,8 +16,8 @@ use nalgebra::Vector3;
 /// The estimate's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueBias {
-    /// 1 - e^(-L_tau h).
-    averaging: f32,
+    /// 1 - e^(-L_tau h), about z 1 - e^(-L_tau h / 2).
+    averaging: Vector3<f32>,
     level: Vector3<f32>,
     /// The diagonal of J over h, kg m^2/s.
     inertia_per_period: Vector3<f32>,
@@ -31,8 +31,11 @@ impl TorqueBias {
     #[must_use]
     pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>, period: f32) -> Self {
         let ExtendedParameters { torque_tilt, torque_yaw, torque_bandwidth, .. } = *parameters;
+        let averaging = |bandwidth: f64| -math::exp_m1(-bandwidth * f64::from(period)) as f32;
+        let bandwidth = f64::from(torque_bandwidth);
+        let [tilt, yaw] = [bandwidth, 0.5 * bandwidth].map(averaging);
         Self {
-            averaging: -math::exp_m1(-f64::from(torque_bandwidth) * f64::from(period)) as f32,
+            averaging: Vector3::new(tilt, tilt, yaw),
             level: Vector3::new(torque_tilt, torque_tilt, torque_yaw),
             inertia_per_period: inertia / period,
             quarter_differences: (inertia.zxy() - inertia.yzx()) * 0.25,
@@ -55,7 +58,7 @@ impl TorqueBias {
     /// Takes the [observed](Self::observed) torque into the `average`, N m.
     #[must_use]
     pub fn averaged(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
-        average + (observed - average) * self.averaging
+        average + (observed - average).component_mul(&self.averaging)
     }
 
     /// The average cut to its levels, N m.

@@ -5,10 +5,10 @@
 //! | [`Reason::Demand`] | a demand cannot be used | | [`Demand::check`](super::Demand::check) |
 //! | [`Reason::Silent`] | no demand for longer than `silence` | 0.1 s | ten ticks at 100 Hz: a policy that is late by more does not fly |
 //! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
-//! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT M_all / J), or about z faster than [`YAW`] W_max | | M_all stops such a turn within [`TILT`]; 1.15 Omega is the frame's own |
+//! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT M_theta / J), or about z faster than [`YAW`] W_max | | M_theta stops such a turn within [`TILT`]; 1.15 Omega is the frame's own |
 //! | [`Reason::Speed`] | faster than `speed` | 10 m/s | chosen; a shield's settings change it |
 //! | [`Reason::Stop`] | a place of the [`Prospect`] is outside the box | | the law would not stop inside any more |
-//! | [`Reason::Estimate`] | force or thrust scale at a level, or held, for longer than [`DOUBT`] | 1 s | the levels for stopping count on them |
+//! | [`Reason::Estimate`] | force or thrust scale at a level, held, or the force more than thrust holds, for longer than [`DOUBT`] | 1 s | the levels for stopping count on them |
 
 use super::Settings;
 use super::reason::Reason;
@@ -22,7 +22,7 @@ use crate::vehicle::Vehicle;
 pub const TILT: f32 = core::f32::consts::FRAC_PI_3;
 const COSINE: f32 = 0.5;
 
-/// The share of Omega by which the frame may exceed it in samples: `docs/extended-law.md`, section 15.
+/// The share of Omega by which the frame may exceed it in samples: `docs/extended-law.md`, section 3.
 const FRAME: f32 = 1.15;
 
 /// The greatest rate about the thrust axis, in W_max.
@@ -46,7 +46,7 @@ impl Monitor {
     #[must_use]
     pub fn new(settings: &Settings, parameters: &ExtendedParameters, vehicle: &Vehicle) -> Self {
         let inertia = math::greater(vehicle.inertia.x, vehicle.inertia.y);
-        let rate = FRAME * parameters.turn_rate + math::sqrt(2.0 * TILT * parameters.m_all / inertia);
+        let rate = FRAME * parameters.turn_rate + math::sqrt(2.0 * TILT * parameters.m_tilt / inertia);
         Self {
             settings: *settings,
             rate: rate * rate,

@@ -55,7 +55,7 @@ fn reasons(
 fn every_rule_of_the_table_hands_over_with_its_own_reason() {
     let p = example::parameters();
     let inertia = example::vehicle().inertia;
-    let fastest = 1.15 * p.turn_rate + (2.0 * monitor::TILT * p.m_all / inertia.x.max(inertia.y)).sqrt();
+    let fastest = 1.15 * p.turn_rate + (2.0 * monitor::TILT * p.m_tilt / inertia.x.max(inertia.y)).sqrt();
     let tilted = |angle: f32| Quaternion::new((0.5 * angle).cos(), (0.5 * angle).sin(), 0.0, 0.0);
     let turning = |x, z| Vector3::new(x, 0.0, z);
     let middle = resting(MIDDLE);

@@ -98,7 +98,7 @@ fn a_vehicle_whose_loop_is_stable_without_its_margin_is_not_built_either() {
 
 #[test]
 fn a_vehicle_that_is_not_certified_is_built_with_a_warning_that_names_the_inequality() {
-    let warning = changed("vehicles/hummingbird.toml", "torque_max = [1.0, 1.0, 0.4]", "torque_max = [1.0, 1.0, 0.05]");
+    let warning = changed("vehicles/hummingbird.toml", "torque_max = [1.0, 1.0, 0.4]", "torque_max = [1.0, 1.0, 0.04]");
     let warning = warning.unwrap().warning.unwrap();
     assert!(warning.contains("T2 yaw torque") && warning.ends_with("this firmware will refuse to arm"), "{warning}");
     assert_eq!(warning.lines().count(), 1);

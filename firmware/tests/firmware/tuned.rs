@@ -95,17 +95,17 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
 fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_reported() {
     let shared = booted();
     let before = shared.parameters.get(Name::RotorThrustMax);
-    let words = texts_of_setting(&shared, Name::RotorThrustMax, 3.2);
+    let words = texts_of_setting(&shared, Name::RotorThrustMax, 3.0);
     assert_eq!(words[0], "ROT_THR_MAX: refused, cannot be flown");
-    assert!(words[1].starts_with("A1 thrust against force down: needs 9."), "{words:?}");
+    assert!(words[1].starts_with("R rotors' range: needs 0.4"), "{words:?}");
     assert_eq!(shared.parameters.get(Name::RotorThrustMax), before);
     // What one value does not allow, another may make possible.
-    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.53)[0], "MASS: refused, cannot be flown");
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 1.1)[0], "MASS: refused, cannot be flown");
     assert_eq!(
         texts_of_setting(&shared, Name::RotorThrustMax, 4.5),
         ["ROT_THR_MAX: may be flown, from the next boot on"]
     );
-    assert_eq!(texts_of_setting(&shared, Name::Mass, 0.53), ["MASS: may be flown, from the next boot on"]);
+    assert_eq!(texts_of_setting(&shared, Name::Mass, 1.1), ["MASS: may be flown, from the next boot on"]);
     assert_eq!(texts_of_setting(&shared, Name::RotorThrustMax, before)[0], "ROT_THR_MAX: refused, cannot be flown");
 }
 
@@ -197,10 +197,10 @@ fn booted_with(identity: u32, stored: &[(Name, f32)]) -> (Option<Grounded>, Vec<
 
 #[test]
 fn stored_values_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
-    let stored = [(Name::Mass, 0.46), (Name::RotorThrustMax, 3.2)];
+    let stored = [(Name::Mass, 0.46), (Name::RotorThrustMax, 3.0)];
     let (grounded, texts, shared) = booted_with(configuration::IDENTITY, &stored);
-    assert_eq!(grounded, Some(Grounded::Inequality("A1 thrust against force down")));
-    assert_eq!(texts, ["MASS 0.46: cannot be flown", "ROT_THR_MAX 3.2: cannot be flown"]);
+    assert_eq!(grounded, Some(Grounded::Inequality("R rotors' range")));
+    assert_eq!(texts, ["MASS 0.46: cannot be flown", "ROT_THR_MAX 3: cannot be flown"]);
     // It can be mended from the ground.
     assert_eq!(
         texts_of_setting(&shared, Name::RotorThrustMax, 3.6),

@@ -5,7 +5,9 @@
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
 //! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
-//! | in time | whether that was within the first [`REACHED_BY`] of the flight, which is what a flight by itself claims |
+//! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good |
+//! | heading | since when its heading has been within [`NEAR_HEADING`] of the reference's for good |
+//! | in time | whether all three were within the first [`REACHED_BY`] of the flight, as a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
@@ -15,12 +17,17 @@
 
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
+use crate::flown::NEAR_MRP;
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
+use controller_core::reference::Reference;
 use scenario::Scenario;
+use scenario::body::BodyState;
 
 /// How near its reference a vehicle must stay to have settled, m.
 pub const NEAR: f64 = 0.2;
+/// How near its heading, rad.
+pub const NEAR_HEADING: f64 = 0.2;
 /// Room for the rounding of a wrench's components against a bound, relative; for a rotor that may stand still, N.
 const ROUNDING: f64 = 1e-6;
 
@@ -33,6 +40,10 @@ pub struct Outcome {
     pub rise: f64,
     /// Since when it has been near its reference, s; none if it was away at the end.
     pub settled: Option<f64>,
+    /// Likewise near its attitude.
+    pub attitude: Option<f64>,
+    /// Likewise near its heading.
+    pub heading: Option<f64>,
     /// Whether it was there in time to have recovered, and not only at the end.
     pub in_time: bool,
     /// Distance from the reference at the last tick, m.
@@ -43,8 +54,8 @@ pub struct Outcome {
     pub beyond: u64,
     /// Greatest share of each certified bound that was used.
     pub shares: Shares,
-    /// How often the law's net came into force.
-    pub net: u64,
+    /// How often the law's fallback came.
+    pub fallback: u64,
     /// Ticks flown: fewer than the flight has where it could not go on.
     pub ticks: u64,
 }
@@ -78,27 +89,33 @@ impl Outcome {
             height_lost: 0.0,
             rise: f64::NEG_INFINITY,
             settled: Some(0.0),
+            attitude: Some(0.0),
+            heading: Some(0.0),
             in_time: false,
             final_error: 0.0,
             clipped: 0,
             beyond: 0,
             shares: Shares::default(),
-            net: 0,
+            fallback: 0,
             ticks: 0,
         };
         for _ in 0..scenario.timing.ticks {
             let Ok(tick) = flight.brief_tick() else {
                 let lost = f64::INFINITY;
-                return Self { settled: None, height_lost: lost, final_error: lost, ..outcome };
+                let never = Self { settled: None, attitude: None, heading: None, ..outcome };
+                return Self { height_lost: lost, final_error: lost, ..never };
             };
             outcome.observe(&tick, start, scenario.timing.period_us);
             outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
         }
-        outcome.net = flight.net_times().into();
+        outcome.fallback = flight.fallback_times().into();
         let duration = scenario.timing.duration();
         let end = (scenario.timing.ticks * scenario.timing.period_us) as f64 / 1e6;
-        let settled = outcome.settled.filter(|since| *since < end);
-        Self { settled, in_time: in_time(settled, duration), ..outcome }
+        let reached =
+            [outcome.settled, outcome.attitude, outcome.heading].map(|since| since.filter(|time| *time < end));
+        let in_time = reached.iter().all(|since| in_time(*since, duration));
+        let [settled, attitude, heading] = reached;
+        Self { settled, attitude, heading, in_time, ..outcome }
     }
 
     fn observe(&mut self, tick: &Brief, start: f64, period_us: u64) {
@@ -108,12 +125,20 @@ impl Outcome {
         self.clipped += u64::from(tick.clipped);
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
+        let next = Some((tick.time_us + period_us) as f64 / 1e6);
         if self.final_error > NEAR || tick.standing {
-            self.settled = Some((tick.time_us + period_us) as f64 / 1e6);
+            self.settled = next;
+        }
+        if f64::from(tick.mrp.norm()) > NEAR_MRP {
+            self.attitude = next;
+        }
+        if heading_error(&tick.state, &tick.reference) > NEAR_HEADING {
+            self.heading = next;
         }
     }
 
-    /// Whether it recovered and tracks: it was flown to its end, and was near its reference in time and for good.
+    /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in time
+    /// and for good.
     #[must_use]
     pub fn tracks(&self) -> bool {
         self.in_time
@@ -124,6 +149,13 @@ impl Outcome {
     pub fn holds(&self) -> bool {
         self.tracks() && self.beyond == 0
     }
+}
+
+/// The angle between the vehicle's heading and the reference's, rad.
+fn heading_error(state: &BodyState, reference: &Reference) -> f64 {
+    let wanted = reference.heading.direction().map(f64::from);
+    let (sin, cos) = state.yaw().sin_cos();
+    (cos * wanted.y - sin * wanted.x).atan2(cos * wanted.x + sin * wanted.y).abs()
 }
 
 /// Whether a flight of `duration`, s, has settled in time.

@@ -12,10 +12,11 @@
 //! | `start_px` … `start_wz` | m, m/s, -, rad/s | position, velocity, attitude (scalar first), body rates |
 //! | `wind_x`, `wind_y` | m/s | steady wind |
 //! | `gust_x`, `gust_y` | m/s | its step, zero for none |
-//! | `height_lost`, `rise`, `settled`, `final_error` | m, m, s, m | [`Outcome`]; `settled` is null where it was away at the end |
+//! | `height_lost`, `rise`, `final_error` | m | [`Outcome`] |
+//! | `settled`, `attitude`, `heading` | s | since when it has been near its reference, attitude and heading; null where it was away at the end |
 //! | `share_thrust`, `share_torque_x` …, `share_rotor_1` … | | greatest part of each certified bound |
 //! | `clipped`, `beyond`, `ticks` | ticks | |
-//! | `net` | | how often the extended law's net came into force |
+//! | `fallback` | | how often the extended law's fallback came |
 //! | `verdict` | | `holds`, `away`, `late` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
 //!
 //! A file of another law than ours says which in its schema's metadata, under `law`.
@@ -68,20 +69,21 @@ impl Outcome {
     /// In a word; whether the bounds were kept counts where they are `proven` of the law that flew.
     #[must_use]
     pub fn verdict(&self, proven: bool) -> &'static str {
-        match (proven && self.beyond > 0, self.settled) {
+        let there = self.settled.is_some() && self.attitude.is_some() && self.heading.is_some();
+        match (proven && self.beyond > 0, there) {
             (true, _) => BEYOND,
-            (false, None) => AWAY,
-            (false, Some(_)) if self.tracks() => HOLDS,
-            (false, Some(_)) => LATE,
+            (false, false) => AWAY,
+            (false, true) if self.tracks() => HOLDS,
+            (false, true) => LATE,
         }
     }
 }
 
 /// Recovered, tracked, and commanded nothing beyond a bound.
 pub const HOLDS: &str = "holds";
-/// Was not near its reference at the end.
+/// Was not near its reference, attitude or heading at the end.
 pub const AWAY: &str = "away";
-/// Came near it for good, but too late to have recovered ([`Outcome::in_time`]).
+/// Came near them for good, but too late to have recovered ([`Outcome::in_time`]).
 pub const LATE: &str = "late";
 /// Commanded more than is proven.
 pub const BEYOND: &str = "beyond";
@@ -92,6 +94,7 @@ const START: [&str; 13] = [
 ];
 const WIND: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
 const FIGURES: [&str; 3] = ["height_lost", "rise", "final_error"];
+const REACHED: [&str; 3] = ["settled", "attitude", "heading"];
 const SHARES: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
 /// The columns of what `manifest` describes.
@@ -101,10 +104,10 @@ pub fn schema(manifest: &Manifest) -> Schema {
     let count = |name: &str| Field::new(name, DataType::UInt64, false);
     let mut fields = vec![count("number"), Field::new("hover", DataType::Boolean, false)];
     fields.extend(START.iter().chain(&WIND).chain(&FIGURES).map(|name| number(name)));
-    fields.push(Field::new("settled", DataType::Float64, true));
+    fields.extend(REACHED.iter().map(|name| Field::new(*name, DataType::Float64, true)));
     fields.extend(SHARES.iter().map(|name| number(name)));
     fields.extend((1..=manifest.rotors as usize).map(|rotor| number(&share_of_rotor(rotor))));
-    fields.extend(["clipped", "beyond", "net", "ticks"].map(count));
+    fields.extend(["clipped", "beyond", "fallback", "ticks"].map(count));
     fields.push(Field::new("verdict", DataType::Utf8, false));
     let schema = Schema::new(fields);
     match manifest.rival() {
@@ -135,14 +138,14 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     columns.push(numbers(&|row| row.outcome.height_lost));
     columns.push(numbers(&|row| row.outcome.rise));
     columns.push(numbers(&|row| row.outcome.final_error));
-    columns.push(settled(rows));
+    columns.extend(REACHED_OF.map(|since| reached(rows, since)));
     columns.push(numbers(&|row| row.outcome.shares.thrust));
     columns.extend((0..3).map(|axis| numbers(&|row| row.outcome.shares.torque[axis])));
     columns.extend((0..manifest.rotors as usize).map(|rotor| numbers(&|row| row.outcome.shares.rotors[rotor])));
     columns.extend([
         counts(|row| row.outcome.clipped),
         counts(|row| row.outcome.beyond),
-        counts(|row| row.outcome.net),
+        counts(|row| row.outcome.fallback),
         counts(|row| row.outcome.ticks),
     ]);
     let proven = manifest.rival().is_none();
@@ -150,10 +153,14 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     RecordBatch::try_new(Arc::new(schema(manifest)), columns)
 }
 
-fn settled(rows: &[Row]) -> ArrayRef {
+/// [`REACHED`], of an outcome.
+const REACHED_OF: [fn(&Outcome) -> Option<f64>; 3] =
+    [|outcome| outcome.settled, |outcome| outcome.attitude, |outcome| outcome.heading];
+
+fn reached(rows: &[Row], since: fn(&Outcome) -> Option<f64>) -> ArrayRef {
     let mut column = Float64Builder::with_capacity(rows.len());
     for row in rows {
-        column.append_option(row.outcome.settled);
+        column.append_option(since(&row.outcome));
     }
     Arc::new(column.finish())
 }

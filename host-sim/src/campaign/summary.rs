@@ -2,9 +2,10 @@
 
 use super::draw::timing;
 use super::manifest::Manifest;
-use super::outcome::{NEAR, in_time};
+use super::outcome::{NEAR, NEAR_HEADING, in_time};
 use super::quantile;
 use super::rows::{HOLDS, share_of_rotor};
+use crate::flown::NEAR_MRP;
 use crate::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
@@ -31,8 +32,8 @@ pub struct Summary {
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
-    /// Flights in which the law's net came into force.
-    pub net: u64,
+    /// Flights in which the law's fallback came.
+    pub fallback: u64,
     /// Why the scenario may not fly, if so.
     pub refusal: Option<String>,
     /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight
@@ -61,6 +62,8 @@ impl Summary {
             figure("height lost", "m", "height_lost"),
             figure("rise above start and reference", "m", "rise"),
             figure(&format!("within {NEAR} m for good after"), "s", "settled"),
+            figure("attitude", "s", "attitude"),
+            figure("heading", "s", "heading"),
             figure("error at the end", "m", "final_error"),
             figure("share of the thrust's bound", "", "share_thrust"),
         ];
@@ -73,11 +76,14 @@ impl Summary {
         figures.extend(
             (1..=rotors).map(|rotor| figure(&format!("share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor))),
         );
-        let settled = floats(flown, "settled");
+        let reached = ["settled", "attitude", "heading"].map(|column| floats(flown, column));
         let duration = timing(scenario, &scenario.campaign.ranges).duration();
-        let tracking = settled.iter().filter(|settled| in_time(Some(**settled), duration)).count();
+        let slowest: Vec<f64> = (0..numbers.len())
+            .map(|flight| reached.iter().filter_map(|times| times.get(flight)).copied().fold(0.0, f64::max))
+            .collect();
+        let tracking = slowest.iter().filter(|time| in_time(Some(**time), duration)).count();
         let greatest_share = (0..numbers.len()).map(|flight| {
-            figures[4..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
+            figures[6..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
         });
         let greatest_share: Vec<f64> = greatest_share.collect();
         let listed = |what, values: &[f64], unit| (what, worst(&numbers, values, unit));
@@ -89,7 +95,7 @@ impl Summary {
             .take(4 * LISTED)
             .collect();
         let mut worst = vec![
-            listed("slowest", &settled, "s"),
+            listed("slowest", &slowest, "s"),
             listed("deepest", &figures[0].values, "m"),
             listed("nearest to a bound", &greatest_share, ""),
         ];
@@ -116,7 +122,7 @@ impl Summary {
             rival,
             beyond: ever("beyond"),
             clipped: ever("clipped"),
-            net: ever("net"),
+            fallback: ever("fallback"),
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
                 && verdicts.iter().all(|verdict| *verdict == HOLDS),
@@ -143,10 +149,15 @@ impl fmt::Display for Summary {
             if self.rival.is_some() { " of ours" } else { "" },
             self.clipped
         )?;
-        if self.net > 0 {
-            writeln!(f, "the extended law's net came into force in {} flights\n", self.net)?;
+        if self.fallback > 0 {
+            writeln!(f, "the extended law's fallback came in {} flights\n", self.fallback)?;
         }
         writeln!(f, "{}", self.quantiles)?;
+        let [attitude, heading] = [4.0 * NEAR_MRP.atan(), NEAR_HEADING].map(|angle| angle.to_degrees().round());
+        writeln!(
+            f,
+            "attitude: within {attitude} degrees of the desired one for good after; heading: {heading} degrees\n"
+        )?;
         for (what, flights) in &self.worst {
             writeln!(f, "{what}: {flights}")?;
         }

@@ -133,15 +133,15 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
 }
 
 #[test]
-fn the_shares_of_the_torque_are_those_of_the_tightest_row() {
+fn pull_and_turning_take_what_the_torque_rows_require() {
     for (text, row) in EXTENDED[..2].iter().zip(["T2 roll and pitch torque", "R rotors' range"]) {
         let (report, _) = report(text);
         let shares = line(&report, "of ");
+        let whole: f64 = shares.split_whitespace().nth(1).unwrap().parse().unwrap();
         let parts = shares.split(['%', ',']).filter_map(|part| part.split_whitespace().last()?.parse::<f64>().ok());
-        let margin = line(&report, row).split_whitespace().rev().nth(2).unwrap().parse::<f64>().unwrap();
-        let sum: f64 = parts.sum();
-        // The row's margin is a share of the rest beside yaw and bias; the shares are of the whole.
-        assert!(sum < 100.0 && sum > 100.0 - margin - 0.3, "{shares}: {sum}, {margin}");
+        let taken = whole * parts.take(2).sum::<f64>() / 100.0;
+        let required = line(&report, row).split_whitespace().rev().nth(3).unwrap().parse::<f64>().unwrap();
+        assert!((taken - required).abs() < 2e-3 * required, "{shares}: {taken}, {required}");
     }
 }
 

@@ -89,7 +89,7 @@ fn a_line_that_cannot_be_used_is_named_and_changes_nothing() {
 
 #[test]
 fn nonsense_on_one_line_does_not_reach_the_lines_after_it() {
-    // The extended law remembers more than the paper's: estimates, and a net for references that it cannot fly.
+    // The extended law remembers more than the paper's: estimates, and a fallback for references that it cannot fly.
     let extended = || LawServer::new(&Scenario::parse(scenario::STUDY, "study").unwrap()).unwrap();
     for (field, value) in [(1, "1e-30"), (5, "1e10"), (2, "1e10"), (12, "1e8"), (18, "1e10"), (21, "1e9"), (24, "1e9")]
     {

@@ -1,7 +1,7 @@
 //! One candidate: a point of the search space, and a verdict on it.
 //!
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
-//! radii, margins, the trials of [`super::trials`], the file's own flight. A verdict that fails says how far it got and
+//! radii, margins, the trials of [`super::trials`], the file's own flight, the flights of large motions. A verdict that fails says how far it got and
 //! by how much it missed, so that the search has a slope to follow.
 //!
 //! The gain margin is required twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
@@ -18,6 +18,7 @@ use crate::flown::Flown;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use scenario::Scenario;
+use scenario::large_motions;
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
@@ -161,7 +162,7 @@ impl Judge {
         if let Some(lack) = needed.loops.first_lacking(&loops.reports()) {
             return Err((2, lack.missed, lack.to_string()));
         }
-        let loops = loops.with_position_feedback(needed.loops.gain);
+        let loops = loops.with_position_feedback([needed.loops.gain; 2]);
         for axis in Axis::ALL {
             let radius = loops.spectral_radius(axis);
             if radius >= 1.0 {
@@ -183,6 +184,11 @@ impl Judge {
         }
         if !reached(&scenario, &flown) {
             return Err((0, 1.0, "the file's flight: its reference is not reached in time".to_owned()));
+        }
+        if scenario.configuration.paper().is_none() {
+            let flights = large_motions::flown(certified, &scenario.loop_timing());
+            let flights = flights.map_err(|error| (0, 1.0, error.to_string()))?;
+            flights.map_err(|astray| (0, 1.0, astray.to_string()))?;
         }
         Ok(())
     }

@@ -18,12 +18,12 @@ use scenario::Scenario;
 /// A point of the search space.
 pub type Point = Vec<f64>;
 
-/// Constants that move with a searched one, each with the power of its factor. w, k_t and r_0 together are the
-/// stiffness of the tilt.
+/// Constants that move with a searched one, each with the power of its factor. r_0 is where the tilt begins to brake
+/// along a parabola: it goes with M_theta^2 / k_theta.
 const ALONG: [(&str, &str, f64); 4] = [
     ("k_v_vertical", "k_p_vertical", 2.0),
-    ("w", "k_t", 1.0),
-    ("w", "r_0", -1.0),
+    ("k_tilt", "r_0", -1.0),
+    ("m_tilt", "r_0", 2.0),
     ("force_bandwidth_across", "force_bandwidth_vertical", 1.0),
 ];
 
@@ -76,12 +76,16 @@ impl Space {
         let airframe = self.scenario.airframe()?;
         let own = law.parameters.values();
         let mut given = self.chosen;
-        for (place, x) in searched().zip(point).filter(|(_, x)| **x != 0.0) {
-            let key = ExtendedParameters::TABLE[place].key;
-            let along = ALONG.iter().filter(|(with, ..)| *with == key).map(|(_, key, power)| (*key, *power));
-            for (key, power) in along.chain([(key, 1.0)]) {
-                let place = ExtendedParameters::TABLE.iter().position(|constant| constant.key == key)?;
-                given[place] = Some(rounded(f64::from(own[place]) * (power * x).exp()));
+        let moved: Vec<(&str, f64)> =
+            searched().map(|place| ExtendedParameters::TABLE[place].key).zip(point.iter().copied()).collect();
+        for (place, constant) in ExtendedParameters::TABLE.iter().enumerate() {
+            let power = |with: &str| {
+                let along = ALONG.iter().find(|(other, key, _)| *other == with && *key == constant.key);
+                along.map_or(f64::from(u8::from(with == constant.key)), |(.., power)| *power)
+            };
+            let logarithm: f64 = moved.iter().map(|(with, x)| power(with) * x).sum();
+            if logarithm != 0.0 {
+                given[place] = Some(rounded(f64::from(own[place]) * logarithm.exp()));
             }
         }
         let parameters = defaults::constants(&airframe, &given);

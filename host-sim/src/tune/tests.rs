@@ -215,7 +215,7 @@ fn found(scenario: &Scenario, logarithm: f64) -> Tuned {
 fn what_the_files_of_the_extended_law_chose_is_found_again_and_nothing_else() {
     let [hummingbird, study, paper] = extended();
     assert_eq!(keys(&hummingbird), ["yaw_acceleration"]);
-    assert_eq!(keys(&study), ["turn_reserve", "yaw_acceleration", "yaw_rate", "force_heading"]);
+    assert_eq!(keys(&study), ["yaw_acceleration", "force_heading"]);
     assert!(keys(&paper).is_empty());
 }
 

@@ -5,9 +5,10 @@
 mod hummingbird;
 
 use controller_core::configuration::LawParameters;
-use controller_core::extended::budget::{TorqueBudget, TurningBudget};
+use controller_core::extended::budget::{TickBudget, TorqueBudget};
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::math;
+use nalgebra::Vector2;
 
 #[unsafe(no_mangle)]
 extern "C" fn checked_whole(x: f32) -> i64 {
@@ -17,11 +18,6 @@ extern "C" fn checked_whole(x: f32) -> i64 {
 #[unsafe(no_mangle)]
 extern "C" fn checked_single(x: i64) -> f32 {
     math::single(x)
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn checked_within_rate(acceleration: f32, rate: f32, level: f32, period: f32) -> f32 {
-    math::within_rate(acceleration, rate, level, period)
 }
 
 #[unsafe(no_mangle)]
@@ -36,8 +32,8 @@ extern "C" fn checked_tanh(z: f32) -> f32 {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn checked_budget(budget: &TurningBudget, magnitude: f32, feedback: f32, sine: f32) -> f32 {
-    budget.acceleration(magnitude, feedback, sine)
+extern "C" fn checked_spend(budget: &TickBudget, x: f32, y: f32, kept: f32) -> f32 {
+    budget.spending(1.0).spend(&Vector2::new(x, y), kept)
 }
 
 fn constants() -> ExtendedParameters {
@@ -56,12 +52,11 @@ unsafe fn put<T>(made: T, room: *mut T) -> usize {
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn make_budget(room: *mut TurningBudget) -> usize {
-    let configuration = hummingbird::extended_law();
-    let (vehicle, p) = (configuration.vehicle(), constants());
-    let budget = TorqueBudget::new(&p, vehicle, configuration.limits(), configuration.rotors());
+unsafe extern "C" fn make_spend(room: *mut TickBudget) -> usize {
+    let (configuration, p) = (hummingbird::extended_law(), constants());
+    let budget = TorqueBudget::new(p.floor_margin, configuration.limits(), configuration.rotors());
     // SAFETY: `no_panic` gives ROOM bytes of its own, more than any budget has.
-    unsafe { put(TurningBudget::new(&budget, vehicle.mass, p.turn_acceleration), room) }
+    unsafe { put(TickBudget::new(&budget, [p.scale_least, p.scale_greatest]), room) }
 }
 
 /// One that can panic, so that a search that finds nothing is noticed.

@@ -104,11 +104,13 @@ fn a_constant_of_the_extended_law_is_the_files_and_the_others_follow() {
         LawParameters::Paper(_) => panic!(),
     };
     let (own, slower) = (parameters(with("").unwrap()), parameters(with("k_f = 5.0").unwrap()));
-    assert!(own.k_f > 5.0 && slower.k_f == 5.0 && slower.k_s < own.k_s && slower.w == own.w);
+    assert!(own.k_f > 5.0 && slower.k_f == 5.0 && slower.k_s < own.k_s && slower.k_tilt == own.k_tilt);
     for (line, words) in [
         ("k_ff = 5.0", "gains.k_ff: unknown key"),
         ("k_f = 0.1", "gains.k_f: must be at least 0.2"),
         ("force_up = 0.1", "gains.force_up: unknown key"),
+        ("w = 0.1", "gains.w: the law no longer has it: k_tilt"),
+        ("turn_acceleration = 9.0", "gains.turn_acceleration: the law no longer has it: it follows"),
     ] {
         let refused = with(line).err().unwrap().what;
         assert!(refused.starts_with(words), "{refused}");
@@ -151,8 +153,7 @@ fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     }
 }
 
-/// What the law's generators are not defined for at this rate is refused when the file is read, not when it is first
-/// flown.
+/// Gains of the heading that are too fast for this rate are refused when the file is read, not when it is first flown.
 #[test]
 fn gains_that_ask_for_shorter_ticks_are_refused_by_name() {
     for (line, field) in [("c_1 = 900.0", "gains.c_1"), ("c_2 = 101.0", "gains.c_2")] {

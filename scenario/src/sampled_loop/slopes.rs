@@ -9,9 +9,9 @@ use controller_core::gains::Gains;
 /// A law near hover.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slopes {
-    /// Torque per angle about each body axis, N m/rad.
+    /// Angular acceleration per angle about each body axis, 1/s^2.
     stiffness: [f64; 3],
-    /// Torque per body rate, N m s.
+    /// Angular acceleration per body rate, 1/s.
     damping: [f64; 3],
     /// Gains across.
     across: PositionGains,
@@ -31,33 +31,31 @@ struct Estimates {
 }
 
 impl Slopes {
-    /// Of `law`.
-    pub fn of(law: &LawParameters) -> Self {
+    /// Of `law` on a body with these moments of inertia, kg m^2.
+    pub fn of(law: &LawParameters, inertia: [f64; 3]) -> Self {
         match law {
-            LawParameters::Paper(law) => Self::paper(&law.gains),
-            LawParameters::Extended(law) => Self::extended(law),
+            LawParameters::Paper(law) => Self::paper(&law.gains, inertia),
+            LawParameters::Extended(law) => Self::extended(law, inertia),
         }
     }
 
     /// Of the paper's law: the MRP of a small angle is angle / 4, and (1 + |theta|^2) / 4 is 1/4.
-    fn paper(gains: &Gains) -> Self {
+    fn paper(gains: &Gains, inertia: [f64; 3]) -> Self {
         let [k_p, k_v, k_f, k_s] = [gains.k_p, gains.k_v, gains.k_f, gains.k_s].map(f64::from);
         let position = PositionGains { k_p, k_v, k_f, k_s, k_d: None };
         Self {
-            stiffness: [f64::from(gains.k_theta) / 16.0; 3],
-            damping: [f64::from(gains.k_omega); 3],
+            stiffness: inertia.map(|moment| f64::from(gains.k_theta) / (16.0 * moment)),
+            damping: inertia.map(|moment| f64::from(gains.k_omega) / moment),
             across: position,
             vertical: position,
             estimates: None,
         }
     }
 
-    /// Of the extended law: sections 1, 2, 6, 7 and 10 of `docs/extended-law.md`.
-    fn extended(ExtendedLaw { parameters, actuators }: &ExtendedLaw) -> Self {
+    /// Of the extended law: sections 1, 2, 5, 6, 7 and 10 of `docs/extended-law.md`.
+    fn extended(ExtendedLaw { parameters, actuators }: &ExtendedLaw, [x, y, _]: [f64; 3]) -> Self {
         let p = parameters;
-        let [w, eta, k_t, eta_t] = [p.w, p.eta, p.k_t, p.eta_t].map(f64::from);
-        let tilt = w / 4.0 + k_t / (2.0 * eta_t.hypot(1.0));
-        let yaw = w * eta / (4.0 * (1.0 + eta));
+        let [tilt, damping, c_1, c_2] = [p.k_tilt / 4.0, p.k_omega_t, p.c_1, p.c_2].map(f64::from);
         let gains = |k_p: f32, k_v: f32| PositionGains {
             k_p: k_p.into(),
             k_v: k_v.into(),
@@ -67,26 +65,23 @@ impl Slopes {
         };
         let [lag, delay] = [actuators.lag, actuators.delay].map(f64::from);
         Self {
-            stiffness: [tilt, tilt, yaw],
-            damping: [p.k_omega_t, p.k_omega_t, p.k_omega_z].map(f64::from),
+            stiffness: [tilt / x, tilt / y, c_1],
+            damping: [damping / x, damping / y, c_2],
             across: gains(p.k_p_across, p.k_v_across),
             vertical: gains(p.k_p_vertical, p.k_v_vertical),
             estimates: Some(Estimates { parameters: **parameters, lag, delay }),
         }
     }
 
-    /// With k_p and k_v multiplied by `factor`.
-    pub fn with_position_feedback(self, factor: f64) -> Self {
-        let scaled = |gains: PositionGains| PositionGains { k_p: gains.k_p * factor, k_v: gains.k_v * factor, ..gains };
+    /// With k_p and k_v multiplied by these factors.
+    pub fn with_position_feedback(self, [k_p, k_v]: [f64; 2]) -> Self {
+        let scaled = |gains: PositionGains| PositionGains { k_p: gains.k_p * k_p, k_v: gains.k_v * k_v, ..gains };
         Self { across: scaled(self.across), vertical: scaled(self.vertical), ..self }
     }
 
-    /// The attitude law about `axis` of a body with this moment of `inertia`, kg m^2, at ticks `period` seconds apart.
-    pub fn torque(&self, axis: usize, inertia: f64, period: f64) -> TorqueGains {
-        TorqueGains {
-            angle: self.stiffness[axis] * period * period / inertia,
-            rate: self.damping[axis] * period / inertia,
-        }
+    /// The attitude law about `axis`, at ticks `period` seconds apart.
+    pub fn torque(&self, axis: usize, period: f64) -> TorqueGains {
+        TorqueGains { angle: self.stiffness[axis] * period * period, rate: self.damping[axis] * period }
     }
 
     /// The position law across.
@@ -111,14 +106,14 @@ impl Slopes {
         })
     }
 
-    /// What is estimated along and about the vertical. The thrust scale is learnt from what varies alone: near hover it
-    /// stands still.
+    /// What is estimated along and about the vertical, the torque there with half of the bandwidth. The thrust scale is
+    /// learnt from what varies alone: near hover it stands still.
     pub fn estimated_vertical(&self, period: f64) -> EstimateGains {
         self.estimates.map_or_else(EstimateGains::default, |estimates| {
             let p = &estimates.parameters;
             EstimateGains {
                 force: force(p.force_up.min(p.force_down), p.force_bandwidth_vertical, 0.0, period),
-                torque: torque(p.torque_yaw, p.torque_bandwidth, period),
+                torque: torque(p.torque_yaw, 0.5 * p.torque_bandwidth, period),
                 late: estimates.late(period),
             }
         })

@@ -109,7 +109,7 @@ fn times_are_stretched_as_asked() {
     let (own, slower) = (at(1.0), at(2.0));
     let speeds = own.horizontal_speed / slower.horizontal_speed;
     // Getting there and stopping is no slower.
-    assert!((speeds - 2.0).abs() < 0.1 && slower.snap < 0.9 * own.snap, "{own:?} {slower:?}");
+    assert!((speeds - 2.0).abs() < 0.1 && slower.jerk < 0.9 * own.jerk, "{own:?} {slower:?}");
 }
 
 const GATES: [[f64; 3]; 9] = [

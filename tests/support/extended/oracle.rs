@@ -1,40 +1,42 @@
-//! A second, plain transcription of the extended law, in f64, from the headers of its modules, for the tests to compare
-//! the core with.
+//! A second, plain transcription of the extended law, in f64, from `docs/extended-law.md`, for the tests to compare the
+//! core with.
 //!
 //! It shares no code with the core and takes the other road wherever there is one: rotation matrices instead of
-//! quaternions, the thrust direction's turn in world axes, the heading's lag as an angle, omega_d and omega_d' by
-//! differentiating the lagging frame numerically, filters in small Runge-Kutta steps. One tick, [`Law::evaluate`], is a
-//! pure function of [`Tick`], so that its sensitivity to every rounding can be computed. Its pieces:
+//! quaternions, the tilt as an angle between two axes, the thrust direction's turn in world axes, the gyroscopic torque
+//! from Euler's equations, shares of torque by bisection over all rows, omega_d and omega_d' by differentiating the
+//! frame numerically, filters in small Runge-Kutta steps. One tick, [`Law::evaluate`], is a pure function of [`Tick`],
+//! so that its sensitivity to every rounding can be computed. Its pieces:
 //!
-//! - [`position`], [`turning`] and [`heading`]: the commanded force, and how the desired frame follows it;
-//! - [`attitude`]: the torque of the attitude's errors;
-//! - [`budget`]: what rotors and limits leave for either;
+//! - [`position`] and [`turning`]: the commanded force, and how the thrust direction follows it;
+//! - [`attitude`] and [`heading`]: the torque that the errors ask for;
+//! - [`spending`]: what rotors and limits leave of it;
 //! - [`estimates`]: what is learnt of the forces; [`acting`]: what rotors still do of earlier commands;
-//! - [`net`]: what catches a vehicle whose drives are changed without end.
+//! - [`fallback`]: the slowed law.
 
 pub mod acting;
 pub mod attitude;
-pub mod budget;
 pub mod estimates;
+pub mod fallback;
 pub mod heading;
-pub mod net;
 pub mod position;
+pub mod spending;
 pub mod tick;
 pub mod turning;
 
 use crate::support::oracle::desired::{Command, velocity};
 use crate::support::oracle::lifting::Lift;
-use crate::support::oracle::skew;
-use budget::{Rotor, Row};
 use controller_core::allocation::Rotors;
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::vehicle::{Limits, Vehicle};
-use nalgebra::{Matrix3, Vector3};
-use position::Envelope;
+use nalgebra::{Matrix3, Vector2, Vector3};
+use spending::{Rotor, Row, THRUST_LEFT};
 use tick::{Answer, Tick};
-use turning::{TURNED, Turn};
+use turning::Turn;
 
-/// The law in f64, under the headers' symbols.
+/// The least share of M_theta that a bias leaves.
+const LEVEL_LEAST: f64 = 0.05;
+
+/// The law in f64, under the page's symbols.
 pub struct Law {
     pub p: ExtendedParameters,
     pub mass: f64,
@@ -45,11 +47,8 @@ pub struct Law {
     /// T.
     pub late: f64,
     thrust_max: f64,
+    yaw_max: f64,
     rows: Vec<Row>,
-    /// N_0, and L.
-    floor: [f64; 2],
-    /// What bias and yaw take of the greatest thrust.
-    taken: f64,
 }
 
 fn double(x: f32) -> f64 {
@@ -58,15 +57,6 @@ fn double(x: f32) -> f64 {
 
 fn axes(across: f32, vertical: f32) -> Vector3<f64> {
     Vector3::new(across, across, vertical).cast()
-}
-
-fn cut(x: f64, level: f64) -> f64 {
-    x.clamp(-level, level)
-}
-
-fn about_z(angle: f64) -> Matrix3<f64> {
-    let (sin, cos) = angle.sin_cos();
-    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
 }
 
 /// s(x; M).
@@ -89,7 +79,7 @@ impl Law {
             greatest: double(rotor.thrust_max),
             row: *row,
         });
-        let mut law = Self {
+        let law = Self {
             p: *p,
             mass: double(vehicle.mass),
             gravity: double(vehicle.gravity),
@@ -98,12 +88,10 @@ impl Law {
             period: double(period),
             late: double(late),
             thrust_max: double(limits.thrust_max),
+            yaw_max: double(limits.torque_max.z),
             rows: Vec::new(),
-            floor: [0.0; 2],
-            taken: 0.0,
         };
-        law.spend(&limits.torque_max.cast());
-        law
+        Self { rows: law.rows(&limits.torque_max.cast()), ..law }
     }
 
     fn moments(&self) -> Vector3<f64> {
@@ -112,89 +100,146 @@ impl Law {
 
     /// One tick.
     pub fn evaluate(&self, t: &Tick) -> Answer {
-        let (p, h) = (&self.p, self.period);
+        let (p, h, back) = (&self.p, self.period, t.rotation.transpose());
         let axis: Vector3<f64> = t.rotation.column(2).into();
         let averages = self.learnt(t, &axis);
         let scale = averages.scale;
-        let across = averages.force.xy();
-        let across = across * (double(p.force_across) / across.norm()).min(1.0);
-        let d_z = averages.force.z.clamp(-double(p.force_down), double(p.force_up));
-        let d = Vector3::new(across.x, across.y, d_z);
-        let bias = averages.bias.zip_map(&axes(p.torque_tilt, p.torque_yaw), cut);
-
-        let (net, caught) = t.net.catching();
-        let filters = if caught { [-d; 3] } else { t.filters };
-        let greatest = self.greatest(scale) * (1.0 + t.nudge.greatest);
-        let most = if net.caught { self.net_level() } else { f64::INFINITY };
-        let (errors, feedback) = self.feedback(t, &filters, &Envelope { d, greatest, most });
-        let [c, x, y] = filters;
-        let k_f = double(p.k_f);
-        let c_rate = k_f * (x - c);
-        let smoothed = feedback + (y - feedback) * (-double(p.k_d) * h).exp();
-        let drive = (smoothed - x) * ((1.0 - (-double(p.k_s) * h).exp()) / h);
-        let c_second = k_f * (drive - c_rate);
-
+        let bias = averages.bias.zip_map(&axes(p.torque_tilt, p.torque_yaw), |x: f64, level| x.clamp(-level, level));
+        let greatest = self.greatest(scale, &bias) * (1.0 + t.nudge.greatest);
         let kappa = Vector3::new(1.0, 1.0, 0.0) * double(p.drag_across);
         let [v_d, a_d, j_d, s_d] = t.reference;
-        let u = c + Vector3::new(0.0, 0.0, self.gravity) + a_d + kappa.component_mul(&v_d) + t.nudge.command[0];
+        let rest = Vector3::new(0.0, 0.0, self.gravity) + a_d + kappa.component_mul(&v_d);
+        let (d, force_cut) = self.believed(&averages.force, &(rest + t.nudge.rest), greatest);
+
+        let gains = self.gains(t.fallback.slow);
+        let feedback = self.feedback(t, &gains, &d, greatest);
+        let [c, x, y] = t.filters;
+        let [k_f, k_s, k_d] = gains.filters;
+        let c_rate = k_f * (x - c);
+        let smoothed = feedback + (y - feedback) * (-k_d * h).exp();
+        let drive = (smoothed - x) * ((1.0 - (-k_s * h).exp()) / h);
+        let c_second = k_f * (drive - c_rate);
+        let u = c + rest + t.nudge.command[0];
         let u_dot = c_rate + j_d + kappa.component_mul(&a_d) + t.nudge.command[1];
         let u_ddot = c_second + s_d + kappa.component_mul(&j_d) + t.nudge.command[2];
-        // Rates do not depend on u''.
-        let command = Command { u, u_dot, u_ddot: Vector3::zeros(), heading: t.heading };
-        let (papers, papers_rate) = velocity(|e| command.desired_attitude(e), command.fastest());
-        let lag = t.lag.unwrap_or_else(|| [0.0, cut(papers_rate.z, double(p.yaw_rate))]);
-        let [chi, turn] = lag;
-        let across = about_z(chi).transpose() * papers_rate;
-        let omega_d = Vector3::new(across.x, across.y, turn);
-        let error = (papers * about_z(chi)).transpose() * t.rotation;
-        let behind = t.omega - error.transpose() * omega_d;
 
-        let (projected, projected_rate) = self.projected(t, &error, &behind, scale, &bias);
-        let before = t.lift.unwrap_or_else(|| Lift::initial(&projected));
-        let (lift, lifted) = before.advance(&projected, double(p.delta), double(p.alpha));
-        let potential = self.potential(&lifted);
-        let (damping, eased) = self.damping(&lifted, &potential, &projected_rate);
-        let pull = potential + damping;
-
+        // How rho turns, and the errors. Rates do not depend on u''.
         let n = u.norm();
         let rho = u / n;
-        let r = rho.dot(&u_dot);
+        let (r, along) = (rho.dot(&u_dot), rho.dot(&u_ddot));
         let rate = (u_dot - rho * r) / n;
-        let along = rho.dot(&u_ddot);
         let wanted = Turn { rho, n, r, p: rate, q: (u_ddot - rho * along - rate * (2.0 * r)) / n, along };
-        let cosine = error[(2, 2)];
-        let sine = if cosine > 0.0 { error[(0, 2)].hypot(error[(1, 2)]) } else { 1.0 };
-        let alpha = self.budget(n, pull.xy().norm(), sine).0 + t.nudge.budget;
-        let vertical = [c.z, c_rate.z, c_second.z];
-        let (change, limited) = self.limited(&wanted, turn, alpha, greatest, &vertical, &t.nudge.turn);
-        let command = Command { u_ddot: u_ddot + change, ..command };
+        let command = Command { u, u_dot, u_ddot: Vector3::zeros(), heading: t.heading };
+        let (desired, omega_d) = velocity(|e| command.desired_attitude(e), command.fastest());
+        let error = desired.transpose() * t.rotation;
+        let (turning, frame) = (back * rho.cross(&rate), error.transpose() * omega_d);
+        let behind = t.omega - frame;
+        let counted = (t.omega - turning).xy().push(behind.z);
+        let (projected, projected_rate) = self.projected(t, &error, [&behind, &counted], scale, &bias);
+        let before = t.lift.unwrap_or_else(|| Lift::initial(&projected));
+        let (lift, lifted) = before.advance(&projected, double(p.delta), double(p.alpha));
+        let tilt = self.tilt(&projected, t.side);
 
-        let (omega_d, omega_d_dot, mut after) = self.lagging(lag, &command, t.nudge.heading);
-        // What q leaves of alpha is W's at the next tick, with |p| to an eighth.
-        let turning = papers.transpose() * wanted.p;
-        let fastest = (1.0 - TURNED) * alpha.max(double(p.turn_reserve))
-            / (turning.x.abs().max(turning.y.abs()) + 0.5 * turning.x.abs().min(turning.y.abs())).max(1e-3);
-        let slowed = after[1].abs() > fastest;
-        after[1] = cut(after[1], fastest);
-        let (rate, turned) = (error.transpose() * omega_d, error.transpose() * omega_d_dot);
-        let torque = self.inertia * turned - skew(self.inertia * rate) * rate - pull - bias;
-        let wanted = self.mass * u.dot(&axis);
-        let [least, ceiling] = self.thrusts(&torque, scale);
-        let thrust = ceiling.min(least.max(wanted));
-        let [rate, acceleration, whole, cone, swells, falls] = limited;
+        // The torque about the tilt's axes, part by part.
+        let reserve = self.moments().xy().max() * double(p.turn_reserve);
+        let m_tilt = double(p.m_tilt);
+        let [of_bias, of_pull, of_gyroscopic, of_damping, of_precession, of_turning] = t.nudge.parts;
+        let mut spending = self.spending(scale, t.nudge.rooms);
+        spending.spend(&(of_bias - bias.xy()), 0.0);
+        let left = spending.radius() - bias.xy().norm() - reserve;
+        let level = m_tilt.min(left.max(LEVEL_LEAST * m_tilt));
+        let pull = self.pull(&tilt, level);
+        spending.spend(&(of_pull - pull), reserve);
+        let (gyroscopic, gyroscopic_size) = self.gyroscopic(&turning, &t.omega);
+        let of_g = spending.spend(&(of_gyroscopic + gyroscopic), reserve);
+        let wanted_damping = self.damping(&tilt, &projected_rate.xy());
+        let lambda = spending.spend(&(of_damping - wanted_damping), reserve);
+        let damping = wanted_damping * lambda;
+        let precession = self.precession(&turning, &t.omega);
+        let of_h = spending.spend(&(of_precession + precession), reserve);
+        let (q, [faster, sooner, tilted]) = self.turned(&wanted, &t.nudge.turn);
+        let whole = back * rho.cross(&q);
+        let part = (self.inertia * whole).xy() + of_turning;
+        let thrust = (1.0 - THRUST_LEFT) * self.mass * n;
+        let above = self.share_above_the_floor(&spending.spent, &part, thrust, scale);
+        let above = above.max((double(p.turn_reserve) / q.norm()).min(1.0));
+        let of_rows = spending.spend(&(part * above), 0.0);
+        let q = q * (above * of_rows);
+        let turned = whole * (above * of_rows);
+        let vertical = [c.z, c_rate.z, c_second.z];
+        let (change, [swells, falls]) = self.change(&wanted, &q, greatest, &vertical);
+
+        // Thrust, then yaw.
+        let tilting: Vector2<f64> = spending.spent;
+        let (_, _, omega_d_dot) = Command { u_ddot: u_ddot + change, ..command }.differentiate();
+        let forward = self.forward(&t.omega, &frame, &(error.transpose() * omega_d_dot));
+        let psi = 2.0 * lifted[3];
+        let asked = self.yaw_torque([psi, projected_rate.z], forward, &t.omega, t.yaw_room) - bias.z;
+        let asked = asked + t.nudge.yaw[0];
+        let along = self.mass * u.dot(&axis);
+        let [floor, ceiling] = self.thrusts(&tilting.push(0.0), scale).map(|end| end + t.nudge.thrust);
+        let braking = self.braking(asked, projected_rate.z);
+        let [_, beside_yaw] = self.thrusts(&tilting.push(braking), scale).map(|end| end + t.nudge.thrust);
+        let thrust = floor.max(ceiling.min(beside_yaw).min(along));
+        let [least, most] = self.yaw(thrust, &tilting, scale);
+        let [least, most] = [least - t.nudge.yaw[1], most + t.nudge.yaw[1]];
+        let yaw = asked.clamp(least, most);
+
+        let fallback = t.fallback.after(t.position_error.norm(), t.velocity_error.norm(), h);
+        let fell = fallback.slow && !t.fallback.slow;
+        let filters = self.filtered([c, x], drive + change / k_f, smoothed, k_f);
+        let switch = lifted[0].abs() - attitude::switching(double(p.delta));
+        let j = self.moments();
+        let yaw_size = j.z
+            * (omega_d_dot.norm()
+                + t.omega.norm() * frame.norm()
+                + double(p.c_2) * (t.omega.z.abs() + frame.norm() + double(p.yaw_rate)))
+            + (j.x - j.y).abs() * t.omega.norm_squared();
         Answer {
             thrust,
-            torque,
+            torque: tilting.push(yaw),
+            pull,
+            damping,
             omega_d,
             omega_d_dot,
-            filters: self.filtered([c, x], drive + change / k_f, smoothed),
+            filters: if fell { [-d; 3] } else { filters },
             averages,
-            lag: after,
             lifted,
             lift,
-            net: net.after(&errors, limited.contains(&true) || thrust < wanted, h),
-            wanted: turned,
-            taken: [rate, acceleration, whole, cone, swells, falls, eased, wanted < least, wanted > ceiling, slowed],
+            side: tilt.side,
+            yaw_room: most.min(-least),
+            fallback,
+            forward: turned.xy().push(forward),
+            sizes: [
+                bias.xy().norm(),
+                pull.norm(),
+                gyroscopic_size,
+                wanted_damping.norm(),
+                precession.norm(),
+                j.max() * whole.norm(),
+                yaw_size + bias.z.abs(),
+            ],
+            edge: tilt.edge.min(switch.abs()).min(projected_rate.z.abs()),
+            taken: [
+                faster,
+                sooner,
+                tilted,
+                swells,
+                falls,
+                force_cut,
+                level < m_tilt,
+                of_g < 1.0,
+                lambda < 1.0,
+                of_h < 1.0,
+                of_rows < 1.0,
+                above < 1.0,
+                along < floor,
+                along > ceiling,
+                asked < least || asked > most,
+                floor.max(beside_yaw) < along.min(ceiling),
+                tilt.held,
+                tilt.round,
+            ],
         }
     }
 }

@@ -6,25 +6,27 @@
 
 use super::oracle::Law;
 use super::oracle::estimates::Averages;
-use super::oracle::tick::{Answer, Last, Nudge, Tick};
+use super::oracle::tick::{Answer, Last, Nudge, PARTS, Tick};
 use crate::support::oracle::rounding::{ROUNDINGS, ULP};
-use nalgebra::{Matrix3, Rotation3, Vector3, Vector4};
+use nalgebra::{Matrix3, Rotation3, Vector2, Vector3, Vector4};
 
 /// What is compared.
-pub const NAMES: [&str; 12] =
-    ["thrust", "torque", "omega_d", "omega_d'", "c", "x", "y", "zeta", "bias", "averages", "scale", "chi, W"];
+pub const NAMES: [&str; 15] = [
+    "thrust", "torque", "P", "lambda D", "omega_d", "omega_d'", "c", "x", "y", "zeta", "bias", "averages", "scale",
+    "side", "yaw room",
+];
 
 /// The place of omega_d' among them.
-pub const ACCELERATION: usize = 3;
+pub const ACCELERATION: usize = 5;
 
 /// The distances between two answers, in SI units.
 pub fn distances(a: &Answer, b: &Answer) -> [f64; NAMES.len()] {
-    let turn = std::f64::consts::TAU;
-    let lag = (a.lag[0] - b.lag[0] + 0.5 * turn).rem_euclid(turn) - 0.5 * turn;
     let (s, t) = (&a.averages, &b.averages);
     [
         (a.thrust - b.thrust).abs(),
         (a.torque - b.torque).norm(),
+        (a.pull - b.pull).norm(),
+        (a.damping - b.damping).norm(),
         (a.omega_d - b.omega_d).norm(),
         (a.omega_d_dot - b.omega_d_dot).norm(),
         (a.filters[0] - b.filters[0]).norm(),
@@ -34,7 +36,8 @@ pub fn distances(a: &Answer, b: &Answer) -> [f64; NAMES.len()] {
         (s.bias - t.bias).norm(),
         apart(s.slow, t.slow),
         (s.scale - t.scale).abs(),
-        lag.hypot(a.lag[1] - b.lag[1]),
+        (a.side - b.side).norm(),
+        (a.yaw_room - b.yaw_room).abs(),
     ]
 }
 
@@ -47,20 +50,21 @@ fn apart(a: Option<[Vector3<f64>; 2]>, b: Option<[Vector3<f64>; 2]>) -> f64 {
     }
 }
 
-/// What positions and velocities were subtracted from, m and m/s, and what omega_d' of the last tick is known to,
-/// rad/s^2.
+/// What positions and velocities were subtracted from, m and m/s, and what the acceleration fed forward in the last
+/// tick is known to, rad/s^2.
 #[derive(Debug, Clone, Copy)]
 pub struct Scales {
     pub far: f64,
     pub fast: f64,
-    pub wanted: f64,
+    pub forward: f64,
 }
 
 /// `t` with one quantity at a time moved by one rounding.
 fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> Vec<Tick> {
     let (p, h) = (&law.p, law.period);
-    let [k_f, k_s, k_d, drag] = [p.k_f, p.k_s, p.k_d, p.drag_across].map(f64::from);
-    let Scales { far, fast, wanted } = *scales;
+    let gains = law.gains(t.fallback.slow);
+    let ([k_f, k_s, k_d], drag) = (gains.filters, f64::from(p.drag_across));
+    let Scales { far, fast, forward } = *scales;
     let averages = t.averages;
     let (zeta, slow) = (averages.force.norm(), averages.slow.map(|slow| slow.map(|x| x.norm())));
     let d = f64::from(p.force_across).hypot(f64::from(p.force_up.max(p.force_down))).min(zeta);
@@ -80,15 +84,15 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
     let mut moved = Vec::new();
     for axis in 0..3 {
         let along = |size: f64| Vector3::ith(axis, ULP * size);
-        let [k_p, k_v] = if axis == 2 { [p.k_p_vertical, p.k_v_vertical] } else { [p.k_p_across, p.k_v_across] };
-        let of_z_2 = z_2 * f64::from(k_v) / f64::from(k_p);
-        moved.push(Tick { position_error: t.position_error + along(z_1 + of_z_2), ..*t });
+        moved.push(Tick { position_error: t.position_error + along(z_1), ..*t });
+        moved.push(Tick { nudge: Nudge { z_2: along(z_2), ..t.nudge }, ..*t });
         for (order, size) in [u, u_dot, u_ddot].into_iter().enumerate() {
             let mut command = [Vector3::zeros(); 3];
             command[order] = along(size);
             moved.push(Tick { nudge: Nudge { command, ..t.nudge }, ..*t });
         }
         moved.push(Tick { nudge: Nudge { turn: along(turn), ..t.nudge }, ..*t });
+        moved.push(Tick { nudge: Nudge { rest: along(u - c + d), ..t.nudge }, ..*t });
         let turned: Matrix3<f64> = Rotation3::new(Vector3::ith(axis, ULP)).into_inner();
         moved.push(Tick { rotation: t.rotation * turned, ..*t });
         moved.push(Tick { omega: t.omega + along(t.omega.norm()), ..*t });
@@ -118,8 +122,8 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
             moved.push(Tick { last: Some(Last { axis: last.axis + along(1.0), ..last }), ..*t });
             let rate = along((t.omega - last.omega).norm() + last.omega.norm() * last.omega.norm() * h);
             moved.push(Tick { last: Some(Last { omega: last.omega + rate, ..last }), ..*t });
-            let wanted = along(last.wanted.norm() + wanted / ULP);
-            moved.push(Tick { last: Some(Last { wanted: last.wanted + wanted, ..last }), ..*t });
+            let known = along(last.forward.norm() + forward / ULP);
+            moved.push(Tick { last: Some(Last { forward: last.forward + known, ..last }), ..*t });
         }
     }
     for (part, size) in [t.acted[0].abs(), t.acted.norm(), t.acted.norm(), t.acted.norm()].into_iter().enumerate() {
@@ -130,37 +134,52 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
         moved.push(Tick { pending, ..*t });
     }
     moved.push(Tick { averages: Averages { scale: averages.scale * (1.0 + ULP), ..averages }, ..*t });
-    if let Some([chi, turn]) = t.lag {
-        moved.push(Tick { lag: Some([chi + ULP, turn]), ..*t });
-        moved.push(Tick { lag: Some([chi, turn * (1.0 + ULP)]), ..*t });
+    for part in 0..PARTS {
+        let mut rooms = [0.0; PARTS];
+        rooms[part] = ULP;
+        moved.push(Tick { nudge: Nudge { rooms, ..t.nudge }, ..*t });
+        for axis in 0..2 {
+            let mut parts = [Vector2::zeros(); PARTS];
+            parts[part][axis] = ULP * answer.sizes[part];
+            moved.push(Tick { nudge: Nudge { parts, ..t.nudge }, ..*t });
+        }
     }
+    let (per_torque, per_yaw) = per_torque(law);
+    let thrust = ULP * (answer.thrust.abs() + per_torque * answer.torque.norm());
     for nudge in [
         Nudge { greatest: ULP, ..t.nudge },
-        Nudge { budget: ULP * law.budget_size(u), ..t.nudge },
-        Nudge { heading: ULP * f64::from(p.yaw_rate) / h, ..t.nudge },
+        Nudge { lift: ULP * (level + d), ..t.nudge },
+        Nudge { thrust, ..t.nudge },
+        Nudge { yaw: [ULP * answer.sizes[PARTS], 0.0], ..t.nudge },
+        Nudge { yaw: [0.0, thrust * per_yaw], ..t.nudge },
     ] {
         moved.push(Tick { nudge, ..*t });
     }
     moved
 }
 
+/// The greatest |beta|, 1/m, and the greatest 1 / |beta_3|, m.
+fn per_torque(law: &Law) -> (f64, f64) {
+    let most = |of: fn(Vector3<f64>) -> f64| law.rotors.iter().map(|rotor| of(rotor.beta())).fold(0.0, f64::max);
+    (most(|beta| beta.norm()), most(|beta| 1.0 / beta.z.abs()))
+}
+
 /// What `ROUNDINGS` roundings everywhere can do to the answer.
 pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64; NAMES.len()] {
     // The results' own last roundings.
-    let (p, h, inertia) = (&law.p, law.period, law.inertia.max());
     let rate = answer.omega_d.norm();
     let acceleration = answer.omega_d_dot.norm() + rate * rate;
-    let levels = f64::from(p.w + p.m_t + p.m_all + p.m_omega_z);
-    let torque = inertia * acceleration + levels + answer.torque.norm();
-    let per_torque = law.rotors.iter().map(|rotor| rotor.row.norm() / rotor.row[0]);
-    let thrust = answer.thrust.abs() + per_torque.map(|per_torque| per_torque * torque).fold(0.0, f64::max);
+    let (per_torque, per_yaw) = per_torque(law);
+    let thrust = answer.thrust.abs() + per_torque * answer.torque.norm();
     let (after, before) = (&answer.averages, &t.averages);
     // The drive moves both filters by less than what is left of them.
     let moved = (answer.filters[1] - t.filters[1]).norm();
     let slow = |averages: &Averages| averages.slow.into_iter().flatten().map(|x| x.norm()).sum::<f64>();
     let mut sums = [
         thrust,
-        torque,
+        answer.torque.norm(),
+        answer.pull.norm(),
+        answer.damping.norm(),
         rate,
         acceleration,
         answer.filters[0].norm() + t.filters[0].norm() + t.filters[1].norm() + moved,
@@ -170,7 +189,8 @@ pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64
         after.bias.norm() + before.bias.norm(),
         slow(after) + slow(before),
         after.scale,
-        std::f64::consts::PI + f64::from(p.yaw_rate) + acceleration * h,
+        1.0,
+        answer.yaw_room + thrust * per_yaw,
     ]
     .map(|size| ULP * size);
     for moved in one_rounding_each(law, t, answer, scales) {

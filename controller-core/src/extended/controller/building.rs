@@ -7,14 +7,16 @@ use crate::configuration::ExtendedLaw;
 use crate::error::ParameterError;
 use crate::extended::actuators::ActuatorModel;
 use crate::extended::attitude::AttitudeLaw;
-use crate::extended::budget::{THRUST_LEFT, TorqueBudget, TurningBudget};
-use crate::extended::heading;
+use crate::extended::budget::{TickBudget, TorqueBudget};
+use crate::extended::fallback::{Slowed, slowed};
+use crate::extended::heading::{self, HeadingLaw};
 use crate::extended::learning::Learning;
 use crate::extended::memory::{Averages, Memory};
 use crate::extended::parameters::Extended;
-use crate::extended::position::PositionLaw;
+use crate::extended::position::{Most, PositionLaw};
 use crate::extended::thrust_range::ThrustRange;
 use crate::extended::turning::TurningLimit;
+use crate::math;
 use crate::path_lifting;
 use crate::vehicle::{Limits, Vehicle};
 use nalgebra::Vector3;
@@ -34,10 +36,11 @@ impl Controller {
         let ExtendedLaw { parameters, actuators } = law;
         let position = PositionLaw::new(parameters, vehicle.gravity, period)?;
         Self::check_period(parameters, period)?;
-        let budget = TorqueBudget::new(parameters, vehicle, limits, rotors);
-        let used = (1.0 - THRUST_LEFT) / f64::from(vehicle.mass);
-        let [each, taken] = budget.ceiling;
-        let greatest = [each, taken, f64::from(limits.thrust_max)].map(|thrust| (thrust * used) as f32);
+        let budget = TorqueBudget::new(parameters.floor_margin, limits, rotors);
+        let p = parameters;
+        let inertia = math::greater(vehicle.inertia.x, vehicle.inertia.y);
+        let acceleration = (budget.radius(1.0) / f64::from(inertia)) as f32;
+        let slow = Slowed::<f64>::of(parameters, vehicle.gravity);
         Ok(Self {
             vehicle: *vehicle,
             limits: *limits,
@@ -46,22 +49,26 @@ impl Controller {
             period,
             switching_scalar: path_lifting::switching_scalar(parameters.delta),
             steepest_fall: parameters.a_down - vehicle.gravity,
-            greatest,
+            ceiling: budget.ceiling(vehicle, limits),
             late: actuators.lag + actuators.delay,
             position,
+            slowed: PositionLaw::new(&slowed(parameters, vehicle.gravity), vehicle.gravity, period)?,
+            slow: Most::each(slow.level as f32),
             attitude: AttitudeLaw::new(parameters, &vehicle.inertia),
-            budget: TurningBudget::new(&budget, vehicle.mass, parameters.turn_acceleration),
-            turning: TurningLimit::new(parameters, period),
+            heading: HeadingLaw::new(parameters, &vehicle.inertia),
+            budget: TickBudget::new(&budget, [p.scale_least, p.scale_greatest]),
+            reserve: inertia * p.turn_reserve,
+            turning: TurningLimit::new(parameters, acceleration, period),
             learning: Learning::new(parameters, vehicle, period),
             changed: None,
-            range: ThrustRange::new(rotors, parameters.floor_margin, limits.thrust_max),
+            range: ThrustRange::new(rotors, p.floor_margin, limits.thrust_max, limits.torque_max.z),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
             memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
         })
     }
 
-    /// Checks that ticks of `period`, s, are short enough for the heading's generator.
+    /// Checks that ticks of `period`, s, are short enough for the heading's gains.
     ///
     /// # Errors
     /// Names `gains.c_1` or `gains.c_2`.

@@ -8,20 +8,17 @@
 //! time for which z_2 goes on as it is.
 
 use super::{Controller, thrust_axis};
+use crate::extended::force::held;
 use crate::extended::memory::Estimates;
 use crate::extended::position::Most;
-use crate::extended::turning::TURNED;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
 use crate::state::State;
 use nalgebra::Vector3;
 
-/// The part of M_all that feedback is taken to use while the frame turns.
+/// The part of the torque that feedback is taken to use while the frame turns.
 const FEEDBACK_SHARE: f32 = 0.5;
-
-/// The sine of the tilt error that is assumed then.
-const SINE: f32 = 0.3;
 
 /// What is ahead of a vehicle. World frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +32,7 @@ pub struct Prospect {
     pub places: [Vector3<f32>; 5],
     /// The cosine of the angle from the thrust axis to where it is wanted.
     pub alignment: f32,
-    /// Whether an estimate is held, or at its level.
+    /// Whether an estimate is held or at its level, or the force more than thrust holds.
     pub doubtful: bool,
 }
 
@@ -43,9 +40,9 @@ impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
     #[must_use]
     pub fn prospect(&self, state: &State, most: &Most) -> Prospect {
-        let Estimates { force, scale, .. } = self.estimates();
+        let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
-        let greatest = self.greatest(scale);
+        let greatest = self.ceiling.at(scale, &torque);
         let origin = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let errors = self.position.errors(state, &origin, filters, &force);
         let (z_1, z_2) = (errors.z_1, errors.z_2);
@@ -73,7 +70,7 @@ impl Controller {
                 stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up),
             ],
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
-            doubtful: self.memory.held > 0 || self.is_at_a_level(),
+            doubtful: self.memory.held > 0 || self.is_at_a_level() || !self.is_held(&force, greatest),
         }
     }
 
@@ -90,8 +87,9 @@ impl Controller {
         stopping.z += self.vehicle.gravity;
         let angle = angle(command, &stopping);
         let parameters = &self.law.parameters;
-        let budget = self.budget.acceleration(command.z, FEEDBACK_SHARE * parameters.m_all, SINE);
-        let acceleration = TURNED * math::greater(budget, parameters.turn_reserve);
+        let left = (1.0 - FEEDBACK_SHARE) * self.budget.radius(self.thrust_scale());
+        let inertia = math::greater(self.vehicle.inertia.x, self.vehicle.inertia.y);
+        let acceleration = math::greater(left / inertia, parameters.turn_reserve);
         let rate = parameters.turn_rate;
         // First it comes to rest, then it turns from rest to rest.
         let moving = self.position.rate(&self.memory.filters);
@@ -105,6 +103,12 @@ impl Controller {
         };
         let turning = stops + turning;
         math::greater(turning - self.position.lag(), 0.0) + self.late + self.period
+    }
+
+    /// Whether the thrust holds all of the force.
+    fn is_held(&self, force: &Vector3<f32>, greatest: f32) -> bool {
+        let weight = Vector3::new(0.0, 0.0, self.vehicle.gravity);
+        held(force, &weight, greatest) == *force
     }
 
     /// Whether force or thrust scale would be beyond a level that is not zero.

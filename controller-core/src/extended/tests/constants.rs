@@ -37,8 +37,6 @@ fn constants_that_leave_nothing_of_one_another_are_refused_by_name() {
     assert_eq!(refused("a_down", 9.81), beyond("gains.a_down", Reason::NotBelow(9.81)));
     assert_eq!(refused("force_up", p.a_down), beyond("estimates.force_up", Reason::NotBelow(p.a_down)));
     assert_eq!(refused("force_across", p.a_across), beyond("estimates.force_across", Reason::NotBelow(p.a_across)));
-    let most = p.turn_acceleration;
-    assert_eq!(refused("turn_reserve", most.next_up()), beyond("gains.turn_reserve", Reason::Above(most)));
 }
 
 #[test]

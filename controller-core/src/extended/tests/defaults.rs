@@ -83,11 +83,11 @@ fn what_is_given_is_kept_to_the_bit_and_the_rest_follows() {
     };
     others("k_f", 5.0, &["k_s"]);
     others("k_v_across", 2.0, &["k_v_vertical", "k_p_across", "k_p_vertical"]);
-    others("m_all", 0.2, &["w", "m_t", "turn_acceleration", "turn_reserve", "r_0"]);
-    others("yaw_acceleration", 1.0, &["m_all"]);
-    others("torque_tilt", 0.05, &["m_all"]);
-    others("scale_least", 0.8, &["force_down"]);
+    others("turn_reserve", 1.0, &["m_tilt", "r_0"]);
+    others("m_tilt", 0.2, &["r_0"]);
+    others("yaw_acceleration", 1.0, &["yaw_rate", "c_1", "c_2"]);
     others("a_down", 4.0, &["force_up"]);
+    others("a_across", 4.0, &["v_across", "force_across"]);
 }
 
 #[test]

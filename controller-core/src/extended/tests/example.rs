@@ -4,7 +4,7 @@ use super::Random;
 use crate::allocation::{Rotor, Rotors, Spin, greatest_torques};
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::actuators::ActuatorParameters;
-use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::TorqueBudget;
 use crate::extended::defaults::{self, Airframe, Given, NOTHING_GIVEN};
 use crate::extended::parameters::{Extended, ExtendedParameters};
 use crate::reference::ReferenceBounds;
@@ -125,10 +125,6 @@ pub(crate) fn place(key: &str) -> usize {
 
 /// U where the rotors deliver the least thrust scale, and the most, m/s^2.
 pub(crate) fn greatest_accelerations(craft: &Craft, p: &ExtendedParameters) -> [f32; 2] {
-    let budget = TorqueBudget::<f64>::new(p, &craft.vehicle, &craft.limits, Some(&craft.rotors));
-    let [each, taken] = budget.ceiling;
-    [p.scale_least, p.scale_greatest].map(|scale| {
-        let thrust = (f64::from(scale) * each - taken).min(f64::from(craft.limits.thrust_max));
-        ((1.0 - THRUST_LEFT) * thrust / f64::from(craft.vehicle.mass)) as f32
-    })
+    let budget = TorqueBudget::<f64>::new(p.floor_margin, &craft.limits, Some(&craft.rotors));
+    [p.scale_least, p.scale_greatest].map(|scale| budget.held(&craft.vehicle, &craft.limits, f64::from(scale)) as f32)
 }

@@ -1,54 +1,75 @@
-//! The heading generator.
+//! The heading's feedback.
 
-use crate::attitude_reference::AngularMotion;
+use super::Random;
 use crate::error::ParameterError;
 use crate::extended::controller::Controller;
-use crate::extended::heading::{self, HeadingLag, advanced, turning};
+use crate::extended::heading::{self, HeadingLaw, Seen};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::example::{self, Craft};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
+
+/// A body about its z axis alone, turned to a heading at rest with a torque of at most `room`: the longest time away
+/// from it by more than a degree, s, the greatest rate and how far it went beyond.
+fn turned(start: f32, room: f32) -> [f32; 3] {
+    let law = HeadingLaw::new(&example::parameters(), &example::vehicle().inertia);
+    let (h, j) = (0.01, example::vehicle().inertia.z);
+    let (mut angle, mut rate) = (start, 0.0_f32);
+    let mut worst = [0.0_f32; 3];
+    for tick in 0..3_000 {
+        let lifted = 2.0 * (0.5 * angle).sin();
+        let wanted = law.torque(lifted, rate, 0.0, &Vector3::new(0.0, 0.0, rate), room);
+        let acceleration = wanted.clamp(-room, room) / j;
+        angle += h * (rate + 0.5 * h * acceleration);
+        rate += h * acceleration;
+        if angle.abs() > 0.0175 {
+            worst[0] = h * tick as f32;
+        }
+        worst[1] = worst[1].max(rate.abs());
+        worst[2] = worst[2].max(-angle * start.signum());
+    }
+    worst
+}
 
 #[test]
-fn the_heading_catches_up_and_never_turns_faster_than_it_may() {
-    let parameters = example::parameters();
-    for start in [0.1_f32, 1.0, 2.0, 3.0, -3.1] {
-        let (sin, cos) = (0.5 * start).sin_cos();
-        let mut lag = HeadingLag { half_angle: Vector2::new(cos, sin), rate: 0.0 };
-        for tick in 0..1_000 {
-            let psi = 0.01 * tick as f32;
-            let motion = AngularMotion {
-                velocity: Vector3::new(0.3, -0.2, 0.8 * psi.sin()),
-                acceleration: Vector3::new(1.0, 2.0, 0.8 * psi.cos()),
-            };
-            let desired = turning(&lag, &motion, &parameters, 0.01);
-            assert!(desired.acceleration.z.abs() <= parameters.yaw_acceleration * (1.0 + 1e-5));
-            assert!(desired.velocity.z.abs() <= parameters.yaw_rate * (1.0 + 1e-5));
-            assert!((desired.velocity.xy().norm() - motion.velocity.xy().norm()).abs() < 1e-6);
-            lag = advanced(&lag, &desired, 0.01, f32::MAX);
+fn a_turn_of_any_angle_is_braked_with_the_torque_at_hand_and_ends_at_the_heading() {
+    let p = example::parameters();
+    let j = example::vehicle().inertia.z;
+    for start in [0.2, 1.0, 2.0, 3.0, -3.1] {
+        for share in [1.0, 2.0, 6.0] {
+            let room = share * j * p.yaw_acceleration;
+            let [time, rate, beyond] = turned(start, room);
+            assert!(rate <= p.yaw_rate * 1.001, "from {start}: {rate} rad/s");
+            assert!(beyond < 0.03 * start.abs().max(1.0), "from {start} with {room}: {beyond} rad beyond");
+            // From rest to rest with that torque alone, and the linear end of the approach.
+            let least = 2.0 * (start.abs() * j / room).sqrt();
+            let tail = 6.0 * p.c_2 / p.c_1;
+            assert!(time < 1.6 * least.max(start.abs() / p.yaw_rate) + tail, "from {start} with {room}: {time} s");
         }
-        assert!(lag.half_angle.y.abs() < 2e-3, "from {start}: {lag:?}");
     }
 }
 
 #[test]
-fn where_the_frame_turns_fast_the_heading_turns_slower_and_catches_up_later() {
-    let parameters = example::parameters();
-    let still = AngularMotion { velocity: Vector3::zeros(), acceleration: Vector3::zeros() };
-    let (sin, cos) = 1.0_f32.sin_cos();
-    for rate in [2.0, -2.0] {
-        let mut lag = HeadingLag { half_angle: Vector2::new(cos, sin), rate };
-        for tick in 0..1_500 {
-            let fastest = if tick < 300 { 0.2 } else { f32::MAX };
-            let desired = turning(&lag, &still, &parameters, 0.01);
-            lag = advanced(&lag, &desired, 0.01, fastest);
-            assert!(lag.rate.abs() <= fastest);
-        }
-        assert!(lag.half_angle.y.abs() < 2e-3, "{lag:?}");
+fn small_errors_meet_the_gains_and_a_heading_that_turns_is_fed_forward() {
+    let (p, j) = (example::parameters(), example::vehicle().inertia);
+    let law = HeadingLaw::new(&p, &j);
+    let still = Vector3::zeros();
+    let slope = |angle: f32, rate: f32| law.torque(angle, rate, 0.0, &still, 0.0);
+    assert!((slope(1e-4, 0.0) / (-1e-4 * p.c_1 * j.z) - 1.0).abs() < 1e-3);
+    assert!((slope(0.0, 1e-2) / (-1e-2 * p.c_2 * j.z) - 1.0).abs() < 1e-5);
+    // R~^T omega_d of a frame that turns steadily moves with the body: its derivative is -omega x f.
+    let mut random = Random(44);
+    for _ in 0..100 {
+        let (rate, velocity, acceleration) = (random.vector(4.0), random.vector(9.0), random.signed());
+        let forward = law.forward(&Seen { rate, acceleration }, &velocity);
+        assert!((forward - (acceleration - velocity.cross(&rate).z)).abs() < 1e-4);
+        let torque = law.torque(0.0, 0.0, forward, &velocity, 1.0);
+        let gyroscopic = velocity.cross(&j.component_mul(&velocity)).z;
+        assert!((torque - (j.z * forward + gyroscopic)).abs() < 1e-5, "{torque}");
     }
 }
 
 #[test]
-fn ticks_too_long_for_the_generator_are_refused_by_name() {
+fn ticks_too_long_for_the_gains_are_refused_by_name() {
     let refused = |c_1: f32, c_2: f32| {
         let parameters = ExtendedParameters { c_1, c_2, ..example::parameters() };
         heading::check(&parameters, 0.01).map_err(|error: ParameterError| error.field)

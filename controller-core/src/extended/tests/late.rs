@@ -42,7 +42,7 @@ fn the_projected_errors_move_as_if_the_rotors_were_ideal() {
         let pending = model.pending(state);
         let impulse = Vector3::new(pending.y, pending.z, pending.w) + bias * lag;
         let error = Quaternion::from_parts(1.0, angle * 0.5);
-        let (q, projected_rate) = law.projected(&error, rate, &Late { time: lag, impulse, wanted });
+        let (q, projected_rate) = law.projected(&error, rate, &Late { time: lag, impulse, forward: wanted });
         (q.imag() * (2.0 / q.w), projected_rate)
     };
     for tick in 0..300 {
@@ -72,7 +72,7 @@ fn without_lag_and_delay_nothing_is_projected() {
     let mut random = Random(43);
     for _ in 0..1_000 {
         let (q, rate) = (random.attitude(), random.vector(20.0));
-        let late = Late { time: 0.0, impulse: Vector3::zeros(), wanted: random.vector(100.0) };
+        let late = Late { time: 0.0, impulse: Vector3::zeros(), forward: random.vector(100.0) };
         assert_eq!(law.projected(&q, &rate, &late), (q, rate));
     }
 }

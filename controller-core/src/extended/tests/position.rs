@@ -68,7 +68,7 @@ fn the_filters_step_is_that_of_their_equations() {
         let [command, intermediate, smoothed] = [3.0; 3].map(|size| random.vector(size));
         let filter = Filters { command, intermediate, smoothed: Vector3::zeros() };
         let drive = random.vector(100.0);
-        let found = law.advance(&filter, &smoothed, &drive);
+        let found = law.advance(&filter, &smoothed, &drive, f32::MAX);
         // Midpoint steps of the equations in double precision.
         let (mut c, mut x) = (filter.command.map(f64::from), filter.intermediate.map(f64::from));
         let (steps, k_f, slope) = (1_000, f64::from(p.k_f), drive.map(f64::from));
@@ -90,14 +90,27 @@ fn what_the_filter_makes_never_falls_below_its_end() {
     let law = PositionLaw::new(&p, 9.81, 0.01).unwrap();
     let (zero, below) = (Vector3::zeros(), Vector3::new(1.0, 2.0, -90.0));
     let falling = Filters { command: zero, intermediate: below, smoothed: below };
-    let next = law.advance(&falling, &below, &zero);
+    let next = law.advance(&falling, &below, &zero, 1e3);
     // x_z goes along: it would push c_z further. What is across stays.
     assert_eq!([next.command.z, next.intermediate.z], [-p.a_down; 2]);
     assert_eq!(next.intermediate.xy(), below.xy());
     // One that leads back up is not held back.
     let rising = Filters { command: Vector3::z() * (-p.a_down - 1.0), intermediate: zero, smoothed: zero };
-    let next = law.advance(&rising, &zero, &zero);
+    let next = law.advance(&rising, &zero, &zero, 1e3);
     assert_eq!([next.command.z, next.intermediate.z], [-p.a_down, 0.0]);
+}
+
+#[test]
+fn no_drive_takes_the_filters_farther_than_twice_what_the_rotors_hold() {
+    let p = example::parameters();
+    let law = PositionLaw::new(&p, 9.81, 0.01).unwrap();
+    let (zero, away) = (Vector3::zeros(), Vector3::new(1e9, -1e9, 1e9));
+    let mut filter = Filters::at(zero);
+    for _ in 0..1_000 {
+        filter = law.advance(&filter, &zero, &away, 20.0);
+        assert!(filter.command.amax() <= 40.0 && filter.intermediate.amax() <= 40.0, "{filter:?}");
+    }
+    assert!(filter.command.amin() > 39.9, "{filter:?}");
 }
 
 /// A point mass under the law's acceleration and a constant force D that is known, in ticks: what each tick had.
@@ -111,7 +124,7 @@ fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&Pos
     for _ in 0..ticks {
         let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, &Most::ALL);
         see(&feedback);
-        let next = law.advance(&filter, &feedback.smoothed, &feedback.drive);
+        let next = law.advance(&filter, &feedback.smoothed, &feedback.drive, f32::MAX);
         // c moves nearly straight within a tick.
         let acceleration = (filter.command + next.command) * 0.5 + force;
         state.position += state.velocity * h + acceleration * (0.5 * h * h);

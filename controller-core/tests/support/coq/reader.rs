@@ -184,6 +184,9 @@ impl<'a> Reader<'a> {
             "ln" => Some(f64::ln),
             "cos" => Some(f64::cos),
             "sin" => Some(f64::sin),
+            "tan" => Some(f64::tan),
+            "acos" => Some(f64::acos),
+            "asin" => Some(f64::asin),
             "Rabs" => Some(f64::abs),
             // A section's variable: rounding to single precision.
             "rnd" => Some(|x| f64::from(x as f32)),

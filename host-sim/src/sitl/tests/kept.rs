@@ -56,7 +56,7 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
         flown.pass(0.2);
     };
     set(&mut flown, "ROT_THR_MAX", 2.0);
-    let row = "A1 thrust against force across: needs ";
+    let row = "R rotors' range: needs ";
     assert!(flown.said("ROT_THR_MAX: refused") && flown.said(row), "{:?}", flown.sitl.texts);
     set(&mut flown, "GAIN_ATT_P", 80.0);
     assert!(flown.said("GAIN_ATT_P: may be flown, from the next boot on"), "{:?}", flown.sitl.texts);

@@ -47,7 +47,9 @@ impl Law {
         let omega = (last.omega + t.omega) / 2.0;
         let torque = Vector3::new(t.acted[1], t.acted[2], t.acted[3]) * scale;
         let observed = self.inertia * (t.omega - last.omega) / h + skew(omega) * self.inertia * omega - torque;
-        let bias = before.bias + (observed - before.bias) * weight(double(p.torque_bandwidth));
+        let bandwidth = double(p.torque_bandwidth);
+        let averaging = Vector3::new(bandwidth, bandwidth, bandwidth / 2.0).map(weight);
+        let bias = before.bias + averaging.component_mul(&(observed - before.bias));
         Averages { force, bias, slow: Some(slow), scale }
     }
 }

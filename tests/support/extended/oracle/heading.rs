@@ -1,29 +1,31 @@
-//! Section 5: the heading that lags, as an angle.
+//! Section 5: what yaw asks for.
 
-use super::{Law, about_z, cut, double};
-use crate::support::oracle::desired::{Command, differentiate};
+use super::{Law, double};
 use nalgebra::Vector3;
 
+/// The part of the torque at hand that brakes.
+const BRAKED: f64 = 0.7;
+
 impl Law {
-    /// Section 5: the frame's motion that lags in heading, and chi and W a period later.
-    pub fn lagging(
-        &self,
-        [chi, turn]: [f64; 2],
-        command: &Command,
-        nudge: f64,
-    ) -> (Vector3<f64>, Vector3<f64>, [f64; 2]) {
-        let (p, h) = (&self.p, self.period);
-        let (_, papers, papers_rate) = command.differentiate();
-        let chi_rate = turn - papers.z;
-        let wanted = papers_rate.z - double(p.c_2) * chi_rate - 2.0 * double(p.c_1) * (chi / 2.0).sin();
-        let reached = cut(turn + cut(wanted, double(p.yaw_acceleration)) * h, double(p.yaw_rate));
-        let turn_rate = (reached - turn) / h + nudge;
-        let chi_second = turn_rate - papers_rate.z;
-        let frame = |e: f64| command.desired_attitude(e) * about_z(chi + chi_rate * e + chi_second * e * e / 2.0);
-        let scale = command.fastest().max(chi_rate.abs()).max(chi_second.abs().sqrt());
-        let (_, omega_d, omega_d_dot) = differentiate(frame, scale);
-        // The half angle moves along its tangent and is brought back to the circle.
-        let next = chi + 2.0 * (0.5 * h * chi_rate).atan();
-        (omega_d, omega_d_dot, [next.sin().atan2(next.cos()), turn + turn_rate * h])
+    /// The first two terms of a, for the frame's rate f and its acceleration, both seen from the body.
+    pub fn forward(&self, omega: &Vector3<f64>, f: &Vector3<f64>, acceleration: &Vector3<f64>) -> f64 {
+        acceleration.z - omega.cross(f).z
+    }
+
+    /// The torque about z beside the bias, for psi, omega_3 - f_3 and the torque that was left in the last tick.
+    pub fn yaw_torque(&self, [psi, rate]: [f64; 2], forward: f64, omega: &Vector3<f64>, room: f64) -> f64 {
+        let (p, j) = (&self.p, self.moments());
+        let [c_1, c_2, fastest] = [p.c_1, p.c_2, p.yaw_rate].map(double);
+        let k = c_1 / c_2;
+        // A is always there; what was left more brakes as well.
+        let braking = (BRAKED * room / j.z).max(double(p.yaw_acceleration));
+        let speed = k * psi / (1.0 + psi.abs() * k * k / (2.0 * braking) + (k * psi / fastest).powi(2)).sqrt();
+        j.z * (forward - c_2 * (rate + speed)) - (j.x - j.y) * omega.x * omega.y
+    }
+
+    /// The part of a torque about z that comes before thrust: what brakes omega_3 - f_3, up to J_3 A.
+    pub fn braking(&self, torque: f64, rate: f64) -> f64 {
+        let most = self.moments().z * double(self.p.yaw_acceleration);
+        if torque.signum() == rate.signum() { 0.0 } else { torque.clamp(-most, most) }
     }
 }

@@ -1,5 +1,6 @@
 //! Section 1: the position loop, and the filters behind it.
 
+use super::fallback::Gains;
 use super::tick::Tick;
 use super::{Law, double, saturate};
 use nalgebra::{Vector2, Vector3};
@@ -8,40 +9,49 @@ use nalgebra::{Vector2, Vector3};
 const LEVEL_LEAST: f64 = 0.3;
 const SHARE_ACROSS: f64 = 0.95;
 
-/// d, U and whether the level is the net's.
-pub struct Envelope {
-    pub d: Vector3<f64>,
-    pub greatest: f64,
-    pub most: f64,
-}
+/// The part of U that a force may use up together with the reference (section 2).
+const HELD: f64 = 0.99;
 
 fn saturate_across(x: Vector2<f64>, level: f64) -> Vector2<f64> {
     x * (level / level.hypot(x.norm()))
 }
 
 impl Law {
-    /// Section 1: z_1, z_2 and ubar.
-    pub fn feedback(&self, t: &Tick, filters: &[Vector3<f64>; 3], e: &Envelope) -> ([Vector3<f64>; 2], Vector3<f64>) {
+    /// d: the average cut to its levels, then to what the rotors hold beside the reference's u, the vertical first. And
+    /// whether that was less.
+    pub fn believed(&self, average: &Vector3<f64>, rest: &Vector3<f64>, greatest: f64) -> (Vector3<f64>, bool) {
         let p = &self.p;
-        let [f, s, d] = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / double(bandwidth));
-        let [c, x, y] = filters.map(|filter| filter + e.d);
-        let z_1 = t.position_error + t.velocity_error * (f + s + d) + c * (f * (s + d)) + x * (s * d);
-        let z_2 = t.velocity_error + c * f + x * s + y * d;
+        let z = average.z.clamp(-double(p.force_down), double(p.force_up));
+        let radial = |level: f64| (level.max(0.0) / average.xy().norm()).min(1.0);
+        let most = HELD * greatest;
+        let lift = (rest.z - z).min(most);
+        let left = (most * most - lift * lift).max(0.0).sqrt() - rest.xy().norm();
+        let across = average.xy() * radial(left.min(double(p.force_across)));
+        let cut = lift < rest.z - z || left < average.xy().norm().min(double(p.force_across));
+        (Vector3::new(across.x, across.y, rest.z - lift), cut)
+    }
 
-        let (k_p, k_v) = (double(p.k_p_vertical), double(p.k_v_vertical));
-        let speed = double(if z_1.z > 0.0 { p.v_down } else { p.v_up });
-        let wanted = saturate(k_p * z_1.z, k_v * speed) + k_v * z_2.z;
-        let level = if wanted > 0.0 { double(p.a_down) - e.d.z } else { e.greatest - self.gravity + e.d.z };
-        let vertical = -saturate(wanted, level.max(LEVEL_LEAST).min(e.most)) - e.d.z;
+    /// Section 1: ubar, for d and U.
+    pub fn feedback(&self, t: &Tick, gains: &Gains, d: &Vector3<f64>, greatest: f64) -> Vector3<f64> {
+        let p = &self.p;
+        let [f, s, of_y] = gains.filters.map(|bandwidth| 1.0 / bandwidth);
+        let [c, x, y] = t.filters.map(|filter| filter + d);
+        let z_1 = t.position_error + t.velocity_error * (f + s + of_y) + c * (f * (s + of_y)) + x * (s * of_y);
+        let z_2 = t.velocity_error + c * f + x * s + y * of_y + t.nudge.z_2;
 
-        let lift = self.gravity + vertical;
-        let left = (e.greatest.powi(2) - lift.powi(2)).max(0.0).sqrt();
+        let ([k_p, k_p_z], [k_v, k_v_z], [v, v_up, v_down]) = (gains.k_p, gains.k_v, gains.speeds);
+        let speed = if z_1.z > 0.0 { v_down } else { v_up };
+        let wanted = saturate(k_p_z * z_1.z, k_v_z * speed) + k_v_z * z_2.z;
+        let level = if wanted > 0.0 { double(p.a_down) - d.z } else { greatest - self.gravity + d.z };
+        let vertical = -saturate(wanted, level.max(LEVEL_LEAST).min(gains.most)) - d.z;
+
+        let lift = self.gravity + vertical + t.nudge.lift;
+        let left = (greatest.powi(2) - lift.powi(2)).max(0.0).sqrt();
         let reach = double(p.a_across).min(SHARE_ACROSS * left).min(SHARE_ACROSS * lift * double(p.tilt_max).tan());
-        let level = (reach - e.d.xy().norm()).max(LEVEL_LEAST).min(e.most);
-        let (k_p, k_v) = (double(p.k_p_across), double(p.k_v_across));
-        let wanted = saturate_across(k_p * z_1.xy(), k_v * double(p.v_across)) + k_v * z_2.xy();
-        let across = -saturate_across(wanted, level) - e.d.xy();
-        ([z_1, z_2], Vector3::new(across.x, across.y, vertical))
+        let level = (reach - d.xy().norm()).max(LEVEL_LEAST).min(gains.most);
+        let wanted = saturate_across(k_p * z_1.xy(), k_v * v) + k_v * z_2.xy();
+        let across = -saturate_across(wanted, level) - d.xy();
+        Vector3::new(across.x, across.y, vertical)
     }
 
     /// c and x a period later, with the drive held, and y at `smoothed`.
@@ -50,8 +60,8 @@ impl Law {
         [mut c, mut x]: [Vector3<f64>; 2],
         drive: Vector3<f64>,
         smoothed: Vector3<f64>,
+        k_f: f64,
     ) -> [Vector3<f64>; 3] {
-        let k_f = double(self.p.k_f);
         let flow = |c: Vector3<f64>, x: Vector3<f64>| k_f * (x - c);
         let steps = 60;
         let h = self.period / f64::from(steps);

@@ -1,9 +1,9 @@
 //! What one tick of the law depends on, and what it comes to.
 
 use super::estimates::Averages;
-use super::net::Net;
+use super::fallback::Fallback;
 use crate::support::oracle::lifting::Lift;
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector2, Vector3, Vector4};
 
 /// What the law knows from the tick before.
 #[derive(Debug, Clone, Copy)]
@@ -11,8 +11,8 @@ pub struct Last {
     pub velocity: Vector3<f64>,
     pub axis: Vector3<f64>,
     pub omega: Vector3<f64>,
-    /// R~^T omega_d'.
-    pub wanted: Vector3<f64>,
+    /// a of section 6.
+    pub forward: Vector3<f64>,
 }
 
 /// Everything one tick depends on.
@@ -29,11 +29,13 @@ pub struct Tick {
     pub heading: [f64; 3],
     /// c, x and y.
     pub filters: [Vector3<f64>; 3],
-    /// chi and W; none before the first tick.
-    pub lag: Option<[f64; 2]>,
     pub lift: Option<Lift>,
+    /// Along m; none before the first tick.
+    pub side: Option<Vector2<f64>>,
+    /// The torque about z, either way, that was left in the last tick, N m.
+    pub yaw_room: f64,
     pub averages: Averages,
-    pub net: Net,
+    pub fallback: Fallback,
     /// None before the first tick.
     pub last: Option<Last>,
     /// Nothing is learnt.
@@ -50,34 +52,74 @@ pub struct Tick {
 pub struct Nudge {
     /// u, u' and u''.
     pub command: [Vector3<f64>; 3],
-    /// U, relative.
+    /// z_2, m/s.
+    pub z_2: Vector3<f64>,
+    /// What u is beside c, as far as the force is cut to it.
+    pub rest: Vector3<f64>,
+    /// The parts of the torque about the tilt's axes, in the order in which they are spent, N m.
+    pub parts: [Vector2<f64>; PARTS],
+    /// The room of every row, as each part sees it, and U: relative. u_z, m/s^2.
+    pub rooms: [f64; PARTS],
     pub greatest: f64,
-    /// alpha, rad/s^2.
-    pub budget: f64,
+    pub lift: f64,
+    /// N and C, N.
+    pub thrust: f64,
     /// rho'' across rho, rad/s^2, as limited.
     pub turn: Vector3<f64>,
-    /// W', rad/s^2.
-    pub heading: f64,
+    /// What yaw asks for, and what is left for it, N m.
+    pub yaw: [f64; 2],
 }
+
+/// Bias, pull, gyroscopic torque, damping, precession, turning.
+pub const PARTS: usize = 6;
 
 /// What one tick comes to.
 #[derive(Debug, Clone, Copy)]
 pub struct Answer {
     pub thrust: f64,
     pub torque: Vector3<f64>,
+    /// P and lambda D.
+    pub pull: Vector2<f64>,
+    pub damping: Vector2<f64>,
     pub omega_d: Vector3<f64>,
     pub omega_d_dot: Vector3<f64>,
     pub filters: [Vector3<f64>; 3],
     pub averages: Averages,
-    /// chi and W.
-    pub lag: [f64; 2],
     /// m* Phi, and the lift's memory.
     pub lifted: Vector4<f64>,
     pub lift: Lift,
-    pub net: Net,
-    /// R~^T omega_d'.
-    pub wanted: Vector3<f64>,
-    /// Which way the tick went where it can go two: the frame's rate, its acceleration, the same with W, its cone; |u|,
-    /// c_z; the damping's share; the floor, the ceiling; W cut.
-    pub taken: [bool; 10],
+    /// Along m, as long as b reaches across rho; one while it is held.
+    pub side: Vector2<f64>,
+    pub yaw_room: f64,
+    pub fallback: Fallback,
+    /// a of section 6.
+    pub forward: Vector3<f64>,
+    /// The sizes of what was added up to the parts of the torque about the tilt's axes, and about z, N m.
+    pub sizes: [f64; PARTS + 1],
+    /// How far the tick is from an edge at which the answer jumps: the lift's switch, the side's region, its switch.
+    pub edge: f64,
+    /// Which way the tick went where it can go two: [`BRANCHES`].
+    pub taken: [bool; BRANCHES.len()],
 }
+
+/// What the branches are called.
+pub const BRANCHES: [&str; 18] = [
+    "rho's rate",
+    "rho's acceleration",
+    "cone",
+    "|u| below U",
+    "c_z above -A_-",
+    "force held",
+    "M below M_theta",
+    "g short",
+    "lambda < 1",
+    "h short",
+    "turn short of torque",
+    "turn short of thrust",
+    "floor",
+    "ceiling",
+    "yaw cut",
+    "thrust cut for yaw",
+    "side held",
+    "the other way round",
+];

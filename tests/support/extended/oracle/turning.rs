@@ -3,9 +3,8 @@
 use super::{Law, double};
 use nalgebra::Vector3;
 
-/// k, 1/s, and the part of alpha that q may take.
+/// k, 1/s.
 const SOFTNESS: f64 = 10.0;
-pub const TURNED: f64 = 0.6;
 
 /// How u moves, and what bounds it.
 pub struct Turn {
@@ -27,47 +26,46 @@ fn shortened(v: Vector3<f64>, length: f64) -> (Vector3<f64>, bool) {
 }
 
 impl Law {
-    /// Section 3, in world axes: what is added to u''.
-    pub fn limited(
-        &self,
-        turn: &Turn,
-        yaw_rate: f64,
-        alpha: f64,
-        greatest: f64,
-        [c, c_rate, c_second]: &[f64; 3],
-        nudge: &Vector3<f64>,
-    ) -> (Vector3<f64>, [bool; 6]) {
+    /// q, in world axes, before its share is known; whether rate, acceleration and cone had a say.
+    pub fn turned(&self, turn: &Turn, nudge: &Vector3<f64>) -> (Vector3<f64>, [bool; 3]) {
         let (parameters, h) = (&self.p, self.period);
-        let Turn { rho, n, r, p, q: wanted, along: radial } = turn;
+        let Turn { rho, p, q, .. } = turn;
         let [rate, reserve] = [parameters.turn_rate, parameters.turn_reserve].map(double);
-        let most = alpha.max(reserve);
-        let (own, shorter) = shortened(*wanted, TURNED * most);
-        let mut q = if shorter { own + nudge } else { *wanted };
-
+        let alpha = self.alpha();
+        let (mut q, sooner) = shortened(*q, alpha);
         // e3 without its part along rho.
         let z = Vector3::z() - rho * rho.z;
-        let rising = (p + q * h).dot(&z);
         let least = -(reserve / rate) * (rho.z - double(parameters.tilt_max).cos());
-        let carried = p.cross(rho) * yaw_rate;
-        let tilted = rising < least;
+        let tilted = (p + q * h).dot(&z) < least;
         if tilted {
-            let inwards = z * ((least - rising) / (z.norm_squared().max(1e-6) * h));
-            q += shortened(inwards, most).0 + nudge;
+            // As much along z as it takes, and of the rest what is left of alpha.
+            let z = z / z.norm().max(1e-3);
+            let along = ((least / z.dot(&Vector3::z()).max(1e-3) - p.dot(&z)) / h).clamp(-alpha, alpha);
+            let across = q - z * q.dot(&z);
+            q = shortened(across, (alpha * alpha - along * along).max(0.0).sqrt()).0 + z * along;
         }
         let (next, faster) = shortened(p + q * h, rate);
         if faster {
-            q = (next - p) / h + nudge;
+            q = shortened((next - p) / h, alpha).0;
         }
-        let (whole, sooner) = shortened(q + carried, most);
-        if sooner {
-            q = whole - carried + nudge;
-        }
+        let changed = [faster, sooner, tilted];
+        (if changed.contains(&true) { q + nudge } else { q }, changed)
+    }
 
+    /// What is added to u'' where rho turns with `q`, and whether |u| and c_z had a say.
+    pub fn change(
+        &self,
+        turn: &Turn,
+        q: &Vector3<f64>,
+        greatest: f64,
+        [c, c_rate, c_second]: &[f64; 3],
+    ) -> (Vector3<f64>, [bool; 2]) {
+        let Turn { rho, n, r, p, q: wanted, along: radial } = turn;
         let tangential = (q - wanted) * *n;
-        let k = SOFTNESS.min(0.5 / h);
+        let k = SOFTNESS.min(0.5 / self.period);
         let mut along = 0.0;
         let falling = c_second + tangential.z;
-        let climbing = -2.0 * k * c_rate - k * k * (c + double(parameters.a_down));
+        let climbing = -2.0 * k * c_rate - k * k * (c + double(self.p.a_down));
         let falls = falling < climbing;
         if falls {
             along = (climbing - falling) / rho.z;
@@ -78,6 +76,6 @@ impl Law {
         if swells {
             along += shrinking - swelling;
         }
-        (tangential + rho * along, [faster, shorter, sooner, tilted, swells, falls])
+        (tangential + rho * along, [swells, falls])
     }
 }

@@ -1,7 +1,7 @@
 //! The law on demand: the same limits, the same filters, and nothing else of the flight in the demand's hands.
 
 use super::*;
-use crate::extended::net::Net;
+use crate::extended::fallback::Fallback;
 
 /// Any demand, of sizes from nothing to absurd, some of them kept for a while by their user.
 pub(super) fn any(random: &mut Random) -> Demand {
@@ -56,7 +56,7 @@ fn a_demand_is_cut_to_the_envelope_the_vertical_first() {
         let gravity = craft.vehicle.gravity;
         for _ in 0..50 {
             let (_, diagnostics) = law.step_on_demand(&resting(Vector3::zeros()), &hover(), &any(&mut random)).unwrap();
-            let (ubar, greatest) = (diagnostics.feedback, law.greatest(law.thrust_scale()));
+            let (ubar, greatest) = (diagnostics.feedback, law.ceiling.at(law.thrust_scale(), &law.estimates().torque));
             let lift = gravity + ubar.z;
             assert!(ubar.z >= -p.a_down && lift <= greatest * (1.0 + 1e-6), "{ubar}");
             let (across, all) = (ubar.xy().norm(), ubar.xy().norm().hypot(lift));
@@ -119,7 +119,7 @@ fn a_demand_that_cannot_be_used_is_refused_by_name_and_leaves_no_trace() {
 }
 
 #[test]
-fn the_net_counts_nothing_while_a_policy_flies() {
+fn the_fallback_counts_nothing_while_a_policy_flies() {
     let mut law = controller(&example::parameters());
     let demand = |random: &mut Random| Demand::Acceleration { acceleration: random.vector(30.0), yaw_rate: 0.0 };
     let mut random = Random(89);
@@ -128,7 +128,7 @@ fn the_net_counts_nothing_while_a_policy_flies() {
         let state = State { position: random.vector(50.0), ..anywhere(&mut random) };
         law.step_on_demand(&state, &hover(), &demand(&mut random)).unwrap();
     }
-    assert_eq!(law.memory().net, Net::FRESH);
+    assert_eq!(law.memory().fallback, Fallback::FRESH);
 }
 
 /// Random filters and motions, stopped by feedback alone through the filters, in small steps.
@@ -140,8 +140,7 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
         let craft = Craft::random(&mut random);
         let p = craft.constants(&NOTHING_GIVEN);
         let law = PositionLaw::new(&p, craft.vehicle.gravity, h).unwrap();
-        let [each, taken, most] = of(&craft, &p).greatest;
-        let greatest = (each - taken).min(most);
+        let greatest = of(&craft, &p).ceiling.at(1.0, &Vector3::zeros());
         let force =
             Vector3::new(random.signed(), random.signed(), random.signed()) * (0.2 * p.force_down.min(p.force_up));
         let levels = Most { up: f32::MAX, down: 0.4 * craft.vehicle.gravity, across: 0.8 * craft.vehicle.gravity };
@@ -165,7 +164,7 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
                 break;
             }
             let acceleration = filters.command + force;
-            filters = law.advance(&filters, &feedback.smoothed, &feedback.drive);
+            filters = law.advance(&filters, &feedback.smoothed, &feedback.drive, f32::MAX);
             state.position += (state.velocity + acceleration * (0.5 * h)) * h;
             state.velocity += acceleration * h;
             let room = Vector3::repeat(0.01);

@@ -1,0 +1,215 @@
+//! The parts of a tick, by the sections of `docs/extended-law.md`.
+
+use super::{Controller, Wanted};
+use crate::attitude::rotate_back;
+use crate::attitude_reference::{DesiredAttitude, Turn};
+use crate::extended::attitude::{Late, Tilt};
+use crate::extended::budget::THRUST_LEFT;
+use crate::extended::demand::Demand;
+use crate::extended::position::{Filters, PositionFeedback, PositionLaw};
+use crate::math;
+use crate::path_lifting::{self, Lifted};
+use crate::reference::Reference;
+use crate::state::State;
+use core::hint::cold_path;
+use nalgebra::{Quaternion, Vector2, Vector3};
+
+/// The least share of M_theta that a bias leaves.
+const LEVEL_LEAST: f32 = 0.05;
+
+/// Where u points, and how it would turn.
+pub(super) struct Course {
+    /// u, m/s^2.
+    pub command: Vector3<f32>,
+    pub desired: DesiredAttitude,
+    pub turn: Turn,
+    /// e3 in the axes of the desired frame.
+    pub up: Vector3<f32>,
+    /// c_z, c_z' and c_z'' as wanted, m/s^2, m/s^3, m/s^4.
+    pub vertical: [f32; 3],
+}
+
+/// The attitude's errors. Angular velocities in rad/s, body frame.
+pub(super) struct Errors {
+    /// R~ along R_d^T R, of any length.
+    pub error: Quaternion<f32>,
+    /// r, which turns rho, and f, which turns the desired frame.
+    pub turning: Vector3<f32>,
+    pub frame: Vector3<f32>,
+    /// omega~_12, as it is and projected.
+    pub rate: Vector2<f32>,
+    pub projected: Vector2<f32>,
+    /// omega_3 - f_3, projected.
+    pub projected_yaw: f32,
+    pub lifted: Lifted,
+    pub tilt: Tilt,
+}
+
+/// The torque about the tilt's axes, N m, with its feedback.
+pub(super) struct Tilting {
+    pub torque: Vector2<f32>,
+    /// P and lambda D.
+    pub potential: Vector2<f32>,
+    pub damping: Vector2<f32>,
+    /// q as rho turns, rad/s^2.
+    pub turn: Vector2<f32>,
+    /// R^T omega_rho', rad/s^2.
+    pub acceleration: Vector3<f32>,
+}
+
+impl Controller {
+    /// The position law in force.
+    #[inline(always)]
+    pub(super) fn position_law(&self) -> &PositionLaw {
+        if self.memory.fallback.is_slow() { &self.slowed } else { &self.position }
+    }
+
+    /// Section 1: ubar, and the drive that it wants.
+    #[inline(always)]
+    pub(super) fn feedback(
+        &self,
+        state: &State,
+        reference: &Reference,
+        force: &Vector3<f32>,
+        greatest: f32,
+        wanted: &Wanted,
+    ) -> PositionFeedback {
+        let (law, filters) = (self.position_law(), &self.memory.filters);
+        match wanted {
+            Wanted::Feedback(most) => {
+                let most = if self.memory.fallback.is_slow() { &self.slow } else { *most };
+                law.feedback(state, reference, filters, force, greatest, most)
+            }
+            Wanted::Demand(demand) => {
+                let wanted = self.wanted(state, demand, force);
+                law.demanded(state, reference, filters, force, greatest, &wanted)
+            }
+        }
+    }
+
+    /// Section 3: where u points, and how it would turn.
+    #[inline(always)]
+    pub(super) fn course(&self, reference: &Reference, filters: &Filters, feedback: &PositionFeedback) -> Course {
+        let command = self.acceleration_command(reference, &filters.command);
+        let wanted = (feedback.drive - feedback.rate) * self.position_law().k_f();
+        let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
+        let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
+        let desired = DesiredAttitude::new(&command, &reference.heading);
+        let turn = desired.turn(&jerk, &snap);
+        let vertical = [filters.command.z, feedback.rate.z, wanted.z];
+        Course { command, up: desired.up(), desired, turn, vertical }
+    }
+
+    /// Sections 5 and 6: the attitude's errors, projected over what is late.
+    #[inline(always)]
+    pub(super) fn errors(&self, state: &State, reference: &Reference, course: &Course, late: &Late) -> Errors {
+        let Course { desired, turn, .. } = course;
+        let error = desired.error(&state.attitude);
+        let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
+        let turning = rotate_back(&error, &Vector3::new(-turn.rate.y, turn.rate.x, 0.0));
+        let frame = rotate_back(&error, &Vector3::new(-turn.rate.y, turn.rate.x, yaw_rate));
+        let (quaternion, projected) = self.attitude.projected(&error, &(state.angular_velocity - frame), late);
+        let alpha = self.law.parameters.alpha;
+        Errors {
+            error,
+            turning,
+            frame,
+            rate: (state.angular_velocity - turning).xy(),
+            projected: (projected + (frame - turning)).xy(),
+            projected_yaw: projected.z,
+            lifted: path_lifting::lift(self.memory.lift.as_ref(), &quaternion, self.switching_scalar, alpha),
+            tilt: self.attitude.tilt(&quaternion, self.memory.side.as_ref()),
+        }
+    }
+
+    /// Sections 3, 4 and 6: the torque about the tilt's axes, part by part.
+    #[inline(always)]
+    pub(super) fn tilting(
+        &self,
+        state: &State,
+        course: &Course,
+        errors: &Errors,
+        bias: &Vector3<f32>,
+        scale: f32,
+    ) -> Tilting {
+        let Errors { error, turning, rate, projected, tilt, .. } = errors;
+        let most = self.law.parameters.m_tilt;
+        let mut spending = self.budget.spending(scale);
+        let lean = bias.xy();
+        spending.spend(&-lean, 0.0);
+        let left = spending.radius() - math::sqrt(lean.norm_squared()) - self.reserve;
+        let potential = self.attitude.potential(tilt, math::lesser(most, math::greater(left, LEVEL_LEAST * most)));
+        spending.spend(&-potential, self.reserve);
+        spending.spend(&self.attitude.gyroscopic(turning, &state.angular_velocity, rate), self.reserve);
+        let damping = self.attitude.damping(tilt, projected);
+        let damping = damping * spending.spend(&-damping, self.reserve);
+        spending.spend(&self.attitude.precession(&state.angular_velocity, rate), self.reserve);
+
+        let q = self.turning.turned(&course.turn, &course.up);
+        let acceleration = rotate_back(error, &Vector3::new(-q.y, q.x, 0.0));
+        let torque = self.attitude.torque(&acceleration);
+        let thrust = (1.0 - THRUST_LEFT as f32) * self.vehicle.mass * course.turn.magnitude;
+        let mut share = self.range.share(&spending.spent, &torque, thrust, scale);
+        if share < 1.0 {
+            cold_path();
+            let always = self.law.parameters.turn_reserve / math::sqrt(q.norm_squared());
+            share = math::greater(share, math::lesser(always, 1.0));
+        }
+        share *= spending.spend(&(torque * share), 0.0);
+        let (turn, acceleration) = if share < 1.0 { (q * share, acceleration * share) } else { (q, acceleration) };
+        Tilting { torque: spending.spent, potential, damping, turn, acceleration }
+    }
+
+    /// Section 3: the drive for the turn as it is.
+    #[inline(always)]
+    pub(super) fn drive(
+        &self,
+        feedback: &PositionFeedback,
+        course: &Course,
+        tilting: &Tilting,
+        greatest: f32,
+    ) -> Vector3<f32> {
+        match self.turning.change(&course.turn, &tilting.turn, &course.up, greatest, course.vertical) {
+            None => feedback.drive,
+            Some(change) => {
+                cold_path();
+                feedback.drive + course.desired.turned(&change) * (1.0 / self.position_law().k_f())
+            }
+        }
+    }
+
+    /// ubar for a demand, before it is cut to the envelope, m/s^2.
+    fn wanted(&self, state: &State, demand: &Demand, force: &Vector3<f32>) -> Vector3<f32> {
+        match demand {
+            // v' = c - kappa v_h + D for a reference at rest.
+            Demand::Acceleration { acceleration, .. } => self.with_drag(acceleration, &state.velocity) - force,
+            Demand::Attitude { attitude, thrust } => {
+                let mut wanted = super::thrust_axis(attitude) * (thrust / self.vehicle.mass);
+                wanted.z -= self.vehicle.gravity;
+                wanted
+            }
+        }
+    }
+
+    /// The part of past commands that has not acted yet, for the current thrust scale and torque bias.
+    #[inline(always)]
+    pub(super) fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
+        let pending = self.actuators.pending(&self.memory.actuators);
+        let impulse = Vector3::new(pending.y, pending.z, pending.w) * scale + bias * self.late;
+        let forward = self.memory.last.as_ref().map_or_else(Vector3::zeros, |last| last.forward);
+        Late { time: self.late, impulse, forward }
+    }
+
+    /// u = c + g e3 + p_d'' + kappa p_d'.
+    pub(super) fn acceleration_command(&self, reference: &Reference, c: &Vector3<f32>) -> Vector3<f32> {
+        let mut command = self.with_drag(&reference.acceleration, &reference.velocity) + c;
+        command.z += self.vehicle.gravity;
+        command
+    }
+
+    /// A derivative of the reference plus the drag from the next lower derivative.
+    fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
+        let drag = self.law.parameters.drag_across;
+        Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
+    }
+}

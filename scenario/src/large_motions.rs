@@ -1,0 +1,243 @@
+//! Large motions: the law flies a model of its vehicle, from far away, fast, upside down and spinning.
+//!
+//! The [sampled loops](crate::sampled_loop) are linear: what hangs in a limit cycle far from its target they cannot see.
+//! Here the law itself flies, at the scenario's rate, the vehicle that it is made for, from eleven starts to a hover:
+//!
+//! ```text
+//! p' = v                     v' = -g e3 + R(q) e3 T/m             world frame, z up
+//! q' = q (0, omega) / 2      J omega' = (J omega) x omega + tau   body frame
+//! T' = (T_cmd(t - delay) - T) / lag, tau likewise
+//! ```
+//!
+//! A start is refused, by its name, if the law's own [fallback](controller_core::extended::fallback) comes before the
+//! vehicle is there, or if half an hour passes. This is no proof: it says nothing about starts that are not in the list.
+//! It shows what cycles with these gains at this rate: measured, vehicles that were given too little
+//! [turning rate](controller_core::extended::turning), or ticks too long for their gains.
+
+use crate::sampled_loop::Timing;
+use controller_core::certificate::certified::Certified;
+use controller_core::error::ParameterError;
+use controller_core::heading::Heading;
+use controller_core::law::Law;
+use controller_core::reference::Reference;
+use controller_core::state::{State, Wrench};
+use controller_core::vehicle::Vehicle;
+use nalgebra::{Quaternion, Vector3};
+use std::collections::VecDeque;
+use std::fmt;
+
+/// Where a flight begins: metres, metres per second, radians about a body axis, radians per second.
+struct Start {
+    name: &'static str,
+    position: [f64; 3],
+    velocity: [f64; 3],
+    turned: [f64; 3],
+    turning: [f64; 3],
+}
+
+/// At rest, level, at the target.
+const RESTING: Start = Start { name: "", position: [0.0; 3], velocity: [0.0; 3], turned: [0.0; 3], turning: [0.0; 3] };
+
+/// All of them.
+const STARTS: [Start; 11] = [
+    Start { name: "10 m beside its target", position: [10.0, 0.0, 0.0], ..RESTING },
+    Start { name: "10 m above its target", position: [0.0, 0.0, 10.0], ..RESTING },
+    Start { name: "10 m below its target", position: [0.0, 0.0, -10.0], ..RESTING },
+    Start { name: "8 m/s past its target", position: [0.0, 3.0, 0.0], velocity: [8.0, 0.0, 0.0], ..RESTING },
+    Start { name: "a dive at 7 m/s", position: [5.0, 0.0, 5.0], velocity: [0.0, 5.0, -5.0], ..RESTING },
+    Start { name: "upside down", turned: [3.1, 0.2, 0.0], ..RESTING },
+    Start { name: "half a turn of heading", turned: [0.0, 0.0, 3.1], ..RESTING },
+    Start { name: "a tumble", turned: [1.5, -1.0, 0.5], turning: [6.0, -6.0, 4.0], ..RESTING },
+    Start { name: "a fast tumble", turned: [0.5, 1.0, 0.0], turning: [12.0, -8.0, 8.0], ..RESTING },
+    Start { name: "a spin on its side", turned: [1.7, 0.0, 0.0], turning: [2.0, -2.0, 15.0], ..RESTING },
+    Start { name: "a spin upside down", turned: [2.8, 0.4, 0.0], turning: [-2.0, 4.0, -15.0], ..RESTING },
+];
+
+/// s. Most arrive in seconds; a weak vehicle that starts spinning falls for a minute, and then has far to come.
+const LONGEST: f64 = 1800.0;
+
+/// So near the target, m and m/s, and so near its heading, rad, for [`STAYED`].
+const ARRIVED: [f64; 3] = [0.05, 0.1, 0.05];
+
+/// s.
+const STAYED: f64 = 1.0;
+
+/// The longest step of the model, s.
+const STEP: f64 = 2e-3;
+
+/// The flight that was farthest from its target on the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Farthest {
+    /// What its start is called.
+    pub start: &'static str,
+    /// m.
+    pub distance: f64,
+}
+
+/// A start from which the vehicle did not arrive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Astray {
+    /// What the start is called.
+    pub start: &'static str,
+    /// When it was clear, s.
+    pub time: f64,
+    /// How far from its target the vehicle then was, m.
+    pub distance: f64,
+    /// How far from its heading, rad.
+    pub turned: f64,
+}
+
+impl fmt::Display for Astray {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { start, time, distance, turned } = self;
+        write!(
+            f,
+            "model flight from {start}: does not arrive, {distance:.2} m and {:.0} degrees",
+            turned.to_degrees()
+        )?;
+        write!(
+            f,
+            " off after {time:.0} s; a higher control.rate, more torque, more gains.turn_rate or less gains.v_across may help"
+        )
+    }
+}
+
+/// How `certified` arrives from all starts, or the first from which it does not.
+///
+/// # Errors
+/// If the law refuses the period or the delay.
+pub fn flown(certified: &Certified, timing: &Timing) -> Result<Result<Farthest, Astray>, ParameterError> {
+    let law = Law::new(certified, timing.period as f32)?;
+    let vehicle = certified.configuration().vehicle();
+    Ok(STARTS.iter().try_fold(Farthest { start: "", distance: 0.0 }, |farthest, start| {
+        let distance = Model::new(vehicle, timing, start).flown(law.clone(), start.name)?;
+        Ok(if distance > farthest.distance { Farthest { start: start.name, distance } } else { farthest })
+    }))
+}
+
+/// The model in flight.
+struct Model {
+    mass: f64,
+    gravity: f64,
+    inertia: Vector3<f64>,
+    step: f64,
+    steps: u32,
+    /// What a step keeps of the difference to the command.
+    kept: f64,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    attitude: Quaternion<f64>,
+    angular_velocity: Vector3<f64>,
+    /// T, N, and tau, N m, as they act.
+    thrust: f64,
+    torque: Vector3<f64>,
+    /// Commands under way, one for each step.
+    coming: VecDeque<(f64, Vector3<f64>)>,
+}
+
+impl Model {
+    fn new(vehicle: &Vehicle, timing: &Timing, start: &Start) -> Self {
+        let steps = (timing.period / STEP).ceil();
+        let step = timing.period / steps;
+        let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);
+        let waiting = (timing.delay_samples * steps).round() as usize;
+        let turned = Vector3::from(start.turned);
+        let half = 0.5 * turned.norm();
+        let axis = turned.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        Self {
+            mass: f64::from(vehicle.mass),
+            gravity: f64::from(vehicle.gravity),
+            inertia: vehicle.inertia.map(f64::from),
+            step,
+            steps: steps as u32,
+            kept: if timing.rotor_lag > 0.0 { (-step / timing.rotor_lag).exp() } else { 0.0 },
+            position: Vector3::from(start.position),
+            velocity: Vector3::from(start.velocity),
+            attitude: Quaternion::from_parts(half.cos(), axis * half.sin()),
+            angular_velocity: Vector3::from(start.turning),
+            thrust,
+            torque: Vector3::zeros(),
+            coming: VecDeque::from(vec![(thrust, Vector3::zeros()); waiting]),
+        }
+    }
+
+    /// How far it was from its target on the way, m, or where it was when it had not arrived.
+    fn flown(mut self, mut law: Law, start: &'static str) -> Result<f64, Astray> {
+        let reference = Reference::resting(Vector3::zeros(), Heading::FORWARD);
+        let period = self.step * f64::from(self.steps);
+        let (mut time, mut stayed, mut farthest) = (0.0, 0.0, 0.0_f64);
+        loop {
+            let command = law.command(&self.state(), &reference);
+            let [distance, turned] = [self.position.norm(), self.yaw().abs()];
+            let (Ok(command), 0, true) = (command, law.fallback_times(), time < LONGEST) else {
+                return Err(Astray { start, time, distance, turned });
+            };
+            farthest = farthest.max(distance);
+            self.advance(&command.wrench);
+            time += period;
+            let [near, slow, ahead] = ARRIVED;
+            let arrived = distance < near && self.velocity.norm() < slow && turned < ahead && self.up() > 0.9;
+            stayed = if arrived { stayed + period } else { 0.0 };
+            if stayed > STAYED {
+                return Ok(farthest);
+            }
+        }
+    }
+
+    fn state(&self) -> State {
+        let single = |v: &Vector3<f64>| v.map(|x| x as f32);
+        State {
+            position: single(&self.position),
+            velocity: single(&self.velocity),
+            attitude: Quaternion::from_vector(self.attitude.as_vector().map(|x| x as f32)),
+            angular_velocity: single(&self.angular_velocity),
+        }
+    }
+
+    /// Holds a command for a period.
+    fn advance(&mut self, wrench: &Wrench) {
+        let command = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
+        for _ in 0..self.steps {
+            self.coming.push_back(command);
+            let (thrust, torque) = self.coming.pop_front().unwrap_or(command);
+            self.thrust = thrust + (self.thrust - thrust) * self.kept;
+            self.torque = torque + (self.torque - torque) * self.kept;
+            self.step();
+        }
+    }
+
+    /// One step by the midpoint rule.
+    fn step(&mut self) {
+        let h = self.step;
+        let accelerated = |omega: &Vector3<f64>| {
+            let momentum = self.inertia.component_mul(omega);
+            (momentum.cross(omega) + self.torque).component_div(&self.inertia)
+        };
+        let turned = |q: &Quaternion<f64>, omega: &Vector3<f64>, time: f64| {
+            let next = q + q * Quaternion::from_imag(omega * (0.5 * time));
+            next / next.norm()
+        };
+        let middle = self.angular_velocity + accelerated(&self.angular_velocity) * (0.5 * h);
+        let between = turned(&self.attitude, &self.angular_velocity, 0.5 * h);
+        let axis = (between * Quaternion::from_imag(Vector3::z()) * between.conjugate()).imag();
+        let acceleration = axis * (self.thrust / self.mass) - Vector3::z() * self.gravity;
+        self.attitude = turned(&self.attitude, &middle, h);
+        self.angular_velocity += accelerated(&middle) * h;
+        self.position += (self.velocity + acceleration * (0.5 * h)) * h;
+        self.velocity += acceleration * h;
+    }
+
+    /// rad.
+    fn yaw(&self) -> f64 {
+        let q = &self.attitude;
+        (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
+    }
+
+    /// The vertical component of the thrust axis.
+    fn up(&self) -> f64 {
+        1.0 - 2.0 * (self.attitude.i.powi(2) + self.attitude.j.powi(2))
+    }
+}
+
+#[cfg(test)]
+mod tests;
