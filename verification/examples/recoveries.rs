@@ -4,12 +4,13 @@
 //! A certified vehicle, its state known, is thrown into the air. Each flight starts anywhere within 10 m of where it is
 //! to be, at any attitude (uniform), with up to 5 m/s, 15 rad/s across and 6 rad/s about its thrust axis, in wind of up
 //! to 5 m/s from any side (2.5 m/s^2 on a Hummingbird). It is to hover or, every other one, to fly its file's own
-//! reference.
+//! reference. Fails if a flight does not recover.
 
 use controller_core::certificate::certified::Certified;
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
+use host_sim::campaign::step::longest;
 use scenario::Scenario;
 use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [file, count] = arguments.as_slice() else {
         return Err("expected FILE COUNT".into());
     };
-    let scenario = Scenario::load(Path::new(file))?;
+    let scenario = longest(&Scenario::load(Path::new(file))?);
     let certified = Certified::new(scenario.configuration.clone())
         .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
     let thrown = |number| circumstances(&scenario, &RANGES, 0, number);
@@ -55,10 +56,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}: {} flights", scenario.name, flown.len());
     row("height lost", "m", |outcome| outcome.height_lost);
     row("rise above start and target", "m", |outcome| outcome.rise);
-    row("settled within 0.2 m after", "s", |outcome| outcome.settled.unwrap_or(f64::INFINITY));
+    row("within 0.2 m for good after", "s", |outcome| outcome.settled.unwrap_or(f64::INFINITY));
+    row("attitude settled after", "s", |outcome| outcome.attitude.unwrap_or(f64::INFINITY));
+    row("heading settled after", "s", |outcome| outcome.heading.unwrap_or(f64::INFINITY));
     let count = |what: fn(&Outcome) -> bool| flown.iter().filter(|outcome| what(outcome)).count();
-    println!("not settled at the end: {}", count(|outcome| outcome.settled.is_none()));
+    let lost = count(|outcome| !outcome.tracks());
+    println!("not settled within the first 90 %: {lost}");
+    println!("with the fallback: {}", count(|outcome| outcome.fallback > 0));
     println!("with a rotor commanded more than it has: {}", count(|outcome| outcome.clipped > 0));
     println!("with a command beyond its certified bound: {}", count(|outcome| outcome.beyond > 0));
-    Ok(())
+    if lost > 0 { Err(format!("{lost} flights did not recover").into()) } else { Ok(()) }
 }
