@@ -38,6 +38,8 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
     }
     let figures = [
         figure("On the reference for good after", "s", "settled"),
+        figure("Near its attitude for good after", "s", "attitude"),
+        figure("Near its heading for good after", "s", "heading"),
         figure("Height lost", "m", "height_lost"),
         figure("Rise above start and reference", "m", "rise"),
         figure("Distance from the reference at the end", "m", "final_error"),
