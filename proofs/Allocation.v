@@ -127,7 +127,8 @@ Proof.
     pose proof (least_nonneg r Hr). lra. }
   replace (total (fun r => b r * margin - b r * dot (beta r) tau))
     with (total b * margin - total (fun r => b r * dot (beta r) tau)) in H.
-  - replace (total (fun r => b r * most)) with (total b * most) in H; [rewrite thrust_is_shared, torque_cancels in H; lra|].
+  - replace (total (fun r => b r * most)) with (total b * most) in H;
+      [rewrite thrust_is_shared, torque_cancels in H; lra|].
     unfold total. clear. induction rotors; cbn; [|rewrite <- IHl]; ring.
   - unfold total. clear. induction rotors; cbn; [|rewrite <- IHl]; ring.
 Qed.
@@ -219,7 +220,8 @@ Proof.
   assert (Hbetween : yaw_least T <= tau_z <= yaw_most T).
   { unfold tau_z, yaw. split; [apply Rmin_glb; [lra | apply Rmax_l] | apply Rmin_l]. }
   split; [|split; [apply thrust_between | apply Rabs_le; lra]].
-  intros r Hr. destruct (Hends r Hr). pose proof (b_positive r Hr) as Hb. pose proof (proj2 (thrust_between braking wanted) r Hr) as HT.
+  intros r Hr. destruct (Hends r Hr). pose proof (b_positive r Hr) as Hb.
+  pose proof (proj2 (thrust_between braking wanted) r Hr) as HT.
   fold T in HT.
   assert (H1 : s * least r / b r + margin <= T + (dot (beta r) tau + beta_z r * tau_z)
     <= s * greatest r / b r - margin).

@@ -113,7 +113,8 @@ Proof.
   unfold kept_in_cone. destruct (Rle_dec _ _) as [_|Hout]; [now apply shortened_length|].
   destruct Hcase as [Hsquare|]; [|contradiction].
   destruct (uphill_parts Hsquare) as (_ & Hone & _ & Hrest). specialize (Hrest (shortened wanted alpha)).
-  assert (Hlength := shortened_length (sub (shortened wanted alpha) (scaled (dot (shortened wanted alpha) uphill) uphill))
+  assert (Hlength := shortened_length
+    (sub (shortened wanted alpha) (scaled (dot (shortened wanted alpha) uphill) uphill))
     left_across (sqrt_pos _)).
   set (rest := shortened _ left_across) in *. pose proof got_within.
   assert (Hleft : left_across * left_across = alpha * alpha - got_uphill * got_uphill).

@@ -323,7 +323,8 @@ Theorem a_tick_keeps_rotors_in_range :
      s * least r + b r * margin <= command r T tau tau_z <= s * greatest r - b r * margin.
 Proof.
   intros rows s above margin T_max yaw_max rotors top bottom limits bias pull gyro damping precession turn kept
-    by_floor always braking wanted wanted_yaw Hunit Hrotors Hone Hzero Hs Hmargin Hyaw Hkept Hradius Hroom Hfloor Himplied tau T tau_z.
+    by_floor always braking wanted wanted_yaw Hunit Hrotors Hone Hzero Hs Hmargin Hyaw Hkept Hradius Hroom Hfloor Himplied
+    tau T tau_z.
   assert (Hrows : forall w, In w rows -> holds w s tau) by now apply a_tick_keeps_the_rows.
   destruct (Himplied tau Hrows) as (Hlimits & Hpairs & Hfloors).
   assert (Hfits : torque_fits s margin T_max rotors tau).

@@ -1,7 +1,7 @@
 //! What the extended law commands against what the certificate says it can, driven by an adversary that may do
-//! anything: it throws the vehicle about, jumps from one state to another and back, jumps from one reference to another,
-//! ticks 10 to 1,000 times a second or now so and now so, pushes and turns the vehicle harder than any level, lets the
-//! rotors deliver what it likes, asks for accelerations and attitudes as a policy does.
+//! anything: it throws the vehicle about, jumps from one state to another and back, jumps from one reference to
+//! another, ticks 10 to 1,000 times a second or now so and now so, pushes and turns the vehicle harder than any level,
+//! lets the rotors deliver what it likes, asks for accelerations and attitudes as a policy does.
 //!
 //! No rotor may be commanded beyond its limits and no torque or thrust beyond its bound, not by one unit in the last
 //! place. And the adversary has to come near the ends, or it would be no test of them: in the middle of every flight it

@@ -17,7 +17,7 @@ use crate::support::extended::oracle::acting::Acting;
 use crate::support::extended::oracle::estimates::Averages;
 use crate::support::extended::oracle::fallback::Fallback;
 use crate::support::extended::oracle::tick::{Answer, BRANCHES, Last, Nudge, Tick};
-use crate::support::extended::rounding::{ACCELERATION, NAMES, Scales, distances, tolerances};
+use crate::support::extended::rounding::{ACCELERATION_PLACE, NAMES, Scales, distances, tolerances};
 use crate::support::extended::{around_the_formulas, law, random_configuration, vehicle};
 use crate::support::oracle::lifting;
 use crate::support::oracle::rounding::{ROUNDINGS, vector4};
@@ -211,7 +211,7 @@ fn fly(
                 forward: hidden.forward.unwrap_or_default(),
             };
             let allowed = tolerances(&oracle, &before, &answer, &scales);
-            forward = Some(allowed[ACCELERATION] / ROUNDINGS);
+            forward = Some(allowed[ACCELERATION_PLACE] / ROUNDINGS);
             let either = answer.edge < EITHER_SIDE;
             shown.either += u32::from(either);
             if !either {

@@ -1,8 +1,8 @@
 //! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
 //! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
-//! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones. A scenario
-//! is certified if all three hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a
-//! vehicle flies.
+//! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones. A
+//! scenario is certified if all three hold ([`scenario::verdict`]). The certificate itself is about limits, not about
+//! how well a vehicle flies.
 
 mod advice;
 mod blame;
@@ -66,7 +66,7 @@ fn limits(verdict: &Verdict) -> String {
         _ => ("What it fails in", failing.into_iter().map(what).collect()),
     };
     all.extend(verdict.lacking().map(|lack| advice::of_loop(&lack)));
-    all.extend(verdict.astray().map(|_| advice::OF_FLIGHT.to_owned()));
+    all.extend(verdict.not_arrived().map(|_| advice::OF_FLIGHT.to_owned()));
     all.iter().map(|what| format!("{begins}: {what}\n")).collect()
 }
 
@@ -129,7 +129,8 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     };
     let flights = match verdict.flights() {
         Some(Ok(Farthest { start, distance })) => format!(
-            "large motions (flights of a model without air): every one arrives; on its way at most {} m off, from {start}\n",
+            "large motions (flights of a model without air): every one arrives; on its way at most {} m off, \
+             from {start}\n",
             short(distance)
         ),
         Some(Err(_)) => "large motions (flights of a model): one does NOT arrive\n".to_owned(),

@@ -8,18 +8,18 @@
 //! ```
 //!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
-//! [`LoopMargin::LEAST`]; under the extended law, that a model of it arrives from
-//! [far away, fast and upside down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its duration
-//! and stayed near it ([`crate::flown`] says how near); and that once there it never strayed further than the file's
-//! `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the errors
-//! of its last quarter are reported without a verdict.
+//! [`LoopMargin::LEAST`]; under the extended law, that a model of it arrives from [far away, fast and upside
+//! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
+//! duration and stayed near it ([`crate::flown`] says how near); and that once there it never strayed further than the
+//! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
+//! errors of its last quarter are reported without a verdict.
 
 use crate::flown::{Flown, NEAR_MRP, NEAR_POSITION};
 use crate::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
-use scenario::large_motions::{Astray, Farthest};
+use scenario::large_motions::{Farthest, NotArrived};
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 use std::fmt::Write;
@@ -144,12 +144,12 @@ fn loops(verdict: &Verdict) -> Claim {
 }
 
 /// Whether a model of the vehicle arrives from far away, fast and upside down.
-fn large_motions(flights: &Result<Farthest, Astray>) -> Claim {
+fn large_motions(flights: &Result<Farthest, NotArrived>) -> Claim {
     Claim {
         claim: "large motions, model flights".to_owned(),
         required: "all arrive".to_owned(),
         flown: flights.map_or_else(
-            |astray| astray.to_string(),
+            |not_arrived| not_arrived.to_string(),
             |Farthest { distance, .. }| format!("at most {} m off", short(distance)),
         ),
         holds: Some(flights.is_ok()),

@@ -117,9 +117,7 @@ impl Course {
         if error > near || tick.surroundings.standing {
             self.settled = Some(next);
         }
-        let heading = tick.reference.heading.direction();
-        let yaw = tick.state.yaw() - f64::from(heading.y).atan2(f64::from(heading.x));
-        self.yaw_error = yaw.sin().atan2(yaw.cos()).abs();
+        self.yaw_error = tick.state.heading_error(&tick.reference.heading);
         if self.yaw_error > NEAR_YAW {
             self.turned = Some(next);
         }

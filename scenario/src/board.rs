@@ -30,8 +30,8 @@ pub const ROTORS: usize = 4;
 /// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not
 /// arm: why, if so.
 ///
-/// One whose sampled loops are unstable or without margin, or whose model goes astray, is refused: no board works that
-/// out, so nothing else would keep it on the ground.
+/// One whose sampled loops are unstable or without margin, or whose model does not arrive, is refused: no board works
+/// that out, so nothing else would keep it on the ground.
 ///
 /// # Errors
 /// One line: the file, the field, the loop or the flight, and what is wrong.
@@ -56,8 +56,8 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
             "{name}: {lack}; what cannot be flown is not built (a board's body rates are up to {late:.1} ms late)"
         ));
     }
-    if let Some(astray) = verdict.astray() {
-        return Err(format!("{name}: {astray}; what cannot be flown is not built"));
+    if let Some(not_arrived) = verdict.not_arrived() {
+        return Err(format!("{name}: {not_arrived}; what cannot be flown is not built"));
     }
     Ok(verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
 }

@@ -1,5 +1,6 @@
 //! The rigid body's state: where a flight starts, and what a plant integrates.
 
+use controller_core::heading::Heading;
 use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3};
 
@@ -36,6 +37,20 @@ impl BodyState {
     pub fn yaw(&self) -> f64 {
         let q = &self.attitude;
         (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
+    }
+
+    /// The angle from a heading to the vehicle's, rad, at most pi.
+    #[must_use]
+    pub fn heading_error(&self, heading: &Heading) -> f64 {
+        let wanted = heading.direction().map(f64::from);
+        let turned = self.yaw() - wanted.y.atan2(wanted.x);
+        turned.sin().atan2(turned.cos()).abs()
+    }
+
+    /// b = R e3, the thrust axis, world frame.
+    #[must_use]
+    pub fn thrust_axis(&self) -> Vector3<f64> {
+        (self.attitude * Quaternion::from_imag(Vector3::z()) * self.attitude.conjugate()).imag()
     }
 
     /// Whether every component is a finite number.

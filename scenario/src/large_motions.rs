@@ -1,7 +1,7 @@
 //! Large motions: the law flies a model of its vehicle, from far away, fast, upside down and spinning.
 //!
-//! The [sampled loops](crate::sampled_loop) are linear: what hangs in a limit cycle far from its target they cannot see.
-//! Here the law itself flies, at the scenario's rate, the vehicle that it is made for, from eleven starts to a hover:
+//! The [sampled loops](crate::sampled_loop) are linear: a limit cycle far from the target is beyond them. Here the law
+//! itself flies the vehicle that it is made for, at the scenario's rate, from eleven starts to a hover:
 //!
 //! ```text
 //! p' = v                     v' = -g e3 + R(q) e3 T/m             world frame, z up
@@ -10,17 +10,18 @@
 //! ```
 //!
 //! A start is refused, by its name, if the law's own [fallback](controller_core::extended::fallback) comes before the
-//! vehicle is there, or if half an hour passes. This is no proof: it says nothing about starts that are not in the list.
-//! It shows what cycles with these gains at this rate: measured, vehicles that were given too little
-//! [turning rate](controller_core::extended::turning), or ticks too long for their gains.
+//! vehicle is there, or if half an hour passes. This is no proof: it says nothing about any other start. It shows
+//! cycles with these gains at this rate: measured, of vehicles that were given too little [turning
+//! rate](controller_core::extended::turning), or ticks too long for their gains.
 
+use crate::body::BodyState;
 use crate::sampled_loop::Timing;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
-use controller_core::state::{State, Wrench};
+use controller_core::state::Wrench;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
 use std::collections::VecDeque;
@@ -53,17 +54,17 @@ const STARTS: [Start; 11] = [
     Start { name: "a spin upside down", turned: [2.8, 0.4, 0.0], turning: [-2.0, 4.0, -15.0], ..RESTING },
 ];
 
-/// s. Most arrive in seconds; a weak vehicle that starts spinning falls for a minute, and then has far to come.
-const LONGEST: f64 = 1800.0;
+/// s. Most arrive in seconds; a weak vehicle that starts spinning falls for minutes, and then has far to come.
+const LONGEST_FLIGHT: f64 = 1800.0;
 
-/// So near the target, m and m/s, and so near its heading, rad, for [`STAYED`].
-const ARRIVED: [f64; 3] = [0.05, 0.1, 0.05];
+/// So near the target, m and m/s, and so near upright and its heading, rad, for so long, s, a vehicle has arrived.
+const ARRIVAL_DISTANCE: f64 = 0.05;
+const ARRIVAL_SPEED: f64 = 0.1;
+const ARRIVAL_ANGLE: f64 = 0.05;
+const ARRIVAL_TIME: f64 = 1.0;
 
-/// s.
-const STAYED: f64 = 1.0;
-
-/// The longest step of the model, s.
-const STEP: f64 = 2e-3;
+/// The model's longest step, s.
+const STEP_MAX: f64 = 2e-3;
 
 /// The flight that was farthest from its target on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +77,7 @@ pub struct Farthest {
 
 /// A start from which the vehicle did not arrive.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Astray {
+pub struct NotArrived {
     /// What the start is called.
     pub start: &'static str,
     /// When it was clear, s.
@@ -87,7 +88,7 @@ pub struct Astray {
     pub turned: f64,
 }
 
-impl fmt::Display for Astray {
+impl fmt::Display for NotArrived {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { start, time, distance, turned } = self;
         write!(
@@ -95,10 +96,8 @@ impl fmt::Display for Astray {
             "model flight from {start}: does not arrive, {distance:.2} m and {:.0} degrees",
             turned.to_degrees()
         )?;
-        write!(
-            f,
-            " off after {time:.0} s; a higher control.rate, more torque, more gains.turn_rate or less gains.v_across may help"
-        )
+        write!(f, " off after {time:.0} s; a higher control.rate, more torque, more gains.turn_rate")?;
+        write!(f, " or less gains.v_across may help")
     }
 }
 
@@ -106,7 +105,7 @@ impl fmt::Display for Astray {
 ///
 /// # Errors
 /// If the law refuses the period or the delay.
-pub fn flown(certified: &Certified, timing: &Timing) -> Result<Result<Farthest, Astray>, ParameterError> {
+pub fn flown(certified: &Certified, timing: &Timing) -> Result<Result<Farthest, NotArrived>, ParameterError> {
     let law = Law::new(certified, timing.period as f32)?;
     let vehicle = certified.configuration().vehicle();
     Ok(STARTS.iter().try_fold(Farthest { start: "", distance: 0.0 }, |farthest, start| {
@@ -124,10 +123,7 @@ struct Model {
     steps: u32,
     /// What a step keeps of the difference to the command.
     kept: f64,
-    position: Vector3<f64>,
-    velocity: Vector3<f64>,
-    attitude: Quaternion<f64>,
-    angular_velocity: Vector3<f64>,
+    body: BodyState,
     /// T, N, and tau, N m, as they act.
     thrust: f64,
     torque: Vector3<f64>,
@@ -137,7 +133,7 @@ struct Model {
 
 impl Model {
     fn new(vehicle: &Vehicle, timing: &Timing, start: &Start) -> Self {
-        let steps = (timing.period / STEP).ceil();
+        let steps = (timing.period / STEP_MAX).ceil();
         let step = timing.period / steps;
         let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);
         let waiting = (timing.delay_samples * steps).round() as usize;
@@ -151,10 +147,12 @@ impl Model {
             step,
             steps: steps as u32,
             kept: if timing.rotor_lag > 0.0 { (-step / timing.rotor_lag).exp() } else { 0.0 },
-            position: Vector3::from(start.position),
-            velocity: Vector3::from(start.velocity),
-            attitude: Quaternion::from_parts(half.cos(), axis * half.sin()),
-            angular_velocity: Vector3::from(start.turning),
+            body: BodyState {
+                position: Vector3::from(start.position),
+                velocity: Vector3::from(start.velocity),
+                attitude: Quaternion::from_parts(half.cos(), axis * half.sin()),
+                angular_velocity: Vector3::from(start.turning),
+            },
             thrust,
             torque: Vector3::zeros(),
             coming: VecDeque::from(vec![(thrust, Vector3::zeros()); waiting]),
@@ -162,35 +160,25 @@ impl Model {
     }
 
     /// How far it was from its target on the way, m, or where it was when it had not arrived.
-    fn flown(mut self, mut law: Law, start: &'static str) -> Result<f64, Astray> {
+    fn flown(mut self, mut law: Law, start: &'static str) -> Result<f64, NotArrived> {
         let reference = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let period = self.step * f64::from(self.steps);
         let (mut time, mut stayed, mut farthest) = (0.0, 0.0, 0.0_f64);
         loop {
-            let command = law.command(&self.state(), &reference);
-            let [distance, turned] = [self.position.norm(), self.yaw().abs()];
-            let (Ok(command), 0, true) = (command, law.fallback_times(), time < LONGEST) else {
-                return Err(Astray { start, time, distance, turned });
+            let command = law.command(&self.body.measured(), &reference);
+            let [distance, turned] = [self.body.position.norm(), self.body.heading_error(&reference.heading)];
+            let (Ok(command), 0, true) = (command, law.fallback_times(), time < LONGEST_FLIGHT) else {
+                return Err(NotArrived { start, time, distance, turned });
             };
             farthest = farthest.max(distance);
             self.advance(&command.wrench);
             time += period;
-            let [near, slow, ahead] = ARRIVED;
-            let arrived = distance < near && self.velocity.norm() < slow && turned < ahead && self.up() > 0.9;
+            let near = distance < ARRIVAL_DISTANCE && self.body.velocity.norm() < ARRIVAL_SPEED;
+            let arrived = near && turned < ARRIVAL_ANGLE && self.body.thrust_axis().z > ARRIVAL_ANGLE.cos();
             stayed = if arrived { stayed + period } else { 0.0 };
-            if stayed > STAYED {
+            if stayed > ARRIVAL_TIME {
                 return Ok(farthest);
             }
-        }
-    }
-
-    fn state(&self) -> State {
-        let single = |v: &Vector3<f64>| v.map(|x| x as f32);
-        State {
-            position: single(&self.position),
-            velocity: single(&self.velocity),
-            attitude: Quaternion::from_vector(self.attitude.as_vector().map(|x| x as f32)),
-            angular_velocity: single(&self.angular_velocity),
         }
     }
 
@@ -208,34 +196,22 @@ impl Model {
 
     /// One step by the midpoint rule.
     fn step(&mut self) {
-        let h = self.step;
+        let (h, BodyState { attitude, angular_velocity, .. }) = (self.step, self.body);
         let accelerated = |omega: &Vector3<f64>| {
             let momentum = self.inertia.component_mul(omega);
             (momentum.cross(omega) + self.torque).component_div(&self.inertia)
         };
-        let turned = |q: &Quaternion<f64>, omega: &Vector3<f64>, time: f64| {
-            let next = q + q * Quaternion::from_imag(omega * (0.5 * time));
+        let turned = |omega: &Vector3<f64>, time: f64| {
+            let next = attitude + attitude * Quaternion::from_imag(omega * (0.5 * time));
             next / next.norm()
         };
-        let middle = self.angular_velocity + accelerated(&self.angular_velocity) * (0.5 * h);
-        let between = turned(&self.attitude, &self.angular_velocity, 0.5 * h);
-        let axis = (between * Quaternion::from_imag(Vector3::z()) * between.conjugate()).imag();
-        let acceleration = axis * (self.thrust / self.mass) - Vector3::z() * self.gravity;
-        self.attitude = turned(&self.attitude, &middle, h);
-        self.angular_velocity += accelerated(&middle) * h;
-        self.position += (self.velocity + acceleration * (0.5 * h)) * h;
-        self.velocity += acceleration * h;
-    }
-
-    /// rad.
-    fn yaw(&self) -> f64 {
-        let q = &self.attitude;
-        (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
-    }
-
-    /// The vertical component of the thrust axis.
-    fn up(&self) -> f64 {
-        1.0 - 2.0 * (self.attitude.i.powi(2) + self.attitude.j.powi(2))
+        let middle = angular_velocity + accelerated(&angular_velocity) * (0.5 * h);
+        let between = BodyState { attitude: turned(&angular_velocity, 0.5 * h), ..self.body };
+        let acceleration = between.thrust_axis() * (self.thrust / self.mass) - Vector3::z() * self.gravity;
+        self.body.attitude = turned(&middle, h);
+        self.body.angular_velocity += accelerated(&middle) * h;
+        self.body.position += (self.body.velocity + acceleration * (0.5 * h)) * h;
+        self.body.velocity += acceleration * h;
     }
 }
 

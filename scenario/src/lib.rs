@@ -22,9 +22,9 @@
 //! list of sections and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's
 //! types take them.
 //!
-//! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`], which
-//! is about the small motions of the [`sampled_loop`], and from the [`large_motions`] of a model; [`board`], whether the
-//! firmware can.
+//! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
+//! which is about the small motions of the [`sampled_loop`], and from the [`large_motions`] of a model; [`board`],
+//! whether the firmware can.
 //!
 //! [`policy`] reads the files of policies.
 

@@ -6,13 +6,13 @@
 //!   vehicle whose rotors follow a second late falls with every command within its limits.
 //! - the [sampled loops](crate::sampled_loop) are an analysis of small motions about hover: with this period, delay and
 //!   lag they die out, with [`LoopMargin::LEAST`] to spare. It knows nothing of limits and large angles.
-//! - the [model flights](crate::large_motions) of the extended law show that large motions die out too, from a few starts.
-//!   The paper's law, which swings for minutes about a target that is far away, has its theorem.
+//! - the [model flights](crate::large_motions) of the extended law show that large motions die out too, from a few
+//!   starts. The paper's law, which swings for minutes about a target that is far away, has its theorem.
 //!
 //! Together they are what can be said without the vehicle. None is a proof that a recovery succeeds.
 
 use crate::file::Scenario;
-use crate::large_motions::{self, Astray, Farthest};
+use crate::large_motions::{self, Farthest, NotArrived};
 use crate::sampled_loop::LoopReport;
 use crate::stability::{Lack, LoopMargin};
 use controller_core::certificate::Certificate;
@@ -29,11 +29,11 @@ pub struct Verdict {
     proof: Result<Box<Certified>, Box<Certificate>>,
     loops: [LoopReport; 6],
     /// The model flights; none are flown where one of the others does not hold.
-    flights: Option<Result<Farthest, Astray>>,
+    flights: Option<Result<Farthest, NotArrived>>,
 }
 
-/// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin, or else the first
-/// model flight that does not arrive.
+/// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin, or else the
+/// first model flight that does not arrive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// An inequality of the certificate.
@@ -41,7 +41,7 @@ pub enum Refusal {
     /// A sampled loop.
     Loop(Lack),
     /// A model flight.
-    Flight(Astray),
+    Flight(NotArrived),
 }
 
 impl Verdict {
@@ -71,7 +71,7 @@ impl Verdict {
     pub fn refusal(&self) -> Option<Refusal> {
         let failing = self.certificate().inequalities().find(|inequality| !inequality.holds());
         let failing = failing.copied().map(Refusal::Inequality);
-        failing.or_else(|| self.lacking().map(Refusal::Loop)).or_else(|| self.astray().map(Refusal::Flight))
+        failing.or_else(|| self.lacking().map(Refusal::Loop)).or_else(|| self.not_arrived().map(Refusal::Flight))
     }
 
     /// The certificate, whether it holds or not.
@@ -94,13 +94,13 @@ impl Verdict {
 
     /// The model flights, if any were flown: the one that was farthest off, or the first that does not arrive.
     #[must_use]
-    pub fn flights(&self) -> Option<Result<Farthest, Astray>> {
+    pub fn flights(&self) -> Option<Result<Farthest, NotArrived>> {
         self.flights
     }
 
     /// The first model flight that does not arrive.
     #[must_use]
-    pub fn astray(&self) -> Option<Astray> {
+    pub fn not_arrived(&self) -> Option<NotArrived> {
         self.flights?.err()
     }
 
@@ -119,7 +119,7 @@ impl fmt::Display for Refusal {
                 write!(f, "certificate, {name}: requires {required:.4} {unit}, available {available:.4} {unit}")
             }
             Self::Loop(lack) => write!(f, "{lack}"),
-            Self::Flight(astray) => write!(f, "{astray}"),
+            Self::Flight(not_arrived) => write!(f, "{not_arrived}"),
         }
     }
 }

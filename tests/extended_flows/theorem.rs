@@ -15,11 +15,11 @@ use rand::RngExt;
 const PERIOD: f32 = 0.01;
 
 /// When the reference rests, and the flight's end, s.
-const RESTS: u32 = 150;
-const ENDS: u32 = 560;
+const REFERENCE_RESTS_AT: u32 = 150;
+const FLIGHT_ENDS_AT: u32 = 560;
 
 /// When the vehicle is thrown far away: the slowed law flies then.
-const THROWN: u32 = 145;
+const THROWN_AT: u32 = 145;
 
 /// What a flight showed: how often the law was slowed, and how much of Omega and of alpha_0 the slowed law needed.
 struct Shown {
@@ -46,17 +46,17 @@ fn fly(name: &str, rng: &mut ChaCha8Rng) -> Shown {
     };
     let (mut body, mut shown, mut nearest) = (anywhere(rng), Shown { times: 0, needed: [0.0; 2] }, f64::INFINITY);
     let ticks = |seconds: u32| (seconds as f32 / PERIOD).round() as u32;
-    for tick in 0..ticks(ENDS) {
-        if tick == ticks(THROWN) {
+    for tick in 0..ticks(FLIGHT_ENDS_AT) {
+        if tick == ticks(THROWN_AT) {
             assert!(controller.memory().fallback.is_slow(), "{name}: not slowed");
             body = anywhere(rng);
         }
-        let velocity = if tick < ticks(RESTS) { Vector3::x() * 1.0 } else { Vector3::zeros() };
+        let velocity = if tick < ticks(REFERENCE_RESTS_AT) { Vector3::x() * 1.0 } else { Vector3::zeros() };
         let reference = Reference { velocity, ..Reference::resting(Vector3::zeros(), heading) };
         // From a second on, when the force is known.
         let slow = controller.memory().fallback.is_slow();
         let (wrench, diagnostics) = controller.step(&body.state(), &reference).unwrap();
-        if slow && tick > ticks(THROWN) {
+        if slow && tick > ticks(THROWN_AT) {
             let (w, change) = (diagnostics.desired_angular_velocity, diagnostics.desired_angular_acceleration);
             let q = Vector3::new(change.y + w.x * w.z, w.y * w.z - change.x, 0.0);
             let needed = [w.xy().norm() / p.turn_rate, q.norm() / p.turn_reserve].map(f64::from);
@@ -66,7 +66,7 @@ fn fly(name: &str, rng: &mut ChaCha8Rng) -> Shown {
         nearest = f64::min(nearest, e);
         // Once its own bandwidths fly for good: near in every window.
         if tick % ticks(20) == 0 {
-            assert!(tick < ticks(ENDS - 80) || nearest < 0.5, "{name}: {nearest} m at the nearest");
+            assert!(tick < ticks(FLIGHT_ENDS_AT - 80) || nearest < 0.5, "{name}: {nearest} m at the nearest");
             nearest = f64::INFINITY;
         }
         let acting = Wrench { thrust: wrench.thrust * scale, torque: wrench.torque * scale }

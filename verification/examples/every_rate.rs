@@ -1,8 +1,8 @@
-//! Flies campaigns of recoveries at rates from 10 Hz to 1 kHz, each where the verdict lets the vehicle fly, and prints what
-//! they showed: `cargo run --release -p verification --example every_rate -- COUNT FILE...`.
+//! Flies campaigns of recoveries at rates from 10 Hz to 1 kHz, each where the verdict lets the vehicle fly, and prints
+//! what they showed: `cargo run --release -p verification --example every_rate -- COUNT FILE...`.
 //!
-//! They hover at the end, for at 10 Hz the study is up to 0.2 m beside a circle of one metre in a wind. Fails if a flight
-//! does not come to its place, attitude and heading for good within 54 s: at no rate may anything cycle.
+//! They hover at the end, for at 10 Hz the study is up to 0.2 m beside a circle of one metre in a wind. Fails if a
+//! flight does not come to its place, attitude and heading for good within 54 s: at no rate may anything cycle.
 
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::outcome::Outcome;
@@ -57,18 +57,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             let lost = |outcome: &Outcome| !outcome.tracks() || outcome.fallback > 0 || outcome.beyond > 0;
             let bad: Vec<usize> = (0..flown.len()).filter(|number| lost(&flown[*number])).collect();
             println!(
-                "{} at {rate} Hz: {} of {count} recover; within 0.2 m after {median:.2} s (median), {slowest:.2} s at most",
+                "{} at {rate} Hz: {} of {count} recover; within 0.2 m after {median:.2} s (median), {slowest:.2} s \
+                 at most",
                 scenario.name,
                 flown.len() - bad.len()
             );
-            if !bad.is_empty() {
-                for number in bad.iter().take(10) {
-                    let Outcome { settled, attitude, heading, final_error, fallback, .. } = &flown[*number];
-                    println!(
-                        "  flight {number}: position {settled:?}, attitude {attitude:?}, heading {heading:?} s; ends \
-                         {final_error:.3} m off; the fallback came {fallback} times"
-                    );
-                }
+            for number in bad.iter().take(10) {
+                let Outcome { settled, attitude, heading, final_error, fallback, .. } = &flown[*number];
+                println!(
+                    "  flight {number}: position {settled:?}, attitude {attitude:?}, heading {heading:?} s; ends \
+                     {final_error:.3} m off; the fallback came {fallback} times"
+                );
             }
             wrong += bad.len();
         }

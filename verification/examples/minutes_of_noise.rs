@@ -1,6 +1,6 @@
-//! Flies vehicles for minutes in noise and turbulence, from any attitude and up to 10 m away, and prints how far off they
-//! were and how often the extended law's fallback came:
-//! `cargo run --release -p verification --example minutes_of_noise -- COUNT SECONDS FILE...`.
+//! Flies vehicles for minutes in noise and turbulence, from any attitude and up to 10 m away, and prints how far off
+//! they were and how often the extended law's fallback came: `cargo run --release -p verification --example
+//! minutes_of_noise -- COUNT SECONDS FILE...`.
 //!
 //! The noise is that of a cheap IMU and of poses from a camera; a steady wind of up to 4 m/s blows from any side, with
 //! turbulence as on a stormy day. Fails if a flight ends more than a metre off, could not go on, or had the fallback.
@@ -19,14 +19,14 @@ const SENSORS: &str = "\n[sensors]\ngyro_noise = 0.01\nposition_noise = 0.02\nat
                        velocity = \"exact\"\nvelocity_noise = 0.15\n";
 
 /// m/s.
-const WIND: f64 = 4.0;
+const WIND_MAX: f64 = 4.0;
 const WIND_AT_20_FEET: f64 = 12.0;
 
 /// Until when a vehicle may still be on its way, s.
-const ARRIVED: f64 = 60.0;
+const ARRIVAL_TIME: f64 = 60.0;
 
 /// At its end a flight may be so far off, m.
-const NEAR: f64 = 1.0;
+const LAST_DISTANCE_MAX: f64 = 1.0;
 
 /// What a flight showed.
 struct Flown {
@@ -45,7 +45,7 @@ fn flown(scenario: &Scenario, mut flight: Flight) -> Flown {
             return Flown { farthest: f64::INFINITY, last: f64::INFINITY, ..flown };
         };
         flown.last = (tick.state.position - tick.reference.position.map(f64::from)).norm();
-        if time > ARRIVED {
+        if time > ARRIVAL_TIME {
             flown.farthest = flown.farthest.max(flown.last);
         }
         if flight.fallback_times() as usize > flown.slowed.len() {
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scenario = longest(&scenario);
         let certified = Certified::new(scenario.configuration.clone())
             .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
-        let ranges = Ranges { duration, wind: WIND, turbulence: WIND_AT_20_FEET, ..scenario.campaign.ranges };
+        let ranges = Ranges { duration, wind: WIND_MAX, turbulence: WIND_AT_20_FEET, ..scenario.campaign.ranges };
         let all = fly_all(&certified, count, |number| circumstances(&scenario, &ranges, 0, number), flown)?;
         let row = |value: fn(&Flown) -> f64| {
             let values: Vec<f64> = all.iter().map(value).collect();
@@ -77,12 +77,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let [median, most, farthest] = row(|flown| flown.farthest);
         let [.., last] = row(|flown| flown.last);
         println!(
-            "{}: {count} flights of {duration} s; after {ARRIVED} s at most {median:.2} m off (median), {most:.2} m (99 %), \
-             {farthest:.2} m; at the end at most {last:.2} m",
+            "{}: {count} flights of {duration} s; after {ARRIVAL_TIME} s at most {median:.2} m off (median), \
+             {most:.2} m (99 %), {farthest:.2} m; at the end at most {last:.2} m",
             scenario.name
         );
         for (number, flown) in all.iter().enumerate() {
-            if flown.last > NEAR || !flown.slowed.is_empty() {
+            if flown.last > LAST_DISTANCE_MAX || !flown.slowed.is_empty() {
                 println!(
                     "  flight {number}: ends {:.2} m off; the fallback came at {:.0?} s",
                     flown.last, flown.slowed

@@ -243,8 +243,8 @@ fn bounds<R: Real>(
     }
 }
 
-/// The greatest torque along `axis` that all rows allow between two thrust scales, N m: `axis` is a sum of the directions
-/// of two rows, and the torque along it at most the sum of their rooms with the same weights.
+/// The greatest torque along `axis` that all rows allow between two thrust scales, N m: `axis` is a sum of the
+/// directions of two rows, and the torque along it at most the sum of their rooms with the same weights.
 fn greatest_along<R: Real>(rows: &[Row<R>], axis: [R; 2], scales: [R; 2]) -> R {
     let mut least = R::from(f64::INFINITY);
     for (place, a) in rows.iter().enumerate() {

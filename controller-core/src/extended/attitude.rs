@@ -18,17 +18,18 @@
 //! does about its thrust axis: h is at right angles to omega~_12.
 //!
 //! **Half a turn** has no nearest way back. As the paper's path lifting does, the law remembers the side m that b came
-//! from, once cos(theta / 2) < 2 qbar: theta counts on beyond half a turn until |vartheta| >= 1 + delta, and only then the
-//! other way round is taken.
+//! from, once cos(theta / 2) < 2 qbar: theta counts on beyond half a turn until |vartheta| >= 1 + delta, and only then
+//! the other way round is taken.
 //!
 //! **Actuators that are late.** With the lag and the delay together T and the angular impulse I that commands of the
 //! past will still deliver, the law is evaluated for the errors projected over T ([`Late`]),
 //!
 //! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T a:
 //!
-//! a is the acceleration fed forward in the last tick. With a first-order lag and small motions omega_p' is the commanded acceleration and the
-//! projected angle's rate is omega_p, as if the actuators were ideal. The paper's z_1 and z_2 do the same for its
-//! filters. Every bound holds for any errors, so also for projected ones. Torques in the body frame, N m.
+//! a is the acceleration fed forward in the last tick. With a first-order lag and small motions omega_p' is the
+//! commanded acceleration and the projected angle's rate is omega_p, as if the actuators were ideal. The paper's z_1
+//! and z_2 do the same for its filters. Every bound holds for any errors, so also for projected ones. Torques in the
+//! body frame, N m.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude::rotate_back;

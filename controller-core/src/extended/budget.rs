@@ -1,5 +1,5 @@
-//! The budget of a tick: the torque about the tilt's axes that limits and rotors leave, spent part by part. Section 4 of
-//! `docs/extended-law.md`.
+//! The budget of a tick: the torque about the tilt's axes that limits and rotors leave, spent part by part. Section 4
+//! of `docs/extended-law.md`.
 //!
 //! With (b_T, b_tau) a rotor's row of the inverse allocation and beta = b_tau / b_T, a torque tau about the tilt's axes
 //! fits at the thrust scale s if for every row
@@ -155,8 +155,8 @@ impl TorqueBudget {
     }
 }
 
-/// U = min(s min f_max / b_T - margin - |beta_12| |tau_b,12| - |beta_3| |tau_b,3|, T_max) / m: the acceleration that the
-/// rotors hold near the target beside the torque bias tau_b.
+/// U = min(s min f_max / b_T - margin - |beta_12| |tau_b,12| - |beta_3| |tau_b,3|, T_max) / m: the acceleration that
+/// the rotors hold near the target beside the torque bias tau_b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ceiling {
     per_scale: f32,

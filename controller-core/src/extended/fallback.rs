@@ -1,21 +1,21 @@
-//! The fallback: a flight that makes no progress goes on with the same law, slowed down until nothing limits it. Section
-//! 13 of `docs/extended-law.md`.
+//! The fallback: a flight that makes no progress goes on with the same law, slowed down until nothing limits it.
+//! Section 13 of `docs/extended-law.md`.
 //!
-//! While nothing is limited V_0 falls and the vehicle arrives. That the limiter of [`super::turning`] falls silent is not
-//! proven for bandwidths as high as the law's own. With all bandwidths times sigma, k_p times sigma^2 and feedback of at
-//! most M_s, the frame never needs more than a part of the reserve ([`Slowed`]): V_0 decides alone.
+//! While nothing is limited V_0 falls and the vehicle arrives. That the limiter of [`super::turning`] falls silent is
+//! not proven for bandwidths as high as the law's own. With all bandwidths times sigma, k_p times sigma^2 and feedback
+//! of at most M_s, the frame never needs more than a part of the reserve ([`Slowed`]): V_0 decides alone.
 //!
 //! Progress is looked at in windows of [`WINDOW`]. The vehicle is near where sqrt(|p~|^2 + (1 s |v~|)^2) is below
-//! [`NEAR`]. Progress is a window whose greatest |v~| is less than ever since the vehicle was near, or whose greatest |p~|
-//! is less than ever since that, in either case by a tenth or by [`STRIDE`]: so often in a row as that is finite.
+//! [`NEAR`]. Progress is a window whose greatest |v~| is less than ever since the vehicle was near, or whose greatest
+//! |p~| is less than ever since that, in either case by a tenth or by [`STRIDE`]: so often in a row as that is finite.
 //!
 //! | law | at a window's end |
 //! |---|---|
 //! | own | goes on, if the vehicle was near in this window or made progress; otherwise the law is slowed, from filters that start afresh |
 //! | slowed | goes on, until it has lasted [`STAY`] times 2^(k - 1), k being how often it came, and the vehicle is near |
 //!
-//! A vehicle that noise and gusts move is near in every window; one that comes from far away, or falls and brakes, makes
-//! progress. Each stay is twice as long as the last: so from some time on one of the two laws flies for good.
+//! A vehicle that noise and gusts move is near in every window; one that comes from far away, or falls and brakes,
+//! makes progress. Each stay is twice as long as the last: so from some time on one of the two laws flies for good.
 
 use super::parameters::ExtendedParameters;
 use crate::math;
@@ -34,16 +34,16 @@ pub const STRIDE: f32 = 5.0;
 
 /// |p~| grows by more than this, m, beside twice what |v~| makes of it, only where reference or state jump: all begins
 /// anew.
-const JUMP: f32 = 0.5;
+const JUMP_DISTANCE: f32 = 0.5;
 
 /// The first stay, s.
 pub const STAY: f32 = 20.0;
 
 /// A stay is doubled so often at most: then it lasts for centuries.
-const LONGEST: u32 = 30;
+const STAY_DOUBLINGS_MAX: u32 = 30;
 
 /// |v~| counts as a distance times this, s.
-const LEAD: f32 = 1.0;
+const SPEED_LEAD_TIME: f32 = 1.0;
 
 /// M_s, m/s^2: the slowed law's greatest feedback.
 const SLOW_LEVEL: f64 = 1.0;
@@ -52,10 +52,10 @@ const SLOW_LEVEL: f64 = 1.0;
 const TURN_SHARE: f64 = 0.2;
 
 /// The reference's vertical acceleration that this counts with, m/s^2.
-const FALL: f64 = 1.0;
+const REFERENCE_FALL: f64 = 1.0;
 
 /// What |u| counts as at least, m/s^2.
-const LEAST: f64 = 0.5;
+const COMMAND_LEAST: f64 = 0.5;
 
 /// sigma and M_s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,14 +67,16 @@ pub struct Slowed<R> {
 }
 
 impl<R: Real> Slowed<R> {
-    /// c + d, x + d and y + d start and stay within M_s, so |c'| <= 2 k_f M_s and |c''| <= 2 k_f (k_s + k_f) M_s: so much
-    /// slower that this takes `TURN_SHARE` of what turns rho at the least |u|, g - D_z+ - M_s less the reference's.
+    /// c + d, x + d and y + d start and stay within M_s, so |c'| <= 2 k_f M_s and |c''| <= 2 k_f (k_s + k_f) M_s: so
+    /// much slower that this takes `TURN_SHARE` of what turns rho at the least |u|, g - D_z+ - M_s less the
+    /// reference's.
     #[must_use]
     pub fn of(parameters: &ExtendedParameters, gravity: f32) -> Self {
         let p = parameters;
         let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
         let level = R::from(SLOW_LEVEL);
-        let least = (R::from(gravity) - R::from(p.force_up) - level - FALL).greater(R::from(LEAST)) * TURN_SHARE;
+        let least = (R::from(gravity) - R::from(p.force_up) - level - REFERENCE_FALL).greater(R::from(COMMAND_LEAST))
+            * TURN_SHARE;
         let by_acceleration = (reserve * least / (k_f * 2.0 * (k_s + k_f) * level)).sqrt_of_rounded();
         let by_rate = rate.lesser(reserve.sqrt_of_rounded()) * least / (k_f * 2.0 * level);
         Self { factor: by_acceleration.lesser(by_rate).lesser(R::from(1.0)), level }
@@ -157,8 +159,8 @@ impl Fallback {
     pub fn observe(&mut self, position: &Vector3<f32>, velocity: &Vector3<f32>, period: f32) -> bool {
         let errors = [position.norm_squared(), velocity.norm_squared()].map(math::sqrt);
         let [distance, speed] = errors;
-        let near = distance * distance + speed * speed * (LEAD * LEAD) < NEAR * NEAR;
-        let jumped = distance > self.now + JUMP + 2.0 * speed * period;
+        let near = distance * distance + speed * speed * (SPEED_LEAD_TIME * SPEED_LEAD_TIME) < NEAR * NEAR;
+        let jumped = distance > self.now + JUMP_DISTANCE + 2.0 * speed * period;
         self.now = distance;
         self.elapsed = self.elapsed.saturating_add(micros(period));
         if self.slow {
@@ -203,6 +205,6 @@ impl Fallback {
     /// How long this stay is at least, us.
     fn stay(&self) -> u64 {
         let doublings = self.times.saturating_sub(1);
-        micros(STAY) << if doublings < LONGEST { doublings } else { LONGEST }
+        micros(STAY) << if doublings < STAY_DOUBLINGS_MAX { doublings } else { STAY_DOUBLINGS_MAX }
     }
 }

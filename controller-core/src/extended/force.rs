@@ -15,7 +15,7 @@ use core::hint::cold_path;
 use nalgebra::Vector3;
 
 /// The part of U that a force may use up together with the reference.
-const HELD: f32 = 0.99;
+const HELD_SHARE: f32 = 0.99;
 
 /// The constants of learning from an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,7 +85,7 @@ impl ForceObserver {
 #[must_use]
 #[inline(always)] // see position.rs
 pub fn held(force: &Vector3<f32>, rest: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
-    let most = greatest * HELD;
+    let most = greatest * HELD_SHARE;
     let lift = rest.z - force.z;
     let (wind, across) = (force.xy().norm_squared(), rest.xy().norm_squared());
     // (a + b)^2 <= 2 (a^2 + b^2).

@@ -10,8 +10,8 @@
 //! | `torque` | J_3 y - (J_1 - J_2) omega_1 omega_2, less the bias: what yaw asks for |
 //!
 //! What it gets is between the ends that tilt and thrust leave ([`super::thrust_range`]). To brake, it has J_3 A before
-//! thrust ([`HeadingLaw::braking`]): a spin comes to rest under full thrust as well. The tilt's feedback does not know yaw,
-//! so that nothing else depends on what it gets.
+//! thrust ([`HeadingLaw::braking`]): a spin comes to rest under full thrust as well. The tilt's feedback does not know
+//! yaw, so that nothing else depends on what it gets.
 
 use super::parameters::ExtendedParameters;
 use crate::error::{ParameterError, Reason, require};
@@ -32,7 +32,7 @@ pub fn check(parameters: &ExtendedParameters, period: f32) -> Result<(), Paramet
 }
 
 /// The part of the torque at hand that a turn is to be braked with.
-const BRAKED: f32 = 0.7;
+const BRAKED_SHARE: f32 = 0.7;
 
 /// The heading law's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,7 +90,7 @@ impl HeadingLaw {
     #[must_use]
     #[inline(always)]
     pub fn torque(&self, angle: f32, rate_error: f32, forward: f32, velocity: &Vector3<f32>, room: f32) -> f32 {
-        let braked = math::greater(BRAKED * room, self.acceleration * self.inertia);
+        let braked = math::greater(BRAKED_SHARE * room, self.acceleration * self.inertia);
         let braking = self.braking * self.inertia / braked;
         let slowed = math::sqrt(1.0 + angle.abs() * braking + angle * angle * self.cruising);
         let wanted = forward - self.damping * (rate_error + self.approach * angle / slowed);

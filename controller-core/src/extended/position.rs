@@ -63,7 +63,7 @@ impl Filters {
 }
 
 /// How far x may be, in U: a reference within what the rotors hold needs two at most.
-const FARTHEST: f32 = 2.0;
+const FILTER_REACH: f32 = 2.0;
 
 /// The errors that the feedback sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -294,14 +294,14 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never falls
-    /// below -A_-, to the last bit; x_z does not lead it there. x stays within `FARTHEST` U along each axis, and c with
-    /// it: a reference whose derivatives fit no motion cannot drive them away.
+    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never
+    /// falls below -A_-, to the last bit; x_z does not lead it there. x stays within `FILTER_REACH` U along each axis,
+    /// and c with it: a reference whose derivatives fit no motion cannot drive them away.
     #[must_use]
     pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, greatest: f32) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
         let (mut drive, mut intermediate) = (*drive, x + drive * self.period);
-        let farthest = FARTHEST * greatest;
+        let farthest = FILTER_REACH * greatest;
         let near = intermediate.amax() <= farthest;
         if !near {
             cold_path();

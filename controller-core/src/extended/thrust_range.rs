@@ -13,10 +13,10 @@
 //!
 //! T = max(N(tau_12), min(C(tau_12), C(tau_12, y), T_max, m u . R e3)),
 //!
-//! where [the budget](super::budget) keeps N(tau_12) <= C(tau_12); and tau_3 is the nearest to the wanted one with which
-//! every rotor stays in its range at this thrust. So yaw never raises the thrust that tilting needs, and only a turn that
-//! has to be braked cuts the thrust that is wanted. A rotor commanded f / s turns at its least or greatest speed when f is
-//! s f_min,i or s f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
+//! where [the budget](super::budget) keeps N(tau_12) <= C(tau_12); and tau_3 is the nearest to the wanted one with
+//! which every rotor stays in its range at this thrust. So yaw never raises the thrust that tilting needs, and only a
+//! turn that has to be braked cuts the thrust that is wanted. A rotor commanded f / s turns at its least or greatest
+//! speed when f is s f_min,i or s f_max,i. A vehicle without rotors has a constant range, from the margin to T_max.
 
 use crate::allocation::Rotors;
 use crate::allocation::geometry::ROTORS_MAX;
@@ -79,8 +79,8 @@ impl ThrustRange {
         (Wrench { thrust, torque }, math::lesser(most, -least))
     }
 
-    /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is at
-    /// most `thrust`, N, or what it is already.
+    /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is
+    /// at most `thrust`, N, or what it is already.
     #[must_use]
     #[inline(always)]
     pub fn share(&self, spent: &Vector2<f32>, wanted: &Vector2<f32>, thrust: f32, scale: f32) -> f32 {

@@ -110,7 +110,8 @@ impl TurningLimit {
         (turned || along != 0.0).then(|| Vector3::new(tangential.x, tangential.y, along))
     }
 
-    /// `q` with so much towards the vertical that rho stays in its cone, and so much less across that it is at most alpha.
+    /// `q` with so much towards the vertical that rho stays in its cone, and so much less across that it is at most
+    /// alpha.
     fn kept_in_cone(&self, q: Vector2<f32>, rate: &Vector2<f32>, up: &Vector3<f32>) -> Vector2<f32> {
         let z = up.xy();
         let least = -self.closing * (up.z - self.cosine);

@@ -20,9 +20,7 @@ use crate::flight::{Brief, Flight};
 use crate::flown::NEAR_MRP;
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
-use controller_core::reference::Reference;
 use scenario::Scenario;
-use scenario::body::BodyState;
 
 /// How near its reference a vehicle must stay to have settled, m.
 pub const NEAR: f64 = 0.2;
@@ -132,13 +130,13 @@ impl Outcome {
         if f64::from(tick.mrp.norm()) > NEAR_MRP {
             self.attitude = next;
         }
-        if heading_error(&tick.state, &tick.reference) > NEAR_HEADING {
+        if tick.state.heading_error(&tick.reference.heading) > NEAR_HEADING {
             self.heading = next;
         }
     }
 
-    /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in time
-    /// and for good.
+    /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
+    /// time and for good.
     #[must_use]
     pub fn tracks(&self) -> bool {
         self.in_time
@@ -149,13 +147,6 @@ impl Outcome {
     pub fn holds(&self) -> bool {
         self.tracks() && self.beyond == 0
     }
-}
-
-/// The angle between the vehicle's heading and the reference's, rad.
-fn heading_error(state: &BodyState, reference: &Reference) -> f64 {
-    let wanted = reference.heading.direction().map(f64::from);
-    let (sin, cos) = state.yaw().sin_cos();
-    (cos * wanted.y - sin * wanted.x).atan2(cos * wanted.x + sin * wanted.y).abs()
 }
 
 /// Whether a flight of `duration`, s, has settled in time.

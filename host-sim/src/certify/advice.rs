@@ -39,8 +39,8 @@ pub fn of_inequality(name: &str) -> &'static str {
         }
         "T2 roll and pitch torque" => {
             "torque about roll and pitch, limits.torque_max: gains.m_tilt and gains.turn_reserve use it up, as the \
-             formulas intend. For more torque, raise limits.torque_max if the rotors can deliver it; if this row fails, \
-             lower m_tilt."
+             formulas intend. For more torque, raise limits.torque_max if the rotors can deliver it; if this row \
+             fails, lower m_tilt."
         }
         "R rotors' range" => {
             "the rotors. With one at its greatest thrust and another at its least, gains.m_tilt and gains.turn_reserve \
@@ -64,8 +64,8 @@ pub fn of_inequality(name: &str) -> &'static str {
 }
 
 /// The change for a model flight that does not arrive.
-pub const OF_FLIGHT: &str = "a model of the vehicle circles or swings about its target, from far away. Raise gains.turn_rate \
-    or gains.k_f, or lower gains.v_across, v_up and v_down; or raise control.rate.";
+pub const OF_FLIGHT: &str = "a model of the vehicle circles or swings about its target, from far away. Raise \
+    gains.turn_rate or gains.k_f, or lower gains.v_across, v_up and v_down; or raise control.rate.";
 
 /// The change for a loop with too little margin.
 #[must_use]

@@ -1,8 +1,8 @@
 //! One candidate: a point of the search space, and a verdict on it.
 //!
 //! The tests run from cheap to dear and stop at the first that fails: certificate (about a millisecond), spectral
-//! radii, margins, the trials of [`super::trials`], the file's own flight, the flights of large motions. A verdict that fails says how far it got and
-//! by how much it missed, so that the search has a slope to follow.
+//! radii, margins, the trials of [`super::trials`], the file's own flight, the flights of large motions. A verdict that
+//! fails says how far it got and by how much it missed, so that the search has a slope to follow.
 //!
 //! The gain margin is required twice. At the actuator's command it covers a wrong inertia or thrust coefficient, but
 //! there the attitude loop's own gain dominates, and the position loop's hardly counts: alone, it would let the search
@@ -188,7 +188,7 @@ impl Judge {
         if scenario.configuration.paper().is_none() {
             let flights = large_motions::flown(certified, &scenario.loop_timing());
             let flights = flights.map_err(|error| (0, 1.0, error.to_string()))?;
-            flights.map_err(|astray| (0, 1.0, astray.to_string()))?;
+            flights.map_err(|not_arrived| (0, 1.0, not_arrived.to_string()))?;
         }
         Ok(())
     }

@@ -17,7 +17,7 @@ pub const NAMES: [&str; 15] = [
 ];
 
 /// The place of omega_d' among them.
-pub const ACCELERATION: usize = 5;
+pub const ACCELERATION_PLACE: usize = 5;
 
 /// The distances between two answers, in SI units.
 pub fn distances(a: &Answer, b: &Answer) -> [f64; NAMES.len()] {

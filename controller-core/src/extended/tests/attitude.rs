@@ -61,8 +61,8 @@ fn the_torque_is_the_slope_of_its_potential_and_nothing_about_the_thrust_axis() 
     }
 }
 
-/// V' = -omega~_12 . D with the law's own torque, from the equations of a rigid body in double precision: any moments of
-/// inertia, any spin, any turning of rho.
+/// V' = -omega~_12 . D with the law's own torque, from the equations of a rigid body in double precision: any moments
+/// of inertia, any spin, any turning of rho.
 #[test]
 fn the_energy_falls_by_the_damping_alone_whatever_the_spin() {
     let mut random = Random(4);

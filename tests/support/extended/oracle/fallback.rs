@@ -9,17 +9,17 @@ const NEAR: f64 = 0.5;
 const PROGRESS: [f64; 2] = [0.1, 5.0];
 
 /// |p~| grows by more than this beside so much of what |v~| makes of it, m, only where reference or state jump.
-const JUMP: f64 = 0.5;
-const BESIDE: f64 = 2.0;
+const JUMP_DISTANCE: f64 = 0.5;
+const JUMP_SPEEDS: f64 = 2.0;
 
 /// M_s, m/s^2, the slowed law's speed, m/s, and its share of Omega, sqrt(alpha_0) and alpha_0.
-const LEVEL: f64 = 1.0;
-const SPEED: f64 = 2.0;
-const SHARE: f64 = 0.2;
+const SLOW_LEVEL: f64 = 1.0;
+const SLOW_SPEED: f64 = 2.0;
+const TURN_SHARE: f64 = 0.2;
 
 /// What the slowed law takes a reference to fall with, and |u| to be at least, m/s^2.
-const FALL: f64 = 1.0;
-const LEAST: f64 = 0.5;
+const REFERENCE_FALL: f64 = 1.0;
+const COMMAND_LEAST: f64 = 0.5;
 
 /// Which law flies, and what its windows have seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ impl Fallback {
             let stay = STAY << (self.times - 1);
             return if near && next.elapsed >= stay { next.next(false, [None; 2]) } else { next };
         }
-        if distance - self.now > JUMP + BESIDE * speed * period {
+        if distance - self.now > JUMP_DISTANCE + JUMP_SPEEDS * speed * period {
             next = next.next(false, [None; 2]);
         }
         next.near |= near;
@@ -102,15 +102,15 @@ impl Law {
     pub fn slowing(&self) -> f64 {
         let p = &self.p;
         let [k_f, k_s, rate, reserve] = [p.k_f, p.k_s, p.turn_rate, p.turn_reserve].map(double);
-        let n = (self.gravity - double(p.force_up) - LEVEL - FALL).max(LEAST);
-        let by_rate = SHARE * rate.min(reserve.sqrt()) * n / (2.0 * k_f * LEVEL);
-        by_rate.min((SHARE * reserve * n / (2.0 * k_f * (k_s + k_f) * LEVEL)).sqrt()).min(1.0)
+        let n = (self.gravity - double(p.force_up) - SLOW_LEVEL - REFERENCE_FALL).max(COMMAND_LEAST);
+        let by_rate = TURN_SHARE * rate.min(reserve.sqrt()) * n / (2.0 * k_f * SLOW_LEVEL);
+        by_rate.min((TURN_SHARE * reserve * n / (2.0 * k_f * (k_s + k_f) * SLOW_LEVEL)).sqrt()).min(1.0)
     }
 
     pub fn gains(&self, slow: bool) -> Gains {
         let p = &self.p;
         let (by, most, fastest) =
-            if slow { (self.slowing(), LEVEL, SPEED) } else { (1.0, f64::INFINITY, f64::INFINITY) };
+            if slow { (self.slowing(), SLOW_LEVEL, SLOW_SPEED) } else { (1.0, f64::INFINITY, f64::INFINITY) };
         Gains {
             k_p: [p.k_p_across, p.k_p_vertical].map(|k| double(k) * by * by),
             k_v: [p.k_v_across, p.k_v_vertical].map(|k| double(k) * by),

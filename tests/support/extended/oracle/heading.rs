@@ -4,7 +4,7 @@ use super::{Law, double};
 use nalgebra::Vector3;
 
 /// The part of the torque at hand that brakes.
-const BRAKED: f64 = 0.7;
+const BRAKED_SHARE: f64 = 0.7;
 
 impl Law {
     /// The first two terms of a, for the frame's rate f and its acceleration, both seen from the body.
@@ -18,7 +18,7 @@ impl Law {
         let [c_1, c_2, fastest] = [p.c_1, p.c_2, p.yaw_rate].map(double);
         let k = c_1 / c_2;
         // A is always there; what was left more brakes as well.
-        let braking = (BRAKED * room / j.z).max(double(p.yaw_acceleration));
+        let braking = (BRAKED_SHARE * room / j.z).max(double(p.yaw_acceleration));
         let speed = k * psi / (1.0 + psi.abs() * k * k / (2.0 * braking) + (k * psi / fastest).powi(2)).sqrt();
         j.z * (forward - c_2 * (rate + speed)) - (j.x - j.y) * omega.x * omega.y
     }

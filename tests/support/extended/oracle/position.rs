@@ -10,7 +10,7 @@ const LEVEL_LEAST: f64 = 0.3;
 const SHARE_ACROSS: f64 = 0.95;
 
 /// The part of U that a force may use up together with the reference (section 2).
-const HELD: f64 = 0.99;
+const HELD_SHARE: f64 = 0.99;
 
 fn saturate_across(x: Vector2<f64>, level: f64) -> Vector2<f64> {
     x * (level / level.hypot(x.norm()))
@@ -23,7 +23,7 @@ impl Law {
         let p = &self.p;
         let z = average.z.clamp(-double(p.force_down), double(p.force_up));
         let radial = |level: f64| (level.max(0.0) / average.xy().norm()).min(1.0);
-        let most = HELD * greatest;
+        let most = HELD_SHARE * greatest;
         let lift = (rest.z - z).min(most);
         let left = (most * most - lift * lift).max(0.0).sqrt() - rest.xy().norm();
         let across = average.xy() * radial(left.min(double(p.force_across)));
