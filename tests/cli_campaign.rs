@@ -88,7 +88,7 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
 #[test]
 fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
     use arrow_array::cast::AsArray;
-    let directory = directory("late", "duration = 3.0\n");
+    let directory = directory("late", "duration = 2.5\n");
     let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "200", "--out", "out"]);
     let file = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
     let (mut number, mut in_time, mut late) = (0, 0, Vec::new());
@@ -97,7 +97,7 @@ fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
         let verdicts = rows.column_by_name("verdict").unwrap().as_string::<i32>();
         for (settled, verdict) in settled.iter().zip(verdicts.iter().flatten()) {
             let expected = match settled {
-                Some(settled) if settled <= 0.9 * 3.0 => "holds",
+                Some(settled) if settled <= 0.9 * 2.5 => "holds",
                 Some(_) => "late",
                 None => "away",
             };
@@ -114,7 +114,7 @@ fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
         let again = host_sim(&directory, &["campaign", "h.toml", "--replay", &number.to_string()]);
         let text = stdout(&again);
         let row = text.lines().find(|line| line.starts_with("within 0.2 m of the reference for good")).unwrap();
-        assert!(status(&again) == 1 && row.contains("<= 2.7 s") && row.ends_with("FAILS"), "{number}: {text}");
+        assert!(status(&again) == 1 && row.contains("<= 2.25 s") && row.ends_with("FAILS"), "{number}: {text}");
     }
 }
 

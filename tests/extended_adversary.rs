@@ -416,6 +416,6 @@ fn no_line_for_the_law_command_makes_it_leave_its_bounds() {
         });
         let shown = answers.fold(Shown::default(), Shown::join);
         println!("{name}: {shown:.4?}");
-        assert!(shown.torque[0] > 0.5, "{name}: {shown:?}");
+        assert!(shown.torque[0] > 0.4, "{name}: {shown:?}");
     }
 }

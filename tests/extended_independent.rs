@@ -270,6 +270,13 @@ fn thrown(configuration: &Configuration, world: &mut World, rng: &mut ChaCha8Rng
         world.body.velocity = random::vector(rng, 8.0).cast();
         world.body.position = (world.goal.position + random::vector(rng, 10.0)).cast();
     }
+    // Upside down and turning on: beyond half a turn the other way round is nearer.
+    if rng.random_bool(OFTEN) {
+        let angle = rng.random_range(0.0..std::f64::consts::TAU);
+        let axis = Vector3::new(angle.cos(), angle.sin(), 0.0);
+        world.body.attitude = Quaternion::new(0.0, axis.x, axis.y, 0.0);
+        world.body.angular_velocity = axis * rng.random_range(-20.0..20.0);
+    }
     // Level, spinning and falling: yaw brakes while thrust is wanted.
     if rng.random_bool(OFTEN) {
         world.body.attitude = Quaternion::identity();

@@ -6,7 +6,8 @@
 //!
 //! | module | what | derived in `docs/extended-law.md` |
 //! |---|---|---|
-//! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; a capped approach speed | 1 |
+//! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; thrust at once | 1 |
+//! | [`approach`] | as fast towards the target as the vehicle can brake | 1 |
 //! | [`force`] | an estimate of the unmodelled force | 2 |
 //! | [`turning`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
 //! | [`budget`] | a tick's torque about the tilt's axes, spent part by part | 4 |
@@ -28,6 +29,7 @@
 //! Each estimate has a level; a level of zero turns it off.
 
 pub mod actuators;
+pub mod approach;
 pub mod attitude;
 pub mod budget;
 pub mod controller;

@@ -64,9 +64,9 @@ fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> R
     const MOST: usize = DELAY_MAX - 1;
     ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {
         let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
-        let longest = MOST as f32 * period;
+        let longest = MOST as f64 * f64::from(period);
         let problem = format!(
-            "under the extended law must be, both delays together, at most {MOST} control periods, {longest} s, found {} s",
+            "under the extended law must be, both delays together, at most {MOST} control periods, {longest:.3} s, found {} s",
             actuators.delay
         );
         FieldError::new(field, problem)

@@ -100,9 +100,11 @@ impl Loop {
     /// The core's feedback and drive with a force that is `more` than what is believed.
     fn flow(&self, x: &Translation, more: &Vector3<f64>) -> Translation {
         let feedback = self.core(x).feedback.cast::<f64>();
+        // Along the vertical the thrust takes y at once.
+        let pushed = Vector3::new(x.c.x, x.c.y, x.y.z);
         Translation {
             position: x.velocity,
-            velocity: x.c + self.force + more,
+            velocity: pushed + self.force + more,
             c: (x.x - x.c) * f64::from(self.p.k_f),
             x: (x.y - x.x) * f64::from(self.p.k_s),
             y: (feedback - x.y) * f64::from(self.p.k_d),
@@ -131,17 +133,20 @@ impl Loop {
         [p.norm(), ((across(second) - p * (2.0 * rho.dot(&rate))) / n).norm()]
     }
 
-    /// 1/k_f, 1/k_s and 1/k_d, s.
-    fn lags(&self) -> [f64; 3] {
-        [self.p.k_f, self.p.k_s, self.p.k_d].map(|bandwidth| 1.0 / f64::from(bandwidth))
+    /// 1/k_f, 1/k_s and 1/k_d of the axes, s: along the vertical the last alone.
+    fn lags(&self) -> [Vector3<f64>; 3] {
+        let across = Vector3::new(1.0, 1.0, 0.0);
+        let [f, s, d] = [self.p.k_f, self.p.k_s, self.p.k_d].map(|bandwidth| 1.0 / f64::from(bandwidth));
+        [across * f, across * s, Vector3::repeat(d)]
     }
 
     /// z_1 and z_2 in double precision.
     fn z(&self, x: &Translation) -> [Vector3<f64>; 2] {
         let [f, s, d] = self.lags();
         let [c, driven, smoothed] = [x.c, x.x, x.y].map(|filter| filter + self.force);
-        let z_1 = x.position + x.velocity * (f + s + d) + c * (f * (s + d)) + driven * (s * d);
-        [z_1, x.velocity + c * f + driven * s + smoothed * d]
+        let times = |a: Vector3<f64>, b: Vector3<f64>| a.component_mul(&b);
+        let z_1 = x.position + times(x.velocity, f + s + d) + times(c, times(f, s + d)) + times(driven, times(s, d));
+        [z_1, x.velocity + times(c, f) + times(driven, s) + times(smoothed, d)]
     }
 
     /// The vertical's level in either direction.
@@ -170,14 +175,19 @@ impl Loop {
         let [z_1, z_2] = self.z(x).map(|z| z.z);
         let (k_p, k_v) = (f64::from(self.p.k_p_vertical), f64::from(self.p.k_v_vertical));
         let speed = f64::from(if z_1 > 0.0 { self.p.v_down } else { self.p.v_up });
-        0.5 * z_2 * z_2 + integral(z_1.abs(), k_p, k_v * speed, self.level(z_1 < 0.0))
+        let braking = f64::from(self.p.braking_vertical) * self.level(z_1 > 0.0);
+        let approach = Approach { k_v, answering: k_v / k_p, braking, speed };
+        0.5 * z_2 * z_2 + approach.potential(z_1.abs(), self.level(z_1 < 0.0))
     }
 
     /// V_0 across.
     fn across(&self, x: &Translation) -> f64 {
         let [z_1, z_2] = self.z(x).map(|z| z.xy().norm());
         let (k_p, k_v) = (f64::from(self.p.k_p_across), f64::from(self.p.k_v_across));
-        0.5 * z_2 * z_2 + integral(z_1, k_p, k_v * f64::from(self.p.v_across), self.level_across())
+        let (level, speed) = (self.level_across(), f64::from(self.p.v_across));
+        let braking = f64::from(self.p.braking_across) * level;
+        let approach = Approach { k_v, answering: k_v / k_p, braking, speed };
+        0.5 * z_2 * z_2 + approach.potential(z_1, level)
     }
 
     /// `x` with the vertical at rest.
@@ -193,26 +203,39 @@ fn origin() -> Reference {
     Hover::new(Vector3::zeros(), Heading::FORWARD).unwrap().at(0)
 }
 
-/// s(phi(mu); M) along a half-line: inner gain and level, outer level.
-fn approached(mu: f64, gain: f64, inner: f64, outer: f64) -> f64 {
-    let s = |x: f64, level: f64| level * x / level.hypot(x);
-    s(s(gain * mu, inner), outer)
+/// phi along a half-line.
+struct Approach {
+    k_v: f64,
+    /// t, s, a, m/s^2, and v_c, m/s.
+    answering: f64,
+    braking: f64,
+    speed: f64,
 }
 
-/// Its integral from zero: substituted so that neither end is steep, by Simpson's rule.
-fn integral(to: f64, gain: f64, inner: f64, outer: f64) -> f64 {
-    // mu = (inner / gain) sinh x.
-    let scale = inner / gain;
-    let end = (to / scale).asinh();
-    let steps = 200;
-    let width = end / f64::from(steps);
-    let f = |x: f64| approached(scale * x.sinh(), gain, inner, outer) * scale * x.cosh();
-    (0..steps)
-        .map(|i| {
-            let left = width * f64::from(i);
-            (f(left) + 4.0 * f(left + 0.5 * width) + f(left + width)) * width / 6.0
-        })
-        .sum()
+impl Approach {
+    /// s(phi(mu); M).
+    fn pull(&self, mu: f64, level: f64) -> f64 {
+        let s = |x: f64, level: f64| level * x / level.hypot(x);
+        let Self { k_v, answering: t, braking: a, speed } = *self;
+        s(k_v * s(a * ((t * t + 2.0 * mu / a).sqrt() - t), speed), level)
+    }
+
+    /// Its integral from zero: substituted so that neither end is steep, by Simpson's rule.
+    fn potential(&self, to: f64, level: f64) -> f64 {
+        // mu = scale sinh x, with the lesser of the distances over which v and s bend.
+        let bend = 0.5 * self.braking * self.answering * self.answering;
+        let scale = bend.min(level.min(self.k_v * self.speed) * self.answering / self.k_v);
+        let end = (to / scale).asinh();
+        let steps = 400;
+        let width = end / f64::from(steps);
+        let f = |x: f64| self.pull(scale * x.sinh(), level) * scale * x.cosh();
+        (0..steps)
+            .map(|i| {
+                let left = width * f64::from(i);
+                (f(left) + 4.0 * f(left + 0.5 * width) + f(left + width)) * width / 6.0
+            })
+            .sum()
+    }
 }
 
 #[test]
@@ -235,7 +258,7 @@ fn v_0_never_rises_along_flows() {
             let [_, z_2] = flying.z(&x);
             // Differences, and the core's rounding of z: where the feedback is steep, k_p of a rounding of 100 m.
             let [f, s, d] = flying.lags();
-            let filtered = x.c.norm() * f + x.x.norm() * s + x.y.norm() * d;
+            let filtered = x.c.norm() * f.x + x.x.norm() * s.x + x.y.norm() * d.x;
             let steep = 6e-8 * (gain * (x.position.norm() + x.velocity.norm()) + rate * filtered);
             let forced = level + flying.force.norm() + f64::from(GRAVITY);
             let allowed = z_2.norm() * (2e-6 * forced + 4.0 * steep) + 1e-15 * v_0(&x) / step;
@@ -363,10 +386,10 @@ fn under_a_force_error_z_1_moves_by_it_as_well() {
         let [after, before] = [0.5, -0.5].map(|time| flying.z(&x.after(&along, time)));
         let [z_1_dot, z_2_dot] = [after[0] - before[0], after[1] - before[1]];
         let lags = flying.lags();
-        let moved = more * lags.iter().sum::<f64>();
+        let moved = more.component_mul(&lags.iter().sum());
         assert!((z_1_dot - z_2 - moved).norm() < 1e-9 * (1.0 + z_1_dot.norm()), "{z_1_dot} {z_2} {moved}");
         // The core's drive is y less x, in ticks without an end.
-        let drive = core.drive.cast::<f64>() * lags[1] + x.x;
+        let drive = core.drive.cast::<f64>() / f64::from(flying.p.k_s) + x.x;
         let feedback = core.feedback.cast::<f64>();
         assert!((drive - x.y).norm() < 1e-4 * (1.0 + feedback.norm() + x.x.norm() + x.y.norm()));
         let pushed = feedback + flying.force + more;

@@ -88,9 +88,9 @@ fn what_the_law_was_correcting_when_the_pose_was_lost_is_forgotten() {
         flight.pass(0.01);
     }
     assert!(last > 1.01 * weight, "{last} N: nothing left to forget");
-    // Levelling sets in at hover thrust; from there it only brakes the climb.
+    // Levelling sets in from hover thrust; it only brakes the climb.
     let first = thrust(&flight);
-    assert!((first - weight).abs() < 0.003 * weight, "{first} N, hover is {weight} N");
+    assert!(first < weight && first > 0.9 * weight, "{first} N, hover is {weight} N");
     while flight.world.pose().velocity.z > 0.1 {
         assert_eq!(flight.report().mode, Mode::Descending);
         assert!(thrust(&flight) < 1.003 * weight, "{} N, hover is {weight} N", thrust(&flight));

@@ -55,14 +55,14 @@ impl Bench {
         scenario.reality = reality(scenario.reality);
         scenario.timing.steps_per_tick *= finer;
         scenario.delay_steps *= u64::from(finer);
-        // So small that no level is felt when it has grown threefold.
+        // So small that neither level nor approach is felt when it has grown tenfold.
         let (position, about) = match axis {
             Axis::Roll => (Vector3::zeros(), Vector3::x() * 3e-4),
             Axis::Pitch => (Vector3::zeros(), Vector3::y() * 3e-4),
             Axis::Yaw => (Vector3::zeros(), Vector3::z() * 1e-3),
-            Axis::LateralX => (Vector3::x() * 3e-4, Vector3::zeros()),
-            Axis::LateralY => (Vector3::y() * 3e-4, Vector3::zeros()),
-            Axis::Vertical => (Vector3::z() * 3e-4, Vector3::zeros()),
+            Axis::LateralX => (Vector3::x() * 3e-5, Vector3::zeros()),
+            Axis::LateralY => (Vector3::y() * 3e-5, Vector3::zeros()),
+            Axis::Vertical => (Vector3::z() * 3e-5, Vector3::zeros()),
         };
         let attitude = Quaternion::from_parts(1.0, about * 0.5).normalize();
         let (velocity, angular_velocity) = (Vector3::zeros(), Vector3::zeros());

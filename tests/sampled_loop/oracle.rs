@@ -46,6 +46,8 @@ fn law_with(held: Held, axis: Axis, gains: &GainParameters, x: Motion, period: f
         [gains.k_p, gains.k_v, gains.k_f, gains.k_s, gains.k_theta, gains.k_omega].map(f64::from);
     let [f, s] = [1.0 / k_f, 1.0 / k_s];
     let d = if let Held::Drive { k_d } = held { 1.0 / k_d } else { 0.0 };
+    let at_once = axis == Axis::Vertical && held != Held::Feedback;
+    let [f, s] = if at_once { [0.0; 2] } else { [f, s] };
     let z_1 = x.position + (f + s + d) * x.velocity + f * (s + d) * x.filtered + s * d * x.intermediate;
     let z_2 = x.velocity + f * x.filtered + s * x.intermediate + d * x.smoothed;
     let ubar = -(k_p * z_1 + k_v * z_2);
@@ -54,7 +56,7 @@ fn law_with(held: Held, axis: Axis, gains: &GainParameters, x: Motion, period: f
         Held::Drive { k_d } => (held_towards(k_s, period), ubar + (x.smoothed - ubar) * (-k_d * period).exp()),
     };
     if axis == Axis::Vertical {
-        return (f64::from(vehicle().mass) * x.filtered, ahead);
+        return (f64::from(vehicle().mass) * if at_once { ahead } else { x.filtered }, ahead);
     }
     let g = f64::from(vehicle().gravity);
     let filtered_rate = -k_f * (x.filtered - x.intermediate);

@@ -14,13 +14,13 @@ use crate::math;
 use nalgebra::Vector4;
 
 /// The number of remembered commands, a power of two, so that an index wraps by a remainder.
-const REMEMBERED: usize = 8;
+const REMEMBERED: usize = 32;
 
 /// The greatest delay of the model, samples.
-pub const DELAY_MAX: usize = 4;
+pub const DELAY_MAX: usize = 31;
 
 /// The greatest rounding error of a delay in single precision, samples.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-5;
 
 /// How a vehicle's wrench follows its commands.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -185,7 +185,7 @@ impl Controller {
 
         let filters = self.memory.filters;
         let feedback = self.feedback(state, reference, &force, greatest, wanted);
-        let course = self.course(reference, &filters, &feedback);
+        let course = self.course(reference, &filters, &feedback, greatest);
         let errors = self.errors(state, reference, &course, &self.late(scale, &bias));
         let tilting = self.tilting(state, &course, &errors, &bias, scale);
         let motion = course.desired.motion_of(&course.turn.rate, &tilting.turn, &reference.heading);
@@ -211,7 +211,7 @@ impl Controller {
         let forward = self.heading.forward(&seen, velocity);
         let [angle, rate] = [2.0 * errors.lifted.quaternion.k, errors.projected_yaw];
         let yaw = self.heading.torque(angle, rate, forward, velocity, self.memory.yaw_room) - bias.z;
-        let along = self.vehicle.mass * course.command.dot(&axis);
+        let along = self.vehicle.mass * course.length * course.command.dot(&axis) / course.turn.magnitude;
         let yaw = [yaw, self.heading.braking(yaw, rate)];
         let (wrench, yaw_room) = self.range.admitted(along, &tilting.torque, yaw, scale);
 

@@ -5,20 +5,23 @@
 //!
 //! | what | formula |
 //! |---|---|
-//! | w_a, bandwidth of the tilt, rad/s | min(12.5, 1.44 sqrt(g / r), 0.3 / (h/2 + T/4)), r = 2 sqrt(J / m) |
 //! | M, greatest torque about the tilt's axes | the least room of the budget's rows |
+//! | w_0 | 0.22 / (h/2 + 0.12 T + 10 ms) |
+//! | w_a, bandwidth of the tilt, rad/s | w_0 sqrt(0.15 m / r), at most w_0 and sqrt(2 M / J); r = 2 sqrt(J / m) |
 //! | k_theta; k_omega | 4 J w_a^2; 1.7 w_a J |
 //! | alpha_0; M_theta | 0.13 M / J_max; 0.95 (M - J_max alpha_0) |
 //! | r_0 | M_theta^2 / (8 J w_a^2 M): beyond it the tilt brakes along a parabola |
-//! | Omega | between 2.5 and 5 rad/s, 0.08 M / J_max |
-//! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 1.6 w_a |
-//! | k_v, k_p across | 0.54 w_a, 0.435 k_v^2 |
+//! | Omega | 0.5 sqrt(M / J_max) |
+//! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 2.5 w_a: at most 0.2 / h, so that noise fills five ticks |
+//! | k_v, k_p across | 0.54 w_a, 0.55 k_v^2 |
 //! | k_v, k_p along the vertical | 1.4 and 1.96 times that, less where k_v T would be above 0.42 |
 //! | A_h, gamma | the thrust beside 0.7 of the weight; 75 degrees or the angle that the least lift allows |
-//! | v_c across; up, down | 1.6 sqrt(A_h / 1 m/s^2) m/s, at most 9; 4.2, 3.5 m/s |
+//! | braking across and along the vertical | 0.7 |
+//! | v_c across and up; down | 15 m/s; 8 m/s |
 //! | D_h, D_z- | 0.98 A_h, 0.95 of the lift beside the weight: a tick cuts the estimate to what thrust holds |
-//! | L across; vertical | 1.1 w_a; 1.33 times that, or as much less as k_v |
-//! | A; W_max; w_y, bandwidth of the heading | half of yaw's torque near the target over J_33; 3.2 sqrt(A), at most 4 rad/s; 2.4 sqrt(A), at most 3 rad/s |
+//! | L across; vertical | 1.5 w_a; 1.33 times that, or as much less as k_v |
+//! | A | half of yaw's torque near the target over J_33, at most 20 rad/s^2 |
+//! | W_max; w_y, bandwidth of the heading | 3.2 sqrt(A), at most 0.4 w_a; 2.4 sqrt(A), at most 0.3 w_a |
 //! | c_1, c_2 | w_y^2, 1.5 w_y |
 //! | D_t, D_y | 0.4 M, half of the limit of yaw |
 
@@ -69,28 +72,37 @@ fn chosen(given: &Given, key: &str, formula: f64) -> f64 {
     found.and_then(|(_, value)| *value).map_or(formula, f64::from)
 }
 
-/// The speeds that inertia, lag and sampling allow.
+/// What stays unknown of when a pose was true and when a command acts, s, beside half a tick and a part of T.
+const UNKNOWN_DELAY: f64 = 0.01;
+/// w_0 times the delay that projection leaves, rad.
+const PHASE: f64 = 0.22;
+/// r up to which w_a is w_0, m.
+const SMALL_RADIUS: f64 = 0.15;
+
+/// The bandwidths that inertia, torque, lag and sampling allow.
 struct Speeds {
-    /// J and J_max, kg m^2.
-    inertia: [f64; 2],
+    /// J, kg m^2.
+    inertia: f64,
     /// T, s.
     late: f64,
-    /// h/2 + T/4, s: the delay that projection leaves.
-    left: f64,
-    /// w_a, rad/s.
+    /// w_a and w_y, rad/s.
     tilt: f64,
+    heading: f64,
 }
 
 impl Speeds {
-    fn of(airframe: &Airframe) -> Self {
-        let [j_1, j_2] = [airframe.vehicle.inertia.x, airframe.vehicle.inertia.y].map(f64::from);
+    fn of(airframe: &Airframe, strength: &Strength) -> Self {
+        let [mass, j_1, j_2] =
+            [airframe.vehicle.mass, airframe.vehicle.inertia.x, airframe.vehicle.inertia.y].map(f64::from);
         let inertia = 0.5 * (j_1 + j_2);
         let late = f64::from(airframe.actuators.lag) + f64::from(airframe.actuators.delay);
-        let left = 0.5 * f64::from(airframe.period) + 0.25 * late;
-        let size = 2.0 * math::sqrt_f64(inertia / f64::from(airframe.vehicle.mass));
-        let by_size = 1.44 * math::sqrt_f64(f64::from(airframe.vehicle.gravity) / size);
-        let tilt = lesser_f64(12.5, lesser_f64(by_size, 0.3 / left));
-        Self { inertia: [inertia, greater_f64(j_1, j_2)], late, left, tilt }
+        let left = 0.5 * f64::from(airframe.period) + 0.12 * late + UNKNOWN_DELAY;
+        let radius = 2.0 * math::sqrt_f64(inertia / mass);
+        let by_size = math::sqrt_f64(lesser_f64(SMALL_RADIUS / radius, 1.0));
+        let by_torque = math::sqrt_f64(2.0 * strength.tilt / inertia);
+        let tilt = lesser_f64(by_size * PHASE / left, by_torque);
+        let heading = lesser_f64(0.3 * tilt, 2.4 * math::sqrt_f64(strength.yaw_acceleration));
+        Self { inertia, late, tilt, heading }
     }
 }
 
@@ -105,14 +117,14 @@ struct Strength {
     turn_rate: f64,
     turn_reserve: f64,
     m_tilt: f64,
-    /// A and W_max.
-    yaw: [f64; 2],
+    /// A, rad/s^2.
+    yaw_acceleration: f64,
     a_down: f64,
     force_up: f64,
 }
 
 impl Strength {
-    fn of(airframe: &Airframe, given: &Given, speeds: &Speeds) -> Self {
+    fn of(airframe: &Airframe, given: &Given) -> Self {
         let or = |key: &str, formula: f64| chosen(given, key, formula);
         let Airframe { vehicle, limits, rotors, .. } = *airframe;
         let [mass, gravity, j_3] = [vehicle.mass, vehicle.gravity, vehicle.inertia.z].map(f64::from);
@@ -134,19 +146,18 @@ impl Strength {
         let below = greater_f64(scale[0] * lesser_f64(top, thrust_max) - 1.1 * mass * gravity, 0.0);
         let yaw = lesser_f64(yaw_limit, 0.8 * lesser_f64(above, below) / yaw_reach);
         let yaw_acceleration = or("yaw_acceleration", lesser_f64(0.5 * yaw / j_3, 20.0));
-        let yaw_rate = or("yaw_rate", lesser_f64(4.0, 3.2 * math::sqrt_f64(yaw_acceleration)));
 
-        let [_, j_max] = speeds.inertia;
+        let j_max = greater_f64(f64::from(vehicle.inertia.x), f64::from(vehicle.inertia.y));
         let lifted = 0.9 * greater_f64(above - yaw_reach * j_3 * yaw_acceleration, 0.0) / (tilt_reach * j_max);
         let turn_reserve = or("turn_reserve", lesser_f64(0.13 * tilt / j_max, lifted));
         Self {
             floor_margin,
             scale,
             tilt,
-            turn_rate: or("turn_rate", (0.08 * tilt / j_max).clamp(2.5, 5.0)),
+            turn_rate: or("turn_rate", 0.5 * math::sqrt_f64(tilt / j_max)),
             turn_reserve,
             m_tilt: or("m_tilt", 0.95 * (tilt - j_max * turn_reserve)),
-            yaw: [yaw_acceleration, yaw_rate],
+            yaw_acceleration,
             a_down,
             force_up,
             budget,
@@ -183,20 +194,19 @@ impl Envelope {
 /// The constants for `airframe`; the `given` ones stay as they are.
 #[must_use]
 pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
-    let speeds = Speeds::of(airframe);
-    let strength = Strength::of(airframe, given, &speeds);
+    let strength = Strength::of(airframe, given);
+    let speeds = Speeds::of(airframe, &strength);
     let envelope = Envelope::of(airframe, given, &strength);
     let single = |value: f64| value as f32;
 
-    let ([inertia, _], w_a) = (speeds.inertia, speeds.tilt);
+    let (inertia, w_a, w_y) = (speeds.inertia, speeds.tilt, speeds.heading);
     let stiffness = inertia * w_a * w_a;
     let k_f = chosen(given, "k_f", 1.12 * w_a);
     let k_v = chosen(given, "k_v_across", 0.54 * w_a);
-    let k_p = 0.435 * k_v * k_v;
+    let k_p = 0.55 * k_v * k_v;
     let stiffer = lesser_f64(1.4, 0.42 / (k_v * greater_f64(speeds.late, 1e-3)));
-    let follow = 1.1 * w_a;
-    let [yaw_acceleration, yaw_rate] = strength.yaw;
-    let w_y = lesser_f64(lesser_f64(3.0, 2.4 * math::sqrt_f64(yaw_acceleration)), 0.3 / speeds.left);
+    let follow = 1.5 * w_a;
+    let yaw_acceleration = strength.yaw_acceleration;
     let [delta, alpha] = LIFTING;
     let formulas = ExtendedParameters {
         k_p_across: single(k_p),
@@ -205,13 +215,15 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         k_v_vertical: single(stiffer * k_v),
         k_f: single(k_f),
         k_s: single(3.1 * k_f),
-        k_d: single(1.6 * w_a),
+        k_d: single(lesser_f64(2.5 * w_a, 0.2 / f64::from(airframe.period))),
         a_across: single(envelope.a_across),
         a_down: single(strength.a_down),
         tilt_max: single(math::atan(envelope.tangent)),
-        v_across: single(lesser_f64(1.6 * math::sqrt_f64(envelope.a_across), 9.0)),
-        v_up: 4.2,
-        v_down: 3.5,
+        v_across: 15.0,
+        v_up: 15.0,
+        v_down: 8.0,
+        braking_across: 0.7,
+        braking_vertical: 0.7,
         turn_rate: single(strength.turn_rate),
         turn_reserve: single(strength.turn_reserve),
         k_tilt: single(4.0 * stiffness),
@@ -221,7 +233,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         delta,
         alpha,
         yaw_acceleration: single(yaw_acceleration),
-        yaw_rate: single(yaw_rate),
+        yaw_rate: single(lesser_f64(0.4 * w_a, 3.2 * math::sqrt_f64(yaw_acceleration))),
         c_1: single(w_y * w_y),
         c_2: single(1.5 * w_y),
         floor_margin: single(strength.floor_margin),

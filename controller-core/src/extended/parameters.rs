@@ -33,12 +33,16 @@ constants! {
         gains.a_down: Range::POSITIVE, SEARCHED;
         /// gamma, rad: greatest tilt of the thrust direction.
         gains.tilt_max: Range::between(0.1, 1.5), FIXED;
-        /// v_c across, m/s: speed of the approach.
+        /// v_c across, m/s: greatest speed of the approach.
         gains.v_across: Range::POSITIVE, SEARCHED;
         /// v_c upwards, m/s.
         gains.v_up: Range::POSITIVE, SEARCHED;
         /// v_c downwards, m/s.
         gains.v_down: Range::POSITIVE, FIXED;
+        /// The share of the level across that the approach counts to brake with.
+        gains.braking_across: Range::SHARE, SEARCHED;
+        /// Likewise along the vertical.
+        gains.braking_vertical: Range::SHARE, FIXED;
         /// Omega, rad/s: greatest rate of the thrust direction.
         gains.turn_rate: Range::POSITIVE, SEARCHED;
         /// alpha_0, rad/s^2: the acceleration of the thrust direction that is always there.

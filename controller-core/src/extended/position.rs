@@ -4,15 +4,17 @@
 //!
 //! c is the part of u that is neither gravity nor reference, x the filter before it, y the one before that, d the
 //! observed force per mass (section 2). The paper has two filters; the third takes the noise of measurements out of
-//! u'', which turns the vehicle:
+//! u'', which turns the vehicle. Filters bound how the direction of u turns. Thrust needs no such bound, so along the
+//! vertical it takes y, the first filter's output, at once:
 //!
 //! | here | equation |
 //! |---|---|
-//! | `z_1` = p~ + (1/k_f + 1/k_s + 1/k_d) v~ + (1/k_s + 1/k_d) (c + d) / k_f + (x + d) / (k_s k_d) | the paper's (9) for three filters |
+//! | across: `z_1` = p~ + (1/k_f + 1/k_s + 1/k_d) v~ + (1/k_s + 1/k_d) (c + d) / k_f + (x + d) / (k_s k_d) | the paper's (9) for three filters |
 //! | `z_2` = v~ + (c + d) / k_f + (x + d) / k_s + (y + d) / k_d | |
-//! | phi(z_1) = s(k_p z_1; k_v v_c) | the approach: its speed is at most v_c |
+//! | along the vertical: `z_1` = p~ + v~ / k_d, `z_2` = v~ + (y + d) / k_d | the same for one filter |
+//! | phi(z_1) = k_v s(v(z_1); v_c) | [`Approach`], which brakes with a share of the level M that pulls back |
 //! | `feedback` = -s(phi(z_1) + k_v z_2; M) - d | ubar |
-//! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`Saturation`]: radial across |
+//! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`super::saturation`]: radial across |
 //! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical gets the part that the force does not use |
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across gets the part that the vertical does not use |
 //! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
@@ -22,8 +24,8 @@
 //! [`super::turning`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only that s is
 //! monotone, has a slope of at most one and the sign of its argument.
 
+use super::approach::Approach;
 use super::parameters::ExtendedParameters;
-use super::saturation::Saturation;
 use crate::error::{ParameterError, Reason, require, require_positive};
 use crate::math;
 use crate::position::FilterTransition;
@@ -37,11 +39,6 @@ const LEVEL_LEAST: f32 = 0.3;
 
 /// The share of tilt and horizontal thrust for the feedback: the reference needs the rest.
 const SHARE_ACROSS: f32 = 0.95;
-
-/// s(k_p z_1; k_v v_c) / k_v, the velocity of approach.
-fn approach(k_p: f32, k_v: f32, speed: f32) -> Saturation {
-    Saturation::new(k_p / k_v, speed)
-}
 
 /// The filters' states, m/s^2, world frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,9 +132,11 @@ pub struct PositionLaw {
     ramp: f32,
     k_v_across: f32,
     k_v_vertical: f32,
-    approach_across: Saturation,
-    approach_up: Saturation,
-    approach_down: Saturation,
+    approach_across: Approach,
+    approach_up: Approach,
+    approach_down: Approach,
+    /// The share of a level that the approach counts to brake with, across and along the vertical.
+    braking: [f32; 2],
     a_across: f32,
     a_down: f32,
     tangent: f32,
@@ -170,9 +169,10 @@ impl PositionLaw {
             ramp: (f64::from(period) - towards / f64::from(p.k_f)) as f32,
             k_v_across: p.k_v_across,
             k_v_vertical: p.k_v_vertical,
-            approach_across: approach(p.k_p_across, p.k_v_across, p.v_across),
-            approach_up: approach(p.k_p_vertical, p.k_v_vertical, p.v_up),
-            approach_down: approach(p.k_p_vertical, p.k_v_vertical, p.v_down),
+            approach_across: Approach::new(p.k_p_across, p.k_v_across, p.v_across),
+            approach_up: Approach::new(p.k_p_vertical, p.k_v_vertical, p.v_up),
+            approach_down: Approach::new(p.k_p_vertical, p.k_v_vertical, p.v_down),
+            braking: [p.braking_across, p.braking_vertical],
             a_across: p.a_across,
             a_down: p.a_down,
             tangent: math::tan(f64::from(p.tilt_max)) as f32 * SHARE_ACROSS,
@@ -226,8 +226,10 @@ impl PositionLaw {
         let [of_command, of_intermediate, of_smoothed] = self.lags;
         let [with_command, with_intermediate] = self.products;
         let (c_d, x_d, y_d) = (c + force, x + force, y + force);
-        let z_1 = p + v * self.all_lags + c_d * with_command + x_d * with_intermediate;
-        let z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
+        let mut z_1 = p + v * self.all_lags + c_d * with_command + x_d * with_intermediate;
+        let mut z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
+        z_1.z = p.z + v.z * of_smoothed;
+        z_2.z = v.z + y_d.z * of_smoothed;
         Errors { position: p, velocity: v, z_1, z_2 }
     }
 
@@ -277,19 +279,23 @@ impl PositionLaw {
         greatest: f32,
         most: &Most,
     ) -> Vector3<f32> {
-        // Above the reference the vehicle descends.
-        let descent = if z_1.z > 0.0 { &self.approach_down } else { &self.approach_up };
-        let vertical = (z_2.z + z_1.z * descent.factor(z_1.z * z_1.z)) * self.k_v_vertical;
-        let level = if vertical > 0.0 { self.a_down - force.z } else { greatest - self.gravity + force.z };
-        let capped = if vertical > 0.0 { most.down } else { most.up };
-        let level = math::lesser(math::greater(level, LEVEL_LEAST), capped);
+        let [braking_across, braking_vertical] = self.braking;
+        let up = math::greater(greatest - self.gravity + force.z, LEVEL_LEAST);
+        let down = math::greater(self.a_down - force.z, LEVEL_LEAST);
+        let (up, down) = (math::lesser(up, most.up), math::lesser(down, most.down));
+        // Above the reference the vehicle descends, and what pushes up brakes it.
+        let (approach, braking) = if z_1.z > 0.0 { (&self.approach_down, up) } else { (&self.approach_up, down) };
+        let closing = z_1.z * approach.factor(z_1.z * z_1.z, braking_vertical * braking);
+        let vertical = (z_2.z + closing) * self.k_v_vertical;
+        let level = if vertical > 0.0 { down } else { up };
         let vertical = -vertical * unit_factor(level, vertical * vertical) - force.z;
 
         let reach = self.reach(self.gravity + vertical, greatest);
         let (across, wind) = (z_1.xy(), force.xy());
-        let wanted = (z_2.xy() + across * self.approach_across.factor(across.norm_squared())) * self.k_v_across;
         let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
         let level = math::lesser(level, most.across);
+        let closing = across * self.approach_across.factor(across.norm_squared(), braking_across * level);
+        let wanted = (z_2.xy() + closing) * self.k_v_across;
         let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;
         Vector3::new(across.x, across.y, vertical)
     }

@@ -13,8 +13,10 @@
 //! | J R~^T omega_rho', omega_rho' = (-q_2, q_1, 0) | spent last: the tick shortens q to what its [budget](super::budget) has left |
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | [`TurningLimit::change`]: c_z stays above -A_- |
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
+//! | n* = n + (y_z - c_z) / rho_z, at most U; the change is at most 5 m/s^2 across | [`TurningLimit::length`]: the thrust is m n* rho . b |
 //!
-//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last two rows add along rho.
+//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last three rows are along rho. With
+//! n* the vertical gets what it wants, whatever the direction of u lags behind; n itself has come through the filters.
 //! Where rho has left its cone, a little along the vertical is much along rho: there c_z is left to the filters' own
 //! end ([`super::position`]), or u would grow without bound. The drive takes up the change of u'': x' = drive + (change
 //! of u'') / k_f.
@@ -27,6 +29,9 @@ use nalgebra::{Vector2, Vector3};
 
 /// k, 1/s: how softly u arrives at its ends; at most half a tick's.
 const SOFTNESS: f32 = 10.0;
+
+/// How much of what thrust takes at once may push across, m/s^2.
+pub const PUSH_ACROSS: f32 = 5.0;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +61,15 @@ impl TurningLimit {
             softness: math::lesser(SOFTNESS, 0.5 / period),
             a_down: p.a_down,
         }
+    }
+
+    /// n*, m/s^2, for n, y_z - c_z as `more`, e3 in the axes of the desired frame and U.
+    #[must_use]
+    #[inline(always)] // see position.rs
+    pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
+        let most = PUSH_ACROSS / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
+        let length = magnitude + math::within(more / math::greater(up.z, self.cosine), most);
+        math::lesser(math::greater(length, 0.0), greatest)
     }
 
     /// q for a wanted `turn`, rad/s^2; `up` is e3 in the axes of the desired frame.

@@ -172,20 +172,20 @@ fn a_delay_that_the_extended_law_has_no_memory_for_is_refused_by_name() {
         let text = crate::STUDY.replace("rate = 100.0 ", &format!("rate = {rate} "));
         Scenario::parse(&text.replace(STUDY_DELAY, delay), "f")
     };
-    for (rate, delay) in [("100.0", "delay = 0.030 "), ("500.0", "delay = 0.006 ")] {
+    for (rate, delay) in [("100.0", "delay = 0.030 "), ("500.0", "delay = 0.060 ")] {
         let study = at(rate, delay).unwrap();
         let certified = Certified::new(study.configuration).unwrap();
         assert!(Law::new(&certified, study.timing.period() as f32).is_ok(), "{delay}");
     }
     for (delay, field) in [
-        (STUDY_DELAY, "sampling.delay"),
-        ("delay = 0.004\n[sensors]\ndelay = 0.004 ", "sampling.delay"),
-        ("delay = 0.0\n[sensors]\ndelay = 0.008 ", "sampling.delay"),
+        ("delay = 0.031 ", "sampling.delay"),
+        ("delay = 0.016\n[sensors]\ndelay = 0.016 ", "sampling.delay"),
+        ("delay = 0.0\n[sensors]\ndelay = 0.032 ", "sampling.delay"),
     ] {
-        let refused = at("500.0", delay).err().unwrap().what;
-        assert!(refused.starts_with(field) && refused.contains("at most 3 control periods, 0.006 s"), "{refused}");
+        let refused = at("1000.0", delay).err().unwrap().what;
+        assert!(refused.starts_with(field) && refused.contains("at most 30 control periods, 0.030 s"), "{refused}");
     }
-    let without = crate::STUDY.replace("[sampling]", "[sensors]").replace(STUDY_DELAY, "delay = 0.040 ");
+    let without = crate::STUDY.replace("[sampling]", "[sensors]").replace(STUDY_DELAY, "delay = 0.310 ");
     assert!(Scenario::parse(&without, "f").err().unwrap().what.starts_with("sensors.delay: "));
 }
 

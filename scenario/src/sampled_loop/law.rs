@@ -7,7 +7,7 @@
 //! | axis | a | y_1 | y_2 | y_3 | y_4 | u_f, u_s (c, x), d |
 //! |---|---|---|---|---|---|---|
 //! | attitude about body axis i | tau_i / J_i | body rate | angle | | | |
-//! | vertical | thrust / m - g | velocity | position | | | as they are |
+//! | vertical | thrust / m - g | velocity | position | | | as they are; of the extended law y alone |
 //! | lateral | tau_i / J_i | body rate | tilt | velocity / g | position / g | divided by g |
 //!
 //! Slopes at the origin: every saturation has slope one, the MRP of a small angle is angle / 4 and (1 + |theta|^2) / 4
@@ -146,8 +146,13 @@ impl Law {
         let EstimateGains { force, torque, late } = &self.estimates;
         let mut used = Vec::new();
         if !matches!(self.chain, Chain::Attitude(_)) {
-            used.extend([&mut memory.filtered, &mut memory.intermediate]);
-            if matches!(&self.chain, Chain::Vertical(gains) | Chain::Lateral(gains, _) if gains.k_d.is_some()) {
+            let smooths =
+                matches!(&self.chain, Chain::Vertical(gains) | Chain::Lateral(gains, _) if gains.k_d.is_some());
+            // The extended law's thrust takes y at once.
+            if !(smooths && matches!(self.chain, Chain::Vertical(_))) {
+                used.extend([&mut memory.filtered, &mut memory.intermediate]);
+            }
+            if smooths {
                 used.push(&mut memory.smoothed);
             }
             if self.tracker.is_some() {
@@ -191,7 +196,10 @@ impl Law {
                 let [velocity, height, ..] = *measured;
                 let velocity = self.tracked(memory, velocity, height);
                 let average = memory.average + share * velocity;
-                let command = filters(position, memory, [height, velocity], average).value;
+                let command = match position.k_d {
+                    Some(k_d) => at_once(position, k_d, memory, [height, velocity], average),
+                    None => filters(position, memory, [height, velocity], average).value,
+                };
                 let past = -velocity - self.acted(memory, command);
                 memory.average = averaged(average, share, past);
                 command
@@ -256,6 +264,15 @@ impl Law {
 /// The memory of an average x: (1 - share) x + share past.
 fn averaged(x: f64, share: f64, past: f64) -> f64 {
     x + share * (past - x)
+}
+
+/// y after its step, against the force d: the extended law's thrust along the vertical.
+fn at_once(gains: &PositionGains, k_d: f64, memory: &mut Memory, [position, velocity]: [f64; 2], force: f64) -> f64 {
+    let y = memory.smoothed;
+    let (z_1, z_2) = (position + velocity / k_d, velocity + (y + force) / k_d);
+    let ubar = -(gains.k_p * z_1 + gains.k_v * z_2) - force;
+    memory.smoothed = y - (-k_d).exp_m1() * (ubar - y);
+    memory.smoothed
 }
 
 /// u_f as it stands, with its derivatives, against the force d; then the filters advance, ubar or the drive held.

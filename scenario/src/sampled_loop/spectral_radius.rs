@@ -84,17 +84,19 @@ mod tests {
         assert!((radius([[0.5, 3.0], [0.0, -1.25]]) - 1.25).abs() < 1e-9);
     }
 
-    /// Small errors die out at the same rate per second, to what a sample of 0.5 ms delays, however much faster the
-    /// ticks are.
+    /// With the same constants small errors die out at the same rate per second, to what a sample of 0.5 ms delays,
+    /// however much faster the ticks are.
     #[test]
     fn faster_ticks_do_not_change_how_fast_small_errors_die_out() {
         const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+        let constants = Scenario::parse(HUMMINGBIRD, "h").unwrap().configuration;
         let decays = |rate: &str| {
             let text = HUMMINGBIRD.replace("rate = 100.0 ", &format!("rate = {rate} "));
             let text = text.replace("[plant]\nstep = 0.001 ", "")
                 + "[sensors]\nvelocity = \"alpha-beta\"\nvelocity_bandwidth = 80.0\n";
-            let scenario = Scenario::parse(&text, "h").unwrap();
+            let mut scenario = Scenario::parse(&text, "h").unwrap();
             let period = scenario.timing.period();
+            scenario.configuration = constants.clone();
             scenario.loops().unwrap().reports().map(|report| (report.axis, -report.spectral_radius.ln() / period))
         };
         let slow = decays("2000.0");

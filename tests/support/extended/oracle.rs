@@ -33,6 +33,9 @@ use spending::{Rotor, Row, THRUST_LEFT};
 use tick::{Answer, Tick};
 use turning::Turn;
 
+/// How much of what thrust takes at once may push across, m/s^2.
+const PUSH_ACROSS: f64 = 5.0;
+
 /// The least share of M_theta that a bias leaves.
 const LEVEL_LEAST: f64 = 0.05;
 
@@ -160,7 +163,11 @@ impl Law {
         let (q, [faster, sooner, tilted]) = self.turned(&wanted, &t.nudge.turn);
         let whole = back * rho.cross(&q);
         let part = (self.inertia * whole).xy() + of_turning;
-        let thrust = (1.0 - THRUST_LEFT) * self.mass * n;
+        let steep = rho.z.max(double(p.tilt_max).cos());
+        let more = (smoothed.z - c.z + t.nudge.command[0].z) / steep;
+        let across = PUSH_ACROSS / rho.xy().norm();
+        let length = (n + more.clamp(-across, across)).max(0.0).min(greatest);
+        let thrust = (1.0 - THRUST_LEFT) * self.mass * length;
         let above = self.share_above_the_floor(&spending.spent, &part, thrust, scale);
         let above = above.max((double(p.turn_reserve) / q.norm()).min(1.0));
         let of_rows = spending.spend(&(part * above), 0.0);
@@ -176,7 +183,7 @@ impl Law {
         let psi = 2.0 * lifted[3];
         let asked = self.yaw_torque([psi, projected_rate.z], forward, &t.omega, t.yaw_room) - bias.z;
         let asked = asked + t.nudge.yaw[0];
-        let along = self.mass * u.dot(&axis);
+        let along = self.mass * length * rho.dot(&axis);
         let [floor, ceiling] = self.thrusts(&tilting.push(0.0), scale).map(|end| end + t.nudge.thrust);
         let braking = self.braking(asked, projected_rate.z);
         let [_, beside_yaw] = self.thrusts(&tilting.push(braking), scale).map(|end| end + t.nudge.thrust);

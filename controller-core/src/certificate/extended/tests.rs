@@ -61,7 +61,7 @@ fn a_reference_that_thrust_does_not_hold_fails_its_row() {
 #[test]
 fn references_that_turn_the_thrust_too_fast_or_too_suddenly_fail_their_rows() {
     let p = example::parameters();
-    let jerky = ReferenceBounds { jerk: 40.0, ..example::REFERENCES };
+    let jerky = ReferenceBounds { jerk: 60.0, ..example::REFERENCES };
     assert!(failing(&p, jerky).contains(&"A1 turning rate for the reference"));
     let [_, _, rate, acceleration, _] = feasible_rows(&p, example::REFERENCES);
     // All there is of |u'|: the reference's with its drag, and the slowed law's across and along the vertical.

@@ -40,11 +40,11 @@ fn delays_and_lags_beyond_the_model_are_refused_by_name() {
     assert_eq!(field(-0.001, 0.0), "rotors.lag");
     assert_eq!(field(f32::INFINITY, 0.0), "rotors.lag");
     assert_eq!(field(0.0, f32::NAN), "sampling.delay");
-    assert_eq!(field(0.0, 0.031), "sampling.delay");
-    // Three periods are not beyond it, whatever rounding makes of them.
+    assert_eq!(field(0.0, 0.301), "sampling.delay");
+    // Thirty periods are not beyond it, whatever rounding makes of them.
     for period_us in 1_u32..=100_000 {
         let period = f64::from(period_us) * 1e-6;
-        let parameters = ActuatorParameters { lag: 0.0, delay: (3.0 * period) as f32 };
-        assert_eq!(ActuatorModel::new(&parameters, period as f32).unwrap().whole_delay, 3, "{period_us} us");
+        let parameters = ActuatorParameters { lag: 0.0, delay: (30.0 * period) as f32 };
+        assert_eq!(ActuatorModel::new(&parameters, period as f32).unwrap().whole_delay, 30, "{period_us} us");
     }
 }

@@ -11,6 +11,7 @@ use super::{Controller, thrust_axis};
 use crate::extended::force::held;
 use crate::extended::memory::Estimates;
 use crate::extended::position::Most;
+use crate::extended::turning::PUSH_ACROSS;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
@@ -54,6 +55,7 @@ impl Controller {
         let reaction = self.reaction(&z_2, &command, &force, greatest, most);
         let went_on = z_1 + z_2 * reaction;
         let sped_up = acceleration * reaction;
+        let pushed = self.pushed(&command, greatest);
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
             let levels = self.position.stopping_levels(&speed, &force, greatest, most);
             at + self.position.stopping_way(&speed, &levels)
@@ -67,11 +69,19 @@ impl Controller {
                 first,
                 second,
                 stop(went_on, z_2),
-                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up),
+                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + pushed),
             ],
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
             doubtful: self.memory.held > 0 || self.is_at_a_level() || !self.is_held(&force, greatest),
         }
+    }
+
+    /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
+    fn pushed(&self, command: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+        let across = math::sqrt(command.xy().norm_squared());
+        let most = math::lesser(PUSH_ACROSS, greatest * across / math::greater(command.z, f32::MIN_POSITIVE));
+        let speed = most * self.position.lag() / math::greater(across, f32::MIN_POSITIVE);
+        Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
 
     /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.

@@ -21,6 +21,8 @@ const LEVEL_LEAST: f32 = 0.05;
 pub(super) struct Course {
     /// u, m/s^2.
     pub command: Vector3<f32>,
+    /// n*, m/s^2: the length that the thrust takes.
+    pub length: f32,
     pub desired: DesiredAttitude,
     pub turn: Turn,
     /// e3 in the axes of the desired frame.
@@ -89,7 +91,13 @@ impl Controller {
 
     /// Section 3: where u points, and how it would turn.
     #[inline(always)]
-    pub(super) fn course(&self, reference: &Reference, filters: &Filters, feedback: &PositionFeedback) -> Course {
+    pub(super) fn course(
+        &self,
+        reference: &Reference,
+        filters: &Filters,
+        feedback: &PositionFeedback,
+        greatest: f32,
+    ) -> Course {
         let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position_law().k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
@@ -97,7 +105,9 @@ impl Controller {
         let desired = DesiredAttitude::new(&command, &reference.heading);
         let turn = desired.turn(&jerk, &snap);
         let vertical = [filters.command.z, feedback.rate.z, wanted.z];
-        Course { command, up: desired.up(), desired, turn, vertical }
+        let up = desired.up();
+        let length = self.turning.length(turn.magnitude, feedback.smoothed.z - filters.command.z, &up, greatest);
+        Course { command, length, up, desired, turn, vertical }
     }
 
     /// Sections 5 and 6: the attitude's errors, projected over what is late.
@@ -148,7 +158,7 @@ impl Controller {
         let q = self.turning.turned(&course.turn, &course.up);
         let acceleration = rotate_back(error, &Vector3::new(-q.y, q.x, 0.0));
         let torque = self.attitude.torque(&acceleration);
-        let thrust = (1.0 - THRUST_LEFT as f32) * self.vehicle.mass * course.turn.magnitude;
+        let thrust = (1.0 - THRUST_LEFT as f32) * self.vehicle.mass * course.length;
         let mut share = self.range.share(&spending.spent, &torque, thrust, scale);
         if share < 1.0 {
             cold_path();

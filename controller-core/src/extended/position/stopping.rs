@@ -43,13 +43,17 @@ impl PositionLaw {
     }
 
     /// The inputs of the filters c, x and y in turn, for a position and its derivatives: p + p' / k_f, and that with
-    /// 1 / k_s as well. p is the first's output, the first is the second's, the second is z_1's.
+    /// 1 / k_s as well. p is the first's output, the first is the second's, the second is z_1's. Along the vertical
+    /// there is one filter, and both are p.
     #[must_use]
     pub fn stages(&self, state: &State, filters: &Filters, force: &Vector3<f32>) -> [Vector3<f32>; 2] {
         let [of_command, of_intermediate, _] = self.lags;
         let (p, v) = (state.position, state.velocity);
-        let both = p + v * (of_command + of_intermediate) + (filters.command + force) * (of_command * of_intermediate);
-        [p + v * of_command, both]
+        let mut first = p + v * of_command;
+        let mut both =
+            p + v * (of_command + of_intermediate) + (filters.command + force) * (of_command * of_intermediate);
+        (first.z, both.z) = (p.z, p.z);
+        [first, both]
     }
 
     /// 1/k_f + 1/k_s + 1/k_d, s.

@@ -95,7 +95,7 @@ fn what_the_filter_makes_never_falls_below_its_end() {
     assert_eq!([next.command.z, next.intermediate.z], [-p.a_down; 2]);
     assert_eq!(next.intermediate.xy(), below.xy());
     // One that leads back up is not held back.
-    let rising = Filters { command: Vector3::z() * (-p.a_down - 1.0), intermediate: zero, smoothed: zero };
+    let rising = Filters { command: Vector3::z() * (-p.a_down - 3.0), intermediate: zero, smoothed: zero };
     let next = law.advance(&rising, &zero, &zero, 1e3);
     assert_eq!([next.command.z, next.intermediate.z], [-p.a_down, 0.0]);
 }
@@ -125,8 +125,9 @@ fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&Pos
         let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, &Most::ALL);
         see(&feedback);
         let next = law.advance(&filter, &feedback.smoothed, &feedback.drive, f32::MAX);
-        // c moves nearly straight within a tick.
-        let acceleration = (filter.command + next.command) * 0.5 + force;
+        // c moves nearly straight within a tick. Along the vertical y acts at once.
+        let mut acceleration = (filter.command + next.command) * 0.5 + force;
+        acceleration.z = feedback.smoothed.z + force.z;
         state.position += state.velocity * h + acceleration * (0.5 * h * h);
         state.velocity += acceleration * h;
         filter = next;
@@ -158,10 +159,13 @@ fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
     }
 }
 
-/// The integral from 0 to z of s(s(k_p z; k_v v_c); M), by Simpson's rule.
-fn potential(z: f64, [k_p, k_v, speed, level]: [f64; 4]) -> f64 {
+/// The integral from 0 to z of s(k_v s(v(z); v_c); M), by Simpson's rule, v being the speed from which `braking` stops a
+/// vehicle that answers after k_v / k_p.
+fn potential(z: f64, [k_p, k_v, speed, braking, level]: [f64; 5]) -> f64 {
     let s = |x: f64, level: f64| level * x / level.hypot(x);
-    let of = |z: f64| s(s(k_p * z, k_v * speed), level);
+    let t = k_v / k_p;
+    let v = |z: f64| braking * ((t * t + 2.0 * z.abs() / braking).sqrt() - t) * z.signum();
+    let of = |z: f64| s(k_v * s(v(z), speed), level);
     let (steps, width) = (200, z / 200.0);
     (0..steps)
         .map(|i| {
@@ -182,10 +186,11 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
             flown(at(Vector3::new(0.0, 0.0, height), Vector3::new(0.0, 0.0, climb)), d, 10_000, |now| {
                 let (z_1, z_2) = (f64::from(now.errors.z_1.z), f64::from(now.errors.z_2.z));
                 let down = z_1 > 0.0;
-                let level = if down { p.a_down - d.z } else { greatest - 9.81 + d.z };
+                let (push, pull) = (greatest - 9.81 + d.z, p.a_down - d.z);
+                let (level, brakes) = if down { (pull, push) } else { (push, pull) };
                 let speed = if down { p.v_down } else { p.v_up };
-                let energy =
-                    0.5 * z_2 * z_2 + potential(z_1, [p.k_p_vertical, p.k_v_vertical, speed, level].map(f64::from));
+                let constants = [p.k_p_vertical, p.k_v_vertical, speed, p.braking_vertical * brakes, level];
+                let energy = 0.5 * z_2 * z_2 + potential(z_1, constants.map(f64::from));
                 // Ticks: the drive is held for one, so V_0 may rise by (z_2' h)^2 where its fall passes zero.
                 assert!(energy < before + 1e-3, "{energy} after {before}");
                 before = energy;
@@ -200,7 +205,8 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
             let level = p.a_across.min(0.95 * lift * p.tilt_max.tan()).min(left) - d.xy().norm();
             flown(at(Vector3::from(position), Vector3::from(velocity)), d, 10_000, |now| {
                 let (z_1, z_2) = (f64::from(now.errors.z_1.xy().norm()), f64::from(now.errors.z_2.xy().norm()));
-                let constants = [p.k_p_across, p.k_v_across, p.v_across, level].map(f64::from);
+                let constants =
+                    [p.k_p_across, p.k_v_across, p.v_across, p.braking_across * level, level].map(f64::from);
                 let energy = 0.5 * z_2 * z_2 + potential(z_1, constants);
                 assert!(energy < before + 1e-3, "{energy} after {before}");
                 before = energy;

@@ -54,7 +54,7 @@ fn wave(k: usize, period: f64, pace: f64) -> (f64, f64) {
 fn motion(axis: Axis, k: usize, period: f64) -> [f64; 4] {
     let [(p, v), (angle, rate)] = [wave(k, period, 1.0), wave(k, period, 0.8)];
     // Along the vertical gravity's rounding is in every difference; across everything is about zero.
-    let reach = if axis == Axis::Vertical { 1e-3 } else { 2e-5 };
+    let reach = if axis == Axis::Vertical { 1e-4 } else { 2e-6 };
     [reach * p, reach * v, 3e-5 * angle, 3e-5 * rate]
 }
 

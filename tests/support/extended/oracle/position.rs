@@ -16,6 +16,11 @@ fn saturate_across(x: Vector2<f64>, level: f64) -> Vector2<f64> {
     x * (level / level.hypot(x.norm()))
 }
 
+/// The speed of approach, m/s, at a distance z, m: the v with z = v t + v^2 / (2 a), saturated at v_c.
+fn approach(z: f64, t: f64, a: f64, v_c: f64) -> f64 {
+    saturate(a * ((t * t + 2.0 * z / a).sqrt() - t), v_c)
+}
+
 impl Law {
     /// d: the average cut to its levels, then to what the rotors hold beside the reference's u, the vertical first. And
     /// whether that was less.
@@ -36,20 +41,28 @@ impl Law {
         let p = &self.p;
         let [f, s, of_y] = gains.filters.map(|bandwidth| 1.0 / bandwidth);
         let [c, x, y] = t.filters.map(|filter| filter + d);
-        let z_1 = t.position_error + t.velocity_error * (f + s + of_y) + c * (f * (s + of_y)) + x * (s * of_y);
-        let z_2 = t.velocity_error + c * f + x * s + y * of_y + t.nudge.z_2;
+        let of_z = Vector3::new(f + s + of_y, f + s + of_y, of_y);
+        let lagging = Vector3::new(1.0, 1.0, 0.0);
+        let late = (c * (f * (s + of_y)) + x * (s * of_y)).component_mul(&lagging);
+        let z_1 = t.position_error + t.velocity_error.component_mul(&of_z) + late;
+        let z_2 = t.velocity_error + (c * f + x * s).component_mul(&lagging) + y * of_y + t.nudge.z_2;
 
         let ([k_p, k_p_z], [k_v, k_v_z], [v, v_up, v_down]) = (gains.k_p, gains.k_v, gains.speeds);
-        let speed = if z_1.z > 0.0 { v_down } else { v_up };
-        let wanted = saturate(k_p_z * z_1.z, k_v_z * speed) + k_v_z * z_2.z;
-        let level = if wanted > 0.0 { double(p.a_down) - d.z } else { greatest - self.gravity + d.z };
-        let vertical = -saturate(wanted, level.max(LEVEL_LEAST).min(gains.most)) - d.z;
+        let up = (greatest - self.gravity + d.z).max(LEVEL_LEAST).min(gains.most);
+        let down = (double(p.a_down) - d.z).max(LEVEL_LEAST).min(gains.most);
+        let (speed, brakes) = if z_1.z > 0.0 { (v_down, up) } else { (v_up, down) };
+        let closing = approach(z_1.z.abs(), k_v_z / k_p_z, double(p.braking_vertical) * brakes, speed);
+        let wanted = k_v_z * (closing * z_1.z.signum() + z_2.z);
+        let vertical = -saturate(wanted, if wanted > 0.0 { down } else { up }) - d.z;
 
         let lift = self.gravity + vertical + t.nudge.lift;
         let left = (greatest.powi(2) - lift.powi(2)).max(0.0).sqrt();
         let reach = double(p.a_across).min(SHARE_ACROSS * left).min(SHARE_ACROSS * lift * double(p.tilt_max).tan());
         let level = (reach - d.xy().norm()).max(LEVEL_LEAST).min(gains.most);
-        let wanted = saturate_across(k_p * z_1.xy(), k_v * v) + k_v * z_2.xy();
+        let distance = z_1.xy().norm();
+        let closing = approach(distance, k_v / k_p, double(p.braking_across) * level, v);
+        let towards = if distance > 0.0 { z_1.xy() / distance } else { Vector2::zeros() };
+        let wanted = k_v * (towards * closing + z_2.xy());
         let across = -saturate_across(wanted, level) - d.xy();
         Vector3::new(across.x, across.y, vertical)
     }

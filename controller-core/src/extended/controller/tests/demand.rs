@@ -163,7 +163,8 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
             if stopped {
                 break;
             }
-            let acceleration = filters.command + force;
+            let mut acceleration = filters.command + force;
+            acceleration.z = feedback.smoothed.z + force.z;
             filters = law.advance(&filters, &feedback.smoothed, &feedback.drive, f32::MAX);
             state.position += (state.velocity + acceleration * (0.5 * h)) * h;
             state.velocity += acceleration * h;
