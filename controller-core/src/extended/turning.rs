@@ -26,7 +26,7 @@ use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// k, 1/s: how softly u arrives at its ends; at most half a tick's.
-const SOFTNESS: f32 = 10.0;
+pub const SOFTNESS: f32 = 10.0;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
