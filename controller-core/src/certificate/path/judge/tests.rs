@@ -1,4 +1,5 @@
 use super::*;
+use crate::certificate::path::FORCE_KEPT;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::Craft;
 use crate::math::enclosure::Enclosure;
@@ -120,6 +121,7 @@ fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
     let q = (u_2 - rho * rho.dot(&u_2) - p * (2.0 * r)) / n;
     let tilt = (1.0 - rho.z * rho.z).sqrt();
     let turning = (motion.heading_rate.abs() + tilt * p.norm()) / rho.z;
+    let spin = (2.0 * turning / judge.spin[1] - 1.0).clamp(0.0, 1.0);
     let torque = judge.inertia[0] * q.norm() + judge.inertia[1] * turning * p.norm() + judge.torque[0];
     let k = judge.softness;
     let swollen = n + (rho.dot(&(u_2 + u_1 * (2.0 * k))) + n * p.norm_squared()) / (k * k);
@@ -127,7 +129,7 @@ fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
     let swollen = swollen - rho.dot(&(e + (e_2 + e_1 * (2.0 * k)) / (k * k)));
     [
         judge.a_down / (judge.gravity + a.z),
-        ((judge.mass * n + judge.reach * torque) / judge.ceiling[0])
+        ((judge.mass * n + judge.reach * torque + judge.spin[0] * spin) / judge.ceiling[0])
             .max(judge.mass * n / judge.ceiling[1])
             .max(swollen / judge.greatest),
         p.norm() / judge.turn_rate,
