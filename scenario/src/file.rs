@@ -9,7 +9,7 @@ use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use crate::trajectory::Directory;
+use crate::trajectory::{Directory, Vehicle};
 use crate::{actuation, initial, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
@@ -127,7 +127,10 @@ impl Scenario {
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
         };
-        let allow = || configuration(&ReferenceBounds::REST).map(|configuration| *configuration.bounds());
+        let allow = || {
+            let configuration = configuration(&ReferenceBounds::REST)?;
+            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds") })
+        };
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::tolerance(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;

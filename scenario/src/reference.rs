@@ -3,12 +3,12 @@
 
 use crate::initial::read_position;
 use crate::section::{FieldError, Section};
-use crate::trajectory::{self, Directory, Route, stretch};
+use crate::trajectory::{self, Allowed, Directory, Route, stretch};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
+use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
-use controller_core::reference::{ReferenceBounds, Trajectory};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -36,15 +36,11 @@ pub enum ReferenceKind {
 
 impl ReferenceKind {
     /// Reads `[reference]`; the default if it is missing. Files that it names lie in `directory`; points that come
-    /// with a speed only are passed inside the bounds that the vehicle is to `allow`.
+    /// with a speed only are passed as the vehicle is to `allow`.
     ///
     /// # Errors
     /// Names the field that is missing, unknown, or no number.
-    pub fn read(
-        root: &Section,
-        directory: Directory,
-        allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-    ) -> Result<Self, FieldError> {
+    pub fn read(root: &Section, directory: Directory, allow: Allowed) -> Result<Self, FieldError> {
         let Some(section) = root.optional_section("reference")? else {
             let position = read_position(root)?.unwrap_or(DEFAULT_POSITION);
             return Ok(Self::Hover { position, heading: 0.0 });

@@ -33,11 +33,13 @@ pub mod stretch;
 mod table;
 
 use crate::section::{FieldError, Section};
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
+use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
-use controller_core::reference::{ReferenceBounds, inside};
+use pace::limits::Limits;
 use row::Row;
 use std::path::Path;
 
@@ -85,6 +87,18 @@ pub enum Way {
     },
 }
 
+/// The vehicle that is to fly a path.
+#[derive(Debug, Clone)]
+pub struct Vehicle {
+    /// What it is certified for, beside this path.
+    pub configuration: Configuration,
+    /// Whether the file has `[reference_bounds]`.
+    pub has_bounds: bool,
+}
+
+/// What the vehicle may fly, which is worked out only where it matters.
+pub type Allowed<'a> = &'a dyn Fn() -> Result<Vehicle, FieldError>;
+
 /// Where files that a scenario names lie: beside the scenario's own.
 pub type Directory<'a> = Option<&'a Path>;
 
@@ -92,11 +106,7 @@ pub type Directory<'a> = Option<&'a Path>;
 ///
 /// # Errors
 /// Names the field and what is wrong.
-pub fn read_waypoints(
-    section: &Section,
-    directory: Directory,
-    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-) -> Result<Route, FieldError> {
+pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "points", "file", "data", "path", "speed", "corridor"])?;
     let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
     if section.has("speed") {
@@ -145,7 +155,7 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 }
 
 /// Times for points that are to be passed with a speed at most.
-fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds) -> Result<Route, FieldError> {
+fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Result<Route, FieldError> {
     let corridor = positive(section, "corridor", CORRIDOR)?;
     let speed = positive(section, "speed", 0.0)?;
     if section.has("path") {
@@ -155,30 +165,28 @@ fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds
         let problem = "chooses the times: leave it out, or the points' own times";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
-    let points: Vec<pace::Point> =
-        rows.iter().map(|row| pace::Point { position: row.position, heading: row.heading }).collect();
-    if let Some(same) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+    let rows = slowed(rows, 1.0);
+    if let Some(same) = rows.windows(2).position(|pair| pair[0] == pair[1]) {
         let problem = "is the same as the one before: to wait, give the points times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
-    let mut values = allowed.values();
-    if values.iter().any(|bound| *bound <= 0.0) {
+    let limits = Limits::of(&vehicle.configuration, vehicle.has_bounds);
+    if limits.bounds().values().iter().any(|bound| *bound <= 0.0) {
         let problem =
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
-    if let Some(horizontal) = values.first_mut() {
-        *horizontal = horizontal.min(speed as f32);
-    }
-    let allowed = ReferenceBounds::from_values(values);
-    let (knots, named) =
-        pace::paced(&points, corridor, &allowed).map_err(|error| FieldError::new(field, error.to_string()))?;
-    let points = named.iter().map(|i| waypoint(&knots[*i])).collect();
+    let points: Vec<pace::merge::Point> =
+        rows.iter().map(|row| pace::merge::Point { place: row.position.push(row.heading), speed }).collect();
+    let Some(pace::Paced { knots, times }) = pace::paced(&points, corridor, speed, &limits) else {
+        return Err(FieldError::new(field, "no path keeps to what the vehicle may fly, however slow it is"));
+    };
+    let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
     Ok(Route { points, knots, way: Way::Paced { corridor } })
 }
 
-fn waypoint(knot: &Knot) -> Waypoint {
-    Waypoint { time: knot.time_us as f64 * 1e-6, position: knot.position.into(), heading: knot.heading }
+fn waypoint(time: f64, row: &Row) -> Waypoint {
+    Waypoint { time, position: row.position.into(), heading: row.heading }
 }
 
 /// Reads a `[reference]` of rows that are followed; a path that begins or ends in motion gets a beginning and an end
@@ -186,11 +194,7 @@ fn waypoint(knot: &Knot) -> Waypoint {
 ///
 /// # Errors
 /// Names the field and what is wrong.
-pub fn read_trajectory(
-    section: &Section,
-    directory: Directory,
-    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-) -> Result<Route, FieldError> {
+pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "file", "data", "within", "stretch"])?;
     let (rows, field) = rows(section, directory)?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
@@ -210,13 +214,10 @@ pub fn read_trajectory(
         FieldError::new(field.clone(), problem)
     })?;
     let mut knots = found.knots;
-    let led_in =
-        lead::lead(&mut knots, &allow()?).map_err(|error| FieldError::new(field, error.to_string()))? as f64 * 1e-6;
-    let points = timed.iter().map(|(time, row)| Waypoint {
-        time: led_in + time,
-        position: row.position.into(),
-        heading: row.heading,
-    });
+    let led_in = lead::lead(&mut knots, allow()?.configuration.bounds())
+        .map_err(|error| FieldError::new(field, error.to_string()))? as f64
+        * 1e-6;
+    let points = timed.iter().map(|(time, row)| waypoint(led_in + time, row));
     Ok(Route { points: points.collect(), knots, way: Way::Near { farthest: found.farthest, lead_in: led_in } })
 }
 
