@@ -70,6 +70,8 @@ pub struct Scenario {
     pub reference: ReferenceKind,
     /// How far it may stray from that once it is there, m.
     pub tolerance: f64,
+    /// The force per mass that is kept free along it, m/s^2.
+    pub force_kept: f32,
     /// The same, ready to be evaluated.
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
     /// How its circumstances differ from flight to flight of a campaign.
@@ -130,6 +132,7 @@ impl Scenario {
         let allow = || configuration(&ReferenceBounds::REST).map(|configuration| *configuration.bounds());
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::tolerance(root)?;
+        let force_kept = ReferenceKind::force_kept(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let timing = match &reference {
             ReferenceKind::Route(route) if !root.has("duration") => timing.lasting(route.duration() + AFTERWARDS),
@@ -151,6 +154,7 @@ impl Scenario {
             initial,
             reference,
             tolerance,
+            force_kept,
             trajectory,
             campaign,
         })

@@ -97,7 +97,7 @@ pub fn read_waypoints(
     directory: Directory,
     allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
 ) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "points", "file", "data", "path", "speed", "corridor"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "points", "file", "data", "path", "speed", "corridor"])?;
     let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
     if section.has("speed") {
         return paced(section, &rows, &field, &allow()?);
@@ -191,7 +191,7 @@ pub fn read_trajectory(
     directory: Directory,
     allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
 ) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "file", "data", "within", "stretch"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "within", "stretch"])?;
     let (rows, field) = rows(section, directory)?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
