@@ -70,6 +70,8 @@ pub struct Scenario {
     pub reference: ReferenceKind,
     /// How far it may stray from that once it is there, m.
     pub tolerance: f64,
+    /// The force per mass that is kept free along it, m/s^2.
+    pub force_kept: f32,
     /// The same, ready to be evaluated.
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
     /// How its circumstances differ from flight to flight of a campaign.
@@ -127,9 +129,10 @@ impl Scenario {
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
         };
+        let force_kept = ReferenceKind::force_kept(root)?;
         let allow = || {
             let configuration = configuration(&ReferenceBounds::REST)?;
-            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds") })
+            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
         };
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::tolerance(root)?;
@@ -154,6 +157,7 @@ impl Scenario {
             initial,
             reference,
             tolerance,
+            force_kept,
             trajectory,
             campaign,
         })

@@ -4,6 +4,7 @@
 use crate::initial::read_position;
 use crate::section::{FieldError, Section};
 use crate::trajectory::{self, Allowed, Directory, Route, stretch};
+use controller_core::certificate::path::FORCE_KEPT;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
@@ -70,6 +71,19 @@ impl ReferenceKind {
         Err(FieldError::new(section.path_of("tolerance"), format!("must be positive, found {tolerance}")))
     }
 
+    /// Reads `force_kept` of `[reference]`, m/s^2: the force per mass, in any direction, that is kept free along it.
+    ///
+    /// # Errors
+    /// Names the field if it is negative or no number.
+    pub fn force_kept(root: &Section) -> Result<f32, FieldError> {
+        let Some(section) = root.optional_section("reference")? else { return Ok(FORCE_KEPT) };
+        let force = section.number_or("force_kept", f64::from(FORCE_KEPT))?;
+        if force >= 0.0 {
+            return Ok(force as f32);
+        }
+        Err(FieldError::new(section.path_of("force_kept"), format!("must not be negative, found {force}")))
+    }
+
     /// The trajectory itself.
     ///
     /// # Errors
@@ -90,7 +104,7 @@ impl ReferenceKind {
 }
 
 fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
-    section.allow(&["kind", "tolerance", "position", "heading_deg"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "position", "heading_deg"])?;
     let position = section.vector("position")?;
     let heading = section.number_or("heading_deg", 0.0)?.to_radians();
     Ok(ReferenceKind::Hover { position, heading })
@@ -98,7 +112,7 @@ fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
 
 /// `phase` and `heading`, or fields of it, are zero where they are left out.
 fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
-    section.allow(&["kind", "tolerance", "center", "amplitude", "frequency", "phase", "heading"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "center", "amplitude", "frequency", "phase", "heading"])?;
     let mut heading = HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 0.0, frequency: 0.0 };
     if let Some(section) = section.optional_section("heading")? {
         section.allow(&["offset", "rate", "amplitude", "frequency"])?;

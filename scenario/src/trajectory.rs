@@ -94,6 +94,8 @@ pub struct Vehicle {
     pub configuration: Configuration,
     /// Whether the file has `[reference_bounds]`.
     pub has_bounds: bool,
+    /// The force per mass that is kept free along a path, m/s^2.
+    pub force_kept: f32,
 }
 
 /// What the vehicle may fly, which is worked out only where it matters.
@@ -107,7 +109,7 @@ pub type Directory<'a> = Option<&'a Path>;
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "points", "file", "data", "path", "speed", "corridor"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "points", "file", "data", "path", "speed", "corridor"])?;
     let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
     if section.has("speed") {
         return paced(section, &rows, &field, &allow()?);
@@ -170,7 +172,7 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
         let problem = "is the same as the one before: to wait, give the points times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
-    let limits = Limits::of(&vehicle.configuration, vehicle.has_bounds);
+    let limits = Limits::of(vehicle);
     if limits.bounds().values().iter().any(|bound| *bound <= 0.0) {
         let problem =
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
@@ -195,7 +197,7 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "file", "data", "within", "stretch"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "within", "stretch"])?;
     let (rows, field) = rows(section, directory)?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();

@@ -9,12 +9,13 @@
 //! A search needs the shares' slopes, and shares without edges ([`Sloped`]); what certifies is the exact ones, at every
 //! instant.
 
-use super::super::stretch;
 use super::piece::Motion;
 use super::sloped::Sloped;
+use crate::along;
+use crate::trajectory::{Vehicle, stretch};
 use controller_core::certificate::path::along::Taken;
-use controller_core::certificate::path::{self, FORCE_KEPT, PathJudge, Row};
-use controller_core::configuration::{Configuration, LawParameters};
+use controller_core::certificate::path::{self, PathJudge, Row};
+use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use controller_core::reference::knot::Knot;
 
@@ -31,30 +32,32 @@ const USED: f64 = 0.9995;
 /// What motions may take.
 #[derive(Debug, Clone)]
 pub struct Limits {
-    /// What the vehicle has left, if its law is the extended one: exact, without edges, and with slopes.
-    judges: Option<(PathJudge, PathJudge<Sloped<0>>, PathJudge<Sloped<VARIABLES>>)>,
+    /// What the vehicle has left, if its law is the extended one.
+    judges: Option<Judges>,
     /// What bounds it besides; infinite where nothing does.
     bounds: ReferenceBounds,
 }
 
+/// One judge in numbers that are exact, that have no edges, and that have slopes.
+type Judges = (PathJudge, PathJudge<Sloped<0>>, PathJudge<Sloped<VARIABLES>>);
+
+fn judges(configuration: &Configuration, force_kept: f32) -> Option<Judges> {
+    let exact = along::judge(configuration, force_kept)?;
+    Some((exact, along::judge(configuration, force_kept)?, along::judge(configuration, force_kept)?))
+}
+
 impl Limits {
-    /// Those of a vehicle that is certified as the `configuration` says, within its bounds if `has_bounds`; the
-    /// heading keeps within them in any case.
-    pub fn of(configuration: &Configuration, has_bounds: bool) -> Self {
+    /// Those of a vehicle; the heading keeps within its bounds in any case, all else where the file has them.
+    pub fn of(vehicle: &Vehicle) -> Self {
+        let Vehicle { configuration, has_bounds, force_kept } = vehicle;
         let bounds = *configuration.bounds();
-        let LawParameters::Extended(law) = configuration.law() else { return Self { judges: None, bounds } };
-        let judges = (
-            PathJudge::new(configuration, law, FORCE_KEPT),
-            PathJudge::new(configuration, law, FORCE_KEPT),
-            PathJudge::new(configuration, law, FORCE_KEPT),
-        );
+        let judges = judges(configuration, *force_kept);
+        if judges.is_none() || *has_bounds {
+            return Self { judges, bounds };
+        }
         let ReferenceBounds { heading_rate, heading_second_derivative, .. } = bounds;
-        let heading = ReferenceBounds {
-            heading_rate,
-            heading_second_derivative,
-            ..ReferenceBounds::from_values([f32::INFINITY; ReferenceBounds::COUNT])
-        };
-        Self { judges: Some(judges), bounds: if has_bounds { bounds } else { heading } }
+        let nothing = ReferenceBounds::from_values([f32::INFINITY; ReferenceBounds::COUNT]);
+        Self { judges, bounds: ReferenceBounds { heading_rate, heading_second_derivative, ..nothing } }
     }
 
     /// What bounds a path besides the vehicle.
