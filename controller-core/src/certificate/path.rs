@@ -18,7 +18,7 @@ use crate::reference::Reference;
 pub const FORCE_KEPT: f32 = 1.0;
 
 /// The part of the tilt's torque that a path keeps for a torque bias and for the tilt's feedback.
-pub const TORQUE_KEPT: f64 = 0.1;
+pub const TORQUE_KEPT: f64 = 0.05;
 
 /// A row of the judgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -19,7 +19,7 @@
 //! | turning rate | \|p\| < Omega |
 //! | torque | tau < rho(s) |
 //! | floor | s_hi max f_min / b_T + margin + \|beta_12\| tau < (1 - mu) m n |
-//! | cone | -rho_z' < (alpha_0 / Omega) (rho_z - cos gamma) |
+//! | cone | -rho_z' < sqrt(alpha / 2) (rho_z - cos gamma), alpha = rho(1) / J_max |
 //!
 //! A row is given as the share that is taken of what is left: where all are below one, nothing is limited, whatever d
 //! and e do. The heading is not among them: yaw gets what is left, and the tilt does not depend on it. Where the frame
@@ -32,7 +32,7 @@ use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
 use crate::extended::fallback::Slowed;
 use crate::extended::force::HELD_SHARE;
-use crate::extended::turning::SOFTNESS;
+use crate::extended::turning::{self, SOFTNESS};
 use crate::math;
 use crate::math::real::Real;
 
@@ -55,7 +55,7 @@ pub struct PathJudge<R = f64> {
     softness: R,
     /// Omega, rad/s.
     turn_rate: R,
-    /// alpha_0 / Omega, 1/s.
+    /// sqrt(alpha / 2), 1/s.
     closing: R,
     /// cos gamma.
     cosine: R,
@@ -106,7 +106,7 @@ impl<R: Real> PathJudge<R> {
             swelling: level * overshoot(p.k_f) * overshoot(p.k_d),
             softness,
             turn_rate: R::from(p.turn_rate),
-            closing: R::from(p.turn_reserve) / R::from(p.turn_rate),
+            closing: turning::closing(budget.radius(one) / j_1.greater(j_2)),
             cosine: R::from(1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))),
             inertia: [j_1.greater(j_2), j_3 + (j_1 - j_2).abs()],
             torque: [kept, radius],

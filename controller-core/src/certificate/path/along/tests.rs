@@ -61,7 +61,7 @@ fn no_instant_takes_more_than_is_said() {
         let judge = judge(&craft);
         let seconds = random.between(1.5, 3.0);
         for share in [
-            covers(&judge, &eight(5.0, f64::from(3.0 * seconds)), 6_000_000),
+            covers(&judge, &eight(6.0, f64::from(3.0 * seconds)), 6_000_000),
             covers(&judge, &through(&mut random, seconds), 16_000_000),
         ] {
             (least, most) = (least.min(share), most.max(share));
