@@ -12,7 +12,7 @@
 //! [reference]
 //! kind = "waypoints"                 # through every point
 //! file = "gates.csv"                 # or points = [{ t = 0.0, position = [0.0, 0.0, 1.0] }, …]
-//! speed = 3.0                        # m/s at most, and otherwise as fast as the bounds allow; with this no times
+//! speed = 3.0                        # m/s at most, and otherwise as fast as the vehicle may; with this no times
 //! corridor = 0.3                     # m: how far from the straight legs the path may be; left out: 0.3
 //! ```
 //!
@@ -20,7 +20,7 @@
 //! |---|---|
 //! | `row`, `table`, `pieces` | rows from a file |
 //! | `fit`, `band`, `lead` | a smooth path near rows, which begins and ends at rest |
-//! | `pace` | times for points that have none |
+//! | `pace` | the quickest path through points that have no times |
 //! | [`mod@stretch`] | by how much times must grow for a path's derivatives to fit |
 
 mod band;
@@ -39,7 +39,9 @@ use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
+use pace::Paced;
 use pace::limits::Limits;
+use pace::merge::Point;
 use row::Row;
 use std::path::Path;
 
@@ -111,9 +113,10 @@ pub type Directory<'a> = Option<&'a Path>;
 pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "force_kept", "points", "file", "data", "path", "speed", "corridor"])?;
     let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
-    if section.has("speed") {
+    if section.has("speed") || rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
         return paced(section, &rows, &field, &allow()?);
     }
+    refuse_speeds(&rows, &field)?;
     let way = match section.has("path").then(|| section.text("path")).transpose()? {
         None | Some("smooth") => Way::Smooth,
         Some("inside") => Way::Inside,
@@ -148,6 +151,17 @@ pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -
     Ok(Route { points, knots, way })
 }
 
+/// Refuses a speed of rows whose times say how fast they are passed.
+fn refuse_speeds(rows: &[Row], field: &str) -> Result<(), FieldError> {
+    match rows.iter().position(|row| row.speed.is_some()) {
+        Some(number) => {
+            let problem = "goes with points without times; leave it out, or the times";
+            Err(FieldError::new(format!("{field}[{number}].speed"), problem))
+        }
+        None => Ok(()),
+    }
+}
+
 /// A refusal of a field of the point at `place`, with the value that the file has there.
 fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError {
     let field = format!("{place}.{}", error.field);
@@ -159,7 +173,7 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 /// Times for points that are to be passed with a speed at most.
 fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Result<Route, FieldError> {
     let corridor = positive(section, "corridor", CORRIDOR)?;
-    let speed = positive(section, "speed", 0.0)?;
+    let speed = positive(section, "speed", f64::INFINITY)?;
     if section.has("path") {
         return Err(FieldError::new(section.path_of("path"), "goes with times; with speed there is corridor"));
     }
@@ -167,8 +181,13 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
         let problem = "chooses the times: leave it out, or the points' own times";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
+    if let Some(number) = rows.iter().take(rows.len() - 1).position(|row| row.speed.is_none() && speed.is_infinite()) {
+        let problem = "missing; give every point a speed, or one for all of them";
+        return Err(FieldError::new(format!("{field}[{number}].speed"), problem));
+    }
     let rows = slowed(rows, 1.0);
-    if let Some(same) = rows.windows(2).position(|pair| pair[0] == pair[1]) {
+    let place = |row: &Row| row.position.push(row.heading);
+    if let Some(same) = rows.windows(2).position(|pair| place(&pair[0]) == place(&pair[1])) {
         let problem = "is the same as the one before: to wait, give the points times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
@@ -178,9 +197,10 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
-    let points: Vec<pace::merge::Point> =
-        rows.iter().map(|row| pace::merge::Point { place: row.position.push(row.heading), speed }).collect();
-    let Some(pace::Paced { knots, times }) = pace::paced(&points, corridor, speed, &limits) else {
+    let own = |row: &Row| row.speed.map_or(speed, |own| own.min(speed));
+    let points: Vec<Point> = rows.iter().map(|row| Point { place: place(row), speed: own(row) }).collect();
+    let greatest = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let Some(Paced { knots, times }) = pace::paced(&points, corridor, greatest, &limits) else {
         return Err(FieldError::new(field, "no path keeps to what the vehicle may fly, however slow it is"));
     };
     let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
@@ -199,6 +219,7 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "force_kept", "file", "data", "within", "stretch"])?;
     let (rows, field) = rows(section, directory)?;
+    refuse_speeds(&rows, &field)?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
     let (Some(times), true) = (times, rows.len() > 1) else {
@@ -242,13 +263,14 @@ fn slowed(rows: &[Row], stretch: f64) -> Vec<Row> {
 /// The points that stand in the scenario itself, with the name that errors use.
 fn points(section: &Section) -> Result<(Vec<Row>, String), FieldError> {
     let read = |point: &Section| {
-        point.allow(&["t", "position", "heading_deg"])?;
+        point.allow(&["t", "position", "heading_deg", "speed"])?;
         Ok(Row {
             time: point.has("t").then(|| point.number("t")).transpose()?,
             position: point.vector("position")?,
             heading: point.number_or("heading_deg", 0.0)?.to_radians(),
             velocity: None,
             acceleration: None,
+            speed: point.has("speed").then(|| positive(point, "speed", 0.0)).transpose()?,
         })
     };
     let field = section.path_of("points");

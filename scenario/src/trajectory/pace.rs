@@ -31,6 +31,8 @@ use way::Way;
 const SERIES: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
 /// The narrowest corridor that is tried in place of a wider one, m.
 const NARROWEST: f64 = 0.05;
+/// The least power of ten, where what is given is no less.
+const LEAST_POWER: i32 = -3;
 /// The share of corridor and speed that the search uses, for what happens between the places where it looks; and of the
 /// corridor with one piece for each leg.
 const USED: f64 = 0.99;
@@ -83,7 +85,7 @@ pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Op
 /// Those of [`SERIES`] from `least` to `most`, greatest first; `most` itself where there is none.
 fn below(most: f64, least: f64) -> Vec<f64> {
     let power = most.log10().floor() as i32;
-    let all = (power - 3..=power).flat_map(|power| SERIES.map(|number| number * 10.0_f64.powi(power)));
+    let all = (power.min(LEAST_POWER)..=power).flat_map(|power| SERIES.map(|number| number * 10.0_f64.powi(power)));
     let mut found: Vec<f64> = all.filter(|number| (0.999 * least..=1.001 * most).contains(number)).collect();
     found.reverse();
     if found.is_empty() { vec![most] } else { found }
@@ -203,3 +205,6 @@ fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
     times.push(time);
     times
 }
+
+#[cfg(test)]
+mod tests;

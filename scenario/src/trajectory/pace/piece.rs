@@ -63,3 +63,38 @@ fn derivative(coefficients: &[f64; COEFFICIENTS], order: usize, s: f64) -> f64 {
     let falling = |power: usize| (0..order).map(|less| (power - less) as f64).product::<f64>();
     coefficients.iter().enumerate().skip(order).rev().fold(0.0, |sum, (power, c)| sum * s + c * falling(power))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::reference::knot::Knot;
+    use controller_core::reference::segment::Segment;
+
+    #[test]
+    fn a_place_of_a_piece_is_where_it_is_flown() {
+        let any = |seed: f64| Vector4::new(seed.sin(), (1.7 * seed).cos(), (2.3 * seed).sin(), 0.1 * seed.cos());
+        let ends: [Motion; 2] = [0.0, 1.0].map(|end| std::array::from_fn(|order| any(end + 3.0 * order as f64)));
+        let duration = 0.8;
+        let knots = [0, 800_000].map(|time_us| {
+            let [position, derivatives @ ..] = ends[usize::from(time_us > 0)];
+            Knot { time_us, position: position.xyz(), heading: position.w, derivatives }
+        });
+        let segment = Segment::between(&knots[0], &knots[1]);
+        for time_us in [0_u64, 100_000, 555_555, 800_000] {
+            let place = Place::new(time_us as f64 * 1e-6 / duration);
+            let flown = segment.at(time_us);
+            let vectors = [flown.position, flown.velocity, flown.acceleration, flown.jerk, flown.snap];
+            for (order, flown) in vectors.into_iter().enumerate() {
+                let weights = place.weights(order, &powers(duration));
+                let sum: Vector4<f64> = ends
+                    .iter()
+                    .zip(weights)
+                    .flat_map(|(end, weights)| end.iter().zip(weights))
+                    .map(|(d, w)| d * w)
+                    .sum();
+                let off = (sum.xyz() - flown.map(f64::from)).norm();
+                assert!(off < 1e-4 * (1.0 + sum.norm()), "order {order} at {time_us} us: {off}");
+            }
+        }
+    }
+}

@@ -199,3 +199,43 @@ impl<const N: usize> Real for Sloped<N> {
         Self::of(&p, &q, root, |i| (p.slopes[i] * root + q.slopes[i]) / steepness)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation, with x and y.
+    fn formula(x: Sloped<2>, y: Sloped<2>) -> Sloped<2> {
+        let mut z = (x * y - x / y + 2.0).abs() + x.hypot(y) * 3.0 - 0.5;
+        z += x.greater(y * 2.0).sqrt() / 4.0;
+        z -= x.lesser(y).ln_1p().exp();
+        z *= -y + 7.0;
+        z + Sloped::greatest_cubic_root(x * 9.0, y).sqrt_of_rounded()
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_formula() {
+        for (x, y) in [(0.7, 1.3), (2.0, 0.4), (1.1, 1.1)] {
+            let value = |x: f64, y: f64| formula(Sloped::variable(x, 0), Sloped::variable(y, 1)).value;
+            let slopes = formula(Sloped::variable(x, 0), Sloped::variable(y, 1)).slopes;
+            let step = 1e-6;
+            let along_x = (value(x + step, y) - value(x - step, y)) / (2.0 * step);
+            let along_y = (value(x, y + step) - value(x, y - step)) / (2.0 * step);
+            assert!(
+                (slopes[0] - along_x).abs() < 1e-6 && (slopes[1] - along_y).abs() < 1e-6,
+                "{slopes:?} {along_x} {along_y}"
+            );
+        }
+    }
+
+    #[test]
+    fn edges_are_rounded_upwards_and_constants_are_exact() {
+        let [zero, one] = [0.0, 1.0].map(|value| Sloped::<1>::variable(value, 0));
+        assert_eq!((zero.abs().value, zero.abs().slopes), (EDGE, [0.0]));
+        assert!(one.abs().value > 1.0 && one.greater(one).value > 1.0 && one.lesser(one).value >= 1.0);
+        let [two, three] = [2.0, 3.0].map(Sloped::<1>::from);
+        assert_eq!([(-two).abs(), two.greater(three), two.lesser(three)].map(|x| x.value), [2.0, 3.0, 2.0]);
+        // Nothing in a sum with infinity is lost.
+        assert_eq!(Sloped::<1>::from(f64::INFINITY).lesser(two).value, 2.0);
+    }
+}
