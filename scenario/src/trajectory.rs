@@ -39,9 +39,9 @@ use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
-use pace::Paced;
 use pace::limits::Limits;
 use pace::merge::Point;
+use pace::{Paced, Problem};
 use row::Row;
 use std::path::Path;
 
@@ -200,9 +200,17 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
     let own = |row: &Row| row.speed.map_or(speed, |own| own.min(speed));
     let points: Vec<Point> = rows.iter().map(|row| Point { place: place(row), speed: own(row) }).collect();
     let greatest = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let Some(Paced { knots, times }) = pace::paced(&points, corridor, greatest, &limits) else {
-        return Err(FieldError::new(field, "no path keeps to what the vehicle may fly, however slow it is"));
-    };
+    let Paced { knots, times } = pace::paced(&points, corridor, greatest, &limits).map_err(|problem| {
+        let problem = match problem {
+            Problem::Legs(legs) => format!(
+                "has {legs} straight legs, and at most {} can be searched: widen the corridor, leave points out, or \
+                 give them times",
+                pace::MOST_LEGS
+            ),
+            Problem::Rest => "no path keeps to what the vehicle may fly, however slow it is".to_owned(),
+        };
+        FieldError::new(field, problem)
+    })?;
     let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
     Ok(Route { points, knots, way: Way::Paced { corridor } })
 }

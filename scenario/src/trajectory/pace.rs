@@ -33,6 +33,8 @@ const SERIES: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
 const NARROWEST: f64 = 0.05;
 /// The least power of ten, where what is given is no less.
 const LEAST_POWER: i32 = -3;
+/// A search through more of them would take minutes.
+pub const MOST_LEGS: usize = 300;
 /// The share of corridor and speed that the search uses, for what happens between the places where it looks; and of the
 /// corridor with one piece for each leg.
 const USED: f64 = 0.99;
@@ -64,22 +66,44 @@ pub struct Paced {
     pub times: Vec<f64>,
 }
 
+/// Why there is no path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Problem {
+    /// So many legs, more than [`MOST_LEGS`].
+    Legs(usize),
+    /// Even at rest the limits are exceeded.
+    Rest,
+}
+
 /// The quickest path through `points`, of which no two neighbours are equal, that was found with a `speed` at most,
-/// m/s; none where even at rest the limits are exceeded.
-pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Option<Paced> {
+/// m/s.
+///
+/// # Errors
+/// Why there is none.
+pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Result<Paced, Problem> {
     let mut tries = Tries { points, limits, searches: PLACES.map(|places| Search::new(limits, places)), best: None };
     let corridors = below(corridor, NARROWEST);
-    let widest = *corridors.first()?;
+    let widest = corridors.first().copied().unwrap_or(corridor);
+    let (kept, legs) = merged(points, widest);
+    if legs.len() > MOST_LEGS {
+        return Err(Problem::Legs(legs.len()));
+    }
+    if legs.is_empty() {
+        let way = Way::resting(points[0].place);
+        return Ok(Paced { knots: way.knots(), times: vec![0.0] });
+    }
     let _ = corridors.iter().try_for_each(|corridor| tries.make(*corridor, speed));
-    let length = merged(points, widest).1.iter().map(Leg::length).sum::<f64>();
+    let length = legs.iter().map(Leg::length).sum::<f64>();
     let mut slower = below(speed, 0.0).into_iter().filter(|slower| *slower < speed);
     let _ = slower.try_for_each(|slower| match length < slower * tries.shortest() {
         true if tries.is_idle(slower) => ControlFlow::Continue(()),
         true => tries.make(widest, slower),
         false => ControlFlow::Break(()),
     });
-    let (way, kept) = tries.best?;
-    Some(Paced { knots: way.knots(), times: times(&way, points, &kept) })
+    let stopping = |tries: &Tries| tries.certified(&tries.searches[0].stopping(legs)?);
+    let found = tries.best.take().or_else(|| Some((stopping(&tries)?, kept)));
+    let (way, kept) = found.ok_or(Problem::Rest)?;
+    Ok(Paced { knots: way.knots(), times: times(&way, points, &kept) })
 }
 
 /// Those of [`SERIES`] from `least` to `most`, greatest first; `most` itself where there is none.

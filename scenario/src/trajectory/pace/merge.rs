@@ -55,8 +55,13 @@ pub fn merged(points: &[Point], corridor: f64) -> (Vec<usize>, Vec<Leg>) {
     let tolerance = (SHARE * corridor).min(MOST);
     let last = points.len() - 1;
     let mut kept = vec![0];
-    if last > 0 {
-        keep(points, (0, last), tolerance, &mut kept);
+    // Ranges whose ends are kept, the first of them last.
+    let mut ranges = if last > 0 { vec![(0, last)] } else { Vec::new() };
+    while let Some((start, end)) = ranges.pop() {
+        match farthest(points, (start, end), tolerance) {
+            Some(number) => ranges.extend([(number, end), (start, number)]),
+            None => kept.push(end),
+        }
     }
     // Some were farthest at first, and are near between their neighbours.
     for place in (1..kept.len() - 1).rev() {
@@ -74,17 +79,6 @@ fn leg(points: &[Point], (start, end): (usize, usize), corridor: f64) -> Leg {
     let leg = Leg { from: points[start].place, to: points[end].place, corridor, speed };
     let off = points[start + 1..end].iter().map(|point| leg.off(&point.place.xyz()).norm()).fold(0.0, f64::max);
     Leg { corridor: corridor - off, ..leg }
-}
-
-/// Keeps what is needed after `start`, up to `end`.
-fn keep(points: &[Point], (start, end): (usize, usize), tolerance: f64, kept: &mut Vec<usize>) {
-    match farthest(points, (start, end), tolerance) {
-        Some(number) => {
-            keep(points, (start, number), tolerance, kept);
-            keep(points, (number, end), tolerance, kept);
-        }
-        None => kept.push(end),
-    }
 }
 
 /// The point between two that is farthest from their leg; none where all are near, unless it is no leg.

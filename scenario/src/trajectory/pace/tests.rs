@@ -184,6 +184,27 @@ fn dense_points_and_points_near_each_other_do_not_make_it_slower() {
 }
 
 #[test]
+fn a_single_point_is_a_place_to_stay_and_too_many_corners_are_refused() {
+    let alone = read(&vehicle(11.0), "x,y,z\n1,2,3\n", "speed = 1.0").unwrap();
+    assert_eq!((route(&alone).duration(), alone.trajectory.at(5_000_000).position.y), (0.0, 2.0));
+    let zigzag: Vec<[f64; 3]> = (0..400).map(|i| [f64::from(i), f64::from(i % 2), 1.0]).collect();
+    let refused = read(&vehicle(11.0), &table(&zigzag), "speed = 1.0").err().unwrap();
+    assert!(refused.contains("reference.data: has 399 straight legs, and at most 300 can be searched"), "{refused}");
+}
+
+#[test]
+fn bounds_of_the_file_bound_the_path() {
+    let bounds = "[reference_bounds]\nhorizontal_acceleration = 1.0\nvertical_acceleration = 0.3\njerk = 2.0\n\
+                  snap = 6.0\nheading_rate = 0.5\nheading_second_derivative = 0.5\n";
+    let scenario = read(&(vehicle(11.0) + bounds), &table(&LAWN[..3]), "speed = 9.0").unwrap();
+    let (own, allowed) = (scenario.trajectory.bounds(), scenario.configuration.bounds());
+    for (own, allowed) in own.values().iter().zip(allowed.values()) {
+        assert!(*own <= allowed, "{own:?} {allowed:?}");
+    }
+    assert!(own.horizontal_acceleration > 0.9 && own.horizontal_speed > 2.0, "{own:?}");
+}
+
+#[test]
 fn each_leg_keeps_to_its_own_speed() {
     let table = "x,y,z,speed\n0,0,2,5\n10,0,2,1\n12,0,2,5\n22,0,2,5\n";
     let scenario = read(&vehicle(11.0), table, "corridor = 0.3").unwrap();

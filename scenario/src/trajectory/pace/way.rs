@@ -27,6 +27,11 @@ fn resting(place: Vector4<f64>) -> Motion {
 }
 
 impl Way {
+    /// At rest for good.
+    pub fn resting(place: Vector4<f64>) -> Self {
+        Self { knots: vec![resting(place)], pieces: Vec::new(), legs: Vec::new() }
+    }
+
     /// From rest at the start of each leg to rest at its end, which takes the durations that `lasting` says, s.
     pub fn stopping(legs: Vec<Leg>, lasting: impl Fn(&Self) -> f64) -> Self {
         let alone = |leg: &Leg| {
