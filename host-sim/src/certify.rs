@@ -156,9 +156,14 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         Certificate::Extended(certificate) => format!("extended law: {}", failing(&certificate.inequalities)),
     };
     let along = verdict.along().map_or(String::new(), |along| format!("{along}\n"));
+    let on_path = match verdict.on_path() {
+        Some(Ok(on_path)) => format!("along the reference (a flight of a model): {on_path}\n"),
+        Some(Err(_)) => "along the reference (a flight of a model): it does NOT stay near\n".to_owned(),
+        None => String::new(),
+    };
     format!(
         "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{flights}{forms}\n\
-         {tightest}{along}{projection}{remarks}",
+         {tightest}{along}{on_path}{projection}{remarks}",
         scenario.name,
     )
 }

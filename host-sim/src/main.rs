@@ -13,7 +13,7 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::written::above;
 use host_sim::campaign::{self, CampaignError};
-use host_sim::certify::rigorous::Rigorous;
+use host_sim::certify::rigorous::{self, Rigorous};
 use host_sim::certify::{certify, may_fly, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
@@ -363,6 +363,10 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
         let rigorous = Rigorous::new(&scenario.configuration).map_err(|error| error.to_string())?;
         text += &format!("\n{}", rigorous.report());
         certified &= rigorous.holds();
+        if let Some((sentence, holds)) = rigorous::along(&scenario) {
+            text += &sentence;
+            certified &= holds;
+        }
     }
     let may_fly = may_fly::lines(&scenario);
     text += &format!("\n{may_fly}");

@@ -32,6 +32,8 @@ pub struct Along {
     pub taken: Taken,
     /// Where.
     pub at: Place,
+    /// Until when it was judged, microseconds.
+    pub end_us: u64,
     /// The force per mass that is kept free beside it, m/s^2.
     pub force_kept: f32,
     /// How it would certify; none if it does.
@@ -73,7 +75,7 @@ impl Along {
             let less = least(0.0, f64::from(scenario.force_kept), light_enough);
             Remedy { slower, force_kept: less.map(|less| scenario.force_kept - less as f32) }
         });
-        Some(Self { taken, at, force_kept: scenario.force_kept, remedy })
+        Some(Self { taken, at, end_us: end, force_kept: scenario.force_kept, remedy })
     }
 
     /// Whether nothing is limited along it.
@@ -180,7 +182,7 @@ pub fn name(row: Row) -> &'static str {
 
 impl fmt::Display for Along {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { taken: Taken { share, row, .. }, at, force_kept, remedy } = self;
+        let Self { taken: Taken { share, row, .. }, at, force_kept, remedy, .. } = self;
         write!(
             f,
             "reference, {}: takes {:.1} % of what is left beside a force of {force_kept} m/s^2, ",

@@ -10,11 +10,14 @@
 //!   starts. The paper's law, which swings for minutes about a target that is far away, has its theorem.
 //!
 //! Together they are what can be said without the vehicle. None is a proof that a recovery succeeds. Under the extended
-//! law a fourth is about the file's own reference: [along itself](crate::along) it must take less than what is left.
+//! law a fourth is about the file's own reference: [along itself](crate::along) it must take less than what is left,
+//! and the model must stay near it.
 
 use crate::along::Along;
 use crate::file::Scenario;
+use crate::large_motions::on_path::{OnPath, Path};
 use crate::large_motions::{self, Farthest, NotArrived};
+use crate::reference::ReferenceKind;
 use crate::sampled_loop::LoopReport;
 use crate::stability::{Lack, LoopMargin, Shortfall};
 use controller_core::certificate::Certificate;
@@ -34,6 +37,8 @@ pub struct Verdict {
     flights: Option<Result<Farthest, NotArrived>>,
     /// What the reference takes, under the extended law.
     along: Option<Along>,
+    /// How the model flies the reference, where all else holds and it moves.
+    on_path: Option<Result<OnPath, NotArrived>>,
 }
 
 /// Why a scenario may not fly.
@@ -68,11 +73,24 @@ impl Verdict {
             }
             _ => None,
         };
-        Ok(Self { proof, loops, flights, along: Along::of(scenario) })
+        let along = Along::of(scenario);
+        let on_path = match (&proof, flights, along) {
+            (Ok(certified), Some(Ok(_)), Some(along)) if along.holds() && along.end_us > 0 => {
+                let path = Path {
+                    trajectory: &*scenario.trajectory,
+                    end_us: along.end_us,
+                    repeats: matches!(scenario.reference, ReferenceKind::Harmonic(_)),
+                    tolerance: scenario.tolerance,
+                };
+                Some(path.flown(certified, &scenario.loop_timing())?)
+            }
+            _ => None,
+        };
+        Ok(Self { proof, loops, flights, along, on_path })
     }
 
-    /// Everything for which the scenario may not fly: each inequality that fails, each loop without margin, unstable ones first, the first
-    /// model flight that does not arrive, and the reference.
+    /// Everything for which the scenario may not fly: each inequality that fails, each loop without margin, unstable
+    /// ones first, the first model flight that does not arrive, the reference, and the model's flight along it.
     pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
         let failing = self.certificate().inequalities().filter(|inequality| !inequality.holds());
         let lacking = self.loops.iter().filter_map(|report| LoopMargin::LEAST.lacking(report));
@@ -84,6 +102,7 @@ impl Verdict {
             .chain(unstable.into_iter().chain(weak).map(Refusal::Loop))
             .chain(self.not_arrived().map(Refusal::Flight))
             .chain(self.along.filter(|along| !along.holds()).map(Refusal::Reference))
+            .chain(self.on_path.and_then(Result::err).map(Refusal::Flight))
     }
 
     /// The first of them; none if the scenario may fly.
@@ -120,6 +139,12 @@ impl Verdict {
     #[must_use]
     pub fn along(&self) -> Option<&Along> {
         self.along.as_ref()
+    }
+
+    /// How the model flies the reference, if it was flown.
+    #[must_use]
+    pub fn on_path(&self) -> Option<Result<OnPath, NotArrived>> {
+        self.on_path
     }
 
     /// The first model flight that does not arrive.

@@ -32,7 +32,7 @@ fn the_circle_that_is_promised_certifies_and_a_faster_one_does_not() {
 fn the_last_line_is_about_the_circle_and_a_vehicle_that_may_not_hover_may_fly_none() {
     let lines = |text: &str| lines(&Scenario::parse(text, "f").unwrap());
     let last = |text: &str| lines(text).lines().last().unwrap().to_owned();
-    assert!(last(HUMMINGBIRD).starts_with("3 m circle: 7.8") && last(HUMMINGBIRD).ends_with("; tilt limits it"));
+    assert!(last(HUMMINGBIRD).starts_with("3 m circle: 8.4") && last(HUMMINGBIRD).ends_with("; tilt limits it"));
     assert!(lines(HUMMINGBIRD).starts_with("a known path beside a force of 1 m/s^2: "), "{}", lines(HUMMINGBIRD));
     assert!(last(PAPER).starts_with("3 m circle: ") && lines(PAPER).lines().count() == 1, "{}", lines(PAPER));
     let weak = PAPER.replace("torque_max = [0.5, 0.5, 0.5]", "torque_max = [0.2, 0.2, 0.2]");
