@@ -113,17 +113,31 @@ Proof.
   unfold Rmin, Rmax. destruct (Rdichotomy _ _ Hw); repeat destruct (Rle_dec _ _); nra.
 Qed.
 
-(** The part that comes before thrust: at most J_3 A, of what is wanted, against
-    the rate. *)
-Definition braking (j_3 A torque rate : R) : R :=
-  if Rlt_dec (torque * rate) 0 then cut (- (j_3 * A)) (j_3 * A) torque else 0.
+(** How much of a spin a rate error is: nothing up to W, all of it from 2 W on. *)
+Definition spin (W rate : R) : R := cut 0 1 (Rabs rate / W - 1).
 
-Theorem braking_is_part : forall j_3 A torque rate, 0 <= j_3 * A ->
-  Rabs (braking j_3 A torque rate) <= j_3 * A /\ Rmin torque 0 <= braking j_3 A torque rate <= Rmax torque 0.
+Theorem no_spin : forall W rate, 0 < W -> Rabs rate <= W -> spin W rate = 0.
 Proof.
-  intros j_3 A torque rate H. unfold braking, cut. pose proof (Rmin_r torque 0). pose proof (Rmax_r torque 0).
+  intros W rate HW H. assert (Rabs rate / W <= 1) by (apply Rcomplements.Rle_div_l; lra).
+  unfold spin, cut, Rmax, Rmin. repeat destruct (Rle_dec _ _); lra.
+Qed.
+
+(** The part that comes before thrust: at most J_3 A for a spin, of what is
+    wanted, against the rate. *)
+Definition braking (j_3 A W torque rate : R) : R :=
+  if Rlt_dec (torque * rate) 0
+  then cut (- (spin W rate * (j_3 * A))) (spin W rate * (j_3 * A)) torque else 0.
+
+Theorem braking_is_part : forall j_3 A W torque rate, 0 <= j_3 * A ->
+  Rabs (braking j_3 A W torque rate) <= spin W rate * (j_3 * A) <= j_3 * A
+  /\ Rmin torque 0 <= braking j_3 A W torque rate <= Rmax torque 0.
+Proof.
+  intros j_3 A W torque rate H. unfold braking. pose proof (Rmin_r torque 0). pose proof (Rmax_r torque 0).
+  assert (Hs : 0 <= spin W rate <= 1) by (unfold spin, cut, Rmax, Rmin; repeat destruct (Rle_dec _ _); lra).
+  assert (Hm : 0 <= spin W rate * (j_3 * A) <= j_3 * A) by nra.
+  set (most := spin W rate * (j_3 * A)) in *. unfold cut.
   destruct (Rlt_dec _ _); [|rewrite Rabs_R0; lra].
-  split; [apply Rabs_le|]; unfold Rmax, Rmin; repeat destruct (Rle_dec _ _); lra.
+  split; [split; [apply Rabs_le|lra]|]; unfold Rmax, Rmin; repeat destruct (Rle_dec _ _); lra.
 Qed.
 
 (** ** The heading arrives: its energy does not rise *)

@@ -5,7 +5,8 @@
 //! - for the paper's law ([`paper`]) the inequalities on thrust and torque of Assumption 1 and Theorems 1 and 2, in two
 //!   forms, always both: *as printed* ([`printed`]) and *sharp* ([`sharp`], derived in `docs/sharp-bound.md`), which
 //!   decides; and every rotor's least and greatest thrust ([`rotors`]);
-//! - for the extended law ([`extended`]) those of `docs/extended-law.md`.
+//! - for the extended law ([`extended`]) those of `docs/extended-law.md`; and of a reference that is known, instant by
+//!   instant, what it takes of them ([`path`]).
 //!
 //! They bound everything reachable after a reset (filters at zero, path lifted anew), and nothing else.
 
@@ -15,6 +16,7 @@ pub mod extended;
 pub mod form;
 pub mod inequality;
 pub mod paper;
+pub mod path;
 pub mod printed;
 pub mod reachable;
 pub mod rotors;

@@ -153,6 +153,10 @@ pub trait Trajectory {
 
     /// Bounds that hold at every instant, rounded outwards.
     fn bounds(&self) -> ReferenceBounds;
+
+    /// A bound of the position's fifth derivative between two instants, microseconds after the start, m/s^5, Euclidean:
+    /// how fast the snap changes.
+    fn fifth_derivative(&self, from_us: u64, to_us: u64) -> f64;
 }
 
 /// The least single-precision number not below `bound`, which is not negative.

@@ -107,7 +107,7 @@ const NOT_COMPARED: [(&str, &[&str], &str); 37] = [
     ("Attitude", &["side_within_sine"], "it is about every two vectors across each other"),
     ("Attitude", &["pull_of_the_angle", "only_the_target", "angle_below"], OF_WHAT_IS_COMPARED),
     ("Attitude", &["leaving_falls", "switch_falls", "kappa", "V", "descent", "v_falls"], NOT_COMPUTED),
-    ("Heading", &["speed_is_braked", "got_has_the_sign", "braking_is_part"], OF_WHAT_IS_COMPARED),
+    ("Heading", &["speed_is_braked", "got_has_the_sign", "braking_is_part", "no_spin"], OF_WHAT_IS_COMPARED),
     ("Heading", &["energy", "energy_falls"], NOT_COMPUTED),
     ("Fallback", &["filter_stays"], OF_ALL_FUNCTIONS),
     ("Fallback", &["progress", "progress_ends", "progress_is_bounded"], OF_WHAT_IS_COMPARED),

@@ -1,11 +1,13 @@
 //! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
 //! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
-//! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones. A
-//! scenario is certified if all three hold ([`scenario::verdict`]). The certificate itself is about limits, not about
-//! how well a vehicle flies.
+//! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
+//! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them hold
+//! ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What may be
+//! flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;
+pub mod may_fly;
 mod pilot;
 pub mod rigorous;
 pub mod shown;
@@ -67,6 +69,8 @@ fn limits(verdict: &Verdict) -> String {
     };
     all.extend(verdict.lacking().map(|lack| advice::of_loop(&lack)));
     all.extend(verdict.not_arrived().map(|_| advice::OF_FLIGHT.to_owned()));
+    let reference = verdict.along().filter(|along| !along.holds());
+    all.extend(reference.map(|along| advice::of_path(along.taken.row).to_owned()));
     all.iter().map(|what| format!("{begins}: {what}\n")).collect()
 }
 
@@ -151,9 +155,15 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         }
         Certificate::Extended(certificate) => format!("extended law: {}", failing(&certificate.inequalities)),
     };
+    let along = verdict.along().map_or(String::new(), |along| format!("{along}\n"));
+    let on_path = match verdict.on_path() {
+        Some(Ok(on_path)) => format!("along the reference (a flight of a model): {on_path}\n"),
+        Some(Err(_)) => "along the reference (a flight of a model): it does NOT stay near\n".to_owned(),
+        None => String::new(),
+    };
     format!(
         "{}: {decision}\ncommands (a proof): {commands}\nsmall motions (an analysis): {stable}\n{flights}{forms}\n\
-         {tightest}{projection}{remarks}",
+         {tightest}{along}{on_path}{projection}{remarks}",
         scenario.name,
     )
 }

@@ -2,14 +2,17 @@
 //!
 //! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight
 //! has *reached* its reference once it is near it and stays near it until the end: in position within
-//! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. A vehicle that stands on the ground does not
-//! fly: it is away from its reference wherever that is.
+//! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. Where a known path goes beyond
+//! `[reference_bounds]` its heading may lag, so there the tilt alone counts. A vehicle that stands on the ground does
+//! not fly: it is away from its reference wherever that is.
 //!
 //! A flight is *there* once it has been near in both for a second, or from its start if it starts near in both and at
 //! the reference's velocity. From then on it is on its way with its reference, and the greatest distance from it counts
 //! as tracking error: before, it recovers or approaches.
 
 use crate::flight::{Flight, FlightError, Tick};
+use controller_core::reference::{Reference, ReferenceBounds};
+use nalgebra::Vector3;
 use scenario::Scenario;
 
 /// How near to its reference's position a vehicle must stay, m: less than a quadrotor's own size.
@@ -30,6 +33,8 @@ pub struct Flown {
     /// Until when the vehicle was, or may have been, away from its reference in position and in attitude, us.
     away_until_us: (u64, u64),
     period_us: u64,
+    /// `[reference_bounds]`.
+    bounds: ReferenceBounds,
     there: bool,
     last_sign: Option<f32>,
     start_height: Option<f64>,
@@ -57,6 +62,19 @@ pub struct Flown {
     pub strayed: Option<(f64, f64)>,
 }
 
+/// Whether yaw is certified to follow the heading of `reference`: it is within `bounds`.
+#[must_use]
+pub fn heading_is_followed(reference: &Reference, bounds: &ReferenceBounds) -> bool {
+    const ALLOWANCE: f32 = 1e-3;
+    bounds.contain(reference, ALLOWANCE)
+}
+
+/// The part of an attitude's error, modified Rodrigues parameters, that is certified to vanish.
+#[must_use]
+pub fn claimed_error(mrp: &Vector3<f32>, reference: &Reference, bounds: &ReferenceBounds) -> f64 {
+    f64::from(if heading_is_followed(reference, bounds) { mrp.norm() } else { mrp.xy().norm() })
+}
+
 impl Flown {
     /// Nothing seen yet of a flight of `scenario`.
     #[must_use]
@@ -66,6 +84,7 @@ impl Flown {
             steady_from_us: timing.ticks.saturating_sub((timing.ticks / 4).max(1)) * timing.period_us,
             away_until_us: (0, 0),
             period_us: timing.period_us,
+            bounds: *scenario.configuration.bounds(),
             there: false,
             last_sign: None,
             start_height: None,
@@ -109,7 +128,7 @@ impl Flown {
         if position_error > NEAR_POSITION || tick.surroundings.standing {
             self.away_until_us.0 = tick.time_us + self.period_us;
         }
-        if mrp_error > NEAR_MRP {
+        if claimed_error(&diagnostics.mrp, &tick.reference, &self.bounds) > NEAR_MRP {
             self.away_until_us.1 = tick.time_us + self.period_us;
         }
         let velocity_error = (tick.state.velocity - tick.reference.velocity.map(f64::from)).norm();

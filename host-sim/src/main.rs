@@ -13,8 +13,8 @@ use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::written::above;
 use host_sim::campaign::{self, CampaignError};
-use host_sim::certify::rigorous::Rigorous;
-use host_sim::certify::{certify, shown};
+use host_sim::certify::rigorous::{self, Rigorous};
+use host_sim::certify::{certify, may_fly, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
 use host_sim::fly::{FlyError, fly, watched};
@@ -363,10 +363,18 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
         let rigorous = Rigorous::new(&scenario.configuration).map_err(|error| error.to_string())?;
         text += &format!("\n{}", rigorous.report());
         certified &= rigorous.holds();
+        if let Some((sentence, holds)) = rigorous::along(&scenario) {
+            text += &sentence;
+            certified &= holds;
+        }
     }
+    let may_fly = may_fly::lines(&scenario);
+    text += &format!("\n{may_fly}");
     if show {
         // Sections to paste are never folded.
-        print(|| io::stdout().write_all(shown::constants(&scenario).as_bytes()))?;
+        let constants = shown::constants(&scenario);
+        let may_fly: String = may_fly.lines().map(|line| format!("# {line}\n")).collect();
+        print(|| io::stdout().write_all(format!("{constants}\n{may_fly}").as_bytes()))?;
     } else {
         print_text(&text)?;
     }

@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use scenario::sampled_loop::LoopReport;
 use scenario::stability::LoopMargin;
-use scenario::verdict::{Refusal, Verdict};
+use scenario::verdict::Verdict;
 
 /// One inequality of a certificate: `required` below `available`.
 #[pyclass(frozen, get_all, module = "saturated_hybrid")]
@@ -108,13 +108,7 @@ pub fn certify(scenario: &Scenario) -> PyResult<Certificate> {
 
 /// Everything that keeps a scenario on the ground.
 pub fn reasons(verdict: &Verdict) -> Vec<String> {
-    let failing = verdict.certificate().inequalities().filter(|inequality| !inequality.holds());
-    let lacking = verdict.loops().iter().filter_map(|report| LoopMargin::LEAST.lacking(report));
-    failing
-        .map(|one| Refusal::Inequality(*one))
-        .chain(lacking.map(Refusal::Loop))
-        .map(|refusal| refusal.to_string())
-        .collect()
+    verdict.refusals().map(|refusal| refusal.to_string()).collect()
 }
 
 #[pymethods]

@@ -13,7 +13,7 @@ use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;
 use crate::sampled_loop::{Axis, LoopModel, Timing};
 use crate::stability::LoopMargin;
-use crate::verdict::Verdict;
+use crate::verdict::{Refusal, Verdict};
 use controller_core::allocation::{Rotor, Spin};
 use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::extended::actuators::ActuatorParameters;
@@ -59,7 +59,9 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
     if let Some(not_arrived) = verdict.not_arrived() {
         return Err(format!("{name}: {not_arrived}; what cannot be flown is not built"));
     }
-    Ok(verdict.refusal().map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
+    // The reference of the file is no board's.
+    let refusal = verdict.refusal().filter(|refusal| matches!(refusal, Refusal::Inequality(_)));
+    Ok(refusal.map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
 }
 
 /// The scenario's timing on a board.

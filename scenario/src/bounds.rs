@@ -1,6 +1,7 @@
-//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out, they are the bounds of
-//! `[reference]` and, under the extended law, those that the vehicle can fly if they are greater
-//! ([`controller_core::extended::defaults::reference_bounds`]).
+//! `[reference_bounds]`: Omega_r, the references a certificate is to cover. Left out, they are under the extended law
+//! those that the vehicle can fly ([`controller_core::certificate::airframe::flyable`]): the bounds of streams and
+//! missions, since what `[reference]` has is judged [along itself](crate::along). Under the paper's law they are the
+//! bounds of `[reference]`.
 //!
 //! ```toml
 //! [reference_bounds]
@@ -13,7 +14,7 @@
 //! heading_second_derivative = 2.0    # K_nu'', 1/s^2: sqrt(psi''^2 + psi'^4)
 //! ```
 //!
-//! The other six are needed, and none may be less than the scenario's own reference takes.
+//! The other six are needed. Under the paper's law none may be less than the scenario's own reference takes.
 
 use crate::constants;
 use crate::section::{FieldError, Section};
@@ -24,8 +25,7 @@ use controller_core::reference::ReferenceBounds;
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
 pub const DEFAULT_SPEED: f32 = 5.0;
 
-/// Reads `[reference_bounds]`; `own` are the bounds of the scenario's reference, `default` gives the bounds if the
-/// section is left out.
+/// Reads `[reference_bounds]`, which must be no less than `own`; `default` gives the bounds if the section is left out.
 ///
 /// # Errors
 /// Names the bound that is missing, negative, or below what the reference takes.

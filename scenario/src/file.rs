@@ -9,7 +9,7 @@ use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use crate::trajectory::Directory;
+use crate::trajectory::{Directory, Vehicle};
 use crate::{actuation, initial, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
@@ -70,6 +70,8 @@ pub struct Scenario {
     pub reference: ReferenceKind,
     /// How far it may stray from that once it is there, m.
     pub tolerance: f64,
+    /// The force per mass that is kept free along it, m/s^2.
+    pub force_kept: f32,
     /// The same, ready to be evaluated.
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
     /// How its circumstances differ from flight to flight of a campaign.
@@ -127,7 +129,11 @@ impl Scenario {
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
         };
-        let allow = || configuration(&ReferenceBounds::REST).map(|configuration| *configuration.bounds());
+        let force_kept = ReferenceKind::force_kept(root)?;
+        let allow = || {
+            let configuration = configuration(&ReferenceBounds::REST)?;
+            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
+        };
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::tolerance(root)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
@@ -151,6 +157,7 @@ impl Scenario {
             initial,
             reference,
             tolerance,
+            force_kept,
             trajectory,
             campaign,
         })

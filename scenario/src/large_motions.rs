@@ -14,6 +14,8 @@
 //! cycles with these gains at this rate: measured, of vehicles that were given too little [turning
 //! rate](controller_core::extended::turning), or ticks too long for their gains.
 
+pub mod on_path;
+
 use crate::body::BodyState;
 use crate::sampled_loop::Timing;
 use controller_core::certificate::certified::Certified;
@@ -119,6 +121,8 @@ struct Model {
     mass: f64,
     gravity: f64,
     inertia: Vector3<f64>,
+    /// Across, per velocity, 1/s.
+    drag: f64,
     step: f64,
     steps: u32,
     /// What a step keeps of the difference to the command.
@@ -144,6 +148,7 @@ impl Model {
             mass: f64::from(vehicle.mass),
             gravity: f64::from(vehicle.gravity),
             inertia: vehicle.inertia.map(f64::from),
+            drag: 0.0,
             step,
             steps: steps as u32,
             kept: if timing.rotor_lag > 0.0 { (-step / timing.rotor_lag).exp() } else { 0.0 },
@@ -207,7 +212,8 @@ impl Model {
         };
         let middle = angular_velocity + accelerated(&angular_velocity) * (0.5 * h);
         let between = BodyState { attitude: turned(&angular_velocity, 0.5 * h), ..self.body };
-        let acceleration = between.thrust_axis() * (self.thrust / self.mass) - Vector3::z() * self.gravity;
+        let drag = Vector3::new(self.body.velocity.x, self.body.velocity.y, 0.0) * self.drag;
+        let acceleration = between.thrust_axis() * (self.thrust / self.mass) - Vector3::z() * self.gravity - drag;
         self.body.attitude = turned(&middle, h);
         self.body.angular_velocity += accelerated(&middle) * h;
         self.body.position += (self.body.velocity + acceleration * (0.5 * h)) * h;

@@ -13,7 +13,7 @@
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
 //! | `[sampling]` | no delay |
 //! | `[reference]` | hover where the flight starts, facing world x; 1 m above the origin if `[initial]` has no position |
-//! | `[reference_bounds]` | the bounds that `[reference]` states of itself, or what the vehicle can fly ([`bounds`]) |
+//! | `[reference_bounds]` | under the extended law what the vehicle can fly, else the bounds of `[reference]` ([`bounds`]) |
 //! | `[truth]`, `[drag]`, `[wind]`, `[disturbance]`, `[battery]`, `[failure]`, `[ground]`, `[sensors]` ([`reality`]) | as the model has it |
 //! | `[campaign]` | the circumstances of [`campaign`] |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
@@ -23,12 +23,13 @@
 //! types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
-//! which is about the small motions of the [`sampled_loop`], and from the [`large_motions`] of a model; [`board`],
-//! whether the firmware can.
+//! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a model, and from what the
+//! reference takes [along itself](along); [`board`], whether the firmware can.
 //!
 //! [`policy`] reads the files of policies.
 
 pub mod actuation;
+pub mod along;
 pub mod board;
 pub mod body;
 pub mod bounds;

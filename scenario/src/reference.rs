@@ -3,12 +3,13 @@
 
 use crate::initial::read_position;
 use crate::section::{FieldError, Section};
-use crate::trajectory::{self, Directory, Route, stretch};
+use crate::trajectory::{self, Allowed, Directory, Route, stretch};
+use controller_core::certificate::path::FORCE_KEPT;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
+use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
-use controller_core::reference::{ReferenceBounds, Trajectory};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -36,15 +37,11 @@ pub enum ReferenceKind {
 
 impl ReferenceKind {
     /// Reads `[reference]`; the default if it is missing. Files that it names lie in `directory`; points that come
-    /// with a speed only are passed inside the bounds that the vehicle is to `allow`.
+    /// with a speed only are passed as the vehicle is to `allow`.
     ///
     /// # Errors
     /// Names the field that is missing, unknown, or no number.
-    pub fn read(
-        root: &Section,
-        directory: Directory,
-        allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-    ) -> Result<Self, FieldError> {
+    pub fn read(root: &Section, directory: Directory, allow: Allowed) -> Result<Self, FieldError> {
         let Some(section) = root.optional_section("reference")? else {
             let position = read_position(root)?.unwrap_or(DEFAULT_POSITION);
             return Ok(Self::Hover { position, heading: 0.0 });
@@ -74,6 +71,19 @@ impl ReferenceKind {
         Err(FieldError::new(section.path_of("tolerance"), format!("must be positive, found {tolerance}")))
     }
 
+    /// Reads `force_kept` of `[reference]`, m/s^2: the force per mass, in any direction, that is kept free along it.
+    ///
+    /// # Errors
+    /// Names the field if it is negative or no number.
+    pub fn force_kept(root: &Section) -> Result<f32, FieldError> {
+        let Some(section) = root.optional_section("reference")? else { return Ok(FORCE_KEPT) };
+        let force = section.number_or("force_kept", f64::from(FORCE_KEPT))?;
+        if force >= 0.0 {
+            return Ok(force as f32);
+        }
+        Err(FieldError::new(section.path_of("force_kept"), format!("must not be negative, found {force}")))
+    }
+
     /// The trajectory itself.
     ///
     /// # Errors
@@ -94,7 +104,7 @@ impl ReferenceKind {
 }
 
 fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
-    section.allow(&["kind", "tolerance", "position", "heading_deg"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "position", "heading_deg"])?;
     let position = section.vector("position")?;
     let heading = section.number_or("heading_deg", 0.0)?.to_radians();
     Ok(ReferenceKind::Hover { position, heading })
@@ -102,7 +112,7 @@ fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
 
 /// `phase` and `heading`, or fields of it, are zero where they are left out.
 fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
-    section.allow(&["kind", "tolerance", "center", "amplitude", "frequency", "phase", "heading"])?;
+    section.allow(&["kind", "tolerance", "force_kept", "center", "amplitude", "frequency", "phase", "heading"])?;
     let mut heading = HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 0.0, frequency: 0.0 };
     if let Some(section) = section.optional_section("heading")? {
         section.allow(&["offset", "rate", "amplitude", "frequency"])?;

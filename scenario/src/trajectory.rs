@@ -12,7 +12,7 @@
 //! [reference]
 //! kind = "waypoints"                 # through every point
 //! file = "gates.csv"                 # or points = [{ t = 0.0, position = [0.0, 0.0, 1.0] }, …]
-//! speed = 3.0                        # m/s at most, and otherwise as fast as the bounds allow; with this no times
+//! speed = 3.0                        # m/s at most, and otherwise as fast as the vehicle may; with this no times
 //! corridor = 0.3                     # m: how far from the straight legs the path may be; left out: 0.3
 //! ```
 //!
@@ -20,7 +20,7 @@
 //! |---|---|
 //! | `row`, `table`, `pieces` | rows from a file |
 //! | `fit`, `band`, `lead` | a smooth path near rows, which begins and ends at rest |
-//! | `pace` | times for points that have none |
+//! | `pace` | the quickest path through points that have no times |
 //! | [`mod@stretch`] | by how much times must grow for a path's derivatives to fit |
 
 mod band;
@@ -33,11 +33,15 @@ pub mod stretch;
 mod table;
 
 use crate::section::{FieldError, Section};
+use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
+use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
-use controller_core::reference::{ReferenceBounds, inside};
+use pace::limits::Limits;
+use pace::merge::Point;
+use pace::{Paced, Problem};
 use row::Row;
 use std::path::Path;
 
@@ -85,6 +89,20 @@ pub enum Way {
     },
 }
 
+/// The vehicle that is to fly a path.
+#[derive(Debug, Clone)]
+pub struct Vehicle {
+    /// What it is certified for, beside this path.
+    pub configuration: Configuration,
+    /// Whether the file has `[reference_bounds]`.
+    pub has_bounds: bool,
+    /// The force per mass that is kept free along a path, m/s^2.
+    pub force_kept: f32,
+}
+
+/// What the vehicle may fly, which is worked out only where it matters.
+pub type Allowed<'a> = &'a dyn Fn() -> Result<Vehicle, FieldError>;
+
 /// Where files that a scenario names lie: beside the scenario's own.
 pub type Directory<'a> = Option<&'a Path>;
 
@@ -92,16 +110,13 @@ pub type Directory<'a> = Option<&'a Path>;
 ///
 /// # Errors
 /// Names the field and what is wrong.
-pub fn read_waypoints(
-    section: &Section,
-    directory: Directory,
-    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "points", "file", "data", "path", "speed", "corridor"])?;
+pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
+    section.allow(&["kind", "tolerance", "force_kept", "points", "file", "data", "path", "speed", "corridor"])?;
     let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
-    if section.has("speed") {
+    if section.has("speed") || rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
         return paced(section, &rows, &field, &allow()?);
     }
+    refuse_speeds(&rows, &field)?;
     let way = match section.has("path").then(|| section.text("path")).transpose()? {
         None | Some("smooth") => Way::Smooth,
         Some("inside") => Way::Inside,
@@ -136,6 +151,17 @@ pub fn read_waypoints(
     Ok(Route { points, knots, way })
 }
 
+/// Refuses a speed of rows whose times say how fast they are passed.
+fn refuse_speeds(rows: &[Row], field: &str) -> Result<(), FieldError> {
+    match rows.iter().position(|row| row.speed.is_some()) {
+        Some(number) => {
+            let problem = "goes with points without times; leave it out, or the times";
+            Err(FieldError::new(format!("{field}[{number}].speed"), problem))
+        }
+        None => Ok(()),
+    }
+}
+
 /// A refusal of a field of the point at `place`, with the value that the file has there.
 fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError {
     let field = format!("{place}.{}", error.field);
@@ -145,9 +171,9 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 }
 
 /// Times for points that are to be passed with a speed at most.
-fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds) -> Result<Route, FieldError> {
+fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Result<Route, FieldError> {
     let corridor = positive(section, "corridor", CORRIDOR)?;
-    let speed = positive(section, "speed", 0.0)?;
+    let speed = positive(section, "speed", f64::INFINITY)?;
     if section.has("path") {
         return Err(FieldError::new(section.path_of("path"), "goes with times; with speed there is corridor"));
     }
@@ -155,30 +181,42 @@ fn paced(section: &Section, rows: &[Row], field: &str, allowed: &ReferenceBounds
         let problem = "chooses the times: leave it out, or the points' own times";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
-    let points: Vec<pace::Point> =
-        rows.iter().map(|row| pace::Point { position: row.position, heading: row.heading }).collect();
-    if let Some(same) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+    if let Some(number) = rows.iter().take(rows.len() - 1).position(|row| row.speed.is_none() && speed.is_infinite()) {
+        let problem = "missing; give every point a speed, or one for all of them";
+        return Err(FieldError::new(format!("{field}[{number}].speed"), problem));
+    }
+    let rows = slowed(rows, 1.0);
+    let place = |row: &Row| row.position.push(row.heading);
+    if let Some(same) = rows.windows(2).position(|pair| place(&pair[0]) == place(&pair[1])) {
         let problem = "is the same as the one before: to wait, give the points times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
-    let mut values = allowed.values();
-    if values.iter().any(|bound| *bound <= 0.0) {
+    let limits = Limits::of(vehicle);
+    if limits.bounds().values().iter().any(|bound| *bound <= 0.0) {
         let problem =
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
         return Err(FieldError::new(section.path_of("speed"), problem));
     }
-    if let Some(horizontal) = values.first_mut() {
-        *horizontal = horizontal.min(speed as f32);
-    }
-    let allowed = ReferenceBounds::from_values(values);
-    let (knots, named) =
-        pace::paced(&points, corridor, &allowed).map_err(|error| FieldError::new(field, error.to_string()))?;
-    let points = named.iter().map(|i| waypoint(&knots[*i])).collect();
+    let own = |row: &Row| row.speed.map_or(speed, |own| own.min(speed));
+    let points: Vec<Point> = rows.iter().map(|row| Point { place: place(row), speed: own(row) }).collect();
+    let greatest = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let Paced { knots, times } = pace::paced(&points, corridor, greatest, &limits).map_err(|problem| {
+        let problem = match problem {
+            Problem::Legs(legs) => format!(
+                "has {legs} straight legs, and at most {} can be searched: widen the corridor, leave points out, or \
+                 give them times",
+                pace::MOST_LEGS
+            ),
+            Problem::Rest => "no path keeps to what the vehicle may fly, however slow it is".to_owned(),
+        };
+        FieldError::new(field, problem)
+    })?;
+    let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
     Ok(Route { points, knots, way: Way::Paced { corridor } })
 }
 
-fn waypoint(knot: &Knot) -> Waypoint {
-    Waypoint { time: knot.time_us as f64 * 1e-6, position: knot.position.into(), heading: knot.heading }
+fn waypoint(time: f64, row: &Row) -> Waypoint {
+    Waypoint { time, position: row.position.into(), heading: row.heading }
 }
 
 /// Reads a `[reference]` of rows that are followed; a path that begins or ends in motion gets a beginning and an end
@@ -186,13 +224,10 @@ fn waypoint(knot: &Knot) -> Waypoint {
 ///
 /// # Errors
 /// Names the field and what is wrong.
-pub fn read_trajectory(
-    section: &Section,
-    directory: Directory,
-    allow: &dyn Fn() -> Result<ReferenceBounds, FieldError>,
-) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "file", "data", "within", "stretch"])?;
+pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
+    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "within", "stretch"])?;
     let (rows, field) = rows(section, directory)?;
+    refuse_speeds(&rows, &field)?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
     let (Some(times), true) = (times, rows.len() > 1) else {
@@ -210,13 +245,10 @@ pub fn read_trajectory(
         FieldError::new(field.clone(), problem)
     })?;
     let mut knots = found.knots;
-    let led_in =
-        lead::lead(&mut knots, &allow()?).map_err(|error| FieldError::new(field, error.to_string()))? as f64 * 1e-6;
-    let points = timed.iter().map(|(time, row)| Waypoint {
-        time: led_in + time,
-        position: row.position.into(),
-        heading: row.heading,
-    });
+    let led_in = lead::lead(&mut knots, allow()?.configuration.bounds())
+        .map_err(|error| FieldError::new(field, error.to_string()))? as f64
+        * 1e-6;
+    let points = timed.iter().map(|(time, row)| waypoint(led_in + time, row));
     Ok(Route { points: points.collect(), knots, way: Way::Near { farthest: found.farthest, lead_in: led_in } })
 }
 
@@ -239,13 +271,14 @@ fn slowed(rows: &[Row], stretch: f64) -> Vec<Row> {
 /// The points that stand in the scenario itself, with the name that errors use.
 fn points(section: &Section) -> Result<(Vec<Row>, String), FieldError> {
     let read = |point: &Section| {
-        point.allow(&["t", "position", "heading_deg"])?;
+        point.allow(&["t", "position", "heading_deg", "speed"])?;
         Ok(Row {
             time: point.has("t").then(|| point.number("t")).transpose()?,
             position: point.vector("position")?,
             heading: point.number_or("heading_deg", 0.0)?.to_radians(),
             velocity: None,
             acceleration: None,
+            speed: point.has("speed").then(|| positive(point, "speed", 0.0)).transpose()?,
         })
     };
     let field = section.path_of("points");

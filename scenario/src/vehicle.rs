@@ -27,7 +27,7 @@ use nalgebra::Vector3;
 const DEFAULT_GRAVITY: f64 = 9.81;
 
 /// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its
-/// references; its own reference is within `own`. The extended law's estimates count on rotors that respond as
+/// references. Its own reference is within `own`; so the paper law's bounds must be no less. The extended law's estimates count on rotors that respond as
 /// `actuators` says.
 ///
 /// # Errors
@@ -54,7 +54,7 @@ pub fn read_configuration(
             let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
             let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
             let law = read_extended(root, &airframe)?;
-            let bounds = read_bounds(root, own, || flyable(&airframe, law, own))?;
+            let bounds = read_bounds(root, &ReferenceBounds::REST, || flyable(&airframe, law))?;
             (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
         }
         LawName::Paper if root.has("estimates") => {

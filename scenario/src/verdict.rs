@@ -1,6 +1,6 @@
 //! Whether a scenario may fly.
 //!
-//! Three things must hold, and none says anything about the others:
+//! Three things must hold of a vehicle, and none says anything about the others:
 //!
 //! - the *certificate* is a proof about commands: whatever the vehicle does, the law never asks for more than it has. A
 //!   vehicle whose rotors follow a second late falls with every command within its limits.
@@ -9,12 +9,17 @@
 //! - the [model flights](crate::large_motions) of the extended law show that large motions die out too, from a few
 //!   starts. The paper's law, which swings for minutes about a target that is far away, has its theorem.
 //!
-//! Together they are what can be said without the vehicle. None is a proof that a recovery succeeds.
+//! Together they are what can be said without the vehicle. None is a proof that a recovery succeeds. Under the extended
+//! law a fourth is about the file's own reference: [along itself](crate::along) it must take less than what is left,
+//! and the model must stay near it.
 
+use crate::along::Along;
 use crate::file::Scenario;
+use crate::large_motions::on_path::{OnPath, Path};
 use crate::large_motions::{self, Farthest, NotArrived};
+use crate::reference::ReferenceKind;
 use crate::sampled_loop::LoopReport;
-use crate::stability::{Lack, LoopMargin};
+use crate::stability::{Lack, LoopMargin, Shortfall};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
@@ -30,10 +35,13 @@ pub struct Verdict {
     loops: [LoopReport; 6],
     /// The model flights; none are flown where one of the others does not hold.
     flights: Option<Result<Farthest, NotArrived>>,
+    /// What the reference takes, under the extended law.
+    along: Option<Along>,
+    /// How the model flies the reference, where all else holds and it moves.
+    on_path: Option<Result<OnPath, NotArrived>>,
 }
 
-/// Why a scenario may not fly: the first inequality that fails, or else the first loop without margin, or else the
-/// first model flight that does not arrive.
+/// Why a scenario may not fly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// An inequality of the certificate.
@@ -42,6 +50,8 @@ pub enum Refusal {
     Loop(Lack),
     /// A model flight.
     Flight(NotArrived),
+    /// The reference.
+    Reference(Along),
 }
 
 impl Verdict {
@@ -63,15 +73,42 @@ impl Verdict {
             }
             _ => None,
         };
-        Ok(Self { proof, loops, flights })
+        let along = Along::of(scenario);
+        let on_path = match (&proof, flights, along) {
+            (Ok(certified), Some(Ok(_)), Some(along)) if along.holds() && along.end_us > 0 => {
+                let path = Path {
+                    trajectory: &*scenario.trajectory,
+                    end_us: along.end_us,
+                    repeats: matches!(scenario.reference, ReferenceKind::Harmonic(_)),
+                    tolerance: scenario.tolerance,
+                };
+                Some(path.flown(certified, &scenario.loop_timing())?)
+            }
+            _ => None,
+        };
+        Ok(Self { proof, loops, flights, along, on_path })
     }
 
-    /// Why the scenario may not fly; none if it may.
+    /// Everything for which the scenario may not fly: each inequality that fails, each loop without margin, unstable
+    /// ones first, the first model flight that does not arrive, the reference, and the model's flight along it.
+    pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
+        let failing = self.certificate().inequalities().filter(|inequality| !inequality.holds());
+        let lacking = self.loops.iter().filter_map(|report| LoopMargin::LEAST.lacking(report));
+        let (unstable, weak): (Vec<_>, Vec<_>) =
+            lacking.partition(|lack| matches!(lack.what, Shortfall::Unstable { .. }));
+        failing
+            .copied()
+            .map(Refusal::Inequality)
+            .chain(unstable.into_iter().chain(weak).map(Refusal::Loop))
+            .chain(self.not_arrived().map(Refusal::Flight))
+            .chain(self.along.filter(|along| !along.holds()).map(Refusal::Reference))
+            .chain(self.on_path.and_then(Result::err).map(Refusal::Flight))
+    }
+
+    /// The first of them; none if the scenario may fly.
     #[must_use]
     pub fn refusal(&self) -> Option<Refusal> {
-        let failing = self.certificate().inequalities().find(|inequality| !inequality.holds());
-        let failing = failing.copied().map(Refusal::Inequality);
-        failing.or_else(|| self.lacking().map(Refusal::Loop)).or_else(|| self.not_arrived().map(Refusal::Flight))
+        self.refusals().next()
     }
 
     /// The certificate, whether it holds or not.
@@ -98,6 +135,18 @@ impl Verdict {
         self.flights
     }
 
+    /// What the reference takes of what its vehicle leaves; none under the paper's law.
+    #[must_use]
+    pub fn along(&self) -> Option<&Along> {
+        self.along.as_ref()
+    }
+
+    /// How the model flies the reference, if it was flown.
+    #[must_use]
+    pub fn on_path(&self) -> Option<Result<OnPath, NotArrived>> {
+        self.on_path
+    }
+
     /// The first model flight that does not arrive.
     #[must_use]
     pub fn not_arrived(&self) -> Option<NotArrived> {
@@ -120,6 +169,7 @@ impl fmt::Display for Refusal {
             }
             Self::Loop(lack) => write!(f, "{lack}"),
             Self::Flight(not_arrived) => write!(f, "{not_arrived}"),
+            Self::Reference(along) => write!(f, "{along}"),
         }
     }
 }

@@ -36,13 +36,22 @@ def eighteen():
         yield radius * math.cos(angle), radius * math.sin(angle), 1.5 + 0.5 * (i % 3)
 
 
-def eighteen_file(directory):
-    """A scenario of the eighteen points, by their file."""
-    text = (ROOT / "scenarios/gates.toml").read_text().split("points = [")[0]
-    path = directory / "eighteen.toml"
-    path.write_text(f'{text}file = "eighteen.csv"\n'.replace('"gates"', '"eighteen"'))
+def gates_files(directory):
+    """Scenarios of the gates and of the eighteen points, inside the bounds of streams."""
+    text = (ROOT / "scenarios/gates.toml").read_text()
     rows = "".join(f"{x:.3f},{y:.3f},{z}\n" for x, y, z in eighteen())
     (directory / "eighteen.csv").write_text(f"x,y,z\n{rows}")
+    head = text.split("points = [")[0]
+    mine = f'{head}file = "eighteen.csv"\n'.replace('"gates"', '"eighteen"')
+    return [for_streams(directory / "gates.toml", text), for_streams(directory / "eighteen.toml", mine)]
+
+
+def for_streams(path, text):
+    """The scenario with the bounds that `certify --show` prints."""
+    path.write_text(text)
+    command = [os.environ["SIMULATOR"], "certify", str(path), "--show"]
+    shown = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    path.write_text(f"{text}\n{shown[shown.index('[reference_bounds]'):]}")
     return path
 
 
@@ -120,9 +129,9 @@ def fly_mission(file):
 def main():
     with tempfile.TemporaryDirectory() as name:
         directory = pathlib.Path(name)
-        mine = eighteen_file(directory)
-        shipped = [(ROOT / f"scenarios/{name}.toml").resolve() for name in ("eight", "pieces", "gates")]
-        for file in [*shipped, mine]:
+        gates, mine = gates_files(directory)
+        shipped = [(ROOT / f"scenarios/{name}.toml").resolve() for name in ("eight", "pieces")]
+        for file in [*shipped, gates, mine]:
             simulator("certify", file)
             stream(file, directory)
         fly_mission(mine)

@@ -19,7 +19,7 @@ impl Configuration {
     pub fn of_airframe(airframe: &Airframe) -> Result<Self, ParameterError> {
         let parameters = Extended::new(defaults::constants(airframe, &NOTHING_GIVEN), airframe.vehicle)?;
         let law = ExtendedLaw { parameters, actuators: airframe.actuators };
-        of(airframe, law, flyable(airframe, law, &ReferenceBounds::REST))
+        of(airframe, law, flyable(airframe, law))
     }
 }
 
@@ -31,15 +31,15 @@ fn of(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> Result<
     }
 }
 
-/// The widest bounds of references that `law` certifies on `airframe`, `least` in any case: a share of
-/// [`defaults::reference_bounds`], lessened in steps of a tenth. If not even a hundredth certifies it is all of them,
-/// so that the certificate names the reason.
+/// The widest bounds of references that `law` certifies on `airframe`: a share of [`defaults::reference_bounds`],
+/// lessened in steps of a tenth. If not even a hundredth certifies it is all of them, so that the certificate names the
+/// reason.
 #[must_use]
-pub fn flyable(airframe: &Airframe, law: ExtendedLaw, least: &ReferenceBounds) -> ReferenceBounds {
+pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
     let most = defaults::reference_bounds(airframe, &law.parameters);
     let mut share = 1.0;
     for _ in 0..TRIES {
-        let bounds = least.covering(&ReferenceBounds {
+        let bounds = ReferenceBounds {
             horizontal_acceleration: share * most.horizontal_acceleration,
             vertical_acceleration: share * most.vertical_acceleration,
             jerk: share * most.jerk,
@@ -47,14 +47,14 @@ pub fn flyable(airframe: &Airframe, law: ExtendedLaw, least: &ReferenceBounds) -
             heading_rate: share * most.heading_rate,
             heading_second_derivative: share * most.heading_second_derivative,
             ..most
-        });
+        };
         let certificate = of(airframe, law, bounds).and_then(|configuration| Certificate::new(&configuration));
         if certificate.is_ok_and(|certificate| certificate.holds()) {
             return bounds;
         }
         share *= 0.9;
     }
-    least.covering(&most)
+    most
 }
 
 #[cfg(test)]

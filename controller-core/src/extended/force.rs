@@ -15,7 +15,7 @@ use core::hint::cold_path;
 use nalgebra::Vector3;
 
 /// The part of U that a force may use up together with the reference.
-const HELD_SHARE: f32 = 0.99;
+pub const HELD_SHARE: f32 = 0.99;
 
 /// The constants of learning from an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,9 +9,10 @@
 //! | y | (R~^T omega_d')_3 - (omega x f)_3 - c_2 (omega_3 - f_3 + v(psi)): the wanted angular acceleration |
 //! | `torque` | J_3 y - (J_1 - J_2) omega_1 omega_2, less the bias: what yaw asks for |
 //!
-//! What it gets is between the ends that tilt and thrust leave ([`super::thrust_range`]). To brake, it has J_3 A before
-//! thrust ([`HeadingLaw::braking`]): a spin comes to rest under full thrust as well. The tilt's feedback does not know
-//! yaw, so that nothing else depends on what it gets.
+//! What it gets is between the ends that tilt and thrust leave ([`super::thrust_range`]). To brake a spin, a rate error
+//! above W_max, it has J_3 A before thrust ([`HeadingLaw::braking`]): a spin ends under full thrust as well. A heading
+//! that merely lags costs no thrust. The tilt's feedback does not know yaw, so that nothing else depends on what it
+//! gets.
 
 use super::parameters::ExtendedParameters;
 use crate::error::{ParameterError, Reason, require};
@@ -44,6 +45,8 @@ pub struct HeadingLaw {
     /// k^2 / 2, 1/s^2, and k^2 / W_max^2.
     braking: f32,
     cruising: f32,
+    /// 1 / W_max, s.
+    per_spin: f32,
     /// A, rad/s^2.
     acceleration: f32,
     inertia: f32,
@@ -71,6 +74,7 @@ impl HeadingLaw {
             approach: k,
             braking: 0.5 * k * k,
             acceleration: p.yaw_acceleration,
+            per_spin: 1.0 / p.yaw_rate,
             cruising: (k / p.yaw_rate) * (k / p.yaw_rate),
             inertia: inertia.z,
             difference: inertia.x - inertia.y,
@@ -97,10 +101,12 @@ impl HeadingLaw {
         self.inertia * wanted - self.difference * velocity.x * velocity.y
     }
 
-    /// The part of a yaw `torque` that comes before thrust, N m: what brakes omega_3 - f_3, up to J_3 A.
+    /// The part of a yaw `torque` that comes before thrust, N m: what brakes omega_3 - f_3 where that is above W_max,
+    /// up to a part of J_3 A that is all of it from 2 W_max on.
     #[must_use]
     #[inline(always)]
     pub fn braking(&self, torque: f32, rate_error: f32) -> f32 {
-        if torque * rate_error < 0.0 { math::within(torque, self.inertia * self.acceleration) } else { 0.0 }
+        let spin = math::between(rate_error.abs() * self.per_spin - 1.0, 0.0, 1.0);
+        if torque * rate_error < 0.0 { math::within(torque, spin * self.inertia * self.acceleration) } else { 0.0 }
     }
 }

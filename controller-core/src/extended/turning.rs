@@ -8,7 +8,7 @@
 //! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
 //! | \|q\| <= alpha, the greatest torque over J_max | [`TurningLimit::turned`] |
-//! | (p + h q) . z >= -(alpha_0 / Omega) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
+//! | (p + h q) . z >= -sqrt(alpha / 2) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
 //! | \|p + h q\| <= Omega | |
 //! | J R~^T omega_rho', omega_rho' = (-q_2, q_1, 0) | spent last: the tick shortens q to what its [budget](super::budget) has left |
 //! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | [`TurningLimit::change`]: c_z stays above -A_- |
@@ -24,11 +24,12 @@
 use super::parameters::ExtendedParameters;
 use crate::attitude_reference::Turn;
 use crate::math;
+use crate::math::real::Real;
 use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// k, 1/s: how softly u arrives at its ends; at most half a tick's.
-const SOFTNESS: f32 = 10.0;
+pub const SOFTNESS: f32 = 10.0;
 
 /// How much of what thrust takes at once may push across, m/s^2.
 pub const PUSH_ACROSS: f32 = 5.0;
@@ -40,7 +41,7 @@ pub struct TurningLimit {
     rate: f32,
     acceleration: f32,
     cosine: f32,
-    /// alpha_0 / Omega, 1/s.
+    /// sqrt(alpha / 2), 1/s.
     closing: f32,
     /// k, 1/s.
     softness: f32,
@@ -57,7 +58,7 @@ impl TurningLimit {
             rate: p.turn_rate,
             acceleration,
             cosine: (1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))) as f32,
-            closing: p.turn_reserve / p.turn_rate,
+            closing: closing(f64::from(acceleration)) as f32,
             softness: math::lesser(SOFTNESS, 0.5 / period),
             a_down: p.a_down,
         }
@@ -140,6 +141,13 @@ impl TurningLimit {
         let left = math::sqrt(math::greater(most * most - along * along, 0.0));
         shortened(shortened(q - z * q.dot(&z), left) + z * along, most)
     }
+}
+
+/// How fast rho_z may fall towards the edge of the cone, per distance from it, 1/s, for an alpha in rad/s^2: braking
+/// takes half of alpha from upright on, and less from there.
+#[must_use]
+pub fn closing<R: Real>(acceleration: R) -> R {
+    (acceleration * 0.5).sqrt_of_rounded()
 }
 
 /// `v`, at most `length` long.

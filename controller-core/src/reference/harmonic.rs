@@ -172,6 +172,7 @@ pub struct Harmonic {
     swing_rate: f32,
     swing_acceleration: f32,
     bounds: ReferenceBounds,
+    fifth_derivative: f64,
 }
 
 impl Harmonic {
@@ -228,6 +229,7 @@ impl Harmonic {
             swing_rate: swing_rate as f32,
             swing_acceleration: (-swing_rate * heading.frequency) as f32,
             bounds,
+            fifth_derivative: Wave::bound(&wave(5)) * (1.0 + ROUNDING),
         })
     }
 
@@ -287,5 +289,9 @@ impl Trajectory for Harmonic {
 
     fn bounds(&self) -> ReferenceBounds {
         self.bounds
+    }
+
+    fn fifth_derivative(&self, _from_us: u64, _to_us: u64) -> f64 {
+        self.fifth_derivative
     }
 }

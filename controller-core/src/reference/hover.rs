@@ -45,4 +45,8 @@ impl Trajectory for Hover {
     fn bounds(&self) -> ReferenceBounds {
         ReferenceBounds::REST
     }
+
+    fn fifth_derivative(&self, _from_us: u64, _to_us: u64) -> f64 {
+        0.0
+    }
 }

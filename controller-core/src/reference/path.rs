@@ -81,4 +81,11 @@ impl<S: AsRef<[Segment]>> Trajectory for Path<S> {
     fn bounds(&self) -> ReferenceBounds {
         self.bounds
     }
+
+    fn fifth_derivative(&self, from_us: u64, to_us: u64) -> f64 {
+        let segments = self.segments.as_ref();
+        let first = segments.partition_point(|segment| segment.end_us() <= from_us);
+        let crossed = segments.iter().skip(first).take_while(|segment| segment.start_us() <= to_us);
+        crossed.map(Segment::fifth_derivative).fold(0.0, f64::max)
+    }
 }

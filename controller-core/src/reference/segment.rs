@@ -13,6 +13,7 @@ use super::bernstein::{DEGREE_ZERO, Supremum, combine, raise};
 use super::knot::{Anchor, Derivatives, Knot};
 use super::phase;
 use crate::heading::Heading;
+use crate::math;
 use nalgebra::{Vector2, Vector3, Vector4};
 
 /// A polynomial piece.
@@ -90,6 +91,11 @@ impl Segment {
         }
     }
 
+    /// When it takes over, microseconds.
+    pub(super) fn start_us(&self) -> u64 {
+        self.start_us
+    }
+
     /// When the next segment takes over, microseconds.
     pub(super) fn end_us(&self) -> u64 {
         self.end_us
@@ -101,6 +107,15 @@ impl Segment {
             && self.jerk.iter().chain(&self.snap).all(is_finite);
         let largest = self.offset.iter().map(Vector4::amax).fold(0.0, f32::max);
         if finite { self.origin.position.amax() + largest } else { f32::INFINITY }
+    }
+
+    /// A bound of the position's fifth derivative, m/s^5: of its control points, which are those of the snap less their
+    /// neighbours.
+    pub(super) fn fifth_derivative(&self) -> f64 {
+        let rate = 5.0 / (self.end_us.saturating_sub(self.start_us) as f64 * 1e-6);
+        let pairs = self.snap.iter().zip(self.snap.iter().skip(1));
+        let squares = pairs.map(|(a, b)| (b - a).map(f64::from).norm_squared());
+        rate * math::sqrt_f64(squares.fold(0.0, f64::max))
     }
 
     /// The reference at `time_us`, from the segment's start to its end.

@@ -125,4 +125,8 @@ impl Trajectory for Waypoints {
     fn bounds(&self) -> ReferenceBounds {
         self.0.bounds()
     }
+
+    fn fifth_derivative(&self, from_us: u64, to_us: u64) -> f64 {
+        self.0.fifth_derivative(from_us, to_us)
+    }
 }

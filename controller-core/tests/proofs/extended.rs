@@ -48,7 +48,7 @@ pub(super) fn the_limiter_is_that_of_the_proofs() {
         let found = limit.turned(&turn, &across.push(tilt.cos()));
         let proofs = Proofs::read("Limiter")
             .with(&of(&[("period", period), ("alpha", alpha), ("rate_max", p.turn_rate), ("along", tilt.cos())]))
-            .with(&of(&[("closing", p.turn_reserve / p.turn_rate), ("cosine", p.tilt_max.cos())]))
+            .with(&of(&[("closing", (0.5 * alpha).sqrt()), ("cosine", p.tilt_max.cos())]))
             .with_value("rate", plane(&rate))
             .with_value("wanted", plane(&wanted))
             .with_value("across", plane(&across));
@@ -264,7 +264,7 @@ pub(super) fn the_heading_is_that_of_the_proofs() {
         let velocity = direction(&mut random) * 10.0;
         let seen = Seen { rate: direction(&mut random) * 3.0, acceleration: 10.0 * signed(&mut random) };
         let forward = law.forward(&seen, &velocity);
-        let (psi, rate_error) = (2.0 * signed(&mut random), 5.0 * signed(&mut random));
+        let (psi, rate_error) = (2.0 * signed(&mut random), 12.0 * signed(&mut random));
         // Where nothing was left for yaw, A brakes.
         let found = law.torque(psi, rate_error, forward, &velocity, 0.0);
         let proofs = Proofs::read("Heading").with(&of(&[
@@ -279,7 +279,8 @@ pub(super) fn the_heading_is_that_of_the_proofs() {
         let others = (j_1 - j_2) * f64::from(velocity.x) * f64::from(velocity.y);
         let asked = proofs.number("asked", &[j_3, f64::from(forward), others, feedback]);
         near(found, asked, 1.0, "tau_3");
-        let numbers = [j_3, f64::from(p.yaw_acceleration), f64::from(found), f64::from(rate_error)];
+        let [most, fastest, wanted, error] = [p.yaw_acceleration, p.yaw_rate, found, rate_error].map(f64::from);
+        let numbers = [j_3, most, fastest, wanted, error];
         near(law.braking(found, rate_error), proofs.number("braking", &numbers), 1.0, "what brakes");
         // What it makes of the rate, where the ends cut it.
         let ends = [("Y_1", random.within(0.0, 0.2)), ("Y_2", random.within(0.0, 0.2))];

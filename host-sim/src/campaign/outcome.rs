@@ -5,7 +5,7 @@
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
 //! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
-//! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good |
+//! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good ([`claimed_error`]) |
 //! | heading | since when its heading has been within [`NEAR_HEADING`] of the reference's for good |
 //! | in time | whether all three were within the first [`REACHED_BY`] of the flight, as a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
@@ -17,9 +17,10 @@
 
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
-use crate::flown::NEAR_MRP;
+use crate::flown::{NEAR_MRP, claimed_error, heading_is_followed};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
+use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
 
 /// How near its reference a vehicle must stay to have settled, m.
@@ -103,7 +104,7 @@ impl Outcome {
                 let never = Self { settled: None, attitude: None, heading: None, ..outcome };
                 return Self { height_lost: lost, final_error: lost, ..never };
             };
-            outcome.observe(&tick, start, scenario.timing.period_us);
+            outcome.observe(&tick, start, scenario.timing.period_us, scenario.configuration.bounds());
             outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
         }
         outcome.fallback = flight.fallback_times().into();
@@ -116,7 +117,7 @@ impl Outcome {
         Self { settled, attitude, heading, in_time, ..outcome }
     }
 
-    fn observe(&mut self, tick: &Brief, start: f64, period_us: u64) {
+    fn observe(&mut self, tick: &Brief, start: f64, period_us: u64, bounds: &ReferenceBounds) {
         let (position, wanted) = (&tick.state.position, tick.reference.position.map(f64::from));
         self.height_lost = self.height_lost.max(start - position.z);
         self.rise = self.rise.max(position.z - start.max(wanted.z));
@@ -127,10 +128,11 @@ impl Outcome {
         if self.final_error > NEAR || tick.standing {
             self.settled = next;
         }
-        if f64::from(tick.mrp.norm()) > NEAR_MRP {
+        if claimed_error(&tick.mrp, &tick.reference, bounds) > NEAR_MRP {
             self.attitude = next;
         }
-        if tick.state.heading_error(&tick.reference.heading) > NEAR_HEADING {
+        let followed = heading_is_followed(&tick.reference, bounds);
+        if followed && tick.state.heading_error(&tick.reference.heading) > NEAR_HEADING {
             self.heading = next;
         }
     }

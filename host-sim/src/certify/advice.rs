@@ -1,6 +1,7 @@
 //! The limits of a vehicle under the extended law, in plain words: the meaning of each inequality and each loop, and
 //! which number to change.
 
+use controller_core::certificate::path::Row;
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
@@ -60,6 +61,33 @@ pub fn of_inequality(name: &str) -> &'static str {
              gains.yaw_acceleration."
         }
         _ => "",
+    }
+}
+
+/// The meaning of a row of the judge of paths, and what to change besides the pace.
+#[must_use]
+pub fn of_path(row: Row) -> &'static str {
+    match row {
+        Row::Fall => {
+            "how fast the reference falls. gains.a_down must leave some of gravity to push against. Lower a_down, or fly \
+             a flatter path."
+        }
+        Row::Thrust => {
+            "thrust, along the reference. Rotors that deliver only estimates.scale_least must hold it beside the force \
+             that is kept free. Lower reference.force_kept, or raise scale_least; or fly lighter."
+        }
+        Row::TurningRate => "how fast the vehicle tilts along the reference. Raise gains.turn_rate.",
+        Row::Torque => {
+            "torque about roll and pitch, along the reference. Raise limits.torque_max if the rotors can deliver it."
+        }
+        Row::Floor => {
+            "how low the thrust is along the reference: turning needs some. Lower reference.force_kept, or let the rotors \
+             idle slower."
+        }
+        Row::Cone => {
+            "how far the vehicle tilts along the reference, and how fast it gets there. Raise gains.tilt_max, or lower \
+             reference.force_kept."
+        }
     }
 }
 

@@ -1,16 +1,32 @@
 //! `certify --rigorous`: the certificate once more, every operation rounded outwards, beside the figures that decide.
 //!
 //! The formulas are the same code ([`controller_core::math::real`]). So what is checked is the rounding of double
-//! precision, not the formulas; a margin is what it says to within the shown differences. The sampled loops are an
-//! analysis, not a proof, and stay as they are.
+//! precision, not the formulas; a margin is what it says to within the shown differences. So is the reference judged
+//! along itself once more. The sampled loops are an analysis, not a proof, and stay as they are.
 
 use crate::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::inequality::Inequality;
+use controller_core::certificate::path::along::Taken;
 use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::math::enclosure::Enclosure;
 use controller_core::math::real::Real;
+use scenario::Scenario;
+use scenario::along::{end_us, judge};
+
+/// The reference of `scenario` judged along itself, in a sentence, and whether it takes less than what is left,
+/// whatever rounding did; none under the paper's law.
+#[must_use]
+pub fn along(scenario: &Scenario) -> Option<(String, bool)> {
+    let judge = judge::<Enclosure>(&scenario.configuration, scenario.force_kept)?;
+    let share = Taken::along(&judge, &*scenario.trajectory, end_us(scenario)).share;
+    let verdict = if share < 1.0 { "holds" } else { "FAILS" };
+    Some((
+        format!("reference, rounded outwards: takes {:.1} % of what is left, {verdict}\n", 100.0 * share),
+        share < 1.0,
+    ))
+}
 
 /// A certificate in double precision, and in enclosures.
 pub struct Rigorous {

@@ -1,174 +1,234 @@
-//! Times for points that come without: as short as the bounds allow, on a path that does not swing out.
+//! Times for points that come without: the quickest path within a corridor that the limits allow.
 //!
-//! Through the points goes the smoothest path ([`controller_core::reference::spline`]). Its shape depends on the shares
-//! that the legs have of the whole time, not on that time. Two things are decided:
+//! Points near the straight line between others are passed near ([`merge`]), all others exactly. The search
+//! ([`quickest`]) begins at rest at each of these, with one piece for each leg; then each is split, and it goes
+//! on, at last with more places. What it finds is stretched in time until it certifies at every instant.
 //!
-//! - *The corridor.* A leg that leaves it, a distance around the straight line between its two points, gets another
-//!   point in its middle, until none does. Such points are passed like any other.
-//! - *The pace.* Legs that use little of the bounds get shorter, those that use most get longer, as long as the whole
-//!   becomes shorter by that. Then all times are stretched so that the bounds just hold.
+//! A search may end in a local optimum. But a path in a narrower corridor is one in a wider one, and a slower one is
+//! one below a higher speed: so the same is done for all of [`SERIES`] below what is given, and the quickest is kept.
 
-use super::stretch::{stretch, taken};
-use controller_core::error::ParameterError;
-use controller_core::reference::ReferenceBounds;
-use controller_core::reference::knot::{Knot, REST};
-use controller_core::reference::segment::Segment;
-use controller_core::reference::spline::{self, Stage};
+mod blocks;
+mod equations;
+mod hull;
+pub mod limits;
+pub mod merge;
+mod piece;
+mod quickest;
+mod sloped;
+mod way;
+
+use controller_core::reference::knot::Knot;
+use limits::Limits;
+use merge::{Leg, Point, merged};
 use nalgebra::Vector3;
+use piece::Place;
+use quickest::Search;
+use std::ops::ControlFlow;
+use way::Way;
 
-/// The share of the bounds that is used; the rest is for rounding.
-const USED: f64 = 0.9995;
-/// How often legs are halved, paces are changed, and by which power of its use a leg changes.
-const HALVINGS: u32 = 8;
-const CHANGES: u32 = 40;
-const POWER: f64 = 0.35;
-/// Places looked at on each leg.
-const PLACES: u32 = 32;
+/// Corridors and speeds, times a power of ten, m and m/s. A path keeps to the widest corridor of these that is no wider
+/// than what is given, so that a wider one never takes longer.
+const SERIES: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
+/// The narrowest corridor that is tried in place of a wider one, m.
+const NARROWEST: f64 = 0.05;
+/// The least power of ten, where what is given is no less.
+const LEAST_POWER: i32 = -3;
+/// A search through more of them would take minutes.
+pub const MOST_LEGS: usize = 300;
+/// The share of corridor and speed that the search uses, for what happens between the places where it looks; and of the
+/// corridor with one piece for each leg.
+const USED: f64 = 0.99;
+const USED_AT_FIRST: f64 = 0.6;
+/// What the barrier may hold back, as a share of the duration: at first, and at the end of each search.
+const GAPS: [f64; 4] = [0.2, 0.03, 0.01, 0.002];
+/// The places of a piece at which the first two searches and the last look at rows.
+const PLACES: [usize; 2] = [16, 32];
+/// How much of its duration a path may lose in the second search, and in the last: one that has no hope is left.
+const HOPES: [f64; 2] = [0.8, 0.98];
+/// Legs that take longer than so many times the mean get three pieces, the others two.
+const LONG: f64 = 1.5;
+/// By how much a path is stretched at once to be inside the limits, and how often at most.
+const SLOWER: f64 = 1.02;
+const SLOWINGS: u32 = 30;
+/// The share of its speed with which a path begins to be stretched until it certifies, and by how much at once, in how
+/// many parts.
+const QUICKEST: f64 = 0.98;
+const STRETCH: f64 = 1.01;
+const PARTS: i32 = 8;
+const STRETCHES: i32 = 60;
 
-/// A point without a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
-    /// m, world.
-    pub position: Vector3<f64>,
-    /// rad.
-    pub heading: f64,
+/// A path, and when each point is passed, s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Paced {
+    /// How it is passed along.
+    pub knots: Vec<Knot>,
+    /// s, of each point.
+    pub times: Vec<f64>,
 }
 
-/// Knots through `points`, of which no two neighbours are equal, inside `corridor`, m, and `allowed`; and which of the
-/// knots are the points.
+/// Why there is no path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Problem {
+    /// So many legs, more than [`MOST_LEGS`].
+    Legs(usize),
+    /// Even at rest the limits are exceeded.
+    Rest,
+}
+
+/// The quickest path through `points`, of which no two neighbours are equal, that was found with a `speed` at most,
+/// m/s.
 ///
 /// # Errors
-/// If a derivative leaves the range of the law.
-pub fn paced(
-    points: &[Point],
-    corridor: f64,
-    allowed: &ReferenceBounds,
-) -> Result<(Vec<Knot>, Vec<usize>), ParameterError> {
-    let mut legs = Legs::new(points);
-    for _ in 0..HALVINGS {
-        if !legs.halve(corridor) {
-            break;
-        }
+/// Why there is none.
+pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Result<Paced, Problem> {
+    let mut tries = Tries { points, limits, searches: PLACES.map(|places| Search::new(limits, places)), best: None };
+    let corridors = below(corridor, NARROWEST);
+    let widest = corridors.first().copied().unwrap_or(corridor);
+    let (kept, legs) = merged(points, widest);
+    if legs.len() > MOST_LEGS {
+        return Err(Problem::Legs(legs.len()));
     }
-    let mut best = legs.stretched(allowed)?;
-    for _ in 0..CHANGES {
-        let mut changed = best.clone();
-        changed.change(allowed)?;
-        let changed = changed.stretched(allowed)?;
-        if changed.duration() > 0.999 * best.duration() || changed.leaving(corridor).is_some() {
-            break;
-        }
-        best = changed;
+    if legs.is_empty() {
+        let way = Way::resting(points[0].place);
+        return Ok(Paced { knots: way.knots(), times: vec![0.0] });
     }
-    let knots = best.knots();
-    let named = (0..knots.len()).filter(|i| best.named[*i]).collect();
-    Ok((knots, named))
+    let _ = corridors.iter().try_for_each(|corridor| tries.make(*corridor, speed));
+    let length = legs.iter().map(Leg::length).sum::<f64>();
+    let mut slower = below(speed, 0.0).into_iter().filter(|slower| *slower < speed);
+    let _ = slower.try_for_each(|slower| match length < slower * tries.shortest() {
+        true if tries.is_idle(slower) => ControlFlow::Continue(()),
+        true => tries.make(widest, slower),
+        false => ControlFlow::Break(()),
+    });
+    let stopping = |tries: &Tries| tries.certified(&tries.searches[0].stopping(legs)?);
+    let found = tries.best.take().or_else(|| Some((stopping(&tries)?, kept)));
+    let (way, kept) = found.ok_or(Problem::Rest)?;
+    Ok(Paced { knots: way.knots(), times: times(&way, points, &kept) })
 }
 
-/// The points, with those in between, and how long each leg takes, s.
-#[derive(Debug, Clone)]
-struct Legs {
-    points: Vec<Point>,
-    named: Vec<bool>,
-    durations: Vec<f64>,
+/// Those of [`SERIES`] from `least` to `most`, greatest first; `most` itself where there is none.
+fn below(most: f64, least: f64) -> Vec<f64> {
+    let power = most.log10().floor() as i32;
+    let all = (power.min(LEAST_POWER)..=power).flat_map(|power| SERIES.map(|number| number * 10.0_f64.powi(power)));
+    let mut found: Vec<f64> = all.filter(|number| (0.999 * least..=1.001 * most).contains(number)).collect();
+    found.reverse();
+    if found.is_empty() { vec![most] } else { found }
 }
 
-impl Legs {
-    /// At first a leg takes as long as it is, and the first and the last half as long again: there the path is at rest.
-    fn new(points: &[Point]) -> Self {
-        let turn = |pair: &[Point]| (pair[1].heading - pair[0].heading).sin().abs();
-        let long = |pair: &[Point]| (pair[1].position - pair[0].position).norm() + turn(pair);
-        let mut durations: Vec<f64> = points.windows(2).map(long).collect();
-        let last = durations.len().saturating_sub(1);
-        for end in [0, last] {
-            if let Some(duration) = durations.get_mut(end) {
-                *duration *= 1.5;
+/// What has been found.
+struct Tries<'a> {
+    points: &'a [Point],
+    limits: &'a Limits,
+    searches: [Search<'a>; 2],
+    /// The quickest, and which points it passes exactly.
+    best: Option<(Way, Vec<usize>)>,
+}
+
+impl Tries<'_> {
+    /// s.
+    fn shortest(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |(way, _)| way.duration())
+    }
+
+    /// Whether another `speed`, m/s, would change nothing: it is far above what the best has.
+    fn is_idle(&self, speed: f64) -> bool {
+        self.best.as_ref().is_some_and(|(way, _)| self.searches[0].leaves_idle(way, speed))
+    }
+
+    /// Looks for a quicker one in this corridor, with this speed; breaks where there is no hope of one, nor in narrower
+    /// corridors or with lower speeds.
+    fn make(&mut self, corridor: f64, speed: f64) -> ControlFlow<()> {
+        let (kept, mut legs) = merged(self.points, corridor);
+        legs.iter_mut().for_each(|leg| leg.speed = leg.speed.min(speed));
+        let Some(way) = self.searched(&legs) else { return ControlFlow::Break(()) };
+        let found = self.certified(&Way { legs, ..way });
+        if let Some(way) = found.filter(|way| way.duration() < self.shortest()) {
+            self.best = Some((way, kept));
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The quickest along `legs`, from rest at each of their ends; none where there is no hope that it is the best.
+    fn searched(&self, legs: &[Leg]) -> Option<Way> {
+        let [begin, one, two, end] = GAPS;
+        let [coarse, fine] = &self.searches;
+        let hopeless = HOPES.map(|hope| self.shortest() / hope);
+        let narrowed = |share: f64| {
+            let narrowed = |leg: &Leg| Leg { corridor: leg.corridor * share, speed: leg.speed * USED, ..*leg };
+            legs.iter().map(narrowed).collect::<Vec<Leg>>()
+        };
+        let split = |way: Way| {
+            let long = LONG * way.duration() / legs.len() as f64;
+            Way { legs: narrowed(USED), ..way.split(|duration| if duration > long { 3 } else { 2 }) }
+        };
+        let stopping = coarse.stopping(narrowed(USED_AT_FIRST))?;
+        let way = coarse.descend(stopping.clone(), [begin, one]);
+        if way.duration() > hopeless[0] {
+            return None;
+        }
+        let way = match within(coarse, &split(way)) {
+            Some(way) => coarse.descend(way, [one, two]),
+            None => coarse.descend(within(coarse, &split(stopping))?, [begin, two]),
+        };
+        if way.duration() > hopeless[1] {
+            return None;
+        }
+        Some(within(fine, &way).map_or(way, |way| fine.descend(way, [two, end])))
+    }
+
+    /// `way` in the shortest time in which it certifies at every instant; none where it leaves its corridor.
+    fn certified(&self, way: &Way) -> Option<Way> {
+        let holds = |parts: i32| {
+            let stretch = QUICKEST * STRETCH.powf(f64::from(parts) / f64::from(PARTS));
+            let way = way.clone().stretched(stretch);
+            (way.keeps_to_its_legs() && self.limits.allow(&way.knots())).then_some(way)
+        };
+        let (mut long, mut found) = (0..STRETCHES).find_map(|i| Some((PARTS * i, holds(PARTS * i)?)))?;
+        let mut short = long - PARTS;
+        while long - short > 1 {
+            let middle = (short + long) / 2;
+            match holds(middle) {
+                Some(way) => (long, found) = (middle, way),
+                None => short = middle,
             }
         }
-        Self { points: points.to_vec(), named: vec![true; points.len()], durations }
-    }
-
-    fn duration(&self) -> f64 {
-        self.durations.iter().sum()
-    }
-
-    fn knots(&self) -> Vec<Knot> {
-        let times = std::iter::once(0.0).chain(self.durations.iter().scan(0.0, |time, duration| {
-            *time += duration;
-            Some(*time)
-        }));
-        let mut knots: Vec<Knot> = times
-            .zip(&self.points)
-            .map(|(time, point)| Knot {
-                time_us: (time * 1e6).round() as u64,
-                position: point.position,
-                heading: point.heading,
-                derivatives: REST,
-            })
-            .collect();
-        spline::solve(&mut knots, &mut vec![Stage::EMPTY; self.points.len()]);
-        knots
-    }
-
-    /// The first legs that leave the corridor, if one does.
-    fn leaving(&self, corridor: f64) -> Option<Vec<usize>> {
-        let leaving: Vec<usize> = self
-            .knots()
-            .windows(2)
-            .enumerate()
-            .filter(|(_, pair)| swing(&pair[0], &pair[1]) > corridor)
-            .map(|(leg, _)| leg)
-            .collect();
-        (!leaving.is_empty()).then_some(leaving)
-    }
-
-    /// Halves each leg that leaves the corridor; whether one did.
-    fn halve(&mut self, corridor: f64) -> bool {
-        let Some(leaving) = self.leaving(corridor) else { return false };
-        for leg in leaving.into_iter().rev() {
-            let (from, to) = (self.points[leg], self.points[leg + 1]);
-            let turn = (to.heading - from.heading + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
-            let turn = turn - std::f64::consts::PI;
-            let middle = Point { position: (from.position + to.position) / 2.0, heading: from.heading + turn / 2.0 };
-            self.points.insert(leg + 1, middle);
-            self.named.insert(leg + 1, false);
-            self.durations[leg] /= 2.0;
-            self.durations.insert(leg, self.durations[leg]);
-        }
-        true
-    }
-
-    /// Makes each leg's duration a little more like what the bounds ask of it.
-    fn change(&mut self, allowed: &ReferenceBounds) -> Result<(), ParameterError> {
-        let knots = self.knots();
-        for (duration, pair) in self.durations.iter_mut().zip(knots.windows(2)) {
-            let own = taken(pair)?;
-            *duration *= stretch(&own, allowed).max(0.1).powf(POWER);
-        }
-        Ok(())
-    }
-
-    /// With all durations stretched until the bounds just hold.
-    fn stretched(mut self, allowed: &ReferenceBounds) -> Result<Self, ParameterError> {
-        // Times are whole microseconds: stretched first to where those are fine enough, then exactly.
-        for _ in 0..3 {
-            let factor = stretch(&taken(&self.knots())?, allowed) / USED;
-            self.durations.iter_mut().for_each(|duration| *duration *= factor);
-        }
-        Ok(self)
+        Some(found)
     }
 }
 
-/// How far the way between two knots is from the straight line between them, m.
-fn swing(from: &Knot, to: &Knot) -> f64 {
-    let segment = Segment::between(from, to);
-    let (straight, time) = (to.position - from.position, to.time_us - from.time_us);
-    let square = straight.norm_squared();
-    let distances = (1..PLACES).map(|place| {
-        let at = segment.at(from.time_us + time * u64::from(place) / u64::from(PLACES)).position.map(f64::from);
-        let gone = at - from.position;
-        let along = if square > 0.0 { (gone.dot(&straight) / square).clamp(0.0, 1.0) } else { 0.0 };
-        (gone - straight * along).norm()
-    });
-    distances.fold(0.0, f64::max)
+/// `way`, as much more slowly as it takes to be inside; none where no time helps.
+fn within(search: &Search, way: &Way) -> Option<Way> {
+    let slower = |times: u32| way.clone().stretched(SLOWER.powi(times as i32));
+    (0..SLOWINGS).map(slower).find(|way| search.most(way) < 0.999)
 }
+
+/// When each point is passed, s: those between two that are kept, where the path is nearest to them.
+fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
+    const PLACES: usize = 64;
+    let places: Vec<Place> = (0..=PLACES).map(|place| Place::new(place as f64 / PLACES as f64)).collect();
+    let mut times = Vec::with_capacity(points.len());
+    let (mut start, mut time) = (0.0, 0.0_f64);
+    let mut pieces = way.pieces.iter().enumerate().peekable();
+    for (leg, pair) in kept.windows(2).enumerate() {
+        let mut along: Vec<(f64, Vector3<f64>)> = Vec::new();
+        while let Some((piece, (_, duration))) = pieces.next_if(|(_, (own, _))| *own == leg) {
+            along.extend(places.iter().enumerate().map(|(number, place)| {
+                (start + duration * number as f64 / PLACES as f64, way.motion(piece, place)[0].xyz())
+            }));
+            start += duration;
+        }
+        times.push(time);
+        for point in &points[pair[0] + 1..pair[1]] {
+            let later = along.iter().filter(|(at, _)| *at >= time);
+            let distances = later.map(|(at, place)| (at, (place - point.place.xyz()).norm()));
+            time = distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(time, |(at, _)| *at);
+            times.push(time);
+        }
+        time = start;
+    }
+    times.push(time);
+    times
+}
+
+#[cfg(test)]
+mod tests;

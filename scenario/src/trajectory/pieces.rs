@@ -47,7 +47,8 @@ fn row(axes: &[f64], time: f64, since: f64) -> Row {
     let axis = |index: usize| axes.chunks(COEFFICIENTS).nth(index).map_or([0.0; 3], |axis| evaluated(axis, since));
     let [x, y, z, yaw] = [0, 1, 2, 3].map(axis);
     let [position, velocity, acceleration] = [0, 1, 2].map(|order| Vector3::new(x[order], y[order], z[order]));
-    Row { time: Some(time), position, heading: yaw[0], velocity: Some(velocity), acceleration: Some(acceleration) }
+    let (velocity, acceleration) = (Some(velocity), Some(acceleration));
+    Row { time: Some(time), position, heading: yaw[0], velocity, acceleration, speed: None }
 }
 
 /// A polynomial with its first two derivatives, by Horner's rule.

@@ -15,4 +15,6 @@ pub struct Row {
     pub velocity: Option<Vector3<f64>>,
     /// m/s^2.
     pub acceleration: Option<Vector3<f64>>,
+    /// m/s, at most up to the next row.
+    pub speed: Option<f64>,
 }

@@ -7,6 +7,7 @@
 //! | `yaw_deg` or `yaw` | heading, degrees or rad | 0 |
 //! | `vx`, `vy`, `vz` | velocity, m/s | all or none |
 //! | `ax`, `ay`, `az` | acceleration, m/s^2 | all or none |
+//! | `speed` | the greatest speed up to the next row, m/s | as the scenario says |
 //!
 //! Or the polynomial pieces that Crazyswarm and the Crazyflie's `uav_trajectories` fly ([`super::pieces`]). Lines that
 //! begin with `#` are comments.
@@ -17,7 +18,7 @@ use crate::section::FieldError;
 use nalgebra::Vector3;
 
 /// The columns that may be there, with other names for them.
-const COLUMNS: [(&str, &[&str]); 12] = [
+const COLUMNS: [(&str, &[&str]); 13] = [
     ("t", &["time", "time_s", "t_s"]),
     ("x", &["px", "pos_x", "position_x"]),
     ("y", &["py", "pos_y", "position_y"]),
@@ -30,6 +31,7 @@ const COLUMNS: [(&str, &[&str]); 12] = [
     ("ax", &["acc_x", "acceleration_x"]),
     ("ay", &["acc_y", "acceleration_y"]),
     ("az", &["acc_z", "acceleration_z"]),
+    ("speed", &["speed_m_s", "v_max"]),
 ];
 
 /// The most rows of one file.
@@ -73,6 +75,11 @@ pub fn read(text: &str, field: &str) -> Result<Vec<Row>, FieldError> {
             return Err(refuse(format!("line {line}, column t: must be after {before}, found {time}")));
         }
     }
+    for (row, (line, _)) in rows.iter().zip(&lines) {
+        if row.speed.is_some_and(|speed| speed <= 0.0) {
+            return Err(refuse(format!("line {line}, column speed: must be positive; to wait, give times")));
+        }
+    }
     if rows.is_empty() { Err(refuse("has no row below its header".to_owned())) } else { Ok(rows) }
 }
 
@@ -112,5 +119,6 @@ fn row(numbers: &[f64], places: &Places) -> Row {
         heading: number(4).map(f64::to_radians).or_else(|| number(5)).unwrap_or(0.0),
         velocity: vector([6, 7, 8]),
         acceleration: vector([9, 10, 11]),
+        speed: number(12),
     }
 }

@@ -112,58 +112,6 @@ fn times_are_stretched_as_asked() {
     assert!((speeds - 2.0).abs() < 0.1 && slower.jerk < 0.9 * own.jerk, "{own:?} {slower:?}");
 }
 
-const GATES: [[f64; 3]; 9] = [
-    [0.0, 0.0, 1.0],
-    [3.0, 1.0, 1.5],
-    [5.0, 4.0, 2.0],
-    [3.0, 7.0, 2.0],
-    [0.0, 8.0, 1.5],
-    [-3.0, 7.0, 1.0],
-    [-5.0, 4.0, 1.5],
-    [-3.0, 1.0, 2.0],
-    [0.0, 0.0, 1.0],
-];
-
-fn gates(more: &str) -> Result<Scenario, String> {
-    let points = GATES.map(|[x, y, z]| format!("{{ position = [{x}, {y}, {z}] }}")).join(", ");
-    on(&format!("kind = \"waypoints\"\npoints = [{points}]\n{more}"))
-}
-
-#[test]
-fn points_without_times_are_passed_in_their_order_inside_the_corridor_and_the_bounds() {
-    for (speed, corridor) in [(1.0, 0.3), (4.0, 0.3), (4.0, 0.05), (100.0, 1.0)] {
-        let scenario = gates(&format!("speed = {speed}\ncorridor = {corridor}")).unwrap();
-        let route = route(&scenario);
-        assert_eq!(route.points.len(), GATES.len());
-        for (point, gate) in route.points.iter().zip(GATES) {
-            let there = scenario.trajectory.at((point.time * 1e6).round() as u64).position.map(f64::from);
-            assert!((there - Vector3::from(gate)).norm() < 1e-4, "{there} at {}", point.time);
-        }
-        let bounds = scenario.trajectory.bounds();
-        assert!(f64::from(bounds.horizontal_speed) <= speed, "{bounds:?}");
-        // What the file does not widen is what the vehicle is certified for.
-        let flyable = on("kind = \"hover\"\nposition = [0.0, 0.0, 1.0]").unwrap();
-        assert_eq!(scenario.configuration.bounds(), flyable.configuration.bounds());
-        for (pair, times) in GATES.windows(2).zip(route.points.windows(2)) {
-            let [from, to] = [pair[0], pair[1]].map(Vector3::from);
-            for i in 0..=100 {
-                let time = times[0].time + (times[1].time - times[0].time) * f64::from(i) / 100.0;
-                let there = scenario.trajectory.at((time * 1e6) as u64).position.map(f64::from) - from;
-                let along = (there.dot(&(to - from)) / (to - from).norm_squared()).clamp(0.0, 1.0);
-                let out = (there - (to - from) * along).norm();
-                assert!(out <= 1.02 * corridor + 1e-3, "{out} m out at {time} s");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_wider_corridor_and_a_greater_speed_are_never_slower() {
-    let duration = |more: &str| route(&gates(more).unwrap()).duration();
-    assert!(duration("speed = 4.0\ncorridor = 1.0") < duration("speed = 4.0\ncorridor = 0.05"));
-    assert!(duration("speed = 4.0") < 0.6 * duration("speed = 1.0"));
-}
-
 #[test]
 fn eighteen_points_with_times_are_passed_at_these() {
     let point = |i: u32| {
@@ -193,6 +141,7 @@ fn what_cannot_be_flown_is_refused_by_line_and_column_or_key() {
         ("t,x,y,z\n0,0,0,1\n1,0,1\n", "reference.data: CSV error: record 2 (line: 3"),
         ("t,x,y,z\n", "reference.data: has no row below its header"),
         ("x,y,z\n0,0,1\n1,0,1\n", "needs two rows or more, each with its time t"),
+        ("t,x,y,z,speed\n0,0,0,1,2\n1,1,0,1,2\n", "reference.data[0].speed: goes with points without times"),
         ("duration,x^0\n1,2\n", "line 2: a piece has 25 numbers, or 33 with yaw, found 2"),
     ] {
         let refused = table(text);
@@ -212,6 +161,18 @@ fn what_cannot_be_flown_is_refused_by_line_and_column_or_key() {
         (
             "kind = \"waypoints\"\nspeed = 1.0\npoints = [{ position = [0, 0, 1] }, { position = [0, 0, 1] }]",
             "reference.points[1]: is the same as the one before",
+        ),
+        (
+            "kind = \"waypoints\"\npoints = [{ position = [0, 0, 1], speed = 1.0 }, { position = [1, 0, 1] }, { position = [2, 0, 1] }]",
+            "reference.points[1].speed: missing; give every point a speed, or one for all of them",
+        ),
+        (
+            "kind = \"waypoints\"\npoints = [{ t = 0, position = [0, 0, 1], speed = 1.0 }]",
+            "reference.points[0].speed: goes with points without times",
+        ),
+        (
+            "kind = \"waypoints\"\ncorridor = 0.3\ndata = '''\nx,y,z,speed\n0,0,1,0\n1,0,1,1\n'''",
+            "reference.data: line 2, column speed: must be positive",
         ),
         (
             "kind = \"waypoints\"\nspeed = -1.0\npoints = [{ position = [0, 0, 1] }]",

@@ -15,17 +15,14 @@ fn every_plausible_vehicle_is_certified_from_its_numbers_with_references_to_fly(
 }
 
 #[test]
-fn the_widest_references_are_a_share_of_the_formulas_and_cover_what_has_to_be_flown() {
+fn the_widest_references_are_a_share_of_the_formulas() {
     let mut random = Random(32);
     for _ in 0..100 {
         let craft = Craft::random(&mut random);
         let airframe = craft.airframe();
         let parameters = craft.constants(&NOTHING_GIVEN);
         let most = defaults::reference_bounds(&airframe, &parameters);
-        let widest = flyable(&airframe, craft.law(&parameters), &ReferenceBounds::REST);
+        let widest = flyable(&airframe, craft.law(&parameters));
         assert!(widest.values().iter().zip(most.values()).all(|(bound, most)| *bound <= most), "{widest:?}");
-        let least = ReferenceBounds { jerk: 0.01 * most.jerk, heading_rate: 2.0 * most.heading_rate, ..most };
-        let covering = flyable(&airframe, craft.law(&parameters), &least);
-        assert!(covering.values().iter().zip(least.values()).all(|(bound, least)| *bound >= least), "{covering:?}");
     }
 }

@@ -69,6 +69,19 @@ fn small_errors_meet_the_gains_and_a_heading_that_turns_is_fed_forward() {
 }
 
 #[test]
+fn a_spin_is_braked_before_thrust_and_a_heading_that_lags_is_not() {
+    let (p, j) = (example::parameters(), example::vehicle().inertia);
+    let law = HeadingLaw::new(&p, &j);
+    let most = j.z * p.yaw_acceleration;
+    let braked = |rate: f32| law.braking(-9.0 * most, rate * p.yaw_rate) / -most;
+    for (rate, share) in [(0.5, 0.0), (1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (9.0, 1.0), (-9.0, 0.0)] {
+        assert!((braked(rate) - share).abs() < 1e-5, "{rate}: {}", braked(rate));
+    }
+    // No more than what is asked for.
+    assert!((law.braking(-0.1 * most, 9.0 * p.yaw_rate) / most + 0.1).abs() < 1e-5);
+}
+
+#[test]
 fn ticks_too_long_for_the_gains_are_refused_by_name() {
     let refused = |c_1: f32, c_2: f32| {
         let parameters = ExtendedParameters { c_1, c_2, ..example::parameters() };

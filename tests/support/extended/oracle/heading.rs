@@ -23,9 +23,11 @@ impl Law {
         j.z * (forward - c_2 * (rate + speed)) - (j.x - j.y) * omega.x * omega.y
     }
 
-    /// The part of a torque about z that comes before thrust: what brakes omega_3 - f_3, up to J_3 A.
+    /// The part of a torque about z that comes before thrust: what brakes omega_3 - f_3, up to J_3 A, where it is twice
+    /// W_max and more; nothing where it is at most W_max.
     pub fn braking(&self, torque: f64, rate: f64) -> f64 {
-        let most = self.moments().z * double(self.p.yaw_acceleration);
+        let spin = (rate.abs() / double(self.p.yaw_rate)).clamp(1.0, 2.0) - 1.0;
+        let most = spin * self.moments().z * double(self.p.yaw_acceleration);
         if torque.signum() == rate.signum() { 0.0 } else { torque.clamp(-most, most) }
     }
 }

@@ -30,12 +30,12 @@ impl Law {
     pub fn turned(&self, turn: &Turn, nudge: &Vector3<f64>) -> (Vector3<f64>, [bool; 3]) {
         let (parameters, h) = (&self.p, self.period);
         let Turn { rho, p, q, .. } = turn;
-        let [rate, reserve] = [parameters.turn_rate, parameters.turn_reserve].map(double);
+        let rate = double(parameters.turn_rate);
         let alpha = self.alpha();
         let (mut q, sooner) = shortened(*q, alpha);
         // e3 without its part along rho.
         let z = Vector3::z() - rho * rho.z;
-        let least = -(reserve / rate) * (rho.z - double(parameters.tilt_max).cos());
+        let least = -(0.5 * alpha).sqrt() * (rho.z - double(parameters.tilt_max).cos());
         let tilted = (p + q * h).dot(&z) < least;
         if tilted {
             // As much along z as it takes, and of the rest what is left of alpha.
