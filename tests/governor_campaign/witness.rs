@@ -39,14 +39,14 @@ pub struct Witness<'a> {
 impl Witness<'_> {
     /// The first tick goes on from `start`, to a unit of the governor's lengths and to what snap makes of one tick.
     pub fn start(&self, start: &Reference, tally: &mut Tally) {
-        let (b, t) = (&self.case.bounds, self.case.period);
-        let unit = b.horizontal_acceleration.max(b.vertical_acceleration) * t * t / 65_536.0 * 3.0_f32.sqrt();
+        let (b, t, knots) = (&self.case.bounds, self.case.period, self.case.knots());
+        let unit = b.horizontal_acceleration.max(b.vertical_acceleration) * knots * knots / 65_536.0 * 3.0_f32.sqrt();
         let velocity = (self.last.velocity - start.velocity).norm();
         let rounding = 4.0 * f32::EPSILON;
-        let room = unit / t + b.snap * t.powi(3) + rounding * start.velocity.norm();
+        let room = unit / knots + b.snap * knots.powi(3) + rounding * start.velocity.norm();
         assert!(velocity <= room, "starts {velocity:e} m/s off, beyond {room:e}");
         let position = (self.last.position - start.position - start.velocity * t).norm();
-        let room = 2.0 * unit + b.snap * t.powi(4) + rounding * start.position.norm();
+        let room = 2.0 * unit + b.snap * knots.powi(4) + rounding * start.position.norm();
         assert!(position <= room, "starts {position:e} m off, beyond {room:e}");
         self.bounds(&self.last, tally);
     }
