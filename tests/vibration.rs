@@ -17,7 +17,7 @@
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
-use flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
+use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
 use host_sim::instruments::{Felt, SAMPLE};
 use host_sim::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -177,7 +177,8 @@ fn fly(name: &str, unbalance: f64, faster: f64, is_blinded: bool) -> Flown {
         if tick == HOVER.start {
             shaken.squares = (0.0, 0.0, 0.0);
         }
-        let given = Inputs { request, ground_station: Some(vehicle.now() + PERIOD), ..Inputs::default() };
+        let given =
+            Inputs { request, ground_station: Some(vehicle.now() + vehicle.pilot().period()), ..Inputs::default() };
         let (outcome, _) = vehicle.tick(&given, &mut shaken).unwrap();
         flown.reasons.extend(outcome.transition.map(|transition| (transition.reason, tick)));
         flown.refused += usize::from(outcome.pose.is_some_and(|pose| pose.is_err()));

@@ -40,6 +40,8 @@ pub struct Inputs<'a> {
     pub now: u64,
     /// What the IMU did, each increment beginning where the last ended: one each 5 ms, where nothing is late.
     pub increments: &'a [Increment],
+    /// What the IMU has done since the last of them, as far as it has been sampled.
+    pub under_way: Option<Increment>,
     /// The newest body rate, low-passed, rad/s, as the sensor has it.
     pub body_rate: Option<Stamped<Vector3<f32>>>,
     /// The fault of gyro or accelerometer, present or within the last second.

@@ -57,6 +57,7 @@ pub fn pose(position: Vector3<f32>, attitude: Quaternion<f32>) -> PoseMeasuremen
 pub struct Handed {
     pub now: u64,
     pub increments: Vec<Increment>,
+    pub under_way: Option<Increment>,
     pub body_rate: Option<Stamped<Vector3<f32>>>,
     pub imu_fault: Option<ImuFault>,
     pub poses: Vec<Stamped<PoseMeasurement>>,
@@ -78,6 +79,7 @@ impl Handed {
         let Self {
             now,
             increments,
+            under_way,
             body_rate,
             imu_fault,
             poses,
@@ -96,6 +98,7 @@ impl Handed {
         pilot.tick(&Inputs {
             now: *now,
             increments,
+            under_way: *under_way,
             body_rate: *body_rate,
             imu_fault: *imu_fault,
             poses,
