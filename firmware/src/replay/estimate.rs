@@ -1,9 +1,9 @@
 //! The recovery's states once more, as an IMU and a late camera see them: the same samples, hence the same bits, of the
 //! estimate.
 //!
-//! Between two recorded states, a control period apart, lie samples a millisecond apart: the body rate goes straight from
-//! one state to the other, the force is what the change of velocity takes. Every [`POSES_APART`] a state is a pose, handed
-//! over [`LATE`] poses later.
+//! Between two recorded states, a control period apart, lie samples a millisecond apart: the body rate goes straight
+//! from one state to the other, the force is what the change of velocity takes. Every [`POSES_APART`] a state is a
+//! pose, handed over [`LATE`] poses later.
 
 use super::{RECORD, digest, state};
 use controller_core::state::State;
@@ -36,7 +36,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// At the start, in ticks of `period` us. None where the sensors' figures are refused, which no machine that computes right sees.
+    /// At the start, in ticks of `period` us. None where the sensors' figures are refused, which no machine that
+    /// computes right sees.
     #[must_use]
     pub fn new(period: u64) -> Option<Self> {
         let parameters = EstimatorParameters::BMI088;

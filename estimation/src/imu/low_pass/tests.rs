@@ -2,7 +2,7 @@ extern crate std;
 use super::*;
 use std::f64::consts::TAU;
 
-/// Gain and delay (s) at a frequency in front of ticks every `period` us, by the filter's answer to a sine and a cosine.
+/// Gain and delay (s) at a frequency, in front of ticks every `period` us, by the answer to a sine and a cosine.
 fn response(frequency: f64, period: u64) -> (f64, f64) {
     let mut filter = LowPass::before_ticks(period, 1000.0);
     let (mut sine, mut cosine) = (0.0, 0.0);
@@ -47,8 +47,8 @@ fn its_delay_follows_from_the_rate_of_the_ticks_and_is_what_it_says() {
 
 #[test]
 fn a_vibration_that_ticks_would_take_for_a_constant_rate_is_stopped() {
-    // 50 Hz see 100 Hz as they see 50 Hz, and rotors vibrate at no less than 70 Hz. Beyond half of 1 kHz there is nothing
-    // to be seen, and what is just below it is hardly left.
+    // 50 Hz see 100 Hz as they see 50 Hz, and rotors vibrate at no less than 70 Hz. Beyond half of 1 kHz nothing can be
+    // seen, and what is just below it is hardly left.
     for (period, stopped) in [(20_000, 100.0), (12_500, 80.0), (10_000, 100.0), (5_000, 200.0), (4_000, 250.0)] {
         let (gain, _) = response(stopped, period);
         assert!(gain < 1e-4, "{period} us: {gain} of {stopped} Hz");
