@@ -53,6 +53,13 @@ fn is_for_a_vehicle() -> bool {
     env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") && env::var_os("CARGO_FEATURE_STM32").is_some()
 }
 
+/// The greatest rate of the image's processor, Hz: what the emulated ones have time for, `.ci/emulated cost`.
+fn rate_max() -> f64 {
+    let is_slow = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none")
+        && env::var_os("CARGO_FEATURE_STM32F405").is_some();
+    if is_slow { 500.0 } else { 1000.0 }
+}
+
 /// Writes what the chosen file becomes to `target`.
 fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-env-changed=SCENARIO");
@@ -64,7 +71,7 @@ fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file)
         .map_err(|error| format!("SCENARIO {name}: cannot be read from the top of the repository: {error}"))?;
-    let embedded = embed::embedded(&text, &name)?;
+    let embedded = embed::embedded(&text, &name, rate_max())?;
     if let Some(warning) = embedded.warning {
         println!("cargo::warning={warning}");
     }

@@ -7,7 +7,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::extended::memory::Estimates;
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
-use flight::{FlightSettings, Inputs, Memory, Output, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use flight::{FlightSettings, Inputs, Memory, Output, Pilot, Pose, Request, Stamped, Velocity};
 use host_sim::course::Course;
 use host_sim::flight::Flight;
 use host_sim::tune::trials::hover;
@@ -128,6 +128,9 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
     }
 }
 
+/// The time between ticks, us.
+const PERIOD: u64 = 10_000;
+
 /// The tick of arming: the estimate takes a second and a half to prove itself.
 const ARMED: u64 = 200;
 
@@ -196,7 +199,8 @@ fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
-    let mut pilot = Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory);
+    let mut pilot =
+        Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator, memory);
     let standing = commanded_of_the_rotors(&mut pilot, 1, LIFTED);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
     // Twelve centimetres higher it learns from how it was moved, to whatever end: that was no thrust.

@@ -90,6 +90,26 @@ fn late_poses_cost_millimetres_and_make_nothing_oscillate() {
     }
 }
 
+/// The Hummingbird with control at so many hertz.
+fn hummingbird_at(rate: u32) -> Scenario {
+    let text = include_str!("../vehicles/hummingbird.toml").replace("rate = 100.0 ", &format!("rate = {rate}.0 "));
+    Scenario::parse(&text, "vehicles/hummingbird.toml").unwrap()
+}
+
+#[test]
+fn at_any_rate_the_estimate_is_as_near_and_the_vehicle_too() {
+    println!("Hz: hover RMS, greatest; estimate RMS, mm; height lost in recovery, m");
+    for rate in [50, 100, 250, 500, 1_000] {
+        let vehicle = hummingbird_at(rate);
+        let still = fly(hover(&vehicle, Vector3::zeros(), 12.0).unwrap(), Some(SENSORS));
+        let recovered = fly(recovery(&vehicle, 10.0).unwrap(), Some(SENSORS));
+        let [rms, greatest, estimate] = [still.rms, still.greatest, still.estimate].map(|metres| 1e3 * metres);
+        println!("{rate:4}: {rms:.1}, {greatest:.1}; {estimate:.1}; {:.2}", recovered.height_lost);
+        assert!(still.rms < 5e-3 && still.estimate < 3e-3, "{rate} Hz: {rms}, {estimate} mm");
+        assert!(recovered.height_lost < 1.2, "{rate} Hz: {} m", recovered.height_lost);
+    }
+}
+
 #[test]
 fn half_a_second_without_poses_is_flown_through() {
     let outage = Some(Outage { start: 8.0, duration: 0.5 });

@@ -14,6 +14,7 @@ mod losses;
 mod motor_test;
 mod peripherals;
 mod policy;
+mod rates;
 mod refusals;
 mod station;
 mod streams;

@@ -7,7 +7,7 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use flight::{FlightSettings, Inputs, Mode, PERIOD, Request};
+use flight::{FlightSettings, Inputs, Mode, Request};
 use scenario::reality::estimator::Estimator;
 use verification::piloted::{PilotedVehicle, Place, Undisturbed};
 
@@ -42,7 +42,8 @@ fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
             LAND => Some(Request::Land),
             _ => None,
         };
-        let given = Inputs { request, ground_station: Some(vehicle.now() + PERIOD), ..Inputs::default() };
+        let given =
+            Inputs { request, ground_station: Some(vehicle.now() + vehicle.pilot().period()), ..Inputs::default() };
         let (outcome, _) = vehicle.tick(&given, &mut Undisturbed).unwrap();
         assert!(!matches!(outcome.answer, Some(Err(_))), "{name}, draw {draw}, tick {tick}: {:?}", outcome.answer);
         let touchdown = vehicle.vehicle_mut().take_touchdown().filter(|touchdown| touchdown.speed > 0.1);

@@ -17,7 +17,7 @@
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
-use flight::{FlightSettings, Inputs, PERIOD, Pose, Reason, Request, Stamped};
+use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
 use host_sim::instruments::{Felt, SAMPLE};
 use host_sim::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -36,11 +36,11 @@ const FASTER: f64 = 0.004;
 /// The height of the hover, m.
 const HEIGHT: f64 = 1.5;
 
-/// What happens when, in ticks: arming, take-off; from when on it hovers, and to when; what is then requested or lost.
-const ARM: u64 = 200;
-const TAKE_OFF: u64 = 260;
-const HOVER: std::ops::Range<u64> = 1_500..3_000;
-const END: u64 = 6_000;
+/// What happens when, us: arming, take-off; from when on it hovers, and to when; what is then requested or lost.
+const ARM: u64 = 2_000_000;
+const TAKE_OFF: u64 = 2_600_000;
+const HOVER: std::ops::Range<u64> = 15_000_000..30_000_000;
+const END: u64 = 60_000_000;
 
 /// A rotor as its unbalance has it.
 struct Shaker {
@@ -151,48 +151,48 @@ struct Flown {
     refused: usize,
     /// Speed of the hardest touchdown, m/s.
     touchdown: f64,
-    /// Why each mode was entered, and when, ticks.
+    /// Why each mode was entered, and when, us.
     reasons: Vec<(Reason, u64)>,
 }
 
 /// Takes off, hovers, and comes down: commanded to land, or without poses. Its rotors turn so many times as fast as its
 /// model's would.
-fn fly(name: &str, unbalance: f64, faster: f64, is_blinded: bool) -> Flown {
-    let scenario = vehicle(name);
+fn fly(scenario: &Scenario, unbalance: f64, faster: f64, is_blinded: bool) -> Flown {
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
     let mut place = Place::new(&scenario.configuration);
     let settings = FlightSettings::DEFAULT;
-    let mut vehicle = PilotedVehicle::new(&scenario, Ok(&certified), &settings, &mut place, 0).unwrap();
-    let mut shaken = Unbalanced::new(&scenario, unbalance, faster);
+    let mut vehicle = PilotedVehicle::new(scenario, Ok(&certified), &settings, &mut place, 0).unwrap();
+    let mut shaken = Unbalanced::new(scenario, unbalance, faster);
     let (mut squares, mut greatest) = (0.0, 0.0_f64);
     let mut flown = Flown { strength: (0.0, 0.0), off: (0.0, 0.0), refused: 0, touchdown: 0.0, reasons: Vec::new() };
-    for tick in 1..END {
-        let request = match tick {
+    let period = scenario.timing.period_us;
+    for time in (period..END).step_by(period as usize) {
+        let request = match time {
             ARM => Some(Request::Arm),
             TAKE_OFF => Some(Request::TakeOff(Some(HEIGHT as f32))),
-            tick if tick == HOVER.end && !is_blinded => Some(Request::Land),
+            time if time == HOVER.end && !is_blinded => Some(Request::Land),
             _ => None,
         };
-        shaken.is_seen = !(is_blinded && tick >= HOVER.end);
-        if tick == HOVER.start {
+        shaken.is_seen = !(is_blinded && time >= HOVER.end);
+        if time == HOVER.start {
             shaken.squares = (0.0, 0.0, 0.0);
         }
-        let given = Inputs { request, ground_station: Some(vehicle.now() + PERIOD), ..Inputs::default() };
+        let given = Inputs { request, ground_station: Some(vehicle.now() + period), ..Inputs::default() };
         let (outcome, _) = vehicle.tick(&given, &mut shaken).unwrap();
-        flown.reasons.extend(outcome.transition.map(|transition| (transition.reason, tick)));
+        flown.reasons.extend(outcome.transition.map(|transition| (transition.reason, time)));
         flown.refused += usize::from(outcome.pose.is_some_and(|pose| pose.is_err()));
-        if HOVER.contains(&tick) {
+        if HOVER.contains(&time) {
             let off = (vehicle.vehicle().state().position - Vector3::z() * HEIGHT).norm();
             (squares, greatest) = (squares + off * off, greatest.max(off));
         }
-        if tick == HOVER.end {
+        if time == HOVER.end {
             flown.strength = shaken.strength();
         }
         if let Some(touchdown) = vehicle.vehicle_mut().take_touchdown() {
             flown.touchdown = flown.touchdown.max(touchdown.speed);
         }
     }
-    let ticks = (HOVER.end - HOVER.start) as f64;
+    let ticks = ((HOVER.end - HOVER.start) / period) as f64;
     Flown { off: ((squares / ticks).sqrt(), greatest), ..flown }
 }
 
@@ -212,10 +212,10 @@ fn a_shaken_vehicle_hovers_lands_and_comes_down_blind() {
     for (name, limits) in [("hummingbird", [2e-3, 2e-3, 3e-3, 5e-3, 8e-3]), ("study", [2e-3, 2e-3, 3e-3, 4e-3, 6e-3])] {
         for (unbalance, limit) in [0.0, 1e-5, 2e-5, 3e-5, 4e-5].into_iter().zip(limits) {
             let [landed, blind] = [false, true].map(|is_blinded| {
-                let flown = fly(name, unbalance, 1.0, is_blinded);
+                let flown = fly(&vehicle(name), unbalance, 1.0, is_blinded);
                 check(&flown, is_blinded, limit, &format!("{name}, {unbalance} kg m"));
                 let down = flown.reasons.iter().find(|(reason, _)| *reason == Reason::Landed).unwrap().1;
-                (flown, (down - HOVER.end) as f64 * 0.01)
+                (flown, (down - HOVER.end) as f64 * 1e-6)
             });
             let Flown { strength: (force, rate), off, .. } = landed.0;
             let (rms, most) = (off.0 * 1e3, off.1 * 1e3);
@@ -232,7 +232,7 @@ fn at_whatever_speed_the_rotors_turn_their_shaking_is_no_slow_motion() {
     // Of 75 Hz in hover: 66 to 269 Hz, with 100 and 200 Hz, which alias to no motion at the ticks, among them.
     for name in ["hummingbird", "study"] {
         for faster in [0.88, 0.95, 1.07, 1.2, 1.3, 1.335, 1.345, 1.4, 1.5, 1.65, 1.8, 2.2, 2.68, 2.7, 3.1, 3.6] {
-            let flown = fly(name, 2e-5 / (faster * faster), faster, false);
+            let flown = fly(&vehicle(name), 2e-5 / (faster * faster), faster, false);
             let (force, rate) = flown.strength;
             let hertz = 74.7 * faster;
             println!(
@@ -240,6 +240,23 @@ fn at_whatever_speed_the_rotors_turn_their_shaking_is_no_slow_motion() {
                 flown.off.0 * 1e3
             );
             check(&flown, false, 6e-3, &format!("{name}, rotors {faster} times as fast"));
+        }
+    }
+}
+
+#[test]
+fn at_any_rate_of_control_shaking_is_no_slow_motion() {
+    // In hover, and where it swings as fast as control ticks, or half as fast.
+    for (rate, faster) in
+        [(50, [1.0, 1.34, 2.01]), (250, [1.0, 1.67, 3.35]), (500, [1.0, 3.35, 6.7]), (1_000, [1.0, 3.35, 6.7])]
+    {
+        let text = include_str!("../vehicles/hummingbird.toml").replace("rate = 100.0 ", &format!("rate = {rate}.0 "));
+        let hummingbird = Scenario::parse(&text, "vehicles/hummingbird.toml").unwrap();
+        for faster in faster {
+            let flown = fly(&hummingbird, 2e-5 / (faster * faster), faster, false);
+            let (hertz, off) = (74.7 * faster, flown.off.0 * 1e3);
+            println!("hummingbird at {rate} Hz, shaken at {hertz:5.1} Hz: {off:5.1} mm RMS");
+            check(&flown, false, 6e-3, &format!("{rate} Hz, rotors {faster} times as fast"));
         }
     }
 }

@@ -1,11 +1,15 @@
 //! The reference governor: any stream of setpoints in, a reference inside Omega_r out.
 //!
-//! The certificate covers references inside its [`ReferenceBounds`]; operators send steps. In between, once per tick:
+//! The certificate covers references inside its [`ReferenceBounds`]; operators send steps. In between, once per knot:
 //!
 //! ```text
 //! setpoint -> target -> pursuit (|alpha| in a cylinder) -> x_0 -> two moving averages --\
 //!          -> stream -> feedback -> envelope --------------------------------------------+-> head -> average -> spline -> Reference
 //! ```
+//!
+//! A spline has a knot in every control tick up to 100 Hz, and above that in every second, third ... so that knots lie
+//! [`KNOTS_APART`] or more apart. In the ticks between two knots the reference is the spline at their time. So neither
+//! the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
@@ -77,6 +81,9 @@ pub struct Memory(Governor);
 impl Memory {
     /// For any governor. All zeros, which is at rest at the origin: a static one takes no flash.
     pub const EMPTY: Self = Self(Governor {
+        tick: 0.0,
+        parts: 0,
+        part: 0,
         period: 0.0,
         timeout: 0,
         windows: Windows::NONE,
@@ -89,6 +96,7 @@ impl Memory {
         smoother: Smoother::NONE,
         direct: Direct::NONE,
         knot: Knot::NONE,
+        crackle: Vector3::new(0.0, 0.0, 0.0),
         turning: Turning::NONE,
         goal: Goal::STOP,
         goal_age: 0,
@@ -101,6 +109,11 @@ impl Memory {
 /// The bounded-reference generator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Governor {
+    /// The time between two control ticks, s; how many of them there are between two knots, and since the last but one.
+    tick: f32,
+    parts: u32,
+    part: u32,
+    /// The time between two knots, s.
     period: f32,
     /// Ticks after which what must be renewed is stale.
     timeout: u32,
@@ -115,10 +128,12 @@ pub struct Governor {
     averages: Averages,
     smoother: Smoother,
     direct: Direct,
-    /// The last.
+    /// The newest knot, and the fifth derivative on the way to it, m/s^5.
     knot: Knot,
+    crackle: Vector3<f32>,
     turning: Turning,
     goal: Goal,
+    /// Control ticks since it came.
     goal_age: u32,
     /// How long before it came the goal was true, s.
     goal_late: f32,
@@ -156,6 +171,11 @@ impl Governor {
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
         *memory = Memory::EMPTY;
         let Memory(governor) = memory;
+        governor.timeout = windows::ticks(limits.timeout, period) as u32;
+        governor.tick = period;
+        governor.parts = parts(period);
+        governor.part = governor.parts;
+        let period = period * governor.parts as f32;
         let windows = Windows::design(bounds, limits, period)?;
         governor.turning.design(bounds, limits, period)?;
         governor.averages.design(&windows);
@@ -170,7 +190,6 @@ impl Governor {
         governor.design_direct(&windows, bounds, limits, period);
         governor.windows = windows;
         governor.period = period;
-        governor.timeout = windows::ticks(limits.timeout, period) as u32;
         Ok(governor)
     }
 
@@ -193,6 +212,7 @@ impl Governor {
             Steady { commanded: position + ((speed * ahead + 1) >> 1), speed, acceleration: 0 }
         };
         self.go_on(&[steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)]);
+        self.part = self.parts;
         self.direct.start();
         self.turning.start(turning::phase_of(heading));
         self.stop();
@@ -209,6 +229,7 @@ impl Governor {
         );
         self.smoother.start(steady, &self.windows);
         self.knot = self.smoother.knot();
+        self.crackle = Vector3::zeros();
     }
 
     /// Metres as length units, no more than [`FARTHEST`].
@@ -248,7 +269,7 @@ impl Governor {
 
     /// The time since the goal was true, s, at the last tick.
     fn goal_time(&self) -> f32 {
-        self.goal_age as f32 * self.period + self.goal_late
+        self.goal_age as f32 * self.tick + self.goal_late
     }
 
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
@@ -261,6 +282,7 @@ impl Governor {
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.direct.is_averaged()
+            && self.crackle == Vector3::zeros()
             && self.pursue() == Vector3::zeros()
             && self.smoother.at_rest(self.averages.commanded())
             && self.turning.at_rest(&self.turn_goal())
@@ -276,6 +298,18 @@ impl Governor {
     pub fn tick(&mut self) -> Reference {
         self.goal_age = self.goal_age.saturating_add(1);
         self.turn_age = self.turn_age.saturating_add(1);
+        if self.part >= self.parts {
+            self.part = 0;
+            self.move_on();
+        }
+        self.part += 1;
+        let back = self.parts.saturating_sub(self.part) as f32 * self.tick;
+        let Knot { position, velocity, acceleration, jerk, snap } = self.knot.earlier(back, &self.crackle);
+        Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading(back) }
+    }
+
+    /// To the next knot.
+    fn move_on(&mut self) {
         let head = self.moving();
         let averaged = if self.direct.is_averaging() { self.averages.push(&self.pursue()) } else { Vector3::zeros() };
         let sought = self.sought(&head);
@@ -290,19 +324,19 @@ impl Governor {
         };
         self.smoother.push(&snap);
         self.turning.tick(&self.turn_goal());
+        let before = self.knot.snap;
         self.knot = self.smoother.knot();
-        let Knot { position, velocity, acceleration, jerk, snap } = self.knot;
-        Reference { position, velocity, acceleration, jerk, snap, heading: self.turning.heading() }
+        self.crackle = (self.knot.snap - before) / self.period;
     }
 
-    /// The commanded acceleration of this tick.
+    /// The acceleration commanded for the next knot.
     fn pursue(&self) -> Vector3<i32> {
         let u = self.averages.speed();
         let Goal { position, held, stream } = &self.goal;
         let stale = self.goal_age > self.timeout;
         let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
-        // The command at hand is where it was a tick ago.
-        let age = (self.goal_age as f32 - 1.0) * self.period + self.goal_late;
+        // The command at hand is where it was a control tick ago.
+        let age = (self.goal_age as f32 - 1.0) * self.tick + self.goal_late;
         let (ahead, feed) = self.lead.of(velocity, acceleration, age);
         let away = position + self.length(&ahead) - self.averages.commanded();
         let [x, y, z] = *held;
@@ -312,13 +346,24 @@ impl Governor {
         self.pursuit.towards_velocity(&wanted, u)
     }
 
-    /// The heading's goal of this tick.
+    /// The heading's goal at the knot at hand.
     fn turn_goal(&self) -> TurnGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
-        let lead = self.turn_age as f32 - 1.0 + self.turning.delay();
+        let lead = (self.turn_age as f32 - 1.0) * self.tick / self.period + self.turning.delay();
         let phase = self.turn.phase.map(|phase| phase.wrapping_add(whole(single(rate) * lead)));
         TurnGoal { phase, rate }
     }
+}
+
+/// The least time between two knots, s: a hundredth of a second is short beside the averages, and keeps them in memory.
+const KNOTS_APART: f32 = 0.01;
+
+/// The control ticks of `period`, s, between two knots.
+fn parts(period: f32) -> u32 {
+    // A little less: a period is a rounded number.
+    let exact = KNOTS_APART / period * (1.0 - windows::ROUNDING_ROOM);
+    let whole = exact as u32;
+    whole.saturating_add(u32::from((whole as f32) < exact)).max(1)
 }
 
 /// The greatest length, units: 2^61, so that a target, its lead and the command's own place add up within 64 bits.

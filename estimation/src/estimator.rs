@@ -31,7 +31,7 @@
 //! for increment in new increments { estimator.imu(&increment) }
 //! for pose in new poses { report(estimator.pose(&pose, now)) }
 //! let health = estimator.health(now);                   // arming, coasting and levelling are decided from this
-//! if let Some(estimated) = estimator.state(now, &newest_rate) { law.step(&estimated.state, …) }
+//! if let Some(estimated) = estimator.state(now, &newest_rate, under_way) { law.step(&estimated.state, …) }
 //! ```
 //!
 //! Without poses the state goes on by IMU alone, without a timeout; [`health`](Estimator::health) reports the age of
@@ -235,10 +235,11 @@ impl Estimator {
     }
 
     /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included.
-    /// None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it, and with a rate that
-    /// is not finite or beyond every sensor.
+    /// The increment that is `under_way` since the last one turns the attitude on, and beyond it the mean rate of the
+    /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it,
+    /// and with a rate that is not finite or beyond every sensor.
     #[must_use]
-    pub fn state(&self, now: u64, rate: &Vector3<f32>) -> Option<EstimatedState> {
+    pub fn state(&self, now: u64, rate: &Vector3<f32>, under_way: Option<&Increment>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX && is_measurable(rate))?;
         let Present { force, vibration } = Present::of(last, self.history.before_newest(), self.history.slow_force());
@@ -246,7 +247,7 @@ impl Estimator {
         let increment = Increment {
             start: last.end,
             end: last.end + ahead,
-            delta_angle: last.delta_angle * (seconds / last.seconds()),
+            delta_angle: last.turn_ahead(under_way, ahead),
             delta_velocity: self.history.slow_force() * seconds,
             ..*last
         };

@@ -5,9 +5,9 @@
 //! - Attitude and velocity are *integrals*. Samples at 1 kHz are integrated as they come ([`integrator`]), unfiltered:
 //!   an integral needs no low-pass, its mean over 5 ms is one, and it delays nothing. Rotor vibration at 70 to 130 Hz
 //!   stays what it is, a motion to and fro.
-//! - The law takes the body rate *at* its ticks, 100 times a second: a vibration of 100 Hz would alias to a constant
-//!   rate. So the gyro passes a second-order [low-pass](low_pass) first, which stops 100 Hz altogether, and the newest
-//!   of its values is the law's.
+//! - The law takes the body rate *at* its ticks: a vibration as fast as these would alias to a constant rate. So the
+//!   gyro passes a second-order [low-pass](low_pass) first, which stops that rate altogether, and the newest of its
+//!   values is the law's. With ticks at 100 Hz:
 //!
 //! | sample at | low-pass | mean over 5 ms | a BMI088's own filter |
 //! |---|---|---|---|
@@ -16,6 +16,8 @@
 //! | 130 Hz | 0.15 | 0.44 | 0.62 |
 //! | 200 Hz | 0.28 | 0 | 0.32 |
 //! | delay | 3.7 ms | none: integrals | 1.9 ms |
+//!
+//! Between two increments a tick turns the attitude on by the increment [under way](Conditioner::under_way).
 //!
 //! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops
 //! that. What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample counts as of that much
@@ -42,7 +44,7 @@ pub use watch::ImuFault;
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};
-use controller_core::error::{ParameterError, Reason, require, require_positive};
+use controller_core::error::{ParameterError, require_positive};
 use integrator::{Integrator, Sample};
 use low_pass::LowPass;
 use nalgebra::Vector3;
@@ -60,10 +62,6 @@ pub const BRIDGED_MAX: u64 = 15_000;
 pub struct ImuParameters {
     /// Samples a second, Hz.
     pub rate: f32,
-    /// Of the poles of the low-pass for the law's body rates, Hz.
-    pub cutoff: f32,
-    /// What this low-pass stops altogether, Hz.
-    pub stopped: f32,
     /// The gyro's full scale, rad/s.
     pub gyro_range: f32,
     /// The accelerometer's full scale, m/s^2.
@@ -76,30 +74,23 @@ pub struct ImuParameters {
 }
 
 impl ImuParameters {
-    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g, and a low-pass at 60 Hz that stops the rate of the ticks.
+    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g.
     ///
     /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order
     /// Butterworth filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is
     /// not distinguished. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
     /// next, 52 m/s^2; some is left for vibration.
-    pub const BMI088: Self = Self {
-        rate: 1000.0,
-        cutoff: 60.0,
-        stopped: 100.0,
-        gyro_range: 34.906_586,
-        accelerometer_range: 235.36,
-        leap: 40.0,
-        late: 1_940,
-    };
+    pub const BMI088: Self =
+        Self { rate: 1000.0, gyro_range: 34.906_586, accelerometer_range: 235.36, leap: 40.0, late: 1_940 };
 
     /// The same as simulators have it, without filters of its own.
     pub const PROMPT: Self = Self { leap: f32::MAX, late: 0, ..Self::BMI088 };
 
-    /// How late the law's body rates are at most, s, as long as they change slowly: by both filters, and by the time to
-    /// the next sample.
+    /// How late the body rates of a law with ticks every `period` us are at most, s, as long as they change slowly: by
+    /// both filters, and by the time to the next sample.
     #[must_use]
-    pub fn rates_late(&self) -> f32 {
-        self.low_pass().delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
+    pub fn rates_late(&self, period: u64) -> f32 {
+        self.low_pass(period).delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
     }
 
     /// Where what it shows ends.
@@ -108,10 +99,10 @@ impl ImuParameters {
         Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
     }
 
-    /// The low-pass for the law's body rates.
+    /// The low-pass for the body rates of a law with ticks every `period` us.
     #[must_use]
-    pub fn low_pass(&self) -> LowPass {
-        LowPass::new(self.cutoff.into(), self.stopped.into(), self.rate.into())
+    pub fn low_pass(&self, period: u64) -> LowPass {
+        LowPass::before_ticks(period, self.rate.into())
     }
 }
 
@@ -127,6 +118,8 @@ pub struct Conditioned {
 /// From samples to increments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conditioner {
+    /// The time between the law's ticks, us.
+    period: u64,
     late: u64,
     calibration: Calibration,
     watch: Watch,
@@ -136,29 +129,26 @@ pub struct Conditioner {
 }
 
 impl Conditioner {
-    /// For a sensor with `parameters`, whose samples `calibration` corrects.
+    /// For a sensor with `parameters`, whose samples `calibration` corrects, and a law with ticks every `period` us.
     ///
     /// # Errors
-    /// Names the parameter that is not positive, or a frequency of the low-pass beyond a quarter of the rate.
-    pub fn new(parameters: &ImuParameters, calibration: &Calibration) -> Result<Self, ParameterError> {
+    /// Names the parameter that is not positive.
+    pub fn new(parameters: &ImuParameters, calibration: &Calibration, period: u64) -> Result<Self, ParameterError> {
         let p = parameters;
         for (value, field) in [
             (p.rate, "imu.rate"),
-            (p.cutoff, "imu.cutoff"),
-            (p.stopped, "imu.stopped"),
             (p.gyro_range, "imu.gyro_range"),
             (p.accelerometer_range, "imu.accelerometer_range"),
             (p.leap, "imu.leap"),
         ] {
             require_positive(value, field)?;
         }
-        require(p.cutoff <= 0.25 * p.rate, "imu.cutoff", Reason::Above(0.25 * p.rate))?;
-        require(p.stopped <= 0.25 * p.rate, "imu.stopped", Reason::Above(0.25 * p.rate))?;
         Ok(Self {
+            period,
             late: p.late,
             calibration: *calibration,
             watch: Watch::new(p.ranges()),
-            low_pass: p.low_pass(),
+            low_pass: p.low_pass(period),
             integrator: Integrator::EMPTY,
             newest: None,
         })
@@ -170,7 +160,7 @@ impl Conditioner {
     /// # Errors
     /// As [`Self::new`]; nothing has changed then.
     pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
-        let mut other = Self::new(parameters, calibration)?;
+        let mut other = Self::new(parameters, calibration, self.period)?;
         if let Some(newest) = &self.newest {
             other.low_pass.settle(&newest.value.angular_velocity);
         }
@@ -183,6 +173,12 @@ impl Conditioner {
     #[must_use]
     pub fn newest(&self) -> Option<Stamped<ImuSample>> {
         self.newest
+    }
+
+    /// What the newest samples add up to since the last increment; none where that ended with the newest.
+    #[must_use]
+    pub fn under_way(&self) -> Option<Increment> {
+        self.integrator.under_way()
     }
 
     /// Corrects samples in another way from now on.

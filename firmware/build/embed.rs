@@ -22,15 +22,19 @@ pub struct Embedded {
     pub warning: Option<String>,
 }
 
-/// What the scenario in `text`, of the file `name`, becomes.
+/// What the scenario in `text`, of the file `name`, becomes for a processor that flies at up to `rate_max`, Hz.
 ///
 /// What the firmware cannot fly is refused ([`board`]). One that is not certified is built all the same, with a
 /// warning. The board itself refuses to arm with it: it boots, answers, tests its motors, and names the inequality.
 ///
 /// # Errors
 /// One line: the file, the field or the loop, and what is wrong.
-pub fn embedded(text: &str, name: &str) -> Result<Embedded, String> {
+pub fn embedded(text: &str, name: &str, rate_max: f64) -> Result<Embedded, String> {
     let scenario = Scenario::parse(text, name).map_err(|error| error.to_string())?;
+    let rate = 1.0 / scenario.timing.period();
+    if rate > rate_max {
+        return Err(format!("{name}: control.rate: this board's processor flies at up to {rate_max} Hz, found {rate}"));
+    }
     let warning = board::check(&scenario, name)?;
     let rotors = scenario.configuration.rotors().ok_or_else(|| format!("{name}: rotors: missing"))?;
     Ok(Embedded { source: source(&scenario, rotors), warning })
@@ -51,6 +55,9 @@ pub const NAME: &str = \"{name}\";
 
 /// A number of this configuration, below 2^24: see `scenario::board::identity`.
 pub const IDENTITY: u32 = {identity};
+
+/// The time between control ticks, us.
+pub const PERIOD: u64 = {period};
 
 /// Which factors on its gains have sampled loops with margin.
 pub static LOOPS: JudgedLoops = JudgedLoops::from_bits([{across}], [{vertical}]);
@@ -74,6 +81,7 @@ fn built() -> Result<Configuration, ParameterError> {{
         across = bytes(across),
         vertical = bytes(vertical),
         identity = board::identity(scenario),
+        period = scenario.timing.period_us,
         mass = vehicle.mass,
         inertia = vector(&vehicle.inertia),
         gravity = vehicle.gravity,

@@ -40,15 +40,8 @@ pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 
 /// 800 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
 /// filter of 190 Hz, which rises by 0.27 of the full scale from one sample to the next.
-pub const PARAMETERS: ImuParameters = ImuParameters {
-    rate: 800.0,
-    cutoff: 60.0,
-    stopped: 100.0,
-    gyro_range: 34.906_586,
-    accelerometer_range: 156.906_4,
-    leap: 33.0,
-    late: 1_185,
-};
+pub const PARAMETERS: ImuParameters =
+    ImuParameters { rate: 800.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4, leap: 33.0, late: 1_185 };
 
 /// Time between samples, us.
 const PERIOD: u64 = 1_250;

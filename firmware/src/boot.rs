@@ -55,7 +55,12 @@ pub fn start<M: RawMutex>(
     shared: BootView<'_, M>,
 ) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
     let configuration = configuration::embedded()?;
-    let built = Built { configuration, loops: &configuration::LOOPS, identity: configuration::IDENTITY };
+    let built = Built {
+        configuration,
+        loops: &configuration::LOOPS,
+        identity: configuration::IDENTITY,
+        period: configuration::PERIOD,
+    };
     start_named(place, shared, built, configuration::IS_NAMED)
 }
 
@@ -95,7 +100,7 @@ pub fn start_named<M: RawMutex>(
     let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
     let (limits, settings) = (parameters.governor_limits(), parameters.flight_settings());
-    Ok((pilot(place, certification.as_ref(), &limits, &settings, estimator), outputs))
+    Ok((pilot(place, certification.as_ref(), &limits, &settings, built.period, estimator), outputs))
 }
 
 /// The same of another configuration than the embedded one, on a machine that reads scenario files.
@@ -134,12 +139,12 @@ fn pilot(
     certification: Result<&Certified, &Refused>,
     limits: &GovernorLimits,
     settings: &FlightSettings,
+    period: u64,
     estimator: &'static mut Estimator,
 ) -> &'static mut Pilot {
     let memory = place.memory.take();
-    place
-        .pilot
-        .init_with(|| Pilot::carrying(certification, limits, settings, estimator, memory, configuration::policy()))
+    let policy = configuration::policy;
+    place.pilot.init_with(|| Pilot::carrying(certification, limits, settings, period, estimator, memory, policy()))
 }
 
 /// The numbers of every inequality that decides, and the verdict. `host-sim certify` explains them.

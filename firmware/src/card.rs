@@ -134,7 +134,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
             let ticks = log.finish(&volume)?;
             let missed = core::mem::take(&mut self.missed);
             let severity = if missed > 0 { Severity::Warning } else { Severity::Information };
-            let words = format_args!("Log {number:05}: {ticks} ticks, {missed} missed");
+            let words = format_args!("Log {number:05}: {ticks} records, {missed} missed");
             shared.announce(Event::new(severity, words));
         }
     }
@@ -200,7 +200,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
                 Followed::Record { record, missed, .. } => {
                     if missed > 0 {
                         self.missed = self.missed.saturating_add(missed);
-                        log.gap(volume, missed)?;
+                        log.gap(volume, missed, self.shared.recorder().spacing())?;
                     }
                     log.record(volume, &self.beginning(), &record).inspect_err(|_| self.follower.go_back(1))?;
                 }

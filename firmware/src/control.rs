@@ -1,4 +1,4 @@
-//! The control task: 100 times a second, the pilot's decision to the motors, on time.
+//! The control task: at the rate of the file that is built in, the pilot's decision to the motors, on time.
 //!
 //! ```text
 //! due -> inputs from its view -> Pilot::tick -> motor command -> written -> report
@@ -22,10 +22,10 @@ use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, PERIOD, Reason, Refusal, Transition};
+use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Transition};
 use heapless::Vec;
 
-/// How long the motors' frame may take to write, us.
+/// How long the motors' frame may take to write at most, us: half of a period, where that is less.
 const WRITING_MAX: u64 = 2_000;
 
 /// The greatest age of a voltage that counts, us.
@@ -50,7 +50,7 @@ pub struct Control<'a, M: RawMutex> {
     simulated: bool,
     /// When the last IMU increment ended, us.
     integrated: Option<u64>,
-    /// The last tick's faults: reported when they change, not a hundred times a second.
+    /// The last tick's faults: reported when they change, not in each tick.
     reported: Reported,
 }
 
@@ -69,11 +69,12 @@ struct Reported {
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies by `pilot`, with `outputs` for the motors.
     pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
+        shared.recorder().ticks_last(pilot.period());
         Self {
             shared,
-            pilot,
             outputs,
-            timing: Timing::default(),
+            timing: Timing { period: pilot.period(), ..Timing::default() },
+            pilot,
             mission: MissionReport::default(),
             is_late: false,
             simulated: false,
@@ -84,12 +85,14 @@ impl<'a, M: RawMutex> Control<'a, M> {
 
     /// Runs for ever.
     pub async fn run(&mut self, clock: &impl Clock, motors: &mut impl Motors, watchdog: &mut impl Watchdog) -> ! {
-        let mut due = clock.now() + PERIOD;
+        let period = self.pilot.period();
+        let writing_max = WRITING_MAX.min(period / 2);
+        let mut due = clock.now() + period;
         loop {
             clock.until(due).await;
             let start = clock.now();
             let command = self.tick(start);
-            let written = within(clock, WRITING_MAX, motors.write(command)).await.unwrap_or(Err(Fault));
+            let written = within(clock, writing_max, motors.write(command)).await.unwrap_or(Err(Fault));
             let end = clock.now();
             let in_time = self.timing.record(due, start, end);
             self.is_late |= !in_time;
@@ -97,7 +100,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
                 watchdog.feed();
             }
             self.report_writing(written);
-            due = next_due(due, end);
+            due = next_due(due, end, period);
         }
     }
 
@@ -152,6 +155,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let setpoint = self.shared.setpoint().take();
         Inputs {
             now,
+            under_way: self.shared.under_way().get().map(|newest| newest.value),
             body_rate: self.shared.imu().get().map(|newest| newest.map(|sample| sample.angular_velocity)),
             imu_fault: self.shared.imu_fault().recent(IMU_FAULT_HOLD, now),
             ground_station: self.shared.ground_station().get().map(|last| last.time),
@@ -309,16 +313,16 @@ fn waiting<M: RawMutex, T, const ROOM: usize>(queue: Take<'_, Queue<M, T, ROOM>>
 
 /// When the tick after the one that was due at `due` and ended at `end` is due: a period later, or as many as it
 /// overran.
-fn next_due(due: u64, end: u64) -> u64 {
+fn next_due(due: u64, end: u64, period: u64) -> u64 {
     let overrun = end.saturating_sub(due);
-    due + overrun - overrun % PERIOD + PERIOD
+    due + overrun - overrun % period + period
 }
 
 impl Timing {
     /// Takes a tick's times into account, us; whether it ended before the next one was due.
     fn record(&mut self, due: u64, start: u64, end: u64) -> bool {
         let shortened = |time: u64| u32::try_from(time).unwrap_or(u32::MAX);
-        let in_time = end < due + PERIOD;
+        let in_time = end < due + self.period;
         self.worst_jitter = self.worst_jitter.max(shortened(start.abs_diff(due)));
         self.worst_duration = self.worst_duration.max(shortened(end.saturating_sub(start)));
         self.missed = self.missed.saturating_add(u32::from(!in_time));
@@ -332,18 +336,21 @@ mod tests {
 
     #[test]
     fn a_tick_in_time_is_followed_a_period_later() {
-        let mut timing = Timing::default();
-        assert!(timing.record(20_000, 20_030, 20_400));
-        assert_eq!(timing, Timing { worst_duration: 370, worst_jitter: 30, missed: 0, gaps: 0 });
-        assert_eq!(next_due(20_000, 20_400), 30_000);
+        for period in [20_000, 10_000, 1_000] {
+            let mut timing = Timing { period, ..Timing::default() };
+            assert!(timing.record(20_000, 20_030, 20_400));
+            assert_eq!(timing, Timing { period, worst_duration: 370, worst_jitter: 30, missed: 0, gaps: 0 });
+            assert_eq!(next_due(20_000, 20_400, period), 20_000 + period);
+        }
     }
 
     #[test]
     fn an_overrun_is_missed_and_not_caught_up_with() {
-        let mut timing = Timing::default();
+        let mut timing = Timing { period: 10_000, ..Timing::default() };
         assert!(!timing.record(20_000, 20_000, 30_000));
         assert_eq!(timing.missed, 1);
-        assert_eq!(next_due(20_000, 30_000), 40_000);
-        assert_eq!(next_due(20_000, 45_000), 50_000);
+        assert_eq!(next_due(20_000, 30_000, 10_000), 40_000);
+        assert_eq!(next_due(20_000, 45_000, 10_000), 50_000);
+        assert_eq!(next_due(20_000, 22_500, 1_000), 23_000);
     }
 }

@@ -11,7 +11,7 @@
 //!
 //! The time of either answer is that of its values, by the vehicle's clock: the simulator adds to the time of a
 //! command. The HIL_SENSOR that is true a period after the last command ends the exchange; the simulator then stands
-//! still until the next one. Ten of them a tick are a sensor at 1 kHz, and one a tick will do. So the two run in
+//! still until the next one. One each millisecond is a sensor at 1 kHz, and one a tick will do. So the two run in
 //! lock-step, and what a tick sees does not depend on how long the simulator took. [`Hil::awaiting`] is true in
 //! between: an emulated processor stays awake for it, a real one need not ask.
 //!
@@ -33,16 +33,13 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{Read, Write};
-use flight::{PERIOD, Stamped};
+use flight::Stamped;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
     ODOMETRY_DATA,
 };
 use nalgebra::Vector3;
-
-/// Longest that a message may take to go out, us: then the next tick's is due.
-const SENDING_MAX: u64 = 8_000;
 
 /// Bytes taken from the line at once.
 const CHUNK: usize = 64;
@@ -72,8 +69,8 @@ pub struct Hil<M: RawMutex> {
 #[derive(Clone, Copy)]
 struct State {
     active: bool,
-    /// When the last command was given, us.
-    commanded: u64,
+    /// A period after the last command, us: the time of the sensors' sample that ends the exchange.
+    due: u64,
     /// Whether it has no answer yet.
     awaiting: bool,
 }
@@ -82,7 +79,7 @@ impl<M: RawMutex> Hil<M> {
     /// No simulator yet.
     #[must_use]
     pub const fn new() -> Self {
-        let state = State { active: false, commanded: 0, awaiting: false };
+        let state = State { active: false, due: 0, awaiting: false };
         Self { state: Mutex::new(Cell::new(state)), command: Latest::new(), outgoing: Signal::new() }
     }
 
@@ -98,23 +95,23 @@ impl<M: RawMutex> Hil<M> {
         self.state.lock(Cell::get).awaiting
     }
 
-    fn command(&self, command: MotorCommand, now: u64) {
-        self.state.lock(|state| state.set(State { active: true, commanded: now, awaiting: true }));
+    fn command(&self, command: MotorCommand, now: u64, period: u64) {
+        self.state.lock(|state| state.set(State { active: true, due: now + period, awaiting: true }));
         self.command.put(command, now);
         self.outgoing.signal(());
     }
 
     /// The time of an answer, us; none for one that no command so far can have led to.
     fn stamp(&self, time: u64) -> Option<u64> {
-        let State { active, commanded, .. } = self.state.lock(Cell::get);
-        (active && time <= commanded + PERIOD).then_some(time)
+        let State { active, due, .. } = self.state.lock(Cell::get);
+        (active && time <= due).then_some(time)
     }
 
     /// The sensors' sample of `time`, us, has come.
     fn answered(&self, time: u64) {
         self.state.lock(|cell| {
             let state = cell.get();
-            cell.set(State { awaiting: state.awaiting && time != state.commanded + PERIOD, ..state });
+            cell.set(State { awaiting: state.awaiting && time != state.due, ..state });
         });
     }
 }
@@ -135,24 +132,27 @@ pub struct SelectedMotors<'a, M: RawMutex, P, C> {
     pub wanted: shared::Read<'a, Flag>,
     /// The board's time.
     pub clock: C,
+    /// The time between control ticks, us.
+    pub period: u64,
 }
 
 impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
         if self.hil.active() || self.wanted.is_raised() && command == MotorCommand::Stop {
-            self.hil.command(command, self.clock.now());
+            self.hil.command(command, self.clock.now(), self.period);
             return self.pins.write(MotorCommand::Stop).await;
         }
         self.pins.write(command).await
     }
 }
 
-/// Sends the simulator each command that [`SelectedMotors`] was given, for ever.
+/// Sends the simulator each command that [`SelectedMotors`] was given, one every `period` us, for ever.
 pub async fn transmit<M: RawMutex>(
     hil: &Hil<M>,
     mut line: impl Write,
     clock: &impl Clock,
     shared: SimulatorView<'_, M>,
+    period: u64,
 ) -> ! {
     let mut writer = Writer::new();
     loop {
@@ -160,19 +160,20 @@ pub async fn transmit<M: RawMutex>(
         let _ = within(clock, SILENCE, hil.outgoing.wait()).await;
         let Some(command) = hil.command.take() else { continue };
         writer.write(shared.parameters().get(Name::SystemId) as u8, &controls(&command));
-        // What does not go out is not answered, and shows as sensors that grow old.
-        send(&mut line, clock, SENDING_MAX, writer.bytes()).await;
+        // Before the next is due. What does not go out is not answered, and shows as sensors that grow old.
+        send(&mut line, clock, period / 5 * 4, writer.bytes()).await;
     }
 }
 
-/// Takes the simulator's answers for IMU and pose, for ever.
+/// Takes the simulator's answers for IMU and pose, for a control that ticks every `period` us, for ever.
 pub async fn receive<M: RawMutex>(
     hil: &Hil<M>,
     mut line: impl Read,
     clock: &impl Clock,
     shared: SimulatorView<'_, M>,
+    period: u64,
 ) -> ! {
-    let mut flow = match Flow::simulated(shared.samples()) {
+    let mut flow = match Flow::simulated(shared.samples(), period) {
         Ok(flow) => flow,
         Err(error) => imu::refuse(shared.samples(), clock, &error).await,
     };

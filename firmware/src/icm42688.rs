@@ -42,15 +42,8 @@ pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 /// 1000 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
 /// filter of 249 Hz, 0.9 ms, and an eighth of a sample for what follows it. Where half a sine of a millisecond reaches
 /// the full scale, this filter rises by 0.43 of that from one sample to the next, 68 m/s^2; some is left for vibration.
-pub const PARAMETERS: ImuParameters = ImuParameters {
-    rate: 1000.0,
-    cutoff: 60.0,
-    stopped: 100.0,
-    gyro_range: 34.906_586,
-    accelerometer_range: 156.906_4,
-    leap: 52.0,
-    late: 1_030,
-};
+pub const PARAMETERS: ImuParameters =
+    ImuParameters { rate: 1000.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4, leap: 52.0, late: 1_030 };
 
 /// Time between samples, us.
 const PERIOD: u64 = 1_000;

@@ -2,7 +2,7 @@
 //! stands.
 //!
 //! ```text
-//! sensor -> RawImu -> Conditioner -> shared increments (each of them)
+//! sensor -> RawImu -> Conditioner -> shared increments (each of them), and the one under way
 //!                  |             '-> shared imu        (the newest sample, low-passed)
 //!                  '-> Calibrator -> parameters, Conditioner
 //! ```
@@ -35,10 +35,11 @@ const RETRY: u64 = 1_000;
 /// How often a task that cannot work looks whether there is anything to do, us: there never is.
 const IDLE: u64 = 1_000_000;
 
-/// Runs for ever.
-pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &mut impl Imu) -> ! {
+/// Runs for ever, for a control that ticks every `period` us.
+pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &mut impl Imu, period: u64) -> ! {
     let mut calibrator = Calibrator::new(shared, clock.now());
-    let mut flow = match Flow::new(shared.samples(), &imu.parameters(), calibrator.calibration(imu.unit())) {
+    let calibration = calibrator.calibration(imu.unit());
+    let mut flow = match Flow::new(shared.samples(), &imu.parameters(), calibration, period) {
         Ok(flow) => flow,
         Err(error) => refuse(shared.samples(), clock, &error).await,
     };

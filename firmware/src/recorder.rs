@@ -1,4 +1,4 @@
-//! The flight recorder: the last seconds of the last flight, tick by tick, in memory that outlives a reset.
+//! The flight recorder: the last seconds of the last flight, in memory that outlives a reset.
 //!
 //! ```text
 //! control -> Tick -> Ring (memory that no start clears) -> ULog over the link (LOG_REQUEST_LIST, LOG_REQUEST_DATA)
@@ -6,6 +6,8 @@
 //!
 //! - A recording begins when the vehicle is armed and ends [`AFTERWARDS`] after it is disarmed or stopped. The one
 //!   before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be fetched.
+//! - A record is of one tick. Up to 100 Hz each tick makes one, above that each second, third ...: records are
+//!   [`SPACING`] or more apart, so that memory and card hold as long a flight at any rate.
 //! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was
 //!   never written.
 //! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is
@@ -25,16 +27,23 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use ring::Ring;
 use tick::Tick;
 
-/// Ticks that are recorded after the motors have stopped: what the vehicle does then is worth knowing.
-pub const AFTERWARDS: u16 = 200;
+/// How long is recorded after the motors have stopped, us: what the vehicle does then is worth knowing.
+pub const AFTERWARDS: u64 = 2_000_000;
+
+/// The least time between two records, us.
+pub const SPACING: u64 = 10_000;
 
 /// What records, and what there is.
 struct Recording {
     ring: Ring<'static>,
     /// What the vehicle is called.
     vehicle: &'static str,
-    /// Ticks that are still recorded.
-    left: u16,
+    /// The time between ticks, and between records, us.
+    period: u64,
+    spacing: u64,
+    /// How long it is until the next record, and until the recording ends, us.
+    next: u64,
+    left: u64,
 }
 
 /// The recorder that control writes and the link reads.
@@ -49,7 +58,9 @@ impl<M: RawMutex> Recorder<M> {
 
     /// Records in `ring` from now on; what it has kept can be fetched, as of a `vehicle` that is called so.
     pub fn attach(&self, ring: Ring<'static>, vehicle: &'static str) {
-        self.0.lock(|recording| recording.replace(Some(Recording { ring, vehicle, left: 0 })));
+        self.0.lock(|recording| {
+            recording.replace(Some(Recording { ring, vehicle, period: SPACING, spacing: SPACING, next: 0, left: 0 }))
+        });
     }
 
     /// What the vehicle is called.
@@ -58,16 +69,34 @@ impl<M: RawMutex> Recorder<M> {
         self.with(|recording| recording.vehicle).unwrap_or_default()
     }
 
+    /// Control ticks are so long apart, us: [`SPACING`], unless this says otherwise.
+    pub fn ticks_last(&self, period: u64) {
+        self.with(|recording| {
+            recording.period = period.max(1);
+            recording.spacing = SPACING.div_ceil(recording.period) * recording.period;
+        });
+    }
+
+    /// The time between two records, us.
+    #[must_use]
+    pub fn spacing(&self) -> u64 {
+        self.with(|recording| recording.spacing).unwrap_or(SPACING)
+    }
+
     /// One control tick of a vehicle that is `armed` or not.
     pub fn record(&self, armed: bool, tick: impl FnOnce() -> Tick) {
         self.with(|recording| {
-            if armed && recording.left == 0 {
-                recording.ring.begin();
+            let Recording { ring, period, spacing, next, left, .. } = recording;
+            if armed && *left == 0 {
+                ring.begin();
+                *next = 0;
             }
-            recording.left = if armed { AFTERWARDS } else { recording.left.saturating_sub(1) };
-            if recording.left > 0 {
-                recording.ring.put(&tick().to_bytes());
+            *left = if armed { AFTERWARDS } else { left.saturating_sub(*period) };
+            if *left > 0 && *next == 0 {
+                ring.put(&tick().to_bytes());
+                *next = *spacing;
             }
+            *next = next.saturating_sub(*period);
         });
     }
 
@@ -82,7 +111,7 @@ impl<M: RawMutex> Recorder<M> {
     #[must_use]
     pub fn read(&self, offset: u32, out: &mut [u8]) -> usize {
         let read = |recording: &mut Recording| {
-            let Recording { ring, vehicle, left } = recording;
+            let Recording { ring, vehicle, left, .. } = recording;
             if *left == 0 { ulog::read(ring, vehicle, offset as usize, out) } else { 0 }
         };
         self.with(read).unwrap_or(0)

@@ -1,8 +1,8 @@
 //! The motors' last command, sent again and again while it is young.
 //!
-//! Many speed controllers refuse or stutter on less than 250 frames a second, and control decides a hundred times a
-//! second. In between, its last command is repeated every [`INTERVAL`]; a new one goes out at once. A command of
-//! [`COMMAND_AGE_MAX`] is repeated no more: without frames a speed controller stops its motor, so a control task that
+//! Many speed controllers refuse or stutter on less than 250 frames a second, and control decides as seldom as 50 times
+//! a second. In between, its last command is repeated every [`INTERVAL`]; a new one goes out at once. A command of
+//! [`command_age_max`] is repeated no more: without frames a speed controller stops its motor, so a control task that
 //! hangs silences the motors, whatever it commanded last. One that hangs without giving way keeps this task from
 //! running at all, which is silence too.
 
@@ -15,8 +15,12 @@ use embassy_sync::signal::Signal;
 /// Time between frames, us: 1 kHz at most, and not much less.
 pub const INTERVAL: u64 = 1_000;
 
-/// The age at which a command is repeated no more, us: a control tick that is missed is bridged, two are not.
-pub const COMMAND_AGE_MAX: u64 = 20_000;
+/// The age at which a command is repeated no more, us, where control ticks every `period` us: a tick that is missed is
+/// bridged, two are not; and never less than 20 ms, half of the time after which controllers give up by themselves.
+#[must_use]
+pub const fn command_age_max(period: u64) -> u64 {
+    if period > 10_000 { 2 * period } else { 20_000 }
+}
 
 /// How long a frame may take to write, us.
 const WRITING_MAX: u64 = 500;
@@ -67,12 +71,12 @@ impl<M: RawMutex, C: Clock> Motors for Repeater<'_, M, C> {
     }
 }
 
-/// Writes commands to the motors and repeats them, for ever.
-pub async fn run<M: RawMutex>(repeated: &Repeated<M>, motors: &mut impl Motors, clock: &impl Clock) -> ! {
+/// Writes the commands of a control that ticks every `period` us to the motors and repeats them, for ever.
+pub async fn run<M: RawMutex>(repeated: &Repeated<M>, motors: &mut impl Motors, clock: &impl Clock, period: u64) -> ! {
     loop {
         // Whichever comes first: a new command, or the time to repeat the last.
         let _ = within(clock, INTERVAL, repeated.asked.wait()).await;
-        let young = repeated.command.get().filter(|command| command.age(clock.now()) < COMMAND_AGE_MAX);
+        let young = repeated.command.get().filter(|command| command.age(clock.now()) < command_age_max(period));
         let Some(command) = young else { continue };
         let written = within(clock, WRITING_MAX, motors.write(command.value)).await.unwrap_or(Err(Fault));
         repeated.written.signal((command.time, written));

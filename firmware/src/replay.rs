@@ -15,10 +15,12 @@ pub mod estimate;
 pub mod recovery;
 pub mod shielded;
 
+use crate::configuration;
 use controller_core::certificate::certified::Certified;
-use controller_core::configuration::Configuration;
+use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters};
 use controller_core::controller::Controller;
 use controller_core::error::{InputError, ParameterError};
+use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
@@ -32,6 +34,9 @@ pub const TICKS: u64 = 4000;
 
 /// Time between two of them, us.
 pub const PERIOD_US: u64 = 10_000;
+
+/// Times between the ticks at which a recovery is replayed, us: 100 Hz, 500 Hz and 1 kHz.
+pub const PERIODS: [u64; 3] = [10_000, 2_000, 1_000];
 
 /// Single-precision numbers of one recorded state: p, v (world), q (scalar first), omega (body).
 pub const NUMBERS: usize = 13;
@@ -57,11 +62,24 @@ const REFERENCE: HarmonicParameters = HarmonicParameters {
 ///
 /// # Errors
 /// None on a machine that computes right.
-pub fn configuration() -> Result<Configuration, ParameterError> {
+pub fn papers() -> Result<Configuration, ParameterError> {
     let vehicle = Vehicle::new(VEHICLE)?;
     let limits = Limits::new(LIMITS, &vehicle)?;
     let gains = Gains::new(GainParameters::TABLE_1, &vehicle)?;
     Configuration::new(vehicle, limits, gains, Harmonic::new(REFERENCE)?.bounds())
+}
+
+/// The embedded scenario with commands a tick of `period` us late, as its file has them at 100 Hz. None if it is for
+/// another law.
+#[must_use]
+pub fn embedded_at(period: u64) -> Option<Configuration> {
+    let embedded = configuration::embedded().ok()?;
+    let LawParameters::Extended(law) = embedded.law() else { return None };
+    let ExtendedLaw { parameters, actuators } = law;
+    let actuators = ActuatorParameters { delay: period as f32 * 1e-6, ..*actuators };
+    let law = ExtendedLaw { parameters: *parameters, actuators };
+    let late = Configuration::extended(*embedded.vehicle(), *embedded.limits(), law, *embedded.bounds()).ok()?;
+    late.with_rotors(embedded.rotors()?.clone()).ok()
 }
 
 /// The flight, as far as it has been replayed.
@@ -76,7 +94,7 @@ impl Replay {
     /// At the start; certifies Table I. None if that fails, which no machine that computes right sees.
     #[must_use]
     pub fn new() -> Option<Self> {
-        let certified = Certified::new(configuration().ok()?).ok()?;
+        let certified = Certified::new(papers().ok()?).ok()?;
         let reference = Harmonic::new(REFERENCE).ok()?;
         let controller = Controller::new(&certified, PERIOD_US as f32 * 1e-6).ok()?;
         Some(Self { controller, reference, hash: Sha256::new(), tick: 0 })

@@ -123,6 +123,8 @@ values! {
     pub imu_fault: Latest<M, ImuFault> { Write: SamplesView; Read: ControlView }
     /// What the inertial samples add up to, in order. Put in with [`Values::increment`].
     pub increments: Queue<M, Increment, INCREMENTS> { Take: ControlView }
+    /// What they add up to since the last of these, where it goes on from that.
+    pub under_way: Latest<M, Increment> { Write: SamplesView; Read: ControlView }
     /// Increments that were dropped for want of room.
     pub lost_increments: Count { Read: StatusView }
     /// Requested calibrations.

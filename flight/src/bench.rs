@@ -3,12 +3,13 @@
 //!
 //! | setting | the commands that its controller gets, from the beginning |
 //! |---|---|
-//! | beep | beep for a tick; then the stop command, for as long as the tone sounds |
-//! | direction | the direction for a tick; 40 ms of the stop command; save for a tick; the stop command while it is saved |
+//! | beep | the word; then the stop command, for as long as the tone sounds |
+//! | direction | the word; four times as long the stop command; the word to save; the stop command while it is saved |
 //!
-//! A tick's command goes out ten times, which is more than the six that such words take to be believed.
+//! A word stands for [`WORD_DURATION`], or the least whole number of ticks that is no shorter. It goes out every
+//! millisecond, so ten times or more: more than the six that such words take to be believed.
 
-use super::exchange::{Output, PERIOD};
+use super::exchange::Output;
 use super::motor::{MotorSetting, MotorTest, Setting, Word};
 use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
@@ -16,8 +17,11 @@ use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
 /// How long a setting takes, us: the tone of a beep, which is the longest.
 const SETTING_DURATION: u64 = 300_000;
 
-/// When a direction is saved, us after its command.
-const SAVED_AFTER: u64 = 5 * PERIOD;
+/// How long a word stands at least, us.
+const WORD_DURATION: u64 = 10_000;
+
+/// When a direction is saved, in durations of a word after its command.
+const SAVED_AFTER: u64 = 5;
 
 /// What is under way on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,13 +58,13 @@ impl Bench {
             }
     }
 
-    /// For the motors, `elapsed` us after its beginning.
-    pub fn output(&self, elapsed: u64) -> Output {
+    /// For the motors, `elapsed` us after its beginning, in ticks of `period` us.
+    pub fn output(&self, elapsed: u64, period: u64) -> Output {
         let MotorSetting { rotor, setting } = match *self {
             Self::Turning(MotorTest { rotor, level, .. }) => return Output::Test { rotor, level },
             Self::Setting(setting) => setting,
         };
-        let word = match (setting, elapsed / PERIOD * PERIOD) {
+        let word = match (setting, elapsed / (WORD_DURATION.div_ceil(period) * period)) {
             (Setting::Beep, 0) => Word::Beep,
             (Setting::Normal, 0) => Word::Normal,
             (Setting::Reversed, 0) => Word::Reversed,
@@ -76,13 +80,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tick_that_comes_a_little_late_still_sends_its_word() {
+    fn at_any_rate_a_word_stands_for_ten_milliseconds_or_more_also_in_a_tick_that_comes_a_little_late() {
         let bench = Bench::Setting(MotorSetting { rotor: 1, setting: Setting::Reversed });
-        for (tick, word) in [(0, Word::Reversed), (5, Word::Save)] {
-            for late in [0, 1, PERIOD - 1] {
-                assert_eq!(bench.output(tick * PERIOD + late), Output::Word { rotor: 1, word }, "{late} us late");
+        for (period, word_lasts) in
+            [(20_000, 20_000), (10_000, 10_000), (8_000, 16_000), (2_000, 10_000), (1_000, 10_000)]
+        {
+            for (begins, word) in [(0, Word::Reversed), (5 * word_lasts, Word::Save)] {
+                for (tick, late) in
+                    (0..word_lasts / period).flat_map(|tick| [0, 1, period - 1].map(|late| (tick, late)))
+                {
+                    let output = bench.output(begins + tick * period + late, period);
+                    assert_eq!(output, Output::Word { rotor: 1, word }, "tick {tick} of {period} us, {late} us late");
+                }
+                assert_eq!(bench.output(begins + word_lasts, period), Output::Stop, "{period} us");
             }
-            assert_eq!(bench.output((tick + 1) * PERIOD), Output::Stop);
         }
     }
 }

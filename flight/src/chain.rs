@@ -9,7 +9,7 @@
 use super::lift_off::LiftOff;
 use super::policy::{Aboard, Handed};
 use super::refusal::Grounded;
-use super::rules::REFUSALS_MAX;
+use super::rules::REFUSAL_MAX;
 use super::sinking::Sinking;
 use super::spool::Spool;
 use controller_core::allocation::{Mixer, Thrusts};
@@ -71,6 +71,7 @@ pub(super) struct Chain<'m> {
     /// The vehicle's mass, kg, and gravity, m/s^2.
     mass: f32,
     gravity: f32,
+    /// The time between ticks, s.
     period: f32,
     /// The height of the take-off, m, world, and above where it began.
     rising_to: f32,
@@ -83,8 +84,9 @@ pub(super) struct Chain<'m> {
     is_exact: bool,
     spool: Spool,
     sinking: Sinking,
-    /// Ticks in a row without new thrusts.
-    refusals: u32,
+    /// The time between ticks, and that for which ticks in a row have brought no new thrusts, us.
+    tick: u64,
+    refused: u64,
     lift_off: LiftOff,
 }
 
@@ -103,9 +105,10 @@ impl<'m> Chain<'m> {
     pub fn new(
         certified: &Certified,
         limits: &GovernorLimits,
-        period: f32,
+        tick: u64,
         memory: &'m mut Memory,
     ) -> Result<Self, Grounded> {
+        let period = tick as f32 * 1e-6;
         let configuration = certified.configuration();
         let rotors = configuration.rotors().ok_or(Grounded::NoRotors)?;
         let vehicle = configuration.vehicle();
@@ -127,9 +130,10 @@ impl<'m> Chain<'m> {
             thrusts: None,
             flown: None,
             is_exact: true,
-            spool: Spool::new(rotors.iter().map(|rotor| rotor.thrust_min).collect()),
+            spool: Spool::new(rotors.iter().map(|rotor| rotor.thrust_min).collect(), tick),
             sinking: Sinking::default(),
-            refusals: 0,
+            tick,
+            refused: 0,
             lift_off: LiftOff::DONE,
         })
     }
@@ -151,7 +155,7 @@ impl<'m> Chain<'m> {
         self.flown = None;
         self.is_exact = true;
         self.spool.restart();
-        self.refusals = 0;
+        self.refused = 0;
         self.lift_off = LiftOff::from(position);
         Ok(())
     }
@@ -214,7 +218,7 @@ impl<'m> Chain<'m> {
 
     /// Whether the last thrusts have been held for long enough.
     pub fn is_refused(&self) -> bool {
-        self.refusals >= REFUSALS_MAX
+        self.refused >= REFUSAL_MAX
     }
 
     /// One tick on the governor's reference.
@@ -258,7 +262,7 @@ impl<'m> Chain<'m> {
         state: &State,
         step: impl FnOnce(&mut Law, &mut Reference) -> Result<Command, InputError>,
     ) -> Result<Flown, InputError> {
-        self.refusals = self.refusals.saturating_add(1);
+        self.refused = self.refused.saturating_add(self.tick);
         let flown = self.command(state, step);
         if flown.is_err() {
             // The rotors keep their last thrusts for a tick that the law knows nothing of.
@@ -281,7 +285,7 @@ impl<'m> Chain<'m> {
         if !self.is_exact {
             self.law.hold_estimates();
         }
-        self.refusals = 0;
+        self.refused = 0;
         self.thrusts = Some(self.spool.advance(allocation.thrusts));
         let flown =
             Flown { state: *state, reference: self.reference, wrench, position_error, mrp, thrust_scale: scale };

@@ -95,8 +95,10 @@ impl<'m> Estimation<'m> {
             let _ = self.estimator.adopt();
         }
         let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX, now));
-        let (health, state) =
-            (self.estimator.health(now), rate.and_then(|rate| self.estimator.state(now, &rate.value)));
+        let (health, state) = (
+            self.estimator.health(now),
+            rate.and_then(|rate| self.estimator.state(now, &rate.value, inputs.under_way.as_ref())),
+        );
         let jumped = health.jumps != self.jumps;
         let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
         self.since = if steady { self.since.or(Some(now)) } else { None };

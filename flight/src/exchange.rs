@@ -16,9 +16,6 @@ use estimation::imu::ImuFault;
 use estimation::measurement::Stamped;
 use nalgebra::Vector3;
 
-/// The time between ticks, us.
-pub const PERIOD: u64 = 10_000;
-
 /// What the battery has left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Battery {
@@ -41,8 +38,10 @@ pub enum Battery {
 pub struct Inputs<'a> {
     /// The vehicle's clock, us.
     pub now: u64,
-    /// What the IMU did, each increment beginning where the last ended: two of 5 ms, where nothing is late.
+    /// What the IMU did, each increment beginning where the last ended: one each 5 ms, where nothing is late.
     pub increments: &'a [Increment],
+    /// What the IMU has done since the last of them, as far as it has been sampled.
+    pub under_way: Option<Increment>,
     /// The newest body rate, low-passed, rad/s, as the sensor has it.
     pub body_rate: Option<Stamped<Vector3<f32>>>,
     /// The fault of gyro or accelerometer, present or within the last second.

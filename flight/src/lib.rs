@@ -41,6 +41,10 @@
 #[path = "../../controller-core/tests/support/hummingbird.rs"]
 mod hummingbird;
 
+/// The time between ticks in tests, us.
+#[cfg(test)]
+const PERIOD: u64 = 10_000;
+
 mod bench;
 mod chain;
 mod debounce;
@@ -73,7 +77,7 @@ pub use estimate::SETTLED_AFTER;
 pub use estimation::measurement::{
     DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
 };
-pub use exchange::{Battery, Inputs, Outcome, Output, PERIOD};
+pub use exchange::{Battery, Inputs, Outcome, Output};
 pub use mission::{Leg, MissionItem, MissionRefusal, MissionStep, RADIUS as MISSION_RADIUS};
 pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;

@@ -1,7 +1,7 @@
 //! The vehicle's motion without the vibration of its rotors, by a low-pass.
 //!
-//! Rotors out of balance vibrate a vehicle that stands or lies. A first-order low-pass, which takes in a fifth of each
-//! tick's value, reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25 Hz.
+//! Rotors out of balance vibrate a vehicle that stands or lies. A first-order low-pass, y += h / (T + h) (x - y) in ticks
+//! of h with T = [`TIME`], reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25 Hz.
 //! Accelerations vibrate most: theirs is of second order, which passes one sixtieth. A hit at speed would stay in it
 //! for too long: an acceleration counts up to [`COUNTED`] only.
 
@@ -10,8 +10,8 @@ use controller_core::state::State;
 use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
-/// The share of each tick's value that the low-pass takes in.
-const SHARE: f32 = 0.2;
+/// The low-pass's time constant, s.
+const TIME: f32 = 0.04;
 
 /// The greatest acceleration that counts along each axis, m/s^2. One tick of it leaves less in the average than wind
 /// may.
@@ -29,26 +29,35 @@ struct Average {
     jumps: u32,
 }
 
-/// The average, if there is a state.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub(super) struct LowPass(Option<Average>);
+/// The average, if there is a state, and the share of each tick's value that it takes in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LowPass {
+    share: f32,
+    average: Option<Average>,
+}
 
 impl LowPass {
+    /// In ticks of `period` us.
+    pub fn new(period: u64) -> Self {
+        let seconds = period as f32 * 1e-6;
+        Self { share: seconds / (TIME + seconds), average: None }
+    }
+
     /// Whether a state has jumped since the last one.
     pub fn jumps_to(&self, estimated: &EstimatedState) -> bool {
-        self.0.is_some_and(|last| last.jumps != estimated.jumps)
+        self.average.is_some_and(|last| last.jumps != estimated.jumps)
     }
 
     /// The state of a tick with its motion averaged. It begins anew where there was none, and where the state has
     /// jumped.
     pub fn tick(&mut self, estimated: Option<&EstimatedState>) -> Option<EstimatedState> {
         let Some(&EstimatedState { state, acceleration, jumps, gained }) = estimated else {
-            self.0 = None;
+            self.average = None;
             return None;
         };
-        let last = self.0.filter(|last| last.jumps == jumps);
+        let last = self.average.filter(|last| last.jumps == jumps);
         let averaged =
-            |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * SHARE);
+            |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * self.share);
         let velocity = averaged(state.velocity, last.map(|last| last.velocity));
         let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
         let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
@@ -56,7 +65,7 @@ impl LowPass {
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
         let smoothed =
             EstimatedState { state: State { velocity, angular_velocity, ..state }, acceleration, jumps, gained };
-        self.0 = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });
+        self.average = Some(Average { velocity, angular_velocity, acceleration: (once, acceleration), jumps });
         Some(smoothed)
     }
 }

@@ -6,7 +6,7 @@
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
 use super::estimate::{Estimate, Estimation};
-use super::exchange::{Inputs, Output, PERIOD};
+use super::exchange::{Inputs, Output};
 use super::fall::Fall;
 use super::fence::Fence;
 use super::mission::Progress;
@@ -30,6 +30,8 @@ use nalgebra::Vector3;
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,
+    /// The time between ticks, us.
+    period: u64,
     settings: FlightSettings,
     mode: Mode,
     /// When the mode was entered, us.
@@ -63,16 +65,17 @@ impl<'m> Pilot<'m> {
         certification: Result<&Certified, &Refused>,
         limits: &GovernorLimits,
         settings: &FlightSettings,
+        period: u64,
         estimator: &'m mut Estimator,
         memory: &'m mut Memory,
     ) -> Self {
-        Self::carrying(certification, limits, settings, estimator, memory, NoPolicy)
+        Self::carrying(certification, limits, settings, period, estimator, memory, NoPolicy)
     }
 }
 
 impl<'m, P: Aboard> Pilot<'m, P> {
-    /// A pilot at boot for the verdict of the certificate on a configuration, to tick every [`PERIOD`]. It flies on the
-    /// state of `estimator`; its governor and mixer lie in `memory`.
+    /// A pilot at boot for the verdict of the certificate on a configuration, to tick every `period` us. It flies on
+    /// the state of `estimator`; its governor and mixer lie in `memory`.
     ///
     /// Without a certified configuration, or with one it cannot fly, it is grounded: it answers and tests motors, but
     /// never arms, and reports why.
@@ -81,24 +84,26 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         certification: Result<&Certified, &Refused>,
         limits: &GovernorLimits,
         settings: &FlightSettings,
+        period: u64,
         estimator: &'m mut Estimator,
         memory: &'m mut Memory,
         mut policy: P,
     ) -> Self {
         let settings = settings.within_range();
         if let Ok(certified) = certification {
-            policy.fit(certified.configuration(), PERIOD as f32 * 1e-6);
+            policy.fit(certified.configuration(), period as f32 * 1e-6);
         }
         Self {
             chain: match certification {
-                Ok(certified) => Chain::new(certified, limits, PERIOD as f32 * 1e-6, memory),
+                Ok(certified) => Chain::new(certified, limits, period, memory),
                 Err(refused) => Err(Grounded::from(refused)),
             },
+            period,
             settings,
             mode: Mode::Boot,
             since: 0,
             estimation: Estimation::new(estimator),
-            watch: Watch::default(),
+            watch: Watch::new(period),
             fall: Fall::default(),
             fence: Fence::new(&settings),
             bench: Bench::NONE,
@@ -121,6 +126,12 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             self.settings = settings.within_range();
             self.fence.choose(&self.settings);
         }
+    }
+
+    /// The time between ticks, us.
+    #[must_use]
+    pub fn period(&self) -> u64 {
+        self.period
     }
 
     /// The mode after the last tick.
@@ -152,7 +163,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     /// What the watch detects: a touchdown, a crash, lost tracking, a low battery.
     fn observe(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
         if !self.mode.is_armed() {
-            self.watch = Watch::default();
+            self.watch = Watch::new(self.period);
         }
         let chain = self.chain.as_ref().ok();
         let seen = self.watch.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs);
@@ -273,7 +284,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     /// What the mode does in this tick.
     fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> Done {
         match self.mode {
-            Mode::MotorTest => return Done::without(self.bench.output(now.saturating_sub(self.since))),
+            Mode::MotorTest => return Done::without(self.bench.output(now.saturating_sub(self.since), self.period)),
             Mode::Idling => return Done::without(Output::Idle),
             _ => {}
         }

@@ -48,7 +48,7 @@ estimation::worded! {
         Crashed = "Stopped: lying on its back or side",
         /// No IMU increment for [`super::rules::IMU_AGE_MAX`], or the estimator lost its state.
         ImuLost = "Stopped: no IMU for 20 ms, or its data broke off",
-        /// The law or the allocation refused its input for [`super::rules::REFUSALS_MAX`] ticks.
+        /// The law or the allocation refused its input for [`super::rules::REFUSAL_MAX`].
         ThrustsRefused = "Stopped: the law refused its input for 50 ms",
         /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
         PoseLost = "Pose lost: levelling for 1 s, then going down",

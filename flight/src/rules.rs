@@ -27,9 +27,8 @@ use estimation::estimator::EXTRAPOLATION_MAX;
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
 pub const COASTING_MAX: u64 = 1_000_000;
 
-/// The greatest age of an IMU sample that is flown, us: twenty samples missed, two control ticks, and the delay of its
-/// own filters. The attitude loop stands one or two ticks of delay, not more (docs/sampled-loop.md), and without rates
-/// the attitude is unknown.
+/// The greatest age of an IMU sample that is flown, us: twenty samples missed, and the delay of its own filters. The
+/// attitude loop stands no more (docs/sampled-loop.md), and without rates the attitude is unknown.
 pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX;
 
 /// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.
@@ -77,9 +76,9 @@ pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
 /// The longest motor test, us.
 pub const MOTOR_TEST_MAX: u64 = 2_000_000;
 
-/// Ticks in a row without new thrusts (the law or the allocation refused their input) that the last thrusts are held
-/// for. Inputs are checked before the law sees them, so a refusal is a defect; 50 ms outlast a passing one.
-pub const REFUSALS_MAX: u32 = 5;
+/// How long the last thrusts are held without new ones, us, where the law or the allocation refuses its input tick after
+/// tick. Inputs are checked before the law sees them, so a refusal is a defect; this outlasts a passing one.
+pub const REFUSAL_MAX: u64 = 50_000;
 
 /// A change of mode, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,43 +1,44 @@
 //! How the rotors are brought up from their idle to the law's thrusts.
 //!
-//! For [`SPOOL_TICKS`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor leaves
+//! For [`SPOOL_DURATION`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor leaves
 //! the range in which the law's own commands are. The reference waits at rest.
 
 use controller_core::allocation::Thrusts;
 
-/// Ticks from the rotors' idle to the law's thrusts.
-const SPOOL_TICKS: u32 = 100;
+/// The time from the rotors' idle to the law's thrusts, us.
+const SPOOL_DURATION: u64 = 1_000_000;
 
 /// How far the rotors have come.
 #[derive(Debug, PartialEq)]
 pub(super) struct Spool {
     /// Each rotor's least thrust, N.
     least: Thrusts,
-    /// Ticks since the rotors' idle.
-    ticks: u32,
+    /// The time between ticks, and that since the rotors' idle, us.
+    period: u64,
+    elapsed: u64,
 }
 
 impl Spool {
-    /// At the rotors' idle, with their least thrusts, N.
-    pub fn new(least: Thrusts) -> Self {
-        Self { least, ticks: 0 }
+    /// At the rotors' idle, with their least thrusts, N, in ticks of `period` us.
+    pub fn new(least: Thrusts, period: u64) -> Self {
+        Self { least, period, elapsed: 0 }
     }
 
     /// Back at the rotors' idle.
     pub fn restart(&mut self) {
-        self.ticks = 0;
+        self.elapsed = 0;
     }
 
     /// Whether the rotors give the law's thrusts.
     pub fn is_over(&self) -> bool {
-        self.ticks >= SPOOL_TICKS
+        self.elapsed >= SPOOL_DURATION
     }
 
     /// One tick on: the part of the way to `thrusts`, N, that the rotors have come.
     pub fn advance(&mut self, mut thrusts: Thrusts) -> Thrusts {
-        self.ticks = self.ticks.saturating_add(1).min(SPOOL_TICKS);
+        self.elapsed = self.elapsed.saturating_add(self.period).min(SPOOL_DURATION);
         if !self.is_over() {
-            let part = self.ticks as f32 / SPOOL_TICKS as f32;
+            let part = self.elapsed as f32 / SPOOL_DURATION as f32;
             thrusts.iter_mut().zip(&self.least).for_each(|(thrust, least)| *thrust = least + part * (*thrust - least));
         }
         thrusts

@@ -105,7 +105,7 @@ const LYING_WANTED_COSINE: f32 = 0.173_648_2;
 const LYING_BESIDE: f32 = 0.131_652_5;
 
 /// The detectors' memory.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Watch {
     tracking: Debounce,
     saturated: Debounce,
@@ -264,6 +264,30 @@ impl Look<'_> {
 }
 
 impl Watch {
+    /// Of nothing so far, in ticks of `period` us.
+    pub fn new(period: u64) -> Self {
+        Self {
+            tracking: Debounce::default(),
+            saturated: Debounce::default(),
+            lying: Debounce::default(),
+            standing: Debounce::default(),
+            resting: Debounce::default(),
+            low: Debounce::default(),
+            critical: Debounce::default(),
+            late: Debounce::default(),
+            doubtful: Debounce::default(),
+            turning: Debounce::default(),
+            low_pass: LowPass::new(period),
+            struck: None,
+            jerked: None,
+            touched: None,
+            hit: false,
+            lied: Debounce::default(),
+            taught: 0.0,
+            low_is_latched: false,
+        }
+    }
+
     /// Runs every detector on the last tick.
     pub fn tick(
         &mut self,

@@ -1,11 +1,11 @@
 //! What arming needs: every reason for refusing it, brought about from outside, and a vehicle that can be armed
 //! afterwards.
 
-use crate::support::{Flight, Handed, SETTLING, at_rest, at_rest_with, displaced, go_to, pilot, settled};
+use crate::support::{Flight, Handed, PERIOD, SETTLING, at_rest, at_rest_with, displaced, go_to, pilot, settled};
 use controller_core::prelude::*;
 use estimation::estimator::{Fault, Increment};
 use estimation::imu::ImuFault;
-use flight::{Battery, Mode, MotorTest, Output, PERIOD, Refusal, Request, Stamped};
+use flight::{Battery, Mode, MotorTest, Output, Refusal, Request, Stamped};
 
 const NOW: u64 = 5_000_000;
 

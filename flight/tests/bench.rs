@@ -1,8 +1,8 @@
 //! One motor on the bench: turned slowly, or its controller given a word, while nothing else turns; and what is refused
 //! there.
 
-use crate::support::{Flight, Handed, at_rest, pilot};
-use flight::{Mode, MotorSetting, MotorTest, Output, PERIOD, Reason, Refusal, Request, Setting, Word};
+use crate::support::{Flight, Handed, PERIOD, at_rest, pilot};
+use flight::{Mode, MotorSetting, MotorTest, Output, Reason, Refusal, Request, Setting, Word};
 
 const NOW: u64 = 5_000_000;
 

@@ -2,11 +2,11 @@
 //! second, levels for another, and stops, and reports why the poses are not believed. Where the sender reports that its
 //! frame has moved, or where a lost body is found again, it flies on and does not lurch.
 
-use crate::support::{Body, Flight, PoseSource, SPOOLING, displaced, go_to};
+use crate::support::{Body, Flight, PERIOD, PoseSource, SPOOLING, displaced, go_to};
 use controller_core::prelude::*;
 use estimation::estimator::{Rejected, Taken};
 use flight::rules::COASTING_MAX;
-use flight::{Mode, Outcome, Output, PERIOD, Reason, Request, Stamped};
+use flight::{Mode, Outcome, Output, Reason, Request, Stamped};
 use nalgebra::UnitQuaternion;
 use std::f64::consts::PI;
 

@@ -1,11 +1,9 @@
 //! Missions: items in their order, within the same bounds and rules as setpoints.
 
-use crate::support::{Flight, GROUND, go_to};
+use crate::support::{Flight, GROUND, PERIOD, go_to};
 use controller_core::governor::Turn;
 use controller_core::prelude::*;
-use flight::{
-    Battery, Leg, MISSION_RADIUS, MissionItem, MissionRefusal, MissionStep, Mode, PERIOD, Reason, Refusal, Request,
-};
+use flight::{Battery, Leg, MISSION_RADIUS, MissionItem, MissionRefusal, MissionStep, Mode, Reason, Refusal, Request};
 
 /// Ticks within which a few metres are flown.
 const LONG: u64 = 4_000;

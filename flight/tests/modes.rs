@@ -1,10 +1,10 @@
 //! The pilot in closed loop with a rigid body: what each mode does, and how each ends.
 
-use crate::support::{Flight, GROUND, SPOOLING, go_to};
+use crate::support::{Flight, GROUND, PERIOD, SPOOLING, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::rules::{BATTERY_DEBOUNCE, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_DEBOUNCE};
-use flight::{Battery, Mode, MotorTest, Output, PERIOD, Reason, Refusal, Request};
+use flight::{Battery, Mode, MotorTest, Output, Reason, Refusal, Request};
 
 /// On its way to a far point, turning.
 fn under_way() -> Flight {

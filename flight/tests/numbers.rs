@@ -1,11 +1,11 @@
 //! Numbers that no sensor and no clock should hand over, in every field. They never reach the motors.
 
 use crate::support::outputs::check_output;
-use crate::support::{Handed, SETTLING, at_rest, go_to, rotors, settled};
+use crate::support::{Handed, PERIOD, SETTLING, at_rest, go_to, rotors, settled};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use estimation::estimator::PoseMeasurement;
-use flight::{Mode, MotorTest, Output, PERIOD, Pose, Request, Stamped, Velocity};
+use flight::{Mode, MotorTest, Output, Pose, Request, Stamped, Velocity};
 
 #[test]
 fn no_number_in_any_field_reaches_the_motors_in_any_mode() {

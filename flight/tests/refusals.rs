@@ -1,12 +1,14 @@
 //! Requests and setpoints that are refused, and configurations that never arm. What arming needs is in
 //! `flight_arming.rs`.
 
-use crate::support::{Flight, Handed, at_rest, certified, configuration, estimator, go_to, memory, rotors, settled};
+use crate::support::{
+    Flight, Handed, PERIOD, at_rest, certified, configuration, estimator, go_to, memory, rotors, settled,
+};
 use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::{Battery, FlightSettings, Grounded, Mode, MotorTest, Output, PERIOD, Pilot, Refusal, Request};
+use flight::{Battery, FlightSettings, Grounded, Mode, MotorTest, Output, Pilot, Refusal, Request};
 
 const NOW: u64 = 5_000_000;
 
@@ -131,7 +133,8 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
     let weak = Configuration::new(*base.vehicle(), weak, *base.gains().unwrap(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
-    let pilot = Pilot::new(Err(&refused), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator(), memory());
+    let pilot =
+        Pilot::new(Err(&refused), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator(), memory());
     let grounded = Grounded::Inequality("T2 yaw torque");
     assert_eq!(grounded.to_string(), "Not certified: T2 yaw torque");
     is_grounded(pilot, grounded);
@@ -142,24 +145,24 @@ fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     let limits = GovernorLimits::default();
     let rotorless = Certified::new(configuration()).unwrap();
     is_grounded(
-        Pilot::new(Ok(&rotorless), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
+        Pilot::new(Ok(&rotorless), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
         Grounded::NoRotors,
     );
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
     let field = "reference_bounds.horizontal_speed";
     is_grounded(
-        Pilot::new(Ok(&hover), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
+        Pilot::new(Ok(&hover), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
         Grounded::Parameter(field),
     );
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
     is_grounded(
-        Pilot::new(Ok(&certified()), &slow, &FlightSettings::DEFAULT, estimator(), memory()),
+        Pilot::new(Ok(&certified()), &slow, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
         Grounded::Parameter("governor.horizontal_speed"),
     );
     let error = ParameterError { field: "vehicle.mass", reason: Reason::NotPositive };
     is_grounded(
-        Pilot::new(Err(&Refused::Undefined(error)), &limits, &FlightSettings::DEFAULT, estimator(), memory()),
+        Pilot::new(Err(&Refused::Undefined(error)), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
         Grounded::Parameter("vehicle.mass"),
     );
 }

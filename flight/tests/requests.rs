@@ -1,10 +1,10 @@
 //! Earlier and present requests: the newest counts, and nothing that was granted is forgotten.
 
-use crate::support::{Flight, go_to};
+use crate::support::{Flight, PERIOD, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::rules::SETPOINTS_REQUEST_MAX;
-use flight::{Battery, Mode, Outcome, Output, PERIOD, Reason, Refusal, Request, SETPOINT_AGE_MAX};
+use flight::{Battery, Mode, Outcome, Output, Reason, Refusal, Request, SETPOINT_AGE_MAX};
 
 /// Outside the fence.
 fn far() -> Setpoint {

@@ -1,15 +1,13 @@
 //! Random streams of whatever arrives. What may never happen, never does.
 
 use crate::support::outputs::check_output;
-use crate::support::{Handed, SETTLING, go_to, pilot, pose, resting_imu, rotors};
+use crate::support::{Handed, PERIOD, SETTLING, go_to, pilot, pose, resting_imu, rotors};
 use controller_core::allocation::Rotors;
 use controller_core::governor::Turn;
 use controller_core::prelude::*;
 use estimation::estimator::{Increment, PoseMeasurement};
 use flight::rules::{COASTING_MAX, DESCENDING_MAX, IDLING_MAX, IMU_AGE_MAX, MOTOR_TEST_MAX};
-use flight::{
-    Leg, MissionItem, Mode, MotorSetting, MotorTest, Outcome, Output, PERIOD, Pilot, Request, Setting, Stamped,
-};
+use flight::{Leg, MissionItem, Mode, MotorSetting, MotorTest, Outcome, Output, Pilot, Request, Setting, Stamped};
 use proptest::prelude::*;
 
 /// What becomes of a tick's share of something measured.

@@ -35,7 +35,7 @@ fn scaled(numbers: [i16; 3], range: f32) -> Vector3<f32> {
 
 fuzz_target!(|events: Vec<Event>| {
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
-    let mut conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE).unwrap();
+    let mut conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE, 10_000).unwrap();
     let mut estimator = Box::new(Estimator::new(&settings));
     let mut now = 1_000_000_u64;
     for event in events {
@@ -91,7 +91,9 @@ fuzz_target!(|events: Vec<Event>| {
             Event::Wait(time) => now += u64::from(time),
         }
         let health = estimator.health(now);
-        if let Some(estimated) = conditioner.newest().and_then(|newest| estimator.state(now, &newest.value.angular_velocity)) {
+        if let Some(estimated) = conditioner.newest().and_then(|newest| {
+            estimator.state(now, &newest.value.angular_velocity, conditioner.under_way().as_ref())
+        }) {
             let state = &estimated.state;
             let numbers = [state.position, state.velocity, state.angular_velocity, estimated.acceleration];
             assert!(numbers.iter().all(|vector| vector.iter().all(|x| x.is_finite())), "{state:?} {health:?}");

@@ -55,7 +55,7 @@ impl Estimation {
         let what = scenario.reality.estimator?;
         let gravity = scenario.configuration.vehicle().gravity;
         // Both are checked: the file's numbers when it was read.
-        let (conditioner, settings) = Self::parts(&what, gravity).ok()?;
+        let (conditioner, settings) = Self::parts(&what, gravity, scenario.timing.period_us).ok()?;
         let mut estimation = Self {
             instruments: Instruments::new(&what, gravity.into(), scenario.initial.velocity, ALIGNING),
             clock: 0,
@@ -71,8 +71,12 @@ impl Estimation {
         Some(estimation)
     }
 
-    fn parts(what: &estimator::Estimator, gravity: f32) -> Result<(Conditioner, Settings), ParameterError> {
-        let conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE)?;
+    fn parts(
+        what: &estimator::Estimator,
+        gravity: f32,
+        period: u64,
+    ) -> Result<(Conditioner, Settings), ParameterError> {
+        let conditioner = Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE, period)?;
         Ok((conditioner, Settings::new(&what.believed(gravity))?))
     }
 
@@ -101,8 +105,9 @@ impl Estimation {
     /// # Errors
     /// [`NoEstimate`].
     pub fn state(&mut self) -> Result<(State, bool), NoEstimate> {
-        let newest = self.conditioner.newest();
-        let estimated = newest.and_then(|newest| self.estimator.state(self.clock, &newest.value.angular_velocity));
+        let (newest, under_way) = (self.conditioner.newest(), self.conditioner.under_way());
+        let estimated = newest
+            .and_then(|newest| self.estimator.state(self.clock, &newest.value.angular_velocity, under_way.as_ref()));
         let Some(estimated) = estimated else {
             return Err(NoEstimate(self.estimator.health(self.clock).faults.worst()));
         };

@@ -68,7 +68,7 @@ use truth::Truth;
 use voice::Voice;
 use world::{PoseSource, World};
 
-/// Ticks that the flight recorder holds: a minute.
+/// Records that the flight recorder holds: a minute.
 const RECORDED: usize = 6_000;
 
 /// Time between lines of status, by the desk's clock.
@@ -155,6 +155,8 @@ pub struct Sitl {
     configuration: Configuration,
     loops: &'static JudgedLoops,
     identity: u32,
+    /// The time between control ticks, us.
+    period: u64,
     /// What the vehicle is called.
     name: &'static str,
     /// Set by the firmware: start it anew.
@@ -210,6 +212,7 @@ impl Sitl {
             configuration: scenario.configuration.clone(),
             loops,
             identity,
+            period: scenario.timing.period_us,
             name: Box::leak(scenario.name.clone().into_boxed_str()),
             restart: Rc::default(),
         };
@@ -232,7 +235,8 @@ impl Sitl {
         let memory = Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice());
         shared.recorder.attach(Ring::recover(memory), self.name);
         let place = Box::leak(Box::new(boot::Place::new()));
-        let built = Built { configuration: self.configuration.clone(), loops: self.loops, identity: self.identity };
+        let (configuration, period) = (self.configuration.clone(), self.period);
+        let built = Built { configuration, loops: self.loops, identity: self.identity, period };
         let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;
 
         let pool = LocalPool::new();
@@ -251,7 +255,7 @@ impl Sitl {
             Control::new(shared.for_control(), pilot, outputs).run(&time, &mut motors, &mut watchdog).await
         });
         let (mut sensor, time) = (world.clone(), clock.clone());
-        spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor).await });
+        spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor, period).await });
         let (ear, time) = (self.up.clone(), clock.clone());
         spawn(&spawner, async move { link::receive::receive(ear, &time, shared.for_receive()).await });
         let time = clock.clone();

@@ -1,4 +1,4 @@
-//! What the firmware can fly of all scenarios: 100 Hz, four rotors, and sampled loops with margin.
+//! What the firmware can fly of all scenarios: 50 Hz to 1 kHz, four rotors, and sampled loops with margin.
 //!
 //! On a board the law gets its body rates from the estimator, and they are late ([`rates_delay`]); they are in the
 //! loops judged here, whether the scenario has `[estimator]` or not.
@@ -20,9 +20,11 @@ use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::tuning::Factors;
 use controller_core::tuning::judged::JudgedLoops;
 use controller_core::vehicle::{LimitParameters, VehicleParameters};
+use std::ops::RangeInclusive;
 
-/// The rate of the firmware's control task, Hz.
-pub const RATE: f64 = 100.0;
+/// The rates of the firmware's control task, Hz: of the extended law, and of the paper's, which is the published one.
+const RATES: RangeInclusive<f64> = 50.0..=1000.0;
+const PAPERS_RATE: f64 = 100.0;
 
 /// Rotors that the boards have outputs for.
 pub const ROTORS: usize = 4;
@@ -37,8 +39,13 @@ pub const ROTORS: usize = 4;
 /// One line: the file, the field, the loop or the flight, and what is wrong.
 pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> {
     let rate = 1.0 / scenario.timing.period();
-    if (rate - RATE).abs() > 1e-9 {
-        return Err(format!("{name}: control.rate: the firmware flies at {RATE} Hz, found {rate}"));
+    if !RATES.contains(&rate) {
+        let (least, most) = (RATES.start(), RATES.end());
+        return Err(format!("{name}: control.rate: the firmware flies at {least} to {most} Hz, found {rate}"));
+    }
+    if matches!(scenario.configuration.law(), LawParameters::Paper(_)) && rate != PAPERS_RATE {
+        let problem = format!("the firmware flies the paper's law at {PAPERS_RATE} Hz, found {rate}");
+        return Err(format!("{name}: control.rate: {problem}; leave [gains] to the extended law for other rates"));
     }
     let Some(rotors) = scenario.configuration.rotors() else {
         return Err(format!("{name}: rotors: missing; a board needs to know what its {ROTORS} motors turn"));
@@ -51,7 +58,7 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
     let loops = LoopModel::new(scenario.configuration.vehicle(), law, timing(scenario));
     let loops = loops.map_err(|error| format!("{name}: {error}"))?.reports();
     if let Some(lack) = verdict.lacking().or_else(|| LoopMargin::LEAST.first_lacking(&loops)) {
-        let late = rates_delay() * 1e3;
+        let late = rates_delay(&scenario.timing) * 1e3;
         return Err(format!(
             "{name}: {lack}; what cannot be flown is not built (a board's body rates are up to {late:.1} ms late)"
         ));
@@ -67,7 +74,7 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
 /// The scenario's timing on a board.
 fn timing(scenario: &Scenario) -> Timing {
     let timing = scenario.loop_timing();
-    let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay() };
+    let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay(&scenario.timing) };
     Timing { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
@@ -243,10 +250,11 @@ mod tests {
     #[test]
     fn what_the_boards_cannot_drive_is_refused_by_name() {
         assert_eq!(checked("name = ", "name = "), Ok(None));
-        for rate in ["rate = 50.0 ", "rate = 200.0 "] {
-            let error = checked("rate = 100.0 ", rate).unwrap_err();
-            assert!(error.starts_with("a test: control.rate: the firmware flies at 100 Hz"), "{error}");
-        }
+        let error = checked("rate = 100.0 ", "rate = 40.0 ").unwrap_err();
+        assert_eq!(error, "a test: control.rate: the firmware flies at 50 to 1000 Hz, found 40");
+        let paper = include_str!("../../vehicles/hummingbird-paper-law.toml").replace("rate = 100.0 ", "rate = 200.0 ");
+        let error = check(&Scenario::parse(&paper, "a test").unwrap(), "a test").unwrap_err();
+        assert!(error.starts_with("a test: control.rate: the firmware flies the paper's law at 100 Hz, found 200"));
         let (four, six) =
             ("[-0.120208, 0.120208, 0.0],", "[-0.120208, 0.120208, 0.0], [0.17, 0.0, 0.0], [-0.17, 0.0, 0.0],");
         let six = STUDY.replace(four, six).replace("\"cw\", \"ccw\"]", "\"cw\", \"ccw\", \"cw\", \"ccw\"]");

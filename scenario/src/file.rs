@@ -173,7 +173,7 @@ impl Scenario {
     #[must_use]
     pub fn input_delay(&self) -> f64 {
         let sensors = self.reality.sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * self.timing.period());
-        sensors + self.reality.estimator.map_or(0.0, |_| estimator::rates_delay())
+        sensors + self.reality.estimator.map_or(0.0, |_| estimator::rates_delay(&self.timing))
     }
 
     /// The sampled loops of its vehicle, gains, rotors and timing, with the delays of inputs and outputs together, and

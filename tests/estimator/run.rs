@@ -44,7 +44,7 @@ pub struct Shown {
 
 /// Flies `truth`, with poses of moments that `meddle` may have changed.
 pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, random: &mut impl Rng) -> Shown {
-    let mut conditioner = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE).unwrap();
+    let mut conditioner = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, 10_000).unwrap();
     let mut estimator = Box::new(Estimator::new(&Settings::new(parameters).unwrap()));
     let mut imu = Imu::new(random);
     let mut biases = VecDeque::new();
@@ -71,7 +71,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
         if n < truth.counts_from {
             continue;
         }
-        let error = error(estimator.state(now, &rate).unwrap().state, moment);
+        let error = error(estimator.state(now, &rate, None).unwrap().state, moment);
         if n <= silent_from {
             if n % 500 == 0 {
                 shown.nees.push(nees(estimator.filter().unwrap(), then, &biases[0]));

@@ -79,17 +79,22 @@ impl Case {
             vertical_speed: random.sized(0.5, 4.0),
             ..GovernorLimits::default()
         };
-        let period = [0.01, 0.01, 0.02, 0.005][random.below(4) as usize];
+        let period = [0.01, 0.01, 0.02, 0.005, 0.004, 0.002, 0.001][random.below(7) as usize];
         Self { bounds, limits, period }
     }
 
-    /// The lengths of the two long averages, as anyone can work them out, in ticks.
+    /// The time between two knots, s: a hundredth of a second, or the next whole number of ticks.
+    pub fn knots(&self) -> f32 {
+        (0.00999 / self.period).ceil() * self.period
+    }
+
+    /// The lengths of the two long averages, as anyone can work them out, in knots.
     pub fn windows(&self) -> [u32; 2] {
         let b = &self.bounds;
         let diameter = 2.0 * b.horizontal_acceleration.hypot(b.vertical_acceleration);
         let first = (diameter / b.jerk).max((2.0 * diameter / b.snap).sqrt());
         let second = 2.0 * diameter / (b.snap * first);
-        [first, second].map(|window| (window / self.period).ceil() as u32)
+        [first, second].map(|window| (window / self.knots()).ceil() as u32)
     }
 
     pub fn resting(&self, random: &mut Random) -> Reference {

@@ -39,14 +39,14 @@ pub struct Witness<'a> {
 impl Witness<'_> {
     /// The first tick goes on from `start`, to a unit of the governor's lengths and to what snap makes of one tick.
     pub fn start(&self, start: &Reference, tally: &mut Tally) {
-        let (b, t) = (&self.case.bounds, self.case.period);
-        let unit = b.horizontal_acceleration.max(b.vertical_acceleration) * t * t / 65_536.0 * 3.0_f32.sqrt();
+        let (b, t, knots) = (&self.case.bounds, self.case.period, self.case.knots());
+        let unit = b.horizontal_acceleration.max(b.vertical_acceleration) * knots * knots / 65_536.0 * 3.0_f32.sqrt();
         let velocity = (self.last.velocity - start.velocity).norm();
         let rounding = 4.0 * f32::EPSILON;
-        let room = unit / t + b.snap * t.powi(3) + rounding * start.velocity.norm();
+        let room = unit / knots + b.snap * knots.powi(3) + rounding * start.velocity.norm();
         assert!(velocity <= room, "starts {velocity:e} m/s off, beyond {room:e}");
         let position = (self.last.position - start.position - start.velocity * t).norm();
-        let room = 2.0 * unit + b.snap * t.powi(4) + rounding * start.position.norm();
+        let room = 2.0 * unit + b.snap * knots.powi(4) + rounding * start.position.norm();
         assert!(position <= room, "starts {position:e} m off, beyond {room:e}");
         self.bounds(&self.last, tally);
     }
@@ -78,7 +78,8 @@ impl Witness<'_> {
 
     pub fn continuity(&self, next: &Reference) {
         let last = &self.last;
-        let (b, t) = (&self.case.bounds, f64::from(self.case.period));
+        // What a tick reports is worked out from the knot that it is on the way to: so far away, which its rounding knows.
+        let (b, t, away) = (&self.case.bounds, f64::from(self.case.period), f64::from(self.case.knots()));
         let double = |vector: Vector3<f32>| vector.map(f64::from);
         let [p0, v0, a0, j0, s0] = [last.position, last.velocity, last.acceleration, last.jerk, last.snap].map(double);
         let [p1, v1, a1, j1, s1] = [next.position, next.velocity, next.acceleration, next.jerk, next.snap].map(double);
@@ -89,13 +90,13 @@ impl Witness<'_> {
             assert!(excess.norm() <= room, "{what}: {excess} beyond {room:e}\n{last:?}\n{next:?}");
         };
         let (jerk, snap) = (f64::from(b.jerk), f64::from(b.snap));
-        near(j1 - j0 - (s0 + s1) * (t / 2.0), jerk + t * snap, "jerk");
+        near(j1 - j0 - (s0 + s1) * (t / 2.0), jerk + away * snap, "jerk");
         let corrected = (j0 + j1) * (t / 2.0) - (s1 - s0) * (t * t / 12.0);
-        near(a1 - a0 - corrected, acceleration + t * jerk, "acceleration");
+        near(a1 - a0 - corrected, acceleration + away * jerk, "acceleration");
         let corrected = (a0 + a1) * (t / 2.0) - (j1 - j0) * (t * t / 12.0);
-        near(v1 - v0 - corrected, v0.norm() + t * acceleration, "velocity");
+        near(v1 - v0 - corrected, v0.norm() + away * acceleration, "velocity");
         let corrected = (v0 + v1) * (t / 2.0) - (a1 - a0) * (t * t / 12.0) + (s1 - s0) * (t.powi(4) / 720.0);
-        near(p1 - p0 - corrected, p0.norm() + t * v0.norm(), "position");
+        near(p1 - p0 - corrected, p0.norm() + away * v0.norm(), "position");
         let [h0, h1] = [last.heading, next.heading];
         let [d0, d1] = [h0.direction(), h1.direction()].map(|direction| direction.map(f64::from));
         let [r0, r1, w0, w1] = [h0.rate(), h1.rate(), h0.acceleration(), h1.acceleration()].map(f64::from);

@@ -58,6 +58,7 @@ impl Flight {
         let station = Station::new(&clock, up.clone(), down.clone());
 
         let (pilot, outputs) = boot(shared);
+        let period = pilot.period();
         let (vehicle, time) = (world.clone(), clock.clone());
         let control = async move {
             let mut control = Control::new(shared.for_control(), pilot, outputs);
@@ -65,7 +66,9 @@ impl Flight {
         };
         spawner.spawn_local(control).unwrap();
         let (vehicle, time) = (world.clone(), clock.clone());
-        spawner.spawn_local(async move { imu::run(shared.for_imu(), &time, &mut SimImu(vehicle)).await }).unwrap();
+        spawner
+            .spawn_local(async move { imu::run(shared.for_imu(), &time, &mut SimImu(vehicle), period).await })
+            .unwrap();
         let time = clock.clone();
         spawner.spawn_local(async move { link::receive::receive(up, &time, shared.for_receive()).await }).unwrap();
         let time = clock.clone();

@@ -32,6 +32,7 @@ fn refused() -> (Flight, &'static str) {
         Err(&refused),
         &limits,
         &flight_settings,
+        configuration::PERIOD,
         estimator,
         memory,
         configuration::policy(),

@@ -1,11 +1,11 @@
-//! Records the states of the paper's flight and of the embedded scenario's recovery for `firmware::replay`, as
-//! `states.f32` and `recovery.f32`, and prints the numbers of the recovery, of the estimate of it and of the same behind a
-//! shield on this machine, a line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
+//! Records the states of the paper's flight and of the embedded scenario's recovery at 100 Hz, 500 Hz and 1 kHz for
+//! `firmware::replay`, as `states.f32` and `recovery.f32`, and prints for each rate the numbers of the recovery, of the
+//! estimate of it and of the same behind a shield on this machine, a line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
 
 use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};
 use firmware::replay::shielded::Shielded;
-use firmware::replay::{TICKS, record};
+use firmware::replay::{PERIODS, RECORD, TICKS, record};
 use host_sim::flight::Flight;
 use host_sim::tune::trials;
 use scenario::Scenario;
@@ -22,24 +22,35 @@ fn main() -> Result<(), Box<dyn Error>> {
     let paper = states(&mut Flight::new(&Scenario::paper()?)?, TICKS)?;
     std::fs::write(folder.join("states.f32"), paper.concat())?;
 
-    let embedded = Scenario::parse(EMBEDDED, "vehicles/study.toml")?;
-    let recovered = trials::recovery(&embedded, 20.0)?;
-    let recovered = states(&mut Flight::new(&recovered)?, recovery::TICKS)?;
-    std::fs::write(folder.join("recovery.f32"), recovered.concat())?;
-    let mut replay = Recovery::new().ok_or("the embedded scenario is not certified")?;
-    let mut estimate = Estimate::new().ok_or("the estimator's figures are refused")?;
-    let mut shielded = Shielded::new().ok_or("the embedded scenario cannot be shielded")?;
-    for state in &recovered {
-        shielded.tick(state)?;
-        replay.tick(state)?;
-        estimate.tick(state);
+    let mut all = Vec::new();
+    for period in PERIODS {
+        let recovered = recovery(period)?;
+        let mut replay = Recovery::new(period).ok_or("the embedded scenario is not certified")?;
+        let mut estimate = Estimate::new(period).ok_or("the estimator's figures are refused")?;
+        let mut shielded = Shielded::new(period).ok_or("the embedded scenario cannot be shielded")?;
+        for state in &recovered {
+            shielded.tick(state)?;
+            replay.tick(state)?;
+            estimate.tick(state);
+        }
+        println!("{}", replay.digest());
+        println!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
+        println!("{}", shielded.digest().ok_or("behind the shield law and network do not both fly")?);
+        all.extend(recovered);
     }
-    println!("{}", replay.digest());
-    println!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
-    println!("{}", shielded.digest().ok_or("behind the shield law and network do not both fly")?);
+    std::fs::write(folder.join("recovery.f32"), all.concat())?;
     Ok(())
 }
 
-fn states(flight: &mut Flight, ticks: u64) -> Result<Vec<[u8; firmware::replay::RECORD]>, Box<dyn Error>> {
+/// The states of a recovery of the embedded scenario's vehicle, flown in ticks of `period` us, one of which its commands are late.
+fn recovery(period: u64) -> Result<Vec<[u8; RECORD]>, Box<dyn Error>> {
+    let text = EMBEDDED.replace("rate = 100.0 ", &format!("rate = {}.0 ", 1_000_000 / period));
+    let text = text.replace("delay = 0.010 ", &format!("delay = {} ", period as f64 * 1e-6));
+    let embedded = Scenario::parse(&text, "vehicles/study.toml")?;
+    let mut flight = Flight::new(&trials::recovery(&embedded, recovery::DURATION as f64 * 1e-6)?)?;
+    states(&mut flight, recovery::DURATION / period)
+}
+
+fn states(flight: &mut Flight, ticks: u64) -> Result<Vec<[u8; RECORD]>, Box<dyn Error>> {
     (0..ticks).map(|_| Ok(record(&flight.tick()?.state.measured()))).collect()
 }

@@ -20,7 +20,7 @@ use estimation::estimator::{Estimator, Increment, PoseMeasurement, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
 use firmware::hardware::{MOTORS, MotorCommand};
 use firmware::outputs::Outputs;
-use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, PERIOD, Pilot, Pose, Stamped};
+use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, Pilot, Pose, Stamped};
 use host_sim::instruments::{Felt, Instruments, SAMPLE};
 use host_sim::reality::RealVehicle;
 use nalgebra::Vector3;
@@ -150,10 +150,17 @@ impl<'m> PilotedVehicle<'m> {
         let gravity = f64::from(configuration.vehicle().gravity);
         let Place { estimator, memory } = place;
         Ok(Self {
-            pilot: Pilot::new(certification, &GovernorLimits::default(), settings, estimator, memory),
+            pilot: Pilot::new(
+                certification,
+                &GovernorLimits::default(),
+                settings,
+                scenario.timing.period_us,
+                estimator,
+                memory,
+            ),
             vehicle: RealVehicle::new(&standing, configuration).switched_off(),
             instruments: Instruments::new(&what, gravity, Vector3::zeros(), 0),
-            conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE)?,
+            conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE, scenario.timing.period_us)?,
             outputs,
             curves: [curve(a)?, curve(b)?, curve(c)?, curve(d)?],
             steps: (SAMPLE as f64 * 1e-6 / scenario.timing.step()).round() as u32,
@@ -181,12 +188,13 @@ impl<'m> PilotedVehicle<'m> {
     ) -> Result<(Outcome, MotorCommand), PilotedError> {
         self.increments.clear();
         self.poses.clear();
-        for _ in 0..PERIOD / SAMPLE {
+        for _ in 0..self.pilot.period() / SAMPLE {
             self.pass(meddler)?;
         }
         let inputs = Inputs {
             now: self.now,
             increments: &self.increments,
+            under_way: self.conditioner.under_way(),
             body_rate: self.body_rate,
             poses: &self.poses,
             ..*given

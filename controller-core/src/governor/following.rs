@@ -61,7 +61,8 @@ impl Governor {
             return None;
         }
         let (t, ahead, spread) = (self.period, self.ahead, self.spread);
-        let point = self.goal.stream.ahead((self.goal_age as f32 - 1.0) * t + self.goal_late + ahead);
+        let age = (self.goal_age as f32 - 1.0) * self.tick + self.goal_late;
+        let point = self.goal.stream.ahead(age + ahead);
         let Knot { velocity, acceleration, .. } = &self.knot;
         // The knot's control point is beside it; the head has gone on from there.
         let away = (self.goal.position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);

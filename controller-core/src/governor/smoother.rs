@@ -38,6 +38,27 @@ impl Knot {
         let zero = Vector3::new(0.0, 0.0, 0.0);
         Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero }
     };
+
+    /// The spline `back` seconds before the knot, at most the time between two, with its fifth derivative in there,
+    /// m/s^5: p - s (v - s/2 (a - s/3 (j - s/4 (snap - s/5 crackle)))), and its derivatives.
+    pub fn earlier(&self, back: f32, crackle: &Vector3<f32>) -> Self {
+        if back == 0.0 {
+            return *self;
+        }
+        let Self { position, velocity, acceleration, jerk, snap } = self;
+        let from = |to: &Vector3<f32>, rate: Vector3<f32>, order: f32| to - rate * (back / order);
+        Self {
+            position: from(
+                position,
+                from(velocity, from(acceleration, from(jerk, from(snap, *crackle, 5.0), 4.0), 3.0), 2.0),
+                1.0,
+            ),
+            velocity: from(velocity, from(acceleration, from(jerk, from(snap, *crackle, 4.0), 3.0), 2.0), 1.0),
+            acceleration: from(acceleration, from(jerk, from(snap, *crackle, 3.0), 2.0), 1.0),
+            jerk: from(jerk, from(snap, *crackle, 2.0), 1.0),
+            snap: from(snap, *crackle, 1.0),
+        }
+    }
 }
 
 /// The head: acceleration and its difference, times N_1 N_2, units per tick squared (cubed).

@@ -6,6 +6,7 @@ use super::*;
 use nalgebra::Vector2;
 use std::boxed::Box;
 use std::string::{String, ToString};
+use std::vec::Vec;
 pub(super) use xorshift::Random;
 
 #[path = "../../tests/support/xorshift.rs"]
@@ -89,6 +90,34 @@ fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
     assert!((reference.heading.rate() - 0.4).abs() < 1e-6);
     let (time, last) = run(governor);
     assert!(time < 0.5 + 2.0 + 2.5 && last.velocity == Vector3::zeros(), "stopped after {time} s");
+}
+
+#[test]
+fn at_any_rate_the_reference_takes_the_same_way_and_stops_as_long_after_the_last_setpoint() {
+    let motion = Motion::Velocity(Vector3::new(1.0, -2.0, 0.3));
+    let flown = |rate: u16| -> Vec<Reference> {
+        let governor = Governor::new(&TYPICAL, &GovernorLimits::default(), 1.0 / f32::from(rate), memory()).unwrap();
+        let tick = |number: u16| {
+            if number.is_multiple_of(rate) && number < 3 * rate {
+                governor.accept(&Setpoint { motion, turn: Turn::Rate(0.4) }).unwrap();
+            }
+            let reference = governor.tick();
+            assert!(TYPICAL.contain(&reference, 0.0), "{rate} Hz: {reference:?}");
+            reference
+        };
+        // Eight seconds; those of each hundredth.
+        (0..8 * rate).map(tick).skip(usize::from(rate / 100) - 1).step_by((rate / 100).into()).collect()
+    };
+    let slow = flown(100);
+    assert!(slow[50].velocity.norm() > 0.01 && slow[799].velocity == Vector3::zeros());
+    for rate in [200, 500, 1_000] {
+        for (ours, theirs) in flown(rate).iter().zip(&slow) {
+            let (position, velocity) = (ours.position - theirs.position, ours.velocity - theirs.velocity);
+            let turned = ours.heading.direction() - theirs.heading.direction();
+            let misses = [position.norm(), velocity.norm(), turned.norm()];
+            assert!(misses.iter().all(|miss| *miss < 1e-5), "{rate} Hz: {misses:?}");
+        }
+    }
 }
 
 #[test]

@@ -63,9 +63,10 @@ pub(super) struct Turning {
     strongest: i64,
     commanded: i64,
     rate: i64,
-    /// N times the newest first and second difference of Psi.
+    /// N times the newest first, second and third difference of Psi.
     first: i64,
     second: i64,
+    third: i64,
     /// The last Psi but one, the knot's: whole units, and N times the rest, which is a few units at most.
     place: i64,
     part: i64,
@@ -88,6 +89,7 @@ impl Turning {
         rate: 0,
         first: 0,
         second: 0,
+        third: 0,
         place: 0,
         part: 0,
         per_length: 0.0,
@@ -119,7 +121,7 @@ impl Turning {
     /// Starts at rest at `phase`, units.
     pub fn start(&mut self, phase: i64) {
         self.history.fill(0);
-        (self.rate, self.first, self.second, self.part) = (0, 0, 0, 0);
+        (self.rate, self.first, self.second, self.third, self.part) = (0, 0, 0, 0, 0);
         (self.commanded, self.place) = (phase, phase);
     }
 
@@ -156,7 +158,8 @@ impl Turning {
         if let Some(slot) = self.history.get_mut(self.newest) {
             *slot = acceleration;
         }
-        self.second += acceleration - dropped;
+        self.third = acceleration - dropped;
+        self.second += self.third;
         self.first += self.second;
         self.rate += acceleration;
         self.commanded = self.commanded.wrapping_add(self.rate);
@@ -169,7 +172,7 @@ impl Turning {
     /// Whether nothing turns and `goal` is at rest too.
     pub fn at_rest(&self, goal: &TurnGoal) -> bool {
         let behind = self.commanded.wrapping_sub(self.place).wrapping_mul(self.length as i64) - self.part;
-        let still = self.rate == 0 && behind == 0 && self.first == 0 && self.second == 0;
+        let still = self.rate == 0 && behind == 0 && self.first == 0 && self.second == 0 && self.third == 0;
         still && self.command(goal) == 0
     }
 
@@ -178,12 +181,15 @@ impl Turning {
         self.delay
     }
 
-    /// The heading at hand.
-    pub fn heading(&self) -> Heading {
-        let second = single(self.second);
-        let phase = self.place.wrapping_add(whole((single(self.part) + second / 6.0) * self.per_length));
-        let rate = single(2 * self.first - self.second) * (0.5 * self.unit);
-        Heading::from_phase((phase as u64) << SPARE_BITS, rate, second * self.unit * self.per_period)
+    /// The heading `back` seconds before the knot at hand, at most the time between two:
+    /// D0 - s (D1 - s/2 (D2 - s/3 D3)), and its derivatives, with s in knots.
+    pub fn heading(&self, back: f32) -> Heading {
+        let (second, third, s) = (single(self.second), single(self.third), back * self.per_period);
+        let first = single(2 * self.first - self.second) * 0.5;
+        let earlier = s * (first - 0.5 * s * (second - s / 3.0 * third));
+        let phase = self.place.wrapping_add(whole((single(self.part) + second / 6.0 - earlier) * self.per_length));
+        let rate = (first - s * (second - 0.5 * s * third)) * self.unit;
+        Heading::from_phase((phase as u64) << SPARE_BITS, rate, (second - s * third) * self.unit * self.per_period)
     }
 }
 

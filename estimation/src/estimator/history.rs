@@ -70,6 +70,18 @@ impl Increment {
         finite && self.start < self.end && self.end - self.start <= longest
     }
 
+    /// How the body turns in the time `ahead` after this, us, rad: as it has in the increment that is `under_way`, if
+    /// that goes on from here and is no later, and then at the mean rate of the newest so much time as this one lasts.
+    pub(super) fn turn_ahead(&self, under_way: Option<&Self>, ahead: u64) -> Vector3<f32> {
+        let goes_on = |next: &&Self| next.start == self.end && next.is_usable(ahead);
+        let measured = under_way.filter(goes_on);
+        let (turned, seconds) = measured.map_or((Vector3::zeros(), 0.0), |next| (next.delta_angle, next.seconds()));
+        let older = (1.0 - seconds / self.seconds()).max(0.0);
+        let rate = (turned + self.delta_angle * older) / (seconds + self.seconds() * older);
+        let rest = rate * (ahead as f32 * 1e-6 - seconds);
+        turned + rest + turned.cross(&rest) * 0.5
+    }
+
     /// A vector of the body at the start, as it is at the end: to first order in the turn.
     pub(super) fn turned_back(&self, vector: &Vector3<f32>) -> Vector3<f32> {
         vector - self.delta_angle.cross(vector)

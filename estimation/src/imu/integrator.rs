@@ -76,15 +76,22 @@ impl Integrator {
         if time.saturating_sub(self.start) < least {
             return None;
         }
-        let increment = Increment {
+        let increment = self.under_way();
+        *self = Self { last: self.last, start: time, ..Self::EMPTY };
+        increment
+    }
+
+    /// The increment so far, if it has a length.
+    #[must_use]
+    pub fn under_way(&self) -> Option<Increment> {
+        let end = self.last?.time;
+        (end > self.start).then_some(Increment {
             start: self.start,
-            end: time,
+            end,
             delta_angle: self.angle,
             delta_velocity: self.velocity,
             clipped: self.clipped,
-        };
-        *self = Self { last: self.last, start: time, ..Self::EMPTY };
-        Some(increment)
+        })
     }
 }
 

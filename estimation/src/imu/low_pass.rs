@@ -5,9 +5,20 @@
 //! H(s) = (1 + s^2 / w_z^2) / (1 + sqrt(2) s / w_c + s^2 / w_c^2)
 //! ```
 //!
-//! A zero at the rate of the control ticks, because what swings as fast as one looks seems to stand still. In front of
-//! w_z the numerator is real and positive: the phase, and with it the delay, are those of the poles alone. By the
-//! bilinear transform, with both frequencies put right:
+//! The zeros are at the rate of the control ticks, because what swings as fast as one looks seems to stand still; or at
+//! the first multiple of it above [`SLOWEST_ROTOR`], since nothing vibrates below that. The poles are at [`POLES`] of
+//! the zeros, no higher than [`CUTOFF_MAX`]. Zeros beyond half the rate of the samples are at that half, where a
+//! digital Butterworth filter has its own. In front of w_z the numerator is real and positive: the phase, and with it
+//! the delay, are those of the poles alone.
+//!
+//! | ticks | zeros | poles | delay at 1 kHz |
+//! |---|---|---|---|
+//! | 50, 100 Hz | 100 Hz | 60 Hz | 3.7 ms |
+//! | 200 Hz | 200 Hz | 120 Hz | 1.8 ms |
+//! | 250 Hz | 250 Hz | 120 Hz | 1.8 ms |
+//! | 500 Hz, 1 kHz | 500 Hz | 120 Hz | 1.8 ms |
+//!
+//! By the bilinear transform, with both frequencies put right:
 //!
 //! ```text
 //! K = tan(pi f_c / f_s),   r = 1 / tan(pi f_z / f_s)^2,   n = 1 / (1 + sqrt(2) K + K^2)
@@ -16,10 +27,20 @@
 //! ```
 //!
 //! Its delay for slow changes is exactly sqrt(2) / (2 K f_s): the bilinear transform changes nothing at frequency zero.
-//! At 60 Hz and 1 kHz 3.7 ms. Source: A. V. Oppenheim, R. W. Schafer, *Discrete-Time Signal Processing*, chapter 7.
+//! Source: A. V. Oppenheim, R. W. Schafer, *Discrete-Time Signal Processing*, chapter 7.
 
 use controller_core::math;
 use nalgebra::Vector3;
+
+/// The lowest frequency at which rotors vibrate, Hz.
+const SLOWEST_ROTOR: f64 = 70.0;
+
+/// The poles' frequency over that of the zeros.
+const POLES: f64 = 0.6;
+
+/// The poles' highest frequency, Hz: about that of a sensor's own filter. Higher ones would gain half a millisecond at
+/// most, and pass all of the rotors' vibration on to the rotors.
+const CUTOFF_MAX: f64 = 120.0;
 
 /// The filter and its memory, in transposed direct form: two numbers per axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +55,15 @@ pub struct LowPass {
 }
 
 impl LowPass {
+    /// In front of control ticks every `period` us, of `rate` samples a second.
+    #[must_use]
+    pub fn before_ticks(period: u64, rate: f64) -> Self {
+        let ticks = 1e6 / period.max(1) as f64;
+        let multiple = (SLOWEST_ROTOR / ticks) as u32 + 1;
+        let stopped = (ticks * f64::from(multiple)).min(0.5 * rate);
+        Self::new((POLES * stopped).min(CUTOFF_MAX).min(0.25 * rate), stopped, rate)
+    }
+
     /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate`
     /// samples a second; all in Hz.
     #[must_use]

@@ -12,7 +12,7 @@ mod target {
     use firmware::boards::mps2::{self, executors, exit, idle, uart};
     use firmware::boards::recorder;
     use firmware::boot;
-    use firmware::configuration::Pilot;
+    use firmware::configuration::{PERIOD, Pilot};
     use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
     use firmware::link::{receive, transmit};
@@ -25,7 +25,7 @@ mod target {
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
 
     /// How long the control task may take to come back, us.
-    const WATCHDOG: u32 = 50_000;
+    const WATCHDOG: u32 = if PERIOD > 10_000 { 5 * PERIOD as u32 } else { 50_000 };
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
@@ -54,19 +54,20 @@ mod target {
     #[embassy_executor::task]
     async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
         let shared = SHARED.for_control();
-        let mut motors = SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock };
+        let mut motors =
+            SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock, period: PERIOD };
         let mut watchdog = BoardWatchdog::start(WATCHDOG);
         Control::new(shared, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]
     async fn to_simulator() {
-        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, SHARED.for_simulator()).await;
+        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, SHARED.for_simulator(), PERIOD).await;
     }
 
     #[embassy_executor::task]
     async fn from_simulator() {
-        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, SHARED.for_simulator()).await;
+        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, SHARED.for_simulator(), PERIOD).await;
     }
 
     #[embassy_executor::task]

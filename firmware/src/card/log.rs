@@ -15,7 +15,6 @@ use crate::hardware::{Card, SECTOR};
 use crate::recorder::{tick, ulog};
 use crate::shared::{Event, Severity, Text};
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use flight::PERIOD;
 
 /// What a file grows by, bytes: 3.8 s of flight.
 pub const CHUNK: u32 = 64 << 10;
@@ -196,12 +195,12 @@ impl Log {
         self.put(volume, &[&head, &[level], &time.to_le_bytes(), words])
     }
 
-    /// Notes that so many records are missing here.
+    /// Notes that so many records, each `spacing` us after the last, are missing here.
     ///
     /// # Errors
     /// If a sector cannot be written.
-    pub fn gap<C: Card>(&mut self, volume: &Volume<'_, C>, missed: u32) -> Result<(), Trouble> {
-        let milliseconds = u64::from(missed) * (PERIOD / 1_000);
+    pub fn gap<C: Card>(&mut self, volume: &Volume<'_, C>, missed: u32, spacing: u64) -> Result<(), Trouble> {
+        let milliseconds = u64::from(missed) * spacing / 1_000;
         let duration = u16::try_from(milliseconds).unwrap_or(u16::MAX);
         self.put(volume, &[&ulog::head(b'O', size_of_val(&duration)), &duration.to_le_bytes()])
     }

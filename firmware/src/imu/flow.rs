@@ -21,12 +21,14 @@ pub struct Flow<'a, M: RawMutex> {
     shared: SamplesView<'a, M>,
     conditioner: Conditioner,
     is_simulated: bool,
+    /// The time between control ticks, us.
+    period: u64,
     /// When each fault was last seen, us.
     seen: [Option<u64>; ImuFault::ALL.len()],
 }
 
 impl<'a, M: RawMutex> Flow<'a, M> {
-    /// From a sensor of these parameters.
+    /// From a sensor of these parameters, to a control that ticks every `period` us.
     ///
     /// # Errors
     /// Names the parameter that makes no sense.
@@ -34,17 +36,18 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         shared: SamplesView<'a, M>,
         parameters: &ImuParameters,
         calibration: &Calibration,
+        period: u64,
     ) -> Result<Self, ParameterError> {
-        let conditioner = Conditioner::new(parameters, calibration)?;
-        Ok(Self { shared, conditioner, is_simulated: false, seen: [None; _] })
+        let conditioner = Conditioner::new(parameters, calibration, period)?;
+        Ok(Self { shared, conditioner, is_simulated: false, period, seen: [None; _] })
     }
 
     /// From a simulator.
     ///
     /// # Errors
     /// None: the parameters are good.
-    pub fn simulated(shared: SamplesView<'a, M>) -> Result<Self, ParameterError> {
-        Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::PROMPT, &Calibration::NONE)? })
+    pub fn simulated(shared: SamplesView<'a, M>, period: u64) -> Result<Self, ParameterError> {
+        Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::PROMPT, &Calibration::NONE, period)? })
     }
 
     /// Corrects samples in another way from now on.
@@ -74,13 +77,16 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         }
         let Some(newest) = self.conditioner.newest().filter(|newest| Some(newest.time) != before) else { return };
         let mut sample = newest.value;
-        let is_slow = before.is_some_and(|before| raw.time - before >= INCREMENT);
+        let is_slow = before.is_some_and(|before| raw.time - before >= self.period.min(INCREMENT));
         if self.is_simulated && is_slow {
             sample.angular_velocity = raw.angular_velocity;
         }
         self.shared.imu().put(sample, newest.time);
         if let Some(increment) = increment {
             self.shared.increment(increment);
+        }
+        if let Some(under_way) = self.conditioner.under_way() {
+            self.shared.under_way().put(under_way, under_way.end);
         }
     }
 

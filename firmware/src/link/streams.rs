@@ -38,7 +38,7 @@ pub const STREAMS: [(Kind, Rate); 19] = [
     (Kind::ProtocolVersion,    Rate::OnRequest),
 ];
 
-/// The shortest interval that is granted, us: a control tick.
+/// The shortest interval that is granted, us.
 const SHORTEST: u64 = 10_000;
 
 /// One message: how often it goes out, and when next.
@@ -162,7 +162,7 @@ mod tests {
         let changed = counts(&mut schedule, 2);
         assert!(count(&changed, Kind::Odometry).abs_diff(100) <= 1);
         assert_eq!((count(&changed, Kind::Attitude), count(&changed, Kind::GlobalOrigin)), (0, 2));
-        // No faster than control ticks.
+        // No faster than a hundred a second.
         assert!(count(&changed, Kind::Position).abs_diff(200) <= 1);
         assert_eq!(schedule.interval_of(Kind::Attitude, 40_000), None);
         schedule.ask(Kind::Attitude, 0, 0);

@@ -29,6 +29,8 @@ pub struct Built {
     pub loops: &'static JudgedLoops,
     /// A number that other configurations have not, below 2^24.
     pub identity: u32,
+    /// The time between control ticks, us.
+    pub period: u64,
 }
 
 /// Why tuned parameters may not fly.

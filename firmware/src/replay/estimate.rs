@@ -1,10 +1,11 @@
 //! The recovery's states once more, as an IMU and a late camera see them: the same samples, hence the same bits, of the
 //! estimate.
 //!
-//! Between two recorded states, a control period apart, lie ten samples: the body rate goes straight from one to the
-//! other, the force is what the change of velocity takes. A pose is each state, handed over [`LATE`] ticks later.
+//! Between two recorded states, a control period apart, lie samples a millisecond apart: the body rate goes straight
+//! from one state to the other, the force is what the change of velocity takes. Every [`POSES_APART`] a state is a
+//! pose, handed over [`LATE`] poses later.
 
-use super::{PERIOD_US, RECORD, digest, state};
+use super::{RECORD, digest, state};
 use controller_core::state::State;
 use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
@@ -13,11 +14,14 @@ use heapless::Deque;
 use nalgebra::{UnitQuaternion, Vector3};
 use sha2::{Digest, Sha256};
 
-/// Ticks from the moment that a pose is true to its arrival.
-pub const LATE: usize = 3;
+/// Time between poses, us, a whole number of ticks.
+const POSES_APART: u64 = 10_000;
 
-/// Samples of the IMU in a control period.
-const SAMPLES: u64 = 10;
+/// Poses that become true from the moment that one is true to its arrival.
+const LATE: usize = 3;
+
+/// Time between samples of the IMU, us.
+const SAMPLE: u64 = 1_000;
 
 /// The estimate, as far as it has been replayed.
 pub struct Estimate {
@@ -25,21 +29,24 @@ pub struct Estimate {
     estimator: Estimator,
     gravity: f32,
     last: Option<State>,
+    period: u64,
     now: u64,
     poses: Deque<Stamped<PoseMeasurement>, { LATE + 1 }>,
     hash: Sha256,
 }
 
 impl Estimate {
-    /// At the start. None where the sensors' figures are refused, which no machine that computes right sees.
+    /// At the start, in ticks of `period` us. None where the sensors' figures are refused, which no machine that
+    /// computes right sees.
     #[must_use]
-    pub fn new() -> Option<Self> {
+    pub fn new(period: u64) -> Option<Self> {
         let parameters = EstimatorParameters::BMI088;
         Some(Self {
-            conditioner: Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE).ok()?,
+            conditioner: Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, period).ok()?,
             estimator: Estimator::new(&Settings::new(&parameters).ok()?),
             gravity: parameters.gravity,
             last: None,
+            period,
             now: 0,
             poses: Deque::new(),
             hash: Sha256::new(),
@@ -52,16 +59,8 @@ impl Estimate {
         if let Some(last) = self.last.replace(state) {
             self.move_on(&last, &state);
         }
-        let still = Velocity::World(Vector3::zeros());
-        if let Ok(pose) = Pose::new(state.position, still, state.attitude) {
-            // There is room: one leaves for each that comes.
-            let _ = self.poses.push_back(Stamped { value: PoseMeasurement::new(&pose), time: self.now });
-        }
-        if self.poses.is_full()
-            && let Some(pose) = self.poses.pop_front()
-        {
-            let taken = self.estimator.pose(&pose, self.now).is_ok();
-            self.hash.update([u8::from(taken)]);
+        if self.now.is_multiple_of(POSES_APART) {
+            self.look(&state);
         }
         if let Some(estimated) = self.estimated() {
             let State { position, velocity, attitude, angular_velocity } = estimated.state;
@@ -74,19 +73,35 @@ impl Estimate {
         self.add(&[position, velocity, attitude]);
     }
 
+    /// A pose becomes true, another arrives.
+    fn look(&mut self, state: &State) {
+        let still = Velocity::World(Vector3::zeros());
+        if let Ok(pose) = Pose::new(state.position, still, state.attitude) {
+            // There is room: one leaves for each that comes.
+            let _ = self.poses.push_back(Stamped { value: PoseMeasurement::new(&pose), time: self.now });
+        }
+        if self.poses.is_full()
+            && let Some(pose) = self.poses.pop_front()
+        {
+            let taken = self.estimator.pose(&pose, self.now).is_ok();
+            self.hash.update([u8::from(taken)]);
+        }
+    }
+
     fn estimated(&self) -> Option<EstimatedState> {
-        self.estimator.state(self.now, &self.conditioner.newest()?.value.angular_velocity)
+        let (rate, under_way) = (self.conditioner.newest()?.value.angular_velocity, self.conditioner.under_way());
+        self.estimator.state(self.now, &rate, under_way.as_ref())
     }
 
     /// The samples between two states.
     fn move_on(&mut self, last: &State, state: &State) {
-        let per_period = 1e6 / PERIOD_US as f32;
+        let (per_period, samples) = (1e6 / self.period as f32, self.period / SAMPLE);
         let mut force = (state.velocity - last.velocity) * per_period;
         force.z += self.gravity;
         let force = UnitQuaternion::new_unchecked(last.attitude).inverse_transform_vector(&force);
-        let step = (state.angular_velocity - last.angular_velocity) / SAMPLES as f32;
-        for sample in 1..=SAMPLES {
-            self.now += PERIOD_US / SAMPLES;
+        let step = (state.angular_velocity - last.angular_velocity) / samples as f32;
+        for sample in 1..=samples {
+            self.now += SAMPLE;
             let rate = last.angular_velocity + step * sample as f32;
             if let Some(increment) = self.conditioner.sample(self.now, &rate, Some(&force)).increment {
                 self.estimator.imu(&increment);

@@ -1,8 +1,7 @@
 //! A recovery from upside down under the law of the embedded scenario, replayed: the same states, hence the same bits,
 //! of the wrench and of everything the law remembers, its estimates among it.
 
-use super::{PERIOD_US, RECORD, digest, state};
-use crate::configuration;
+use super::{RECORD, digest, embedded_at, state};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -13,8 +12,8 @@ use controller_core::state::Wrench;
 use nalgebra::{Quaternion, Vector3};
 use sha2::{Digest, Sha256};
 
-/// Control ticks of the flight.
-pub const TICKS: u64 = 2000;
+/// How long the flight takes, us.
+pub const DURATION: u64 = 20_000_000;
 
 /// The flight, as far as it has been replayed.
 pub struct Recovery {
@@ -24,11 +23,12 @@ pub struct Recovery {
 }
 
 impl Recovery {
-    /// At the start, to hover at the origin; certifies the embedded scenario. None if that fails.
+    /// At the start, to hover at the origin, in ticks of `period` us; certifies the embedded scenario. None if that
+    /// fails.
     #[must_use]
-    pub fn new() -> Option<Self> {
-        let certified = Certified::new(configuration::embedded().ok()?).ok()?;
-        let law = Law::new(&certified, PERIOD_US as f32 * 1e-6).ok()?;
+    pub fn new(period: u64) -> Option<Self> {
+        let certified = Certified::new(embedded_at(period)?).ok()?;
+        let law = Law::new(&certified, period as f32 * 1e-6).ok()?;
         let reference = Hover::new(Vector3::zeros(), Heading::FORWARD).ok()?;
         Some(Self { law, reference, hash: Sha256::new() })
     }

@@ -1,8 +1,7 @@
 //! The same recovery behind a shield, replayed: the law takes over from an upset start, and from half of the flight on
 //! a network flies. The same states, hence the same bits of the network's outputs and of the commands.
 
-use super::{PERIOD_US, RECORD, digest, state};
-use crate::configuration;
+use super::{RECORD, digest, embedded_at, state};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -12,8 +11,8 @@ use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
 use nalgebra::Vector3;
 use sha2::{Digest, Sha256};
 
-/// The ticks that the law flies.
-const UPSET: u64 = 1000;
+/// How long the law flies, us.
+const UPSET: u64 = 10_000_000;
 
 /// The outputs of the network's middle.
 const MIDDLE: usize = 32;
@@ -54,21 +53,24 @@ pub struct Shielded {
     shield: Shield,
     policy: NetworkPolicy<'static>,
     hash: Sha256,
+    period: u64,
     tick: u64,
     by_policy: u64,
 }
 
 impl Shielded {
-    /// At the start; certifies the embedded scenario. None if that fails, or if it is for another law.
+    /// At the start, in ticks of `period` us; certifies the embedded scenario. None if that fails, or if it is for
+    /// another law.
     #[must_use]
-    pub fn new() -> Option<Self> {
-        let certified = Certified::new(configuration::embedded().ok()?).ok()?;
-        let (period, corner) = (PERIOD_US as f32 * 1e-6, Vector3::repeat(20.0));
+    pub fn new(period: u64) -> Option<Self> {
+        let certified = Certified::new(embedded_at(period)?).ok()?;
+        let (seconds, corner) = (period as f32 * 1e-6, Vector3::repeat(20.0));
         Some(Self {
-            law: Law::new(&certified, period).ok()?,
-            shield: Shield::new(certified.configuration(), &Settings::new(-corner, corner), period).ok()?,
+            law: Law::new(&certified, seconds).ok()?,
+            shield: Shield::new(certified.configuration(), &Settings::new(-corner, corner), seconds).ok()?,
             policy: NetworkPolicy::new(network()?),
             hash: Sha256::new(),
+            period,
             tick: 0,
             by_policy: 0,
         })
@@ -79,7 +81,7 @@ impl Shielded {
     /// # Errors
     /// The law's own, for a state that it cannot use.
     pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<(), InputError> {
-        if self.tick == UPSET {
+        if self.tick * self.period == UPSET {
             self.shield.reset(&Heading::FORWARD);
         }
         let state = state(record);

@@ -98,11 +98,15 @@ offers! {
         fn size() -> Option<u32>;
         fn read(offset: u32, out: &mut [u8]) -> usize;
         fn vehicle() -> &'static str;
+        fn spacing() -> u64;
         fn follower() -> Follower;
         fn follow(follower: &mut Follower) -> Followed;
         fn answer(question: Question) -> Answer;
     }
-    [M: RawMutex] Write<'_, Recorder<M>> { fn record(armed: bool, tick: impl FnOnce() -> Tick); }
+    [M: RawMutex] Write<'_, Recorder<M>> {
+        fn ticks_last(period: u64);
+        fn record(armed: bool, tick: impl FnOnce() -> Tick);
+    }
     [M: RawMutex] Take<'_, Recorder<M>> { fn erase(); }
     [] Read<'_, CardStatus> {
         fn state() -> CardState;

@@ -72,7 +72,7 @@ impl Report {
         thrust_scale: None,
         mission: MissionReport { next: 0, is_flown: false, done: (0, 0) },
         flies_policy: false,
-        timing: Timing { worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
+        timing: Timing { period: 0, worst_duration: 0, worst_jitter: 0, missed: 0, gaps: 0 },
     };
 }
 
@@ -99,6 +99,8 @@ impl Report {
 /// How well control keeps time, since boot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Timing {
+    /// The time between ticks, us.
+    pub period: u64,
     /// The longest tick, us.
     pub worst_duration: u32,
     /// The greatest distance of a tick's start from where the period put it, us.

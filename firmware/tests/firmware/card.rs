@@ -57,7 +57,7 @@ impl<'s> Ticks<'s> {
 
 /// The times of the ticks of a flight, us: armed from `from` to `to`, and what is recorded afterwards.
 pub fn times(from: u64, to: u64) -> Vec<u64> {
-    (from..to + (u64::from(AFTERWARDS) - 1) * TICK).step_by(TICK as usize).collect()
+    (from..to + AFTERWARDS - TICK).step_by(TICK as usize).collect()
 }
 
 /// Logs for `duration` us what flights there are in these times.
@@ -116,9 +116,9 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
             texts(&shared)[2..],
             [
                 "said at 2000000",
-                "Log 00001: 399 ticks, 0 missed",
+                "Log 00001: 399 records, 0 missed",
                 "Card: next log 00002",
-                "Log 00002: 299 ticks, 0 missed",
+                "Log 00002: 299 records, 0 missed",
                 "Card: next log 00003"
             ]
         );
@@ -196,7 +196,7 @@ fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_the_loss_is_reported
         assert!(log.ticks.is_sorted() && log.is_whole);
         let expected: Vec<u16> = Some(lost as u16 * 10).filter(|gap| *gap > 0).into_iter().collect();
         assert_eq!(log.gaps, expected);
-        let words = format!("Log 00001: {} ticks, {lost} missed", log.ticks.len());
+        let words = format!("Log 00001: {} records, {lost} missed", log.ticks.len());
         assert!(texts(&shared).contains(&words), "{words}");
     }
 }

@@ -112,7 +112,7 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     let newest = after.iter().rev().nth(1).unwrap();
     let log = parsed(newest.1);
     assert_eq!((log.ticks.len(), log.is_whole), (204, true), "{what}: {}", newest.0);
-    assert!(texts(&shared).iter().any(|text| text.ends_with("204 ticks, 0 missed")), "{what}");
+    assert!(texts(&shared).iter().any(|text| text.ends_with("204 records, 0 missed")), "{what}");
     // Where it had records before, they were not overwritten: the flight is in another file, and the torn sector is
     // gone.
     for (name, bytes) in before.iter().filter(|(_, bytes)| bytes.len() > 2 * SECTOR) {

@@ -1,12 +1,12 @@
 //! The control task's time: when ticks begin, and which of them feed the watchdog.
 
+use crate::support::PERIOD;
 use crate::support::Simulated;
 use crate::support::receiver::Local;
 use core::cell::{Cell, RefCell};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
-use flight::PERIOD;
 
 /// Motors before which the processor is busy with something else, for so long, once.
 struct Busy<'a> {

@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// The file that is embedded when SCENARIO names none: see build.rs.
 const DEFAULT: &str = "vehicles/study.toml";
 
+/// The greatest rate of most boards, Hz.
+const RATE_MAX: f64 = 1000.0;
+
 /// A file whose gains do not follow from its rotors' lag.
 const PAPERS_LAW: &str = "vehicles/hummingbird-paper-law.toml";
 
@@ -25,7 +28,7 @@ fn file(name: &str) -> PathBuf {
 fn changed(name: &str, line: &str, into: &str) -> Result<Embedded, String> {
     let text = fs::read_to_string(file(name)).unwrap();
     assert_eq!(text.matches(line).count(), 1, "{line} in {name}");
-    embedded(&text.replace(line, into), name)
+    embedded(&text.replace(line, into), name, RATE_MAX)
 }
 
 #[test]
@@ -36,6 +39,7 @@ fn the_embedded_configuration_is_the_files_to_the_bit() {
     assert_eq!(firmware::configuration::embedded().unwrap(), scenario.configuration);
     assert_eq!(firmware::configuration::LOOPS, board::judged(&scenario));
     assert_eq!(firmware::configuration::IDENTITY, board::identity(&scenario));
+    assert_eq!(firmware::configuration::PERIOD, scenario.timing.period_us);
 }
 
 #[test]
@@ -48,7 +52,7 @@ fn the_default_is_tuned_for_a_sample_of_delay() {
 fn the_vehicles_of_this_repository_are_built_without_a_word() {
     for name in [DEFAULT, "vehicles/hummingbird.toml"] {
         let text = fs::read_to_string(file(name)).unwrap();
-        let Embedded { source, warning } = embedded(&text, name).unwrap();
+        let Embedded { source, warning } = embedded(&text, name, RATE_MAX).unwrap();
         assert!(warning.is_none() && source.contains("Rotors::new(&["), "{name}: {warning:?}");
     }
 }
@@ -72,7 +76,7 @@ lag = 0.025
 
 #[test]
 fn a_file_of_a_vehicle_and_its_rotors_alone_is_built_and_may_arm() {
-    let Embedded { source, warning } = embedded(BARE, "pelican.toml").unwrap();
+    let Embedded { source, warning } = embedded(BARE, "pelican.toml", RATE_MAX).unwrap();
     assert!(warning.is_none() && source.contains("ExtendedParameters { k_p_across: "), "{warning:?}");
 }
 
@@ -105,11 +109,31 @@ fn a_vehicle_that_is_not_certified_is_built_with_a_warning_that_names_the_inequa
 }
 
 #[test]
+fn a_file_is_built_at_its_rate_unless_the_boards_processor_is_too_slow_for_it() {
+    let at =
+        |rate: u32, rate_max: f64| embedded(&format!("{BARE}\n[control]\nrate = {rate}\n"), "pelican.toml", rate_max);
+    for (rate, period) in [(50, 20_000), (100, 10_000), (500, 2_000), (1_000, 1_000)] {
+        let source = at(rate, RATE_MAX).unwrap().source;
+        assert!(source.contains(&format!("pub const PERIOD: u64 = {period};")), "{rate} Hz");
+    }
+    let refused = at(1_000, 500.0).unwrap_err();
+    let expected = "pelican.toml: control.rate: this board's processor flies at up to 500 Hz, found 1000";
+    assert_eq!(refused, expected);
+    let refused = at(2_000, f64::MAX).unwrap_err();
+    assert_eq!(refused, "pelican.toml: control.rate: the firmware flies at 50 to 1000 Hz, found 2000");
+}
+
+#[test]
 fn what_the_boards_cannot_drive_is_refused_by_field() {
-    let rate = changed("vehicles/hummingbird.toml", "rate = 100.0 ", "rate = 200.0 ").unwrap_err();
-    assert!(rate.starts_with("vehicles/hummingbird.toml: control.rate: the firmware flies at 100 Hz"), "{rate}");
+    for (file, rate, what) in [
+        ("vehicles/hummingbird.toml", 40, "the firmware flies at 50 to 1000 Hz, found 40"),
+        (PAPERS_LAW, 200, "the firmware flies the paper's law at 100 Hz, found 200"),
+    ] {
+        let refused = changed(file, "rate = 100.0 ", &format!("rate = {rate}.0 ")).unwrap_err();
+        assert!(refused.starts_with(&format!("{file}: control.rate: {what}")), "{refused}");
+    }
     let paper = fs::read_to_string(file("scenarios/paper.toml")).unwrap();
-    assert!(embedded(&paper, "paper.toml").unwrap_err().starts_with("paper.toml: rotors: missing"));
+    assert!(embedded(&paper, "paper.toml", RATE_MAX).unwrap_err().starts_with("paper.toml: rotors: missing"));
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! A simulator's answers: which become IMU and pose, with which time, and which are refused.
 
+use crate::support::PERIOD;
 use crate::support::line::{Delivery, Incoming, Line};
 use crate::support::receiver::{Local, newest};
 use crate::support::simulator::{COMMANDED, Hil, command, commanded, odometry, sensor};
 use crate::support::{Simulated, patched, v2};
 use firmware::hil;
-use flight::PERIOD;
 use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ fn received(hil: &Hil, bytes: Vec<u8>) -> Local {
     let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
     clock.0.set(COMMANDED + 5_000);
     line.borrow_mut().push_back(Delivery::Bytes(bytes));
-    clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, shared.for_simulator()), |_| ());
+    clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, shared.for_simulator(), PERIOD), |_| ());
     shared
 }
 

@@ -1,5 +1,6 @@
 //! A simulator's line: what goes out on it, and what becomes of the exchange when the line fails.
 
+use crate::support::PERIOD;
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::Local;
 use crate::support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
@@ -11,7 +12,6 @@ use firmware::hardware::{MotorCommand, Motors};
 use firmware::hil::{self, SelectedMotors};
 use firmware::link::frame::Parser;
 use firmware::shared::Flag;
-use flight::PERIOD;
 use mavlink::dialects::common::{HIL_ACTUATOR_CONTROLS_DATA, MavModeFlag};
 
 /// Every command in what was written.
@@ -30,12 +30,17 @@ fn transmitted(line: impl Write, commands: &[MotorCommand]) {
     wanted.raise();
     let mut commands = commands.iter();
     let end = PERIOD * (commands.len() as u64);
-    clock.run(end, hil::transmit(&hil, line, &clock, shared.for_simulator()), |time| {
+    clock.run(end, hil::transmit(&hil, line, &clock, shared.for_simulator(), PERIOD), |time| {
         if time % PERIOD == 0 {
             let board = Simulated::default();
             board.0.set(time);
-            let mut motors =
-                SelectedMotors { pins: &mut Pins::default(), hil: &hil, wanted: (&wanted).into(), clock: board };
+            let mut motors = SelectedMotors {
+                pins: &mut Pins::default(),
+                hil: &hil,
+                wanted: (&wanted).into(),
+                clock: board,
+                period: PERIOD,
+            };
             now(motors.write(*commands.next().unwrap())).unwrap();
         }
     });
@@ -129,7 +134,11 @@ fn a_line_that_delivers_nothing_is_asked_again_but_not_all_the_time() {
         [(Trouble::TakesNothing, 8..=11), (Trouble::Closed, 300..=1_000), (Trouble::Broken, 300..=1_000)]
     {
         let (clock, shared, asked) = (Simulated::default(), Local::new(), Cell::new(0));
-        clock.run(1_000_000, hil::receive(&commanded(), Mute(&asked, trouble), &clock, shared.for_simulator()), |_| ());
+        clock.run(
+            1_000_000,
+            hil::receive(&commanded(), Mute(&asked, trouble), &clock, shared.for_simulator(), PERIOD),
+            |_| (),
+        );
         assert!(attempts.contains(&asked.get()), "{trouble:?}: {}", asked.get());
     }
 }
@@ -141,6 +150,6 @@ fn an_answer_in_pieces_between_faults_is_taken() {
     for piece in v2(1, &sensor(COMMANDED + PERIOD)).chunks(9) {
         line.borrow_mut().extend([Delivery::Bytes(piece.to_vec()), Delivery::Fault, Delivery::End]);
     }
-    clock.run(50_000, hil::receive(&hil, Incoming(&line), &clock, shared.for_simulator()), |_| ());
+    clock.run(50_000, hil::receive(&hil, Incoming(&line), &clock, shared.for_simulator(), PERIOD), |_| ());
     assert_eq!(shared.imu.get().unwrap().time, COMMANDED + PERIOD);
 }

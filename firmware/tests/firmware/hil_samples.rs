@@ -1,5 +1,6 @@
 //! A simulator's samples at 1 kHz: they become what a sensor's would, whatever the line does to their order and number.
 
+use crate::support::PERIOD;
 use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
 use crate::support::simulator::{Hil, command, sensor};
@@ -9,7 +10,7 @@ use estimation::estimator::Increment;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
 use firmware::{frames, hil, imu};
-use flight::{ImuSample, PERIOD, Stamped};
+use flight::{ImuSample, Stamped};
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 
@@ -55,7 +56,7 @@ fn drain(shared: &Local, increments: &mut Vec<Increment>) {
 fn simulated(answer: impl Fn(u64) -> Vec<u8>) -> Got {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
     let mut increments = Vec::new();
-    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, shared.for_simulator()), |now| {
+    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD), |now| {
         drain(&shared, &mut increments);
         if now % PERIOD == 0 && (PERIOD..=TICKS * PERIOD).contains(&now) {
             // The answer to the command before was whole.
@@ -97,7 +98,7 @@ fn real() -> Got {
     let (clock, shared, last) = (Simulated::default(), Local::new(), Cell::new(PERIOD));
     let mut increments = Vec::new();
     let end = (TICKS + 1) * PERIOD + SAMPLE / 2;
-    clock.run(end, imu::run(shared.for_imu(), &clock, &mut Real { clock: &clock, last: &last }), |_| {
+    clock.run(end, imu::run(shared.for_imu(), &clock, &mut Real { clock: &clock, last: &last }, PERIOD), |_| {
         drain(&shared, &mut increments);
     });
     drain(&shared, &mut increments);

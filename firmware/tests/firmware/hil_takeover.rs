@@ -1,5 +1,6 @@
 //! When a simulator takes over from sensors and motors, and what becomes of those.
 
+use crate::support::PERIOD;
 use crate::support::receiver::{Fed, Local, newest, ordered, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
@@ -42,7 +43,7 @@ fn the_vehicles_own_sensors_count_for_nothing_while_a_simulator_is_wanted() {
         if wanted {
             shared.hil.raise();
         }
-        clock.run(10_000, imu::run(shared.for_imu(), &clock, &mut Steady(&clock)), |_| ());
+        clock.run(10_000, imu::run(shared.for_imu(), &clock, &mut Steady(&clock), PERIOD), |_| ());
         assert_eq!(shared.imu.get().is_none(), wanted);
         let mut fed = Fed::new(&shared);
         fed.message(&odometry(1_000), 10_000);
@@ -60,8 +61,13 @@ fn the_vehicles_own_sensors_count_for_nothing_while_a_simulator_is_wanted() {
 fn the_simulator_takes_over_at_a_stop_and_the_pins_carry_stop_from_then_on() {
     let (run, one) = (MotorCommand::Run([0.5; 4]), MotorCommand::One { motor: 1, level: 0.1 });
     let (mut pins, hil, wanted) = (Pins::default(), Hil::new(), Flag::new());
-    let mut motors =
-        SelectedMotors { pins: &mut pins, hil: &hil, wanted: (&wanted).into(), clock: Simulated::default() };
+    let mut motors = SelectedMotors {
+        pins: &mut pins,
+        hil: &hil,
+        wanted: (&wanted).into(),
+        clock: Simulated::default(),
+        period: PERIOD,
+    };
     for command in [MotorCommand::Stop, one, run] {
         now(motors.write(command)).unwrap();
     }
@@ -104,8 +110,13 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
     let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, outputs) = boot::start(place, shared.for_boot()).unwrap();
     let mut pins = Pins::default();
-    let mut motors =
-        SelectedMotors { pins: &mut pins, hil: &hil, wanted: (&shared.hil).into(), clock: Simulated::default() };
+    let mut motors = SelectedMotors {
+        pins: &mut pins,
+        hil: &hil,
+        wanted: (&shared.hil).into(),
+        clock: Simulated::default(),
+        period: PERIOD,
+    };
     let still = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() * 9.81 };
     let mut control = Control::new(shared.for_control(), pilot, outputs);
     clock.run(100_000, control.run(&clock, &mut motors, &mut Bench), |now| {

@@ -1,5 +1,6 @@
 //! Calibration: by itself after boot, and on request; applied, kept, answered in words.
 
+use crate::support::PERIOD;
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, ordered, report, texts, whichever};
@@ -49,7 +50,7 @@ fn results(shared: &Local) -> Vec<MavResult> {
 /// Runs the task on a body's sensors for some seconds, with `each` in between.
 fn run(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
     let mut first = Sensor { body, wrong: FIRST, is_second: false };
-    body.clock.run(seconds * 1_000_000, imu::run(shared.for_imu(), &body.clock, &mut first), each);
+    body.clock.run(seconds * 1_000_000, imu::run(shared.for_imu(), &body.clock, &mut first, PERIOD), each);
 }
 
 /// The same with a second sensor that stands by.
@@ -58,7 +59,7 @@ fn run_both(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
         (Sensor { body, wrong: FIRST, is_second: false }, Sensor { body, wrong: SECOND, is_second: true });
     body.clock.run(
         seconds * 1_000_000,
-        imu::run(shared.for_imu(), &body.clock, &mut Redundant::new(first, second)),
+        imu::run(shared.for_imu(), &body.clock, &mut Redundant::new(first, second), PERIOD),
         each,
     );
 }
@@ -274,7 +275,7 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
     Storage::load(Words::<32>(&chip), shared.for_storage());
     assert_eq!(calibration::load((&shared.parameters).into(), Unit::First), found);
     let mut sensor = Sensor { body: &body, wrong: FIRST, is_second: false };
-    body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |_| ());
+    body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |_| ());
     let sample = shared.imu.get().unwrap().value;
     assert!(sample.angular_velocity.norm() < 1e-3 && (sample.specific_force.z - GRAVITY).abs() < 1e-3, "{sample:?}");
 }
@@ -357,6 +358,6 @@ fn it_is_refused_while_armed_and_with_a_simulator_in_words() {
 fn a_right_sensor_needs_no_correction() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = Sensor { body: &body, wrong: RIGHT, is_second: false };
-    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |_| ());
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |_| ());
     assert!(bias(&shared, Unit::First).norm() < 1e-5);
 }

@@ -1,5 +1,6 @@
 //! From samples to control: every increment, the newest sample, faults in words, and the second sensor.
 
+use crate::support::PERIOD;
 use crate::support::bodies::{Body, Does, RIGHT, Sensor};
 use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
@@ -10,7 +11,6 @@ use firmware::hardware::Imu;
 use firmware::redundant::Redundant;
 use firmware::shared::INCREMENTS;
 use firmware::{hil, imu};
-use flight::PERIOD;
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 
@@ -31,7 +31,7 @@ fn drain(shared: &Local) -> Vec<Increment> {
 fn flown(body: &Body, mut sensor: impl Imu, each: impl Fn(u64)) -> (Vec<Increment>, Vec<String>) {
     let shared = Local::new();
     let mut increments = Vec::new();
-    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
         each(now);
         if now % 10_000 == 0 {
             increments.extend(drain(&shared));
@@ -65,7 +65,7 @@ fn control_gets_every_increment_of_5_ms() {
 fn the_newest_sample_is_the_sensors_last_and_low_passed() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
-    body.clock.run(1_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
+    body.clock.run(1_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
         // As often as control ticks, which would see it stand still.
         let phase = core::f32::consts::TAU * (now % 10_000) as f32 * 1e-4;
         body.rate.set(Vector3::x() * phase.sin());
@@ -82,7 +82,7 @@ fn increments_that_overflow_are_counted_and_leave_a_gap() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
     let mut increments = Vec::new();
-    body.clock.run(200_000, imu::run(shared.for_imu(), &body.clock, &mut sensor), |now| {
+    body.clock.run(200_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
         if !(50_000..150_000).contains(&now) {
             increments.extend(drain(&shared));
         }
@@ -149,7 +149,7 @@ fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise
     let rate = |time: u64| if time < 500_000 { 0.5 } else { (time / PERIOD % 3) as f32 };
     let mut increments = Vec::new();
     let mut late = 0;
-    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, shared.for_simulator()), |now| {
+    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD), |now| {
         if now % PERIOD == 0 && now > 0 {
             command(&hil, now);
             let time = now + PERIOD;

@@ -6,9 +6,9 @@ use crate::support::{Simulated, sent};
 use core::cell::RefCell;
 use firmware::hardware::MotorCommand;
 use firmware::link::transmit::transmit;
-use firmware::recorder::AFTERWARDS;
 use firmware::recorder::ring::{Ring, SLOT};
 use firmware::recorder::ulog;
+use firmware::recorder::{AFTERWARDS, SPACING};
 use firmware::shared::Report;
 use mavlink::dialects::common::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
@@ -16,6 +16,9 @@ use mavlink::dialects::common::{
 };
 
 const ROOM: usize = 500;
+
+/// Ticks that are recorded after a flight, with the one in which it ends.
+const AFTER: u64 = AFTERWARDS / SPACING;
 
 /// Shared, with a recorder for [`ROOM`] ticks.
 fn shared() -> Local {
@@ -62,14 +65,34 @@ fn a_flight_and_two_seconds_after_it_are_recorded_and_the_next_one_replaces_it()
     ticks(&shared, true, 10, 50);
     assert_eq!((shared.recorder.size(), shared.recorder.read(0, &mut [0; 90])), (None, 0));
     ticks(&shared, false, 60, 1_000);
-    let recorded = 50 + usize::from(AFTERWARDS) - 1;
+    let recorded = 50 + AFTER as usize - 1;
     assert_eq!(shared.recorder.size(), Some(ulog::size(recorded)));
     // The time of the first record stands in the file's head.
     let mut head = [0; 16];
     assert_eq!((shared.recorder.read(0, &mut head), &head[8..]), (16, &100_000_u64.to_le_bytes()[..]));
     ticks(&shared, true, 2_000, 5);
     ticks(&shared, false, 2_005, 1_000);
-    assert_eq!(shared.recorder.size(), Some(ulog::size(5 + usize::from(AFTERWARDS) - 1)));
+    assert_eq!(shared.recorder.size(), Some(ulog::size(5 + AFTER as usize - 1)));
+}
+
+#[test]
+fn at_any_rate_records_are_ten_milliseconds_or_more_apart_and_last_as_long() {
+    for (period, spacing) in [(1_000, 10_000), (2_000, 10_000), (4_000, 12_000), (20_000, 20_000)] {
+        let shared = shared();
+        shared.recorder.ticks_last(period);
+        assert_eq!(shared.recorder.spacing(), spacing);
+        let times = RefCell::new(Vec::new());
+        for now in (0..5_000_000).step_by(period as usize) {
+            shared.recorder.record((1_200_000..2_400_000).contains(&now), || {
+                times.borrow_mut().push(now);
+                Report::NONE.tick(now, MotorCommand::Stop, None)
+            });
+        }
+        let times = times.into_inner();
+        let last = 1_200_000 + (1_200_000 + AFTERWARDS - 2 * period) / spacing * spacing;
+        assert_eq!((times[0], *times.last().unwrap()), (1_200_000, last), "{period} us");
+        assert!(times.windows(2).all(|pair| pair[1] - pair[0] == spacing), "{times:?}");
+    }
 }
 
 #[test]
@@ -78,8 +101,8 @@ fn a_ground_station_lists_it_fetches_it_and_erases_it() {
     assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT);
     ticks(&shared, true, 0, 100);
     assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT, "while it is made");
-    ticks(&shared, false, 100, u64::from(AFTERWARDS));
-    let size = ulog::size(99 + usize::from(AFTERWARDS));
+    ticks(&shared, false, 100, AFTER);
+    let size = ulog::size(99 + AFTER as usize);
     assert_eq!(entry(&shared), LOG_ENTRY_DATA { size, num_logs: 1, ..LOG_ENTRY_DATA::DEFAULT });
 
     let mut fed = Fed::new(&shared);

@@ -1,6 +1,7 @@
 extern crate std;
 use super::without_pose::slowed;
 use super::*;
+use crate::PERIOD;
 use crate::hummingbird;
 use estimation::estimator::EstimatedState;
 use nalgebra::Quaternion;
@@ -8,7 +9,7 @@ use std::boxed::Box;
 
 fn chain() -> Chain<'static> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), 0.01, memory).unwrap();
+    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), PERIOD, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain
 }

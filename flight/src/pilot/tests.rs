@@ -1,10 +1,10 @@
 //! What only a defect could cause, caused on purpose: refusals that checked inputs rule out.
 
 extern crate std;
-use super::super::rules::REFUSALS_MAX;
+use super::super::rules::REFUSAL_MAX;
 use super::super::{Outcome, Pose, Reason, Request, Stamped, Velocity};
 use super::*;
-use crate::hummingbird;
+use crate::{PERIOD, hummingbird};
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use nalgebra::{Quaternion, Vector3};
 use std::boxed::Box;
@@ -37,7 +37,7 @@ fn pilot() -> Pilot<'static> {
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, memory)
+    Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator, memory)
 }
 
 /// Taking off, with the number of the last tick, and its estimate with an attitude of NaNs.
@@ -75,7 +75,7 @@ fn settings_are_chosen_on_the_ground_and_kept_in_the_air() {
 fn thrusts_that_the_law_refuses_to_renew_are_held_for_five_ticks_and_then_stop() {
     let (mut pilot, last, broken) = armed();
     let thrusts = pilot.chain.as_ref().unwrap().thrusts().cloned().unwrap();
-    for tick in 1..=u64::from(REFUSALS_MAX) {
+    for tick in 1..=REFUSAL_MAX / PERIOD {
         let outcome = pilot.decide(&quiet((last + tick) * PERIOD), &broken);
         assert!(matches!(outcome.flown, Some(Err(InputError::NotFinite { .. }))), "{outcome:?}");
         assert_eq!(outcome.output, Output::Thrusts(thrusts.clone()));

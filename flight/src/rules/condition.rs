@@ -43,7 +43,7 @@ estimation::listed! {
         Crashed,
         /// The IMU's last increment is older than [`super::IMU_AGE_MAX`], or the estimator has lost its state.
         ImuStale,
-        /// [`super::REFUSALS_MAX`] ticks in a row brought no new thrusts.
+        /// No tick of the last [`super::REFUSAL_MAX`] brought new thrusts.
         ThrustsRefused,
         /// No pose has been believed for [`super::COASTING_MAX`], or the estimate is too uncertain.
         EstimateLost,

@@ -38,14 +38,14 @@ fn hover(share: f32, push: impl Fn(f32) -> f32) -> (Vec<u64>, f32) {
     let certified = Certified::new(hummingbird::extended_law()).unwrap();
     let mass = certified.configuration().vehicle().mass;
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let period = PERIOD as f32 * 1e-6;
-    let mut chain = Chain::new(&certified, &GovernorLimits::default(), period, memory).unwrap();
+    let mut chain = Chain::new(&certified, &GovernorLimits::default(), PERIOD, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain.rise(1.0).unwrap();
     let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
     let mut state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
     let mut check = ThrustCheck::default();
     let mut reports = Vec::new();
+    let period = PERIOD as f32 * 1e-6;
     for tick in 0..3_000_u64 {
         let flown = chain.fly(&state).map(|_| chain.delivered_share());
         if check.tick(flown.ok(), tick * PERIOD).is_some() {

@@ -3,8 +3,8 @@
 
 extern crate std;
 use super::*;
+use crate::PERIOD;
 use crate::chain::Memory;
-use crate::exchange::PERIOD;
 use crate::hummingbird;
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::GovernorLimits;
@@ -22,8 +22,13 @@ fn chain() -> Chain<'static> {
 }
 
 fn chain_of(certified: &Certified) -> Chain<'static> {
+    chain_at(certified, PERIOD)
+}
+
+/// The same in ticks of `period` us.
+fn chain_at(certified: &Certified, period: u64) -> Chain<'static> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut chain = Chain::new(certified, &GovernorLimits::default(), 0.01, memory).unwrap();
+    let mut chain = Chain::new(certified, &GovernorLimits::default(), period, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain
 }
@@ -48,7 +53,7 @@ fn leaning(degrees: f32) -> EstimatedState {
 
 /// What is seen in the last of so many ticks, of a vehicle that is in this state however it is flown.
 fn seen(mode: Mode, chain: &mut Chain, estimated: &EstimatedState, ticks: u64) -> Seen {
-    let mut watch = Watch::default();
+    let mut watch = Watch::new(PERIOD);
     let mut seen = Seen::default();
     for tick in 1..=ticks {
         if mode == Mode::Landing {
@@ -84,9 +89,27 @@ fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
 }
 
 #[test]
+fn at_any_rate_a_detector_takes_as_long() {
+    let certified = hummingbird::certified();
+    for period in [1_000, 2_000, 4_000, 10_000, 20_000] {
+        let first = |estimated: &EstimatedState, is_seen: fn(&Seen) -> bool| {
+            let (mut chain, mut watch) = (chain_at(&certified, period), Watch::new(period));
+            (1..).map(|tick| tick * period).find(|&now| {
+                let _ = chain.fly(&estimated.state);
+                let inputs = Inputs { now, ..Inputs::default() };
+                is_seen(&watch.tick(Mode::Holding, Some(estimated), Some(&chain), FAR, &inputs))
+            })
+        };
+        // From the first tick on.
+        assert_eq!(first(&at(3.01), |seen| seen.tracking_lost), Some(period + TRACKING_DEBOUNCE));
+        assert_eq!(first(&leaning(31.0), |seen| seen.crashed), Some(period + GROUND_DEBOUNCE));
+    }
+}
+
+#[test]
 fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is() {
     let thrown = |mode, struck: f32, later: u64| {
-        let (mut chain, mut watch) = (chain(), Watch::default());
+        let (mut chain, mut watch) = (chain(), Watch::new(PERIOD));
         let hit = EstimatedState { acceleration: Vector3::new(0.0, 0.0, struck), ..at(0.0) };
         let moved = EstimatedState { jumps: 1, ..at(0.0) };
         let mut look = |estimated: &EstimatedState, now: u64| {
@@ -187,7 +210,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         let mut chain = chain();
         (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
         chain.level(Some(0.0), false);
-        let (mut watch, mut now) = (Watch::default(), 0);
+        let (mut watch, mut now) = (Watch::new(PERIOD), 0);
         let mut tick = |chain: &mut Chain, estimated: &EstimatedState, mode: Mode, descends: bool| {
             now += PERIOD;
             chain.fly_level(estimated, descends).unwrap();
@@ -218,7 +241,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
 /// What is seen in the last of so many ticks on the ground, at a speed of NaN, after an upward acceleration.
 fn seen_after(jerk: f32, ticks: u64) -> Seen {
     let mut chain = descending(&at(0.0));
-    let (mut watch, mut last, mut estimated) = (Watch::default(), Seen::default(), at(0.0));
+    let (mut watch, mut last, mut estimated) = (Watch::new(PERIOD), Seen::default(), at(0.0));
     for tick in 1..=ticks {
         estimated.acceleration.z = if tick == 1 { jerk } else { 0.0 };
         estimated.gained = if tick == 1 { 0.0 } else { -0.55 };
@@ -238,7 +261,7 @@ fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
 
 #[test]
 fn a_low_battery_is_reported_until_it_is_acted_on() {
-    let mut watch = Watch::default();
+    let mut watch = Watch::new(PERIOD);
     let look = |watch: &mut Watch, now: u64| {
         let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
         watch.tick(Mode::Holding, None, None, FAR, &inputs).battery_low

@@ -21,12 +21,15 @@ use controller_core::state::Wrench;
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use estimation::imu::ImuFault;
 use flight::{
-    Aboard, Battery, FlightSettings, Inputs, Memory, MissionItem, NoPolicy, Outcome, Output, PERIOD, Pilot, Pose,
-    Reason, Refusal, Request, Stamped, Velocity,
+    Aboard, Battery, FlightSettings, Inputs, Memory, MissionItem, NoPolicy, Outcome, Output, Pilot, Pose, Reason,
+    Refusal, Request, Stamped, Velocity,
 };
 pub use hummingbird::{certified, paper_law as configuration, rotors};
 use nalgebra::UnitQuaternion;
 use std::sync::LazyLock;
+
+/// The time between ticks, us.
+pub const PERIOD: u64 = 10_000;
 
 /// Memory for one pilot.
 pub fn memory() -> &'static mut Memory {
@@ -41,7 +44,7 @@ pub fn estimator() -> &'static mut Estimator {
 /// A new pilot; certified once for all, since that takes longer than most flights here.
 pub fn pilot() -> Pilot<'static> {
     static CERTIFIED: LazyLock<Certified> = LazyLock::new(certified);
-    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator(), memory())
+    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator(), memory())
 }
 
 /// A pose as sources give it, at rest.
@@ -54,6 +57,7 @@ pub fn pose(position: Vector3<f32>, attitude: Quaternion<f32>) -> PoseMeasuremen
 pub struct Handed {
     pub now: u64,
     pub increments: Vec<Increment>,
+    pub under_way: Option<Increment>,
     pub body_rate: Option<Stamped<Vector3<f32>>>,
     pub imu_fault: Option<ImuFault>,
     pub poses: Vec<Stamped<PoseMeasurement>>,
@@ -75,6 +79,7 @@ impl Handed {
         let Self {
             now,
             increments,
+            under_way,
             body_rate,
             imu_fault,
             poses,
@@ -93,6 +98,7 @@ impl Handed {
         pilot.tick(&Inputs {
             now: *now,
             increments,
+            under_way: *under_way,
             body_rate: *body_rate,
             imu_fault: *imu_fault,
             poses,
@@ -229,7 +235,7 @@ impl<P: Aboard> Flight<P> {
     pub fn carrying(policy: P) -> Self {
         let certified = Certified::new(hummingbird::extended_law()).unwrap();
         let (limits, settings) = (GovernorLimits::default(), FlightSettings::DEFAULT);
-        let pilot = Pilot::carrying(Ok(&certified), &limits, &settings, estimator(), memory(), policy);
+        let pilot = Pilot::carrying(Ok(&certified), &limits, &settings, PERIOD, estimator(), memory(), policy);
         Self::of(pilot, certified)
     }
 

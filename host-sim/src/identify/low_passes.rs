@@ -40,7 +40,8 @@ impl LowPasses {
     pub fn of(log: &FlightLog) -> Option<Self> {
         let imu = ImuParameters::BMI088;
         let samples = (log.period * f64::from(imu.rate)).round().max(1.0) as usize;
-        (log.source == Source::Estimator).then(|| Self::new([gyro_filter(), imu.low_pass()], samples))
+        let period = (log.period * 1e6).round() as u64;
+        (log.source == Source::Estimator).then(|| Self::new([gyro_filter(), imu.low_pass(period)], samples))
     }
 
     fn new(passes: [LowPass; 2], samples: usize) -> Self {
@@ -95,7 +96,7 @@ mod tests {
 
     #[test]
     fn white_noise_that_went_through_them_is_white_again() {
-        let mut passes = LowPasses::new([gyro_filter(), ImuParameters::BMI088.low_pass()], 10);
+        let mut passes = LowPasses::new([gyro_filter(), ImuParameters::BMI088.low_pass(10_000)], 10);
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let measured: Vec<f64> = (0..2_000_000)
             .map(|_| passes.take(&Vector3::repeat(StandardNormal.sample(&mut random))).x)

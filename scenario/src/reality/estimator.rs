@@ -89,8 +89,8 @@ impl Estimator {
 
 /// The greatest delay of the law's body rates, s: [`ImuParameters::rates_late`].
 #[must_use]
-pub fn rates_delay() -> f64 {
-    ImuParameters::BMI088.rates_late().into()
+pub fn rates_delay(timing: &Timing) -> f64 {
+    ImuParameters::BMI088.rates_late(timing.period_us).into()
 }
 
 /// Reads `[estimator]`.
@@ -154,8 +154,9 @@ fn read_outage(section: &Section) -> Result<Outage, FieldError> {
 /// The IMU's samples must fall on plant steps and ticks.
 fn check_timing(timing: &Timing) -> Result<(), FieldError> {
     let whole = |ratio: f64| (ratio - ratio.round()).abs() < 1e-6 && ratio >= 1.0 - 1e-6;
-    if !timing.period_us.is_multiple_of(5_000) || timing.period_us > 20_000 {
-        let problem = "must be 50, 100 or 200 Hz with [estimator], whose increments last 5 ms";
+    if !timing.period_us.is_multiple_of(1_000) || timing.period_us > 20_000 {
+        let problem =
+            "must be 50 to 1000 Hz, and 1000 over a whole number, with [estimator], whose IMU samples at 1 kHz";
         return Err(FieldError::new("control.rate", problem.to_owned()));
     }
     if !whole(1e-3 / timing.step()) {

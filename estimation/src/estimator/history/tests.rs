@@ -35,6 +35,30 @@ fn a_part_of_a_steady_increment_is_the_steady_motion_of_its_own_time() {
 }
 
 #[test]
+fn what_lies_ahead_is_turned_on_by_what_is_under_way_and_the_newest_rate() {
+    let last = Increment::steady(0, 5_000, &RATE, &FORCE);
+    let ahead = |to: u64| Increment::steady(5_000, to, &RATE, &FORCE);
+    for (end, to) in [(6_000, 8_000), (9_000, 9_000), (11_000, 13_000)] {
+        let steady = last.turn_ahead(Some(&ahead(end)), to - 5_000);
+        assert!((steady - ahead(to).delta_angle).norm() < 1e-7, "{steady}");
+    }
+    // At 100 rad/s^2, from half an increment's time before its end.
+    let speeding = |start: u64, end: u64| {
+        let middle = (start + end) as f32 * 0.5e-6;
+        Increment::steady(start, end, &(Vector3::x() * (100.0 * middle)), &FORCE)
+    };
+    let (last, truth) = (speeding(0, 5_000), speeding(5_000, 11_000).delta_angle);
+    let late = (truth - last.turn_ahead(None, 6_000)).norm();
+    let soon = (truth - last.turn_ahead(Some(&speeding(5_000, 9_000)), 6_000)).norm();
+    assert!(late > 3e-3 && soon < 1e-3, "{late} and {soon} rad");
+    // One that does not go on from here, or ends later, says nothing.
+    for stranger in [Increment::steady(4_000, 6_000, &FORCE, &FORCE), Increment::steady(5_000, 12_000, &FORCE, &FORCE)]
+    {
+        assert_eq!(last.turn_ahead(Some(&stranger), 6_000), last.turn_ahead(None, 6_000));
+    }
+}
+
+#[test]
 fn times_between_two_instants_are_covered_once_and_in_order() {
     let history = filled(10);
     let (from, to) = (7_300, 41_700);

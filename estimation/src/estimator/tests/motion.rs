@@ -133,7 +133,7 @@ impl Rig {
 
     /// The state at a time, us.
     pub fn state_at(&self, time: u64) -> Option<EstimatedState> {
-        self.estimator.state(time, &(self.truth(time).rate + self.biases.0).map(|x| x as f32))
+        self.estimator.state(time, &(self.truth(time).rate + self.biases.0).map(|x| x as f32), None)
     }
 
     /// Errors of position (m), velocity (m/s) and attitude (rad) now.

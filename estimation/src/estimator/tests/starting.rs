@@ -91,7 +91,7 @@ fn a_gap_of_the_imu_ends_it_and_numbers_that_cannot_be_too() {
     assert!(rig.estimator.health(rig.now).is_good());
     assert!(rig.state_at(rig.now + 22_000).is_some());
     assert_eq!(rig.state_at(rig.now + 22_001), None);
-    assert_eq!(rig.estimator.state(rig.now, &Vector3::new(0.0, f32::NAN, 0.0)), None);
+    assert_eq!(rig.estimator.state(rig.now, &Vector3::new(0.0, f32::NAN, 0.0), None), None);
     assert_eq!(rig.estimator.health(rig.now + 22_001).faults.worst(), Some(Fault::ImuStale));
     rig.now += 1;
     rig.step();

@@ -21,9 +21,19 @@ impl Cost {
         self.worst = self.worst.max(instructions);
     }
 
+    /// Instructions of a call, on the mean.
+    pub fn mean(&self) -> f64 {
+        self.sum / f64::from(self.count)
+    }
+
+    /// Instructions of the longest call.
+    pub fn worst(&self) -> f64 {
+        self.worst
+    }
+
     /// As a line of the table.
     pub fn print(&self, what: &str) {
-        let mean = self.sum / f64::from(self.count);
+        let mean = self.mean();
         let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
         hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
     }

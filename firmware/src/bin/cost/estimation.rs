@@ -15,6 +15,9 @@ use static_cell::StaticCell;
 /// Samples of a measured flight, one a millisecond.
 const SAMPLES: u64 = 10_000;
 
+/// Time between control ticks, us: what the samples' low-pass is made for.
+const PERIOD: u64 = 10_000;
+
 /// The vehicle turns in place at this rate, in 2^-64 turns a microsecond: 0.5 rad/s.
 const TURNING: u64 = 1_467_934_022_605;
 const RATE: f32 = 0.5;
@@ -22,7 +25,7 @@ const RATE: f32 = 0.5;
 type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
 type Take = fn(&mut Estimator, &Increment);
 type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
-type StateOf = fn(&Estimator, u64, &Vector3<f32>) -> Option<EstimatedState>;
+type StateOf = fn(&Estimator, u64, &Vector3<f32>, Option<&Increment>) -> Option<EstimatedState>;
 
 /// Every figure, as lines of the table; whether all could be measured.
 pub fn measure(counter: &Counter) -> bool {
@@ -54,7 +57,9 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies ten seconds, and prints what the poses cost; and with `all` the rest. False if a pose was not fused.
     fn fly(&mut self, stream: &Stream, all: bool) -> bool {
-        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE) else { return false };
+        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, PERIOD) else {
+            return false;
+        };
         *self.estimator = Estimator::new(&self.settings);
         let (sample, take): (Sample, Take) = (black_box(Conditioner::sample), black_box(Estimator::imu));
         let (fuse, state_of): (Fuse, StateOf) = (black_box(Estimator::pose), black_box(Estimator::state));
@@ -77,7 +82,7 @@ impl Flight<'_> {
                 Ok(_) => {}
                 Err(_) => return false,
             }
-            states.add(self.counter.short(|| black_box(state_of(self.estimator, now, &rate))).0);
+            states.add(self.counter.short(|| black_box(state_of(self.estimator, now, &rate, None))).0);
         }
         if all {
             samples.print("IMU sample");

@@ -61,7 +61,7 @@ fn measure() -> bool {
     let Ok(law) = Law::new(&certified, PERIOD) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
-    let Some(papers) = replay::configuration().ok().and_then(|papers| Certified::new(papers).ok()) else {
+    let Some(papers) = replay::papers().ok().and_then(|papers| Certified::new(papers).ok()) else {
         return false;
     };
     let Ok(papers_law) = Law::new(&papers, PERIOD) else { return false };
@@ -99,7 +99,7 @@ fn measure() -> bool {
         hprintln!("the estimator does not believe an exact pose");
         return false;
     }
-    if !tick::measure(&counter, &certified, &circle) {
+    if !tick::measure(&counter, &circle) {
         hprintln!("the firmware does not fly an exact body");
         return false;
     }

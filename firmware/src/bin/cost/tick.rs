@@ -1,10 +1,11 @@
-//! What a whole control tick costs: the firmware's own, from what waits in the queues to the motors' commands.
+//! What whole control ticks cost: the firmware's own, from what waits in the queues to the motors' commands, and how much
+//! of the processor they and the IMU's samples take.
 //!
 //! The vehicle stands for a while, arms, goes up and flies a circle by setpoints of position and velocity, ten a
-//! second. Its poses come 20 ms late, a hundred a second.
+//! second. Its IMU samples at 1 kHz, its poses come 20 ms late, a hundred a second, whatever the rate of control.
 
 use crate::body;
-use crate::count::Cost;
+use crate::count::{CLOCKS, Cost};
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
@@ -13,55 +14,131 @@ use controller_core::reference::Trajectory;
 use controller_core::state::{State, Wrench};
 use controller_core::vehicle::Vehicle;
 use core::hint::black_box;
+use cortex_m_semihosting::hprintln;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
+use estimation::estimator::{Estimator, PoseMeasurement, Settings};
+use estimation::imu::{Calibration, ImuParameters};
 use firmware::control::Control;
-use firmware::hardware::MotorCommand;
+use firmware::hardware::{MotorCommand, RawImu};
+use firmware::imu::Flow;
 use firmware::outputs::Outputs;
-use firmware::shared::{QueuedRequest, SamplesView, Shared};
-use flight::{FlightSettings, ImuSample, Memory, Mode, PERIOD, Pilot, Pose, Request, Stamped, Velocity};
+use firmware::replay::embedded_at;
+use firmware::shared::{QueuedRequest, Shared};
+use flight::{FlightSettings, Memory, Mode, Pilot, Pose, Request, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// Ticks of standing, of going up, and of the circle that is measured.
-const STANDING: u64 = 200;
-const RISING: u64 = 500;
-const FLYING: u64 = STANDING + 20;
-const CIRCLING: u64 = 1_000;
+/// The rates of control that are measured: in the table's words, and a period, us.
+const RATES: [(&str, u64); 3] = [("100 Hz", 10_000), ("500 Hz", 2_000), ("1 kHz", 1_000)];
 
-/// Ticks that a pose is late.
+/// How long the vehicle stands, goes up, and flies the circle that is measured, us.
+const STANDING: u64 = 2_000_000;
+const RISING: u64 = 5_000_000;
+const CIRCLING: u64 = 10_000_000;
+
+/// When setpoints are requested, us.
+const FLYING: u64 = STANDING + 200_000;
+
+/// Time between samples of the IMU, us.
+const SAMPLE: u64 = 1_000;
+
+/// Time between poses, and between setpoints, us.
+const POSES_APART: u64 = 10_000;
+const SETPOINTS_APART: u64 = 100_000;
+
+/// How many poses have become true since the one that comes.
 const LATE: usize = 2;
-
-/// Increments in a tick, and how long each is, us.
-const INCREMENTS: u64 = 2;
-const INCREMENT: u64 = PERIOD / INCREMENTS;
 
 type Tick<'a> = fn(&mut Control<'a, NoopRawMutex>, u64) -> MotorCommand;
 
-/// Flies, and prints what the ticks of the circle cost; whether it flew.
-pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajectory) -> bool {
-    static ESTIMATOR: StaticCell<Estimator> = StaticCell::new();
-    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
+/// Flies at each rate, and prints what the ticks of the circle cost; whether it flew.
+pub fn measure(counter: &Counter, circle: &impl Trajectory) -> bool {
+    static ESTIMATORS: [StaticCell<Estimator>; RATES.len()] = [const { StaticCell::new() }; _];
+    static MEMORIES: [ConstStaticCell<Memory>; RATES.len()] = [const { ConstStaticCell::new(Memory::EMPTY) }; _];
+    RATES.iter().zip(&ESTIMATORS).zip(&MEMORIES).all(|((&(rate, period), estimator), memory)| {
+        let Some(certified) = embedded_at(period).and_then(|embedded| Certified::new(embedded).ok()) else {
+            return false;
+        };
+        let settings = Settings::bmi088(certified.configuration().vehicle());
+        let estimator = estimator.init_with(|| Estimator::new(&settings));
+        let Some(flown) = fly(counter, &certified, circle, period, estimator, memory.take()) else { return false };
+        flown.print(rate, period);
+        true
+    })
+}
+
+/// What was measured on a circle.
+#[derive(Default)]
+struct Flown {
+    ticks: Cost,
+    samples: Cost,
+}
+
+impl Flown {
+    fn print(&self, rate: &str, period: u64) {
+        let label = |what: &str| {
+            let mut label = heapless::String::<42>::new();
+            // What does not fit is cut.
+            let _ = [what, ", ", rate].iter().try_for_each(|part| label.push_str(part));
+            label
+        };
+        self.ticks.print(&label("whole control tick"));
+        // Instructions a microsecond, over those that the clock has: percent, at each clock.
+        let percent = |each: f64| CLOCKS.map(|clock| 100.0 * each / clock);
+        let (period, between) = (period as f64, SAMPLE as f64);
+        for (what, [bolt, h743]) in [
+            ("worst tick of its period, %", percent(self.ticks.worst() / period)),
+            ("share of the processor, %", percent(self.ticks.mean() / period + self.samples.mean() / between)),
+        ] {
+            hprintln!("{:<42} {:>31.2} {:>9.2}", label(what), bolt, h743);
+        }
+    }
+}
+
+/// A flight with control every `period` us; none if it did not fly.
+fn fly(
+    counter: &Counter,
+    certified: &Certified,
+    circle: &impl Trajectory,
+    period: u64,
+    estimator: &'static mut Estimator,
+    memory: &'static mut Memory,
+) -> Option<Flown> {
     let configuration = certified.configuration();
     let shared: Shared<NoopRawMutex> = Shared::new();
-    let Some(Ok(outputs)) = configuration.rotors().map(|rotors| Outputs::new(rotors, 0.0)) else { return false };
-    let estimator = ESTIMATOR.init_with(|| Estimator::new(&Settings::bmi088(configuration.vehicle())));
-    let mut pilot =
-        Pilot::new(Ok(certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, estimator, MEMORY.take());
+    let outputs = Outputs::new(configuration.rotors()?, 0.0).ok()?;
+    let limits = GovernorLimits::default();
+    let mut pilot = Pilot::carrying(
+        Ok(certified),
+        &limits,
+        &FlightSettings::DEFAULT,
+        period,
+        estimator,
+        memory,
+        firmware::configuration::policy(),
+    );
     let mut control = Control::new(shared.for_control(), &mut pilot, outputs);
     let tick: Tick<'_> = black_box(Control::tick);
     let link = shared.for_receive();
+    let mut flow = Flow::new(shared.for_samples(), &ImuParameters::PROMPT, &Calibration::NONE, period).ok()?;
     let mut body = Body::standing(*configuration.vehicle());
-    let mut cost = Cost::default();
-    for number in 1..=STANDING + RISING + CIRCLING {
-        let now = number * PERIOD;
+    let mut flown = Flown::default();
+    for now in (SAMPLE..=STANDING + RISING + CIRCLING).step_by(SAMPLE as usize) {
         let wrench = link.report().get().and_then(|report| report.value.wrench);
-        body.advance(wrench.as_ref(), now, shared.for_samples());
+        let sample = body.advance(wrench.as_ref(), now);
+        let (instructions, ()) = counter.short(|| flow.take(&sample));
+        let circling = now.checked_sub(STANDING + RISING);
+        if circling.is_some() {
+            flown.samples.add(instructions);
+        }
         if let Some(pose) = body.late_pose(now) {
             let _ = link.poses().put(pose);
         }
+        if !now.is_multiple_of(period) {
+            continue;
+        }
         link.ground_station().put((), now);
-        let asked = match number {
+        let asked = match now {
             STANDING => Some(Request::Arm),
             FLYING => Some(Request::FlySetpoints),
             _ => None,
@@ -69,22 +146,20 @@ pub fn measure(counter: &Counter, certified: &Certified, circle: &impl Trajector
         if let Some(request) = asked {
             link.request(QueuedRequest { request, order: None, setpoints: None });
         }
-        let circling = number.checked_sub(STANDING + RISING);
-        if number > STANDING && number % 10 == 0 {
+        if now > STANDING && now.is_multiple_of(SETPOINTS_APART) {
             link.setpoint().put(setpoint(circle, circling), now);
         }
         let (instructions, _) = counter.short(|| tick(&mut control, now));
         if circling.is_some() {
-            cost.add(instructions);
+            flown.ticks.add(instructions);
         }
     }
-    cost.print("whole control tick, circle");
-    link.report().get().is_some_and(|report| report.value.mode == Mode::Flying)
+    link.report().get().filter(|report| report.value.mode == Mode::Flying).map(|_| flown)
 }
 
 /// Where the circle begins, or is.
 fn setpoint(circle: &impl Trajectory, circling: Option<u64>) -> Setpoint {
-    let reference = circle.at(circling.unwrap_or(0) * PERIOD);
+    let reference = circle.at(circling.unwrap_or(0));
     let position = reference.position;
     let motion = match circling {
         None => Motion::Position(position),
@@ -101,7 +176,7 @@ fn setpoint(circle: &impl Trajectory, circling: Option<u64>) -> Setpoint {
 struct Body {
     vehicle: Vehicle,
     state: State,
-    /// The newest last.
+    /// At the last times of poses, the newest last.
     past: [State; LATE + 1],
 }
 
@@ -113,36 +188,31 @@ impl Body {
     }
 
     /// Moves on to `now`, us, under the commanded wrench; returns the IMU's sample. Without thrust it stands.
-    fn advance(&mut self, wrench: Option<&Wrench>, now: u64, shared: SamplesView<'_, NoopRawMutex>) {
-        let seconds = INCREMENT as f32 * 1e-6;
-        for part in (0..INCREMENTS).rev() {
-            let end = now - part * INCREMENT;
-            let before = self.state;
-            if let Some(wrench) = wrench {
-                body::advance(&mut self.state, &self.vehicle, wrench, seconds);
-            }
-            let gained = self.state.velocity - before.velocity + Vector3::z() * (self.vehicle.gravity * seconds);
-            // A stream of exactly the same numbers would be a sensor that is stuck.
-            let jitter = Vector3::new((end % 7_000) as f32 * 1e-9, 0.0, 0.0);
-            shared.increment(Increment {
-                start: end - INCREMENT,
-                end,
-                delta_angle: (before.angular_velocity + self.state.angular_velocity) * (0.5 * seconds) + jitter,
-                delta_velocity: UnitQuaternion::new_unchecked(before.attitude).inverse() * gained,
-                clipped: Clipped::NEITHER,
-            });
+    fn advance(&mut self, wrench: Option<&Wrench>, now: u64) -> RawImu {
+        let seconds = SAMPLE as f32 * 1e-6;
+        let before = self.state;
+        if let Some(wrench) = wrench {
+            body::advance(&mut self.state, &self.vehicle, wrench, seconds);
         }
-        let sample = ImuSample { angular_velocity: self.state.angular_velocity, specific_force: Vector3::zeros() };
-        shared.imu().put(sample, now);
-        self.past.rotate_left(1);
-        if let Some(last) = self.past.last_mut() {
-            *last = self.state;
+        if now.is_multiple_of(POSES_APART) {
+            self.past.rotate_left(1);
+            if let Some(last) = self.past.last_mut() {
+                *last = self.state;
+            }
+        }
+        let gained = (self.state.velocity - before.velocity) / seconds + Vector3::z() * self.vehicle.gravity;
+        // A stream of exactly the same numbers would be a sensor that is stuck.
+        let jitter = Vector3::new((now % 7_000) as f32 * 1e-7, 0.0, 0.0);
+        RawImu {
+            time: now,
+            angular_velocity: self.state.angular_velocity + jitter,
+            specific_force: Some(UnitQuaternion::new_unchecked(before.attitude).inverse() * gained + jitter),
         }
     }
 
-    /// Where it was [`LATE`] ticks ago, by a camera that is never still.
+    /// Where it was [`LATE`] poses ago, by a camera that is never still, if one comes now.
     fn late_pose(&self, now: u64) -> Option<Stamped<PoseMeasurement>> {
-        let time = now.checked_sub(LATE as u64 * PERIOD)?;
+        let time = now.is_multiple_of(POSES_APART).then_some(now)?.checked_sub(LATE as u64 * POSES_APART)?;
         let was = self.past.first()?;
         let trembling = Vector3::repeat(math::sin_cos_turns(time << 50).0 * 1e-4);
         let pose = Pose::new(was.position + trembling, Velocity::World(Vector3::zeros()), was.attitude).ok()?;

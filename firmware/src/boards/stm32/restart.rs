@@ -7,7 +7,7 @@ use crate::hardware::Restart;
 /// The chip, which can start itself anew.
 pub struct Chip;
 
-/// The motors have got the stop command, a hundred times a second, since the vehicle was disarmed.
+/// The motors have got the stop command, every millisecond, since the vehicle was disarmed.
 impl Restart for Chip {
     const HAS_BOOTLOADER: bool = true;
 

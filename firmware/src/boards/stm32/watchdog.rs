@@ -1,15 +1,16 @@
 //! The independent watchdog: a clock of its own restarts the chip when the control task stops feeding it.
 
 use super::chip;
+use crate::configuration::PERIOD;
 use crate::hardware::Watchdog;
 use embassy_stm32::Peri;
 use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::IndependentWatchdog;
 
-/// Time without food, us: five ticks of the control task. The watchdog's clock is crude: on the F405 this is 34 to 94
-/// ms.
-const TIMEOUT: u32 = 50_000;
+/// Time without food, us: 50 ms, or five ticks of a slow control task. The watchdog's clock is crude: on the F405 50 ms
+/// are 34 to 94 ms.
+const TIMEOUT: u32 = if PERIOD > 10_000 { 5 * PERIOD as u32 } else { 50_000 };
 
 /// Polls within which the watchdog takes over new settings. It needs five of its own cycles, a third of a millisecond.
 const SETTLES: usize = 100_000;

@@ -2,10 +2,10 @@
 
 use crate::configuration;
 use crate::parameters::table::{Name, PARAMETERS};
-use crate::shared::{Event, Report, Severity, Text, Traffic};
+use crate::shared::{Event, Report, Severity, Text, Timing, Traffic};
 use estimation::estimator::{COASTING_AFTER, Fault, Health};
 use estimation::imu::ImuFault;
-use flight::{Aboard, Mode, PERIOD};
+use flight::{Aboard, Mode};
 use mavlink::dialects::common::{
     AVAILABLE_MODES_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA,
     MISSION_CURRENT_DATA, MavAutopilot, MavBatteryFunction, MavBatteryType, MavLandedState, MavModeFlag,
@@ -159,7 +159,7 @@ pub fn status(
     is_logged: Option<bool>,
 ) -> SYS_STATUS_DATA {
     use MavSysStatusSensor as Sensor;
-    let longest = report.map_or(0, |report| u64::from(report.timing.worst_duration));
+    let Timing { worst_duration, period, .. } = report.map(|report| report.timing).unwrap_or_default();
     let inertial = Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO | Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL;
     let poses = Sensor::MAV_SYS_STATUS_SENSOR_VISION_POSITION
         | Sensor::MAV_SYS_STATUS_SENSOR_3D_MAG
@@ -201,7 +201,7 @@ pub fn status(
         onboard_control_sensors_enabled: present,
         onboard_control_sensors_health: health,
         // Tenths of a percent.
-        load: (1000 * longest / PERIOD).min(1000) as u16,
+        load: (1000 * u64::from(worst_duration)).checked_div(period).unwrap_or(0).min(1000) as u16,
         voltage_battery: voltage.map_or(u16::MAX, |volts| (volts * 1000.0) as u16),
         current_battery: -1,
         battery_remaining: -1,

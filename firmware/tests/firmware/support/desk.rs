@@ -1,12 +1,13 @@
 //! A vehicle on a desk: it never moves, whatever the motors' command, and its sensors and poses show that.
 
 use super::receiver::Local;
+use crate::support::PERIOD;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use estimation::estimator::{Clipped, Increment, PoseMeasurement};
 use firmware::boot;
 use firmware::control::Control;
 use firmware::hardware::MotorCommand;
-use flight::{ImuSample, Mode, PERIOD, Pose, Stamped, Velocity};
+use flight::{ImuSample, Mode, Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, Vector3};
 
 /// Control with everything that it needs to arm but a ground station.

@@ -1,6 +1,7 @@
 //! The firmware's side of a simulator: commands it was given, pins beside it, what it may answer.
 
 use super::Simulated;
+use crate::support::PERIOD;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::hardware::{Fault, MotorCommand, Motors};
 use firmware::hil::{self, SelectedMotors};
@@ -41,8 +42,9 @@ pub fn command(hil: &Hil, time: u64) {
     let (wanted, clock) = (Flag::new(), Simulated::default());
     wanted.raise();
     clock.0.set(time);
-    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: (&wanted).into(), clock }.write(MotorCommand::Stop))
-        .unwrap();
+    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: (&wanted).into(), clock, period: PERIOD }
+        .write(MotorCommand::Stop))
+    .unwrap();
 }
 
 /// The sensors' message at `time_usec`.
