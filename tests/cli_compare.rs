@@ -142,7 +142,7 @@ fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
         ("k_r_tilt = ", "k_tilt = ", "g.toml: hummingbird.lee.k_tilt: unknown; known are cost and k_x_across"),
         ("mass = 0.5\n", "mass = 0.51\n", "g.toml: no table is of hummingbird's vehicle (mass = 0.5, "),
     ] {
-        let text = BUILT_IN.replacen(from, to, 1);
+        let text = BUILT_IN.replace(from, to);
         assert_ne!(text, BUILT_IN, "{from}");
         fs::write(directory.join("g.toml"), text).unwrap();
         for command in [&["compare", "h.toml"][..], &["campaign", "h.toml", "--law", "indi"]] {

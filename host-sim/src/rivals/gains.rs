@@ -20,18 +20,11 @@
 //! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle
 //! that its table describes and no other. A table that leaves out lag, delay, thrust or period serves any.
 //!
-//! Gains of the same vehicle that were found at another rate serve as well. Those of a slower one stay as they are: the
-//! loops have less delay than they were found for. Those of a quicker one are slowed, all loops alike, in proportion to
-//!
-//! ```text
-//! 1 / (lag + delay + 3/2 T)         T: between ticks; half of it is the held command's, one the difference's
-//! ```
-//!
-//! [`Set::of_other_rates`] says so: a search finds better ones.
+//! Where there are none of this vehicle at this rate, its gains of another rate serve as they are: they stand in 1/s, and
+//! every filter is exact for its period. [`Set::of_other_rates`] says so: a search finds better ones.
 
 use super::kind::Kind;
 use super::pilot::model;
-use super::start::Speed;
 use crate::flier::{LawChoice, OURS};
 use crate::table::short;
 use scenario::Scenario;
@@ -120,13 +113,10 @@ impl Set {
             if let Some((key, _)) = table.iter().find(|(key, _)| *key != "cost" && !kind.gains().contains(key)) {
                 return Err(failed(format!("{of}.{key}: unknown; known are cost and {}", kind.gains().join(", "))));
             }
-            let mut gains = kind.gains().iter().map(|key| number(key)).collect::<Result<Vec<f64>, _>>()?;
+            let gains = kind.gains().iter().map(|key| number(key)).collect::<Result<Vec<f64>, _>>()?;
             if !is_own(item, true) {
                 let period = item.get(PERIOD).and_then(Item::as_float).filter(|period| *period > 0.0);
                 let period = period.ok_or_else(|| failed(format!("{of}: its {PERIOD} must be greater than zero")))?;
-                let speed = at_other_rate(scenario, period);
-                let paces = kind.start(scenario).paces;
-                gains.iter_mut().zip(paces).for_each(|(gain, pace)| *gain *= pace.factor(&speed));
                 set.from_other_rates.push((kind, 1.0 / period));
             }
             if kind.build(scenario, &gains).is_none() {
@@ -202,14 +192,6 @@ impl Set {
         let said = format!("gains not found at {} Hz: {}; --tune searches better ones", short(rate), all.join(", "));
         (!all.is_empty()).then_some(said)
     }
-}
-
-/// How fast loops may be at the rate of `scenario`, beside those whose gains were found with ticks `period` s apart.
-fn at_other_rate(scenario: &Scenario, period: f64) -> Speed {
-    let model = model(scenario);
-    let late = |period: f64| model.lag + model.delay + 1.5 * period;
-    let slowed = (late(period) / late(model.period)).min(1.0);
-    Speed { attitude: slowed, position: slowed, ..Speed::OWN }
 }
 
 /// The law of this name on the vehicle of `scenario`, a rival's with gains from `file` or those that are built in.

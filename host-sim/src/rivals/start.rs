@@ -19,19 +19,6 @@ pub enum Pace {
     Kept,
 }
 
-impl Pace {
-    /// By how much a gain grows at `speed`.
-    #[must_use]
-    pub fn factor(self, speed: &Speed) -> f64 {
-        match self {
-            Self::Attitude(power) => speed.attitude.powi(power),
-            Self::Torque(power) => speed.attitude.powi(power) * speed.inertia,
-            Self::Position(power) => speed.position.powi(power),
-            Self::Kept => 1.0,
-        }
-    }
-}
-
 /// Stiffness and damping of the position across and vertical and of the attitude in tilt and yaw, in 1/s^2 and 1/s.
 pub const STIFFNESS_AND_DAMPING: [Pace; 8] = [
     Pace::Position(2),
@@ -89,7 +76,13 @@ impl Start {
     /// The gains at `speed`.
     #[must_use]
     pub fn at(&self, speed: Speed) -> Vec<f64> {
-        self.gains.iter().zip(self.paces).map(|(gain, pace)| gain * pace.factor(&speed)).collect()
+        let gain = |(gain, pace): (&f64, &Pace)| match *pace {
+            Pace::Attitude(power) => gain * speed.attitude.powi(power),
+            Pace::Torque(power) => gain * speed.attitude.powi(power) * speed.inertia,
+            Pace::Position(power) => gain * speed.position.powi(power),
+            Pace::Kept => *gain,
+        };
+        self.gains.iter().zip(self.paces).map(gain).collect()
     }
 }
 

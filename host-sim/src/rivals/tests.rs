@@ -108,7 +108,7 @@ fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
 fn gains_that_cannot_be_used_are_refused_by_name() {
     let file = hummingbird();
     let refused = |from: &str, to: &str| {
-        let text = BUILT_IN.replacen(from, to, 1);
+        let text = BUILT_IN.replace(from, to);
         assert_ne!(text, BUILT_IN, "{from}");
         Set::of(&file, &text, "mine.toml", &Kind::ALL).unwrap_err().to_string()
     };
@@ -124,32 +124,23 @@ fn gains_that_cannot_be_used_are_refused_by_name() {
 }
 
 #[test]
-fn gains_of_another_rate_are_named_and_slowed_at_a_lower_one() {
+fn gains_of_another_rate_are_named_and_fly_all_trials() {
     let file = hummingbird();
-    let at = |rate: f64| Set::built_in(&rate::at(&file, rate).unwrap(), &[Kind::Lee]).unwrap();
-    let (own, quick, slow) = (at(100.0), at(200.0), at(50.0));
-    assert_eq!((own.of_other_rates(100.0), quick.rivals.len()), (None, 1));
-    let said = quick.of_other_rates(200.0).unwrap();
-    assert_eq!(said, "gains not found at 200 Hz: lee at 100 Hz; --tune searches better ones");
-    assert_eq!(quick.rivals, own.rivals);
-    // lag + 3/2 T from 20 to 35 ms, by the power of each gain: k_x, k_v, k_x, k_v, k_r, k_w, k_r, k_w.
-    for ((one, other), power) in own.rivals[0].1.iter().zip(&slow.rivals[0].1).zip([2, 1, 2, 1, 2, 1, 2, 1]) {
-        assert!((other / one - (20.0_f64 / 35.0).powi(power)).abs() < 1e-6, "{one} {other}");
-    }
-}
-
-#[test]
-fn slowed_gains_fly_better_at_a_lower_rate_than_as_they_are() {
-    let slow = rate::at(&hummingbird(), 40.0).unwrap();
-    let own = Set::built_in(&hummingbird(), &[Kind::Indi]).unwrap().rivals.remove(0).1;
-    let slowed = Set::built_in(&slow, &[Kind::Indi]).unwrap().rivals.remove(0).1;
-    let [own, slowed] = [own, slowed].map(|gains| {
-        let judge = RivalJudge::new(&slow, Kind::Indi, &gains);
+    let at = |rate: f64| rate::at(&file, rate).unwrap();
+    let built_in = |rate: f64| Set::built_in(&at(rate), &[Kind::Lee, Kind::Indi]).unwrap();
+    assert_eq!(built_in(100.0).of_other_rates(100.0), None);
+    let said = built_in(500.0).of_other_rates(500.0).unwrap();
+    assert_eq!(said, "gains not found at 500 Hz: lee at 100 Hz; --tune searches better ones");
+    for rate in [50.0, 250.0, 500.0] {
+        let set = built_in(rate);
+        assert_eq!(set.rivals[0], built_in(100.0).rivals[0], "{rate} Hz");
+        let (kind, gains, _) = &set.rivals[1];
+        let slow = at(rate);
+        let judge = RivalJudge::new(&slow, *kind, gains);
         let verdict = judge.judge(&judge.start());
-        [verdict.violation, verdict.cost]
-    });
-    println!("{own:?} as they are, {slowed:?} slowed");
-    assert!(slowed < own, "{slowed:?} {own:?}");
+        println!("{} at {rate} Hz: cost {}", kind.name(), verdict.cost);
+        assert!(verdict.accepted() && verdict.cost < 4.0, "{rate} Hz: {verdict:?}");
+    }
 }
 
 #[test]
