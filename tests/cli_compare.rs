@@ -51,7 +51,10 @@ fn a_comparison_has_every_scene_every_law_and_all_its_files() {
 
     let (head, rows) = table(&directory.join("out"));
     assert_eq!(head[..3], ["scene", "figure", "unit"]);
-    assert_eq!((&head[3..11], head[11].as_str()), (&LAWS.map(str::to_owned)[..], "ours_loses"));
+    assert_eq!(
+        (&head[3..11], &head[11..]),
+        (&LAWS.map(str::to_owned)[..], &["ours_loses", "limit"].map(str::to_owned)[..])
+    );
     let mut scenes: Vec<&str> = rows.iter().map(|row| row[0].as_str()).collect();
     scenes.dedup();
     assert_eq!(scenes, SCENES);
@@ -115,6 +118,9 @@ fn the_status_says_what_became_of_ours() {
         (&["h.toml", "--tune", "1", "--population", "3"], "--population: must be from 4 to 1000, found 3"),
         (&["h.toml", "--gains", "none.toml"], "none.toml: cannot be read"),
         (&["h.toml", "--gains", "g.toml", "--tune", "1"], "cannot be used with"),
+        (&["h.toml", "--only", "lee,pid"], "invalid value 'pid'"),
+        (&["h.toml", "--rate", "400"], "--rate: 1/rate must be a whole number of plant steps of 0.001 s, found 400 Hz"),
+        (&["h.toml", "--rate", "3"], "--rate: must be from 10 to 4000 Hz, found 3"),
     ] {
         let refused = host_sim(&directory, &[&["compare"], arguments, &["--out", "out"]].concat());
         let message = stderr(&refused);
@@ -136,7 +142,7 @@ fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
         ("k_r_tilt = ", "k_tilt = ", "g.toml: hummingbird.lee.k_tilt: unknown; known are cost and k_x_across"),
         ("mass = 0.5\n", "mass = 0.51\n", "g.toml: no table is of hummingbird's vehicle (mass = 0.5, "),
     ] {
-        let text = BUILT_IN.replacen(from, to, 1);
+        let text = BUILT_IN.replace(from, to);
         assert_ne!(text, BUILT_IN, "{from}");
         fs::write(directory.join("g.toml"), text).unwrap();
         for command in [&["compare", "h.toml"][..], &["campaign", "h.toml", "--law", "indi"]] {
@@ -247,10 +253,53 @@ fn a_rival_without_gains_is_left_out_and_named() {
 }
 
 #[test]
+fn chosen_laws_fly_at_their_own_rate_beside_ours_at_the_files() {
+    let directory = directory("rate", GENTLE);
+    let compare = ["compare", "h.toml", "--flights", "2", "--only", "indi,lee"];
+    let slow = host_sim(&directory, &[&compare[..], &["--out", "slow"]].concat());
+    let quick = host_sim(&directory, &[&compare[..], &["--rate", "500", "--out", "quick"]].concat());
+    assert_eq!([status(&slow), status(&quick)], [0, 0], "{}{}", stderr(&slow), stderr(&quick));
+    let text = stdout(&quick);
+    assert!(text.starts_with("hummingbird: our law and 2 others at 500 Hz; 2 random flights of each\n"), "{text}");
+    assert!(text.contains("gains not found at 500 Hz: lee at 100 Hz; --tune searches better ones"), "{text}");
+    assert!(!stdout(&slow).contains("gains not found"), "{}", stdout(&slow));
+    let ((head, slow), (_, quick)) = (table(&directory.join("slow")), table(&directory.join("quick")));
+    assert_eq!(head[3..6], ["ours", "lee", "indi"]);
+    let column = |rows: &[Vec<String>], place: usize| rows.iter().map(|row| row[place].clone()).collect::<Vec<_>>();
+    assert_eq!(column(&slow, 3), column(&quick, 3), "ours flies as the file says");
+    for law in [4, 5] {
+        assert_ne!(column(&slow, law), column(&quick, law), "{}", head[law]);
+    }
+    // The vehicle's own limit stands beside falls and steps, below what any law does.
+    let limited: Vec<&Vec<String>> = quick.iter().filter(|row| !row[7].is_empty()).collect();
+    assert_eq!(limited.len(), 4);
+    for row in limited {
+        let number = |place: usize| row[place].parse::<f64>().unwrap();
+        assert!((3..6).all(|law| number(7) < number(law)), "{row:?}");
+    }
+}
+
+#[test]
+fn a_vehicle_that_is_not_as_its_file_says_flies_in_scenes_of_its_own() {
+    let directory = directory("realism", GENTLE);
+    let compare = ["compare", "h.toml", "--realism", "--only", "indi", "--out", "out"];
+    let flown = host_sim(&directory, &compare);
+    let text = stdout(&flown);
+    assert!(text.starts_with("hummingbird: our law and 1 others; the vehicle is not as the file says\n"), "{text}");
+    assert_eq!(files(&directory.join("out")), ["compare.csv"]);
+    let (_, rows) = table(&directory.join("out"));
+    let scenes: Vec<&str> = rows.iter().step_by(4).map(|row| row[0].as_str()).collect();
+    let expected = ["delay", "mass", "battery", "wind", "ground", "flywheels", "drag", "deadband", "mild"];
+    assert_eq!((rows.len(), &scenes[..]), (36, &expected[..]));
+    let lost = rows.iter().filter(|row| row[1] == "lost").any(|row| row[3] != "0");
+    assert_eq!((status(&flown) == 1, text.contains("ours is LOST")), (lost, lost), "{text}");
+}
+
+#[test]
 fn every_rival_has_gains_for_every_vehicle_that_is_compared() {
     for file in ["vehicles/hummingbird.toml", "vehicles/study.toml", "scenarios/paper-extended.toml"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
-        let set = Set::of(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml").unwrap();
+        let set = Set::of(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
         let kinds: Vec<Kind> = set.rivals.iter().map(|(kind, ..)| *kind).collect();
         assert_eq!(kinds, Kind::ALL, "{file}");
         assert!(
@@ -306,7 +355,10 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
     assert!(beyond > 0 && indi_text.contains(&counted), "{counted}: {indi_text}");
     assert_eq!((indi_status, tracking), (0, 6), "{indi_text}");
     let manifest = fs::read_to_string(directory.join("indi/campaign.json")).unwrap();
-    assert!(manifest.contains("\"law\": \"indi\"") && manifest.contains("\"k_q_tilt\": 152.86"), "{manifest}");
+    let vehicle = Scenario::load(&directory.join("h.toml")).unwrap();
+    let k_q_tilt = Set::built_in(&vehicle, &[Kind::Indi]).unwrap().rivals[0].1[4];
+    let said = format!("\"k_q_tilt\": {k_q_tilt}");
+    assert!(manifest.contains("\"law\": \"indi\"") && manifest.contains(&said), "{manifest}");
     let manifest = fs::read_to_string(directory.join("ours/campaign.json")).unwrap();
     assert!(!manifest.contains("law") && !manifest.contains("gains"), "{manifest}");
 
@@ -319,7 +371,7 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
         status(&refused) == 2 && message.contains("not the same law (\"indi\" and \"lee\"), gains of that law;"),
         "{message}"
     );
-    let other = BUILT_IN.replacen("k_q_tilt = 152.86", "k_q_tilt = 152.87", 1);
+    let other = BUILT_IN.replacen(&format!("k_q_tilt = {k_q_tilt}"), &format!("k_q_tilt = {}", k_q_tilt + 0.01), 1);
     fs::write(directory.join("g.toml"), other).unwrap();
     let changed = ["campaign", "h.toml", "--law", "indi", "--gains", "g.toml", "--out", "indi"];
     let message = stderr(&host_sim(&directory, &[&changed, &flights[..]].concat()));

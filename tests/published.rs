@@ -18,7 +18,7 @@ use std::path::Path;
 /// How near is there, m.
 const NEAR: f64 = 0.1;
 
-/// Height lost from upside down under INDI with gains searched for each vehicle, m: `docs/rivals.md`.
+/// Height lost from upside down under an INDI on differenced velocity, with gains searched for each vehicle, m.
 const INDI: [(&str, f64); 13] = [
     ("airsim-quad", 1.39),
     ("cf-rotorpy", 1.97),

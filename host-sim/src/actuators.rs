@@ -15,7 +15,9 @@
 
 pub mod rotors;
 
+use crate::plant::body::Body;
 use crate::plant::{Diverged, Plant};
+use crate::sensed::Acted;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::error::InputError;
 use controller_core::state::Wrench;
@@ -59,6 +61,8 @@ pub struct Actuators {
     waiting: VecDeque<(u64, Wrench)>,
     /// Wrench that acts now.
     acting: Wrench,
+    /// What acted since it was asked for.
+    pub(crate) acted: Acted,
 }
 
 impl Actuators {
@@ -67,7 +71,7 @@ impl Actuators {
     #[must_use]
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
         let acting = Wrench { thrust: hover, torque: Vector3::zeros() };
-        Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting }
+        Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting, acted: Acted::default() }
     }
 
     /// The rotors' thrusts at this moment, N, after lag; none without rotors.
@@ -82,6 +86,11 @@ impl Actuators {
         self.rotors.is_none() && self.delay_steps == 0
     }
 
+    fn act(&mut self, body: &Body) {
+        let (thrust, torque, _) = body.clipped(&self.acting);
+        self.acted.add(thrust, &torque);
+    }
+
     /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
@@ -89,6 +98,8 @@ impl Actuators {
     /// [`ActuationError`].
     pub fn hold(&mut self, plant: &mut Plant, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         if self.are_ideal() {
+            self.acting = *wrench;
+            self.act(plant.body());
             return Ok((plant.hold(wrench, steps)?, Thrusts::new()));
         }
         self.waiting.push_back((self.now + self.delay_steps, *wrench));
@@ -101,7 +112,10 @@ impl Actuators {
                 arrived = true;
             }
             match &mut self.rotors {
-                None => clipped |= plant.hold(&self.acting, 1)?,
+                None => {
+                    self.act(plant.body());
+                    clipped |= plant.hold(&self.acting, 1)?;
+                }
                 Some((mixer, rotors)) => {
                     if arrived {
                         let allocation = mixer.allocate(&self.acting).map_err(ActuationError::Wrench)?;
@@ -110,6 +124,7 @@ impl Actuators {
                         rotors.command(&thrusts);
                     }
                     let (thrust, torque) = rotors.advance();
+                    self.acted.add(thrust, &torque);
                     plant.act(thrust, &torque);
                 }
             }

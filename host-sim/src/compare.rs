@@ -1,12 +1,15 @@
 //! The `compare` command: our law and its rivals on one set of scenes.
 //!
 //! Every law flies the same [`scenes`] and the same random flights, those of [`crate::campaign`]: same vehicle,
-//! allocation, sensors and clock. The table has every figure, less is better, and marks the rows that ours loses;
+//! allocation, sensors and clock. The table has every figure, less is better, with the vehicle's own [`limit`] where it
+//! is worked out, and marks the rows that ours loses;
 //! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. Our claim decides the exit
 //! status: every random flight of our law settles, and none of its commands is cut or leaves its certified bounds.
 
+pub mod limit;
 pub mod page;
 pub mod pictures;
+pub mod realism;
 pub mod rows;
 pub mod scenes;
 pub mod shown;
@@ -20,8 +23,10 @@ use crate::rivals::gains::Set;
 use crate::whole_file::WholeFile;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::ParameterError;
+use limit::Limit;
 use scenario::Scenario;
-use shown::Thrown;
+use scenes::Scene;
+use shown::{Shown, Thrown};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -87,52 +92,85 @@ pub fn certified(file: &Scenario) -> Result<Certified, CompareError> {
     })
 }
 
-/// Flies all laws of `set`, and ours, in all scenes of `file`, which was read from `text`, and in `flights` random
-/// flights.
+/// A law, and the file at its rate.
+type Law<'a> = (Flier, &'a Scenario);
+/// Each law's figures in each scene; none where it could not be flown to its end.
+type Figures = Vec<(&'static str, Vec<Option<Shown>>)>;
+
+/// Ours on `file`, then those of `set` on `theirs`.
+fn laws<'a>(
+    (file, theirs): (&'a Scenario, &'a Scenario),
+    set: &Set,
+    certified: &Certified,
+) -> Result<Vec<Law<'a>>, CompareError> {
+    let flier = |(law, file): (LawChoice, &'a Scenario)| {
+        Ok((Flier::new(&law, file, Some(certified)).ok_or(CompareError::Undefined(law.name()))?, file))
+    };
+    let others = set.laws().map(|law| (law, theirs));
+    std::iter::once((LawChoice::Ours, file)).chain(others).map(flier).collect()
+}
+
+/// Shows a progress of so many steps, one at each call.
+///
+/// # Errors
+/// After an interrupt.
+fn steps(work: usize, interrupt: &Interrupt) -> impl FnMut() -> Result<(), CompareError> {
+    let mut progress = Progress::new("comparing", work as u64);
+    let mut done = 0;
+    move || {
+        progress.show(done);
+        done += 1;
+        interrupt.signal().map_or(Ok(()), |signal| Err(CompareError::Interrupted(signal)))
+    }
+}
+
+/// Flies all laws in all `scenes`, each made from the file at a law's rate.
+fn flown(
+    laws: &[Law],
+    scenes: fn(&Scenario) -> Result<Vec<Scene>, ParameterError>,
+    show: fn(&Flier, &Scene) -> Option<Shown>,
+    next: &mut impl FnMut() -> Result<(), CompareError>,
+) -> Result<Figures, CompareError> {
+    let mut figures = Figures::new();
+    for (flier, file) in laws {
+        for (place, scene) in scenes(file)?.iter().enumerate() {
+            next()?;
+            if figures.len() == place {
+                figures.push((scene.name, Vec::new()));
+            }
+            figures[place].1.push(show(flier, scene));
+        }
+    }
+    Ok(figures)
+}
+
+/// Flies ours, and all laws of `set`, in all scenes of the file, which was read from `text`, and in `flights` random
+/// flights. `files`: the file, and the same at the others' rate.
 ///
 /// # Errors
 /// [`CompareError`].
 pub fn compare(
-    file: &Scenario,
+    files: (&Scenario, &Scenario),
     text: &str,
     set: &Set,
     flights: u64,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
-    let certified = certified(file)?;
-    let certificate = certified.certificate();
-    let fliers: Vec<Flier> = std::iter::once(LawChoice::Ours)
-        .chain(set.laws())
-        .map(|law| Flier::new(&law, file, Some(&certified)).ok_or(CompareError::Undefined(law.name())))
-        .collect::<Result<_, _>>()?;
-    let names: Vec<&'static str> = fliers.iter().map(Flier::name).collect();
+    let certified = certified(files.0)?;
+    let file = files.0;
+    let laws = laws(files, set, &certified)?;
+    let names: Vec<&'static str> = laws.iter().map(|(flier, _)| flier.name()).collect();
     let scenes = scenes::all(file)?;
-    let work = (scenes.len() + 1) * fliers.len();
-    let mut progress = Progress::new("comparing", work as u64);
-    let mut done = 0;
-    let mut next = || {
-        progress.show(done);
-        done += 1;
-        interrupt.signal().map_or(Ok(()), |signal| Err(CompareError::Interrupted(signal)))
-    };
-    let mut shown = Vec::new();
-    for scene in &scenes {
-        let mut of_scene = Vec::new();
-        for flier in &fliers {
-            next()?;
-            of_scene.push(shown::show(flier, scene));
-        }
-        shown.push((scene.name, of_scene));
-    }
-    let stepped = step::longest(file);
+    let mut next = steps((scenes.len() + 1) * laws.len(), interrupt);
+    let shown = flown(&laws, scenes::all, shown::show, &mut next)?;
     let mut thrown = Vec::new();
-    for flier in &fliers {
+    for (flier, file) in &laws {
         next()?;
-        thrown.push(shown::throw_all(flier, &stepped, certificate, flights, interrupt));
+        thrown.push(shown::throw_all(flier, &step::longest(file), certified.certificate(), flights, interrupt));
     }
     next()?;
-    drop(progress);
-    let rows = rows::all(&shown, &thrown, file.configuration.rotors().is_some());
+    drop(next);
+    let rows = rows::all(&shown, &thrown, &Limit::new(file), file.configuration.rotors().is_some());
     let clean = |thrown: &Thrown| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
     let holds = thrown.first().and_then(Option::as_ref).is_some_and(clean);
     let compared = page::Compared {
@@ -153,6 +191,28 @@ pub fn compare(
         ("scenes.svg", pictures::scenes(&names, &shown)),
         ("random.svg", pictures::random(&names, &thrown, &shown)),
     ];
+    Ok(Comparison { text: rows::table(&names, &rows), holds, files })
+}
+
+/// Flies ours, and all laws of `set`, on a vehicle that is not as its file says: [`realism`]. `files` as in
+/// [`compare`].
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare_in_reality(
+    files: (&Scenario, &Scenario),
+    set: &Set,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CompareError> {
+    let laws = laws(files, set, &certified(files.0)?)?;
+    let names: Vec<&'static str> = laws.iter().map(|(flier, _)| flier.name()).collect();
+    let mut next = steps(realism::all(files.0)?.len() * laws.len(), interrupt);
+    let shown = flown(&laws, realism::all, realism::show, &mut next)?;
+    next()?;
+    drop(next);
+    let rows = realism::rows(&shown);
+    let holds = shown.iter().all(|(_, shown)| shown.first().and_then(Option::as_ref).is_some_and(realism::is_held));
+    let files = vec![("compare.csv", rows::csv(&names, &rows))];
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
 

@@ -1,6 +1,7 @@
 //! The controller of a simulated vehicle: our law, or a rival to compare it with.
 
 use crate::rivals::pilot::RivalPilot;
+use crate::sensed::Sensed;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::extended::memory::Estimates;
@@ -24,10 +25,15 @@ impl Controller {
     /// # Errors
     /// Names the field of `state` or `reference` that cannot be used.
     #[inline(always)]
-    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Command, Diagnostics), InputError> {
+    pub fn step(
+        &mut self,
+        state: &State,
+        sensed: &Sensed,
+        reference: &Reference,
+    ) -> Result<(Command, Diagnostics), InputError> {
         let (wrench, diagnostics) = match self {
             Self::Ours(law) => law.step(state, reference),
-            Self::Rival(rival) => rival.step(state, reference),
+            Self::Rival(rival) => rival.step(state, sensed, reference),
         }?;
         Ok((Command { wrench, mrp: diagnostics.mrp }, diagnostics))
     }
@@ -37,10 +43,24 @@ impl Controller {
     /// # Errors
     /// As [`Self::step`].
     #[inline]
-    pub fn command(&mut self, state: &State, reference: &Reference) -> Result<(Command, ()), InputError> {
+    pub fn command(
+        &mut self,
+        state: &State,
+        sensed: &Sensed,
+        reference: &Reference,
+    ) -> Result<(Command, ()), InputError> {
         match self {
             Self::Ours(law) => law.command(state, reference).map(|command| (command, ())),
-            Self::Rival(_) => self.step(state, reference).map(|(command, _)| (command, ())),
+            Self::Rival(_) => self.step(state, sensed, reference).map(|(command, _)| (command, ())),
+        }
+    }
+
+    /// Whether the file's limits cut the last command before it was sent. Ours keeps them by itself.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        match self {
+            Self::Ours(_) => false,
+            Self::Rival(rival) => rival.is_cut(),
         }
     }
 

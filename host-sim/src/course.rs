@@ -11,11 +11,12 @@
 //! | turned | since when the yaw has been within 0.1 rad of the reference's, for good |
 //! | end error | \|x - x_d\| at the last tick |
 //! | RMS | of \|x - x_d\| over the last half of the flight |
-//! | activity | RMS of the change of a rotor's commanded thrust from one tick to the next, over the last half |
+//! | activity | RMS of the change of a rotor's commanded thrust within 10 ms, or a tick if that is longer, over the last half |
 
 use crate::flight::{Flight, FlightError, Tick};
 use controller_core::allocation::Thrusts;
 use scenario::Scenario;
+use std::collections::VecDeque;
 
 /// How near the yaw is to be, rad.
 const NEAR_YAW: f64 = 0.1;
@@ -45,14 +46,52 @@ pub struct Course {
     pub yaw_error: f64,
 }
 
-/// Of the last half: sums of squares of distances and of changes, and how many.
-#[derive(Debug, Clone, Default)]
+/// Of the last half: the sum of squares of distances, of how many, and the rotors' activity.
+#[derive(Debug, Clone)]
 struct LastHalf {
     squares: f64,
     ticks: u64,
-    changes: f64,
-    changed: u64,
-    before: Option<Thrusts>,
+    activity: Activity,
+}
+
+/// The time within which a rotor's command changes, us: the same for laws of every rate.
+const CHANGING: u64 = 10_000;
+
+/// How much rotors' commands change within [`CHANGING`].
+#[derive(Debug, Clone)]
+pub struct Activity {
+    /// Commands that are younger, N, and how many that may be.
+    past: VecDeque<Thrusts>,
+    ticks: usize,
+    /// Sum of squares of changes, N^2, and how many.
+    squares: f64,
+    changes: usize,
+}
+
+impl Activity {
+    /// Of commands that are `period_us` apart.
+    #[must_use]
+    pub fn new(period_us: u64) -> Self {
+        Self { past: VecDeque::new(), ticks: (CHANGING / period_us).max(1) as usize, squares: 0.0, changes: 0 }
+    }
+
+    /// Takes a tick's commands, N.
+    pub fn observe(&mut self, thrusts: &Thrusts) {
+        if self.past.len() == self.ticks
+            && let Some(then) = self.past.pop_front()
+        {
+            let changes = thrusts.iter().zip(&then).map(|(now, then)| f64::from(now - then).powi(2));
+            self.squares += changes.sum::<f64>();
+            self.changes += thrusts.len();
+        }
+        self.past.push_back(thrusts.clone());
+    }
+
+    /// RMS of the changes, N.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        (self.squares / self.changes.max(1) as f64).sqrt()
+    }
 }
 
 impl Course {
@@ -84,7 +123,7 @@ impl Course {
             clipped: 0,
             yaw_error: 0.0,
         };
-        let mut last_half = LastHalf::default();
+        let mut last_half = LastHalf { squares: 0.0, ticks: 0, activity: Activity::new(scenario.timing.period_us) };
         for number in 0..ticks {
             let tick = flight.tick()?;
             course.observe(&tick, start, near, scenario.timing.period_us);
@@ -101,7 +140,7 @@ impl Course {
         course.settled = course.settled.filter(|since| *since < end);
         course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
         course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
-        course.activity = (last_half.changes / last_half.changed.max(1) as f64).sqrt();
+        course.activity = last_half.activity.rms();
         Ok(course)
     }
 
@@ -128,12 +167,7 @@ impl LastHalf {
     fn observe(&mut self, tick: &Tick, error: f64) {
         self.squares += error * error;
         self.ticks += 1;
-        if let Some(before) = &self.before {
-            let changes = tick.rotor_thrusts.iter().zip(before).map(|(now, then)| f64::from(now - then).powi(2));
-            self.changed += tick.rotor_thrusts.len() as u64;
-            self.changes += changes.sum::<f64>();
-        }
-        self.before = Some(tick.rotor_thrusts.clone());
+        self.activity.observe(&tick.rotor_thrusts);
     }
 }
 

@@ -10,15 +10,17 @@
 //! forces: so the estimator aligns in motion, too.
 
 use crate::instruments::{Instruments, SAMPLE};
+use crate::sensed::Sensed;
 use controller_core::error::ParameterError;
 use controller_core::state::State;
 use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
-use estimation::imu::{Calibration, Conditioner, ImuParameters};
+use estimation::imu::{Calibration, Conditioner, INCREMENT, ImuParameters};
 use flight::Stamped;
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use scenario::reality::estimator;
+use std::collections::VecDeque;
 use std::fmt;
 
 /// How long the vehicle is carried before its flight, us.
@@ -46,6 +48,13 @@ pub struct Estimation {
     conditioner: Conditioner,
     estimator: Estimator,
     jumps: u32,
+    /// f, m/s^2, body, of the last estimate: without the accelerometer's bias, the mean over two increments.
+    specific_force: Vector3<f64>,
+    /// Wrenches of the rotors, one a tick, over as long.
+    acted: VecDeque<Vector4<f64>>,
+    /// Between ticks, us.
+    period: u64,
+    gravity: f32,
 }
 
 impl Estimation {
@@ -62,6 +71,10 @@ impl Estimation {
             conditioner,
             estimator: Estimator::new(&settings),
             jumps: 0,
+            specific_force: Vector3::z() * f64::from(gravity),
+            acted: VecDeque::new(),
+            period: scenario.timing.period_us,
+            gravity,
         };
         while estimation.clock < ALIGNING {
             let left = (ALIGNING - estimation.clock - SAMPLE) as f64 * 1e-6;
@@ -113,7 +126,18 @@ impl Estimation {
         };
         let jumped = estimated.jumps != self.jumps;
         self.jumps = estimated.jumps;
+        let force = estimated.acceleration + Vector3::z() * self.gravity;
+        let attitude = UnitQuaternion::new_unchecked(estimated.state.attitude);
+        self.specific_force = attitude.inverse_transform_vector(&force).map(f64::from);
         Ok((estimated.state, jumped))
+    }
+
+    /// What is known beside the last estimate, while the rotors act with `truth`: the mean over the same time of both.
+    pub fn sense(&mut self, truth: &Sensed) -> Sensed {
+        self.acted.push_front(truth.wrench);
+        self.acted.truncate((2 * INCREMENT).div_ceil(self.period) as usize);
+        let wrench = self.acted.iter().sum::<Vector4<f64>>() / self.acted.len() as f64;
+        Sensed { specific_force: self.specific_force, wrench }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::estimation::{Estimation, NoEstimate};
 use crate::reality::Surroundings;
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
+use crate::sensed::{Sensed, specific_force};
 use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
 use controller_core::allocation::Thrusts;
@@ -20,7 +21,7 @@ use controller_core::extended::memory::Estimates;
 use controller_core::law::{Command, Law};
 use controller_core::reference::{Reference, Trajectory};
 use controller_core::state::{State, Wrench};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use std::fmt;
@@ -33,6 +34,12 @@ pub struct Flight {
     sensors: Option<Sensors>,
     estimation: Option<Box<Estimation>>,
     controller: Controller,
+    /// The state at the last tick.
+    before: BodyState,
+    /// m/s^2.
+    gravity: f64,
+    /// Thrust and torque that are taken to act before the first step: N, N m.
+    hover: Vector4<f64>,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
     steps_per_tick: u32,
@@ -179,11 +186,16 @@ impl Flight {
 
     fn start(scenario: &Scenario, configuration: &Configuration, controller: Controller) -> Self {
         let timing = &scenario.timing;
+        let vehicle = SimulatedVehicle::new(scenario, configuration);
+        let gravity = f64::from(configuration.vehicle().gravity);
         Self {
-            vehicle: SimulatedVehicle::new(scenario, configuration),
             sensors: Sensors::new(scenario),
             estimation: Estimation::new(scenario).map(Box::new),
             controller,
+            before: *vehicle.state(),
+            gravity,
+            hover: Sensed::hovering(configuration.vehicle()).wrench,
+            vehicle,
             trajectory: Arc::clone(&scenario.trajectory),
             period_us: timing.period_us,
             steps_per_tick: timing.steps_per_tick,
@@ -236,15 +248,17 @@ impl Flight {
     #[inline(always)]
     fn advance<D>(
         &mut self,
-        step: impl FnOnce(&mut Controller, &State, &Reference) -> Answer<D>,
+        step: impl FnOnce(&mut Controller, &State, &Sensed, &Reference) -> Answer<D>,
     ) -> Result<(Option<State>, Brief, D), FlightError> {
         let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
         let reference = self.trajectory.at(time_us);
         let measured = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
-        let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &reference);
+        let sensed = self.sense(&state);
+        let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &sensed, &reference);
         let (Command { wrench, mrp }, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
         let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
+        let clipped = clipped || self.controller.is_cut();
         // The motion was then another than the wrench alone would have made it.
         if clipped || standing {
             self.controller.hold_estimates();
@@ -274,6 +288,22 @@ impl Flight {
             self.controller.hold_estimates();
         }
         Ok(Some(measured))
+    }
+
+    /// What is sensed beside the measured state.
+    #[inline]
+    fn sense(&mut self, state: &BodyState) -> Sensed {
+        let before = std::mem::replace(&mut self.before, *state);
+        let period = self.period_us as f64 * 1e-6;
+        let truth = Sensed {
+            specific_force: specific_force(&before, state, period, self.gravity),
+            wrench: self.vehicle.take_acted().unwrap_or(self.hover),
+        };
+        match (&mut self.estimation, &mut self.sensors) {
+            (Some(estimation), _) => estimation.sense(&truth),
+            (None, Some(sensors)) => sensors.sense(&truth),
+            (None, None) => truth,
+        }
     }
 
     /// The vehicle's motion until the next tick, under a wrench commanded of the rotors.

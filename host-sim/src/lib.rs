@@ -60,6 +60,7 @@ pub mod recording;
 pub mod reference_rows;
 pub mod report;
 pub mod rivals;
+pub mod sensed;
 pub mod sensors;
 pub mod sitl;
 pub mod table;

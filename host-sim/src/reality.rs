@@ -33,7 +33,8 @@ pub mod wind;
 use crate::actuators::ActuationError;
 use crate::ground::{Ground, Touchdown};
 use crate::plant::Diverged;
-use air::{Air, Flow};
+use crate::sensed::Acted;
+use air::{Air, Flow, ground_effect};
 use body::{RigidBody, STAGE_TIMES};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
@@ -69,6 +70,8 @@ pub struct RealVehicle {
     mixer: Option<Box<Mixer>>,
     propulsion: Propulsion,
     ground: Option<Ground>,
+    /// Rotors' radius, m, zero without ground effect, and where the vehicle stands, m.
+    rotors_above: (f64, f64),
     /// The last one.
     touchdown: Option<Touchdown>,
     /// Plant step, s.
@@ -80,6 +83,8 @@ pub struct RealVehicle {
     waiting: VecDeque<(u64, Wrench)>,
     /// Wrench that acts now.
     acting: Wrench,
+    /// What acted since it was asked for, by the model's coefficients.
+    pub(crate) acted: Acted,
     /// Its origin, where the controller takes the centre of mass to be.
     state: BodyState,
 }
@@ -110,12 +115,14 @@ impl RealVehicle {
             mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
             propulsion,
             ground,
+            rotors_above: reality.ground.map_or((0.0, 0.0), |ground| (truth.rotor_radius, ground.height)),
             touchdown: None,
             step,
             delay_steps: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
             acting: Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() },
+            acted: Acted::default(),
             body: RigidBody::new(&truth, gravity, &start),
             state: start,
         }
@@ -224,13 +231,19 @@ impl RealVehicle {
     /// One plant step.
     fn advance(&mut self) {
         let stages = self.propulsion.advance(self.now);
-        let (air, wind, now) = (&self.air, &self.wind, self.now);
+        let (thrust, torque) = self.propulsion.as_modelled(&stages[1]);
+        self.acted.add(thrust, &torque);
+        let (air, wind, now, propulsion) = (&self.air, &self.wind, self.now, &self.propulsion);
+        let (radius, level) = self.rotors_above;
         let disturbance = self.disturbance.filter(|(_, first, _)| now >= *first);
         let forces = |stage: usize, state: &BodyState| {
             let moving = wind.as_ref().map_or_else(Vector3::zeros, |wind| wind.velocity(now, STAGE_TIMES[stage]));
             let attitude = UnitQuaternion::new_unchecked(state.attitude);
             let airspeed = attitude.inverse_transform_vector(&(state.velocity - moving));
-            let (force, torque) = air.act(&Flow { airspeed, angular_velocity: state.angular_velocity }, &stages[stage]);
+            let ground_effect = ground_effect(radius, state.position.z - level);
+            let flow = Flow { airspeed, angular_velocity: state.angular_velocity, ground_effect };
+            let (force, torque) = air.act(&flow, &stages[stage]);
+            let torque = torque + propulsion.spin(&stages[stage], &state.angular_velocity);
             match &disturbance {
                 Some((disturbance, _, push)) => {
                     (force + attitude.inverse_transform_vector(push), torque + disturbance.torque)

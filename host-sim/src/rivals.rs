@@ -10,7 +10,7 @@
 //! | [`lee`] | geometric tracking on SE(3): Lee, Leok, McClamroch, 2010 |
 //! | [`cascade`] | P and PID loops around a quaternion law: PX4; Brescianini, Hehn, D'Andrea, 2013 |
 //! | [`mellinger`] | Mellinger, Kumar, 2011 |
-//! | [`indi`] | incremental nonlinear dynamic inversion: Smeur, 2016; Tal, Karaman, 2021 |
+//! | [`indi`] | incremental nonlinear dynamic inversion, with accelerometer and rotor speeds: Smeur, 2016; Tal, Karaman, 2021 |
 //! | [`nested`] | nested saturations around a saturated hybrid attitude law: Martins, 2024 |
 //! | [`continuous`] | continuous quaternion feedback, which unwinds: Wie, 1989; Bhat, Bernstein, 2000 |
 //! | [`memoryless`] | discontinuous without memory, which chatters: Fjellstad, Fossen, 1994 |
@@ -18,6 +18,7 @@
 //! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | parts that several of them share |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
 //! | [`start`], [`tuning`] | where the search for them starts; the search |
+//! | [`rate`] | a scenario under a law of another rate |
 
 pub mod cascade;
 pub mod continuous;
@@ -33,6 +34,7 @@ pub mod memoryless;
 pub mod nested;
 pub mod pilot;
 pub mod quaternion_feedback;
+pub mod rate;
 pub mod rival;
 pub mod start;
 pub mod tuning;

@@ -4,10 +4,10 @@ use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::campaign::fly::grounded;
 use host_sim::certify::summary;
-use host_sim::compare::{self, CompareError, compare};
+use host_sim::compare::{self, CompareError, compare, compare_in_reality};
 use host_sim::progress::spoken;
 use host_sim::rivals::gains::Set;
-use host_sim::rivals::tuning;
+use host_sim::rivals::{rate, tuning};
 use host_sim::table::{percent, short};
 use host_sim::tune::effort::Effort;
 use host_sim::tune::{Tuned, output, tune, widest_bounds};
@@ -70,13 +70,18 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     if let Some(problem) = grounded(&scenario) {
         return Err(format!("{}: {problem}", arguments.file.display()));
     }
+    let kinds = arguments.kinds();
+    let theirs = match arguments.rate {
+        Some(hz) => rate::at(&scenario, hz).map_err(|problem| format!("--rate: {problem}"))?,
+        None => scenario.clone(),
+    };
     let directory = arguments.directory(&scenario.name);
     not_a_campaigns(&directory)?;
     // The gains, or how hard to search for them and in which file to keep them.
     let known = match wanted {
-        GainsWanted::Of(file) => Ok(Set::read(&scenario, Some(&file)).map_err(|error| error.to_string())?),
+        GainsWanted::Of(file) => Ok(Set::read(&theirs, Some(&file), &kinds).map_err(|error| error.to_string())?),
         GainsWanted::Searched(effort) => Err((effort, RIVALS)),
-        GainsWanted::BuiltInOr(effort) => Set::built_in(&scenario).ok_or((effort, FOUND)),
+        GainsWanted::BuiltInOr(effort) => Set::built_in(&theirs, &kinds).ok_or((effort, FOUND)),
     };
     none_but(arguments.gains.as_deref(), known.as_ref().err().map(|(_, name)| *name), &directory)?;
     let interrupt = watch()?;
@@ -101,12 +106,12 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
                     "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
                      hard as `tune` searches ours, which may take {}",
                     scenario.name,
-                    spoken(tuning::expected(&scenario, &effort).as_secs_f64())
+                    spoken(tuning::expected(&theirs, &kinds, &effort).as_secs_f64())
                 ));
             }
-            match tuning::tune(&scenario, effort, &interrupt) {
+            match tuning::tune(&theirs, &kinds, effort, &interrupt) {
                 Ok(set) => {
-                    let written = set.written(&scenario, &arguments.command(&effort));
+                    let written = set.written(&theirs, &arguments.command(&effort));
                     (set, Some((name, written)))
                 }
                 Err(message) => {
@@ -116,7 +121,13 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
             }
         }
     };
-    let mut comparison = match compare(&scenario, &text, &set, arguments.flights, &interrupt) {
+    let files = (&scenario, &theirs);
+    let compared = if arguments.realism {
+        compare_in_reality(files, &set, &interrupt)
+    } else {
+        compare(files, &text, &set, arguments.flights, &interrupt)
+    };
+    let mut comparison = match compared {
         Ok(comparison) => comparison,
         Err(error) => return failed(error),
     };
@@ -126,19 +137,23 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     });
     comparison.files.extend(found);
     compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
+    let hz = |rate: f64| format!(" at {} Hz", short(rate));
+    let (flown, verdict, written) = if arguments.realism {
+        ("the vehicle is not as the file says".to_owned(), ["ours is never lost", "ours is LOST"], "table")
+    } else {
+        let all = "every random flight of ours settles, unclipped, within its bounds";
+        let not_all = "NOT every random flight of ours settles, unclipped, within its bounds";
+        (format!("{} random flights of each", arguments.flights), [all, not_all], "table, pictures, report")
+    };
     print_text(&format!(
-        "{}: our law and {} others; {} random flights of each\n\n{}\n{}* another law does better; {}; \
-         table, pictures, report in {}\n{kept}",
+        "{}: our law and {} others{}; {flown}\n\n{}\n{}{}* another law does better; {}; {written} in {}\n{kept}",
         scenario.name,
         set.rivals.len(),
-        arguments.flights,
+        arguments.rate.map_or_else(String::new, hz),
         comparison.text,
+        set.of_other_rates(1.0 / theirs.timing.period()).map_or_else(String::new, |others| others + "\n"),
         set.left_out().map_or_else(String::new, |left_out| left_out + "\n"),
-        if comparison.holds {
-            "every random flight of ours settles, unclipped, within its bounds"
-        } else {
-            "NOT every random flight of ours settles, unclipped, within its bounds"
-        },
+        verdict[usize::from(!comparison.holds)],
         directory.display()
     ))?;
     Ok(status(comparison.holds, None))

@@ -21,16 +21,22 @@
 //!   and the controller's position is the pose's at a pose and carried on from it with v between poses.
 //! - A pose drops out with a given probability. Everything arrives a number of ticks late; until the first sample does,
 //!   it is all there is.
+//! - In the trials of a search gyro, accelerometer and rotor speeds are late by their filters ([`late`]), and a pose by a
+//!   further number of ticks. On its arrival it corrects what was known of the moment it shows, and what was measured
+//!   since carries that on: r is of that moment.
 //! - The start of a flight is known: where a vehicle takes off from, it has been standing.
 //!
 //! The gyro's and accelerometer's noise is that of samples at the control rate. Sources: O. J. Woodman, *An
 //! introduction to inertial navigation*, 2007, section 3 (noise and bias of a gyro); P. R. Kalata, *The Tracking
 //! Index*, IEEE TAES 20(2), 1984 (the filter).
 
+mod late;
 mod propagation;
 
+use crate::sensed::Sensed;
 use controller_core::state::State;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use late::Late;
+use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
 use propagation::PropagatedAttitude;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -59,8 +65,26 @@ pub struct Sensors {
     velocity: Vector3<f64>,
     /// The true velocity at the last tick, m/s: the accelerometer's.
     true_velocity: Vector3<f64>,
+    /// Bias and noise of the accelerometer's sample, m/s^2.
+    accelerometer_error: Vector3<f64>,
+    /// Gyro, accelerometer and rotor speeds on their way through filters.
+    gyro: Late<3>,
+    sensed: Late<7>,
+    /// The last ticks, this one last: what a pose that arrives will need of its own.
+    past: VecDeque<Past>,
     /// Measurements still under way.
     late: VecDeque<State>,
+}
+
+/// What a late pose will need of the tick that it shows.
+#[derive(Debug, Clone, Copy)]
+struct Past {
+    /// The gyro's sample, rad/s.
+    gyro: Vector3<f32>,
+    /// x, m.
+    filtered: Vector3<f64>,
+    /// Position, m, and attitude, if one was taken and is to arrive.
+    pose: Option<(Vector3<f64>, Quaternion<f32>)>,
 }
 
 impl Sensors {
@@ -70,6 +94,7 @@ impl Sensors {
         let what = scenario.reality.sensors?;
         let start = &scenario.initial;
         let rates = single(&start.angular_velocity);
+        let late = what.imu_delay / scenario.timing.period();
         Some(Self {
             what,
             period: scenario.timing.period(),
@@ -82,18 +107,29 @@ impl Sensors {
             filtered: start.position,
             velocity: start.velocity,
             true_velocity: start.velocity,
+            accelerometer_error: Vector3::zeros(),
+            gyro: Late::new(late),
+            sensed: Late::new(what.delay_ticks as f64 + late),
+            past: VecDeque::new(),
             late: VecDeque::new(),
         })
     }
 
     /// The measured state at this tick, while the vehicle is at `state`.
     pub fn measure(&mut self, state: &BodyState) -> State {
-        let gyro = single(&(state.angular_velocity + self.what.gyro_bias + self.noise(self.what.gyro_noise)));
+        let rate = self.gyro.take(state.angular_velocity);
+        let gyro = single(&(rate + self.what.gyro_bias + self.noise(self.what.gyro_noise)));
         if self.tick > 0 {
             self.carry_on(state, &gyro);
         }
-        if self.tick.is_multiple_of(self.what.pose_every) && !self.random.random_bool(self.what.dropout) {
-            self.take_pose(state, &gyro);
+        let seen = self.tick.is_multiple_of(self.what.pose_every) && !self.random.random_bool(self.what.dropout);
+        let pose = seen.then(|| self.look(state));
+        self.past.push_back(Past { gyro, filtered: self.filtered, pose });
+        if self.past.len() as u64 > self.what.pose_delay_ticks
+            && let Some(then) = self.past.pop_front()
+            && let Some((position, attitude)) = then.pose
+        {
+            self.take_pose(&then, &position, attitude);
         }
         if let VelocitySource::Exact { noise } = self.what.velocity {
             self.velocity = state.velocity + self.noise(noise);
@@ -108,6 +144,16 @@ impl Sensors {
             self.late.pop_front();
         }
         arrived
+    }
+
+    /// What is sensed at this tick, after its state is measured, while `truth` is what happens.
+    pub fn sense(&mut self, truth: &Sensed) -> Sensed {
+        let force = truth.specific_force + self.accelerometer_error;
+        let mut all = SVector::<f64, 7>::zeros();
+        all.fixed_rows_mut::<3>(0).copy_from(&force);
+        all.fixed_rows_mut::<4>(3).copy_from(&truth.wrench);
+        let late = self.sensed.take(all);
+        Sensed { specific_force: late.fixed_rows::<3>(0).into(), wrench: late.fixed_rows::<4>(3).into() }
     }
 
     fn noise(&mut self, deviation: f64) -> Vector3<f64> {
@@ -132,24 +178,42 @@ impl Sensors {
         let gravity = Vector3::z() * self.gravity;
         let mean = (state.velocity - self.true_velocity) / self.period + gravity;
         let truly = UnitQuaternion::new_unchecked(state.attitude);
-        let sample = truly.inverse_transform_vector(&mean) + bias + self.noise(noise);
+        self.accelerometer_error = bias + self.noise(noise);
+        let sample = truly.inverse_transform_vector(&mean) + self.accelerometer_error;
         let believed = Quaternion::from(self.attitude.attitude().coords.map(f64::from));
         UnitQuaternion::new_normalize(believed) * sample - gravity
     }
 
-    /// Takes a pose that was true now.
-    fn take_pose(&mut self, state: &BodyState, gyro: &Vector3<f32>) {
+    /// A pose of this moment: position, m, and attitude.
+    fn look(&mut self, state: &BodyState) -> (Vector3<f64>, Quaternion<f32>) {
         let turned = UnitQuaternion::from_scaled_axis(self.noise(self.what.attitude_noise));
         let attitude = (state.attitude * turned.into_inner()).coords.map(|value| value as f32);
-        self.attitude = PropagatedAttitude::new(Quaternion::from(attitude), *gyro, self.tick * self.period_us);
-        self.position = state.position + self.noise(self.what.position_noise);
+        (state.position + self.noise(self.what.position_noise), Quaternion::from(attitude))
+    }
+
+    /// Takes a pose that was true `then`; `past` holds the ticks since.
+    fn take_pose(&mut self, then: &Past, position: &Vector3<f64>, attitude: Quaternion<f32>) {
+        let mut time = (self.tick - self.past.len() as u64) * self.period_us;
+        self.attitude = PropagatedAttitude::new(attitude, then.gyro, time);
+        for tick in &self.past {
+            time += self.period_us;
+            self.attitude.advance(tick.gyro, time);
+        }
+        let late = self.past.len() as f64 * self.period;
+        self.position = position + (self.filtered - then.filtered);
         if let VelocitySource::AlphaBeta { bandwidth } | VelocitySource::Observer { bandwidth, .. } = self.what.velocity
         {
             let between = self.what.pose_every as f64 * self.period;
             let pole = (-bandwidth * between).exp();
-            let residual = self.position - self.filtered;
-            self.filtered += residual * (1.0 - pole * pole);
-            self.velocity += residual * ((1.0 - pole) * (1.0 - pole) / between);
+            let residual = position - then.filtered;
+            let (moves, quickens) =
+                (residual * (1.0 - pole * pole), residual * ((1.0 - pole) * (1.0 - pole) / between));
+            self.position += quickens * late;
+            self.filtered += moves + quickens * late;
+            self.velocity += quickens;
+            for (tick, past) in self.past.iter_mut().enumerate() {
+                past.filtered += moves + quickens * ((tick + 1) as f64 * self.period);
+            }
         }
     }
 }

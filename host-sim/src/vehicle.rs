@@ -9,6 +9,7 @@ use crate::reality::{RealVehicle, Surroundings};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
+use nalgebra::Vector4;
 use scenario::Scenario;
 use scenario::body::BodyState;
 
@@ -87,6 +88,15 @@ impl SimulatedVehicle {
         match self {
             Self::Model(..) => false,
             Self::Real(vehicle) => vehicle.stands(),
+        }
+    }
+
+    /// The mean thrust, N, and torque, N m, since the last call, of rotors that turn as measured and give what the model
+    /// says; none before the vehicle moves.
+    pub fn take_acted(&mut self) -> Option<Vector4<f64>> {
+        match self {
+            Self::Model(_, actuators) => actuators.acted.take(),
+            Self::Real(vehicle) => vehicle.acted.take(),
         }
     }
 

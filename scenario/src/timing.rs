@@ -60,6 +60,24 @@ impl Timing {
         Self { ticks: (duration.min(GREATEST_DURATION) / self.period()).ceil() as u64, ..self }
     }
 
+    /// The same plant step and duration, with a control rate of so many Hz.
+    ///
+    /// # Errors
+    /// In words, without the field's name.
+    pub fn at_rate(self, rate: f64) -> Result<Self, String> {
+        let period_us = whole_period(rate)?;
+        let steps = period_us * u64::from(self.steps_per_tick);
+        if !steps.is_multiple_of(self.period_us) {
+            let (step, period) = (self.step(), period_us as f64 * 1e-6);
+            return Err(format!(
+                "1/rate must be a whole number of plant steps of {step} s, found {rate} Hz = {period} s"
+            ));
+        }
+        let steps_per_tick =
+            u32::try_from(steps / self.period_us).map_err(|_| "has too many plant steps".to_owned())?;
+        Ok(Self { ticks: self.ticks * self.period_us / period_us, period_us, steps_per_tick })
+    }
+
     /// The control period, s.
     #[must_use]
     pub fn period(&self) -> f64 {
@@ -98,18 +116,21 @@ fn read_period(root: &Section) -> Result<u64, FieldError> {
     };
     control.allow(&["law", "rate", "thrust_floor"])?;
     let rate = control.number_or("rate", DEFAULT_RATE)?;
+    whole_period(rate).map_err(|problem| FieldError::new(FIELD, problem))
+}
+
+/// The time between two ticks at `rate`, Hz, us.
+fn whole_period(rate: f64) -> Result<u64, String> {
     if !(LEAST_RATE..=GREATEST_RATE).contains(&rate) {
-        let allowed = format!("must be from {LEAST_RATE} to {GREATEST_RATE} Hz");
-        return Err(FieldError::new(FIELD, format!("{allowed}, found {rate}")));
+        return Err(format!("must be from {LEAST_RATE} to {GREATEST_RATE} Hz, found {rate}"));
     }
     let period_us = 1e6 / rate;
     let whole = period_us.round();
     if (period_us - whole).abs() > WHOLE * period_us {
-        let problem = format!(
+        return Err(format!(
             "1/rate must be a whole number of microseconds, found {rate} Hz = {period_us:.3} us (nearest: {} Hz)",
             1e6 / whole
-        );
-        return Err(FieldError::new(FIELD, problem));
+        ));
     }
     Ok(whole as u64)
 }

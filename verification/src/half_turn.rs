@@ -13,6 +13,7 @@ use controller_core::law::Command;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::controller::Controller;
+use host_sim::sensed::Sensed;
 use host_sim::vehicle::SimulatedVehicle;
 use nalgebra::{Quaternion, Vector3};
 use rand::SeedableRng;
@@ -85,6 +86,7 @@ impl Trial {
         let hover = Hover::new(start.initial.position.map(|x| x as f32), Heading::FORWARD).ok()?;
         let mut random = ChaCha8Rng::seed_from_u64(if let Noise::Drawn(_, seed) = self.noise { seed } else { 0 });
         let (period, mut roll, mut before) = (start.timing.period(), self.roll, 0.0);
+        let sensed = Sensed::hovering(start.configuration.vehicle());
         let mut course = Course { roll: Vec::new(), torque: Vec::new(), turned: 0.0, left_after: 0.0, reversals: 0 };
         for tick in 0..(self.duration / period) as u64 {
             let (state, time) = (*vehicle.state(), tick as f64 * period);
@@ -99,7 +101,7 @@ impl Trial {
             let mut measured = state;
             measured.attitude = state.attitude * about_x(error);
             let (Command { wrench, .. }, _) =
-                controller.step(&measured.measured(), &hover.at(tick * start.timing.period_us)).ok()?;
+                controller.step(&measured.measured(), &sensed, &hover.at(tick * start.timing.period_us)).ok()?;
             let torque = f64::from(wrench.torque.x);
             if (roll - PI).abs() < 0.1 {
                 course.left_after = time + period;

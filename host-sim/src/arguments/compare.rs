@@ -1,6 +1,8 @@
 //! The arguments of a comparison, in clap's terms, and their checks.
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
+use host_sim::rivals::kind::Kind;
 use host_sim::tune::effort::Effort;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +14,15 @@ pub struct CompareArguments {
     /// Random flights of each law
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub flights: u64,
+    /// The other laws that fly beside ours, with commas between [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = PossibleValuesParser::new(Kind::ALL.map(Kind::name)))]
+    only: Vec<String>,
+    /// The other laws' rate, Hz: 1/rate is a whole number of plant steps [default: the file's]
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+    /// Fly the vehicle as its file does not know it instead: delay, mass, voltage, wind, ground, … (see docs/rivals.md)
+    #[arg(long, conflicts_with = "flights")]
+    pub realism: bool,
     /// Directory for table, pictures, report and gains [default: flights/<name>-compared]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -79,10 +90,19 @@ impl CompareArguments {
         })
     }
 
+    /// The other laws that are to fly, in the order of the table.
+    pub fn kinds(&self) -> Vec<Kind> {
+        let is_wanted = |kind: &Kind| self.only.is_empty() || self.only.iter().any(|name| name == kind.name());
+        Kind::ALL.into_iter().filter(is_wanted).collect()
+    }
+
     /// How to find the same gains again.
     pub fn command(&self, effort: &Effort) -> String {
         let Effort { generations, population, seed } = effort;
-        format!("host-sim compare {} --tune {generations} --population {population} --seed {seed}", self.file.display())
+        let only = if self.only.is_empty() { String::new() } else { format!(" --only {}", self.only.join(",")) };
+        let rate = self.rate.map_or_else(String::new, |rate| format!(" --rate {rate}"));
+        let file = self.file.display();
+        format!("host-sim compare {file}{only}{rate} --tune {generations} --population {population} --seed {seed}")
     }
 
     /// Where the results go, of a scenario of this name.

@@ -132,6 +132,8 @@ fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
                 pose_every: 1,
                 dropout: 0.0,
                 delay_ticks: (delay * ranges.delay / scenario.timing.period()).round() as u64,
+                pose_delay_ticks: 0,
+                imu_delay: 0.0,
                 seed,
             });
         }

@@ -1,7 +1,7 @@
 //! The page of a comparison: every law's figures, row by row, with a star where ours loses; the scenes' courses over
 //! time; the spread of the random flights; and the gains.
 
-use super::rows::{Row, cell};
+use super::rows::{LIMIT, Row, cell};
 use super::scenes::Scene;
 use super::shown::{Shown, THINNED, Thrown};
 use crate::campaign::outcome::Outcome;
@@ -118,7 +118,8 @@ pub fn page(compared: &Compared) -> Page {
 }
 
 const STARS: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
-                     come to its reference for good, or that could not be flown to its end.";
+                     come to its reference for good, or that could not be flown to its end. The limit is an estimate of what rotors \
+                     and inertia leave possible, whatever the law.";
 const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
 const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
                     stands above its gains, less is better. Continuous and memoryless differ in their choice of \
@@ -136,11 +137,13 @@ fn scenes(compared: &Compared) -> Table {
 
 /// The rows of one scene.
 fn table(compared: &Compared, scene: &str, task: &str) -> Table {
-    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(compared.names.iter().copied()).collect();
+    let laws = compared.names.iter().copied();
+    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(laws).chain([LIMIT]).collect();
     let mut table = Table::new(format!("{}: {task}", titled(scene)), &head);
     table.rows.extend(compared.rows.iter().filter(|row| row.scene == scene).map(|row| {
         let head = [format!("{}, {}", row.figure, row.unit), if row.lost() { "★" } else { "" }.to_owned()];
-        let values = row.values.iter().map(|value| Cell::Number(cell(*value)));
+        let values = row.values.iter().map(|value| cell(*value)).chain([row.limit.map_or_else(String::new, cell)]);
+        let values = values.map(Cell::Number);
         head.map(Cell::Text).into_iter().chain(values).collect()
     }));
     table
@@ -155,7 +158,7 @@ fn tracks(compared: &Compared) -> Vec<Track> {
             let height = FALLS.contains(name).then(|| (format!("{law}_height"), single(&shown.height)));
             std::iter::once((format!("{law}_error"), single(&shown.error))).chain(height)
         });
-        let step = THINNED as f64 * compared.file.timing.period();
+        let step = THINNED as f64 * 1e-6;
         Track { name: (*name).to_owned(), start: 0.0, step, columns: columns.collect() }
     };
     compared.shown.iter().map(of_scene).collect()

@@ -1,8 +1,12 @@
 //! The rows of a comparison: one figure of every law each, and where ours is not the best.
 
+use super::limit::Limit;
 use super::shown::{Shown, Thrown};
 use crate::table::{aligned, short};
 use std::fmt::Write;
+
+/// The name of the column of the vehicle's own limit.
+pub const LIMIT: &str = "limit";
 
 /// The share by which another law must be better for ours to lose a row.
 const CLOSE: f64 = 0.01;
@@ -21,6 +25,8 @@ pub struct Row {
     pub values: Vec<f64>,
     /// The least difference that matters, in the unit.
     pub grain: f64,
+    /// The vehicle's own limit, whatever the law; where one is worked out.
+    pub limit: Option<f64>,
 }
 
 impl Row {
@@ -33,20 +39,23 @@ impl Row {
     }
 }
 
+/// The figure of a scene whose task is to come to its reference.
+pub const ARRIVED: &str = "within 0.1 m for good after";
+
 /// A figure of one law in one scene.
 type Get = fn(&Shown) -> f64;
 
 /// Figures of scenes: scene, figure, unit, its function, and the least difference that matters.
 const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("own", "position error, last half, RMS", "mm", |s| 1e3 * s.rms, 0.1),
-    ("own", "rotor command's change a tick, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("step", "within 0.1 m for good after", "s", settled, 0.02),
+    ("own", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
+    ("step", ARRIVED, "s", settled, 0.02),
     ("step", "ticks clipped", "%", clipped, 0.0),
-    ("far step", "within 0.1 m for good after", "s", settled, 0.02),
+    ("far step", ARRIVED, "s", settled, 0.02),
     ("far step", "height lost", "m", |s| s.height_lost, 0.01),
     ("far step", "ticks clipped", "%", clipped, 0.0),
     ("upside down", "height lost", "m", |s| s.height_lost, 0.01),
-    ("upside down", "within 0.1 m for good after", "s", settled, 0.02),
+    ("upside down", ARRIVED, "s", settled, 0.02),
     ("upside down", "ticks clipped", "%", clipped, 0.0),
     ("gust", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("gust", "offset left", "m", |s| s.end_error, 0.001),
@@ -55,11 +64,11 @@ const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("storm", "offset at the end", "m", |s| s.end_error, 0.001),
     ("storm", "ticks clipped", "%", clipped, 0.0),
     ("noise", "position error, RMS", "mm", |s| 1e3 * s.rms, 0.1),
-    ("noise", "rotor command's change a tick, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("weak rotors", "within 0.1 m for good after", "s", settled, 0.02),
+    ("noise", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
+    ("weak rotors", ARRIVED, "s", settled, 0.02),
     ("weak rotors", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("heavy", "height lost", "m", |s| s.height_lost, 0.01),
-    ("heavy", "within 0.1 m for good after", "s", settled, 0.02),
+    ("heavy", ARRIVED, "s", settled, 0.02),
 ];
 
 fn settled(shown: &Shown) -> f64 {
@@ -73,20 +82,25 @@ fn clipped(shown: &Shown) -> f64 {
 /// The beginning of a rotor figure's name: a vehicle without rotors has no such figures.
 const OF_ROTORS: &str = "rotor";
 
-/// All rows of a vehicle with or without `rotors`: of `scenes`, each with every law's figures, and of the random
-/// flights.
+/// All rows of a vehicle with this `limit`, with or without `rotors`: of `scenes`, each with every law's figures, and of
+/// the random flights.
 #[must_use]
-pub fn all(scenes: &[(&'static str, Vec<Option<Shown>>)], thrown: &[Option<Thrown>], rotors: bool) -> Vec<Row> {
+pub fn all(
+    scenes: &[(&'static str, Vec<Option<Shown>>)],
+    thrown: &[Option<Thrown>],
+    limit: &Limit,
+    rotors: bool,
+) -> Vec<Row> {
     let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {
         let (_, shown) = scenes.iter().find(|(scene, _)| *scene == name)?;
         let values = shown.iter().map(|shown| shown.as_ref().map_or(f64::INFINITY, get)).collect();
-        Some(Row { scene: name, figure, unit, values, grain })
+        Some(Row { scene: name, figure, unit, values, grain, limit: limit.of(name, figure) })
     };
     let figures = FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
     let mut rows: Vec<Row> = figures.filter_map(of_scene).collect();
     let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&Thrown) -> f64| {
         let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
-        rows.push(Row { scene: "random", figure, unit, values, grain });
+        rows.push(Row { scene: "random", figure, unit, values, grain, limit: None });
     };
     random("flights that never settle", "%", 0.0, &|all| 100.0 * all.share(|one| one.settled.is_none()));
     random("flights that end in no number", "%", 0.0, &|all| 100.0 * all.share(|one| one.height_lost.is_infinite()));
@@ -114,14 +128,17 @@ fn significant(value: f64) -> f64 {
 /// A table for a terminal; rows that ours loses begin with a star.
 #[must_use]
 pub fn table(names: &[&str], rows: &[Row]) -> String {
-    let mut cells = vec![["", "scene", "figure", "unit"].iter().chain(names).map(|&name| name.to_owned()).collect()];
+    let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT);
+    let head = ["", "scene", "figure", "unit"].iter().chain(names).chain(limit);
+    let mut cells = vec![head.map(|&name| name.to_owned()).collect()];
     let mut before = "";
     for row in rows {
         let scene = if row.scene == before { "" } else { row.scene };
         before = row.scene;
         let star = if row.lost() { "*" } else { "" };
         let head = [star, scene, row.figure, row.unit].map(str::to_owned);
-        cells.push(head.into_iter().chain(row.values.iter().map(|value| cell(*value))).collect::<Vec<_>>());
+        let values = row.values.iter().map(|value| cell(*value));
+        cells.push(head.into_iter().chain(values).chain(row.limit.map(cell)).collect::<Vec<_>>());
     }
     aligned(&cells)
 }
@@ -129,13 +146,14 @@ pub fn table(names: &[&str], rows: &[Row]) -> String {
 /// The same as CSV, in full; `inf` means never.
 #[must_use]
 pub fn csv(names: &[&str], rows: &[Row]) -> String {
-    let mut text = format!("scene,figure,unit,{},ours_loses\n", names.join(","));
+    let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT}\n", names.join(","));
     for row in rows {
         let _ = write!(text, "{},\"{}\",{}", row.scene, row.figure, row.unit);
         for value in &row.values {
             let _ = write!(text, ",{value}");
         }
-        let _ = writeln!(text, ",{}", row.lost());
+        let limit = row.limit.map_or_else(String::new, |limit| limit.to_string());
+        let _ = writeln!(text, ",{},{limit}", row.lost());
     }
     text
 }
@@ -145,7 +163,7 @@ mod tests {
     use super::*;
 
     fn row(values: &[f64]) -> Row {
-        Row { scene: "s", figure: "f", unit: "m", values: values.to_vec(), grain: 0.01 }
+        Row { scene: "s", figure: "f", unit: "m", values: values.to_vec(), grain: 0.01, limit: None }
     }
 
     #[test]
@@ -161,6 +179,6 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[1].starts_with('*') && lines[1].ends_with("2     1"), "{text}");
         assert!(!lines[2].starts_with('*') && lines[2].ends_with("never"), "{text}");
-        assert!(csv(&["ours", "lee"], &[row(&[1.0, f64::INFINITY])]).ends_with("s,\"f\",m,1,inf,false\n"));
+        assert!(csv(&["ours", "lee"], &[row(&[1.0, f64::INFINITY])]).ends_with("s,\"f\",m,1,inf,false,\n"));
     }
 }

@@ -23,7 +23,7 @@ use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 
 /// Drag of a vehicle whose file gives none, 1/s.
-const DRAG: f64 = 0.5;
+pub const DRAG: f64 = 0.5;
 /// When a wind begins, s.
 const WIND_AT: f64 = 1.0;
 

@@ -4,8 +4,9 @@ use super::scenes::Scene;
 use crate::campaign::outcome::Outcome;
 use crate::campaign::quantile;
 use crate::campaign::throw;
+use crate::course::Activity;
 use crate::flier::Flier;
-use crate::flight::{Flight, FlightError, Tick};
+use crate::flight::{Flight, FlightError};
 use crate::interrupt::Interrupt;
 use controller_core::certificate::Certificate;
 use rayon::prelude::*;
@@ -13,15 +14,15 @@ use scenario::Scenario;
 
 /// The distance from its reference within which a vehicle counts as arrived, m: as in the trials of a search.
 const NEAR: f64 = 0.1;
-/// Ticks between two points of a picture.
-pub const THINNED: u64 = 2;
+/// Between two points of a picture, us; the same for laws of every rate.
+pub const THINNED: u64 = 20_000;
 
 /// One law in one scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shown {
     /// Start minus lowest height, m.
     pub height_lost: f64,
-    /// The time from which it stays within 0.1 m, s; `None` if it was away at the end.
+    /// The time from which it stays near, s; `None` if it was away at the end.
     pub settled: Option<f64>,
     /// Greatest distance from the reference, and that at the end, m.
     pub excursion: f64,
@@ -29,7 +30,7 @@ pub struct Shown {
     pub end_error: f64,
     /// Distance from the reference over the last half, RMS, m.
     pub rms: f64,
-    /// Change of a rotor's command from one tick to the next over the last half, RMS, N.
+    /// Change of a rotor's command within 10 ms over the last half, RMS, N.
     pub activity: f64,
     /// Share of ticks at which a command was cut.
     pub clipped: f64,
@@ -42,10 +43,16 @@ pub struct Shown {
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
 pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
-    over(&scene.scenario, flier.flight(&scene.scenario).ok()?).ok()
+    course(flier, scene, NEAR)
 }
 
-fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
+/// Likewise; it has arrived within `near`, m.
+#[must_use]
+pub fn course(flier: &Flier, scene: &Scene, near: f64) -> Option<Shown> {
+    over(&scene.scenario, flier.flight(&scene.scenario).ok()?, near).ok()
+}
+
+fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Shown, FlightError> {
     let ticks = scenario.timing.ticks;
     let mut shown = Shown {
         height_lost: 0.0,
@@ -58,7 +65,7 @@ fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
         error: Vec::new(),
         height: Vec::new(),
     };
-    let (mut squares, mut changes, mut changed, mut before) = (0.0, 0.0, 0_u64, None::<Tick>);
+    let (mut squares, mut activity) = (0.0, Activity::new(scenario.timing.period_us));
     for number in 0..ticks {
         let tick = flight.tick()?;
         let (position, time) = (&tick.state.position, tick.time_us as f64 * 1e-6);
@@ -68,25 +75,21 @@ fn over(scenario: &Scenario, mut flight: Flight) -> Result<Shown, FlightError> {
         shown.excursion = shown.excursion.max(error);
         shown.end_error = error;
         shown.clipped += f64::from(u8::from(tick.clipped)) / ticks as f64;
-        if error > NEAR {
+        if error > near {
             shown.settled = Some(time + scenario.timing.period());
         }
-        if number % THINNED == 0 {
+        while shown.error.len() as u64 * THINNED <= tick.time_us {
             shown.error.push((time, error));
             shown.height.push((time, rise));
         }
         if 2 * number >= ticks {
             squares += error * error;
-            for (now, then) in tick.rotor_thrusts.iter().zip(before.iter().flat_map(|tick| &tick.rotor_thrusts)) {
-                changes += f64::from(now - then).powi(2);
-                changed += 1;
-            }
+            activity.observe(&tick.rotor_thrusts);
         }
-        before = Some(tick);
     }
-    shown.settled = shown.settled.filter(|_| shown.end_error <= NEAR);
+    shown.settled = shown.settled.filter(|_| shown.end_error <= near);
     shown.rms = (squares / (ticks - ticks / 2) as f64).sqrt();
-    shown.activity = (changes / changed.max(1) as f64).sqrt();
+    shown.activity = activity.rms();
     Ok(shown)
 }
 

@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! V_i = V + omega x d_i                                                     at rotor i
-//! T_i = c_i k_eta w_i^2 + k_h (V_ix^2 + V_iy^2)                             thrust and translational lift, N
+//! T_i = (1 + c_g) c_i k_eta w_i^2 + k_h (V_ix^2 + V_iy^2)                   thrust and translational lift, N
+//! 1 + c_g = 1 / (1 - (R / 4z)^2)                                            ground effect, z above the ground
 //! H_i = -w_i diag(k_d, k_d, k_z) V_i                                        rotor drag, N
 //! tau_i = d_i x (T_i e3 + H_i) + s_i c_i k_m w_i^2 e3 - k_flap w_i V_i x e3     N m
 //! V_o = V - omega x r_c                                                     at the origin
@@ -20,7 +21,10 @@
 //! 2010; linear drag of the whole vehicle, the same at hover with c = (sum w_i) k_d, is that of M. Faessler, A.
 //! Franchi, D. Scaramuzza, *Differential Flatness of Quadrotor Dynamics Subject to Rotor Drag*, RA-L 3(2), 2018.
 //!
-//! Without rotors thrust and torque act at the origin. There is no ground effect, and no vortex ring in a fast descent.
+//! The ground effect is that of I. C. Cheeseman, W. E. Bennett, *The effect of the ground on a helicopter rotor in
+//! forward flight*, ARC R&M 3021, 1955, the same for all rotors, which stand R / 2 above the ground.
+//!
+//! Without rotors thrust and torque act at the origin. There is no vortex ring in a fast descent.
 
 use super::propulsion::Delivered;
 use controller_core::allocation::geometry::ROTORS_MAX;
@@ -36,6 +40,15 @@ pub struct Flow {
     pub airspeed: Vector3<f64>,
     /// rad/s.
     pub angular_velocity: Vector3<f64>,
+    /// c_g.
+    pub ground_effect: f64,
+}
+
+/// c_g of rotors with this radius, m, of a vehicle this far above where it stands, m.
+#[must_use]
+pub fn ground_effect(radius: f64, above: f64) -> f64 {
+    let ratio = radius / (4.0 * (above.max(0.0) + 0.5 * radius));
+    if radius > 0.0 { 1.0 / (1.0 - ratio * ratio) - 1.0 } else { 0.0 }
 }
 
 /// One rotor as it really is.
@@ -110,7 +123,7 @@ impl Air {
         let drag = &self.drag;
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for (rotor, &speed) in self.rotors.iter().zip(speeds) {
-            let mut hub = Vector3::z() * (rotor.thrust * speed * speed);
+            let mut hub = Vector3::z() * ((1.0 + flow.ground_effect) * rotor.thrust * speed * speed);
             torque.z += rotor.drag_torque * speed * speed;
             if self.drags_rotors {
                 let local = flow.airspeed + flow.angular_velocity.cross(&rotor.arm);

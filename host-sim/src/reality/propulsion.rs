@@ -8,6 +8,8 @@
 //! w_s = w_max sqrt(a u' + (1 - a) u'^2)                     thrust curve; a = 0: w_s = w_c V / V_0
 //! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails
 //! w' = (w_s - w) / lag                                      first order; no lag: at once
+//! w_c stays                                                 if a new one differs by less than deadband w_c
+//! tau = J_r (sum s_i w_i' e3 + omega x e3 sum s_i w_i)      rotors as flywheels; s_i = 1 for a clockwise one, seen from above
 //! ```
 //!
 //! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's
@@ -24,7 +26,7 @@ use super::battery::BatteryState;
 use super::body::STAGE_TIMES;
 use super::wind::first_step;
 use controller_core::allocation::geometry::ROTORS_MAX;
-use controller_core::allocation::{Rotor, Rotors};
+use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
 use nalgebra::{Vector3, Vector4};
@@ -57,6 +59,11 @@ struct Motors {
     commands: [f64; ROTORS_MAX],
     /// w, rad/s.
     speeds: [f64; ROTORS_MAX],
+    /// Mean of w' over the last plant step, rad/s^2.
+    changes: [f64; ROTORS_MAX],
+    /// J_r, kg m^2.
+    inertia: f64,
+    deadband: f64,
     /// With the plant step at which it happens.
     failure: Option<(Failure, u64)>,
     battery: Option<BatteryState>,
@@ -98,7 +105,10 @@ impl Propulsion {
     pub fn command(&mut self, thrusts: &[f32]) {
         if let Some(motors) = &mut self.motors {
             for ((command, rotor), thrust) in motors.commands.iter_mut().zip(motors.rotors.iter()).zip(thrusts) {
-                *command = f64::from(rotor.speed_at(*thrust));
+                let wanted = f64::from(rotor.speed_at(*thrust));
+                if (wanted - *command).abs() >= motors.deadband * *command {
+                    *command = wanted;
+                }
             }
         }
     }
@@ -122,6 +132,27 @@ impl Propulsion {
     pub fn battery(&self) -> Option<(f64, f64)> {
         let battery = self.motors.as_ref()?.battery.as_ref()?;
         Some((battery.voltage(), battery.current()))
+    }
+
+    /// Thrust, N, and torque, N m, that the model has of what is `delivered`.
+    #[must_use]
+    pub fn as_modelled(&self, delivered: &Delivered) -> (f64, Vector3<f64>) {
+        match delivered {
+            Delivered::Wrench { thrust, torque } => (*thrust, *torque),
+            Delivered::Speeds(speeds) => {
+                self.motors.as_ref().map_or((0.0, Vector3::zeros()), |motors| motors.as_modelled(speeds))
+            }
+        }
+    }
+
+    /// The torque of rotors that turn as `delivered` and change their speeds as in the last step, N m, on a body that
+    /// turns at `rate`, rad/s.
+    #[must_use]
+    pub fn spin(&self, delivered: &Delivered, rate: &Vector3<f64>) -> Vector3<f64> {
+        match (delivered, &self.motors) {
+            (Delivered::Speeds(speeds), Some(motors)) if motors.inertia > 0.0 => motors.spin(speeds, rate),
+            _ => Vector3::zeros(),
+        }
     }
 
     /// Advances by the plant step `now`; returns what drives the body at its beginning, middle and end.
@@ -148,6 +179,9 @@ impl Motors {
             curve: reality.truth.as_ref().map_or(0.0, |truth| truth.thrust_curve),
             commands,
             speeds: commands,
+            changes: [0.0; ROTORS_MAX],
+            inertia: reality.truth.as_ref().map_or(0.0, |truth| truth.rotor_inertia),
+            deadband: reality.truth.as_ref().map_or(0.0, |truth| truth.deadband),
             failure: reality.failure.map(|failure| (failure, first_step(failure.time, step))),
             battery: reality.battery.map(|battery| BatteryState::new(&battery)),
         };
@@ -175,6 +209,25 @@ impl Motors {
         settled
     }
 
+    /// Thrust, N, and torque, N m, of rotors at these speeds, rad/s, as the model has them.
+    fn as_modelled(&self, speeds: &[f64; ROTORS_MAX]) -> (f64, Vector3<f64>) {
+        let rotors = self.rotors.iter().zip(self.rotors.effectiveness()).zip(speeds);
+        rotors.fold((0.0, Vector3::zeros()), |(thrust, torque), ((rotor, column), speed)| {
+            let force = f64::from(rotor.thrust_coefficient) * speed * speed;
+            (thrust + force * column.x, torque + Vector3::new(column.y, column.z, column.w) * force)
+        })
+    }
+
+    fn spin(&self, speeds: &[f64; ROTORS_MAX], rate: &Vector3<f64>) -> Vector3<f64> {
+        let (mut turning, mut changing) = (0.0, 0.0);
+        for ((rotor, speed), change) in self.rotors.iter().zip(speeds).zip(self.changes) {
+            let sign = if rotor.spin == Spin::Clockwise { 1.0 } else { -1.0 };
+            turning += sign * speed;
+            changing += sign * change;
+        }
+        (Vector3::z() * changing + rate.cross(&Vector3::z()) * turning) * self.inertia
+    }
+
     fn advance(&mut self, now: u64, step: f64) -> [Delivered; 3] {
         let settled = self.settled(now);
         let start = self.speeds;
@@ -188,6 +241,7 @@ impl Motors {
         // A rotor without lag is at its new speed from the beginning of the step on.
         let stages = if self.decay[1] == 0.0 { [settled; 3] } else { self.decay.map(at) };
         self.speeds = stages[2];
+        self.changes = std::array::from_fn(|rotor| (stages[2][rotor] - start[rotor]) / step);
         let power = self.rotors.iter().zip(stages[1]).map(|(rotor, w)| f64::from(rotor.drag_coefficient) * w * w * w);
         if let Some(battery) = &mut self.battery {
             battery.draw(power.sum(), step);

@@ -206,7 +206,7 @@ impl Rival for Cascade {
         }
     }
 
-    fn delivered(&mut self, _thrust: f64, _torque: &Vector3<f64>, cut: bool) {
+    fn was_cut(&mut self, cut: bool) {
         self.saturated = cut;
     }
 

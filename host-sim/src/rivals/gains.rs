@@ -19,10 +19,14 @@
 //!
 //! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle
 //! that its table describes and no other. A table that leaves out lag, delay, thrust or period serves any.
+//!
+//! Where there are none of this vehicle at this rate, its gains of another rate serve as they are: they stand in 1/s, and
+//! every filter is exact for its period. [`Set::of_other_rates`] says so: a search finds better ones.
 
 use super::kind::Kind;
 use super::pilot::model;
 use crate::flier::{LawChoice, OURS};
+use crate::table::short;
 use scenario::Scenario;
 use scenario::number::{self, Number};
 use std::fmt::Write;
@@ -42,6 +46,8 @@ pub struct Set {
     pub rivals: Vec<(Kind, Vec<f64>, f64)>,
     /// Rivals for which a search found no gains that fly every trial to its end.
     pub lost: Vec<Kind>,
+    /// Rivals whose gains were found at another rate, Hz.
+    pub from_other_rates: Vec<(Kind, f64)>,
 }
 
 /// A file of gains that cannot be used, in one line.
@@ -56,18 +62,26 @@ impl std::fmt::Display for GainsError {
 
 impl std::error::Error for GainsError {}
 
+/// The key of a table that says at which rate its gains were found.
+const PERIOD: &str = "period";
+
 impl Set {
-    /// The set in `text`, called `file` in messages, that was found for the vehicle of `scenario`.
+    /// The gains of `kinds` in `text`, called `file` in messages, that were found for the vehicle of `scenario`.
     ///
     /// # Errors
     /// If the text is no TOML, has no table of that vehicle, or if a rival's gains are incomplete or not positive.
-    pub fn of(scenario: &Scenario, text: &str, file: &str) -> Result<Self, GainsError> {
+    pub fn of(scenario: &Scenario, text: &str, file: &str, kinds: &[Kind]) -> Result<Self, GainsError> {
         let failed = |what: String| GainsError(format!("{file}: {what}"));
         let document: DocumentMut =
             text.parse().map_err(|error: toml_edit::TomlError| failed(error.message().replace('\n', " ")))?;
         let own = vehicle(scenario);
-        let is_own = |item: &Item| own.iter().all(|(key, values)| is_said(item.get(key), key, values));
-        let Some((name, item)) = document.iter().find(|(_, item)| is_own(item)) else {
+        let is_own = |item: &Item, rate: bool| {
+            own.iter().all(|(key, values)| *key == PERIOD && !rate || is_said(item.get(key), key, values))
+        };
+        let of_rate = document.iter().filter(|(_, item)| is_own(item, true));
+        let of_others = document.iter().filter(|(_, item)| is_own(item, false) && !is_own(item, true));
+        let tables: Vec<(&str, &Item)> = of_rate.chain(of_others).collect();
+        let Some((first, _)) = tables.first() else {
             let there: Vec<&str> = document.iter().map(|(name, _)| name).collect();
             let said: Vec<String> = own.iter().map(|(key, values)| line(key, values)).collect();
             return Err(failed(format!(
@@ -79,10 +93,13 @@ impl Set {
             )));
         };
         let mut set = Self::default();
-        for kind in Kind::ALL {
-            let of = format!("{name}.{}", kind.name());
-            let table =
-                item.get(kind.name()).and_then(Item::as_table).ok_or_else(|| failed(format!("{of}: missing")))?;
+        for &kind in kinds {
+            let of_kind = |&(name, item)| {
+                let table = Item::get(item, kind.name())?.as_table()?;
+                Some((format!("{name}.{}", kind.name()), item, table))
+            };
+            let missing = || failed(format!("{first}.{}: missing", kind.name()));
+            let (of, item, table) = tables.iter().find_map(of_kind).ok_or_else(missing)?;
             if table.len() == 1 && table.get("cost").and_then(Item::as_float) == Some(f64::INFINITY) {
                 set.lost.push(kind);
                 continue;
@@ -97,6 +114,11 @@ impl Set {
                 return Err(failed(format!("{of}.{key}: unknown; known are cost and {}", kind.gains().join(", "))));
             }
             let gains = kind.gains().iter().map(|key| number(key)).collect::<Result<Vec<f64>, _>>()?;
+            if !is_own(item, true) {
+                let period = item.get(PERIOD).and_then(Item::as_float).filter(|period| *period > 0.0);
+                let period = period.ok_or_else(|| failed(format!("{of}: its {PERIOD} must be greater than zero")))?;
+                set.from_other_rates.push((kind, 1.0 / period));
+            }
             if kind.build(scenario, &gains).is_none() {
                 return Err(failed(format!("{of}: the law is undefined for these gains")));
             }
@@ -105,22 +127,22 @@ impl Set {
         Ok(set)
     }
 
-    /// The set that is built in for the vehicle of `scenario`, if there is one.
+    /// The gains of `kinds` that are built in for the vehicle of `scenario`, if there are any.
     #[must_use]
-    pub fn built_in(scenario: &Scenario) -> Option<Self> {
-        Self::of(scenario, BUILT_IN, BUILT_IN_NAME).ok()
+    pub fn built_in(scenario: &Scenario, kinds: &[Kind]) -> Option<Self> {
+        Self::of(scenario, BUILT_IN, BUILT_IN_NAME, kinds).ok()
     }
 
-    /// The set in `file`, or the one that is built in.
+    /// The gains of `kinds` in `file`, or those that are built in.
     ///
     /// # Errors
     /// If the file cannot be read, and as [`Self::of`]'s.
-    pub fn read(scenario: &Scenario, file: Option<&Path>) -> Result<Self, GainsError> {
-        let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME) };
+    pub fn read(scenario: &Scenario, file: Option<&Path>, kinds: &[Kind]) -> Result<Self, GainsError> {
+        let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME, kinds) };
         let name = file.display().to_string();
         let text =
             scenario::text::read(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
-        Self::of(scenario, &text, &name)
+        Self::of(scenario, &text, &name, kinds)
     }
 
     /// The laws, in the order of their names.
@@ -161,6 +183,15 @@ impl Set {
         let why = "a search found no gains with which every trial is flown to its end";
         (!names.is_empty()).then(|| format!("left out: {}; {why}", names.join(", ")))
     }
+
+    /// The rivals whose gains were found at another rate than `rate`, Hz; `None` if there are none.
+    #[must_use]
+    pub fn of_other_rates(&self, rate: f64) -> Option<String> {
+        let from = |(kind, from): &(Kind, f64)| format!("{} at {} Hz", kind.name(), short(*from));
+        let all: Vec<String> = self.from_other_rates.iter().map(from).collect();
+        let said = format!("gains not found at {} Hz: {}; --tune searches better ones", short(rate), all.join(", "));
+        (!all.is_empty()).then_some(said)
+    }
 }
 
 /// The law of this name on the vehicle of `scenario`, a rival's with gains from `file` or those that are built in.
@@ -176,7 +207,7 @@ pub fn chosen(name: &str, scenario: &Scenario, file: Option<&Path>) -> Result<La
             None => Ok(LawChoice::Ours),
         };
     };
-    let set = Set::read(scenario, file).map_err(|error| ("gains", error.to_string()))?;
+    let set = Set::read(scenario, file, &[kind]).map_err(|error| ("gains", error.to_string()))?;
     set.law(kind).ok_or_else(|| ("law", format!("there are no gains of {name}")))
 }
 

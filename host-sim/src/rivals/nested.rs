@@ -165,7 +165,7 @@ impl Rival for Nested {
         }
     }
 
-    fn delivered(&mut self, _thrust: f64, _torque: &Vector3<f64>, cut: bool) {
+    fn was_cut(&mut self, cut: bool) {
         self.cut = cut;
     }
 

@@ -2,17 +2,19 @@
 //!
 //! It gets what ours gets, in double precision: the measured state; the reference; and as a part of the
 //! reference's acceleration the drag that `[estimates] drag_across` knows of, c v_d across, which ours feeds forward as
-//! well. Its wrench goes the way of ours, through the same allocation; it learns at once which part the rotors can
-//! deliver.
+//! well. Its wrench goes the way of ours, within the same limits, through the same allocation; it learns at once whether
+//! either cuts something of it.
 
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};
+use crate::sensed::Sensed;
 use controller_core::allocation::Mixer;
 use controller_core::configuration::LawParameters;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
+use controller_core::vehicle::Limits;
 use nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
 use scenario::Scenario;
 
@@ -21,11 +23,12 @@ use scenario::Scenario;
 pub struct RivalPilot {
     rival: Box<dyn Rival>,
     mixer: Option<Box<Mixer>>,
-    /// Where there are no rotors: N, and N m.
-    thrust_max: f32,
-    torque_max: Vector3<f32>,
+    /// The file's limits, which bind ours as well.
+    limits: Limits,
     /// Known drag across, 1/s.
     drag: f64,
+    /// Whether the limits cut something of the last command.
+    is_cut: bool,
 }
 
 impl Clone for RivalPilot {
@@ -66,8 +69,8 @@ impl RivalPilot {
         Self {
             rival,
             mixer: configuration.rotors().map(|rotors| Box::new(Mixer::new(rotors))),
-            thrust_max: limits.thrust_max,
-            torque_max: limits.torque_max,
+            limits: *limits,
+            is_cut: false,
             drag,
         }
     }
@@ -76,20 +79,27 @@ impl RivalPilot {
     ///
     /// # Errors
     /// [`InputError`] if the state or what the rival makes of it is not finite.
-    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
+    pub fn step(
+        &mut self,
+        state: &State,
+        sensed: &Sensed,
+        reference: &Reference,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
         let seen = Seen {
             position: state.position.map(f64::from),
             velocity: state.velocity.map(f64::from),
             attitude: UnitQuaternion::new_normalize(Quaternion::from(state.attitude.coords.map(f64::from))),
             rate: state.angular_velocity.map(f64::from),
+            sensed: *sensed,
         };
         let wanted = self.wanted(reference);
         let commanded = self.rival.step(&seen, &wanted);
         let wrench =
             Wrench { thrust: commanded.thrust as f32, torque: commanded.torque.map(|component| component as f32) };
-        let (delivered, cut) = self.deliverable(&wrench)?;
-        self.rival.delivered(delivered.thrust.into(), &delivered.torque.map(f64::from), cut);
-        Ok((wrench, diagnostics(&seen, reference, &commanded)))
+        let limited = self.limited(&wrench);
+        self.is_cut = limited != wrench || self.is_beyond_the_rotors(&limited)?;
+        self.rival.was_cut(self.is_cut);
+        Ok((limited, diagnostics(&seen, reference, &commanded)))
     }
 
     fn wanted(&self, reference: &Reference) -> Wanted {
@@ -116,19 +126,25 @@ impl RivalPilot {
         }
     }
 
-    /// The deliverable part of `wrench`, and whether that is less than all.
-    fn deliverable(&self, wrench: &Wrench) -> Result<(Wrench, bool), InputError> {
-        let not_finite = InputError::NotFinite { field: "wrench" };
-        if let Some(mixer) = &self.mixer {
-            let allocation = mixer.allocate(wrench)?;
-            return Ok((mixer.wrench(&allocation.thrusts), !allocation.is_exact()));
+    /// Whether the limits or the rotors cut something of the last command.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// `wrench` as far as the file's limits let it act.
+    fn limited(&self, wrench: &Wrench) -> Wrench {
+        let torque = wrench.torque.zip_map(&self.limits.torque_max, |torque, limit| torque.clamp(-limit, limit));
+        Wrench { thrust: wrench.thrust.clamp(0.0, self.limits.thrust_max), torque }
+    }
+
+    /// Whether the rotors can deliver less than `wrench`.
+    fn is_beyond_the_rotors(&self, wrench: &Wrench) -> Result<bool, InputError> {
+        match &self.mixer {
+            Some(mixer) => Ok(!mixer.allocate(wrench)?.is_exact()),
+            None if (wrench.thrust + wrench.torque.sum()).is_finite() => Ok(false),
+            None => Err(InputError::NotFinite { field: "wrench" }),
         }
-        if !(wrench.thrust + wrench.torque.sum()).is_finite() {
-            return Err(not_finite);
-        }
-        let torque = wrench.torque.zip_map(&self.torque_max, |torque, limit| torque.clamp(-limit, limit));
-        let delivered = Wrench { thrust: wrench.thrust.clamp(0.0, self.thrust_max), torque };
-        Ok((delivered, delivered != *wrench))
     }
 }
 

@@ -3,6 +3,7 @@
 //! World frame z up; body x forward, y left, z up; attitudes are body to world; SI units; double precision.
 
 use super::jet::Jet;
+use crate::sensed::Sensed;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rival's model of its vehicle: the same numbers as ours has, rotor lag and delay included.
@@ -24,7 +25,7 @@ pub struct Model {
     pub thrust_max: f64,
 }
 
-/// The vehicle's state, as measured.
+/// The vehicle's state, as measured, and what is measured beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
     /// m, world.
@@ -35,6 +36,8 @@ pub struct Seen {
     pub attitude: UnitQuaternion<f64>,
     /// omega, rad/s, body.
     pub rate: Vector3<f64>,
+    /// Force and torque, by accelerometer and rotor speeds.
+    pub sensed: Sensed,
 }
 
 /// The reference.
@@ -71,9 +74,8 @@ pub trait Rival: std::fmt::Debug + Send + Sync {
     /// One tick.
     fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded;
 
-    /// What of the tick's command the rotors can deliver: thrust, N, and torque, N m. Laws without memory of it ignore
-    /// it.
-    fn delivered(&mut self, _thrust: f64, _torque: &Vector3<f64>, _cut: bool) {}
+    /// Whether limits or rotors cut something of the tick's command. Laws without memory of it ignore it.
+    fn was_cut(&mut self, _cut: bool) {}
 
     /// Itself, elsewhere.
     fn boxed(&self) -> Box<dyn Rival>;

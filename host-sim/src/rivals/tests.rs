@@ -3,12 +3,14 @@
 
 use super::gains::{BUILT_IN, Set};
 use super::kind::Kind;
+use super::rate;
 use super::start::Speed;
 use super::tuning::RivalJudge;
 use crate::course::Course;
+use crate::flight::Tick;
 use crate::interrupt::Interrupt;
 use crate::tune::candidate::Judging;
-use crate::tune::trials::hover;
+use crate::tune::trials::{hover, recovery};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::timing::Timing;
@@ -21,7 +23,7 @@ fn hummingbird() -> Scenario {
 
 /// The course of `kind` with its built-in gains.
 fn course(kind: Kind, scenario: &Scenario, near: f64) -> Course {
-    let set = Set::of(scenario, BUILT_IN, "gains.toml").unwrap();
+    let set = Set::of(scenario, BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
     let (_, gains, _) = set.rivals.into_iter().find(|(rival, ..)| *rival == kind).unwrap();
     Course::over(scenario, kind.flight(scenario, scenario, &gains).unwrap(), near).unwrap()
 }
@@ -65,10 +67,10 @@ fn every_rival_recovers_from_moderate_attitudes() {
 #[test]
 fn gains_survive_being_written_and_read() {
     let file = hummingbird();
-    let set = Set::of(&file, BUILT_IN, "gains.toml").unwrap();
+    let set = Set::of(&file, BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
     for name in ["hummingbird", "hummingbird.v1.2", "2", "-"] {
         let named = Scenario { name: name.to_owned(), ..file.clone() };
-        let again = Set::of(&named, &set.written(&named, "a test"), "written").unwrap();
+        let again = Set::of(&named, &set.written(&named, "a test"), "written", &Kind::ALL).unwrap();
         assert_eq!(again.rivals.len(), Kind::ALL.len());
         for ((_, one, _), (_, other, _)) in set.rivals.iter().zip(&again.rivals) {
             assert!(one.iter().zip(other).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
@@ -79,13 +81,13 @@ fn gains_survive_being_written_and_read() {
 #[test]
 fn a_rival_without_gains_survives_being_written_and_read() {
     let file = hummingbird();
-    let mut set = Set::built_in(&file).unwrap();
+    let mut set = Set::built_in(&file, &Kind::ALL).unwrap();
     set.rivals.retain(|(kind, ..)| !matches!(kind, Kind::Lee | Kind::Indi));
     set.lost = vec![Kind::Lee, Kind::Indi];
-    let again = Set::of(&file, &set.written(&file, "a test"), "written").unwrap();
+    let again = Set::of(&file, &set.written(&file, "a test"), "written", &Kind::ALL).unwrap();
     assert_eq!((again.rivals.len(), &again.lost), (Kind::ALL.len() - 2, &set.lost));
     assert!(again.left_out().unwrap().starts_with("left out: lee, indi; "));
-    assert_eq!(Set::built_in(&file).unwrap().left_out(), None);
+    assert_eq!(Set::built_in(&file, &Kind::ALL).unwrap().left_out(), None);
 }
 
 #[test]
@@ -93,7 +95,7 @@ fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
     let mut file = hummingbird();
     file.rotor_lag = 0.05;
     let uninterrupted = Interrupt::default();
-    for kind in [Kind::Lee, Kind::Indi, Kind::Nested] {
+    for kind in [Kind::Cascade, Kind::Indi, Kind::Nested] {
         let own = RivalJudge::new(&file, kind, &kind.start(&file).at(Speed::OWN));
         let best = RivalJudge::at_best_start(&file, kind, &uninterrupted);
         let [own, best] = [own, best].map(|judge| judge.judge(&judge.start()).cost);
@@ -106,9 +108,9 @@ fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
 fn gains_that_cannot_be_used_are_refused_by_name() {
     let file = hummingbird();
     let refused = |from: &str, to: &str| {
-        let text = BUILT_IN.replacen(from, to, 1);
+        let text = BUILT_IN.replace(from, to);
         assert_ne!(text, BUILT_IN, "{from}");
-        Set::of(&file, &text, "mine.toml").unwrap_err().to_string()
+        Set::of(&file, &text, "mine.toml", &Kind::ALL).unwrap_err().to_string()
     };
     for (from, to) in [("mass = 0.5", "mass = 0.6"), ("lag = 0.005", "lag = 0.006"), ("delay = 0.0", "delay = 0.01")] {
         let message = refused(from, to);
@@ -119,4 +121,38 @@ fn gains_that_cannot_be_used_are_refused_by_name() {
     assert!(refused("k_w_yaw = ", "k_w_yaw = -").contains("hummingbird.lee.k_w_yaw: must be a finite number"));
     assert!(refused("k_w_yaw = ", "k_w_jaw = ").contains("hummingbird.lee.k_w_jaw: unknown"));
     assert!(refused("[hummingbird.lee]", "[hummingbird.lee").starts_with("mine.toml: "));
+}
+
+#[test]
+fn gains_of_another_rate_are_named_and_fly_all_trials() {
+    let file = hummingbird();
+    let at = |rate: f64| rate::at(&file, rate).unwrap();
+    let built_in = |rate: f64| Set::built_in(&at(rate), &[Kind::Lee, Kind::Indi]).unwrap();
+    assert_eq!(built_in(100.0).of_other_rates(100.0), None);
+    let said = built_in(500.0).of_other_rates(500.0).unwrap();
+    assert_eq!(said, "gains not found at 500 Hz: lee at 100 Hz; --tune searches better ones");
+    for rate in [50.0, 250.0, 500.0] {
+        let set = built_in(rate);
+        assert_eq!(set.rivals[0], built_in(100.0).rivals[0], "{rate} Hz");
+        let (kind, gains, _) = &set.rivals[1];
+        let slow = at(rate);
+        let judge = RivalJudge::new(&slow, *kind, gains);
+        let verdict = judge.judge(&judge.start());
+        println!("{} at {rate} Hz: cost {}", kind.name(), verdict.cost);
+        assert!(verdict.accepted() && verdict.cost < 4.0, "{rate} Hz: {verdict:?}");
+    }
+}
+
+#[test]
+fn a_rival_keeps_the_files_limits() {
+    let text = HUMMINGBIRD.replace("torque_max = [1.0, 1.0, 0.4]", "torque_max = [0.3, 0.4, 0.05]");
+    let limited = Scenario::parse(&text, "limited.toml").unwrap();
+    let upside_down = recovery(&limited, 2.0).unwrap();
+    let gains = Set::built_in(&limited, &[Kind::Indi]).unwrap().rivals.remove(0).1;
+    let mut flight = Kind::Indi.flight(&limited, &upside_down, &gains).unwrap();
+    let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
+    let greatest = |axis: usize| ticks.iter().map(|tick| tick.wrench.torque[axis].abs()).fold(0.0, f32::max);
+    assert_eq!([0, 1, 2].map(greatest)[0], 0.3);
+    assert!(greatest(1) <= 0.4 && greatest(2) <= 0.05);
+    assert!(ticks.iter().any(|tick| tick.clipped));
 }

@@ -89,14 +89,15 @@ impl Judging for RivalJudge<'_> {
     }
 }
 
-/// Searches gains of every rival for the vehicle of `scenario`, with the same `effort` for each. The continuous law
+/// Searches gains of `kinds` for the vehicle of `scenario`, with the same `effort` for each. The continuous law
 /// takes the memoryless one's, so that the two differ in nothing but their choice of quaternion. If no gains of a
 /// rival fly all trials to their end, the set leaves the rival out and names it.
 ///
 /// # Errors
 /// Names the signal that came.
-pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
-    let mut progress = Progress::new("searching gains", SEARCHED.len() as u64 * rounds(&effort));
+pub fn tune(scenario: &Scenario, kinds: &[Kind], effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
+    let searched = searched(kinds);
+    let mut progress = Progress::new("searching gains", searched.len() as u64 * rounds(&effort));
     let mut done = 0;
     let mut next = |kind: Kind| {
         progress.about(kind.name());
@@ -117,10 +118,11 @@ pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Resul
     };
     let mut set = Set::default();
     let mut keep = |kind: Kind, found: Option<(Vec<f64>, f64)>| match found {
+        _ if !kinds.contains(&kind) => {}
         Some((gains, cost)) => set.rivals.push((kind, gains, cost)),
         None => set.lost.push(kind),
     };
-    for kind in SEARCHED {
+    for kind in searched {
         let found = search(kind)?;
         if kind == Kind::Memoryless {
             let of_continuous = |(gains, _): &(Vec<f64>, f64)| {
@@ -139,16 +141,23 @@ pub fn tune(scenario: &Scenario, effort: Effort, interrupt: &Interrupt) -> Resul
 
 /// About how long [`tune`] takes here, from how long one candidate of the first rival does.
 #[must_use]
-pub fn expected(scenario: &Scenario, effort: &Effort) -> Duration {
+pub fn expected(scenario: &Scenario, kinds: &[Kind], effort: &Effort) -> Duration {
     let (began, threads) = (Instant::now(), rayon::current_num_threads());
-    let [kind, ..] = SEARCHED;
+    let searched = searched(kinds);
+    let Some(&kind) = searched.first() else { return Duration::ZERO };
     let start = kind.start(scenario);
     let judge = RivalJudge::new(scenario, kind, &start.at(Speed::OWN));
     judge.judge(&judge.start());
     let one = began.elapsed();
     let starts = start.attitudes().len() + Speed::OWN.positions().len();
     let of_each = starts + (1 + effort.generations as usize) * effort.population;
-    one.mul_f64((SEARCHED.len() * of_each) as f64 / threads as f64)
+    one.mul_f64((searched.len() * of_each) as f64 / threads as f64)
+}
+
+/// Those of `kinds` that have a search of their own, and the one whose gains the continuous law takes.
+fn searched(kinds: &[Kind]) -> Vec<Kind> {
+    let wanted = |kind: &Kind| kinds.contains(kind) || *kind == Kind::Memoryless && kinds.contains(&Kind::Continuous);
+    SEARCHED.into_iter().filter(wanted).collect()
 }
 
 /// The steps of each rival's search: starts, the first population, and the generations.

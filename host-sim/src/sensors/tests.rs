@@ -172,3 +172,58 @@ fn the_same_seed_gives_the_same_flight_and_another_another() {
     assert_eq!(measured(1), measured(1));
     assert_ne!(measured(1), measured(2));
 }
+
+/// The sensors of a search's trials at this rate, Hz, without noise.
+fn prompt_but_late(rate: f64) -> Sensors {
+    let mut scenario = Scenario::parse(HUMMINGBIRD, "f").unwrap();
+    scenario = crate::rivals::rate::at(&scenario, rate).unwrap();
+    let noisy = crate::tune::trials::noise(scenario.timing.period());
+    let velocity = VelocitySource::Observer { bandwidth: 8.0, noise: 0.0, bias: Vector3::zeros() };
+    scenario.reality.sensors =
+        Some(sensors::Sensors { gyro_noise: 0.0, position_noise: 0.0, attitude_noise: 0.0, velocity, ..noisy });
+    Sensors::new(&scenario).unwrap()
+}
+
+/// A body about a fixed axis at this time, s: rate 2 + 3 t, rad/s, acceleration (1, 2, 3) m/s^2.
+fn turning(time: f64) -> BodyState {
+    let start = somewhere();
+    let acceleration = Vector3::new(1.0, 2.0, 3.0);
+    let turned = UnitQuaternion::from_scaled_axis(Vector3::x() * (2.0 * time + 1.5 * time * time));
+    BodyState {
+        position: start.position + acceleration * (0.5 * time * time),
+        velocity: acceleration * time,
+        attitude: turned.into_inner(),
+        angular_velocity: Vector3::x() * (2.0 + 3.0 * time),
+    }
+}
+
+#[test]
+fn poses_that_come_late_are_carried_on_and_the_gyro_is_late_by_its_filters() {
+    for rate in [100.0, 250.0, 500.0] {
+        let mut sensors = prompt_but_late(rate);
+        sensors.attitude = PropagatedAttitude::new(turning(0.0).measured().attitude, Vector3::x() * 2.0, 0);
+        sensors.velocity = Vector3::zeros();
+        for tick in 0..200 {
+            let time = f64::from(tick) / rate;
+            let (truth, measured) = (turning(time), sensors.measure(&turning(time)));
+            let late = f64::from(measured.angular_velocity.x) - (2.0 + 3.0 * time);
+            let expected = -3.0 * time.min(0.003);
+            assert!((late - expected).abs() < 1e-5, "{rate} Hz, {time}: {late}");
+            assert!((measured.position.map(f64::from) - truth.position).norm() < 2e-3, "{rate} Hz, {time}");
+            let attitude = Quaternion::from(measured.attitude.coords.map(f64::from));
+            let error =
+                UnitQuaternion::new_normalize(attitude).angle_to(&UnitQuaternion::new_normalize(truth.attitude));
+            // Gyro samples that are 3 ms late carry it on over 20 ms and up to 12 ms more until the next pose.
+            assert!(error < 3.0 * 0.003 * 0.033, "{rate} Hz, {time}: {error}");
+        }
+    }
+}
+
+#[test]
+fn what_is_sensed_is_as_late_as_the_gyro() {
+    let mut sensors = prompt_but_late(500.0);
+    let at = |tick: f64| Sensed { specific_force: Vector3::repeat(tick), wrench: nalgebra::Vector4::repeat(-tick) };
+    let last = (0..20).map(|tick| sensors.sense(&at(f64::from(tick)))).last().unwrap();
+    assert!((last.specific_force - Vector3::repeat(17.5)).amax() < 1e-12, "{last:?}");
+    assert!((last.wrench - nalgebra::Vector4::repeat(-17.5)).amax() < 1e-12, "{last:?}");
+}

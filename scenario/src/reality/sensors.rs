@@ -45,6 +45,10 @@ pub struct Sensors {
     pub dropout: f64,
     /// Control periods from a sample to its use.
     pub delay_ticks: u64,
+    /// Control periods by which poses are later than that; no file says so.
+    pub pose_delay_ticks: u64,
+    /// By how much gyro and accelerometer are later than that, s; no file says so.
+    pub imu_delay: f64,
     /// Seed of the random generator.
     pub seed: u64,
 }
@@ -119,6 +123,8 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         pose_every,
         dropout,
         delay_ticks: read_delay(&section, timing, sampling)?,
+        pose_delay_ticks: 0,
+        imu_delay: 0.0,
         seed: seed(&section)?,
     }))
 }

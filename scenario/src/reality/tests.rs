@@ -260,6 +260,8 @@ fn a_section_that_needs_another_says_which() {
         ("[truth]\nrotor_scales = [1]", "truth.rotor_scales: needs [rotors]"),
         ("[truth]\nthrust_curve = 0.1", "truth.thrust_curve: needs [rotors]"),
         ("[truth]\nlag = 0.1", "truth.lag: needs [rotors]"),
+        ("[truth]\nrotor_inertia = 1e-6", "truth.rotor_inertia: needs [rotors]"),
+        ("[truth]\ndeadband = 0.02", "truth.deadband: needs [rotors]"),
         ("[sampling]\ndelay = 0.6\n[sensors]\ndelay = 0.05", "sensors.delay: must be from 0 to 0.04"),
     ] {
         let what = paper(sections).expect_err(sections);

@@ -9,6 +9,9 @@
 //! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
 //! thrust_curve = 0.3                   # a of the thrust a u + (1 - a) u^2 of a motor command u; left out: 0
 //! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
+//! rotor_inertia = 6e-7                 # kg m^2, of each rotor about its axis; left out: none
+//! deadband = 0.02                      # of a rotor's speed: a nearer command changes nothing; left out: 0
+//! rotor_radius = 0.1                   # m: [ground] lifts rotors of this radius; left out: no ground effect
 //! ```
 //!
 //! The state that a flight reports and its controller gets is that of the body's origin, the *model's* centre of
@@ -38,6 +41,12 @@ pub struct Truth {
     pub thrust_curve: f64,
     /// Lag of the rotors' speeds, s; none for the model's.
     pub lag: Option<f64>,
+    /// Of each rotor about its axis, kg m^2.
+    pub rotor_inertia: f64,
+    /// Part of a rotor's commanded speed by which a new command must differ to be taken.
+    pub deadband: f64,
+    /// Of each rotor, m; zero without ground effect.
+    pub rotor_radius: f64,
 }
 
 impl Truth {
@@ -52,6 +61,9 @@ impl Truth {
             rotor_scales: Vec::new(),
             thrust_curve: 0.0,
             lag: None,
+            rotor_inertia: 0.0,
+            deadband: 0.0,
+            rotor_radius: 0.0,
         }
     }
 }
@@ -64,8 +76,8 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     let Some(section) = root.optional_section("truth")? else {
         return Ok(None);
     };
-    let keys = ["mass", "inertia", "centre_of_mass", "thrust_scale", "rotor_scales", "thrust_curve", "lag"];
-    section.allow(&keys)?;
+    const OF_ROTORS: [&str; 6] = ["rotor_scales", "thrust_curve", "lag", "rotor_inertia", "deadband", "rotor_radius"];
+    section.allow(&[&["mass", "inertia", "centre_of_mass", "thrust_scale"][..], &OF_ROTORS].concat())?;
     let modelled = Truth::of_model(model);
     let mass = section.number_or("mass", modelled.mass)?;
     let moments = if section.has("inertia") { inertia::read(&section, "inertia")? } else { modelled.inertia };
@@ -77,7 +89,7 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
     })?;
     let scale = Allowed::new(0.0..=10.0, "");
     let rotor_scales = read_rotor_scales(&section, rotors, &scale)?;
-    if let Some(key) = ["thrust_curve", "lag"].into_iter().find(|key| section.has(key) && rotors.is_none()) {
+    if let Some(key) = OF_ROTORS[1..].iter().find(|key| section.has(key) && rotors.is_none()) {
         return Err(without_rotors(&section, key));
     }
     let lag = section.has("lag").then(|| Allowed::new(0.0..=1.0, "s").number(&section, "lag")).transpose()?;
@@ -89,6 +101,9 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
         rotor_scales,
         thrust_curve: Allowed::new(0.0..=1.0, "").number_or(&section, "thrust_curve", 0.0)?,
         lag,
+        rotor_inertia: Allowed::new(0.0..=1.0, "kg m^2").number_or(&section, "rotor_inertia", 0.0)?,
+        deadband: Allowed::new(0.0..=0.5, "").number_or(&section, "deadband", 0.0)?,
+        rotor_radius: Allowed::new(0.0..=10.0, "m").number_or(&section, "rotor_radius", 0.0)?,
     }))
 }
 

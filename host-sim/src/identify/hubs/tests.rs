@@ -27,7 +27,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     }
     let delivered = Delivered::Speeds(speeds);
     let airspeed = Vector3::new(3.0, -2.0, 1.5);
-    let still = Flow { airspeed: Vector3::zeros(), angular_velocity: Vector3::zeros() };
+    let still = Flow { airspeed: Vector3::zeros(), angular_velocity: Vector3::zeros(), ground_effect: 0.0 };
     let (layout, hubs) = (Layout::of(rotors), Hubs { along: 1.0, across: 1.0, lift: drag.translational_lift / mass });
     let (thrust, torque) = still_air.act(&still, &delivered);
     let impulse = Impulse { thrust: thrust.z, torque };
@@ -39,7 +39,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     // To first order in how unlike they turn, 3 %.
     assert!((found - expected).norm() < 0.03 * found.norm() && found.norm() > 1e-3, "{found} {expected}");
 
-    let yawing = Flow { airspeed, angular_velocity: Vector3::new(0.0, 0.0, 1.2) };
+    let yawing = Flow { airspeed, angular_velocity: Vector3::new(0.0, 0.0, 1.2), ground_effect: 0.0 };
     let (lifted, turned) = windy.act(&yawing, &delivered);
     let (bare, dragged) = dragged.act(&yawing, &delivered);
     let found = (lifted - bare).z / mass;

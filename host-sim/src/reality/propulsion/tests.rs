@@ -123,3 +123,32 @@ fn without_rotors_the_wrench_acts_within_the_limits() {
     assert_eq!(torque.y, 0.5);
     assert!(direct.battery().is_none() && direct.speeds() == [0.0; ROTORS_MAX]);
 }
+
+#[test]
+fn a_command_within_the_deadband_changes_nothing() {
+    let mut propulsion = propulsion("\n[truth]\ndeadband = 0.05\n", LAG);
+    let speed = |propulsion: &Propulsion| propulsion.motors.as_ref().unwrap().commands[0];
+    propulsion.command(&[2.0; 4]);
+    let taken = speed(&propulsion);
+    // Speeds go with the root of the thrust.
+    propulsion.command(&[2.0 * 1.04 * 1.04; 4]);
+    assert_eq!(speed(&propulsion), taken);
+    propulsion.command(&[2.0 * 1.06 * 1.06; 4]);
+    assert!((speed(&propulsion) / taken - 1.06).abs() < 1e-6);
+}
+
+#[test]
+fn rotors_with_inertia_turn_the_body_back_and_make_it_precess() {
+    let mut propulsion = propulsion("\n[truth]\nrotor_inertia = 1e-6\n", LAG);
+    // Rotors 1 and 3 turn clockwise.
+    propulsion.command(&[3.0, 1.0, 3.0, 1.0]);
+    let before = propulsion.speeds();
+    let stages = propulsion.advance(0);
+    let after = propulsion.speeds();
+    let gained: f64 = [1.0, -1.0, 1.0, -1.0].iter().zip(after.iter().zip(before)).map(|(s, (a, b))| s * (a - b)).sum();
+    let torque = propulsion.spin(&stages[2], &Vector3::zeros());
+    assert!((torque - Vector3::z() * (1e-6 * gained / 1e-3)).norm() < 1e-12 && gained > 0.0, "{torque}");
+    let sum: f64 = [1.0, -1.0, 1.0, -1.0].iter().zip(after).map(|(s, w)| s * w).sum();
+    let rolling = propulsion.spin(&stages[2], &Vector3::x()) - torque;
+    assert!((rolling - Vector3::y() * (-1e-6 * sum)).norm() < 1e-12, "{rolling}");
+}
