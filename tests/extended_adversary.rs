@@ -302,7 +302,7 @@ fn scenarios() -> Vec<Scenario> {
 
 #[test]
 fn on_every_vehicle_every_bound_stands_and_is_nearly_reached() {
-    let flights = std::env::var("ADVERSARY_FLIGHTS").map_or(120, |flights| flights.parse().unwrap());
+    let flights = std::env::var("ADVERSARY_FLIGHTS").map_or(600, |flights| flights.parse().unwrap());
     let attacked: Vec<_> = scenarios()
         .into_par_iter()
         .enumerate()
