@@ -315,7 +315,7 @@ fn waiting<M: RawMutex, T, const ROOM: usize>(queue: Take<'_, Queue<M, T, ROOM>>
 /// overran.
 fn next_due(due: u64, end: u64, period: u64) -> u64 {
     let overrun = end.saturating_sub(due);
-    due + overrun - overrun % period + period
+    due + overrun - overrun.checked_rem(period).unwrap_or(0) + period
 }
 
 impl Timing {

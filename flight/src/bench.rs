@@ -64,11 +64,12 @@ impl Bench {
             Self::Turning(MotorTest { rotor, level, .. }) => return Output::Test { rotor, level },
             Self::Setting(setting) => setting,
         };
-        let word = match (setting, elapsed / (WORD_DURATION.div_ceil(period) * period)) {
-            (Setting::Beep, 0) => Word::Beep,
-            (Setting::Normal, 0) => Word::Normal,
-            (Setting::Reversed, 0) => Word::Reversed,
-            (Setting::Normal | Setting::Reversed, SAVED_AFTER) => Word::Save,
+        let word_lasts = WORD_DURATION.div_ceil(period.max(1)) * period;
+        let word = match (setting, elapsed.checked_div(word_lasts)) {
+            (Setting::Beep, Some(0)) => Word::Beep,
+            (Setting::Normal, Some(0)) => Word::Normal,
+            (Setting::Reversed, Some(0)) => Word::Reversed,
+            (Setting::Normal | Setting::Reversed, Some(SAVED_AFTER)) => Word::Save,
             _ => return Output::Stop,
         };
         Output::Word { rotor, word }
