@@ -145,7 +145,7 @@ fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
         let text = BUILT_IN.replace(from, to);
         assert_ne!(text, BUILT_IN, "{from}");
         fs::write(directory.join("g.toml"), text).unwrap();
-        for command in [&["compare", "h.toml"][..], &["campaign", "h.toml", "--law", "indi"]] {
+        for command in [&["compare", "h.toml"][..], &["campaign", "h.toml", "--law", "lee"]] {
             let refused =
                 host_sim(&directory, &[command, &["--flights", "1", "--gains", "g.toml", "--out", "out"]].concat());
             let message = stderr(&refused);

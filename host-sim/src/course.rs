@@ -11,7 +11,7 @@
 //! | turned | since when the yaw has been within 0.1 rad of the reference's, for good |
 //! | end error | \|x - x_d\| at the last tick |
 //! | RMS | of \|x - x_d\| over the last half of the flight |
-//! | activity | RMS of the change of a rotor's commanded thrust within 10 ms, or a tick if that is longer, over the last half |
+//! | activity | RMS of the change of a rotor's commanded thrust within 10 ms (a tick, if longer), over the last half |
 
 use crate::flight::{Flight, FlightError, Tick};
 use controller_core::allocation::Thrusts;

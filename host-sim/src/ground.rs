@@ -10,8 +10,8 @@
 //! the ground's height, which it passes by at most what it falls in one plant step, or, after a hop that leaned, by
 //! what its foot did.
 //!
-//! There is no sliding, no tipping over an edge by a torque from standing, and a fall breaks nothing. What the ground does
-//! to rotors above it is [`crate::reality::air`]'s.
+//! There is no sliding, no tipping over an edge by a torque from standing, and a fall breaks nothing. What the ground
+//! does to rotors above it is [`crate::reality::air`]'s.
 
 mod rocking;
 

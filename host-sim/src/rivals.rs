@@ -10,7 +10,7 @@
 //! | [`lee`] | geometric tracking on SE(3): Lee, Leok, McClamroch, 2010 |
 //! | [`cascade`] | P and PID loops around a quaternion law: PX4; Brescianini, Hehn, D'Andrea, 2013 |
 //! | [`mellinger`] | Mellinger, Kumar, 2011 |
-//! | [`indi`] | incremental nonlinear dynamic inversion, with accelerometer and rotor speeds: Smeur, 2016; Tal, Karaman, 2021 |
+//! | [`indi`] | incremental inversion, with accelerometer and rotor speeds: Smeur, 2016; Tal, Karaman, 2021 |
 //! | [`nested`] | nested saturations around a saturated hybrid attitude law: Martins, 2024 |
 //! | [`continuous`] | continuous quaternion feedback, which unwinds: Wie, 1989; Bhat, Bernstein, 2000 |
 //! | [`memoryless`] | discontinuous without memory, which chatters: Fjellstad, Fossen, 1994 |

@@ -91,8 +91,8 @@ impl SimulatedVehicle {
         }
     }
 
-    /// The mean thrust, N, and torque, N m, since the last call, of rotors that turn as measured and give what the model
-    /// says; none before the vehicle moves.
+    /// The mean thrust, N, and torque, N m, since the last call, of rotors that turn as measured and give what the
+    /// model says; none before the vehicle moves.
     pub fn take_acted(&mut self) -> Option<Vector4<f64>> {
         match self {
             Self::Model(_, actuators) => actuators.acted.take(),

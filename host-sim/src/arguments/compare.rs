@@ -15,12 +15,12 @@ pub struct CompareArguments {
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub flights: u64,
     /// The other laws that fly beside ours, with commas between [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = PossibleValuesParser::new(Kind::ALL.map(Kind::name)))]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = rivals_names())]
     only: Vec<String>,
     /// The other laws' rate, Hz: 1/rate is a whole number of plant steps [default: the file's]
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
-    /// Fly the vehicle as its file does not know it instead: delay, mass, voltage, wind, ground, … (see docs/rivals.md)
+    /// Fly the vehicle as its file does not know it instead: delay, mass, voltage, wind, ground (see docs/rivals.md)
     #[arg(long, conflicts_with = "flights")]
     pub realism: bool,
     /// Directory for table, pictures, report and gains [default: flights/<name>-compared]
@@ -41,6 +41,11 @@ pub struct CompareArguments {
     /// Seed of that search
     #[arg(long, default_value_t = Effort::default().seed)]
     seed: u64,
+}
+
+/// The values of --only.
+fn rivals_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(Kind::ALL.map(Kind::name))
 }
 
 /// The most random flights that are held in memory.

@@ -19,15 +19,16 @@
 //! z' = v,  v' = -g,   then  v' = F / m - g  with the rotors' lag      lost: -z where v = 0
 //! ```
 //!
-//! *A step* by d across, arriving within r = 0.1 m: a turn by the tilt theta, acceleration a = g tan(theta) at the thrust
-//! that holds height, a turn by 2 theta, and the same deceleration, so late that the vehicle stops r behind the goal.
+//! *A step* by d across, arriving within r = 0.1 m: a turn by the tilt theta, acceleration a = g tan(theta) at the
+//! thrust that holds height, a turn by 2 theta, and the same deceleration, so late that the vehicle stops r behind the
+//! goal.
 //! With t(phi) the time of a turn, in which it coasts, and the speed v between,
 //!
 //! ```text
 //! v^2 / a + v t(2 theta) = d + r       until within r: t(theta) + v / a + t(2 theta) + (v - sqrt(4 a r)) / a
 //! ```
 //!
-//! or less where it is within r before it brakes. The quickest of tilts up to the one at which full thrust holds height.
+//! or less where it is within r before it brakes. The quickest of tilts up to that at which full thrust holds height.
 //! Drag, and the climb of a far step, are left out: both take longer.
 
 use super::rows::ARRIVED;

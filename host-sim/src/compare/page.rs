@@ -118,8 +118,8 @@ pub fn page(compared: &Compared) -> Page {
 }
 
 const STARS: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
-                     come to its reference for good, or that could not be flown to its end. The limit is an estimate of what rotors \
-                     and inertia leave possible, whatever the law.";
+                     come to its reference for good, or that could not be flown to its end. The limit is an estimate of what \
+                     rotors and inertia leave possible, whatever the law.";
 const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
 const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
                     stands above its gains, less is better. Continuous and memoryless differ in their choice of \

@@ -13,7 +13,7 @@
 //! | flywheels | rotors whose inertia makes all of their lag: J_r = 2 k_m w lag, w in hover |
 //! | drag | twice the drag, and rotors that flap with a tenth of the moment that their drag has about an arm |
 //! | deadband | commands within 2 % of a rotor's speed that change nothing |
-//! | mild | half a delay, a fifth more mass, 90 % of the voltage, 4 m/s of wind with 1 m/s of turbulence, flywheels, half more drag, 1 % of deadband |
+//! | mild | 10 ms, 1.2 times the mass, 0.9 of the voltage, half of wind, deadband and further drag, flywheels |
 //!
 //! A flight is lost if it ends early or more than [`LOST`] from its reference.
 

@@ -82,8 +82,8 @@ fn clipped(shown: &Shown) -> f64 {
 /// The beginning of a rotor figure's name: a vehicle without rotors has no such figures.
 const OF_ROTORS: &str = "rotor";
 
-/// All rows of a vehicle with this `limit`, with or without `rotors`: of `scenes`, each with every law's figures, and of
-/// the random flights.
+/// All rows of a vehicle with this `limit`, with or without `rotors`: of `scenes`, each with every law's figures, and
+/// of the random flights.
 #[must_use]
 pub fn all(
     scenes: &[(&'static str, Vec<Option<Shown>>)],

@@ -9,7 +9,7 @@
 //! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails
 //! w' = (w_s - w) / lag                                      first order; no lag: at once
 //! w_c stays                                                 if a new one differs by less than deadband w_c
-//! tau = J_r (sum s_i w_i' e3 + omega x e3 sum s_i w_i)      rotors as flywheels; s_i = 1 for a clockwise one, seen from above
+//! tau = J_r (sum s_i w_i' e3 + omega x e3 sum s_i w_i)      rotors as flywheels; s_i = 1 for a clockwise one
 //! ```
 //!
 //! Thrust is k_eta w^2 and drag torque k_m w^2 ([`super::air`]). Speeds in rad/s, voltages in V, lag in s. The lag's

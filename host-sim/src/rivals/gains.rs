@@ -20,8 +20,8 @@
 //! Gains that were found for one vehicle say little of another, rotors and delay included: a set serves the vehicle
 //! that its table describes and no other. A table that leaves out lag, delay, thrust or period serves any.
 //!
-//! Where there are none of this vehicle at this rate, its gains of another rate serve as they are: they stand in 1/s, and
-//! every filter is exact for its period. [`Set::of_other_rates`] says so: a search finds better ones.
+//! Where there are none of this vehicle at this rate, its gains of another rate serve as they are: they stand in 1/s,
+//! and every filter is exact for its period. [`Set::of_other_rates`] says so: a search finds better ones.
 
 use super::kind::Kind;
 use super::pilot::model;

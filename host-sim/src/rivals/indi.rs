@@ -1,8 +1,8 @@
 //! Incremental nonlinear dynamic inversion, with accelerometer and rotor speeds: E. J. J. Smeur, Q. Chu, G. C. H. E. de
 //! Croon: *Adaptive incremental nonlinear dynamic inversion for attitude control of micro air vehicles*, Journal of
-//! Guidance, Control, and Dynamics 39, 2016; E. Tal, S. Karaman: *Accurate tracking of aggressive quadrotor trajectories
-//! using incremental nonlinear dynamic inversion and differential flatness*, IEEE Transactions on Control Systems
-//! Technology 29, 2021.
+//! Guidance, Control, and Dynamics 39, 2016; E. Tal, S. Karaman: *Accurate tracking of aggressive quadrotor
+//! trajectories using incremental nonlinear dynamic inversion and differential flatness*, IEEE Transactions on Control
+//! Systems Technology 29, 2021.
 //!
 //! ```text
 //! tau = tau_f + J (alpha_c - w_f')                                     both: the acting torque, and the missing one
@@ -16,7 +16,8 @@
 //! rotors at their measured speeds. All four are means over the last period. w_ref and w_ref' are the reference's, by
 //! flatness. Gains stand before accelerations.
 //!
-//! Home: known actuators, unknown forces and torques; wind, drag and a shifted centre of mass leave no offset.
+//! Home: rotors that turn as commanded, unknown forces and torques; wind, drag, weak rotors and a shifted centre of
+//! mass leave no offset. Rotors that turn more slowly than commanded leave one: nothing adds up what is missing.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
@@ -95,7 +96,7 @@ impl Indi {
     }
 }
 
-/// The turn from `seen` to `desired`, rad, body: the shortest that brings body z to its place, and about z what is left.
+/// The turn from `seen` to `desired`, rad, body: the shortest that brings body z to its place, and about z the rest.
 fn turn(seen: &UnitQuaternion<f64>, desired: &UnitQuaternion<f64>) -> Vector3<f64> {
     let error = seen.inverse() * desired;
     let about = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 2.0 * error.k.atan2(error.w));

@@ -2,8 +2,8 @@
 //!
 //! It gets what ours gets, in double precision: the measured state; the reference; and as a part of the
 //! reference's acceleration the drag that `[estimates] drag_across` knows of, c v_d across, which ours feeds forward as
-//! well. Its wrench goes the way of ours, within the same limits, through the same allocation; it learns at once whether
-//! either cuts something of it.
+//! well. Its wrench goes the way of ours, within the same limits, through the same allocation; it learns at once
+//! whether either cuts something of it.
 
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};

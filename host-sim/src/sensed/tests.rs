@@ -47,7 +47,8 @@ fn rotor_speeds_show_lag_and_a_weak_battery_but_no_weak_rotor() {
     let of = |more: &str, ticks: u32| sensed(&hummingbird(more), &wrench, ticks).last().unwrap().wrench.x;
     // From 4.9 N in hover, over the first 10 ms.
     assert!((7.5..9.0).contains(&of("", 1)), "{}", of("", 1));
-    let sagging = "[battery]\nfull_voltage = 10.0\nempty_voltage = 10.0\nresistance = 0.0\ncapacity = 9.0\nnominal_voltage = 12.5";
+    let sagging = "[battery]\nfull_voltage = 10.0\nempty_voltage = 10.0\nresistance = 0.0\ncapacity = 9.0\n\
+                   nominal_voltage = 12.5";
     assert!((of(sagging, 30) - 6.4).abs() < 1e-3, "{}", of(sagging, 30));
     assert!((of("[truth]\nthrust_scale = 0.8", 30) - 10.0).abs() < 1e-3);
 }

@@ -110,7 +110,8 @@ pub struct Shown {
     pub offset: f64,
     /// Until the step is within 0.1 m for good, s.
     pub step: f64,
-    /// Change of a rotor's command within 10 ms under noise, rms, as a share of its thrust in hover; zero without rotors.
+    /// Change of a rotor's command within 10 ms under noise, rms, as a share of its thrust in hover; zero without
+    /// rotors.
     pub activity: f64,
     /// Position under noise, m, rms.
     pub noise: f64,
