@@ -94,8 +94,8 @@ fn a_velocity_from_positions_makes_the_loops_as_slow_as_they_say() {
     }
     println!("slowest filter, rad/s: {quick:.1}");
     let [lost, kept] = [0.9, 1.1].map(|share| course(&measured(share * quick)).end_error);
-    // What oscillates is held by the law's levels.
-    assert!(lost > 1e-3 && kept < 1e-4, "{quick} rad/s: {lost} and {kept} m");
+    // What oscillates is held by the law's levels, and before these by the bend of its approach.
+    assert!(lost > 2e-5 && kept < 1e-6, "{quick} rad/s: {lost} and {kept} m");
 }
 
 #[test]

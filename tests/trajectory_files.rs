@@ -126,6 +126,17 @@ fn streamed(scenario: &Scenario) -> f32 {
             governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
         }
         let off = (governor.tick().position - at(tick + 1).position).norm();
+        if off > worst + 0.05 {
+            let r = at(tick + 1);
+            eprintln!(
+                "{} {tick} {off:.3} p {:?} v {:?} a {:?} {bounds:?} {:?}",
+                scenario.name,
+                r.position,
+                r.velocity,
+                r.acceleration,
+                governor.following()
+            );
+        }
         worst = worst.max(off);
     }
     worst

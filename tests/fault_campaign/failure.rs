@@ -109,7 +109,7 @@ const GRASPING: f64 = 0.05;
 
 /// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study holds 27.5 m/s^2 across,
 /// beyond which it is carried away, and has 6.2 m/s^2 downwards.
-const GUST: (f64, f64) = (28.0, 2.5);
+const GUST: (f64, f64) = (32.0, 2.5);
 const UPDRAFT: (f64, f64) = (7.2, 5.0);
 const THERMAL: (f64, f64) = (2.8, 5.0);
 const WIND: (f64, f64) = (26.0, 12.0);

@@ -12,7 +12,7 @@
 //! | alpha_0; M_theta | 0.13 M / J_max; 0.95 (M - J_max alpha_0) |
 //! | r_0 | M_theta^2 / (8 J w_a^2 M): beyond it the tilt brakes along a parabola |
 //! | Omega | 0.5 sqrt(M / J_max) |
-//! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 2.5 w_a: at most 0.2 / h, so that noise fills five ticks |
+//! | k_f, k_s, k_d | 1.12 w_a, 3.1 k_f, 1.5 w_a |
 //! | k_v, k_p across | 0.54 w_a, 0.55 k_v^2 |
 //! | k_v, k_p along the vertical | 1.4 and 1.96 times that, less where k_v T would be above 0.42 |
 //! | A_h, gamma | the thrust beside 0.7 of the weight; 75 degrees or the angle that the least lift allows |
@@ -215,7 +215,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         k_v_vertical: single(stiffer * k_v),
         k_f: single(k_f),
         k_s: single(3.1 * k_f),
-        k_d: single(lesser_f64(2.5 * w_a, 0.2 / f64::from(airframe.period))),
+        k_d: single(1.5 * w_a),
         a_across: single(envelope.a_across),
         a_down: single(strength.a_down),
         tilt_max: single(math::atan(envelope.tangent)),

@@ -4,6 +4,7 @@
 extern crate std;
 use nalgebra::{Quaternion, Vector3};
 
+mod approach;
 mod attitude;
 mod budget;
 mod constants;

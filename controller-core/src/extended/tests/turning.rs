@@ -7,7 +7,7 @@ use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::{Filters, PositionLaw};
 use crate::extended::tests::example::{Craft, greatest_accelerations};
-use crate::extended::turning::TurningLimit;
+use crate::extended::turning::{PUSH_ACROSS, TurningLimit};
 use crate::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 
@@ -124,4 +124,22 @@ fn a_wanted_turn_is_kept_in_its_direction_and_cut_to_alpha_and_to_its_rate() {
     let fast = Vector3::new(2.0 * 9.81, 0.0, 0.0);
     let found = turned(12.0, fast, Vector3::new(900.0, 0.0, 0.0));
     assert!(found.norm() < 1e-3, "{found}");
+}
+
+#[test]
+fn thrust_takes_at_once_what_the_vertical_wants_but_for_what_would_push_across() {
+    let craft = Craft::example();
+    let limit = TurningLimit::new(&craft.constants(&NOTHING_GIVEN), 100.0, craft.period);
+    let (n, greatest) = (12.0, 60.0);
+    for angle in [0.0_f32, 0.2, 0.6, 1.0] {
+        let up = Vector3::new(angle.sin(), 0.0, angle.cos());
+        for more in [-30.0_f32, -2.0, 0.5, 3.0, 30.0] {
+            let change = limit.length(n, more, &up, greatest) - n;
+            let across = change * angle.sin();
+            assert!(across.abs() <= PUSH_ACROSS * 1.0001 && change >= -n && change <= greatest - n);
+            let is_whole = more.abs() * angle.tan() < PUSH_ACROSS && more / angle.cos() > -n;
+            assert!(!is_whole || (change * angle.cos() - more).abs() < 1e-4, "{angle} {more}: {change}");
+        }
+    }
+    assert!(limit.length(n, 1e3, &Vector3::z(), greatest) <= greatest);
 }
