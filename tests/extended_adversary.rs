@@ -1,7 +1,8 @@
 //! What the extended law commands against what the certificate says it can, driven by an adversary that may do
 //! anything: it throws the vehicle about, jumps from one state to another and back, jumps from one reference to
 //! another, ticks 10 to 1,000 times a second or now so and now so, pushes and turns the vehicle harder than any level,
-//! lets the rotors deliver what it likes, asks for accelerations and attitudes as a policy does.
+//! lets the rotors deliver what it likes, makes accelerometer and rotor speeds say anything, asks for accelerations and
+//! attitudes as a policy does.
 //!
 //! No rotor may be commanded beyond its limits and no torque or thrust beyond its bound, not by one unit in the last
 //! place. And the adversary has to come near the ends, or it would be no test of them: in the middle of every flight it
@@ -17,6 +18,7 @@ use controller_core::certificate::extended::ExtendedBounds;
 use controller_core::configuration::Configuration;
 use controller_core::extended::controller::Controller;
 use controller_core::extended::demand::Demand;
+use controller_core::extended::measured::Measured;
 use controller_core::extended::parameters::Extended;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
@@ -212,7 +214,23 @@ impl World {
         }
     }
 
-    fn fly(&self, rng: &mut ChaCha8Rng) -> Shown {
+    /// What an accelerometer and the rotors' speeds may say, right or wrong.
+    fn measured(&self, rng: &mut ChaCha8Rng) -> Measured {
+        let mut any = |most: f32| {
+            let size = random::log_uniform(rng, 1e-2, most);
+            random::vector(rng, size)
+        };
+        let (acceleration, turned) = (any(1e3), any(3.0));
+        let most = self.configuration().limits();
+        let wrench = Wrench { thrust: turned.x * most.thrust_max, torque: any(3.0).component_mul(&most.torque_max) };
+        Measured {
+            acceleration: rng.random_bool(0.9).then_some(acceleration),
+            wrench: rng.random_bool(0.9).then_some(wrench),
+        }
+    }
+
+    /// A flight; one that `lies` makes accelerometer and rotor speeds say anything.
+    fn fly(&self, lies: bool, rng: &mut ChaCha8Rng) -> Shown {
         let mut shown = Shown::default();
         let [shortest, longest] = TICKS_APART;
         let mut period = random::log_uniform(rng, 1e-3, longest);
@@ -245,6 +263,9 @@ impl World {
                 force = random::vector(rng, 2.0 * p.force_across).cast::<f64>();
                 torque = random::vector(rng, 3.0 * p.torque_tilt);
             }
+            if lies {
+                controller.measured(&self.measured(rng));
+            }
             let state = body.state();
             if rng.random_bool(SEARCHED) {
                 self.search(&controller, &state, &wanted, rng, &mut shown);
@@ -264,9 +285,11 @@ impl World {
         shown
     }
 
-    /// Attacks the configuration with `flights`.
+    /// Attacks the configuration with `flights`, and with half as many that lie.
     fn attack(&self, flights: usize, rng: &mut ChaCha8Rng) -> Shown {
-        (0..flights).map(|_| self.fly(rng)).fold(Shown::default(), Shown::join)
+        (0..flights + flights.div_ceil(2))
+            .map(|number| self.fly(number >= flights, rng))
+            .fold(Shown::default(), Shown::join)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The core's extended law against the independent transcription in `support::extended::oracle`, tick by tick on
 //! flights of random vehicles with random constants: thrown about, pushed by wind, with rotors that deliver what they
-//! like, through delay and lag.
+//! like, through delay and lag; every other one of them with an accelerometer and rotor speeds, and with nonsense from
+//! these.
 //!
 //! At every tick the oracle starts from what the core remembers and has to come to the same wrench, the same desired
 //! motion and the same memory; what the core hides (what was commanded, the last state, for how long it learns nothing,
@@ -13,7 +14,7 @@
 
 use crate::support::body::Body;
 use crate::support::extended::oracle::Law;
-use crate::support::extended::oracle::acting::Acting;
+use crate::support::extended::oracle::acting::{Acting, Speeds};
 use crate::support::extended::oracle::estimates::Averages;
 use crate::support::extended::oracle::fallback::Fallback;
 use crate::support::extended::oracle::tick::{Answer, BRANCHES, Last, Nudge, Tick};
@@ -24,6 +25,7 @@ use crate::support::oracle::rounding::{ROUNDINGS, vector4};
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
+use controller_core::extended::measured::Measured;
 use controller_core::extended::memory::Memory;
 use controller_core::extended::position::Filters;
 use controller_core::heading::Heading;
@@ -90,6 +92,7 @@ fn tick(memory: &Memory, hidden: &Hidden, state: &State, reference: &Reference) 
         fallback: hidden.fallback,
         last: hidden.last,
         held: hidden.held > 0,
+        felt: None,
         acted: hidden.acted,
         pending: hidden.acting.pending(),
         nudge: Nudge::default(),
@@ -109,6 +112,7 @@ fn averages(memory: &Memory) -> Averages {
         bias: double(&memory.averages.torque),
         slow: scale.slow.map(|slow| slow.map(|x| double(&x))),
         scale: scale.scale.into(),
+        offset: double(&memory.averages.offset),
     }
 }
 
@@ -130,6 +134,26 @@ fn of_core(memory: &Memory, wrench: &Wrench, shown: &Diagnostics, answer: &Answe
         yaw_room: memory.yaw_room.into(),
         ..*answer
     }
+}
+
+/// What the accelerometer, m/s^2, and the rotors' speeds show where `acted`: nothing, nearly the truth, or nonsense.
+fn measured(rng: &mut ChaCha8Rng, acceleration: &Vector3<f64>, acted: &Vector4<f64>) -> Measured {
+    let acceleration = match rng.random_range(0..20) {
+        0 => None,
+        1 => Some(Vector3::repeat(f32::NAN)),
+        2 => Some(random::vector(rng, 1e4)),
+        _ => Some(acceleration.cast() + random::vector(rng, 3.0)),
+    };
+    let wrench = match rng.random_range(0..20) {
+        0 => None,
+        1 => Some(Wrench { thrust: f32::INFINITY, torque: Vector3::zeros() }),
+        2 => Some(Wrench { thrust: 1.0, torque: random::vector(rng, 1e4) }),
+        _ => {
+            let shown = (acted * rng.random_range(0.6..1.1)).cast::<f32>();
+            Some(Wrench { thrust: shown.x, torque: Vector3::new(shown.y, shown.z, shown.w) })
+        }
+    };
+    Measured { acceleration, wrench }
 }
 
 /// What flights showed.
@@ -161,6 +185,8 @@ struct Plan {
     period: f32,
     ticks: u32,
     compared: u32,
+    /// The seed of what is measured beside the state, if anything is.
+    measures: Option<u64>,
 }
 
 fn fly(
@@ -191,6 +217,9 @@ fn fly(
     let goal = reference(rng, configuration);
     let body = Body::resting(goal.position.cast(), random::attitude(rng).cast());
     let mut world = World { goal, body, wind: Vector3::zeros(), hold: false };
+    let mut sensors = plan.measures.map(random::generator);
+    let radius = 2.0 * (oracle.moments().xy().max() / oracle.mass).sqrt();
+    let mut speeds = Speeds::new(lag, period, configuration.limits().thrust_max, radius);
     let (delivered, off) = (rng.random_range(0.7..1.2), random::vector(rng, 0.02));
     for number in 0..plan.ticks {
         disturb(number, &mut world, rng);
@@ -199,7 +228,18 @@ fn fly(
             hidden.held = settling;
         }
         let (state, goal) = (world.body.state(), world.goal);
-        let before = tick(controller.memory(), &hidden, &state, &goal);
+        let mut before = tick(controller.memory(), &hidden, &state, &goal);
+        if let Some(sensors) = &mut sensors {
+            let moved =
+                hidden.last.map_or_else(Vector3::zeros, |last| (before.velocity - last.velocity) / f64::from(period));
+            let shown = measured(sensors, &moved, &hidden.acted);
+            controller.measured(&shown);
+            before.felt = shown.acceleration.map(|felt| felt.cast());
+            if let Some(Wrench { thrust, torque }) = shown.wrench {
+                let shown = Vector4::new(thrust, torque.x, torque.y, torque.z).cast();
+                [before.acted, before.pending] = speeds.corrected(&shown, &hidden.acted, &before.pending, before.held);
+            }
+        }
         let answer = oracle.evaluate(&before);
         let (wrench, diagnostics) = controller.step(&state, &goal).unwrap();
         let core = of_core(controller.memory(), &wrench, &diagnostics, &answer);
@@ -290,12 +330,13 @@ fn thrown(configuration: &Configuration, world: &mut World, rng: &mut ChaCha8Rng
 fn every_tick_of_random_flights_agrees_with_the_plain_transcription() {
     let mut rng = random::generator(401);
     let mut shown = Shown::default();
-    let plan = Plan { period: 0.01, ticks: 150, compared: 1 };
+    let plan =
+        |number| Plan { period: 0.01, ticks: 150, compared: 1, measures: (number % 2 == 1).then_some(number as u64) };
     // The rotors of the last ones are weak, so that what brakes yaw takes thrust.
     let weak = ["study", "published/iris"].map(|name| vehicle(name).configuration);
     for number in 0..115 {
         let configuration = if number < 100 { around_the_formulas(&mut rng) } else { weak[number % 2].clone() };
-        fly(&configuration, &plan, &mut rng, &mut shown, |_, world, rng| thrown(&configuration, world, rng));
+        fly(&configuration, &plan(number), &mut rng, &mut shown, |_, world, rng| thrown(&configuration, world, rng));
     }
     let Shown { worst, switches, taken, either, .. } = shown;
     for (name, (error, share)) in NAMES.iter().zip(worst) {
@@ -328,7 +369,7 @@ fn said(time: f32) -> f32 {
 fn the_law_is_slowed_and_comes_back_when_the_plain_transcription_says() {
     let mut rng = random::generator(402);
     let mut shown = Shown::default();
-    let plan = Plan { period: 0.02, ticks: 24_500, compared: 200 };
+    let plan = Plan { period: 0.02, ticks: 24_500, compared: 200, measures: None };
     for _ in 0..3 {
         let configuration = random_configuration(&mut rng);
         fly(&configuration, &plan, &mut rng, &mut shown, |number, world, _| {

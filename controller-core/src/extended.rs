@@ -19,6 +19,7 @@
 //! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
 //! | [`fallback`] | the same law, slowed down, if a flight makes no progress | 13 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
+//! | [`measured`] | an accelerometer's acceleration and the rotors' speeds, where there are any | 2, 10 |
 //! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
 //! | [`demand`] | an acceleration, or an attitude and a thrust, in place of the feedback | |
 //! | [`memory`] | the law's memory from one tick to the next | |
@@ -39,6 +40,7 @@ pub mod fallback;
 pub mod force;
 pub mod heading;
 pub mod learning;
+pub mod measured;
 pub mod memory;
 pub mod parameters;
 pub mod position;

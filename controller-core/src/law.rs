@@ -4,6 +4,7 @@ use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Diagnostics};
 use crate::error::{InputError, ParameterError};
 use crate::extended;
+use crate::extended::measured::Measured;
 use crate::extended::memory::Estimates;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -73,6 +74,15 @@ impl Law {
         match self {
             Self::Paper(_) => {}
             Self::Extended(law) => law.hold_estimates(),
+        }
+    }
+
+    /// What was measured beside the state since the last step, for the next one alone: see
+    /// [`extended::controller::Controller::measured`].
+    pub fn measured(&mut self, measured: &Measured) {
+        match self {
+            Self::Paper(_) => {}
+            Self::Extended(law) => law.measured(measured),
         }
     }
 

@@ -13,6 +13,7 @@
 //! ```
 //!
 //! - `present`: the state for the law, without the rotors' vibration;
+//! - `felt`: the mean acceleration between two ticks, by accelerometer alone;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;
@@ -51,6 +52,7 @@ pub mod verdict;
 
 mod candidate;
 mod checkpoints;
+mod felt;
 mod measurement;
 mod nominal;
 mod present;
@@ -68,6 +70,7 @@ use crate::measurement::{STAMP_LEAD_MAX, Stamped};
 use candidate::Candidate;
 use checkpoints::Checkpoints;
 use controller_core::state::State;
+use felt::Felt;
 use filter::{Biases, Filter};
 use health::Statistics;
 use heapless::Vec;
@@ -131,6 +134,7 @@ pub struct Estimator {
     gained: f32,
     /// The vertical speed of [`Self::climb`], m/s.
     climb: f32,
+    felt: Felt,
     waiting: Vec<Stamped<Pose>, WAITING>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
@@ -154,6 +158,7 @@ impl Estimator {
             grounded: None,
             gained: 0.0,
             climb: 0.0,
+            felt: Felt::NOTHING,
             waiting: Vec::new(),
             frame: None,
             statistics: Statistics::NONE,
@@ -181,10 +186,12 @@ impl Estimator {
         self.history.push(increment);
         self.stream.note(if self.airborne { self.stirs(increment) } else { self.moves(increment) });
         if let Some(latest) = &mut self.latest {
-            let before = latest.velocity.z;
+            let before = latest.velocity;
             latest.advance(increment, self.settings.parameters().gravity);
             let taught = self.grounded.map_or(0.0, |(_, grounded)| latest.accelerometer_bias.z - grounded.z);
-            let felt = latest.velocity.z - before;
+            let change = latest.velocity - before;
+            self.felt.add(&change);
+            let felt = change.z;
             self.gained += felt;
             self.climb += felt
                 + taught * increment.seconds()
@@ -263,6 +270,31 @@ impl Estimator {
         Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps, gained })
     }
 
+    /// The mean of v', m/s^2, world, since the last call, to be called once a tick: by accelerometer, with the increment
+    /// that is `under_way`. None at the first call, and where [`Self::state`] has none.
+    pub fn felt(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
+        let Some(ahead) = self.velocity_ahead(now, under_way) else {
+            self.felt = Felt::NOTHING;
+            return None;
+        };
+        self.felt.mean(now, &ahead)
+    }
+
+    /// By how much the velocity changes from the end of the last increment to `now`, m/s, world.
+    fn velocity_ahead(&self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
+        let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
+        let Present { force, .. } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let goes_on = |next: &&Increment| next.start == last.end && next.is_usable(ahead);
+        let (pushed, known) =
+            under_way.filter(goes_on).map_or((Vector3::zeros(), 0.0), |next| (next.delta_velocity, next.seconds()));
+        let seconds = ahead as f32 * 1e-6;
+        let pushed = pushed + force * (seconds - known) - latest.accelerometer_bias * seconds;
+        let mut change = rotated(&latest.attitude, &pushed);
+        change.z -= self.settings.parameters().gravity * seconds;
+        Some(change)
+    }
+
     /// What the estimate is worth at `now`, us.
     #[must_use]
     pub fn health(&self, now: u64) -> Health {
@@ -306,6 +338,7 @@ impl Estimator {
         self.checkpoints.clear();
         self.waiting.clear();
         (self.filter, self.latest, self.candidate) = (None, None, None);
+        self.felt = Felt::NOTHING;
         self.statistics = self.statistics.restarted();
     }
 }

@@ -15,6 +15,7 @@ use super::spool::Spool;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
+use controller_core::extended::measured::Measured;
 use controller_core::governor::{self, Following, Governor, GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::heading::Heading;
 use controller_core::law::Command;
@@ -219,6 +220,11 @@ impl<'m> Chain<'m> {
     /// Whether the last thrusts have been held for long enough.
     pub fn is_refused(&self) -> bool {
         self.refused >= REFUSAL_MAX
+    }
+
+    /// Takes the mean acceleration since the last tick, m/s^2, world, for the tick to come.
+    pub fn feel(&mut self, acceleration: Option<Vector3<f32>>) {
+        self.law.measured(&Measured { acceleration, wrench: None });
     }
 
     /// One tick on the governor's reference.

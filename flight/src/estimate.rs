@@ -10,7 +10,7 @@ use estimation::estimator::{
     COASTING_AFTER, EXTRAPOLATION_MAX, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
 };
 use estimation::measurement::is_fresh;
-use nalgebra::Quaternion;
+use nalgebra::{Quaternion, Vector3};
 
 /// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
 pub const SETTLED_AFTER: u64 = 1_000_000;
@@ -20,6 +20,8 @@ pub const SETTLED_AFTER: u64 = 1_000_000;
 pub(super) struct Estimate {
     /// The state at the tick's instant; none without an IMU, or where the estimator has lost it.
     pub state: Option<EstimatedState>,
+    /// v' since the last tick, by accelerometer, m/s^2, world.
+    pub felt: Option<Vector3<f32>>,
     pub health: Health,
     /// The verdict on this tick's poses: the last refusal, or else what the last was taken for.
     pub pose: Option<Result<Taken, Rejected>>,
@@ -99,6 +101,7 @@ impl<'m> Estimation<'m> {
             self.estimator.health(now),
             rate.and_then(|rate| self.estimator.state(now, &rate.value, inputs.under_way.as_ref())),
         );
+        let felt = self.estimator.felt(now, inputs.under_way.as_ref());
         let jumped = health.jumps != self.jumps;
         let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
         self.since = if steady { self.since.or(Some(now)) } else { None };
@@ -108,6 +111,7 @@ impl<'m> Estimation<'m> {
         let last = core::mem::replace(&mut self.last, current);
         Estimate {
             state,
+            felt,
             health,
             pose,
             jumped_from: last.filter(|_| jumped).map(|(state, then)| carried_on(&state, now.saturating_sub(then))),

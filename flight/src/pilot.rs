@@ -26,7 +26,7 @@ use controller_core::governor::{Following, GovernorLimits};
 use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
-/// Everything that decides what the motors do. Size: about 4 KB, and its [`Memory`] and [`Estimator`].
+/// Everything that decides what the motors do. Size: about 4.7 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,
@@ -292,6 +292,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
             return Done::without(Output::Stop);
         };
+        chain.feel(estimate.felt);
         let mut handed = None;
         let flown = if self.mode == Mode::Descending {
             // Poses that are given up do not come back.

@@ -4,6 +4,7 @@ use crate::rivals::pilot::RivalPilot;
 use crate::sensed::Sensed;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
+use controller_core::extended::measured::Measured;
 use controller_core::extended::memory::Estimates;
 use controller_core::law::{Command, Law};
 use controller_core::reference::Reference;
@@ -78,6 +79,14 @@ impl Controller {
     pub fn hold_estimates(&mut self) {
         match self {
             Self::Ours(law) => law.hold_estimates(),
+            Self::Rival(_) => {}
+        }
+    }
+
+    /// What was measured beside the state, for our law's next step; a rival gets what is [`Sensed`].
+    pub fn measured(&mut self, measured: &Measured) {
+        match self {
+            Self::Ours(law) => law.measured(measured),
             Self::Rival(_) => {}
         }
     }

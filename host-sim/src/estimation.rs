@@ -48,6 +48,8 @@ pub struct Estimation {
     conditioner: Conditioner,
     estimator: Estimator,
     jumps: u32,
+    /// v' since the last tick, m/s^2, world, by accelerometer.
+    felt: Option<Vector3<f32>>,
     /// f, m/s^2, body, of the last estimate: without the accelerometer's bias, the mean over two increments.
     specific_force: Vector3<f64>,
     /// Wrenches of the rotors, one a tick, over as long.
@@ -71,6 +73,7 @@ impl Estimation {
             conditioner,
             estimator: Estimator::new(&settings),
             jumps: 0,
+            felt: None,
             specific_force: Vector3::z() * f64::from(gravity),
             acted: VecDeque::new(),
             period: scenario.timing.period_us,
@@ -124,12 +127,19 @@ impl Estimation {
         let Some(estimated) = estimated else {
             return Err(NoEstimate(self.estimator.health(self.clock).faults.worst()));
         };
+        self.felt = self.estimator.felt(self.clock, under_way.as_ref());
         let jumped = estimated.jumps != self.jumps;
         self.jumps = estimated.jumps;
         let force = estimated.acceleration + Vector3::z() * self.gravity;
         let attitude = UnitQuaternion::new_unchecked(estimated.state.attitude);
         self.specific_force = attitude.inverse_transform_vector(&force).map(f64::from);
         Ok((estimated.state, jumped))
+    }
+
+    /// v' from the last estimate but one to the last, m/s^2, world, by accelerometer.
+    #[must_use]
+    pub fn felt(&self) -> Option<Vector3<f32>> {
+        self.felt
     }
 
     /// What is known beside the last estimate, while the rotors act with `truth`: the mean over the same time of both.

@@ -17,6 +17,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
 use controller_core::error::{InputError, ParameterError};
+use controller_core::extended::measured::Measured;
 use controller_core::extended::memory::Estimates;
 use controller_core::law::{Command, Law};
 use controller_core::reference::{Reference, Trajectory};
@@ -281,9 +282,13 @@ impl Flight {
     #[inline]
     fn measure(&mut self, state: &BodyState) -> Result<Option<State>, NoEstimate> {
         let Some(estimation) = &mut self.estimation else {
-            return Ok(self.sensors.as_mut().map(|sensors| sensors.measure(state)));
+            let Some(sensors) = &mut self.sensors else { return Ok(None) };
+            let measured = sensors.measure(state);
+            self.controller.measured(&Measured { acceleration: sensors.felt(), wrench: None });
+            return Ok(Some(measured));
         };
         let (measured, jumped) = estimation.state()?;
+        self.controller.measured(&Measured { acceleration: estimation.felt(), wrench: None });
         if jumped {
             self.controller.hold_estimates();
         }

@@ -72,8 +72,11 @@ pub struct Sensors {
     sensed: Late<7>,
     /// The last ticks, this one last: what a pose that arrives will need of its own.
     past: VecDeque<Past>,
-    /// Measurements still under way.
-    late: VecDeque<State>,
+    /// Measurements still under way: states, and what the accelerometer felt before them.
+    late: VecDeque<(State, Option<Vector3<f32>>)>,
+    /// v' since the last tick, m/s^2, world, as the accelerometer and the attitude at the tick have it.
+    felt: Option<Vector3<f32>>,
+    arrived: Option<Vector3<f32>>,
 }
 
 /// What a late pose will need of the tick that it shows.
@@ -112,6 +115,8 @@ impl Sensors {
             sensed: Late::new(what.delay_ticks as f64 + late),
             past: VecDeque::new(),
             late: VecDeque::new(),
+            felt: None,
+            arrived: None,
         })
     }
 
@@ -138,12 +143,19 @@ impl Sensors {
         self.tick += 1;
         let (position, velocity) = (single(&self.position), single(&self.velocity));
         let now = State { position, velocity, attitude: self.attitude.attitude(), angular_velocity: gyro };
-        self.late.push_back(now);
-        let arrived = self.late.front().copied().unwrap_or(now);
+        self.late.push_back((now, self.felt));
+        let (arrived, felt) = self.late.front().copied().unwrap_or((now, self.felt));
+        self.arrived = felt;
         if self.late.len() as u64 > self.what.delay_ticks {
             self.late.pop_front();
         }
         arrived
+    }
+
+    /// v' before the state that [`Self::measure`] gave last, m/s^2, world; none without an accelerometer.
+    #[must_use]
+    pub fn felt(&self) -> Option<Vector3<f32>> {
+        self.arrived
     }
 
     /// What is sensed at this tick, after its state is measured, while `truth` is what happens.
@@ -181,7 +193,9 @@ impl Sensors {
         self.accelerometer_error = bias + self.noise(noise);
         let sample = truly.inverse_transform_vector(&mean) + self.accelerometer_error;
         let believed = Quaternion::from(self.attitude.attitude().coords.map(f64::from));
-        UnitQuaternion::new_normalize(believed) * sample - gravity
+        let felt = UnitQuaternion::new_normalize(believed) * sample - gravity;
+        self.felt = Some(single(&felt));
+        felt
     }
 
     /// A pose of this moment: position, m, and attitude.

@@ -1,7 +1,7 @@
 //! One step of the extended law: state and reference in, wrench out.
 //!
 //! ```text
-//! the last interval -> learning (thrust_scale, force, torque_bias)
+//! the last interval, Measured -> learning (thrust_scale, force, torque_bias)
 //! State, Reference -> position -> attitude_reference -> path_lifting, attitude
 //!                  -> budget: bias, feedback, turning about the tilt's axes -> heading -> thrust_range -> Wrench
 //! ```
@@ -18,6 +18,7 @@ use super::demand::Demand;
 use super::force;
 use super::heading::{HeadingLaw, Seen};
 use super::learning::Learning;
+use super::measured::Measured;
 use super::memory::{Averages, Estimates, Last, Memory};
 use super::position::{Filters, Most, PositionLaw};
 use super::thrust_range::ThrustRange;
@@ -32,6 +33,7 @@ use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
+use sections::Rotating;
 
 /// Where ubar comes from.
 enum Wanted<'a> {
@@ -75,6 +77,8 @@ pub struct Controller {
     /// Ticks for which the wrench that acts still depends on one that was not delivered.
     settling: u32,
     memory: Memory,
+    /// For the next step.
+    measured: Measured,
 }
 
 impl Controller {
@@ -98,6 +102,12 @@ impl Controller {
     /// every tick on the ground, without a velocity, or whose wrench the rotors could not deliver.
     pub fn hold_estimates(&mut self) {
         self.memory.held = self.settling;
+    }
+
+    /// What was measured since the last step: for the next one alone, whether that is refused or not. Without it the
+    /// estimates rest on the states and the commands.
+    pub fn measured(&mut self, measured: &Measured) {
+        self.measured = *measured;
     }
 
     /// The estimated thrust scale, delivered over commanded: the caller divides the wrench by it before commanding
@@ -176,9 +186,11 @@ impl Controller {
         reference: &Reference,
         wanted: &Wanted,
     ) -> Result<(Wrench, Diagnostics), InputError> {
+        let measured = core::mem::take(&mut self.measured);
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
-        let learnt = self.learning.learnt(&self.memory, state, &axis);
+        let Rotating { acted, pending, lasting } = self.rotating(measured.wrench.as_ref());
+        let learnt = self.learning.learnt(&self.memory, state, &axis, &measured, &acted);
         let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
         let greatest = self.ceiling.at(scale, &bias);
         let force = force::held(&force, &self.acceleration_command(reference, &Vector3::zeros()), greatest);
@@ -186,7 +198,7 @@ impl Controller {
         let filters = self.memory.filters;
         let feedback = self.feedback(state, reference, &force, greatest, wanted);
         let course = self.course(reference, &filters, &feedback, greatest);
-        let errors = self.errors(state, reference, &course, &self.late(scale, &bias));
+        let errors = self.errors(state, reference, &course, &self.late(scale, &bias, &pending));
         let tilting = self.tilting(state, &course, &errors, &bias, scale);
         let motion = course.desired.motion_of(&course.turn.rate, &tilting.turn, &reference.heading);
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
@@ -222,6 +234,7 @@ impl Controller {
         }
         let memory = &mut self.memory;
         memory.yaw_room = yaw_room;
+        memory.lasting = lasting;
         memory.held = memory.held.saturating_sub(1);
         memory.last = Some(Last {
             velocity: state.velocity,

@@ -3,8 +3,9 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`ForceObserver::observed`] | a = (v_k - v_(k-1)) / h + g e3 + kappa v - s bbar F / m: the acceleration beside thrust and known drag |
-//! | [`ForceObserver::averaged`] | zeta += (1 - e^(-L h)) (a - zeta) |
+//! | [`ForceObserver::made`] | v' + g e3 + kappa v: the acceleration by thrust and unknown force |
+//! | [`ForceObserver::differed`] | v' = (v_k - v_(k-1)) / h, where it is not measured |
+//! | [`ForceObserver::averaged`] | zeta += (1 - e^(-L h)) (a - zeta), a being what is made beside the thrust, s bbar F / m |
 //! | [`ForceObserver::believed`] | d: zeta cut to D_h across (radially), to D_z+ upwards and D_z- downwards |
 //!
 //! d enters the position law and passes its filters, so that no derivative of it is needed.
@@ -49,12 +50,19 @@ impl ForceObserver {
         }
     }
 
-    /// The mean acceleration over an interval by thrust and unknown force, without gravity and known drag, m/s^2, world
-    /// frame. `velocities`, m/s, belong to the interval's start and end.
+    /// The mean acceleration over an interval by its difference of `velocities`, m/s, at start and end.
     #[must_use]
-    pub fn observed(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
+    pub fn differed(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
         let [start, end] = velocities;
-        let mut made = (end - start) * self.per_period;
+        (end - start) * self.per_period
+    }
+
+    /// The mean `acceleration` over an interval without gravity and known drag, m/s^2, world frame. `velocities`, m/s,
+    /// belong to the interval's start and end.
+    #[must_use]
+    pub fn made(&self, acceleration: Vector3<f32>, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
+        let [start, end] = velocities;
+        let mut made = acceleration;
         made.x += self.half_drag * (start.x + end.x);
         made.y += self.half_drag * (start.y + end.y);
         made.z += self.gravity;

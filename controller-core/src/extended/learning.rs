@@ -1,17 +1,19 @@
 //! How the estimates learn from an interval: the vehicle's motion against the wrench that acted. Sections 2, 7 and 9
 //! of `docs/extended-law.md`.
 //!
-//! The acceleration without gravity and known drag goes to the thrust scale. Its rest beside the scaled thrust goes to
-//! the force. The rotation's rest beside the scaled torque goes to the torque bias.
+//! The acceleration, measured or else the difference of velocities, goes to the thrust scale, without gravity and known
+//! drag. Its rest beside the scaled thrust goes to the force. The rotation's rest beside the scaled torque goes to the
+//! torque bias.
 
 use super::force::ForceObserver;
+use super::measured::{Measured, Sensors};
 use super::memory::{Averages, Estimates, Memory};
 use super::parameters::ExtendedParameters;
 use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
 use crate::state::State;
-use crate::vehicle::Vehicle;
-use nalgebra::Vector3;
+use crate::vehicle::{Limits, Vehicle};
+use nalgebra::{Vector3, Vector4};
 
 /// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate
 /// in it, rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
@@ -24,48 +26,64 @@ pub struct Learning {
     pub(super) force: ForceObserver,
     torque: TorqueBias,
     scale: ThrustScale,
+    pub(super) sensors: Sensors,
     per_mass: f32,
 }
 
 impl Learning {
     /// For intervals of `period`, s.
     #[must_use]
-    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, period: f32) -> Self {
+    pub fn new(parameters: &ExtendedParameters, vehicle: &Vehicle, limits: &Limits, period: f32) -> Self {
         Self {
             force: ForceObserver::new(parameters, vehicle.gravity, period),
             torque: TorqueBias::new(parameters, &vehicle.inertia, period),
             scale: ThrustScale::new(parameters, period),
+            sensors: Sensors::new(vehicle, limits, period),
             per_mass: 1.0 / vehicle.mass,
         }
     }
 
-    /// The averages in `memory` brought up to this tick, if the last interval can teach anything;
-    /// `axis` is R e3 now.
+    /// The averages in `memory` brought up to this tick, if the last interval can teach anything; `axis` is R e3 now,
+    /// `acted` the mean wrench as commanded, N and N m.
     #[must_use]
     #[inline(always)] // likewise: see position.rs
-    pub fn learnt(&self, memory: &Memory, state: &State, axis: &Vector3<f32>) -> Averages {
-        let Memory { averages, acted, .. } = memory;
+    pub fn learnt(
+        &self,
+        memory: &Memory,
+        state: &State,
+        axis: &Vector3<f32>,
+        measured: &Measured,
+        acted: &Vector4<f32>,
+    ) -> Averages {
+        let averages = &memory.averages;
         let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
             return *averages;
         };
-        let made = self.force.observed([&last.velocity, &state.velocity]);
+        let velocities = [&last.velocity, &state.velocity];
+        let differed = self.force.differed(velocities);
+        let made = self.force.made(differed, velocities);
         let turned = (state.angular_velocity - last.angular_velocity).norm_squared();
         let moves = made.norm_squared() < GREATEST_ACCELERATION * GREATEST_ACCELERATION;
         if !(moves & (turned < GREATEST_CHANGE * GREATEST_CHANGE)) {
             return *averages;
         }
+        let felt = measured.usable_acceleration();
+        let felt = felt.map(|felt| self.sensors.acceleration(felt, &differed, &averages.offset));
+        let (made, offset) = felt.map_or((made, averages.offset), |[acceleration, offset]| {
+            (self.force.made(acceleration, velocities), offset)
+        });
         let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
         let scale = self.scale.learnt(&averages.scale, &made, &commanded);
         let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
         let torque = self.torque.observed([&last.angular_velocity, &state.angular_velocity], &torque);
-        Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque) }
+        Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque), offset }
     }
 
     /// The averages cut to their levels.
     #[must_use]
     pub fn believed(&self, averages: &Averages) -> Estimates {
-        let Averages { force, torque, scale } = averages;
+        let Averages { force, torque, scale, .. } = averages;
         Estimates { force: self.force.believed(force), torque: self.torque.estimate(torque), scale: scale.scale }
     }
 }

@@ -33,13 +33,15 @@ pub struct Averages {
     pub torque: Vector3<f32>,
     /// The thrust scale and its slow averages.
     pub scale: ScaleEstimate,
+    /// B of [`measured`](super::measured), m/s^2, world frame.
+    pub offset: Vector3<f32>,
 }
 
 impl Averages {
     /// With torque bias and thrust scale known.
     #[must_use]
     pub fn known(torque: Vector3<f32>, scale: f32) -> Self {
-        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale) }
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale), offset: Vector3::zeros() }
     }
 }
 
@@ -75,6 +77,8 @@ pub struct Memory {
     pub(super) actuators: ActuatorState,
     /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
     pub(super) acted: Vector4<f32>,
+    /// E of [`measured`](super::measured); none before rotor speeds were measured.
+    pub(super) lasting: Option<Vector4<f32>>,
 }
 
 impl Memory {
@@ -92,6 +96,7 @@ impl Memory {
             last: None,
             actuators: ActuatorState::steady(hover),
             acted: hover,
+            lasting: None,
         }
     }
 }

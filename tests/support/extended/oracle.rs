@@ -97,7 +97,8 @@ impl Law {
         Self { rows: law.rows(&limits.torque_max.cast()), ..law }
     }
 
-    fn moments(&self) -> Vector3<f64> {
+    /// The diagonal of J, kg m^2.
+    pub fn moments(&self) -> Vector3<f64> {
         self.inertia.diagonal()
     }
 

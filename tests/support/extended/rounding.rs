@@ -34,7 +34,7 @@ pub fn distances(a: &Answer, b: &Answer) -> [f64; NAMES.len()] {
         (a.filters[2] - b.filters[2]).norm(),
         (s.force - t.force).norm(),
         (s.bias - t.bias).norm(),
-        apart(s.slow, t.slow),
+        apart(s.slow, t.slow).hypot((s.offset - t.offset).norm()),
         (s.scale - t.scale).abs(),
         (a.side - b.side).norm(),
         (a.yaw_room - b.yaw_room).abs(),
@@ -120,6 +120,9 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
             let speed = along((t.velocity - last.velocity).norm() + (change + slow) * h);
             moved.push(Tick { last: Some(Last { velocity: last.velocity + speed, ..last }), ..*t });
             moved.push(Tick { last: Some(Last { axis: last.axis + along(1.0), ..last }), ..*t });
+            let offset = averages.offset.norm();
+            let felt = t.felt.map(|felt| felt + along(felt.norm() + offset + change + slow));
+            moved.push(Tick { felt, ..*t });
             let rate = along((t.omega - last.omega).norm() + last.omega.norm() * last.omega.norm() * h);
             moved.push(Tick { last: Some(Last { omega: last.omega + rate, ..last }), ..*t });
             let known = along(last.forward.norm() + forward / ULP);

@@ -11,6 +11,7 @@ use crate::extended::budget::{TickBudget, TorqueBudget};
 use crate::extended::fallback::{Slowed, slowed};
 use crate::extended::heading::{self, HeadingLaw};
 use crate::extended::learning::Learning;
+use crate::extended::measured::Measured;
 use crate::extended::memory::{Averages, Memory};
 use crate::extended::parameters::Extended;
 use crate::extended::position::{Most, PositionLaw};
@@ -59,12 +60,13 @@ impl Controller {
             budget: TickBudget::new(&budget, [p.scale_least, p.scale_greatest]),
             reserve: inertia * p.turn_reserve,
             turning: TurningLimit::new(parameters, acceleration, period),
-            learning: Learning::new(parameters, vehicle, period),
+            learning: Learning::new(parameters, vehicle, limits, period),
             changed: None,
             range: ThrustRange::new(rotors, p.floor_margin, limits.thrust_max, limits.torque_max.z),
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
             memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
+            measured: Measured::default(),
         })
     }
 
@@ -82,7 +84,8 @@ impl Controller {
     /// As [`Self::new`]; the period then stays what it was.
     pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
         let rebuilt = Self::build(&self.vehicle, &self.limits, &self.law, self.rotors.as_ref(), period)?;
-        *self = Self { memory: self.memory, learning: self.learning, changed: Some(rebuilt.learning), ..rebuilt };
+        let Self { memory, learning, measured, .. } = *self;
+        *self = Self { memory, learning, measured, changed: Some(rebuilt.learning), ..rebuilt };
         Ok(())
     }
 }

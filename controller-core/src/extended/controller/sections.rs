@@ -6,16 +6,27 @@ use crate::attitude_reference::{DesiredAttitude, Turn};
 use crate::extended::attitude::{Late, Tilt};
 use crate::extended::budget::THRUST_LEFT;
 use crate::extended::demand::Demand;
+use crate::extended::memory::Memory;
 use crate::extended::position::{Filters, PositionFeedback, PositionLaw};
 use crate::math;
 use crate::path_lifting::{self, Lifted};
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::{State, Wrench};
 use core::hint::cold_path;
-use nalgebra::{Quaternion, Vector2, Vector3};
+use nalgebra::{Quaternion, Vector2, Vector3, Vector4};
 
 /// The least share of M_theta that a bias leaves.
 const LEVEL_LEAST: f32 = 0.05;
+
+/// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
+pub(super) struct Rotating {
+    /// The mean wrench since the last tick.
+    pub acted: Vector4<f32>,
+    /// The impulse that is still to come, N s and N m s.
+    pub pending: Vector4<f32>,
+    /// E of [`measured`](crate::extended::measured).
+    pub lasting: Option<Vector4<f32>>,
+}
 
 /// Where u points, and how it would turn.
 pub(super) struct Course {
@@ -201,10 +212,27 @@ impl Controller {
         }
     }
 
+    /// What the rotors have done since the last tick: by the model, corrected by what was `measured` of it.
+    #[inline(always)]
+    pub(super) fn rotating(&self, measured: Option<&Wrench>) -> Rotating {
+        let Memory { acted, lasting, held, ref actuators, .. } = self.memory;
+        let pending = self.actuators.pending(actuators);
+        let sensors = &self.learning.sensors;
+        let Some([beside, slower]) = measured.and_then(|wrench| sensors.beside(wrench, &acted, lasting.as_ref()))
+        else {
+            return Rotating { acted, pending, lasting };
+        };
+        Rotating {
+            acted: acted + beside,
+            pending: pending + beside * self.law.actuators.lag,
+            // What was not delivered does not last.
+            lasting: if held == 0 { Some(slower) } else { lasting },
+        }
+    }
+
     /// The part of past commands that has not acted yet, for the current thrust scale and torque bias.
     #[inline(always)]
-    pub(super) fn late(&self, scale: f32, bias: &Vector3<f32>) -> Late {
-        let pending = self.actuators.pending(&self.memory.actuators);
+    pub(super) fn late(&self, scale: f32, bias: &Vector3<f32>, pending: &Vector4<f32>) -> Late {
         let impulse = Vector3::new(pending.y, pending.z, pending.w) * scale + bias * self.late;
         let forward = self.memory.last.as_ref().map_or_else(Vector3::zeros, |last| last.forward);
         Late { time: self.late, impulse, forward }

@@ -3,6 +3,7 @@
 
 extern crate std;
 mod demand;
+mod measured;
 
 use super::*;
 use crate::allocation::MinimumNorm;

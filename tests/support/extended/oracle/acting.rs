@@ -56,3 +56,41 @@ impl Acting {
         self.wrench * self.lag + waiting + self.command(whole) * late
     }
 }
+
+/// What rotor speeds show beside the model of the commands, less the part of it that lasts; N and N m.
+pub struct Speeds {
+    lag: f64,
+    period: f64,
+    /// The greatest thrust and torque that count.
+    greatest: [f64; 2],
+    lasting: Option<Vector4<f64>>,
+}
+
+impl Speeds {
+    /// Twice the greatest thrust counts, and that on an arm of 2 sqrt(J / m).
+    pub fn new(lag: f32, period: f32, thrust_max: f32, radius: f64) -> Self {
+        let thrust = 2.0 * double(thrust_max);
+        Self { lag: double(lag), period: double(period), greatest: [thrust, thrust * radius], lasting: None }
+    }
+
+    /// The mean wrench and the pending impulse, corrected by what was `measured`; `held` estimates take nothing in.
+    pub fn corrected(
+        &mut self,
+        measured: &Vector4<f64>,
+        acted: &Vector4<f64>,
+        pending: &Vector4<f64>,
+        held: bool,
+    ) -> [Vector4<f64>; 2] {
+        let [thrust, torque] = self.greatest;
+        let size = (measured.x / thrust).hypot(measured.fixed_rows::<3>(1).norm() / torque);
+        if size.is_nan() || size >= 1.0 {
+            return [*acted, *pending];
+        }
+        let lasting = self.lasting.unwrap_or(measured - acted);
+        let beside = measured - acted - lasting;
+        if !held {
+            self.lasting = Some(lasting + beside * (1.0 - (-self.period).exp()));
+        }
+        [acted + beside, pending + beside * self.lag]
+    }
+}

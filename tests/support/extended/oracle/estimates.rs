@@ -16,6 +16,8 @@ pub struct Averages {
     pub bias: Vector3<f64>,
     pub slow: Option<[Vector3<f64>; 2]>,
     pub scale: f64,
+    /// B: how the accelerometer differs for long.
+    pub offset: Vector3<f64>,
 }
 
 impl Law {
@@ -31,6 +33,16 @@ impl Law {
         if made.norm() >= 1e3 || (t.omega - last.omega).norm() >= 1e3 {
             return before;
         }
+        // An accelerometer knows better what is quick, within the range of one.
+        let mut offset = before.offset;
+        let made = match t.felt.filter(|felt| felt.norm() < 500.0) {
+            Some(felt) => {
+                let acceleration = felt - before.offset;
+                offset += (acceleration - (t.velocity - last.velocity) / h) * weight(1.0);
+                acceleration + Vector3::new(drag.x, drag.y, self.gravity)
+            }
+            None => made,
+        };
         let commanded = (last.axis + axis) / 2.0 * (t.acted[0] / self.mass);
 
         // They begin with the first interval.
@@ -50,6 +62,6 @@ impl Law {
         let bandwidth = double(p.torque_bandwidth);
         let averaging = Vector3::new(bandwidth, bandwidth, bandwidth / 2.0).map(weight);
         let bias = before.bias + averaging.component_mul(&(observed - before.bias));
-        Averages { force, bias, slow: Some(slow), scale }
+        Averages { force, bias, slow: Some(slow), scale, offset }
     }
 }

@@ -40,8 +40,10 @@ pub struct Tick {
     pub last: Option<Last>,
     /// Nothing is learnt.
     pub held: bool,
+    /// The mean acceleration since the last tick, where it was measured, m/s^2.
+    pub felt: Option<Vector3<f64>>,
     /// The mean of the wrench commanded since the last tick, through delay and lag; the impulse that is still under
-    /// way.
+    /// way. Both corrected by rotor speeds, where these were measured.
     pub acted: Vector4<f64>,
     pub pending: Vector4<f64>,
     pub nudge: Nudge,
