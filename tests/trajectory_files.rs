@@ -126,7 +126,7 @@ fn streamed(scenario: &Scenario) -> f32 {
             governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
         }
         let off = (governor.tick().position - at(tick + 1).position).norm();
-        if off > worst + 0.05 {
+        if off > 0.03 && worst <= 0.03 {
             let r = at(tick + 1);
             eprintln!(
                 "{} {tick} {off:.3} p {:?} v {:?} a {:?} {bounds:?} {:?}",

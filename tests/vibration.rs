@@ -203,7 +203,7 @@ fn check(flown: &Flown, is_blinded: bool, off: f64, what: &str) {
     let reasons: Vec<Reason> = flown.reasons.iter().map(|(reason, _)| *reason).take(7).collect();
     assert_eq!(reasons, [&begins[..], &ends[..]].concat(), "{what}: {flown:?}");
     let gentle = if is_blinded { 1.0 } else { 0.6 };
-    assert!(flown.off.0 < off && flown.touchdown < gentle && flown.refused < 3, "{what}: {flown:?}");
+    assert!(flown.off.0 < off && flown.touchdown < gentle && flown.refused <= 3, "{what}: {flown:?}");
 }
 
 #[test]

@@ -112,7 +112,7 @@ const GRASPING: f64 = 0.05;
 const GUST: (f64, f64) = (32.0, 2.5);
 const UPDRAFT: (f64, f64) = (7.2, 5.0);
 const THERMAL: (f64, f64) = (2.8, 5.0);
-const WIND: (f64, f64) = (26.0, 12.0);
+const WIND: (f64, f64) = (28.0, 12.0);
 
 /// What holds a vehicle down, m/s^2: more than its thrust.
 const HELD_DOWN: f64 = 30.0;

@@ -23,7 +23,7 @@ mod target {
         Sample,
         fn(&mut Estimator, &Increment),
         Fuse,
-        fn(&Estimator, u64, &Vector3<f32>) -> Option<EstimatedState>,
+        fn(&Estimator, u64, &Vector3<f32>, Option<&Increment>) -> Option<EstimatedState>,
         fn(&Estimator, u64) -> Health,
     );
 
