@@ -75,7 +75,7 @@ pub struct Sensors {
     /// Measurements still under way: states, and what the accelerometer felt before them.
     late: VecDeque<(State, Option<Vector3<f32>>)>,
     /// v' since the last tick, m/s^2, world, as the accelerometer and the attitude at the tick have it.
-    felt: Option<Vector3<f32>>,
+    acceleration: Option<Vector3<f32>>,
     arrived: Option<Vector3<f32>>,
 }
 
@@ -115,7 +115,7 @@ impl Sensors {
             sensed: Late::new(what.delay_ticks as f64 + late),
             past: VecDeque::new(),
             late: VecDeque::new(),
-            felt: None,
+            acceleration: None,
             arrived: None,
         })
     }
@@ -143,8 +143,8 @@ impl Sensors {
         self.tick += 1;
         let (position, velocity) = (single(&self.position), single(&self.velocity));
         let now = State { position, velocity, attitude: self.attitude.attitude(), angular_velocity: gyro };
-        self.late.push_back((now, self.felt));
-        let (arrived, felt) = self.late.front().copied().unwrap_or((now, self.felt));
+        self.late.push_back((now, self.acceleration));
+        let (arrived, felt) = self.late.front().copied().unwrap_or((now, self.acceleration));
         self.arrived = felt;
         if self.late.len() as u64 > self.what.delay_ticks {
             self.late.pop_front();
@@ -194,7 +194,7 @@ impl Sensors {
         let sample = truly.inverse_transform_vector(&mean) + self.accelerometer_error;
         let believed = Quaternion::from(self.attitude.attitude().coords.map(f64::from));
         let felt = UnitQuaternion::new_normalize(believed) * sample - gravity;
-        self.felt = Some(single(&felt));
+        self.acceleration = Some(single(&felt));
         felt
     }
 

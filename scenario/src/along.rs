@@ -6,13 +6,12 @@
 //! derivative divided by k^n.
 
 use crate::file::Scenario;
+use crate::judge::judge;
 use crate::path::Place;
 use crate::reference::ReferenceKind;
 use controller_core::certificate::path::along::Taken;
 use controller_core::certificate::path::{PathJudge, Row};
-use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::heading::Heading;
-use controller_core::math::real::Real;
 use controller_core::reference::harmonic::HarmonicParameters;
 use controller_core::reference::{Reference, ReferenceBounds, Trajectory};
 use std::f64::consts::TAU;
@@ -82,15 +81,6 @@ impl Along {
     #[must_use]
     pub fn holds(&self) -> bool {
         self.taken.share < 1.0
-    }
-}
-
-/// The judge of a configuration; none under the paper's law.
-#[must_use]
-pub fn judge<R: Real>(configuration: &Configuration, force_kept: f32) -> Option<PathJudge<R>> {
-    match configuration.law() {
-        LawParameters::Extended(law) => Some(PathJudge::new(configuration, law, force_kept)),
-        LawParameters::Paper(_) => None,
     }
 }
 

@@ -40,6 +40,7 @@ pub mod extended;
 pub mod file;
 pub mod inertia;
 pub mod initial;
+pub mod judge;
 pub mod large_motions;
 pub mod number;
 pub mod path;

@@ -31,9 +31,9 @@ mod pieces;
 mod row;
 pub mod stretch;
 mod table;
+pub mod vehicle;
 
 use crate::section::{FieldError, Section};
-use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
@@ -44,6 +44,7 @@ use pace::merge::Point;
 use pace::{Paced, Problem};
 use row::Row;
 use std::path::Path;
+use vehicle::Vehicle;
 
 /// How near a path is to the rows, and how far from straight legs, if the file does not say, m.
 const NEAR: f64 = 0.02;
@@ -87,17 +88,6 @@ pub enum Way {
         /// How long after the start the first point is passed, s: what it takes to get there in motion.
         lead_in: f64,
     },
-}
-
-/// The vehicle that is to fly a path.
-#[derive(Debug, Clone)]
-pub struct Vehicle {
-    /// What it is certified for, beside this path.
-    pub configuration: Configuration,
-    /// Whether the file has `[reference_bounds]`.
-    pub has_bounds: bool,
-    /// The force per mass that is kept free along a path, m/s^2.
-    pub force_kept: f32,
 }
 
 /// What the vehicle may fly, which is worked out only where it matters.

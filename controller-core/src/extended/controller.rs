@@ -33,7 +33,6 @@ use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
-use sections::Rotating;
 
 /// Where ubar comes from.
 enum Wanted<'a> {
@@ -41,6 +40,16 @@ enum Wanted<'a> {
     Feedback(&'a Most),
     /// A policy.
     Demand(&'a Demand),
+}
+
+/// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
+struct Rotating {
+    /// The mean wrench since the last tick.
+    acted: Vector4<f32>,
+    /// The impulse that is still to come, N s and N m s.
+    pending: Vector4<f32>,
+    /// E of [`measured`](crate::extended::measured).
+    lasting: Option<Vector4<f32>>,
 }
 
 /// The extended law for one vehicle, one set of constants and one period.

@@ -11,7 +11,8 @@ use controller_core::certificate::path::{Motion, PathJudge};
 use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
-use scenario::along::{judge, name};
+use scenario::along::name;
+use scenario::judge::judge;
 
 /// m.
 const RADIUS: f64 = 3.0;

@@ -13,7 +13,8 @@ use controller_core::error::ParameterError;
 use controller_core::math::enclosure::Enclosure;
 use controller_core::math::real::Real;
 use scenario::Scenario;
-use scenario::along::{end_us, judge};
+use scenario::along::end_us;
+use scenario::judge::judge;
 
 /// The reference of `scenario` judged along itself, in a sentence, and whether it takes less than what is left,
 /// whatever rounding did; none under the paper's law.

@@ -31,11 +31,13 @@
 //! or less where it is within r before it brakes. The quickest of tilts up to that at which full thrust holds height.
 //! Drag, and the climb of a far step, are left out: both take longer.
 
-use super::rows::ARRIVED;
 use controller_core::allocation::{Rotor, Rotors};
 use nalgebra::Vector4;
 use scenario::Scenario;
 use std::f64::consts::PI;
+
+/// The figure of a scene whose task is to come to its reference.
+pub const ARRIVED: &str = "within 0.1 m for good after";
 
 /// Within this distance, r, a vehicle has arrived, m: as in the scenes.
 const NEAR: f64 = 0.1;

@@ -1,6 +1,6 @@
 //! The rows of a comparison: one figure of every law each, and where ours is not the best.
 
-use super::limit::Limit;
+use super::limit::{ARRIVED, Limit};
 use super::shown::{Shown, Thrown};
 use crate::table::{aligned, short};
 use std::fmt::Write;
@@ -38,9 +38,6 @@ impl Row {
         best < ours * (1.0 - CLOSE) && ours - best > self.grain
     }
 }
-
-/// The figure of a scene whose task is to come to its reference.
-pub const ARRIVED: &str = "within 0.1 m for good after";
 
 /// A figure of one law in one scene.
 type Get = fn(&Shown) -> f64;

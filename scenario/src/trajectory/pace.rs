@@ -13,6 +13,7 @@ mod hull;
 pub mod limits;
 pub mod merge;
 mod piece;
+mod places;
 mod quickest;
 mod sloped;
 mod way;

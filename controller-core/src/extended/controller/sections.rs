@@ -1,6 +1,6 @@
 //! The parts of a tick, by the sections of `docs/extended-law.md`.
 
-use super::{Controller, Wanted};
+use super::{Controller, Rotating, Wanted};
 use crate::attitude::rotate_back;
 use crate::attitude_reference::{DesiredAttitude, Turn};
 use crate::extended::attitude::{Late, Tilt};
@@ -17,16 +17,6 @@ use nalgebra::{Quaternion, Vector2, Vector3, Vector4};
 
 /// The least share of M_theta that a bias leaves.
 const LEVEL_LEAST: f32 = 0.05;
-
-/// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
-pub(super) struct Rotating {
-    /// The mean wrench since the last tick.
-    pub acted: Vector4<f32>,
-    /// The impulse that is still to come, N s and N m s.
-    pub pending: Vector4<f32>,
-    /// E of [`measured`](crate::extended::measured).
-    pub lasting: Option<Vector4<f32>>,
-}
 
 /// Where u points, and how it would turn.
 pub(super) struct Course {

@@ -8,7 +8,7 @@
 use super::blocks::{Blocks, Part, SIZE};
 use super::limits::{Limits, ROWS, VARIABLES};
 use super::piece::{Motion, ORDERS, Place, powers};
-use super::quickest::Places;
+use super::places::Places;
 use super::sloped::Sloped;
 use super::way::Way;
 use nalgebra::{Vector3, Vector4};

@@ -11,8 +11,9 @@
 
 use super::piece::Motion;
 use super::sloped::Sloped;
-use crate::along;
-use crate::trajectory::{Vehicle, stretch};
+use crate::judge::judge;
+use crate::trajectory::stretch;
+use crate::trajectory::vehicle::Vehicle;
 use controller_core::certificate::path::along::Taken;
 use controller_core::certificate::path::{self, PathJudge, Row};
 use controller_core::configuration::Configuration;
@@ -42,8 +43,8 @@ pub struct Limits {
 type Judges = (PathJudge, PathJudge<Sloped<0>>, PathJudge<Sloped<VARIABLES>>);
 
 fn judges(configuration: &Configuration, force_kept: f32) -> Option<Judges> {
-    let exact = along::judge(configuration, force_kept)?;
-    Some((exact, along::judge(configuration, force_kept)?, along::judge(configuration, force_kept)?))
+    let exact = judge(configuration, force_kept)?;
+    Some((exact, judge(configuration, force_kept)?, judge(configuration, force_kept)?))
 }
 
 impl Limits {

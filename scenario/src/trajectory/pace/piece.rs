@@ -25,7 +25,7 @@ impl Place {
     pub fn new(s: f64) -> Self {
         let start = |l: usize, order: usize, s: f64| derivative(&coefficients(l), order, s);
         Self(std::array::from_fn(|order| {
-            let end = |l: usize| if (l + order) % 2 == 0 { 1.0 } else { -1.0 } * start(l, order, 1.0 - s);
+            let end = |l: usize| if (l + order).is_multiple_of(2) { 1.0 } else { -1.0 } * start(l, order, 1.0 - s);
             [std::array::from_fn(|l| start(l, order, s)), std::array::from_fn(end)]
         }))
     }

@@ -16,7 +16,8 @@ use super::blocks::Part;
 use super::equations::{DURATION, IDLE, SHARES, barrier, equations};
 use super::limits::Limits;
 use super::merge::Leg;
-use super::piece::{Motion, Place};
+use super::piece::Motion;
+use super::places::Places;
 use super::way::Way;
 
 /// By how much rho grows, and how many steps are made with each.
@@ -31,21 +32,6 @@ const SHORTER: u32 = 3;
 const DAMPINGS: u32 = 12;
 /// The least damping, and that of unknowns that no row depends on.
 const DAMPING: f64 = 1e-9;
-
-/// Where a piece is looked at: of each pair all rows at the first, and the corridor at both.
-pub struct Places(Vec<(Place, Place)>);
-
-impl Places {
-    fn new(count: usize) -> Self {
-        let place = |place: f64| Place::new(0.5 - 0.5 * (std::f64::consts::PI * place / count as f64).cos());
-        Self((0..count).map(|number| (place(number as f64), place(number as f64 + 0.5))).collect())
-    }
-
-    /// The pairs.
-    pub fn each(&self) -> impl Iterator<Item = (&Place, &Place)> {
-        self.0.iter().map(|(place, between)| (place, between))
-    }
-}
 
 /// What is looked for, and where it is looked at.
 pub struct Search<'a> {
@@ -89,7 +75,7 @@ impl<'a> Search<'a> {
 
     /// All shares at all places.
     fn shares(&self, way: &Way) -> Vec<f64> {
-        let mut shares = Vec::with_capacity(way.pieces.len() * self.places.0.len() * SHARES);
+        let mut shares = Vec::with_capacity(way.pieces.len() * self.places.count() * SHARES);
         for (piece, (leg, _)) in way.pieces.iter().enumerate() {
             let leg = &way.legs[*leg];
             let corridor = |motion: &Motion| leg.off(&motion[0].xyz()).norm_squared() / (leg.corridor * leg.corridor);
@@ -145,7 +131,7 @@ impl<'a> Search<'a> {
     /// Descends from `way`, which takes less than one of every row, until what the barrier holds back is below the last
     /// of the `gaps`, as a share of the duration; the first is where it begins.
     pub fn descend(&self, mut way: Way, [first, last]: [f64; 2]) -> Way {
-        let places = (way.pieces.len() * self.places.0.len()) as f64;
+        let places = (way.pieces.len() * self.places.count()) as f64;
         let mut gap = first;
         loop {
             let rho = places / (gap * way.duration());

@@ -90,6 +90,8 @@ impl<const N: usize> Sub for Sloped<N> {
 
 impl<const N: usize> Mul for Sloped<N> {
     type Output = Self;
+    // The product rule.
+    #[expect(clippy::suspicious_arithmetic_impl)]
     fn mul(self, other: Self) -> Self {
         Self::of(&self, &other, self.value * other.value, |i| {
             self.slopes[i] * other.value + self.value * other.slopes[i]
@@ -99,6 +101,8 @@ impl<const N: usize> Mul for Sloped<N> {
 
 impl<const N: usize> Div for Sloped<N> {
     type Output = Self;
+    // The quotient rule.
+    #[expect(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         let ratio = self.value / other.value;
         Self::of(&self, &other, ratio, |i| (self.slopes[i] - ratio * other.slopes[i]) / other.value)
