@@ -13,6 +13,7 @@ use controller_core::extended::attitude::AttitudeLaw;
 use controller_core::extended::budget::{Row, Spending, TickBudget, TorqueBudget};
 use controller_core::extended::heading::HeadingLaw;
 use controller_core::extended::thrust_range::ThrustRange;
+use controller_core::extended::turning::PUSH_ACROSS;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::mrp;
@@ -336,7 +337,15 @@ pub(super) fn the_laws_parts_and_their_order_are_those_of_the_proofs() {
             .with(&of(&[("s", scale), ("margin", p.floor_margin), ("T_max", configuration.limits().thrust_max)]))
             .with_value("rotors", Value::List(rotors_of(&rotors())))
             .with_value("tau", plane(&wrench.torque.xy()));
-        let along = found.acceleration_command.dot(&(mrp::rotation(&state.attitude) * Vector3::z()));
+        // n* of section 1, along rho.
+        let (u, y) = (found.acceleration_command, controller.memory().filters.smoothed);
+        let rho = u / u.norm();
+        let across = PUSH_ACROSS / rho.xy().norm();
+        let more = (y.z - found.filtered.z) / rho.z.max(p.tilt_max.cos());
+        let greatest = budget.ceiling(configuration.vehicle(), configuration.limits());
+        let length = (u.norm() + more.clamp(-across, across)).max(0.0);
+        let length = length.min(greatest.at(scale, &controller.estimates().torque));
+        let along = length * rho.dot(&(mrp::rotation(&state.attitude) * Vector3::z()));
         let brakes = heading.braking(wrench.torque.z, found.angular_velocity_error.z);
         let numbers = [brakes, hummingbird::vehicle().mass * along].map(f64::from);
         near(wrench.thrust, proofs.number("thrust", &numbers), 10.0, "thrust");
