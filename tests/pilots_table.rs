@@ -119,7 +119,7 @@ fn figures(subject: &Subject, required: &Required) -> Vec<Figure> {
             required.windy,
         ),
         figure("noise, all 20 ms late: position", noisy.rms, "m", required.noise),
-        figure("noise: change of a rotor's command per tick", noisy.activity, "N", 0.024),
+        figure("noise: change of a rotor's command per tick", noisy.activity, "N", 0.018),
     ];
     figures.extend(subject.offsets().into_iter().map(|(what, value)| figure(what, value, "m", 1e-3)));
     figures

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A spline has a knot in every control tick up to 100 Hz, and above that in every second, third ... so that knots lie
-//! [`KNOTS_APART`] or more apart. In the ticks between two knots the reference is the spline at their time. So neither
+//! `KNOTS_APART` or more apart. In the ticks between two knots the reference is the spline at their time. So neither
 //! the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;

@@ -69,7 +69,7 @@ impl ForceObserver {
         made
     }
 
-    /// Averages the `rest` of the [observed](Self::observed) acceleration, without the thrust's part, into zeta.
+    /// Averages the `rest` of the observed acceleration, without the thrust's part, into zeta.
     #[must_use]
     pub fn averaged(&self, average: &Vector3<f32>, rest: &Vector3<f32>) -> Vector3<f32> {
         Vector3::new(
