@@ -57,7 +57,7 @@ struct LastHalf {
 /// The time within which a rotor's command changes, us: the same for laws of every rate.
 const CHANGING: u64 = 10_000;
 
-/// How much rotors' commands change within [`CHANGING`].
+/// How much rotors' commands change within `CHANGING`.
 #[derive(Debug, Clone)]
 pub struct Activity {
     /// Commands that are younger, N, and how many that may be.

@@ -21,7 +21,7 @@
 //!   and the controller's position is the pose's at a pose and carried on from it with v between poses.
 //! - A pose drops out with a given probability. Everything arrives a number of ticks late; until the first sample does,
 //!   it is all there is.
-//! - In the trials of a search gyro, accelerometer and rotor speeds are late by their filters ([`late`]), and a pose by
+//! - In the trials of a search gyro, accelerometer and rotor speeds are late by their filters (`late`), and a pose by
 //!   a further number of ticks. On its arrival it corrects what was known of the moment it shows, and what was measured
 //!   since carries that on: r is of that moment.
 //! - The start of a flight is known: where a vehicle takes off from, it has been standing.

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The zeros are at the rate of the control ticks, because what swings as fast as one looks seems to stand still; or at
-//! the first multiple of it above [`SLOWEST_ROTOR`], since nothing vibrates below that. The poles are at [`POLES`] of
-//! the zeros, no higher than [`CUTOFF_MAX`]. Zeros beyond half the rate of the samples are at that half, where a
+//! the first multiple of it above `SLOWEST_ROTOR`, since nothing vibrates below that. The poles are at `POLES` of
+//! the zeros, no higher than `CUTOFF_MAX`. Zeros beyond half the rate of the samples are at that half, where a
 //! digital Butterworth filter has its own. In front of w_z the numerator is real and positive: the phase, and with it
 //! the delay, are those of the poles alone.
 //!

@@ -2,8 +2,8 @@
 //! estimate.
 //!
 //! Between two recorded states, a control period apart, lie samples a millisecond apart: the body rate goes straight
-//! from one state to the other, the force is what the change of velocity takes. Every [`POSES_APART`] a state is a
-//! pose, handed over [`LATE`] poses later.
+//! from one state to the other, the force is what the change of velocity takes. Every `POSES_APART` a state is a
+//! pose, handed over `LATE` poses later.
 
 use super::{RECORD, digest, state};
 use controller_core::state::State;

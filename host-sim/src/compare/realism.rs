@@ -15,7 +15,7 @@
 //! | deadband | commands within 2 % of a rotor's speed that change nothing |
 //! | mild | 10 ms, 1.2 times the mass, 0.9 of the voltage, half of wind, deadband and further drag, flywheels |
 //!
-//! A flight is lost if it ends early or more than [`LOST`] from its reference.
+//! A flight is lost if it ends early or more than `LOST` from its reference.
 
 use super::rows::Row;
 use super::scenes::{DRAG, Scene};

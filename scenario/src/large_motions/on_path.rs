@@ -3,7 +3,7 @@
 //! A known path certifies whatever heading it asks for ([`controller_core::certificate::path`]), and the desired frame
 //! turns about a tilted thrust axis even where the heading stands still. Yaw follows as fast as it can: here is how far
 //! behind that leaves the heading. The model has the drag across that the law counts with, and starts on the reference.
-//! A motion that repeats is measured once it has flown for [`SETTLING`].
+//! A motion that repeats is measured once it has flown for `SETTLING`.
 
 use super::{Model, NotArrived, RESTING, Start};
 use crate::sampled_loop::Timing;
