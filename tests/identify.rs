@@ -51,8 +51,9 @@ fn vehicles_are_found_from_a_start_that_is_far_off() {
 
 #[test]
 fn vehicles_whose_rotors_the_air_pulls_at_are_found_but_for_their_centre_of_mass() {
-    // It is off by 5.6, 4.9 and 5.6 mm, in gusts; the second is in a wind that presses it down. Since the law holds them
-    // stiller, two of the flights say what they cannot show, and the centre of mass comes out up to a quarter short.
+    // It is off by 5.6, 4.9 and 5.6 mm, in gusts; the second is in a wind that presses it down. Since the law holds
+    // them stiller, two of the flights say what they cannot show, and the centre of mass comes out up to a quarter
+    // short.
     each_is_found(Drag::AtHubs, 0.3, [(HUMMINGBIRD, 11, None), (HUMMINGBIRD, 14, None), (HUMMINGBIRD, 15, None)]);
 }
 

@@ -270,8 +270,8 @@ impl Estimator {
         Some(EstimatedState { state, acceleration, jumps: self.statistics.jumps, gained })
     }
 
-    /// The mean of v', m/s^2, world, since the last call, to be called once a tick: by accelerometer, with the increment
-    /// that is `under_way`. None at the first call, and where [`Self::state`] has none.
+    /// The mean of v', m/s^2, world, since the last call, to be called once a tick: by accelerometer, with the
+    /// increment that is `under_way`. None at the first call, and where [`Self::state`] has none.
     pub fn felt(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let Some(ahead) = self.velocity_ahead(now, under_way) else {
             self.felt = Felt::NOTHING;

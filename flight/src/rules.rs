@@ -76,8 +76,8 @@ pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
 /// The longest motor test, us.
 pub const MOTOR_TEST_MAX: u64 = 2_000_000;
 
-/// How long the last thrusts are held without new ones, us, where the law or the allocation refuses its input tick after
-/// tick. Inputs are checked before the law sees them, so a refusal is a defect; this outlasts a passing one.
+/// How long the last thrusts are held without new ones, us, where the law or the allocation refuses its input tick
+/// after tick. Inputs are checked before the law sees them, so a refusal is a defect; this outlasts a passing one.
 pub const REFUSAL_MAX: u64 = 50_000;
 
 /// A change of mode, and why.

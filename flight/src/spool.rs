@@ -1,7 +1,7 @@
 //! How the rotors are brought up from their idle to the law's thrusts.
 //!
-//! For [`SPOOL_DURATION`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor leaves
-//! the range in which the law's own commands are. The reference waits at rest.
+//! For [`SPOOL_DURATION`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor
+//! leaves the range in which the law's own commands are. The reference waits at rest.
 
 use controller_core::allocation::Thrusts;
 

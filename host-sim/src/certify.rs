@@ -1,9 +1,9 @@
 //! The `certify` command: every inequality of the certificate. For the paper's law as printed in the paper and sharp,
 //! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
 //! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
-//! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them hold
-//! ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What may be
-//! flown comes last ([`may_fly`]).
+//! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them
+//! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What may
+//! be flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;

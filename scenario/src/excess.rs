@@ -26,8 +26,8 @@ pub struct Excess {
 }
 
 impl Excess {
-    /// Of a scenario of the paper's law that is not certified, if that is for its reference: none where the reference at
-    /// rest would not help.
+    /// Of a scenario of the paper's law that is not certified, if that is for its reference: none where the reference
+    /// at rest would not help.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Option<Self> {
         scenario.configuration.paper()?;

@@ -27,8 +27,8 @@ use nalgebra::Vector3;
 const DEFAULT_GRAVITY: f64 = 9.81;
 
 /// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its
-/// references. Its own reference is within `own`; so the paper law's bounds must be no less. The extended law's estimates count on rotors that respond as
-/// `actuators` says.
+/// references. Its own reference is within `own`; so the paper law's bounds must be no less. The extended law's
+/// estimates count on rotors that respond as `actuators` says.
 ///
 /// # Errors
 /// Names the field that is missing, of another law, or leaves the law undefined: M_p >= g - K_a3; `rotors.position` if

@@ -78,7 +78,8 @@ impl Witness<'_> {
 
     pub fn continuity(&self, next: &Reference) {
         let last = &self.last;
-        // What a tick reports is worked out from the knot that it is on the way to: so far away, which its rounding knows.
+        // What a tick reports is worked out from the knot that it is on the way to: so far away, which its rounding
+        // knows.
         let (b, t, away) = (&self.case.bounds, f64::from(self.case.period), f64::from(self.case.knots()));
         let double = |vector: Vector3<f32>| vector.map(f64::from);
         let [p0, v0, a0, j0, s0] = [last.position, last.velocity, last.acceleration, last.jerk, last.snap].map(double);

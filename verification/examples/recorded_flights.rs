@@ -1,6 +1,7 @@
 //! Records the states of the paper's flight and of the embedded scenario's recovery at 100 Hz, 500 Hz and 1 kHz for
 //! `firmware::replay`, as `states.f32` and `recovery.f32`, and prints for each rate the numbers of the recovery, of the
-//! estimate of it and of the same behind a shield on this machine, a line each: `cargo run -p verification --example recorded_flights -- FOLDER`.
+//! estimate of it and of the same behind a shield on this machine, a line each:
+//! `cargo run -p verification --example recorded_flights -- FOLDER`.
 
 use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};
@@ -42,7 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The states of a recovery of the embedded scenario's vehicle, flown in ticks of `period` us, one of which its commands are late.
+/// The states of a recovery of the embedded scenario's vehicle, flown in ticks of `period` us, one of which its
+/// commands are late.
 fn recovery(period: u64) -> Result<Vec<[u8; RECORD]>, Box<dyn Error>> {
     let text = EMBEDDED.replace("rate = 100.0 ", &format!("rate = {}.0 ", 1_000_000 / period));
     let text = text.replace("delay = 0.010 ", &format!("delay = {} ", period as f64 * 1e-6));

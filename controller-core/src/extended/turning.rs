@@ -15,11 +15,11 @@
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
 //! | n* = n + (y_z - c_z) / rho_z, at most U; the change is at most 5 m/s^2 across | [`TurningLimit::length`]: the thrust is m n* rho . b |
 //!
-//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last three rows are along rho. With
-//! n* the vertical gets what it wants, whatever the direction of u lags behind; n itself has come through the filters.
-//! Where rho has left its cone, a little along the vertical is much along rho: there c_z is left to the filters' own
-//! end ([`super::position`]), or u would grow without bound. The drive takes up the change of u'': x' = drive + (change
-//! of u'') / k_f.
+//! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last three rows are along rho.
+//! With n* the vertical gets what it wants, whatever the direction of u lags behind; n itself has come through the
+//! filters. Where rho has left its cone, a little along the vertical is much along rho: there c_z is left to the
+//! filters' own end ([`super::position`]), or u would grow without bound. The drive takes up the change of u'': x' =
+//! drive + (change of u'') / k_f.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude_reference::Turn;

@@ -5,10 +5,10 @@
 //! A = R d_under_way + t (R f) - g (t + t_under_way) e3
 //! ```
 //!
-//! A is what lies between the last increment and a tick: the increment that is under way, and then for a time t, as long
-//! as the sensor's filter is late, the force f of the last 10 ms. d and f are without the accelerometer's bias. So the
-//! mean is as late as the commands are, which it is compared with, but for what t adds. Vibration at 70 to 130 Hz is
-//! in it; who takes it averages it.
+//! A is what lies between the last increment and a tick: the increment that is under way, and then for a time t, as
+//! long as the sensor's filter is late, the force f of the last 10 ms. d and f are without the accelerometer's bias. So
+//! the mean is as late as the commands are, which it is compared with, but for what t adds. Vibration at 70 to 130 Hz
+//! is in it; who takes it averages it.
 
 use nalgebra::Vector3;
 

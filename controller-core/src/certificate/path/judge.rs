@@ -6,9 +6,9 @@
 //! u = w - d + e,  |d| <= D,  |e| <= sqrt(2) M_s,  |e'| and |e''| those of the slowed law
 //! ```
 //!
-//! near the target: d the force that is kept free, in any direction, and e the feedback of [`Slowed`]. So u is in a ball
-//! about w and its derivatives are in balls about w', w''; where the motion is known to within a [`Spread`] only, the
-//! balls are as much larger. With n, p, q, r as in [`crate::extended::turning`], at their worst in these balls, and
+//! near the target: d the force that is kept free, in any direction, and e the feedback of [`Slowed`]. So u is in a
+//! ball about w and its derivatives are in balls about w', w''; where the motion is known to within a [`Spread`] only,
+//! the balls are as much larger. With n, p, q, r as in [`crate::extended::turning`], at their worst in these balls, and
 //! tau = J_max |q| + the gyroscopic torque + a share of rho(s) that is kept for torque bias and feedback:
 //!
 //! | row | taken < left |

@@ -159,8 +159,8 @@ fn the_first_error_moves_with_the_second_and_that_with_feedback_and_force() {
     }
 }
 
-/// The integral from 0 to z of s(k_v s(v(z); v_c); M), by Simpson's rule, v being the speed from which `braking` stops a
-/// vehicle that answers after k_v / k_p.
+/// The integral from 0 to z of s(k_v s(v(z); v_c); M), by Simpson's rule, v being the speed from which `braking` stops
+/// a vehicle that answers after k_v / k_p.
 fn potential(z: f64, [k_p, k_v, speed, braking, level]: [f64; 5]) -> f64 {
     let s = |x: f64, level: f64| level * x / level.hypot(x);
     let t = k_v / k_p;

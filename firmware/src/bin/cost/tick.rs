@@ -1,5 +1,5 @@
-//! What whole control ticks cost: the firmware's own, from what waits in the queues to the motors' commands, and how much
-//! of the processor they and the IMU's samples take.
+//! What whole control ticks cost: the firmware's own, from what waits in the queues to the motors' commands, and how
+//! much of the processor they and the IMU's samples take.
 //!
 //! The vehicle stands for a while, arms, goes up and flies a circle by setpoints of position and velocity, ten a
 //! second. Its IMU samples at 1 kHz, its poses come 20 ms late, a hundred a second, whatever the rate of control.
