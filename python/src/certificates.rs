@@ -3,7 +3,7 @@
 use crate::refused::refused;
 use crate::rows::array;
 use crate::scenarios::Scenario;
-use host_sim::certify::certify as report_on;
+use host_sim::certify::{certify as report_on, may_fly};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use scenario::sampled_loop::LoopReport;
@@ -102,6 +102,7 @@ pub fn certify(scenario: &Scenario) -> PyResult<Certificate> {
     let read = &scenario.read;
     let verdict = Verdict::of(read).map_err(refused)?;
     let (report, _) = report_on(read).map_err(refused)?;
+    let report = format!("{report}\n{}", may_fly::lines(read));
     let rotors = read.configuration.rotors().map_or(0, |rotors| rotors.len());
     Ok(Certificate { reasons: reasons(&verdict), verdict, rotors, report })
 }

@@ -85,7 +85,7 @@ def test_the_law_takes_over_and_keeps_the_vehicle_in_the_box(policy, reason):
     [
         (sh.state(MIDDLE, euler=[1.2, 0, 0]), "tilt"),
         (sh.state(MIDDLE, angular_velocity=[40, 0, 0]), "rate"),
-        (sh.state(MIDDLE, angular_velocity=[0, 0, 13]), "rate"),
+        (sh.state(MIDDLE, angular_velocity=[0, 0, 20]), "rate"),
         (sh.state(MIDDLE, velocity=[0, 11, 0]), "speed"),
         (sh.state([0, 0, 0.4]), "stop"),
     ],
