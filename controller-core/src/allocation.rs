@@ -12,6 +12,7 @@
 //! - [`geometry`]: the rotors as validated types, B and its inverse;
 //! - [`mixer`]: wrench to rotor thrusts; what does not fit is given up, yaw first, then thrust, roll and pitch last;
 //! - [`minimum_norm`]: its first step, B+ w, which is all that a certified flight needs;
+//! - [`remaining`]: the same after a rotor has failed;
 //! - `attainable` (internal): the polytope as half-spaces, arranged for the mixer's three queries, and for
 //!   [`greatest_torques`];
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
@@ -22,6 +23,7 @@ pub mod curve;
 pub mod geometry;
 pub mod minimum_norm;
 pub mod mixer;
+pub mod remaining;
 pub mod support;
 
 pub use attainable::greatest_torques;

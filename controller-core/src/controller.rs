@@ -103,6 +103,33 @@ pub struct Diagnostics {
     pub rate_feedback: Vector3<f32>,
 }
 
+impl Diagnostics {
+    /// Of no error and no motion.
+    pub(crate) const NONE: Self = {
+        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+        const LEVEL: Quaternion<f32> = Quaternion::new(1.0, 0.0, 0.0, 0.0);
+        Self {
+            position_error: ZERO,
+            velocity_error: ZERO,
+            z_1: ZERO,
+            z_2: ZERO,
+            feedback: ZERO,
+            filtered: ZERO,
+            intermediate: ZERO,
+            acceleration_command: ZERO,
+            desired_attitude: LEVEL,
+            desired_angular_velocity: ZERO,
+            desired_angular_acceleration: ZERO,
+            attitude_error: LEVEL,
+            mrp: ZERO,
+            lift_sign: 1.0,
+            angular_velocity_error: ZERO,
+            attitude_feedback: ZERO,
+            rate_feedback: ZERO,
+        }
+    };
+}
+
 /// The controller of the paper for one vehicle, one set of gains and one period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {

@@ -1,11 +1,14 @@
 //! The law that flies: the paper's or the extended one, by its configuration.
 
+use crate::allocation::Thrusts;
+use crate::allocation::remaining::Lost;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Diagnostics};
 use crate::error::{InputError, ParameterError};
 use crate::extended;
 use crate::extended::measured::Measured;
 use crate::extended::memory::Estimates;
+use crate::extended::rotor_loss::spinning::SpinningLaw;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use nalgebra::Vector3;
@@ -102,6 +105,24 @@ impl Law {
         match self {
             Self::Paper(_) => None,
             Self::Extended(law) => Some(law.estimates()),
+        }
+    }
+
+    /// The rotor that the law has found to fail, and flies without; the paper's law looks for none.
+    #[must_use]
+    pub fn lost(&self) -> Option<Lost> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => law.spinning().map(|spinning| *spinning.lost()),
+        }
+    }
+
+    /// What the law has commanded of each rotor, N, in place of a wrench to allocate: once a rotor is lost.
+    #[must_use]
+    pub fn commands(&self) -> Option<&Thrusts> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => law.spinning().map(SpinningLaw::commands),
         }
     }
 

@@ -50,6 +50,41 @@ impl From<Diverged> for ActuationError {
     }
 }
 
+/// What is asked of the actuators.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Asked {
+    /// A wrench, to be allocated.
+    Wrench(Wrench),
+    /// Each rotor's thrust, N: the law has allocated by itself.
+    Thrusts(Thrusts),
+}
+
+impl Asked {
+    /// Each rotor's thrust, N, and whether the wrench could not be delivered in full.
+    ///
+    /// # Errors
+    /// [`ActuationError::Wrench`].
+    pub fn allocated(&self, mixer: &Mixer) -> Result<(Thrusts, bool), ActuationError> {
+        match self {
+            Self::Wrench(wrench) => {
+                let allocation = mixer.allocate(wrench).map_err(ActuationError::Wrench)?;
+                let is_exact = allocation.is_exact();
+                Ok((allocation.thrusts, !is_exact))
+            }
+            Self::Thrusts(thrusts) => Ok((thrusts.clone(), false)),
+        }
+    }
+
+    /// As a wrench, for a vehicle without rotors.
+    #[must_use]
+    pub fn wrench(&self) -> Wrench {
+        match self {
+            Self::Wrench(wrench) => *wrench,
+            Self::Thrusts(thrusts) => Wrench { thrust: thrusts.iter().sum(), torque: Vector3::zeros() },
+        }
+    }
+}
+
 /// Delay and rotors between the law and the body.
 #[derive(Debug, Clone)]
 pub struct Actuators {
@@ -57,10 +92,10 @@ pub struct Actuators {
     delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
-    /// Wrenches on their way, with the step at which they act.
-    waiting: VecDeque<(u64, Wrench)>,
-    /// Wrench that acts now.
-    acting: Wrench,
+    /// What is on its way, with the step at which it acts.
+    waiting: VecDeque<(u64, Asked)>,
+    /// What acts now.
+    acting: Asked,
     /// What acted since it was asked for.
     pub(crate) acted: Acted,
 }
@@ -70,7 +105,7 @@ impl Actuators {
     /// tick. Without rotors wrenches act on the body directly.
     #[must_use]
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
-        let acting = Wrench { thrust: hover, torque: Vector3::zeros() };
+        let acting = Asked::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
         Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting, acted: Acted::default() }
     }
 
@@ -87,22 +122,22 @@ impl Actuators {
     }
 
     fn act(&mut self, body: &Body) {
-        let (thrust, torque, _) = body.clipped(&self.acting);
+        let (thrust, torque, _) = body.clipped(&self.acting.wrench());
         self.acted.add(thrust, &torque);
     }
 
-    /// Takes the wrench of a tick and moves the body for `steps` plant steps. Returns whether anything was cut, and the
+    /// Takes what a tick asks for and moves the body for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, plant: &mut Plant, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(&mut self, plant: &mut Plant, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         if self.are_ideal() {
-            self.acting = *wrench;
+            self.acting = asked.clone();
             self.act(plant.body());
-            return Ok((plant.hold(wrench, steps)?, Thrusts::new()));
+            return Ok((plant.hold(&asked.wrench(), steps)?, Thrusts::new()));
         }
-        self.waiting.push_back((self.now + self.delay_steps, *wrench));
+        self.waiting.push_back((self.now + self.delay_steps, asked.clone()));
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {
@@ -114,13 +149,13 @@ impl Actuators {
             match &mut self.rotors {
                 None => {
                     self.act(plant.body());
-                    clipped |= plant.hold(&self.acting, 1)?;
+                    clipped |= plant.hold(&self.acting.wrench(), 1)?;
                 }
                 Some((mixer, rotors)) => {
                     if arrived {
-                        let allocation = mixer.allocate(&self.acting).map_err(ActuationError::Wrench)?;
-                        clipped |= !allocation.is_exact();
-                        thrusts = allocation.thrusts;
+                        let (allocated, cut) = self.acting.allocated(mixer)?;
+                        clipped |= cut;
+                        thrusts = allocated;
                         rotors.command(&thrusts);
                     }
                     let (thrust, torque) = rotors.advance();

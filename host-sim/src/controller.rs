@@ -1,14 +1,16 @@
 //! The controller of a simulated vehicle: our law, or a rival to compare it with.
 
+use crate::actuators::Asked;
 use crate::rivals::pilot::RivalPilot;
 use crate::sensed::Sensed;
+use controller_core::allocation::remaining::Lost;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::extended::measured::Measured;
 use controller_core::extended::memory::Estimates;
 use controller_core::law::{Command, Law};
 use controller_core::reference::Reference;
-use controller_core::state::State;
+use controller_core::state::{State, Wrench};
 
 /// A controller in a flight.
 #[allow(clippy::large_enum_variant)] // ours flies by the million: nothing stands between it and the flight
@@ -62,6 +64,26 @@ impl Controller {
         match self {
             Self::Ours(_) => false,
             Self::Rival(rival) => rival.is_cut(),
+        }
+    }
+
+    /// What the last command asks of the actuators: its wrench over the thrust scale, or the thrusts that the law has
+    /// allocated by itself.
+    #[must_use]
+    #[inline]
+    pub fn asked(&self, wrench: &Wrench) -> Asked {
+        match self {
+            Self::Ours(law) if let Some(thrusts) = law.commands() => Asked::Thrusts(thrusts.clone()),
+            _ => Asked::Wrench(wrench.scaled(1.0 / self.thrust_scale())),
+        }
+    }
+
+    /// The rotor that our law has found to fail.
+    #[must_use]
+    pub fn lost(&self) -> Option<Lost> {
+        match self {
+            Self::Ours(law) => law.lost(),
+            Self::Rival(_) => None,
         }
     }
 

@@ -3,7 +3,7 @@
 //! At each tick the law gets the vehicle's state in single precision, true, measured or estimated, and the reference;
 //! its wrench is held until the next tick. Time is integer microseconds.
 
-use crate::actuators::ActuationError;
+use crate::actuators::{ActuationError, Asked};
 use crate::controller::Controller;
 use crate::estimation::{Estimation, NoEstimate};
 use crate::reality::Surroundings;
@@ -13,6 +13,7 @@ use crate::sensed::{Sensed, specific_force};
 use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
 use controller_core::allocation::Thrusts;
+use controller_core::allocation::remaining::Lost;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
@@ -210,6 +211,12 @@ impl Flight {
         self.controller.fallback_times()
     }
 
+    /// The rotor that the law has found to fail; rivals look for none.
+    #[must_use]
+    pub fn lost(&self) -> Option<Lost> {
+        self.controller.lost()
+    }
+
     /// One control tick and the plant's motion until the next.
     ///
     /// # Errors
@@ -257,7 +264,7 @@ impl Flight {
         let sensed = self.sense(&state);
         let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &sensed, &reference);
         let (Command { wrench, mrp }, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
-        let held = self.hold(&wrench.scaled(1.0 / self.controller.thrust_scale()));
+        let held = self.hold(&self.controller.asked(&wrench));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         let clipped = clipped || self.controller.is_cut();
         // The motion was then another than the wrench alone would have made it.
@@ -311,15 +318,15 @@ impl Flight {
         }
     }
 
-    /// The vehicle's motion until the next tick, under a wrench commanded of the rotors.
+    /// The vehicle's motion until the next tick, with what is `asked` of its actuators.
     #[inline]
-    fn hold(&mut self, commanded: &Wrench) -> Result<(bool, Thrusts), ActuationError> {
+    fn hold(&mut self, asked: &Asked) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
-            return self.vehicle.hold(commanded, self.steps_per_tick);
+            return self.vehicle.hold(asked, self.steps_per_tick);
         };
         let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
         for _ in 0..samples {
-            let (cut, arrived) = self.vehicle.hold(commanded, self.steps_per_tick / samples)?;
+            let (cut, arrived) = self.vehicle.hold(asked, self.steps_per_tick / samples)?;
             clipped |= cut;
             if !arrived.is_empty() {
                 thrusts = arrived;

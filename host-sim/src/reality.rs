@@ -30,7 +30,7 @@ pub mod dryden;
 pub mod propulsion;
 pub mod wind;
 
-use crate::actuators::ActuationError;
+use crate::actuators::{ActuationError, Asked};
 use crate::ground::{Ground, Touchdown};
 use crate::plant::Diverged;
 use crate::sensed::Acted;
@@ -79,10 +79,10 @@ pub struct RealVehicle {
     delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
-    /// Wrenches on their way, with the step at which they act.
-    waiting: VecDeque<(u64, Wrench)>,
-    /// Wrench that acts now.
-    acting: Wrench,
+    /// What is on its way, with the step at which it acts.
+    waiting: VecDeque<(u64, Asked)>,
+    /// What acts now.
+    acting: Asked,
     /// What acted since it was asked for, by the model's coefficients.
     pub(crate) acted: Acted,
     /// Its origin, where the controller takes the centre of mass to be.
@@ -121,7 +121,7 @@ impl RealVehicle {
             delay_steps: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
-            acting: Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() },
+            acting: Asked::Wrench(Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() }),
             acted: Acted::default(),
             body: RigidBody::new(&truth, gravity, &start),
             state: start,
@@ -198,13 +198,13 @@ impl RealVehicle {
         self.touchdown.take()
     }
 
-    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
+    /// Takes what a tick asks for and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
     /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
-        self.waiting.push_back((self.now + self.delay_steps, *wrench));
+    pub fn hold(&mut self, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+        self.waiting.push_back((self.now + self.delay_steps, asked.clone()));
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {
@@ -215,13 +215,13 @@ impl RealVehicle {
             }
             match &self.mixer {
                 Some(mixer) if arrived => {
-                    let allocation = mixer.allocate(&self.acting).map_err(ActuationError::Wrench)?;
-                    clipped |= !allocation.is_exact();
-                    thrusts = allocation.thrusts;
+                    let (allocated, cut) = self.acting.allocated(mixer)?;
+                    clipped |= cut;
+                    thrusts = allocated;
                     self.propulsion.command(&thrusts);
                 }
                 Some(_) => {}
-                None => clipped |= self.propulsion.command_directly(&self.acting),
+                None => clipped |= self.propulsion.command_directly(&self.acting.wrench()),
             }
             self.advance();
         }

@@ -3,12 +3,11 @@
 //! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
 
 use crate::actuators::rotors::SpinningRotors;
-use crate::actuators::{ActuationError, Actuators};
+use crate::actuators::{ActuationError, Actuators, Asked};
 use crate::plant::Plant;
 use crate::reality::{RealVehicle, Surroundings};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
-use controller_core::state::Wrench;
 use nalgebra::Vector4;
 use scenario::Scenario;
 use scenario::body::BodyState;
@@ -100,15 +99,15 @@ impl SimulatedVehicle {
         }
     }
 
-    /// Takes the wrench of a tick and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
+    /// Takes what a tick asks for and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
     /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, wrench: &Wrench, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(&mut self, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         match self {
-            Self::Model(plant, actuators) => actuators.hold(plant, wrench, steps),
-            Self::Real(vehicle) => vehicle.hold(wrench, steps),
+            Self::Model(plant, actuators) => actuators.hold(plant, asked, steps),
+            Self::Real(vehicle) => vehicle.hold(asked, steps),
         }
     }
 }

@@ -6,7 +6,7 @@
 //!                  -> budget: bias, feedback, turning about the tilt's axes -> heading -> thrust_range -> Wrench
 //! ```
 //!
-//! `sections` has the parts. The order within a tick: first what can be refused, up to the desired motion, from the
+//! `sections` has the parts, `without_a_rotor` what flies once a rotor has failed. The order within a tick: first what can be refused, up to the desired motion, from the
 //! filters as they stand and with the averages that have taken in the last interval. Nothing is remembered before that.
 //! From there on every part of the memory advances by one period as soon as its last value has served. So the wrench is
 //! the one for the instant the state was taken, as in the paper's [`controller`](crate::controller).
@@ -21,6 +21,8 @@ use super::learning::Learning;
 use super::measured::Measured;
 use super::memory::{Averages, Estimates, Last, Memory};
 use super::position::{Filters, Most, PositionLaw};
+use super::rotor_loss::detector::Detector;
+use super::rotor_loss::spinning::SpinningLaw;
 use super::thrust_range::ThrustRange;
 use super::turning::TurningLimit;
 use crate::allocation::Rotors;
@@ -86,6 +88,9 @@ pub struct Controller {
     /// Ticks for which the wrench that acts still depends on one that was not delivered.
     settling: u32,
     memory: Memory,
+    detector: Detector,
+    /// In force once a rotor is lost.
+    spinning: Option<SpinningLaw>,
     /// For the next step.
     measured: Measured,
 }
@@ -95,6 +100,7 @@ impl Controller {
     pub fn reset(&mut self) {
         let averages = Averages::known(Vector3::zeros(), 1.0);
         self.memory = Memory::fresh(&self.vehicle, averages);
+        self.spinning = None;
     }
 
     /// The same, but the estimates of the vehicle itself stay: how a flight goes on without a pose. The force across is
@@ -136,6 +142,12 @@ impl Controller {
     #[must_use]
     pub fn estimates(&self) -> Estimates {
         self.learning.believed(&self.memory.averages)
+    }
+
+    /// The law without a rotor, once one is lost.
+    #[must_use]
+    pub fn spinning(&self) -> Option<&SpinningLaw> {
+        self.spinning.as_ref()
     }
 
     /// One tick of the law.
@@ -199,6 +211,10 @@ impl Controller {
         self.admit(state, reference)?;
         let axis = thrust_axis(&state.attitude);
         let Rotating { acted, pending, lasting } = self.rotating(measured.wrench.as_ref());
+        if self.has_lost(state, &axis, &measured, &acted) {
+            cold_path();
+            return Ok(self.spin(state, reference, &axis, &pending));
+        }
         let learnt = self.learning.learnt(&self.memory, state, &axis, &measured, &acted);
         let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
         let greatest = self.ceiling.at(scale, &bias);
@@ -307,6 +323,7 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
 mod building;
 mod prospect;
 mod sections;
+mod without_a_rotor;
 
 pub use prospect::Prospect;
 

@@ -3,6 +3,7 @@
 use super::actuators::ActuatorState;
 use super::fallback::Fallback;
 use super::position::Filters;
+use super::rotor_loss::detector::Suspicion;
 use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::vehicle::Vehicle;
@@ -79,6 +80,8 @@ pub struct Memory {
     pub(super) acted: Vector4<f32>,
     /// E of [`measured`](super::measured); none before rotor speeds were measured.
     pub(super) lasting: Option<Vector4<f32>>,
+    /// Whether a rotor fails.
+    pub(super) suspicion: Suspicion,
 }
 
 impl Memory {
@@ -97,6 +100,7 @@ impl Memory {
             actuators: ActuatorState::steady(hover),
             acted: hover,
             lasting: None,
+            suspicion: Suspicion::NONE,
         }
     }
 }

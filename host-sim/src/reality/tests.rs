@@ -43,7 +43,7 @@ fn a_fall_approaches_the_terminal_velocity_of_linear_drag() {
     let (mass, gravity) = (f64::from(0.46_f32), f64::from(9.81_f32));
     let (terminal, time) = (mass * gravity / 0.3, mass / 0.3);
     for second in 1..=20 {
-        falling.hold(&wrench(0.0, [0.0; 3]), 1000).unwrap();
+        falling.hold(&asked(0.0, [0.0; 3]), 1000).unwrap();
         let t = f64::from(second);
         let expected = -terminal * (1.0 - (-t / time).exp());
         assert!((falling.state().velocity.z - expected).abs() < 1e-11, "{t} s: {}", falling.state().velocity.z);
@@ -58,16 +58,16 @@ fn a_fall_approaches_the_terminal_velocity_of_quadratic_drag() {
     let mut falling = direct("[drag]\nframe = [0.0, 0.0, 0.02]");
     let (mass, gravity) = (f64::from(0.46_f32), f64::from(9.81_f32));
     let terminal = (mass * gravity / 0.02).sqrt();
-    falling.hold(&wrench(0.0, [0.0; 3]), 1000).unwrap();
+    falling.hold(&asked(0.0, [0.0; 3]), 1000).unwrap();
     assert!((falling.state().velocity.z + terminal * (gravity / terminal).tanh()).abs() < 1e-11);
-    falling.hold(&wrench(0.0, [0.0; 3]), 20_000).unwrap();
+    falling.hold(&asked(0.0, [0.0; 3]), 20_000).unwrap();
     assert!((falling.state().velocity.z + terminal).abs() < 1e-4);
 }
 
 #[test]
 fn wind_carries_a_level_vehicle_along() {
     let mut carried = direct("[drag]\nlinear = [0.23, 0.23, 0.0]\n[wind]\nsteady = [5.0, -1.0, 0.0]");
-    carried.hold(&wrench(0.46 * 9.81, [0.0; 3]), 2000).unwrap();
+    carried.hold(&asked(0.46 * 9.81, [0.0; 3]), 2000).unwrap();
     // 0.46 kg over 0.23 kg/s: 2 s.
     let expected = Vector3::new(5.0, -1.0, 0.0) * (1.0 - (-2.0 * 0.23 / f64::from(0.46_f32)).exp());
     assert!((carried.state().velocity - expected).norm() < 1e-6, "{}", carried.state().velocity);
@@ -127,7 +127,7 @@ steady = [5.0, -1.0, 0.5]
 #[test]
 fn an_offset_centre_of_mass_turns_the_vehicle_by_r_cross_f() {
     let mut offset = direct("[truth]\ncentre_of_mass = [0.004, -0.002, 0.0]");
-    offset.hold(&wrench(4.5, [0.0; 3]), 1).unwrap();
+    offset.hold(&asked(4.5, [0.0; 3]), 1).unwrap();
     let torque = -Vector3::new(0.004, -0.002, 0.0).cross(&Vector3::new(0.0, 0.0, 4.5));
     let inertia = Scenario::paper().unwrap().configuration.vehicle().inertia.map(f64::from);
     let turned = torque.component_div(&inertia) * 1e-3;
@@ -140,22 +140,22 @@ fn a_disturbance_pushes_in_the_world_and_turns_in_the_body_from_its_time_on() {
     let mut pushed = direct(
         "[disturbance]\nacceleration = [1.0, -2.0, 0.5]\nstart = 0.1\n[truth]\nmass = 0.92\n[initial]\neuler_deg = [0, 0, 90]",
     );
-    pushed.hold(&wrench(0.0, [0.0; 3]), 100).unwrap();
+    pushed.hold(&asked(0.0, [0.0; 3]), 100).unwrap();
     let fallen = Vector3::z() * (-0.1 * f64::from(9.81_f32));
     assert!((pushed.state().velocity - fallen).norm() < 1e-12);
-    pushed.hold(&wrench(0.0, [0.0; 3]), 100).unwrap();
+    pushed.hold(&asked(0.0, [0.0; 3]), 100).unwrap();
     // The force is the model's mass times the acceleration, and the vehicle is twice as heavy.
     let gained = Vector3::new(0.5, -1.0, 0.25) * 0.1 + fallen * 2.0;
     assert!((pushed.state().velocity - gained).norm() < 1e-7, "{}", pushed.state().velocity);
     let mut turned = direct("[disturbance]\ntorque = [0.0, 0.0, 0.0053]");
-    turned.hold(&wrench(0.0, [0.0; 3]), 1000).unwrap();
+    turned.hold(&asked(0.0, [0.0; 3]), 1000).unwrap();
     assert!((turned.state().angular_velocity - Vector3::z()).norm() < 1e-6);
 }
 
 #[test]
 fn true_mass_inertia_and_thrust_scale_act() {
     let mut heavy = direct("[truth]\nmass = 0.92\ninertia = [2e-3, 4e-3, 5e-3]\nthrust_scale = 0.5");
-    heavy.hold(&wrench(6.0, [0.01, 0.02, -0.03]), 1).unwrap();
+    heavy.hold(&asked(6.0, [0.01, 0.02, -0.03]), 1).unwrap();
     let state = heavy.state();
     assert!((state.velocity.z - (0.5 * 6.0 / 0.92 - f64::from(9.81_f32)) * 1e-3).abs() < 1e-9);
     let turned = Vector3::new(0.005 / 2e-3, 0.01 / 4e-3, -0.015 / 5e-3) * 1e-3;
@@ -167,7 +167,7 @@ fn true_mass_inertia_and_thrust_scale_act() {
 fn the_true_lag_is_the_rotors() {
     let thrust_after_its_lag = |sections: &str| {
         let mut lagging = vehicle(&scenario(sections));
-        lagging.hold(&wrench(9.0, [0.0; 3]), 20).unwrap();
+        lagging.hold(&asked(9.0, [0.0; 3]), 20).unwrap();
         lagging.thrusts().iter().sum::<f64>()
     };
     let speed = |thrust: f64| (thrust / 4.0 / 5.57e-6).sqrt();
@@ -200,7 +200,7 @@ fn where_reality_is_the_model_the_vehicle_is_the_models() {
 fn a_delay_takes_effect_at_its_step() {
     let moved = |steps: u32| {
         let mut late = direct("[truth]\n[sampling]\ndelay = 0.007");
-        late.hold(&wrench(6.0, [0.0; 3]), steps).unwrap();
+        late.hold(&asked(6.0, [0.0; 3]), steps).unwrap();
         late.state().velocity.z.abs() > 1e-5
     };
     assert!(!moved(7) && moved(8));
@@ -232,7 +232,7 @@ angular_velocity = [2.0, -1.0, 1.5]
             .replace("step = 0.001", &format!("step = {:e}", 1e-2 / f64::from(steps)));
         let text = format!("{head}[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 0.0]\n{sections}");
         let mut flying = vehicle(&Scenario::parse(&text, "f").unwrap());
-        flying.hold(&wrench(5.5, [0.01, -0.008, 0.004]), 100 * steps).unwrap();
+        flying.hold(&asked(5.5, [0.01, -0.008, 0.004]), 100 * steps).unwrap();
         *flying.state()
     };
     let exact = flown(64);
@@ -249,28 +249,28 @@ fn a_vehicle_on_the_ground_stands_until_it_is_lifted_and_again_when_it_falls() {
         "[ground]\nheight = 0.0\n[truth]\nmass = 0.5\n[drag]\nlinear = [0.3, 0.3, 0.3]\n[wind]\nsteady = [9.0, 0.0, 0.0]",
     );
     let start = *standing.state();
-    standing.hold(&wrench(4.8, [0.1, 0.1, 0.1]), 1000).unwrap();
+    standing.hold(&asked(4.8, [0.1, 0.1, 0.1]), 1000).unwrap();
     // Lighter than the true weight of 4.9 N, though not than the model's of 4.5 N; the wind does not push it either.
     assert_eq!(*standing.state(), start);
     assert!(standing.surroundings().standing);
-    standing.hold(&wrench(6.0, [0.0; 3]), 500).unwrap();
+    standing.hold(&asked(6.0, [0.0; 3]), 500).unwrap();
     assert!(!standing.surroundings().standing);
     assert!(standing.state().position.z > 0.1 && standing.state().velocity.x > 0.5);
-    standing.hold(&wrench(0.0, [0.0; 3]), 3000).unwrap();
+    standing.hold(&asked(0.0, [0.0; 3]), 3000).unwrap();
     let end = standing.state();
     assert_eq!(end.velocity, Vector3::zeros());
     assert!(standing.surroundings().standing);
     assert!(end.position.z <= 0.0 && end.position.z > -0.01, "{}", end.position.z);
     let before = *end;
-    standing.hold(&wrench(1.0, [0.0; 3]), 100).unwrap();
+    standing.hold(&asked(1.0, [0.0; 3]), 100).unwrap();
     assert_eq!(*standing.state(), before);
 }
 
 #[test]
 fn what_is_no_number_is_refused_or_ends_the_flight() {
     let mut with_rotors = vehicle(&scenario("[truth]"));
-    let refused = with_rotors.hold(&wrench(f32::NAN, [0.0; 3]), 10);
+    let refused = with_rotors.hold(&asked(f32::NAN, [0.0; 3]), 10);
     assert!(matches!(refused, Err(ActuationError::Wrench(_))), "{refused:?}");
-    let without = direct("[truth]").hold(&wrench(f32::NAN, [0.0; 3]), 10);
+    let without = direct("[truth]").hold(&asked(f32::NAN, [0.0; 3]), 10);
     assert!(matches!(without, Err(ActuationError::Diverged(_))), "{without:?}");
 }

@@ -15,6 +15,7 @@ use crate::extended::measured::Measured;
 use crate::extended::memory::{Averages, Memory};
 use crate::extended::parameters::Extended;
 use crate::extended::position::{Most, PositionLaw};
+use crate::extended::rotor_loss::detector::Detector;
 use crate::extended::thrust_range::ThrustRange;
 use crate::extended::turning::TurningLimit;
 use crate::math;
@@ -66,6 +67,8 @@ impl Controller {
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
             memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
+            detector: Detector::new(vehicle, rotors, period),
+            spinning: None,
             measured: Measured::default(),
         })
     }
@@ -85,7 +88,8 @@ impl Controller {
     pub fn set_period(&mut self, period: f32) -> Result<(), ParameterError> {
         let rebuilt = Self::build(&self.vehicle, &self.limits, &self.law, self.rotors.as_ref(), period)?;
         let Self { memory, learning, measured, .. } = *self;
-        *self = Self { memory, learning, measured, changed: Some(rebuilt.learning), ..rebuilt };
+        let spinning = self.spinning.take();
+        *self = Self { memory, learning, measured, spinning, changed: Some(rebuilt.learning), ..rebuilt };
         Ok(())
     }
 }

@@ -1,0 +1,88 @@
+//! From the tick on in which a rotor is found to fail.
+
+use super::Controller;
+use crate::controller::Diagnostics;
+use crate::extended::measured::Measured;
+use crate::extended::memory::{Last, Memory};
+use crate::extended::rotor_loss::detector::Interval;
+use crate::extended::rotor_loss::spinning::{Spinning, SpinningLaw};
+use crate::reference::Reference;
+use crate::state::{State, Wrench};
+use core::hint::cold_path;
+use nalgebra::{Quaternion, Vector3, Vector4};
+
+impl Controller {
+    /// Whether a rotor is lost, now or before. `acted` is the mean wrench since the last tick, as commanded.
+    #[inline(always)] // see position.rs
+    pub(super) fn has_lost(
+        &mut self,
+        state: &State,
+        axis: &Vector3<f32>,
+        measured: &Measured,
+        acted: &Vector4<f32>,
+    ) -> bool {
+        if self.spinning.is_some() {
+            return true;
+        }
+        let memory = &mut self.memory;
+        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
+            memory.suspicion.forget();
+            return false;
+        };
+        let differed = self.learning.force.differed([&last.velocity, &state.velocity]);
+        let interval = Interval {
+            acceleration: *measured.usable_acceleration().unwrap_or(&differed),
+            angular_velocities: [&last.angular_velocity, &state.angular_velocity],
+            axis: (last.thrust_axis + axis) * 0.5,
+            acted: acted * memory.averages.scale.scale,
+        };
+        let Some(lost) = self.detector.observe(&mut memory.suspicion, &interval) else { return false };
+        cold_path();
+        let estimates = self.estimates();
+        let times = [self.late, self.period];
+        self.spinning =
+            self.rotors.as_ref().map(|rotors| SpinningLaw::new(&self.vehicle, rotors, &lost, times, &estimates));
+        self.spinning.is_some()
+    }
+
+    /// A tick without a rotor: the wrench of the commands, as all rotors would deliver it.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn spin(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        axis: &Vector3<f32>,
+        pending: &Vector4<f32>,
+    ) -> (Wrench, Diagnostics) {
+        let (Some(law), Some(rotors)) = (&mut self.spinning, &self.rotors) else {
+            return (Wrench { thrust: 0.0, torque: Vector3::zeros() }, Diagnostics::NONE);
+        };
+        let Spinning { delivered, command, mrp } = law.step(state, reference, pending, self.period);
+        let asked: Vector4<f32> =
+            rotors.effectiveness().iter().zip(law.commands()).map(|(column, f)| column.map(|x| x as f32) * *f).sum();
+        let asked = asked * self.thrust_scale();
+        let Memory { actuators, acted, last, .. } = &mut self.memory;
+        let Wrench { thrust, torque } = delivered;
+        actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z));
+        *acted = self.actuators.advance(actuators);
+        *last = Some(Last {
+            velocity: state.velocity,
+            thrust_axis: *axis,
+            angular_velocity: state.angular_velocity,
+            forward: Vector3::zeros(),
+        });
+        let square = mrp.norm_squared();
+        let error = Quaternion::from_parts(1.0 - square, mrp * 2.0) * (1.0 / (1.0 + square));
+        let diagnostics = Diagnostics {
+            position_error: state.position - reference.position,
+            velocity_error: state.velocity - reference.velocity,
+            acceleration_command: command,
+            desired_attitude: state.attitude * error.conjugate(),
+            attitude_error: error,
+            mrp,
+            ..Diagnostics::NONE
+        };
+        (Wrench { thrust: asked.x, torque: Vector3::new(asked.y, asked.z, asked.w) }, diagnostics)
+    }
+}

@@ -1,0 +1,284 @@
+//! The law without a rotor: the vehicle gives up its heading, turns, and holds its place.
+//!
+//! Three rotors of four hold a vehicle up only if it turns ever faster until drag stops that (*relaxed hover*: M. W.
+//! Mueller, R. D'Andrea, *Relaxed hover solutions for multicopters*, IJRR 35(8), 2016). Then a constant torque about an
+//! axis of the body averages out in the world. n is an axis in the body, near its z; the vehicle is to turn about n, and
+//! n to point along u:
+//!
+//! | here | equation |
+//! |---|---|
+//! | u | g e3 + p_d'' - k_v (v~ + v(z)) - d, upwards and across within their levels; v(z) of [`super::super::approach`] |
+//! | d | d' = l (v' - (u - g e3) - d): whatever keeps the vehicle from moving as it is told |
+//! | eta | R^T u / \|u\|, as it will be when a command acts |
+//! | error | e = (n x eta) / cos(theta / 2), cos theta = n . eta: 2 sin(theta / 2) long |
+//! | rate error | delta = omega - w, w = n omega_3 / n_3 |
+//! | torque | tau = J (k_q e - k_w delta + delta x w) + omega x J omega |
+//! | thrust | T = m \|u\| cos theta / n_3, or more while it begins to turn |
+//! | yaw | tau_3 = J_3 k_y (r - omega_3), r towards the heading: what is left for it, often nothing |
+//!
+//! delta x w makes delta fall in the world's axes, not in those of the turning body. The body turns by omega T within the
+//! lag and the delay T, at 18 rad/s and 25 ms by 26 degrees: all errors are those at its end, by the gyro and what past
+//! commands will still do.
+//!
+//! **The axis.** The rotor opposite a failed one can only push that side further down, so about z it has nothing to do,
+//! and the tilt is held in one direction only. Turning about n = z cos phi + sin phi a, a from the failed rotor to
+//! the one opposite, needs from that one the torque (J_3 - J_1) omega_3^2 tan phi, which grows until its drag ends the
+//! vehicle's turning faster; and with a thrust to take back it holds the tilt both ways. It needs J_3 > J_1, as flat
+//! vehicles have it. Where thrusts that are left hold the tilt in every direction, n is z.
+//!
+//! **The beginning.** Until the vehicle has turned by a quarter, nothing stops it from falling over to the failed side. More
+//! thrust turns it sooner, and takes height while the axis still points up.
+
+use super::super::approach::Approach;
+use super::super::memory::Estimates;
+use crate::allocation::Rotors;
+use crate::allocation::minimum_norm::Thrusts;
+use crate::allocation::remaining::{Lost, RemainingRotors};
+use crate::attitude::rotate_back;
+use crate::math;
+use crate::reference::Reference;
+use crate::state::{State, Wrench, length_squared};
+use crate::vehicle::Vehicle;
+use nalgebra::{Quaternion, Vector3, Vector4};
+
+/// phi, rad: its cosine and sine.
+const AXIS: (f32, f32) = (0.968_912_4, 0.247_403_96);
+
+/// The least J_3 over the mean of J_1 and J_2 for which n is not z.
+const FLAT: f32 = 1.15;
+
+/// How much of a torque that raises the failed side has to be had for n to be z.
+const HELD: f32 = 0.8;
+
+/// The greatest bandwidth of the attitude, 1/s; it times lag, delay and period; its damping.
+const BANDWIDTH: f32 = 20.0;
+const BANDWIDTH_LATE: f32 = 0.7;
+const DAMPING: f32 = 0.8;
+
+/// k_p, 1/s^2, and k_v, 1/s, across and along the vertical.
+const ACROSS: (f32, f32) = (2.4, 2.0);
+const VERTICAL: (f32, f32) = (5.4, 3.0);
+
+/// The acceleration that an approach counts on to brake, m/s^2, and its greatest speed, m/s.
+const BRAKING: f32 = 4.0;
+const SPEED: f32 = 4.0;
+
+/// u's vertical component, in g, and the tangent of its tilt.
+const LIFT: (f32, f32) = (0.4, 2.0);
+const TILT: f32 = 0.7;
+
+/// Bandwidth of d, 1/s, and its greatest size along each axis, m/s^2.
+const LEARNING: f64 = 1.5;
+const FORCE: f32 = 6.0;
+
+/// k_y, 1/s; the rate towards the heading, rad/s, for one rad and at most; and up to which rate it is looked for.
+const YAW: f32 = 5.0;
+const TOWARDS: (f32, f32) = (2.0, 1.0);
+const SPINNING: f32 = 2.0;
+
+/// The thrust while it begins to turn, in weights, up to which rate it does, rad/s, the least part of a rotor's share of
+/// the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
+const BEGINNING: f32 = 2.0;
+const BEGUN: f32 = 6.0;
+const LACKING: f32 = 0.1;
+const UPWARDS: f32 = 0.5;
+
+/// Steps of the motion that is looked ahead.
+const STEPS: usize = 3;
+
+/// The law for a vehicle with a certain rotor lost, and its memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpinningLaw {
+    /// What is lost.
+    lost: Lost,
+    rotors: RemainingRotors,
+    /// n.
+    axis: Vector3<f32>,
+    vehicle: Vehicle,
+    /// k_q, 1/s^2, and k_w, 1/s.
+    stiffness: f32,
+    damping: f32,
+    approaches: [Approach; 2],
+    /// How late a command is in its middle, s.
+    late: f32,
+    /// A rotor's share of the weight times its arm, N m.
+    unit: f32,
+    memory: Memory,
+    /// The last tick's, N.
+    commands: Thrusts,
+}
+
+/// What it remembers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Memory {
+    /// d, m/s^2.
+    force: Vector3<f32>,
+    /// The velocity at the last tick, m/s, and u - g e3, m/s^2.
+    last: Option<(Vector3<f32>, Vector3<f32>)>,
+    /// The torque about the tilt's axes that was not to be had, in `unit`.
+    lacking: f32,
+}
+
+/// A tick's outcome.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spinning {
+    /// What the rotors are to deliver, as a wrench.
+    pub delivered: Wrench,
+    /// u, m/s^2.
+    pub command: Vector3<f32>,
+    /// The tilt's error as modified Rodrigues parameters, body frame.
+    pub mrp: Vector3<f32>,
+}
+
+impl SpinningLaw {
+    /// For a vehicle whose `rotors` have `lost` one, in ticks `period` seconds apart with commands that are `late`, s,
+    /// and with the `estimates` that there were of it.
+    #[must_use]
+    pub fn new(
+        vehicle: &Vehicle,
+        rotors: &Rotors,
+        lost: &Lost,
+        [late, period]: [f32; 2],
+        estimates: &Estimates,
+    ) -> Self {
+        let Estimates { force, scale, .. } = estimates;
+        let weight = vehicle.mass * vehicle.gravity;
+        let remaining = RemainingRotors::new(rotors, lost, *scale, weight);
+        let place = rotors.get(lost.rotor).map_or_else(Vector3::zeros, |rotor| rotor.position);
+        let arm = math::greater(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
+        let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
+        let unit = arm * weight / rotors.len() as f32;
+        // Raises the failed side: a force f at p turns by p x f.
+        let raising = Vector3::new(-away.y, away.x, 0.0) * (0.5 * unit);
+        let had = remaining.wrench(&remaining.allocate(&Wrench { thrust: weight, torque: raising }));
+        let holds = had.torque.dot(&raising) >= HELD * raising.norm_squared();
+        let inertia = &vehicle.inertia;
+        let is_flat = inertia.z > FLAT * 0.5 * (inertia.x + inertia.y);
+        let (cosine, sine) = AXIS;
+        let axis = if holds || !is_flat { Vector3::z() } else { Vector3::z() * cosine + away * sine };
+        let bandwidth = math::lesser(BANDWIDTH, BANDWIDTH_LATE / (late + period));
+        Self {
+            lost: *lost,
+            rotors: remaining,
+            axis,
+            vehicle: *vehicle,
+            stiffness: bandwidth * bandwidth,
+            damping: 2.0 * DAMPING * bandwidth,
+            approaches: [ACROSS, VERTICAL].map(|(k_p, k_v)| Approach::new(k_p, k_v, SPEED)),
+            late: late + 0.5 * period,
+            unit,
+            memory: Memory { force: force.map(|x| math::within(x, FORCE)), last: None, lacking: 0.0 },
+            commands: Thrusts::new(),
+        }
+    }
+
+    /// What is lost.
+    #[must_use]
+    pub fn lost(&self) -> &Lost {
+        &self.lost
+    }
+
+    /// What to command of each rotor, N; nothing before the first tick.
+    #[must_use]
+    pub fn commands(&self) -> &Thrusts {
+        &self.commands
+    }
+
+    /// One tick: `pending` is the impulse that past commands will still deliver, N s and N m s.
+    #[must_use]
+    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> Spinning {
+        self.learn(&state.velocity, period);
+        let command = self.command(state, reference);
+        let (attitude, velocity) = self.ahead(state, pending);
+        let length = math::sqrt(command.norm_squared());
+        let (error, half) = self.error(&rotate_back(&attitude, &(command / length)));
+        let spin = self.axis * (velocity.z / self.axis.z);
+        let delta = velocity - spin;
+        let inertia = &self.vehicle.inertia;
+        let turning = error * self.stiffness - delta * self.damping + delta.cross(&spin);
+        let mut torque = inertia.component_mul(&turning) + velocity.cross(&inertia.component_mul(&velocity));
+        torque.z = inertia.z * YAW * (towards(state, reference) - velocity.z);
+
+        // cos theta = 2 cos(theta / 2)^2 - 1.
+        let along = self.vehicle.mass * length * (2.0 * half * half - 1.0) / self.axis.z;
+        let upwards = 1.0 - 2.0 * (attitude.i * attitude.i + attitude.j * attitude.j) / length_squared(&attitude);
+        let begins = self.memory.lacking > LACKING && velocity.z.abs() < BEGUN && upwards > UPWARDS;
+        let least = if begins { BEGINNING * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
+        let wanted = Wrench { thrust: math::greater(along, least), torque };
+
+        let thrusts = self.rotors.allocate(&wanted);
+        let delivered = self.rotors.wrench(&thrusts);
+        let lacking = (delivered.torque - torque).xy();
+        let mut falling = command;
+        falling.z -= self.vehicle.gravity;
+        self.memory.lacking = math::sqrt(lacking.norm_squared()) / self.unit;
+        self.memory.last = Some((state.velocity, falling));
+        self.commands = self.rotors.commands(&thrusts);
+        Spinning { delivered, command, mrp: error * (-0.5 / (1.0 + half)) }
+    }
+
+    /// d.
+    fn learn(&mut self, velocity: &Vector3<f32>, period: f32) {
+        let Some((before, falling)) = self.memory.last else { return };
+        let averaging = -math::exp_m1(-LEARNING * f64::from(period)) as f32;
+        let beside = (velocity - before) / period - falling;
+        let force = &mut self.memory.force;
+        *force += (beside.map(|x| math::within(x, FORCE)) - *force) * averaging;
+    }
+
+    /// u.
+    fn command(&self, state: &State, reference: &Reference) -> Vector3<f32> {
+        let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
+        let [across, vertical] = &self.approaches;
+        let closing = across.factor(p.xy().norm_squared(), BRAKING);
+        let ((_, k_v), (_, k_v_vertical)) = (ACROSS, VERTICAL);
+        let gravity = self.vehicle.gravity;
+        let rest = reference.acceleration - self.memory.force;
+        let wanted = rest.xy() - (v.xy() + p.xy() * closing) * k_v;
+        let lift = rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING)) * k_v_vertical;
+        let (least, most) = LIFT;
+        let lift = math::between(lift, least * gravity, most * gravity);
+        let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT);
+        let share = if length > reach { reach / length } else { 1.0 };
+        Vector3::new(wanted.x * share, wanted.y * share, lift)
+    }
+
+    /// Attitude, of any length, and body rate when a command of now acts.
+    fn ahead(&self, state: &State, pending: &Vector4<f32>) -> (Quaternion<f32>, Vector3<f32>) {
+        let inertia = &self.vehicle.inertia;
+        let step = self.late / STEPS as f32;
+        let torque = Vector3::new(pending.y, pending.z, pending.w) / self.late;
+        let (mut attitude, mut velocity) = (state.attitude, state.angular_velocity);
+        for _ in 0..STEPS {
+            let gyroscopic = velocity.cross(&inertia.component_mul(&velocity));
+            let next = velocity + (torque - gyroscopic).component_div(inertia) * step;
+            let half = (velocity + next) * (0.25 * step);
+            attitude *= Quaternion::from_parts(1.0, half);
+            velocity = next;
+        }
+        (attitude, velocity)
+    }
+
+    /// e, and cos(theta / 2), for eta. Exactly half a turn away there is no nearest way, and no error.
+    fn error(&self, eta: &Vector3<f32>) -> (Vector3<f32>, f32) {
+        let half = math::sqrt(math::greater(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
+        (self.axis.cross(eta) / math::greater(half, 1e-3), half)
+    }
+}
+
+/// r: the rate towards the reference's heading, rad/s; none of a vehicle that spins.
+fn towards(state: &State, reference: &Reference) -> f32 {
+    if state.angular_velocity.z.abs() > SPINNING {
+        return 0.0;
+    }
+    let forward = crate::heading::Heading::of_attitude(&state.attitude).direction();
+    let heading = reference.heading.direction();
+    let sine = forward.x * heading.y - forward.y * heading.x;
+    let behind = forward.dot(&heading) < 0.0;
+    let (of_one, most) = TOWARDS;
+    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::within(of_one * sine, most) };
+    turn + reference.heading.rate()
+}
+
+#[cfg(test)]
+mod tests;
