@@ -35,7 +35,7 @@ fn weakened(name: &str, share: f64) -> Course {
 }
 
 #[test]
-fn a_rotor_may_lose_half_of_its_thrust_and_no_more_is_promised() {
+fn a_rotor_may_lose_half_of_its_thrust_or_all_of_it() {
     println!("rotor 1 left with  deepest excursion, end error [m]: Hummingbird        study");
     for share in [0.9, 0.8, 0.7, 0.5, 0.0] {
         let [first, second] = ["hummingbird", "study"].map(|name| weakened(name, share));
@@ -47,7 +47,9 @@ fn a_rotor_may_lose_half_of_its_thrust_and_no_more_is_promised() {
             assert!(second.excursion < far && second.end_error < 0.005, "{share}: {second:?}");
         }
         if share == 0.0 {
-            assert!(first.settled.is_none() && second.settled.is_none(), "a quadrotor that flies on three rotors?");
+            // It turns, which takes it round on a circle of some centimetres.
+            assert!(first.excursion < 1.0 && first.end_error < 0.03, "{first:?}");
+            assert!(second.excursion < 2.0 && second.end_error < 0.03, "{second:?}");
         }
     }
 }

@@ -20,6 +20,7 @@ use controller_core::extended::controller::Controller;
 use controller_core::extended::demand::Demand;
 use controller_core::extended::measured::Measured;
 use controller_core::extended::parameters::Extended;
+use controller_core::extended::rotor_loss::spinning::SpinningLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
@@ -125,7 +126,20 @@ impl World {
         shown
     }
 
-    /// One tick, judged. None if it is refused: memory and commands are then as before.
+    /// A command without a rotor, judged.
+    fn judge_without_a_rotor(&self, law: &SpinningLaw, wrench: &Wrench) {
+        let limits = self.configuration().limits();
+        let torque = limits.torque_max - wrench.torque.abs();
+        assert!(wrench.thrust <= limits.thrust_max && torque.min() >= 0.0, "{wrench:?}");
+        let rotors = self.configuration().rotors().unwrap();
+        for (index, (command, rotor)) in law.commands().iter().zip(rotors.iter()).enumerate() {
+            let is_gone = index == law.lost().rotor && law.lost().left == 0.0;
+            let least = if is_gone { 0.0 } else { rotor.thrust_min };
+            assert!((least..=rotor.thrust_max).contains(command), "{command} N of rotor {}", index + 1);
+        }
+    }
+
+    /// One tick, judged. None if it is refused, or a rotor is found to fail: from a reset then; else memory and commands are then as before.
     fn step(&self, controller: &mut Controller, state: &State, wanted: &Wanted, shown: &mut Shown) -> Option<Wrench> {
         let answer = match wanted {
             Wanted::Flight(reference) => controller.step(state, reference),
@@ -135,6 +149,12 @@ impl World {
             }
         };
         let (wrench, _) = answer.ok()?;
+        if let Some(law) = controller.spinning() {
+            // States that no vehicle runs through look like a failed rotor. Without it, limits and ranges hold.
+            self.judge_without_a_rotor(law, &wrench);
+            controller.reset();
+            return None;
+        }
         *shown = shown.join(self.judge(&wrench, controller.thrust_scale()));
         Some(wrench)
     }

@@ -26,7 +26,7 @@ use controller_core::governor::{Following, GovernorLimits};
 use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
 use nalgebra::Vector3;
 
-/// Everything that decides what the motors do. Size: about 4.7 KB, and its [`Memory`] and [`Estimator`].
+/// Everything that decides what the motors do. Size: about 5.7 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,

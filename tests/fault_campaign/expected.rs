@@ -135,7 +135,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED },
         Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED },
         Failure::RotorWeak => LOST,
-        Failure::RotorLost => Answer { in_flight: &[(Off, 20.0)], descending: Some(40.0), ..LOST },
+        Failure::RotorLost => Answer { in_flight: &[(Land, 0.4), (Off, 20.0)], descending: Some(40.0), ..LOST },
         Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
         Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },
         Failure::Overrun => Answer { in_flight: &[(Land, 0.15)], most: Land, idling: Some(0.15), ..NOTHING },

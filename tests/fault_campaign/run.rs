@@ -74,6 +74,8 @@ struct Flight<'m> {
     down: Option<u64>,
     /// When it last touched the ground, us.
     hit: u64,
+    /// The rotor that the vehicle has found to fail.
+    lost: Option<usize>,
     /// Why the last tick's pose was refused, if it was.
     refused: Option<Rejected>,
     flown: Flown,
@@ -94,6 +96,7 @@ pub fn fly(vehicle: &Vehicle, case: Case) -> Flown {
         down: None,
         hit: 0,
         refused: None,
+        lost: None,
         flown: Flown {
             case,
             path: Vec::new(),
@@ -158,6 +161,7 @@ impl Flight<'_> {
             Ok(answer) => answer,
             Err(error) => return self.complain(error.to_string()),
         };
+        self.lost = outcome.lost.map(|lost| lost.rotor).or(self.lost);
         self.sight.tick += 1;
         self.sight.lasts = if outcome.mode == before { self.sight.lasts + 1 } else { 0 };
         self.sight = Sight {
@@ -166,7 +170,7 @@ impl Flight<'_> {
             now: self.vehicle.now(),
             ..self.sight
         };
-        for words in watch::complaints(before, &outcome, command, &vehicle.certified) {
+        for words in watch::complaints(before, &outcome, command, &vehicle.certified, self.lost) {
             self.complain(words);
         }
         if given.killed && outcome.output != Output::Stop {
@@ -313,7 +317,7 @@ impl Flight<'_> {
             let (outcome, command) = self.vehicle.tick(&given, &mut self.failures).unwrap();
             self.sight = Sight { mode: outcome.mode, now: self.vehicle.now(), tick: self.sight.tick + 1, ..self.sight };
             self.flown.taken.extend(outcome.transition);
-            for words in watch::complaints(before, &outcome, command, &vehicle.certified) {
+            for words in watch::complaints(before, &outcome, command, &vehicle.certified, self.lost) {
                 self.complain(words);
             }
             let armed = request == Request::Arm && outcome.answer == Some(Ok(()));

@@ -10,8 +10,15 @@ use flight::{Flown, Mode, Outcome, Output, Transition};
 /// Room for the rounding of a wrench's components against a bound, relative.
 const ROUNDING: f64 = 1e-6;
 
-/// What is wrong with a tick's answer by itself, in words.
-pub fn complaints(before: Mode, outcome: &Outcome, command: MotorCommand, certified: &Certified) -> Vec<String> {
+/// What is wrong with a tick's answer by itself, in words. Once a rotor is `lost`, no bound is certified; ranges and
+/// limits hold.
+pub fn complaints(
+    before: Mode,
+    outcome: &Outcome,
+    command: MotorCommand,
+    certified: &Certified,
+    lost: Option<usize>,
+) -> Vec<String> {
     let mut said = Vec::new();
     let mut must = |holds: bool, words: &str| {
         if !holds {
@@ -28,14 +35,19 @@ pub fn complaints(before: Mode, outcome: &Outcome, command: MotorCommand, certif
     if let Output::Thrusts(thrusts) = &outcome.output {
         must(outcome.flown.is_some(), "thrusts of nothing that was flown");
         let rotors = certified.configuration().rotors().unwrap();
-        let within = rotors.iter().zip(thrusts).all(|(rotor, thrust)| {
-            *thrust >= rotor.thrust_min * (1.0 - 1e-6) && *thrust <= rotor.thrust_max * (1.0 + 1e-6)
+        let within = rotors.iter().zip(thrusts).enumerate().all(|(index, (rotor, thrust))| {
+            let may_stand = lost == Some(index);
+            let least = if may_stand { 0.0 } else { rotor.thrust_min };
+            *thrust >= least * (1.0 - 1e-6) && *thrust <= rotor.thrust_max * (1.0 + 1e-6)
         });
         must(within && thrusts.len() == rotors.len(), "a rotor out of its range");
-        must(rotors_are_proven(thrusts, certified), "a rotor beyond its certified bound");
+        must(lost.is_some() || rotors_are_proven(thrusts, certified), "a rotor beyond its certified bound");
     }
     if let Some(Ok(flown)) = &outcome.flown {
-        must(is_proven(flown, certified.certificate()), "a wrench beyond its certified bound");
+        must(
+            if lost.is_some() { is_within_limits(flown, certified) } else { is_proven(flown, certified.certificate()) },
+            "a wrench beyond its certified bound",
+        );
     }
     must(!matches!(outcome.flown, Some(Err(_))), "the law refused its input");
     said
@@ -73,6 +85,12 @@ fn is_proven(flown: &Flown, certificate: &Certificate) -> bool {
     let torque = wrench.torque.map(|torque| f64::from(torque.abs()));
     (least / raised..=greatest * raised).contains(&f64::from(wrench.thrust))
         && torque.iter().zip(certificate.torque().iter()).all(|(asked, proven)| *asked <= proven * raised)
+}
+
+fn is_within_limits(flown: &Flown, certified: &Certified) -> bool {
+    let limits = certified.configuration().limits();
+    let torque = limits.torque_max - flown.wrench.torque.abs();
+    flown.wrench.thrust <= limits.thrust_max && torque.min() >= 0.0
 }
 
 /// While they are brought up from idle, rotors are between their least thrust and the law's.

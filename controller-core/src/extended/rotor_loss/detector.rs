@@ -53,8 +53,9 @@ const ALIGNED: f32 = 0.96;
 /// The shares that a rotor may have lost. More than all of it is something else.
 const SHARES: (f32, f32) = (0.25, 1.4);
 
-/// The share beyond which it is taken to be gone.
+/// The share that counts as a rotor that is gone, and the one beyond which it is taken to have nothing left.
 const GONE: f32 = 0.8;
+const NOTHING_LEFT: f32 = 0.9;
 
 /// How long a rotor is suspected that is gone, beside the rotors' lag, s.
 const TIME: f32 = 0.02;
@@ -210,7 +211,7 @@ impl Detector {
         let share = math::lesser(lost / GONE, 1.0);
         suspicion.evidence = before + self.period * share * share * share;
         suspicion.rotor = rotor;
-        let left = if lost > GONE { 0.0 } else { 1.0 - lost };
+        let left = if lost > NOTHING_LEFT { 0.0 } else { 1.0 - lost };
         (suspicion.evidence > self.enough).then_some(Lost { rotor, left })
     }
 

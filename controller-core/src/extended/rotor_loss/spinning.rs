@@ -88,10 +88,10 @@ const UPWARDS: f32 = 0.5;
 
 /// How long what the failed rotor has left is watched, s; the least mean thrust of it that tells, in a share of the
 /// weight; the least share of that which has to be missing; and the least that a rotor has left that is not gone.
-const REFINING: f32 = 0.1;
+const REFINING: f32 = 0.05;
 const TELLING: f32 = 0.15;
 const DOUBTED: f32 = 0.25;
-const LEAST_LEFT: f32 = 0.2;
+const LEAST_LEFT: f32 = 0.1;
 
 /// Steps of the motion that is looked ahead.
 const STEPS: usize = 3;
