@@ -48,6 +48,7 @@ pub mod policy;
 pub mod reality;
 pub mod reference;
 pub mod remarks;
+pub mod rotor_loss;
 pub mod sampled_loop;
 pub mod section;
 pub mod stability;
