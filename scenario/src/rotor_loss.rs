@@ -61,6 +61,6 @@ impl WithoutARotor {
         let state = State { position: Vector3::zeros(), velocity: Vector3::zeros(), attitude, angular_velocity };
         let reference = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let spinning = self.law.step(&state, &reference, pending, self.period);
-        (spinning.delivered.torque, spinning.mrp)
+        (self.law.delivered().torque, spinning.mrp)
     }
 }
