@@ -50,8 +50,8 @@ impl WithoutARotor {
         Vector3::new(mrp.y * along, -mrp.x * along, angle.cos())
     }
 
-    /// Of a tick at its place, at rest: the torque that the rotors are to deliver, N m, and the tilt's error as modified
-    /// Rodrigues parameters. `pending` is what past commands will still deliver, N s and N m s.
+    /// Of a tick at its place, at rest: the torque that the rotors are to deliver, N m, and the tilt's error as
+    /// modified Rodrigues parameters. `pending` is what past commands will still deliver, N s and N m s.
     fn stepped(
         mut self,
         attitude: Quaternion<f32>,

@@ -9,9 +9,9 @@
 //! | wind | after 4 s | hover in 5 m/s of wind |
 //! | upside down | after 0.15 s, as it turns | hover, from roll -179 degrees, yaw 100 degrees off, at rest |
 //!
-//! The reference goes on for [`GOES_ON`], stops on the circle, and goes down at [`SINKING`] into the ground. Nobody tells
-//! a law of the failure. A flight ends where it first touches the ground; one that does not, or that comes to no number,
-//! never lands. Drag is as in [`super::scenes`].
+//! The reference goes on for [`GOES_ON`], stops on the circle, and goes down at [`SINKING`] into the ground. Nobody
+//! tells a law of the failure. A flight ends where it first touches the ground; one that does not, or that comes to no
+//! number, never lands. Drag is as in [`super::scenes`].
 
 use super::rows::Row;
 use super::scenes::{Scene, in_still_air};

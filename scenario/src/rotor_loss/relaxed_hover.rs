@@ -10,13 +10,13 @@
 //! sum d_i x F_i + s_i (k_m / k_eta) f_i e3 - k_flap w_i V_i x e3 = omega x J omega
 //! ```
 //!
-//! Four equations for three thrusts and Omega. Thrust and the tilt's torques give the thrusts at a given Omega, linearly
-//! but for the air's small part, which is put in anew until it stands; yaw gives Omega, by halving. For
+//! Four equations for three thrusts and Omega. Thrust and the tilt's torques give the thrusts at a given Omega,
+//! linearly but for the air's small part, which is put in anew until it stands; yaw gives Omega, by halving. For
 //! n = z cos phi + sin phi a and J_1 = J_2 the tilt's torque is (J_3 - J_1) Omega^2 sin phi cos phi, that of the rotor
 //! opposite the failed one; so it turns faster until that rotor's drag, with the hubs', balances the other two's.
 //!
-//! Left out: the circle of g tan(phi) / Omega^2 that its centre makes (1 cm at 13 rad/s), and what the least thrust of a
-//! rotor forbids.
+//! Left out: the circle that its centre makes, g tan(phi) / Omega^2 in radius (2 cm at 13 rad/s), and what the least
+//! thrust of a rotor forbids.
 
 use crate::reality::drag::Drag;
 use controller_core::allocation::{Rotor, Rotors};
