@@ -3,7 +3,7 @@
 //! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
 //! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them
 //! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What
-//! becomes of it without a rotor ([`rotor_gone`]) decides nothing. What may be flown comes last ([`may_fly`]).
+//! becomes of it without a rotor (`rotor_gone`) decides nothing. What may be flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;

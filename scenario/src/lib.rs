@@ -24,7 +24,8 @@
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
 //! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a model, and from what the
-//! reference takes [along itself](along); [`board`], whether the firmware can.
+//! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
+//! without one of its rotors.
 //!
 //! [`policy`] reads the files of policies.
 

@@ -2,8 +2,8 @@
 //!
 //! The model, with the file's `[drag]` and nothing else of what is really there, hovers; a rotor goes; the reference
 //! stays. After [`WATCHED`] the vehicle is near its place, or lost. One that then turns faster and faster is flown on
-//! until it is lost, to say by when it must have landed. Beside the flights stand the [relaxed hover](relaxed_hover)
-//! that the vehicle comes to, and the sampled [loop](turning_loop) about it. None of this decides whether it may fly.
+//! until it is lost, to say by when it must have landed. Beside the flights stand the relaxed hover that the vehicle
+//! comes to, and the sampled loop about it ([`scenario::rotor_loss`]). None of this decides whether it may fly.
 
 use crate::flight::Flight;
 use crate::table::{aligned, short};

@@ -1,6 +1,6 @@
 //! A rotor that fails: ours beside others, from the failure to the ground.
 //!
-//! Rotor 1 keeps 0, 30, 50 or 70 % of its thrust, [`HEIGHT`] above the ground:
+//! Rotor 1 keeps 0, 30, 50 or 70 % of its thrust, 10 m above the ground:
 //!
 //! | scene | fails | task |
 //! |---|---|---|
@@ -9,9 +9,9 @@
 //! | wind | after 4 s | hover in 5 m/s of wind |
 //! | upside down | after 0.15 s, as it turns | hover, from roll -179 degrees, yaw 100 degrees off, at rest |
 //!
-//! The reference goes on for [`GOES_ON`], stops on the circle, and goes down at [`SINKING`] into the ground. Nobody
-//! tells a law of the failure. A flight ends where it first touches the ground; one that does not, or that comes to no
-//! number, never lands. Drag is as in [`super::scenes`].
+//! The reference goes on for 3 s, stops on the circle, and goes down at 0.6 m/s into the ground. Nobody tells a law of
+//! the failure. A flight ends where it first touches the ground; one that does not, or that comes to no number, never
+//! lands. Drag is as in [`super::scenes`].
 
 use super::rows::Row;
 use super::scenes::{Scene, in_still_air};
