@@ -150,7 +150,7 @@ pub fn lines(scenario: &Scenario, certified: Option<&Certified>) -> Result<Strin
         0 if losses.iter().any(|loss| loss.flown.lost.is_some()) => "survived if it lands in time",
         0 => "survived",
         lost if lost == losses.len() => "NOT survived",
-        _ => "NOT survived of every rotor",
+        _ => "survived of some rotors, NOT of all",
     };
     let lacks = each(losses.iter().map(|loss| loss.lacks(has_drag).into_iter().collect()).collect());
     let lacks = lacks.into_iter().filter_map(|(rotor, lacks)| Some(format!("{rotor}: {}\n", lacks.first()?)));
