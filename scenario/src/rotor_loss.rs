@@ -36,7 +36,8 @@ impl WithoutARotor {
         };
         let lost = Lost { rotor, left: 0.0 };
         let times = [law.actuators.lag + law.actuators.delay, period];
-        Some(Self { law: SpinningLaw::new(configuration.vehicle(), rotors, &lost, times, &Estimates::NONE), period })
+        let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
+        Some(Self { law: SpinningLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })
     }
 
     /// The axis, in the body, about which it turns: at rest and level, the tilt's error is the one from it to z.

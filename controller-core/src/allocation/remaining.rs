@@ -16,6 +16,9 @@
 //! go. C + B B' is inverted column by column (Sherman and Morrison). At most three rounds for each rotor; the thrusts
 //! keep to their ranges after any number of them.
 //!
+//! Then the whole is drawn back towards the least thrusts as far as the user's limits of thrust and torque ask: of what is
+//! delivered, and of what would be if no rotor had lost anything.
+//!
 //! Method: O. Härkegård, *Efficient active set algorithms for solving constrained least squares problems in aircraft
 //! control allocation*, CDC 2002. Which of a multirotor's torques to give up first: E. J. J. Smeur, D. Höppener, C. de
 //! Wagter, *Prioritized control allocation for quadrotors subject to saturation*, IMAV 2017.
@@ -25,6 +28,7 @@ use super::geometry::{ROTORS_MAX, Rotors};
 use super::minimum_norm::Thrusts;
 use crate::math;
 use crate::state::Wrench;
+use crate::vehicle::Limits;
 use heapless::Vec;
 use nalgebra::{Matrix4, Vector3, Vector4};
 
@@ -33,6 +37,9 @@ const GIVING_WAY: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
 
 /// Rounds for each rotor.
 const ROUNDS: usize = 3;
+
+/// The part of a limit that is left unused: more than the rounding of a wrench.
+const LIMITS_LEFT: f32 = 1e-5;
 
 /// How strongly a rotor has to pull away from its bound to be let go, N.
 const LEAST_PULL: f32 = 1e-4;
@@ -83,6 +90,8 @@ pub struct RemainingRotors {
     rotors: Vec<Remaining, ROTORS_MAX>,
     /// Newtons per N or N m.
     newtons: Vector4<f32>,
+    /// The limits, in newtons.
+    limits: Vector4<f32>,
     /// Delivered over commanded thrust.
     scale: f32,
     /// A rotor's share of the weight, N.
@@ -90,10 +99,10 @@ pub struct RemainingRotors {
 }
 
 impl RemainingRotors {
-    /// The `rotors` of a vehicle of so much `weight`, N, without what is `lost`, all at a thrust `scale`: delivered over
-    /// commanded.
+    /// The `rotors` of a vehicle of so much `weight`, N, with these `limits`, without what is `lost`, all at a thrust
+    /// `scale`: delivered over commanded.
     #[must_use]
-    pub fn new(rotors: &Rotors, lost: &Lost, scale: f32, weight: f32) -> Self {
+    pub fn new(rotors: &Rotors, limits: &Limits, lost: &Lost, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
         let arm = columns().map(|column| column.yz().norm_squared()).fold(f32::MIN_POSITIVE, math::greater);
         let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::greater);
@@ -104,7 +113,9 @@ impl RemainingRotors {
             let left = scale * if index == lost.rotor { math::between(lost.left, 0.0, 1.0) } else { 1.0 };
             Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
-        Self { rotors: collected(all), newtons, scale, share }
+        let torque = &limits.torque_max;
+        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - LIMITS_LEFT);
+        Self { rotors: collected(all), newtons, limits: limits.component_mul(&newtons), scale, share }
     }
 
     /// Other knowledge of what is lost.
@@ -124,7 +135,9 @@ impl RemainingRotors {
     #[must_use]
     pub fn allocate(&self, wanted: &Wrench) -> Thrusts {
         let Wrench { thrust, torque } = wanted;
-        let wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
+        let mut wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
+        // More would bend the tilt for a yaw that is not to be had.
+        wanted.w = math::within(wanted.w, self.share);
         let mut places: Vec<Place, ROTORS_MAX> = collected(
             self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.greatest > rotor.least }),
         );
@@ -134,7 +147,36 @@ impl RemainingRotors {
                 break;
             }
         }
-        collected(self.rotors.iter().zip(&places).map(|(rotor, place)| rotor.within(place.thrust)))
+        let share = self.share_within_limits(&places);
+        let drawn_back =
+            |(rotor, place): (&Remaining, &Place)| rotor.within(rotor.least + (place.thrust - rotor.least) * share);
+        collected(self.rotors.iter().zip(&places).map(drawn_back))
+    }
+
+    /// How far from their least thrusts the rotors may go towards those of `places`.
+    fn share_within_limits(&self, places: &[Place]) -> f32 {
+        let mut sums = [[Vector4::zeros(); 2]; 2];
+        for (rotor, place) in self.rotors.iter().zip(places) {
+            let [least, _] = rotor.commanded;
+            let as_if_whole = |thrust: f32| thrust * self.scale / rotor.left;
+            let whole = [least * self.scale, as_if_whole(place.thrust)];
+            let commanded = if rotor.left > 0.0 { whole } else { [0.0; 2] };
+            for (sum, thrusts) in sums.iter_mut().zip([[rotor.least, place.thrust], commanded]) {
+                for (sum, thrust) in sum.iter_mut().zip(thrusts) {
+                    *sum += rotor.column * thrust;
+                }
+            }
+        }
+        let mut share = 1.0;
+        for [least, wanted] in &sums {
+            for ((from, to), limit) in least.iter().zip(wanted).zip(&self.limits) {
+                if to.abs() > *limit {
+                    let end = if *to > 0.0 { *limit } else { -limit };
+                    share = math::lesser(share, math::between((end - from) / (to - from), 0.0, 1.0));
+                }
+            }
+        }
+        share
     }
 
     /// What to command of each, N, for the rotors to deliver `delivered`, within what they may be commanded; nothing of

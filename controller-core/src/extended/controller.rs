@@ -216,6 +216,7 @@ impl Controller {
     ) -> Result<(Wrench, Diagnostics), InputError> {
         let measured = core::mem::take(&mut self.measured);
         self.admit(state, reference)?;
+        let suspicion = self.memory.suspicion;
         let axis = thrust_axis(&state.attitude);
         let Rotating { acted, pending, lasting } = self.rotating(measured.wrench.as_ref());
         if self.has_lost(state, &axis, &measured, &acted) {
@@ -235,6 +236,7 @@ impl Controller {
         let motion = course.desired.motion_of(&course.turn.rate, &tilting.turn, &reference.heading);
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         if !motion.is_in_range() {
+            self.memory.suspicion = suspicion;
             return Err(InputError::OutOfRange { field: "reference" });
         }
 

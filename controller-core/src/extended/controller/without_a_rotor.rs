@@ -46,8 +46,8 @@ impl Controller {
         let Some(lost) = self.detector.observe(&mut self.memory.suspicion, &interval) else { return false };
         cold_path();
         let (estimates, times) = (self.estimates(), [self.late, self.period]);
-        let law = self.rotors.as_ref().map(|rotors| SpinningLaw::new(&self.vehicle, rotors, &lost, times, &estimates));
-        self.spinning = law;
+        let law = |rotors| SpinningLaw::new(&self.vehicle, &self.limits, rotors, &lost, times, &estimates);
+        self.spinning = self.rotors.as_ref().map(law);
         self.spinning.is_some()
     }
 

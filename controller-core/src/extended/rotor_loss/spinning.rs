@@ -8,6 +8,7 @@
 //! | here | equation |
 //! |---|---|
 //! | u | g e3 + p_d'' - k_v (v~ + v(z)) - d, upwards and across within their levels; v(z) of [`super::super::approach`] |
+//! | p~, v~ | p - c - p_d, v - c' - p_d', c = -a / omega^2, a = T (R e3 - R n n_3) / m: the circle that the thrust turns it on |
 //! | d | d' = l (v' - (u - g e3) - d): whatever keeps the vehicle from moving as it is told |
 //! | eta | R^T u / \|u\|, as it will be when a command acts |
 //! | error | e = (n x eta) / cos(theta / 2), cos theta = n . eta: 2 sin(theta / 2) long |
@@ -39,7 +40,7 @@ use crate::attitude::rotate_back;
 use crate::math;
 use crate::reference::Reference;
 use crate::state::{State, Wrench, length_squared};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Limits, Vehicle};
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// phi, rad: its cosine and sine.
@@ -151,6 +152,7 @@ impl SpinningLaw {
     #[must_use]
     pub fn new(
         vehicle: &Vehicle,
+        limits: &Limits,
         rotors: &Rotors,
         lost: &Lost,
         [late, period]: [f32; 2],
@@ -158,7 +160,7 @@ impl SpinningLaw {
     ) -> Self {
         let Estimates { force, scale, .. } = estimates;
         let weight = vehicle.mass * vehicle.gravity;
-        let remaining = RemainingRotors::new(rotors, lost, *scale, weight);
+        let remaining = RemainingRotors::new(rotors, limits, lost, *scale, weight);
         let place = rotors.get(lost.rotor).map_or_else(Vector3::zeros, |rotor| rotor.position);
         let arm = math::greater(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
         let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
@@ -281,7 +283,8 @@ impl SpinningLaw {
 
     /// u.
     fn command(&self, state: &State, reference: &Reference) -> Vector3<f32> {
-        let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
+        let [around, turned] = self.circle(state);
+        let (p, v) = (state.position - around - reference.position, state.velocity - turned - reference.velocity);
         let [across, vertical] = &self.approaches;
         let closing = across.factor(p.xy().norm_squared(), BRAKING);
         let ((_, k_v), (_, k_v_vertical)) = (ACROSS, VERTICAL);
@@ -294,6 +297,17 @@ impl SpinningLaw {
         let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
+    }
+
+    /// c and c', of a vehicle that turns.
+    fn circle(&self, state: &State) -> [Vector3<f32>; 2] {
+        let rate = state.angular_velocity.z / self.axis.z;
+        if rate.abs() < BEGUN {
+            return [Vector3::zeros(); 2];
+        }
+        let [thrust, turning] = [Vector3::z(), self.axis].map(|axis| rotate_back(&state.attitude.conjugate(), &axis));
+        let across = (thrust - turning * self.axis.z) * (self.delivered.thrust / self.vehicle.mass);
+        [across * (-1.0 / (rate * rate)), turning.cross(&across) * (-1.0 / rate)]
     }
 
     /// Attitude, of any length, and body rate when a command of now acts.
