@@ -296,6 +296,34 @@ fn a_vehicle_that_is_not_as_its_file_says_flies_in_scenes_of_its_own() {
 }
 
 #[test]
+fn a_rotor_that_fails_has_scenes_of_its_own_and_needs_rotors() {
+    let directory = directory("rotor_loss", GENTLE);
+    let flown = host_sim(&directory, &["compare", "h.toml", "--rotor-loss", "--only", "indi", "--out", "out"]);
+    let text = stdout(&flown);
+    assert!(text.starts_with("hummingbird: our law and 1 others; rotor 1 fails, and keeps so much"), "{text}");
+    assert_eq!((status(&flown), files(&directory.join("out"))), (0, vec!["compare.csv".to_owned()]), "{text}");
+    assert!(text.contains("ours always lands softly"), "{text}");
+    let (_, rows) = table(&directory.join("out"));
+    assert_eq!(rows.len(), 4 * 16);
+    let of = |scene: &str, figure: &str, law: usize| {
+        let row = rows.iter().find(|row| row[0] == scene && row[1] == figure).unwrap();
+        row[3 + law].parse::<f64>().unwrap()
+    };
+    assert!(of("hover; 0 %", "height lost", 0) < 0.5 && of("hover; 0 %", "height lost", 1) > 5.0, "{text}");
+
+    let bare = include_str!("../scenarios/paper-extended.toml");
+    fs::write(directory.join("bare.toml"), bare).unwrap();
+    for (arguments, expected) in [
+        (&["bare.toml", "--rotor-loss"][..], "bare.toml: --rotor-loss needs [rotors]"),
+        (&["h.toml", "--rotor-loss", "--realism"], "cannot be used with"),
+    ] {
+        let refused = host_sim(&directory, &[&["compare"], arguments].concat());
+        let message = stderr(&refused);
+        assert!(status(&refused) == 2 && message.contains(expected), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
 fn every_rival_has_gains_for_every_vehicle_that_is_compared() {
     for file in ["vehicles/hummingbird.toml", "vehicles/study.toml", "scenarios/paper-extended.toml"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);

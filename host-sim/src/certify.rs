@@ -2,14 +2,15 @@
 //! side by side. The sharp form and the rotors decide about the paper law's commands, all inequalities about the
 //! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
 //! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them
-//! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What may
-//! be flown comes last ([`may_fly`]).
+//! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What
+//! becomes of it without a rotor (`rotor_gone`) decides nothing. What may be flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;
 pub mod may_fly;
 mod pilot;
 pub mod rigorous;
+mod rotor_gone;
 pub mod shown;
 
 use crate::table::{aligned, percent, short};
@@ -46,6 +47,10 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     text += &loops(scenario, &verdict)?;
     if let LawParameters::Extended(law) = scenario.configuration.law() {
         text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
+    }
+    let gone = rotor_gone::lines(scenario, verdict.certified())?;
+    if !gone.is_empty() {
+        text += &format!("\n{gone}");
     }
     Ok((text, verdict.refusal().is_none()))
 }

@@ -10,6 +10,7 @@ pub mod limit;
 pub mod page;
 pub mod pictures;
 pub mod realism;
+pub mod rotor_loss;
 pub mod rows;
 pub mod scenes;
 pub mod shown;
@@ -24,9 +25,11 @@ use crate::whole_file::WholeFile;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::ParameterError;
 use limit::Limit;
+use rotor_loss::Landing;
+use rows::Row;
 use scenario::Scenario;
 use scenes::Scene;
-use shown::{Shown, Thrown};
+use shown::Thrown;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -95,7 +98,7 @@ pub fn certified(file: &Scenario) -> Result<Certified, CompareError> {
 /// A law, and the file at its rate.
 type Law<'a> = (Flier, &'a Scenario);
 /// Each law's figures in each scene; none where it could not be flown to its end.
-type Figures = Vec<(&'static str, Vec<Option<Shown>>)>;
+type Figures<T> = Vec<(&'static str, Vec<Option<T>>)>;
 
 /// Ours on `file`, then those of `set` on `theirs`.
 fn laws<'a>(
@@ -125,12 +128,12 @@ fn steps(work: usize, interrupt: &Interrupt) -> impl FnMut() -> Result<(), Compa
 }
 
 /// Flies all laws in all `scenes`, each made from the file at a law's rate.
-fn flown(
+fn flown<T>(
     laws: &[Law],
     scenes: fn(&Scenario) -> Result<Vec<Scene>, ParameterError>,
-    show: fn(&Flier, &Scene) -> Option<Shown>,
+    show: fn(&Flier, &Scene) -> Option<T>,
     next: &mut impl FnMut() -> Result<(), CompareError>,
-) -> Result<Figures, CompareError> {
+) -> Result<Figures<T>, CompareError> {
     let mut figures = Figures::new();
     for (flier, file) in laws {
         for (place, scene) in scenes(file)?.iter().enumerate() {
@@ -204,14 +207,41 @@ pub fn compare_in_reality(
     set: &Set,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
+    in_scenes(files, set, realism::all, (realism::show, realism::rows, realism::is_held), interrupt)
+}
+
+/// Flies ours, and all laws of `set`, as a rotor fails, to the ground: [`rotor_loss`]. `files` as in [`compare`], of a
+/// vehicle with rotors.
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare_without_a_rotor(
+    files: (&Scenario, &Scenario),
+    set: &Set,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CompareError> {
+    in_scenes(files, set, rotor_loss::all, (rotor_loss::show, rotor_loss::rows, Landing::is_soft), interrupt)
+}
+
+/// How a law is flown in a scene, the rows of such figures, and whether ours are as they must be.
+type Judged<T> = (fn(&Flier, &Scene) -> Option<T>, fn(&[(&'static str, Vec<Option<T>>)]) -> Vec<Row>, fn(&T) -> bool);
+
+/// A comparison in scenes of its own: a table, and whether ours `holds` in all of them.
+fn in_scenes<T>(
+    files: (&Scenario, &Scenario),
+    set: &Set,
+    scenes: fn(&Scenario) -> Result<Vec<Scene>, ParameterError>,
+    (show, rows, holds): Judged<T>,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CompareError> {
     let laws = laws(files, set, &certified(files.0)?)?;
     let names: Vec<&'static str> = laws.iter().map(|(flier, _)| flier.name()).collect();
-    let mut next = steps(realism::all(files.0)?.len() * laws.len(), interrupt);
-    let shown = flown(&laws, realism::all, realism::show, &mut next)?;
+    let mut next = steps(scenes(files.0)?.len() * laws.len(), interrupt);
+    let figures = flown(&laws, scenes, show, &mut next)?;
     next()?;
     drop(next);
-    let rows = realism::rows(&shown);
-    let holds = shown.iter().all(|(_, shown)| shown.first().and_then(Option::as_ref).is_some_and(realism::is_held));
+    let rows = rows(&figures);
+    let holds = figures.iter().all(|(_, figures)| figures.first().and_then(Option::as_ref).is_some_and(holds));
     let files = vec![("compare.csv", rows::csv(&names, &rows))];
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }

@@ -6,6 +6,7 @@
 use crate::actuators::{ActuationError, Asked};
 use crate::controller::Controller;
 use crate::estimation::{Estimation, NoEstimate};
+use crate::ground::Touchdown;
 use crate::reality::Surroundings;
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
@@ -215,6 +216,11 @@ impl Flight {
     #[must_use]
     pub fn lost(&self) -> Option<Lost> {
         self.controller.lost()
+    }
+
+    /// The last touch of the ground since the last call.
+    pub fn take_touchdown(&mut self) -> Option<Touchdown> {
+        self.vehicle.take_touchdown()
     }
 
     /// One control tick and the plant's motion until the next.

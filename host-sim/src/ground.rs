@@ -32,6 +32,8 @@ pub struct Touchdown {
     pub speed: f64,
     /// How far it leaned, rad.
     pub tilt: f64,
+    /// Where its origin was, m, world.
+    pub position: Vector3<f64>,
 }
 
 /// How a vehicle is on the ground.
@@ -119,7 +121,7 @@ impl Ground {
             self.stance = Stance::Air;
             return None;
         }
-        let touchdown = Touchdown { speed: -climbing, tilt: tilt(state) };
+        let touchdown = Touchdown { speed: -climbing, tilt: tilt(state), position: state.position };
         self.stance = lean.map_or(Stance::Still, |lean| Stance::Rocking(Rocking::begin(state, lean, &self.weight)));
         Some((standing(state.position, state.attitude), touchdown))
     }

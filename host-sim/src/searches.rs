@@ -4,7 +4,7 @@ use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::campaign::fly::grounded;
 use host_sim::certify::summary;
-use host_sim::compare::{self, CompareError, compare, compare_in_reality};
+use host_sim::compare::{self, CompareError, compare, compare_in_reality, compare_without_a_rotor};
 use host_sim::progress::spoken;
 use host_sim::rivals::gains::Set;
 use host_sim::rivals::{rate, tuning};
@@ -70,6 +70,10 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     if let Some(problem) = grounded(&scenario) {
         return Err(format!("{}: {problem}", arguments.file.display()));
     }
+    if arguments.rotor_loss && scenario.configuration.rotors().is_none() {
+        let problem = "--rotor-loss needs [rotors]: there is no rotor that could fail; add that section";
+        return Err(format!("{}: {problem}", arguments.file.display()));
+    }
     let kinds = arguments.kinds();
     let theirs = match arguments.rate {
         Some(hz) => rate::at(&scenario, hz).map_err(|problem| format!("--rate: {problem}"))?,
@@ -124,6 +128,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let files = (&scenario, &theirs);
     let compared = if arguments.realism {
         compare_in_reality(files, &set, &interrupt)
+    } else if arguments.rotor_loss {
+        compare_without_a_rotor(files, &set, &interrupt)
     } else {
         compare(files, &text, &set, arguments.flights, &interrupt)
     };
@@ -140,6 +146,9 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let hz = |rate: f64| format!(" at {} Hz", short(rate));
     let (flown, verdict, written) = if arguments.realism {
         ("the vehicle is not as the file says".to_owned(), ["ours is never lost", "ours is LOST"], "table")
+    } else if arguments.rotor_loss {
+        let verdict = ["ours always lands softly", "ours does NOT always land softly"];
+        ("rotor 1 fails, and keeps so much of its thrust".to_owned(), verdict, "table")
     } else {
         let all = "every random flight of ours settles, unclipped, within its bounds";
         let not_all = "NOT every random flight of ours settles, unclipped, within its bounds";

@@ -4,6 +4,7 @@
 
 use crate::actuators::rotors::SpinningRotors;
 use crate::actuators::{ActuationError, Actuators, Asked};
+use crate::ground::Touchdown;
 use crate::plant::Plant;
 use crate::reality::{RealVehicle, Surroundings};
 use controller_core::allocation::{Mixer, Thrusts};
@@ -87,6 +88,14 @@ impl SimulatedVehicle {
         match self {
             Self::Model(..) => false,
             Self::Real(vehicle) => vehicle.stands(),
+        }
+    }
+
+    /// The last touch of the ground since the last call.
+    pub fn take_touchdown(&mut self) -> Option<Touchdown> {
+        match self {
+            Self::Model(..) => None,
+            Self::Real(vehicle) => vehicle.take_touchdown(),
         }
     }
 

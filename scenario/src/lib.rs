@@ -24,7 +24,8 @@
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
 //! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a model, and from what the
-//! reference takes [along itself](along); [`board`], whether the firmware can.
+//! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
+//! without one of its rotors.
 //!
 //! [`policy`] reads the files of policies.
 
@@ -48,6 +49,7 @@ pub mod policy;
 pub mod reality;
 pub mod reference;
 pub mod remarks;
+pub mod rotor_loss;
 pub mod sampled_loop;
 pub mod section;
 pub mod stability;

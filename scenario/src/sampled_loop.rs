@@ -35,6 +35,7 @@ use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
 use law::{Law, Tracker};
 use slopes::Slopes;
+pub(crate) use spectral_radius::spectral_radius;
 
 /// The longest period between ticks, s; the law's own limit.
 const LONGEST_PERIOD: f32 = 0.1;

@@ -23,6 +23,9 @@ pub struct CompareArguments {
     /// Fly the vehicle as its file does not know it instead: delay, mass, voltage, wind, ground (see docs/rivals.md)
     #[arg(long, conflicts_with = "flights")]
     pub realism: bool,
+    /// Fly it as a rotor fails instead, to the ground (see docs/rivals.md)
+    #[arg(long, conflicts_with_all = ["flights", "realism"])]
+    pub rotor_loss: bool,
     /// Directory for table, pictures, report and gains [default: flights/<name>-compared]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

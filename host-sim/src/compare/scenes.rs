@@ -38,17 +38,24 @@ pub struct Scene {
     pub scenario: Scenario,
 }
 
-/// All scenes, in the order of the table.
-///
-/// # Errors
-/// None for a scenario that was read from a file.
-pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
+/// The vehicle of `file` in still air, with nothing that happens to it.
+#[must_use]
+pub fn in_still_air(file: &Scenario) -> Scenario {
     let mut still_air = file.clone();
     let mass = f64::from(file.configuration.vehicle().mass);
     let reality = &mut still_air.reality;
     (reality.wind, reality.disturbance, reality.failure, reality.sensors, reality.estimator) =
         (None, None, None, None, None);
     reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() });
+    still_air
+}
+
+/// All scenes, in the order of the table.
+///
+/// # Errors
+/// None for a scenario that was read from a file.
+pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
+    let still_air = in_still_air(file);
     let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);
     let windy = |speed: f64, duration: f64| {
         let mut windy = at([0.0; 3], duration)?;

@@ -60,7 +60,7 @@ fn a_fall_ends_without_a_bounce_upright_and_within_a_step_of_the_ground() {
         ground.act(&mut plant, weight * 1.5, &Vector3::new(2e-5, 0.0, 0.0));
     }
     let touchdowns: Vec<_> = (0..5000).filter_map(|_| ground.act(&mut plant, 0.0, &Vector3::zeros())).collect();
-    let [Touchdown { speed, tilt }] = touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [Touchdown { speed, tilt, .. }] = touchdowns[..] else { panic!("{touchdowns:?}") };
     assert!(speed > 1.0 && tilt > 1e-4, "{speed} {tilt}");
     assert!((up(plant.state()) - Vector3::z()).norm() < 1e-12);
     assert_eq!(plant.state().velocity, Vector3::zeros());

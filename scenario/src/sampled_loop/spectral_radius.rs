@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 const SQUARINGS: u32 = 40;
 
 /// The largest magnitude of an eigenvalue of a square `matrix`.
-pub(super) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
+pub(crate) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
     balance(&mut matrix);
     let mut square = matrix.clone();
     let mut logarithm = 0.0_f64;
