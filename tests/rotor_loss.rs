@@ -1,5 +1,5 @@
-//! A rotor that fails under the whole pilot, on sensors as they are: IMU with noise, poses 20 ms late, motor commands.
-//! The vehicle says which rotor it is, turns, comes down by itself, lands softly near where it was, and does not arm
+//! A rotor that fails under the whole pilot, on sensors as they are: an IMU with noise, poses 20 ms late, motor commands.
+//! The vehicle says which rotor it is, turns, comes down by itself or where it is told, lands softly, and does not arm
 //! again.
 //!
 //! `cargo test -p host-sim rotor_loss -- --nocapture` prints the figures that stand in `docs/rotor-loss.md`.
@@ -8,13 +8,14 @@ use crate::support::extended;
 use controller_core::allocation::remaining::Lost;
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{Motion, Setpoint, Turn};
-use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
+use flight::{FlightSettings, Inputs, Mode, Output, Pose, Reason, Refusal, Request, Stamped};
 use nalgebra::Vector3;
-use verification::piloted::{PilotedVehicle, Place, Undisturbed};
+use verification::piloted::{Meddler, PilotedVehicle, Place, PoseMeasurement};
 
-/// When it gets which command, ticks of 10 ms.
+/// When it gets which command, ticks of 10 ms, and when it is watched no longer.
 const ARM: u64 = 200;
 const TAKE_OFF: u64 = 220;
+const END: u64 = 6_000;
 
 /// How high it flies, m.
 const HEIGHT: f32 = 3.0;
@@ -24,156 +25,185 @@ const HEIGHT: f32 = 3.0;
 enum Phase {
     Climbing,
     Holding,
-    Moving,
+    UnderWay,
     Landing,
-    Descending,
+    WithoutPose,
 }
 
-/// What a flight came to.
-#[derive(Debug)]
+impl Phase {
+    const ALL: [Self; 5] = [Self::Climbing, Self::Holding, Self::UnderWay, Self::Landing, Self::WithoutPose];
+
+    /// Whether it is reached, in a mode that has lasted for so many ticks, m high.
+    fn is_reached(self, mode: Mode, lasts: u64, height: f64) -> bool {
+        match self {
+            Self::Climbing => mode == Mode::TakingOff && height > 0.5 * f64::from(HEIGHT),
+            Self::Holding => mode == Mode::Holding && lasts == 100,
+            Self::UnderWay => mode == Mode::Holding && lasts == 110,
+            Self::Landing => mode == Mode::Landing && lasts == 100,
+            Self::WithoutPose => mode == Mode::Descending && lasts == 130,
+        }
+    }
+
+    /// What leads there.
+    fn request(self, mode: Mode, lasts: u64) -> Option<Request> {
+        match self {
+            Self::Landing if mode == Mode::Holding && lasts == 50 => Some(Request::Land),
+            Self::UnderWay if mode == Mode::Holding && lasts == 50 => Some(go_to([5.0, 0.0, HEIGHT])),
+            _ => None,
+        }
+    }
+}
+
+fn go_to(place: [f32; 3]) -> Request {
+    Request::GoTo(Setpoint { motion: Motion::Position(place.into()), turn: Turn::Keep })
+}
+
+/// Poses, or none.
+struct Poses(bool);
+
+impl Meddler for Poses {
+    fn pose(&mut self, pose: Stamped<Pose>, _: u64) -> Option<Stamped<PoseMeasurement>> {
+        self.0.then(|| Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
+    }
+}
+
+/// What a flight came to, from the failure on.
+#[derive(Debug, Default)]
 struct Flown {
     /// What was said of the rotor, and how long after it had failed, s.
     found: Option<(Lost, f64)>,
-    /// Greatest distance from where it was to be, across, m; and height lost, m.
+    /// The greatest distance across from where it failed, m.
     farthest: f64,
-    lost: f64,
-    /// Where it stands, m from where the rotor failed, across; and the hardest touch, m/s.
-    place: f64,
+    /// How far below that it fell in the first two seconds, m.
+    fell: f64,
+    /// Where it stands, m; the hardest touch, m/s; how long after the failure its motors stood still, s.
+    stands: Option<Vector3<f64>>,
     touch: f64,
-    /// How long after the failure it stood with its motors off, s.
-    down: Option<f64>,
+    down: f64,
+    /// The fastest turn, rad/s.
     turned: f64,
     reasons: Vec<Reason>,
-    answer: Option<Result<(), flight::Refusal>>,
+    /// Answers to what was asked after the failure, and to arming after the landing.
+    answers: Vec<Result<(), Refusal>>,
+    arming: Option<Result<(), Refusal>>,
 }
 
-fn fly(name: &str, phase: Phase, rotor: usize, left: f32, told: Option<[f32; 3]>) -> Flown {
+/// A vehicle in a phase, a rotor with what it has left, and what is asked a second after it has failed.
+struct Case<'a> {
+    vehicle: &'a str,
+    phase: Phase,
+    lost: Lost,
+    asked: Option<Request>,
+}
+
+fn fly(case: &Case) -> Flown {
     let published = extended::published();
-    let scenario = published.into_iter().find(|one| one.name == name).unwrap_or_else(|| extended::vehicle(name));
+    let scenario = published.into_iter().find(|one| one.name == case.vehicle);
+    let scenario = scenario.unwrap_or_else(|| extended::vehicle(case.vehicle));
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
     let mut place = Place::new(&scenario.configuration);
     let settings = FlightSettings::DEFAULT;
     let mut vehicle = PilotedVehicle::new(&scenario, Ok(&certified), &settings, &mut place, 0).unwrap();
-    let mut flown = Flown {
-        found: None,
-        farthest: 0.0,
-        lost: 0.0,
-        place: 0.0,
-        touch: 0.0,
-        down: None,
-        turned: 0.0,
-        reasons: Vec::new(),
-        answer: None,
-    };
-    let (mut failed, mut since, mut from) = (None, 0, Vector3::zeros());
-    let mut mode = Mode::Boot;
-    for tick in 1..6_000 {
+    let mut flown = Flown::default();
+    let (mut failed, mut from, mut poses) = (None::<u64>, Vector3::zeros(), Poses(true));
+    let (mut mode, mut lasts) = (Mode::Boot, 0);
+    for tick in 1..END {
+        let since = failed.map(|failed| tick - failed);
         let request = match tick {
             ARM => Some(Request::Arm),
             TAKE_OFF => Some(Request::TakeOff(Some(HEIGHT))),
-            _ if phase == Phase::Landing && mode == Mode::Holding && since == 50 => Some(Request::Land),
-            _ if phase == Phase::Moving && mode == Mode::Holding && since == 50 => Some(Request::GoTo(Setpoint {
-                motion: Motion::Position(Vector3::new(5.0, 0.0, HEIGHT)),
-                turn: Turn::Keep,
-            })),
-            _ if failed.is_some_and(|failed: u64| tick == failed + 100) => {
-                told.map(|place| Request::GoTo(Setpoint { motion: Motion::Position(place.into()), turn: Turn::Keep }))
-            }
-            _ if flown.down.is_some() => Some(Request::Arm),
-            _ => None,
+            _ if flown.stands.is_some() => Some(Request::Arm),
+            _ if since == Some(100) => case.asked,
+            _ => case.phase.request(mode, lasts),
         };
-        let given =
-            Inputs { request, ground_station: Some(vehicle.now() + vehicle.pilot().period()), ..Inputs::default() };
-        let poses = failed.is_none() && (phase != Phase::Descending || mode != Mode::Holding || since < 50);
-        let (outcome, _) = if poses || phase != Phase::Descending {
-            vehicle.tick(&given, &mut Undisturbed)
-        } else {
-            vehicle.tick(&given, &mut Blind)
-        }
-        .unwrap();
-        since = if outcome.mode == mode { since + 1 } else { 0 };
+        let ground_station = Some(vehicle.now() + vehicle.pilot().period());
+        let given = Inputs { request, ground_station, ..Inputs::default() };
+        poses.0 &= case.phase != Phase::WithoutPose || mode != Mode::Holding || lasts < 50;
+        let (outcome, _) = vehicle.tick(&given, &mut poses).unwrap();
+        lasts = if outcome.mode == mode { lasts + 1 } else { 0 };
         mode = outcome.mode;
         let state = *vehicle.vehicle().state();
-        let reached = match phase {
-            Phase::Climbing => mode == Mode::TakingOff && state.position.z > 0.5 * f64::from(HEIGHT),
-            Phase::Holding => mode == Mode::Holding && since == 100,
-            Phase::Moving => mode == Mode::Holding && since == 110,
-            Phase::Landing => mode == Mode::Landing && since == 100,
-            Phase::Descending => mode == Mode::Descending && since == 130,
-        };
-        if reached && failed.is_none() {
+        if failed.is_none() && case.phase.is_reached(mode, lasts, state.position.z) {
             failed = Some(tick);
             from = state.position;
-            vehicle.weaken(rotor, left);
+            vehicle.weaken(case.lost.rotor, case.lost.left);
         }
         let Some(failed) = failed else { continue };
         let time = (tick - failed) as f64 * 0.01;
-        flown.reasons.extend(outcome.transition.map(|transition| transition.reason));
-        flown.found = flown.found.or(outcome.lost.map(|lost| (lost, time)));
-        if std::env::var("TRACE").is_ok() && (state.position.z < 0.15 || tick % 50 == 0 || outcome.transition.is_some())
-        {
-            println!(
-                "{time:.2} {mode:?} z {:.3} xy {:.2} {:.2} v {:.2?} w {:.1?} up {:.2} ref z {:.2} est err {:.3} pose {:?} out {:?} stands {}",
-                state.position.z,
-                state.position.x,
-                state.position.y,
-                state.velocity.as_slice(),
-                state.angular_velocity.as_slice(),
-                (nalgebra::UnitQuaternion::new_unchecked(state.attitude) * Vector3::z()).z,
-                outcome.flown.as_ref().map_or(f32::NAN, |f| f.as_ref().map_or(f32::NAN, |f| f.reference.position.z)),
-                outcome.estimated.map_or(9.9, |e| (e.state.position.cast::<f64>() - state.position).norm()),
-                outcome.pose,
-                outcome.output,
-                vehicle.vehicle().stands()
-            );
-        }
-        flown.farthest = flown.farthest.max((state.position - from).xy().norm());
-        flown.lost = flown.lost.max(from.z - state.position.z);
-        flown.turned = flown.turned.max(state.angular_velocity.z.abs());
-        if let Some(touchdown) = vehicle.vehicle_mut().take_touchdown() {
-            flown.touch = flown.touch.max(touchdown.speed);
-        }
-        if flown.down.is_some() {
-            flown.answer = outcome.answer;
+        if flown.stands.is_some() {
+            flown.arming = outcome.answer;
             break;
         }
+        flown.reasons.extend(outcome.transition.map(|transition| transition.reason));
+        flown.answers.extend(outcome.answer.filter(|_| since == Some(100)));
+        flown.found = flown.found.or(outcome.lost.map(|lost| (lost, time)));
+        flown.farthest = flown.farthest.max((state.position - from).xy().norm());
+        flown.turned = flown.turned.max(state.angular_velocity.z.abs());
+        if time < 2.0 {
+            flown.fell = flown.fell.max(from.z - state.position.z);
+        }
+        let touchdown = vehicle.vehicle_mut().take_touchdown();
+        flown.touch = flown.touch.max(touchdown.map_or(0.0, |touchdown| touchdown.speed));
         if vehicle.vehicle().stands() && outcome.output == Output::Stop {
-            flown.down = Some(time);
-            flown.place = (state.position - from).xy().norm();
+            (flown.stands, flown.down) = (Some(state.position), time);
         }
     }
     flown
 }
 
-/// No poses.
-struct Blind;
+fn holding(vehicle: &str, asked: Option<Request>) -> Flown {
+    fly(&Case { vehicle, phase: Phase::Holding, lost: Lost { rotor: 2, left: 0.0 }, asked })
+}
 
-impl verification::piloted::Meddler for Blind {
-    fn pose(
-        &mut self,
-        _: flight::Stamped<flight::Pose>,
-        _: u64,
-    ) -> Option<flight::Stamped<estimation::estimator::PoseMeasurement>> {
-        None
+#[test]
+fn a_vehicle_without_a_rotor_lands_softly_from_every_phase() {
+    println!("| vehicle | when | rotor; left | found, ms | fell; farthest, m | turned, rad/s | touch, m/s; s after |");
+    println!("|---|---|---|---|---|---|---|");
+    for vehicle in ["hummingbird", "pelican", "flightmare"] {
+        for phase in Phase::ALL {
+            for lost in [(0, 0.0), (2, 0.0), (1, 0.3), (3, 0.6)].map(|(rotor, left)| Lost { rotor, left }) {
+                let flown = fly(&Case { vehicle, phase, lost, asked: None });
+                let (found, late) = flown.found.unwrap_or_else(|| panic!("{vehicle} {phase:?} {lost:?}: not found"));
+                println!(
+                    "| {vehicle} | {phase:?} | {}; {:.1} | {:.0} | {:.2}; {:.2} | {:.1} | {:.2}; {:.1} |",
+                    lost.rotor + 1,
+                    lost.left,
+                    1e3 * late,
+                    flown.fell,
+                    flown.farthest,
+                    flown.turned,
+                    flown.touch,
+                    flown.down
+                );
+                let what = format!("{vehicle} {phase:?} {lost:?}: {flown:?}");
+                assert!(found.rotor == lost.rotor && (found.left - lost.left).abs() < 0.15, "{what}");
+                assert!(late <= if lost.left == 0.0 { 0.1 } else { 0.4 }, "{what}");
+                assert!(flown.stands.is_some() && flown.touch < 1.0, "{what}");
+                assert_eq!(flown.reasons.last(), Some(&Reason::Landed), "{what}");
+                assert_eq!(flown.arming, Some(Err(Refusal::RotorLost)), "{what}");
+                // Without a pose nothing holds it in its place.
+                let (fell, farthest) = if phase == Phase::WithoutPose { (3.0, 10.0) } else { (2.0, 3.0) };
+                assert!(flown.fell < fell && flown.farthest < farthest, "{what}");
+                let guided = !matches!(phase, Phase::Landing | Phase::WithoutPose);
+                assert_eq!(guided, flown.reasons.contains(&Reason::RotorLost), "{what}");
+            }
+        }
     }
 }
 
 #[test]
-fn a_vehicle_without_a_rotor_lands_softly_where_it_was_from_every_phase() {
-    for name in std::env::var("NAMES").as_deref().unwrap_or("hummingbird,pelican,study").split(',') {
-        for phase in if std::env::var("TRACE").is_ok() {
-            vec![Phase::Holding]
-        } else {
-            vec![Phase::Climbing, Phase::Holding, Phase::Moving, Phase::Landing, Phase::Descending]
-        } {
-            for (rotor, left) in if std::env::var("TRACE").is_ok() {
-                vec![(0, 0.0)]
-            } else {
-                vec![(0, 0.0), (2, 0.0), (1, 0.3), (3, 0.6)]
-            } {
-                let flown = fly(name, phase, rotor, left, None);
-                println!("{name} {phase:?} rotor {} left {left}: {flown:?}", rotor + 1);
-            }
-        }
-    }
+fn told_where_it_flies_there_turning_and_lands_there() {
+    let flown = holding("hummingbird", Some(go_to([3.0, -2.0, 2.0])));
+    assert_eq!(flown.answers, [Ok(())]);
+    let stands = flown.stands.unwrap();
+    assert!((stands.xy() - Vector3::new(3.0, -2.0, 0.0).xy()).norm() < 0.2, "{flown:?}");
+    assert_eq!(flown.reasons, [Reason::RotorLost, Reason::HoldCommanded, Reason::RotorLost, Reason::Landed]);
+    assert!(flown.touch < 1.0, "{flown:?}");
+}
+
+#[test]
+fn it_does_not_hold_for_good_nor_fly_setpoints_but_the_pilot_may_stop_it() {
+    assert_eq!(holding("hummingbird", Some(Request::Hold)).answers, [Err(Refusal::MustLand)]);
+    assert_eq!(holding("hummingbird", Some(Request::FlySetpoints)).answers, [Err(Refusal::Landing)]);
+    assert_eq!(holding("hummingbird", Some(Request::Disarm)).answers, [Err(Refusal::InTheAir)]);
 }

@@ -135,6 +135,8 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED },
         Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED },
         Failure::RotorWeak => LOST,
+        // Before it has lifted off, nothing tells of it.
+        Failure::RotorLost if phase == Phase::Spooling => Answer { in_flight: &[(Off, 20.0)], ..LOST },
         Failure::RotorLost => Answer { in_flight: &[(Land, 0.4), (Off, 20.0)], descending: Some(40.0), ..LOST },
         Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
         Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },

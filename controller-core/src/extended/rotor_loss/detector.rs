@@ -55,7 +55,7 @@ const SHARES: (f32, f32) = (0.25, 1.4);
 
 /// The share that counts as a rotor that is gone, and the one beyond which it is taken to have nothing left.
 const GONE: f32 = 0.8;
-const NOTHING_LEFT: f32 = 0.9;
+const NOTHING_LEFT: f32 = 0.87;
 
 /// How long a rotor is suspected that is gone, beside the rotors' lag, s.
 const TIME: f32 = 0.02;
