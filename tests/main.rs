@@ -59,6 +59,7 @@ mod published;
 mod reality;
 mod recovery;
 mod rotor_lag;
+mod rotor_loss;
 mod sampled_loop;
 mod sharp_derivation;
 mod shield;

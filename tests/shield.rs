@@ -8,6 +8,7 @@ use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::shield::{Demand, Reason, Settings, Shield};
 use controller_core::state::State;
+use host_sim::actuators::Asked;
 use host_sim::flight;
 use host_sim::sensors::Sensors;
 use host_sim::vehicle::SimulatedVehicle;
@@ -200,8 +201,9 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
             last = offers.filter(|demand| demand.check().is_ok()).unwrap_or(last);
             law.step_on_demand(&state, &level, &last).unwrap().0
         };
-        let (clipped, _) =
-            vehicle.hold(&wrench.scaled(1.0 / law.thrust_scale()), scenario.timing.steps_per_tick).unwrap();
+        let (clipped, _) = vehicle
+            .hold(&Asked::Wrench(wrench.scaled(1.0 / law.thrust_scale())), scenario.timing.steps_per_tick)
+            .unwrap();
         assert!(!clipped, "{kind:?} {tick}: {wrench:?} is beyond the rotors or the limits");
         let body = vehicle.state();
         let place = body.position;
@@ -285,7 +287,7 @@ fn a_calm_policy_flies_without_a_hand_over() {
                 let flown = shield.step(law, &state, Some(&demand)).unwrap();
                 assert_eq!(flown.reason, None, "{name} {tick} {state:?}");
                 let wrench = flown.wrench.scaled(1.0 / law.thrust_scale());
-                vehicle.hold(&wrench, scenario.timing.steps_per_tick).unwrap();
+                vehicle.hold(&Asked::Wrench(wrench), scenario.timing.steps_per_tick).unwrap();
             }
         }
     }

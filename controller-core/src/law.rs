@@ -80,6 +80,15 @@ impl Law {
         }
     }
 
+    /// For every tick whose velocity is not the vehicle's: see
+    /// [`extended::controller::Controller::hold_without_velocity`].
+    pub fn hold_without_velocity(&mut self) {
+        match self {
+            Self::Paper(_) => {}
+            Self::Extended(law) => law.hold_without_velocity(),
+        }
+    }
+
     /// What was measured beside the state since the last step, for the next one alone: see
     /// [`extended::controller::Controller::measured`].
     pub fn measured(&mut self, measured: &Measured) {
@@ -123,6 +132,15 @@ impl Law {
         match self {
             Self::Paper(_) => None,
             Self::Extended(law) => law.spinning().map(SpinningLaw::commands),
+        }
+    }
+
+    /// What these commands deliver, N and N m, by the law's estimates.
+    #[must_use]
+    pub fn delivered(&self) -> Option<&Wrench> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => law.spinning().map(SpinningLaw::delivered),
         }
     }
 

@@ -235,6 +235,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let Some(share) = outcome.doubtful_thrust {
             self.shared.announce(Event::Thrust(share));
         }
+        if let Some(lost) = outcome.lost {
+            self.shared.announce(Event::RotorLost(lost));
+        }
         if let Some(streamed) = outcome.streamed {
             self.shared.announce(Event::Streamed(streamed));
         }

@@ -12,6 +12,7 @@ use super::refusal::Grounded;
 use super::rules::REFUSAL_MAX;
 use super::sinking::Sinking;
 use super::spool::Spool;
+use controller_core::allocation::remaining::Lost;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
@@ -89,6 +90,8 @@ pub(super) struct Chain<'m> {
     tick: u64,
     refused: u64,
     lift_off: LiftOff,
+    /// The rotor that was found to fail, in this flight or one before.
+    lost: Option<Lost>,
 }
 
 /// What `make` makes, moved in one piece: inlined, each of its fields would be moved for itself.
@@ -136,6 +139,7 @@ impl<'m> Chain<'m> {
             tick,
             refused: 0,
             lift_off: LiftOff::DONE,
+            lost: None,
         })
     }
 
@@ -286,13 +290,23 @@ impl<'m> Chain<'m> {
         let Command { wrench, mrp } = step(&mut self.law, &mut self.reference)?;
         let position_error = state.position - self.reference.position;
         let scale = self.law.thrust_scale();
-        let allocation = self.mixer.allocate(&wrench.scaled(1.0 / scale))?;
-        self.is_exact = allocation.is_exact();
+        let (wrench, thrusts) = match (self.law.commands(), self.law.delivered()) {
+            (Some(commands), Some(delivered)) => {
+                self.is_exact = true;
+                (*delivered, commands.clone())
+            }
+            _ => {
+                let allocation = self.mixer.allocate(&wrench.scaled(1.0 / scale))?;
+                self.is_exact = allocation.is_exact();
+                (wrench, allocation.thrusts)
+            }
+        };
         if !self.is_exact {
             self.law.hold_estimates();
         }
+        self.lost = self.law.lost().or(self.lost);
         self.refused = 0;
-        self.thrusts = Some(self.spool.advance(allocation.thrusts));
+        self.thrusts = Some(self.spool.advance(thrusts));
         let flown =
             Flown { state: *state, reference: self.reference, wrench, position_error, mrp, thrust_scale: scale };
         self.flown = Some(flown);
@@ -307,6 +321,16 @@ impl<'m> Chain<'m> {
     /// Whether the rotors delivered the last commanded wrench.
     pub fn is_exact(&self) -> bool {
         self.is_exact
+    }
+
+    /// The rotor that was found to fail since the boot.
+    pub fn lost(&self) -> Option<Lost> {
+        self.lost
+    }
+
+    /// Whether the reference rests.
+    pub fn rests(&self) -> bool {
+        self.reference.velocity.norm_squared() < AT_REST * AT_REST
     }
 
     /// Whether the vehicle still stands where it started.

@@ -9,6 +9,7 @@ use super::request::Request;
 use super::rules::{Mode, Transition};
 use super::stream_check::Streamed;
 use controller_core::allocation::Thrusts;
+use controller_core::allocation::remaining::Lost;
 use controller_core::error::InputError;
 use controller_core::governor::Setpoint;
 use estimation::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
@@ -138,6 +139,8 @@ pub struct Outcome {
     pub flown: Option<Result<Flown, InputError>>,
     /// The rotors' thrust over the commanded thrust, in the ticks that report a persistent deviation.
     pub doubtful_thrust: Option<f32>,
+    /// The rotor that is found to fail, in the tick in which it is.
+    pub lost: Option<Lost>,
     /// How a stream of setpoints is flown, in the ticks that report it.
     pub streamed: Option<Streamed>,
     /// Whether a policy is let fly.

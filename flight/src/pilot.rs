@@ -53,6 +53,8 @@ pub struct Pilot<'m, P = NoPolicy> {
     landing_from: f32,
     thrust_check: ThrustCheck,
     stream_check: StreamCheck,
+    /// Whether a vehicle that has lost a rotor was told where to land.
+    lands_elsewhere: bool,
     policy: P,
     /// Whether it is let fly.
     flies_policy: bool,
@@ -115,6 +117,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
             stream_check: StreamCheck::default(),
+            lands_elsewhere: false,
             policy,
             flies_policy: false,
         }

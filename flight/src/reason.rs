@@ -82,6 +82,8 @@ estimation::worded! {
         FenceBreached = "Outside the fence: landing",
         /// The vehicle does not follow its reference.
         TrackingLost = "Far from where it should be: landing",
+        /// A rotor has failed.
+        RotorLost = "Rotor lost: landing here, turning",
         /// The rotors do not deliver the commanded wrench.
         Saturated = "Rotors at their limits for 1 s: landing",
         /// Control is late.
@@ -131,6 +133,7 @@ impl Reason {
             | Self::BatteryCritical
             | Self::FenceBreached
             | Self::TrackingLost
+            | Self::RotorLost
             | Self::Saturated
             | Self::Overrun => true,
         }

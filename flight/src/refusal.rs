@@ -68,6 +68,8 @@ pub enum Refusal {
     ClockDoubtful,
     /// Commands do not reach the motors.
     MotorsFail,
+    /// A rotor was found to fail since the boot.
+    RotorLost,
     /// The battery is low.
     BatteryLow,
     /// The battery is to be watched, and there is no reading of it.
@@ -145,6 +147,7 @@ impl fmt::Display for Refusal {
             Self::Busy => "Refused: parameters in work, or a restart",
             Self::ClockDoubtful => "Refused: the clock's crystal does not run",
             Self::MotorsFail => "Refused: the motors' frames do not go out",
+            Self::RotorLost => "Refused: a rotor failed; repair it and restart",
             Self::BatteryLow => "Refused: the battery is low",
             Self::BatteryMissing => "Refused: battery to be watched is not measured",
             Self::InTheAir => "Refused: in the air; land, or disarm by force",

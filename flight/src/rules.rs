@@ -67,6 +67,9 @@ pub const TRACKING_DEBOUNCE: u64 = 5_000_000;
 /// How long the rotors may deliver less than the command, us. In a certified flight they never do.
 pub const SATURATION_DEBOUNCE: u64 = 1_000_000;
 
+/// How long a vehicle without a rotor has been on its way at least before a reference at rest has arrived, us.
+pub const ARRIVING: u64 = 1_000_000;
+
 /// How long control may be late with every tick, us.
 pub const OVERRUN_DEBOUNCE: u64 = 100_000;
 

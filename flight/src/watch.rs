@@ -255,11 +255,13 @@ impl Look<'_> {
         self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED))
     }
 
-    /// Whether a vehicle that is levelled turns, or is not level.
+    /// Whether a vehicle that is levelled turns, or is not level; one that has lost a rotor does both.
     fn turns(&self) -> bool {
-        self.by_imu().is_some_and(|(_, _, EstimatedState { state, .. })| {
-            !within(&state.angular_velocity, TURNING) || up(&state.attitude) < LYING_COSINE
-        })
+        let spins = self.chain.is_some_and(|chain| chain.lost().is_some());
+        !spins
+            && self.by_imu().is_some_and(|(_, _, EstimatedState { state, .. })| {
+                !within(&state.angular_velocity, TURNING) || up(&state.attitude) < LYING_COSINE
+            })
     }
 }
 

@@ -10,6 +10,7 @@ use crate::support::extended::{with_constants, without_estimates};
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
+use host_sim::actuators::Asked;
 use host_sim::flight;
 use host_sim::vehicle::SimulatedVehicle;
 use nalgebra::{Quaternion, Vector3};
@@ -102,7 +103,7 @@ impl Bench {
                 let motion = *component - rest;
                 *component = rest + gain as f32 * motion;
                 // A rotor saturates when the motion has grown a thousand times.
-                let (clipped, _) = body.hold(&commanded, scenario.timing.steps_per_tick).unwrap();
+                let (clipped, _) = body.hold(&Asked::Wrench(commanded), scenario.timing.steps_per_tick).unwrap();
                 if clipped { f32::INFINITY } else { peak.max(motion.abs()) }
             })
         };

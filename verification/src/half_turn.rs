@@ -12,6 +12,7 @@ use controller_core::heading::Heading;
 use controller_core::law::Command;
 use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
+use host_sim::actuators::Asked;
 use host_sim::controller::Controller;
 use host_sim::sensed::Sensed;
 use host_sim::vehicle::SimulatedVehicle;
@@ -110,7 +111,7 @@ impl Trial {
             before = torque;
             course.roll.push((time, roll));
             course.torque.push((time, torque));
-            vehicle.hold(&wrench, start.timing.steps_per_tick).ok()?;
+            vehicle.hold(&Asked::Wrench(wrench), start.timing.steps_per_tick).ok()?;
             // Less than half a turn in a tick, so the nearer way is the way it went.
             let turn = (state.attitude.conjugate() * vehicle.state().attitude).normalize();
             let angle = 2.0 * turn.i.atan2(turn.w);

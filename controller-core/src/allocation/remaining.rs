@@ -53,11 +53,18 @@ struct Remaining {
     least: f32,
     greatest: f32,
     preferred: f32,
+    /// The range of its command, N.
+    commanded: [f32; 2],
     /// The delivered share of its commanded thrust.
     left: f32,
 }
 
 impl Remaining {
+    fn new(column: Vector4<f32>, commanded: [f32; 2], left: f32, share: f32) -> Self {
+        let [least, greatest] = commanded.map(|thrust| thrust * left);
+        Self { column, least, greatest, preferred: math::between(share, least, greatest), commanded, left }
+    }
+
     fn within(&self, thrust: f32) -> f32 {
         math::between(thrust, self.least, self.greatest)
     }
@@ -76,6 +83,10 @@ pub struct RemainingRotors {
     rotors: Vec<Remaining, ROTORS_MAX>,
     /// Newtons per N or N m.
     newtons: Vector4<f32>,
+    /// Delivered over commanded thrust.
+    scale: f32,
+    /// A rotor's share of the weight, N.
+    share: f32,
 }
 
 impl RemainingRotors {
@@ -91,11 +102,22 @@ impl RemainingRotors {
         let share = weight / rotors.len() as f32;
         let all = rotors.iter().zip(columns()).enumerate().map(|(index, (rotor, column))| {
             let left = scale * if index == lost.rotor { math::between(lost.left, 0.0, 1.0) } else { 1.0 };
-            let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| thrust * left);
-            let preferred = math::between(share, least, greatest);
-            Remaining { column: column.component_mul(&newtons), least, greatest, preferred, left }
+            Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
-        Self { rotors: collected(all), newtons }
+        Self { rotors: collected(all), newtons, scale, share }
+    }
+
+    /// Other knowledge of what is lost.
+    pub fn set_left(&mut self, lost: &Lost) {
+        if let Some(rotor) = self.rotors.get_mut(lost.rotor) {
+            *rotor = Remaining::new(rotor.column, rotor.commanded, self.scale * lost.left, self.share);
+        }
+    }
+
+    /// A rotor's share of the weight, N.
+    #[must_use]
+    pub fn share(&self) -> f32 {
+        self.share
     }
 
     /// The thrusts that the rotors are to deliver, N.
@@ -115,10 +137,14 @@ impl RemainingRotors {
         collected(self.rotors.iter().zip(&places).map(|(rotor, place)| rotor.within(place.thrust)))
     }
 
-    /// What to command, N, for the rotors to deliver `delivered`: nothing of one that is gone.
+    /// What to command of each, N, for the rotors to deliver `delivered`, within what they may be commanded; nothing of
+    /// one that is gone.
     #[must_use]
     pub fn commands(&self, delivered: &Thrusts) -> Thrusts {
-        let command = |(rotor, thrust): (&Remaining, &f32)| if rotor.left > 0.0 { thrust / rotor.left } else { 0.0 };
+        let command = |(rotor, thrust): (&Remaining, &f32)| {
+            let [least, most] = rotor.commanded;
+            if rotor.left > 0.0 { math::between(thrust / rotor.left, least, most) } else { 0.0 }
+        };
         collected(self.rotors.iter().zip(delivered).map(command))
     }
 

@@ -119,6 +119,12 @@ impl Controller {
         self.memory.held = self.settling;
     }
 
+    /// Likewise, for every tick whose velocity is not the vehicle's. What is measured of its acceleration still tells
+    /// whether a rotor fails.
+    pub fn hold_without_velocity(&mut self) {
+        self.memory.blind = self.settling;
+    }
+
     /// What was measured since the last step: for the next one alone, whether that is refused or not. Without it the
     /// estimates rest on the states and the commands.
     pub fn measured(&mut self, measured: &Measured) {
@@ -141,7 +147,8 @@ impl Controller {
     /// The estimates; force and torque bias cut to their levels.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
-        self.learning.believed(&self.memory.averages)
+        let believed = self.learning.believed(&self.memory.averages);
+        self.spinning.as_ref().map_or(believed, |law| Estimates { force: law.force(), ..believed })
     }
 
     /// The law without a rotor, once one is lost.
@@ -261,6 +268,7 @@ impl Controller {
         memory.yaw_room = yaw_room;
         memory.lasting = lasting;
         memory.held = memory.held.saturating_sub(1);
+        memory.blind = memory.blind.saturating_sub(1);
         memory.last = Some(Last {
             velocity: state.velocity,
             thrust_axis: axis,

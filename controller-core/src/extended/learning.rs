@@ -56,7 +56,7 @@ impl Learning {
         acted: &Vector4<f32>,
     ) -> Averages {
         let averages = &memory.averages;
-        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
+        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0 && memory.blind == 0) else {
             return *averages;
         };
         let velocities = [&last.velocity, &state.velocity];

@@ -74,6 +74,8 @@ pub struct Memory {
     pub fallback: Fallback,
     /// Ticks for which the estimates are still held.
     pub(super) held: u32,
+    /// Ticks for which they are held because no velocity was known.
+    pub(super) blind: u32,
     pub(super) last: Option<Last>,
     pub(super) actuators: ActuatorState,
     /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
@@ -96,6 +98,7 @@ impl Memory {
             averages,
             fallback: Fallback::FRESH,
             held: 0,
+            blind: 0,
             last: None,
             actuators: ActuatorState::steady(hover),
             acted: hover,

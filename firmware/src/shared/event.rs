@@ -1,6 +1,7 @@
 //! Events for the operator. An event is put into words where it is sent or logged, not in the control task it may come
 //! from.
 
+use controller_core::allocation::remaining::Lost;
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
@@ -64,6 +65,8 @@ pub enum Event {
     Input(InputError),
     /// For a while now the rotors have delivered this share of the commanded thrust.
     Thrust(f32),
+    /// A rotor is found to fail.
+    RotorLost(Lost),
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
     /// Who flies, the policy or the law.
@@ -94,7 +97,9 @@ impl Event {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
-            Self::Input(_) | Self::MotorsLost | Self::Mission(MissionStep::Refused(..)) => Severity::Critical,
+            Self::Input(_) | Self::MotorsLost | Self::RotorLost(_) | Self::Mission(MissionStep::Refused(..)) => {
+                Severity::Critical
+            }
             Self::Handed(Handed::ToLawForGood(_)) => Severity::Critical,
             Self::Mission(_)
             | Self::Mode(_)
@@ -125,6 +130,9 @@ impl fmt::Display for Event {
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
+            Self::RotorLost(Lost { rotor, left }) => {
+                write!(f, "Rotor {} lost: {:.0} % of its thrust left", rotor + 1, 100.0 * left)
+            }
             Self::Streamed(streamed) => streamed.fmt(f),
             Self::Handed(handed) => handed.fmt(f),
             Self::Mission(step) => step.fmt(f),

@@ -11,11 +11,15 @@ impl Chain<'_> {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
-    /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 if it estimates nothing.
+    /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 if it estimates nothing, and of a
+    /// vehicle that has lost a rotor.
     ///
     /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone is not enough: the vertical force
     /// d_z takes up a steady lack of thrust.
     pub fn delivered_share(&self) -> f32 {
+        if self.lost.is_some() {
+            return 1.0;
+        }
         self.law.thrust_scale() * self.gravity / (self.gravity - self.vertical_force())
     }
 

@@ -99,8 +99,8 @@ impl Chain<'_> {
         self.reference.velocity.z = if descends { -self.sinking.descent() } else { 0.0 };
         let mut position = self.reference.position;
         position.z += self.sinking.behind(self.reference.velocity.z, self.period);
-        // Without a pose there is nothing to learn from.
-        self.law.hold_estimates();
+        // Without a pose there is nothing to learn from, but what is felt.
+        self.law.hold_without_velocity();
         self.step(&State { position, velocity, attitude, angular_velocity })
     }
 

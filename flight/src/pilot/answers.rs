@@ -23,6 +23,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         require(!inputs.is_busy, Refusal::Busy)?;
         require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
         require(!inputs.motors_fail, Refusal::MotorsFail)?;
+        require(!self.has_lost_a_rotor(), Refusal::RotorLost)?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
         // A failed accelerometer repeats its last value, which looks like rest.
@@ -82,7 +83,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             Request::FlyMission(from) => self.start_mission(from, inputs, estimate),
             Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
-                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                permission::to_hold(self.mode, self.must_land(seen, estimate) || self.has_lost_a_rotor())?;
                 self.with_chain(|chain| {
                     chain.hold();
                     Ok(())
@@ -93,7 +94,10 @@ impl<'m, P: Aboard> Pilot<'m, P> {
                 require(self.is_airborne(), Refusal::NotInTheAir)?;
                 self.check(&setpoint)?;
                 self.take_over(estimate);
-                self.accept(&setpoint, 0.0)
+                self.accept(&setpoint, 0.0)?;
+                // Without a rotor it lands there.
+                self.lands_elsewhere = self.has_lost_a_rotor();
+                Ok(())
             }
             Request::Land => {
                 let has_landed = matches!(self.mode, Mode::Checks | Mode::Ready);
@@ -142,6 +146,10 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     pub(super) fn must_land(&self, seen: &Seen, estimate: &Estimate) -> bool {
         let Seen { battery_critical, tracking_lost, saturated, overrun, .. } = *seen;
         battery_critical || tracking_lost || saturated || overrun || self.is_outside(estimate)
+    }
+
+    pub(super) fn has_lost_a_rotor(&self) -> bool {
+        self.chain.as_ref().is_ok_and(|chain| chain.lost().is_some())
     }
 
     pub(super) fn is_outside(&self, estimate: &Estimate) -> bool {

@@ -9,8 +9,8 @@ use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::{
-    Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE, LANDING_REST,
-    LEVELLING_MAX, Mode,
+    ARRIVING, Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE,
+    LANDING_REST, LEVELLING_MAX, Mode,
 };
 use crate::watch::Seen;
 use estimation::estimator::{EstimatedState, Fault};
@@ -76,6 +76,8 @@ impl<P: Aboard> Pilot<'_, P> {
             _ => false,
         };
         let stands = self.chain.as_ref().is_ok_and(Chain::is_standing);
+        let is_there = elapsed >= ARRIVING && self.chain.as_ref().is_ok_and(Chain::rests);
+        let is_under_way = self.mode == Mode::Holding && self.lands_elsewhere && !is_there;
         let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
         self.landing_from = self.landing_from.max(height.min(self.settings.fence_height));
         let landing_max = LANDING_REST + LANDING_PATIENCE * self.landing_from / self.settings.landing_speed;
@@ -107,6 +109,7 @@ impl<P: Aboard> Pilot<'_, P> {
             .with(Condition::BatteryCritical, seen.battery_critical)
             .with(Condition::FenceBreached, self.is_outside(estimate))
             .with(Condition::TrackingLost, seen.tracking_lost)
+            .with(Condition::RotorLost, self.has_lost_a_rotor() && !is_under_way)
             .with(Condition::Saturated, seen.saturated)
             .with(Condition::Overrun, seen.overrun)
     }

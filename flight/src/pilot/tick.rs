@@ -8,6 +8,7 @@
 //! ```
 
 use super::{Done, Pilot};
+use crate::chain::Chain;
 use crate::estimate::Estimate;
 use crate::exchange::{Inputs, Outcome};
 use crate::policy::Aboard;
@@ -41,6 +42,7 @@ impl<P: Aboard> Pilot<'_, P> {
         let transition = self.transit(conditions, inputs, estimate, &seen);
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
+        let had_lost = self.has_lost_a_rotor();
         let Done { output, flown, handed } = self.output(estimate, seen.touched, now);
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
         let streamed = self.stream_check.tick(self.following(), now);
@@ -63,6 +65,7 @@ impl<P: Aboard> Pilot<'_, P> {
             pose: estimate.pose,
             flown,
             doubtful_thrust,
+            lost: if had_lost { None } else { self.chain.as_ref().ok().and_then(Chain::lost) },
             streamed,
             flies_policy: self.flies_policy,
             handed,

@@ -74,6 +74,8 @@ estimation::listed! {
         /// The vehicle has been too far from its reference for [`super::TRACKING_DEBOUNCE`], or was struck and thrown
         /// out of its place.
         TrackingLost,
+        /// A rotor has failed, and the vehicle is where it may land.
+        RotorLost,
         /// The rotors have not delivered the commanded wrench during [`super::SATURATION_DEBOUNCE`].
         Saturated,
         /// Control has been late for [`super::OVERRUN_DEBOUNCE`].

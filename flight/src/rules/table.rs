@@ -22,7 +22,7 @@ const fn row(from: Mode, condition: Condition, to: Mode, reason: Reason) -> Row 
 
 /// The rules. Within a mode, an upper row goes before a lower one.
 #[rustfmt::skip]
-pub const TABLE: [Row; 106] = {
+pub const TABLE: [Row; 109] = {
     use Condition::*;
     use Mode::*;
     [
@@ -71,6 +71,7 @@ pub const TABLE: [Row; 106] = {
         row(TakingOff,  ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
         row(TakingOff,  PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(TakingOff,  EstimateLost,        Descending, Reason::PoseLost),
+        row(TakingOff,  RotorLost,           Landing,    Reason::RotorLost),
         row(TakingOff,  BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(TakingOff,  BatteryLow,          Landing,    Reason::BatteryLow),
         row(TakingOff,  FenceBreached,       Landing,    Reason::FenceBreached),
@@ -90,6 +91,7 @@ pub const TABLE: [Row; 106] = {
         row(Flying,     ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
         row(Flying,     PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(Flying,     EstimateLost,        Descending, Reason::PoseLost),
+        row(Flying,     RotorLost,           Landing,    Reason::RotorLost),
         row(Flying,     BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(Flying,     BatteryLow,          Landing,    Reason::BatteryLow),
         row(Flying,     FenceBreached,       Landing,    Reason::FenceBreached),
@@ -109,6 +111,7 @@ pub const TABLE: [Row; 106] = {
         row(Holding,    ThrustsRefused,      Stopped,    Reason::ThrustsRefused),
         row(Holding,    PosesGivenUp,        Descending, Reason::PosesGivenUp),
         row(Holding,    EstimateLost,        Descending, Reason::PoseLost),
+        row(Holding,    RotorLost,           Landing,    Reason::RotorLost),
         row(Holding,    BatteryCritical,     Landing,    Reason::BatteryCritical),
         row(Holding,    BatteryLow,          Landing,    Reason::BatteryLow),
         row(Holding,    FenceBreached,       Landing,    Reason::FenceBreached),

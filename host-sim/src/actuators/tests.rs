@@ -32,6 +32,10 @@ fn wrench(thrust: f32, x: f32, y: f32, z: f32) -> Wrench {
     Wrench { thrust, torque: Vector3::new(x, y, z) }
 }
 
+fn asked(thrust: f32, x: f32, y: f32, z: f32) -> Asked {
+    Asked::Wrench(wrench(thrust, x, y, z))
+}
+
 #[test]
 fn without_rotors_and_delay_the_plant_is_the_plant_bit_for_bit() {
     let (mut direct, mut through) = (plant(STEP), plant(STEP));
@@ -39,7 +43,7 @@ fn without_rotors_and_delay_the_plant_is_the_plant_bit_for_bit() {
     for k in 0..200_u8 {
         let x = f32::from(k);
         let wrench = wrench(25.0 * (0.3 * x).sin(), 0.02 * x.cos(), 1.5 * (0.7 * x).sin(), 0.01);
-        let (clipped, thrusts) = actuators.hold(&mut through, &wrench, 10).unwrap();
+        let (clipped, thrusts) = actuators.hold(&mut through, &Asked::Wrench(wrench), 10).unwrap();
         assert_eq!(clipped, direct.hold(&wrench, 10).unwrap());
         assert!(thrusts.is_empty());
         assert_eq!(through.state(), direct.state());
@@ -53,7 +57,7 @@ fn a_delay_takes_effect_at_its_step_and_not_one_sooner() {
         let (mut direct, mut through) = (plant(STEP), plant(STEP));
         let mut actuators = Actuators::new(None, delay, HOVER);
         for (tick, command) in commands.iter().chain(&commands).enumerate() {
-            actuators.hold(&mut through, command, 10).unwrap();
+            actuators.hold(&mut through, &Asked::Wrench(*command), 10).unwrap();
             for step in 10 * tick as u64..10 * (tick as u64 + 1) {
                 // The wrench of tick k acts from step 10 k + delay on; before the first one, hovering thrust.
                 let acting = step
@@ -71,7 +75,7 @@ fn a_delay_holds_rotors_back_as_well() {
     let still = |delay| {
         let mut plant = plant(STEP);
         let mut actuators = rotors(0.0, delay, STEP);
-        actuators.hold(&mut plant, &wrench(8.0, 0.0, 0.0, 0.0), 10).unwrap();
+        actuators.hold(&mut plant, &asked(8.0, 0.0, 0.0, 0.0), 10).unwrap();
         plant.state().velocity.z.abs() < 1e-5
     };
     assert!(!still(9) && still(10));
@@ -82,7 +86,7 @@ fn thrust_error(step: f64) -> f64 {
     let mut plant = plant(step);
     let mut actuators = rotors(LAG, 0, step);
     let duration = 0.05;
-    actuators.hold(&mut plant, &wrench(9.0, 0.0, 0.0, 0.0), (duration / step).round() as u32).unwrap();
+    actuators.hold(&mut plant, &asked(9.0, 0.0, 0.0, 0.0), (duration / step).round() as u32).unwrap();
     // Thrust 4 k (c + (s - c) e^(-t/lag))^2, integrated.
     let coefficient = f64::from(hummingbird().configuration.rotors().unwrap()[0].thrust_coefficient);
     let (s, c) = ((f64::from(HOVER) / 4.0 / coefficient).sqrt(), (9.0 / 4.0 / coefficient).sqrt());
@@ -104,7 +108,7 @@ fn thrust_is_the_square_of_the_lagging_speed_to_second_order_in_the_step() {
 fn rotors_start_at_the_speeds_that_hover() {
     let mut plant = plant(STEP);
     let mut actuators = rotors(LAG, 0, STEP);
-    let (clipped, thrusts) = actuators.hold(&mut plant, &wrench(HOVER, 0.0, 0.0, 0.0), 1000).unwrap();
+    let (clipped, thrusts) = actuators.hold(&mut plant, &asked(HOVER, 0.0, 0.0, 0.0), 1000).unwrap();
     assert!(!clipped && thrusts.iter().all(|thrust| (thrust - HOVER / 4.0).abs() < 1e-6));
     // Single-precision rotor speeds: 1e-7 of gravity over a second.
     assert!(
@@ -116,7 +120,7 @@ fn rotors_start_at_the_speeds_that_hover() {
 
 #[test]
 fn what_the_rotors_lack_is_flagged() {
-    let cut = |wrench: &Wrench| rotors(LAG, 0, STEP).hold(&mut plant(STEP), wrench, 10).unwrap().0;
+    let cut = |wrench: &Wrench| rotors(LAG, 0, STEP).hold(&mut plant(STEP), &Asked::Wrench(*wrench), 10).unwrap().0;
     // Two rotors at nothing carry all yaw the hovering thrust has: k_m / k_eta T = 24.4 mm of 4.9 N.
     assert!(!cut(&wrench(HOVER, 0.0, 0.0, 0.119)) && cut(&wrench(HOVER, 0.0, 0.0, 0.121)));
     assert!(cut(&wrench(60.0, 0.0, 0.0, 0.0)) && cut(&wrench(-1.0, 0.0, 0.0, 0.0)));
@@ -126,6 +130,6 @@ fn what_the_rotors_lack_is_flagged() {
 #[test]
 fn a_wrench_that_is_no_number_is_refused() {
     let mut actuators = rotors(LAG, 0, STEP);
-    let refused = actuators.hold(&mut plant(STEP), &wrench(f32::NAN, 0.0, 0.0, 0.0), 10);
+    let refused = actuators.hold(&mut plant(STEP), &asked(f32::NAN, 0.0, 0.0, 0.0), 10);
     assert!(matches!(refused, Err(ActuationError::Wrench(_))), "{refused:?}");
 }

@@ -67,7 +67,7 @@ impl Controller {
             actuators: ActuatorModel::new(actuators, period)?,
             settling: actuators.settling(period),
             memory: Memory::fresh(vehicle, Averages::known(Vector3::zeros(), 1.0)),
-            detector: Detector::new(vehicle, rotors, period),
+            detector: Detector::new(vehicle, rotors, actuators.lag, period),
             spinning: None,
             measured: Measured::default(),
         })

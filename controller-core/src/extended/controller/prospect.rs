@@ -72,7 +72,10 @@ impl Controller {
                 stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + pushed),
             ],
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
-            doubtful: self.memory.held > 0 || self.is_at_a_level() || !self.is_held(&force, greatest),
+            doubtful: self.memory.held > 0
+                || self.memory.blind > 0
+                || self.is_at_a_level()
+                || !self.is_held(&force, greatest),
         }
     }
 

@@ -205,7 +205,7 @@ impl Controller {
     /// What the rotors have done since the last tick: by the model, corrected by what was `measured` of it.
     #[inline(always)]
     pub(super) fn rotating(&self, measured: Option<&Wrench>) -> Rotating {
-        let Memory { acted, lasting, held, ref actuators, .. } = self.memory;
+        let Memory { acted, lasting, held, blind, ref actuators, .. } = self.memory;
         let pending = self.actuators.pending(actuators);
         let sensors = &self.learning.sensors;
         let Some([beside, slower]) = measured.and_then(|wrench| sensors.beside(wrench, &acted, lasting.as_ref()))
@@ -216,7 +216,7 @@ impl Controller {
             acted: acted + beside,
             pending: pending + beside * self.law.actuators.lag,
             // What was not delivered does not last.
-            lasting: if held == 0 { Some(slower) } else { lasting },
+            lasting: if held == 0 && blind == 0 { Some(slower) } else { lasting },
         }
     }
 

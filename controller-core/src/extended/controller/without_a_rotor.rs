@@ -21,27 +21,33 @@ impl Controller {
         measured: &Measured,
         acted: &Vector4<f32>,
     ) -> bool {
-        if self.spinning.is_some() {
+        let memory = &self.memory;
+        let last = memory.last.as_ref().filter(|_| memory.held == 0);
+        let known = last.map(|last| self.learning.force.differed([&last.velocity, &state.velocity]));
+        let known = known.filter(|_| memory.blind == 0);
+        let (Some(last), Some(acceleration)) = (last, measured.usable_acceleration().copied().or(known)) else {
+            self.memory.suspicion.forget();
+            return self.spinning.is_some();
+        };
+        let start = last.angular_velocity;
+        let mut interval = Interval {
+            acceleration,
+            angular_velocities: [&start, &state.angular_velocity],
+            axis: (last.thrust_axis + axis) * 0.5,
+            acted: *acted,
+        };
+        if let Some(law) = &mut self.spinning {
+            // What acted is what was to be delivered.
+            let [thrust, missing] = self.detector.missing(law.lost().rotor, &interval);
+            law.refine(thrust, missing, self.period);
             return true;
         }
-        let memory = &mut self.memory;
-        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
-            memory.suspicion.forget();
-            return false;
-        };
-        let differed = self.learning.force.differed([&last.velocity, &state.velocity]);
-        let interval = Interval {
-            acceleration: *measured.usable_acceleration().unwrap_or(&differed),
-            angular_velocities: [&last.angular_velocity, &state.angular_velocity],
-            axis: (last.thrust_axis + axis) * 0.5,
-            acted: acted * memory.averages.scale.scale,
-        };
-        let Some(lost) = self.detector.observe(&mut memory.suspicion, &interval) else { return false };
+        interval.acted *= self.memory.averages.scale.scale;
+        let Some(lost) = self.detector.observe(&mut self.memory.suspicion, &interval) else { return false };
         cold_path();
-        let estimates = self.estimates();
-        let times = [self.late, self.period];
-        self.spinning =
-            self.rotors.as_ref().map(|rotors| SpinningLaw::new(&self.vehicle, rotors, &lost, times, &estimates));
+        let (estimates, times) = (self.estimates(), [self.late, self.period]);
+        let law = self.rotors.as_ref().map(|rotors| SpinningLaw::new(&self.vehicle, rotors, &lost, times, &estimates));
+        self.spinning = law;
         self.spinning.is_some()
     }
 
@@ -58,12 +64,12 @@ impl Controller {
         let (Some(law), Some(rotors)) = (&mut self.spinning, &self.rotors) else {
             return (Wrench { thrust: 0.0, torque: Vector3::zeros() }, Diagnostics::NONE);
         };
-        let Spinning { delivered, command, mrp } = law.step(state, reference, pending, self.period);
+        let Spinning { command, mrp } = law.step(state, reference, pending, self.period);
+        let Wrench { thrust, torque } = *law.delivered();
         let asked: Vector4<f32> =
             rotors.effectiveness().iter().zip(law.commands()).map(|(column, f)| column.map(|x| x as f32) * *f).sum();
         let asked = asked * self.thrust_scale();
         let Memory { actuators, acted, last, .. } = &mut self.memory;
-        let Wrench { thrust, torque } = delivered;
         actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z));
         *acted = self.actuators.advance(actuators);
         *last = Some(Last {

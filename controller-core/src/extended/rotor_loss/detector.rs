@@ -1,22 +1,33 @@
 //! Which rotor has failed, and what it has left: from what the vehicle does beside what its commands make it do.
 //!
-//! Over an interval with the mean wrench w of the commands ([`super::super::actuators`]),
+//! Over an interval with the mean wrench w of the commands ([`super::super::actuators`]), in newtons, torques over the
+//! longest arm l,
 //!
 //! | here | equation |
 //! |---|---|
-//! | residual e | (m b . (v' + g e3) - T, (J omega' + omega x J omega - tau) / l), newtons; l the longest arm |
+//! | residual e | (m b . (v' + g e3) - T, (J omega' + omega x J omega - tau) / l) |
 //! | slow part e_s | e, averaged over [`SLOW`]: wind, drag, a wrong mass or centre of mass, a battery that sags |
 //! | quick part r | e - e_s, averaged over [`QUICK`] |
 //! | rotor i that lost a share lambda of its thrust f_i | r = -lambda f_i b_i, b_i its column of B in newtons |
-//! | alignment | a_i = -r . b_i / (\|r\| \|b_i\|) |
-//! | share | lambda_i = -r . b_i / (f_i \|b_i\|^2) |
+//! | alignment | -r . b_i / (\|r\| \|b_i\|) |
+//! | share | lambda = -r . b_i / (f_i \|b_i\|^2) |
+//! | large enough | \|r\| >= [`LARGE`] F + [`OF_COMMANDS`] A + [`OF_TURNING`] F \|omega_12\|, F a rotor's share of the weight |
+//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within [`FADING`] |
+//! | evidence | grows by h (lambda / [`GONE`])^3 in a tick that tells, falls by h in one that contradicts |
 //!
 //! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the greatest
-//! alignment is suspected while r is large enough to tell, a_i at least [`ALIGNED`] and lambda_i within
-//! [`SHARES`]; and found after [`TIME_GONE`] if it has lost nearly all, after [`TIME_LESS`] if it has lost less. Another
-//! rotor, or none, starts anew: a gust, a hit or the ground pushes otherwise, or not for so long. While one is suspected
-//! the slow part waits, and after a jump of the state, on the ground, or after a command that was not carried out there
-//! is nothing to compare.
+//! alignment is suspected while r is large enough, the alignment at least [`ALIGNED`] and lambda within [`SHARES`]. It is
+//! found once the evidence has grown to [`TIME`] and to the rotors' lag: a dead one at once, one that has lost a third
+//! after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise, or not for so
+//! long. A rotor of which nothing is commanded tells nothing either way.
+//!
+//! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should be
+//! with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
+//! middle of a flip is found a little later.
+//!
+//! While one is suspected the slow part waits. After a jump of the state, on the ground, or after a command that was
+//! not carried out there is nothing to compare. At first the model is believed as if it had been right for [`BELIEVED`]; no
+//! rotor is suspected before [`BEGINNING`].
 
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::remaining::Lost;
@@ -26,28 +37,35 @@ use crate::vehicle::Vehicle;
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constants of the slow and the quick part, s.
+/// Time constants of the slow and the quick part, and of the greatest command of late, s.
 const SLOW: f64 = 1.0;
 const QUICK: f64 = 0.01;
+const FADING: f64 = 0.3;
 
-/// The least |r| that tells anything, in a rotor's share of the weight.
-const LARGE: f32 = 0.25;
+/// The parts of the least |r| that tells anything.
+const LARGE: f32 = 0.3;
+const OF_COMMANDS: f32 = 0.45;
+const OF_TURNING: f32 = 0.06;
 
 /// The least alignment.
-const ALIGNED: f32 = 0.9;
+const ALIGNED: f32 = 0.96;
 
 /// The shares that a rotor may have lost. More than all of it is something else.
 const SHARES: (f32, f32) = (0.25, 1.4);
 
-/// The share beyond which it is taken to be gone, and how long it is suspected before that, s.
+/// The share beyond which it is taken to be gone.
 const GONE: f32 = 0.8;
-const TIME_GONE: f32 = 0.025;
 
-/// How long a rotor that has lost less is suspected, s.
-const TIME_LESS: f32 = 0.08;
+/// How long a rotor is suspected that is gone, beside the rotors' lag, s.
+const TIME: f32 = 0.02;
 
 /// The least thrust that tells what a rotor has lost, in its share of the weight.
 const TELLING: f32 = 0.3;
+
+/// For how long the model is taken to have been right before the first interval, s, and until when that counts for more
+/// than what has been seen.
+const BELIEVED: f32 = 0.3;
+const BEGINNING: f32 = 0.45;
 
 /// A rotor as the detector sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,33 +85,48 @@ pub struct Detector {
     mass: f32,
     gravity: f32,
     per_arm: f32,
-    /// A rotor's share of the weight, N.
+    /// F, N.
     share: f32,
-    /// 1 - e^(-h / time constant) of the slow and the quick part.
+    /// 1 - e^(-h / time constant).
     slow: f32,
     quick: f32,
+    fading: f32,
+    /// The evidence that is enough, s.
+    enough: f32,
     period: f32,
 }
 
 /// What it remembers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Suspicion {
-    /// e_s, N; none before the first interval.
-    lasting: Option<Vector4<f32>>,
+    /// e_s and w_s, N; none before the first interval.
+    lasting: Option<[Vector4<f32>; 2]>,
+    /// For how long they have been averaged, s, up to [`SLOW`].
+    age: f32,
     /// r, N.
     residual: Vector4<f32>,
-    /// Who is suspected, and for how long, s.
+    /// A, N.
+    commands: f32,
+    /// Who is suspected, and the evidence against it, s.
     rotor: usize,
-    time: f32,
+    evidence: f32,
 }
 
 impl Suspicion {
     /// Of nobody.
-    pub const NONE: Self = Self { lasting: None, residual: Vector4::new(0.0, 0.0, 0.0, 0.0), rotor: 0, time: 0.0 };
+    pub const NONE: Self = Self {
+        lasting: None,
+        age: BELIEVED,
+        residual: Vector4::new(0.0, 0.0, 0.0, 0.0),
+        commands: 0.0,
+        rotor: 0,
+        evidence: 0.0,
+    };
 
     /// After an interval that tells nothing.
     pub fn forget(&mut self) {
-        *self = Self { lasting: self.lasting, ..Self::NONE };
+        self.residual = Vector4::zeros();
+        self.evidence = 0.0;
     }
 }
 
@@ -111,9 +144,9 @@ pub struct Interval<'a> {
 }
 
 impl Detector {
-    /// For ticks `period` seconds apart. Without rotors it finds nothing.
+    /// For ticks `period` seconds apart and rotors of so much `lag`, s. Without rotors it finds nothing.
     #[must_use]
-    pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, period: f32) -> Self {
+    pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f32, period: f32) -> Self {
         let columns = || rotors.into_iter().flat_map(Rotors::effectiveness).map(|column| column.map(|x| x as f32));
         let arm = columns().map(|column| column.yz().norm_squared()).fold(f32::MIN_POSITIVE, math::greater);
         let per_arm = 1.0 / math::sqrt(arm);
@@ -134,36 +167,66 @@ impl Detector {
             share: vehicle.mass * vehicle.gravity / count as f32,
             slow: averaging(SLOW),
             quick: averaging(QUICK),
+            fading: averaging(FADING),
+            // Half a period: sums of periods are rounded.
+            enough: TIME + lag - 0.5 * period,
             period,
         }
     }
 
     /// Takes an interval in; the rotor that is found.
     pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<Lost> {
-        let residual = self.residual(interval);
+        let (residual, acted) = (self.residual(interval), self.newtons(&interval.acted));
         // Inputs in range can overflow together.
-        if !(residual.norm_squared() < f32::MAX) {
+        if !(residual.norm_squared() + acted.norm_squared()).is_finite() {
             suspicion.forget();
             return None;
         }
-        let lasting = suspicion.lasting.unwrap_or(residual);
+        let [lasting, steady] = suspicion.lasting.unwrap_or([Vector4::zeros(), acted]);
         suspicion.residual += (residual - lasting - suspicion.residual) * self.quick;
-        let square = suspicion.residual.norm_squared();
-        let least = LARGE * self.share;
-        let suspected = if square > least * least { self.suspected(suspicion, interval) } else { None };
+        let moving = math::sqrt((acted - steady).norm_squared());
+        suspicion.commands = math::greater(suspicion.commands - suspicion.commands * self.fading, moving);
+
+        let [_, end] = interval.angular_velocities;
+        let turning = math::sqrt(end.xy().norm_squared());
+        let least = self.share * (LARGE + OF_TURNING * turning) + OF_COMMANDS * suspicion.commands;
+        let is_large = suspicion.residual.norm_squared() > least * least;
+        let suspected = if is_large && suspicion.age > BEGINNING { self.suspected(suspicion, interval) } else { None };
         let Some((rotor, lost)) = suspected else {
-            suspicion.time = 0.0;
-            suspicion.lasting = Some(lasting + (residual - lasting) * self.slow);
+            // An average of all that there was, at first.
+            let first = self.period / (suspicion.age + self.period);
+            let averaging = math::greater(self.slow, first);
+            let lasting = lasting + (residual - lasting) * averaging;
+            let steady = steady + (acted - steady) * averaging;
+            suspicion.age = math::lesser(suspicion.age + self.period, SLOW as f32);
+            if self.would_tell(suspicion.rotor, interval) {
+                suspicion.evidence = math::greater(suspicion.evidence - self.period, 0.0);
+            }
+            suspicion.lasting = Some([lasting, steady]);
             return None;
         };
-        suspicion.lasting = Some(lasting);
-        suspicion.time = if rotor == suspicion.rotor { suspicion.time + self.period } else { self.period };
+        suspicion.lasting = Some([lasting, steady]);
+        let before = if rotor == suspicion.rotor { suspicion.evidence } else { 0.0 };
+        let share = math::lesser(lost / GONE, 1.0);
+        suspicion.evidence = before + self.period * share * share * share;
         suspicion.rotor = rotor;
-        let is_gone = lost > GONE;
-        let time = if is_gone { TIME_GONE } else { TIME_LESS };
-        // Half a period: sums of periods are rounded.
-        let found = suspicion.time > time - 0.5 * self.period;
-        found.then_some(Lost { rotor, left: if is_gone { 0.0 } else { 1.0 - lost } })
+        let left = if lost > GONE { 0.0 } else { 1.0 - lost };
+        (suspicion.evidence > self.enough).then_some(Lost { rotor, left })
+    }
+
+    /// A wrench in newtons.
+    fn newtons(&self, wrench: &Vector4<f32>) -> Vector4<f32> {
+        let arm = self.per_arm;
+        wrench.component_mul(&Vector4::new(1.0, arm, arm, arm))
+    }
+
+    /// The thrust that a rotor is taken to deliver in an interval, N, and what is missing of it by the torque about the
+    /// tilt's axes.
+    #[must_use]
+    pub fn missing(&self, rotor: usize, interval: &Interval) -> [f32; 2] {
+        let Some(Signature { column, row, .. }) = self.rotors.get(rotor) else { return [0.0; 2] };
+        let along = self.residual(interval).yz().dot(&column.yz());
+        [row.dot(&interval.acted), -along / math::greater(column.yz().norm_squared(), f32::MIN_POSITIVE)]
     }
 
     /// e, N.
@@ -173,8 +236,12 @@ impl Detector {
         let turned = self.inertia.component_mul(&(*end - *start)) / self.period;
         let torque = turned + mean.cross(&self.inertia.component_mul(&mean));
         let thrust = self.mass * (acceleration.dot(axis) + self.gravity * axis.z);
-        let torque = (torque - Vector3::new(acted.y, acted.z, acted.w)) * self.per_arm;
-        Vector4::new(thrust - acted.x, torque.x, torque.y, torque.z)
+        self.newtons(&(Vector4::new(thrust, torque.x, torque.y, torque.z) - acted))
+    }
+
+    /// Whether a rotor is commanded so much thrust that a loss would show.
+    fn would_tell(&self, rotor: usize, interval: &Interval) -> bool {
+        self.rotors.get(rotor).is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING * self.share)
     }
 
     /// The rotor that r is most aligned with, and the share that it has lost.
@@ -189,10 +256,11 @@ impl Detector {
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
+        let tells = self.would_tell(index, interval);
         let lost = greatest * rotor.per_length / math::greater(thrust, TELLING * self.share);
         let aligned = greatest * greatest >= ALIGNED * ALIGNED * residual.norm_squared();
         let (least, most) = SHARES;
-        (aligned && thrust > TELLING * self.share && lost >= least && lost <= most).then_some((index, lost))
+        (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
     }
 }
 

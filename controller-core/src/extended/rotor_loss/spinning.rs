@@ -27,7 +27,8 @@
 //! vehicles have it. Where thrusts that are left hold the tilt in every direction, n is z.
 //!
 //! **The beginning.** Until the vehicle has turned by a quarter, nothing stops it from falling over to the failed side. More
-//! thrust turns it sooner, and takes height while the axis still points up.
+//! thrust turns it sooner, and takes height while the axis still points up. Once it has turned, never again: a vehicle
+//! that touches the ground turns no more.
 
 use super::super::approach::Approach;
 use super::super::memory::Estimates;
@@ -76,12 +77,20 @@ const YAW: f32 = 5.0;
 const TOWARDS: (f32, f32) = (2.0, 1.0);
 const SPINNING: f32 = 2.0;
 
-/// The thrust while it begins to turn, in weights, up to which rate it does, rad/s, the least part of a rotor's share of
+/// The thrust while it begins to turn, in weights, for how long at most, s, up to which rate it does, rad/s, the least part of a rotor's share of
 /// the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
 const BEGINNING: f32 = 2.0;
+const BEGINNING_TIME: f32 = 0.6;
 const BEGUN: f32 = 6.0;
 const LACKING: f32 = 0.1;
 const UPWARDS: f32 = 0.5;
+
+/// How long what the failed rotor has left is watched, s; the least mean thrust of it that tells, in a share of the
+/// weight; the least share of that which has to be missing; and the least that a rotor has left that is not gone.
+const REFINING: f32 = 0.1;
+const TELLING: f32 = 0.15;
+const DOUBTED: f32 = 0.25;
+const LEAST_LEFT: f32 = 0.2;
 
 /// Steps of the motion that is looked ahead.
 const STEPS: usize = 3;
@@ -92,7 +101,8 @@ pub struct SpinningLaw {
     /// What is lost.
     lost: Lost,
     rotors: RemainingRotors,
-    /// n.
+    /// a and n.
+    away: Vector3<f32>,
     axis: Vector3<f32>,
     vehicle: Vehicle,
     /// k_q, 1/s^2, and k_w, 1/s.
@@ -104,8 +114,9 @@ pub struct SpinningLaw {
     /// A rotor's share of the weight times its arm, N m.
     unit: f32,
     memory: Memory,
-    /// The last tick's, N.
+    /// The last tick's, N, and what they deliver.
     commands: Thrusts,
+    delivered: Wrench,
 }
 
 /// What it remembers.
@@ -117,13 +128,17 @@ struct Memory {
     last: Option<(Vector3<f32>, Vector3<f32>)>,
     /// The torque about the tilt's axes that was not to be had, in `unit`.
     lacking: f32,
+    /// What the failed rotor was taken to deliver, what was missing of it, N s, and for how long, s.
+    taken: f32,
+    missed: f32,
+    watched: f32,
+    /// How long it has taken to begin to turn, s, so far; at least [`BEGINNING_TIME`] once it has.
+    beginning: f32,
 }
 
-/// A tick's outcome.
+/// A tick's outcome, beside the commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spinning {
-    /// What the rotors are to deliver, as a wrench.
-    pub delivered: Wrench,
     /// u, m/s^2.
     pub command: Vector3<f32>,
     /// The tilt's error as modified Rodrigues parameters, body frame.
@@ -148,18 +163,12 @@ impl SpinningLaw {
         let arm = math::greater(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
         let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
         let unit = arm * weight / rotors.len() as f32;
-        // Raises the failed side: a force f at p turns by p x f.
-        let raising = Vector3::new(-away.y, away.x, 0.0) * (0.5 * unit);
-        let had = remaining.wrench(&remaining.allocate(&Wrench { thrust: weight, torque: raising }));
-        let holds = had.torque.dot(&raising) >= HELD * raising.norm_squared();
-        let inertia = &vehicle.inertia;
-        let is_flat = inertia.z > FLAT * 0.5 * (inertia.x + inertia.y);
-        let (cosine, sine) = AXIS;
-        let axis = if holds || !is_flat { Vector3::z() } else { Vector3::z() * cosine + away * sine };
+        let axis = axis(vehicle, &remaining, &away, unit);
         let bandwidth = math::lesser(BANDWIDTH, BANDWIDTH_LATE / (late + period));
         Self {
             lost: *lost,
             rotors: remaining,
+            away,
             axis,
             vehicle: *vehicle,
             stiffness: bandwidth * bandwidth,
@@ -167,8 +176,36 @@ impl SpinningLaw {
             approaches: [ACROSS, VERTICAL].map(|(k_p, k_v)| Approach::new(k_p, k_v, SPEED)),
             late: late + 0.5 * period,
             unit,
-            memory: Memory { force: force.map(|x| math::within(x, FORCE)), last: None, lacking: 0.0 },
+            memory: Memory {
+                force: force.map(|x| math::within(x, FORCE)),
+                last: None,
+                lacking: 0.0,
+                taken: 0.0,
+                missed: 0.0,
+                watched: 0.0,
+                beginning: 0.0,
+            },
             commands: Thrusts::new(),
+            delivered: Wrench { thrust: weight, torque: Vector3::zeros() },
+        }
+    }
+
+    /// Learns what the failed rotor has left, from the thrust that it was taken to deliver in an interval of `period`,
+    /// s, and what was `missing` of it, N. A flip, in which it was found to fail, tells too little of that.
+    pub fn refine(&mut self, thrust: f32, missing: f32, period: f32) {
+        let Memory { taken, missed, watched, .. } = &mut self.memory;
+        (*taken, *missed, *watched) = (*taken + thrust * period, *missed + missing * period, *watched + period);
+        if *watched < REFINING {
+            return;
+        }
+        let tells = *taken > REFINING * TELLING * self.rotors.share();
+        let share = math::between(*missed / math::greater(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
+        (*taken, *missed, *watched) = (0.0, 0.0, 0.0);
+        if tells && share.abs() > DOUBTED {
+            let left = math::lesser(self.lost.left * (1.0 - share), 1.0);
+            self.lost.left = if left > LEAST_LEFT { left } else { 0.0 };
+            self.rotors.set_left(&self.lost);
+            self.axis = axis(&self.vehicle, &self.rotors, &self.away, self.unit);
         }
     }
 
@@ -182,6 +219,18 @@ impl SpinningLaw {
     #[must_use]
     pub fn commands(&self) -> &Thrusts {
         &self.commands
+    }
+
+    /// What they deliver.
+    #[must_use]
+    pub fn delivered(&self) -> &Wrench {
+        &self.delivered
+    }
+
+    /// d, m/s^2, world frame.
+    #[must_use]
+    pub fn force(&self) -> Vector3<f32> {
+        self.memory.force
     }
 
     /// One tick: `pending` is the impulse that past commands will still deliver, N s and N m s.
@@ -202,7 +251,10 @@ impl SpinningLaw {
         // cos theta = 2 cos(theta / 2)^2 - 1.
         let along = self.vehicle.mass * length * (2.0 * half * half - 1.0) / self.axis.z;
         let upwards = 1.0 - 2.0 * (attitude.i * attitude.i + attitude.j * attitude.j) / length_squared(&attitude);
-        let begins = self.memory.lacking > LACKING && velocity.z.abs() < BEGUN && upwards > UPWARDS;
+        let turns = velocity.z.abs() > BEGUN;
+        self.memory.beginning += if turns { BEGINNING_TIME } else { period };
+        let is_short = self.memory.beginning < BEGINNING_TIME;
+        let begins = is_short && self.memory.lacking > LACKING && upwards > UPWARDS;
         let least = if begins { BEGINNING * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
         let wanted = Wrench { thrust: math::greater(along, least), torque };
 
@@ -214,7 +266,8 @@ impl SpinningLaw {
         self.memory.lacking = math::sqrt(lacking.norm_squared()) / self.unit;
         self.memory.last = Some((state.velocity, falling));
         self.commands = self.rotors.commands(&thrusts);
-        Spinning { delivered, command, mrp: error * (-0.5 / (1.0 + half)) }
+        self.delivered = delivered;
+        Spinning { command, mrp: error * (-0.5 / (1.0 + half)) }
     }
 
     /// d.
@@ -264,6 +317,19 @@ impl SpinningLaw {
         let half = math::sqrt(math::greater(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
         (self.axis.cross(eta) / math::greater(half, 1e-3), half)
     }
+}
+
+/// n, for the rotors that are left, a from the failed one, and its share of the weight times its arm, N m.
+fn axis(vehicle: &Vehicle, rotors: &RemainingRotors, away: &Vector3<f32>, unit: f32) -> Vector3<f32> {
+    // Raises the failed side: a force f at p turns by p x f.
+    let raising = Vector3::new(-away.y, away.x, 0.0) * (0.5 * unit);
+    let thrust = vehicle.mass * vehicle.gravity;
+    let had = rotors.wrench(&rotors.allocate(&Wrench { thrust, torque: raising }));
+    let holds = had.torque.dot(&raising) >= HELD * raising.norm_squared();
+    let inertia = &vehicle.inertia;
+    let is_flat = inertia.z > FLAT * 0.5 * (inertia.x + inertia.y);
+    let (cosine, sine) = AXIS;
+    if holds || !is_flat { Vector3::z() } else { Vector3::z() * cosine + away * sine }
 }
 
 /// r: the rate towards the reference's heading, rad/s; none of a vehicle that spins.
