@@ -118,7 +118,7 @@ impl Outcome {
             outcome.rotor.observe(&tick, lost);
             let within = match lost {
                 None => outcome.shares.take(&tick, certificate),
-                Some(_) => is_within_ranges(&tick, rotors),
+                Some(lost) => is_within_ranges(&tick, rotors, lost.rotor),
             };
             outcome.beyond += u64::from(!within);
         }

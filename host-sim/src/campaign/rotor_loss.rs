@@ -74,15 +74,15 @@ impl RotorLoss {
     }
 }
 
-/// Whether each rotor's command is within what that rotor can deliver, but for rounding: all that is proven once one is
-/// lost.
+/// Whether each rotor's command is within what that rotor can deliver, but for rounding, or nothing is commanded of the
+/// one that is `lost`: all that is proven from then on.
 #[must_use]
-pub fn is_within_ranges(tick: &Brief, rotors: Option<&Rotors>) -> bool {
+pub fn is_within_ranges(tick: &Brief, rotors: Option<&Rotors>, lost: usize) -> bool {
     let mut ranges = rotors.into_iter().flat_map(|rotors| rotors.iter());
     let raised = 1.0 + ROUNDING as f32;
-    tick.rotor_thrusts.iter().all(|thrust| {
+    tick.rotor_thrusts.iter().enumerate().all(|(number, thrust)| {
         let within = |rotor: &Rotor| (rotor.thrust_min / raised..=rotor.thrust_max * raised).contains(thrust);
-        ranges.next().is_some_and(within)
+        ranges.next().is_some_and(|rotor| within(rotor) || number == lost && *thrust == 0.0)
     })
 }
 

@@ -86,15 +86,24 @@ fn height_lost_is_counted_from_the_lower_of_where_it_failed_and_the_reference() 
 }
 
 #[test]
-fn a_command_outside_a_rotors_range_is_seen() {
-    let scenario = scenario("");
+fn a_command_outside_a_rotors_range_is_seen_and_a_lost_rotor_may_stop() {
+    let text = HUMMINGBIRD.replace("speed = [0.0, 1500.0]", "speed = [100.0, 1500.0]");
+    let scenario = Scenario::parse(&text, "f").unwrap();
     let rotors = scenario.configuration.rotors();
     let mut tick = Flight::new(&scenario).unwrap().brief_tick().unwrap();
-    assert!(is_within_ranges(&tick, rotors));
+    assert!(is_within_ranges(&tick, rotors, 0));
     let greatest = rotors.unwrap().iter().next().unwrap().thrust_max;
-    for (thrust, expected) in [(greatest, true), (greatest * 1.001, false), (-1e-3, false), (f32::NAN, false)] {
+    for (thrust, lost, expected) in [
+        (greatest, 0, true),
+        (greatest * 1.001, 0, false),
+        (greatest * 1.001, 3, false),
+        (0.0, 0, false),
+        (0.0, 3, true),
+        (-1e-3, 3, false),
+        (f32::NAN, 3, false),
+    ] {
         tick.rotor_thrusts[3] = thrust;
-        assert_eq!(is_within_ranges(&tick, rotors), expected, "{thrust}");
+        assert_eq!(is_within_ranges(&tick, rotors, lost), expected, "{thrust} of rotor 4, {lost} lost");
     }
-    assert!(!is_within_ranges(&tick, None), "more thrusts than rotors");
+    assert!(!is_within_ranges(&tick, None, 0), "more thrusts than rotors");
 }
