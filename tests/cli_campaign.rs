@@ -86,6 +86,37 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
 }
 
 #[test]
+fn rotors_fail_in_as_many_flights_as_the_file_says_and_again_where_one_is_flown_again() {
+    use arrow_array::cast::AsArray;
+    use arrow_array::types::{Float64Type, UInt64Type};
+    let gentle = GENTLE.replace("duration = 2", "duration = 6");
+    let directory = directory("failing", &format!("{gentle}rotor_failures = 0.5\nthrust_left = [0.0, 0.1]\n"));
+    let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--out", "out"]);
+    let file = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
+    let rows = arrow_ipc::reader::FileReader::try_new(file, None).unwrap().next().unwrap().unwrap();
+    let rotors =
+        |name: &str| rows.column_by_name(name).unwrap().as_primitive::<UInt64Type>().iter().collect::<Vec<_>>();
+    let (failed, found) = (rotors("failed_rotor"), rotors("found_rotor"));
+    let number = failed.iter().position(Option::is_some).unwrap();
+    let count = failed.iter().flatten().count();
+    assert!((4..17).contains(&count) && failed == found, "{failed:?} {found:?}");
+    let text = stdout(&flown);
+    let expected = [
+        format!("a rotor failed in {count} flights, {count} of which end within 3 m"),
+        format!("the law found it in {count}, another one or too early in 0, none in 0"),
+        "false alarms, of rotors that had not failed: 0\n".to_owned(),
+    ];
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ") + "\n";
+    assert!(expected.iter().all(|line| text.contains(line.trim_end())), "{text}");
+
+    let again = host_sim(&directory, &["campaign", "h.toml", "--replay", &number.to_string()]);
+    let report = fs::read_to_string(directory.join(format!("flights/hummingbird-{number}/report.html"))).unwrap();
+    let time = rows.column_by_name("failure_time").unwrap().as_primitive::<Float64Type>().value(number);
+    let failure = format!("failure.rotor = {}, failure.time = {time:?} s", failed[number].unwrap());
+    assert!(report.contains(&failure), "{failure}\n{}{}", stdout(&again), stderr(&again));
+}
+
+#[test]
 fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
     use arrow_array::cast::AsArray;
     let directory = directory("late", "duration = 2.5\n");

@@ -11,15 +11,18 @@
 //! | [`written`] | those circumstances in the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
+//! | [`rotor_loss`], [`losses`] | what it showed of a rotor that failed or was taken to; that of all flights |
 //! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
 //! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
 
 pub mod batches;
 pub mod draw;
 pub mod fly;
+pub mod losses;
 pub mod manifest;
 pub mod outcome;
 pub mod report;
+pub mod rotor_loss;
 pub mod rows;
 pub mod step;
 pub mod store;

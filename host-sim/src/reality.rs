@@ -180,6 +180,11 @@ impl RealVehicle {
         self.disturbance = Some((nothing, 0, force));
     }
 
+    /// Lets a rotor, counted from 0, deliver from now on this share of the thrust that it would without this.
+    pub fn weaken(&mut self, rotor: usize, thrust_left: f64) {
+        self.propulsion.weaken(rotor, thrust_left);
+    }
+
     /// Moves its origin by an outside force.
     pub fn place(&mut self, state: &BodyState) {
         if let Some(ground) = &mut self.ground {

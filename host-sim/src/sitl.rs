@@ -188,6 +188,7 @@ impl Sitl {
     pub fn boot(scenario: &Scenario, session: &Session) -> Result<(Self, Option<String>), String> {
         let warning = board::check(scenario, &session.file)?;
         let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
+        faults.check(scenario.configuration.rotors().map_or(0, |rotors| rotors.len()))?;
         let in_file = |what| format!("{}: {what}", session.file);
         let world = World::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;

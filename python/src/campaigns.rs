@@ -47,6 +47,18 @@ impl Campaign {
         self.summary.clipped
     }
 
+    /// Flights in which a rotor failed.
+    #[getter]
+    fn failed_rotors(&self) -> u64 {
+        self.summary.losses.failed
+    }
+
+    /// Flights in which the law found a rotor to fail that had not.
+    #[getter]
+    fn false_alarms(&self) -> usize {
+        self.summary.losses.false_alarms.len()
+    }
+
     /// Why the scenario may not fly, if so.
     #[getter]
     fn refusal(&self) -> Option<&str> {
@@ -75,7 +87,7 @@ impl Campaign {
 /// give the same. What is there already is not flown again.
 ///
 /// Args:
-///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.
+///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight, and in how many a rotor fails.
 ///     directory: where `campaign.arrow` and the rest go.
 ///     flights, seed: of the whole campaign; left out: the scenario's.
 ///     shard: (I, N): part I of N, from 1; `merge` puts the parts together.

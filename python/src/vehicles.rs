@@ -13,6 +13,7 @@ use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, 
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::state::Wrench;
+use host_sim::actuators::Asked;
 use host_sim::plant::body::Body;
 use host_sim::plant::rows::Rows;
 use host_sim::sensors::Sensors;
@@ -57,7 +58,7 @@ impl Row {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(asked, steps);
+        let held = self.vehicle.hold(&Asked::Wrench(*asked), steps);
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 

@@ -35,6 +35,13 @@ def test_a_campaign_writes_the_programs_bytes(scenario, whole, tmp_path):
     assert shown.flights == FLIGHTS and shown.tracking <= FLIGHTS and shown.beyond == 0
 
 
+def test_rotors_fail_as_the_file_says_and_no_other_is_taken_to(tmp_path):
+    text = FILE.read_text() + "\n[campaign]\nduration = 4.0\nrotor_failures = 0.5\nthrust_left = [0.0, 0.0]\n"
+    shown = sh.campaign(sh.Scenario.parse(text), tmp_path, flights=20)
+    assert 0 < shown.failed_rotors < 20 and shown.false_alarms == 0
+    assert f"a rotor failed in {shown.failed_rotors} flights" in str(shown)
+
+
 def test_shards_merge_to_the_same_bytes(scenario, whole, tmp_path):
     for part in (3, 1, 2):
         sh.campaign(scenario, tmp_path / str(part), flights=FLIGHTS, seed=SEED, shard=(part, 3))

@@ -23,11 +23,13 @@
 //! centre_of_mass = 0.0                 # m, body
 //! thrust_scale = 0.0                   # part of all rotors' thrust, more or less
 //! rotor_scales = 0.0                   # part of each rotor's thrust, more or less
+//! rotor_failures = 0.0                 # share of the flights in which a rotor fails, within the first half
+//! thrust_left = [0.0, 0.7]             # the share of its thrust that it then has left: least and greatest
 //! ```
 //!
 //! Each number is the greatest value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
-//! either side. Every key may be left out; these are the defaults. Those of `duration` and `wind` ([`default_wind`])
-//! depend on the law.
+//! either side; `rotor_failures` is a share of the flights. Every key may be left out; these are the defaults. Those of
+//! `duration` and `wind` ([`default_wind`]) depend on the law.
 
 use crate::body::GREATEST_TURN_PER_STEP;
 use crate::reality::numbers::{Allowed, seed};
@@ -73,6 +75,8 @@ pub struct Ranges {
     pub noise: NoiseRanges,
     /// The model's errors.
     pub model: ModelRanges,
+    /// A rotor's failure.
+    pub failure: FailureRanges,
 }
 
 /// A vehicle's task.
@@ -114,6 +118,20 @@ pub struct ModelRanges {
     pub rotor_scales: f64,
 }
 
+/// How often one rotor fails, and what it has left then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FailureRanges {
+    /// Share of the flights in which one does.
+    pub flights: f64,
+    /// Least and greatest share of its commanded thrust that it delivers from then on.
+    pub thrust_left: [f64; 2],
+}
+
+impl FailureRanges {
+    /// Of a file that says nothing of it: none fails.
+    pub const DEFAULT: Self = Self { flights: 0.0, thrust_left: [0.0, 0.7] };
+}
+
 impl Campaign {
     /// The campaign of a file that says nothing of it.
     #[must_use]
@@ -133,6 +151,7 @@ impl Campaign {
             turbulence: 0.0,
             noise,
             model: ModelRanges::default(),
+            failure: FailureRanges::DEFAULT,
         };
         Self { flights: 1000, seed: 0, ranges }
     }
@@ -190,6 +209,8 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         "centre_of_mass",
         "thrust_scale",
         "rotor_scales",
+        "rotor_failures",
+        "thrust_left",
     ])?;
     let measured = NOISE.into_iter().find(|key| section.has(key));
     let source = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
@@ -197,9 +218,14 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         let problem = format!("[{other}] says what is measured: leave that section or this key out");
         return Err(FieldError::new(section.path_of(key), problem));
     }
-    if section.has("rotor_scales") && configuration.rotors().is_none() {
+    let of_rotors = OF_ROTORS.into_iter().find(|key| section.has(key));
+    if let (Some(key), None) = (of_rotors, configuration.rotors()) {
         let problem = "needs [rotors]: add that section or leave this key out";
-        return Err(FieldError::new(section.path_of("rotor_scales"), problem));
+        return Err(FieldError::new(section.path_of(key), problem));
+    }
+    if section.has("rotor_failures") && root.has("failure") {
+        let problem = "[failure] says which rotor fails: leave that section or this key out";
+        return Err(FieldError::new(section.path_of("rotor_failures"), problem));
     }
     let ranges = read_ranges(&section, timing, &default.ranges)?;
     let flights = section.number_or("flights", default.flights as f64)?;
@@ -219,6 +245,9 @@ pub const MOST_FLIGHTS: f64 = 1e8;
 
 /// The keys that a file with `[sensors]` may not have.
 const NOISE: [&str; 4] = ["gyro_noise", "position_noise", "attitude_noise_deg", "pose_delay"];
+
+/// The keys that a file without `[rotors]` may not have.
+const OF_ROTORS: [&str; 3] = ["rotor_scales", "rotor_failures", "thrust_left"];
 
 fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<Ranges, FieldError> {
     let up_to =
@@ -250,7 +279,20 @@ fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<R
             thrust_scale: part("thrust_scale")?,
             rotor_scales: part("rotor_scales")?,
         },
+        failure: FailureRanges {
+            flights: up_to("rotor_failures", 1.0, "", default.failure.flights)?,
+            thrust_left: read_thrust_left(section, default.failure.thrust_left)?,
+        },
     })
+}
+
+/// The least and the greatest share of its thrust that a failing rotor has left.
+fn read_thrust_left(section: &Section, default: [f64; 2]) -> Result<[f64; 2], FieldError> {
+    const WANTED: &str = "[least, greatest], 0 <= least <= greatest < 1";
+    if !section.has("thrust_left") {
+        return Ok(default);
+    }
+    section.range("thrust_left", WANTED, |least, greatest| 0.0 <= least && least <= greatest && greatest < 1.0)
 }
 
 const REFERENCES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];

@@ -228,6 +228,27 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Two numbers that must be there and be `allowed`; `wanted` says which are.
+    ///
+    /// # Errors
+    /// If they are missing, not two, or not allowed.
+    pub fn range(&self, key: &str, wanted: &str, allowed: impl Fn(f64, f64) -> bool) -> Result<[f64; 2], FieldError> {
+        let elements = self.elements(key, wanted)?;
+        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        match elements[..] {
+            [(_, least), (_, greatest)]
+                if let (Some(least), Some(greatest)) = (number(least), number(greatest))
+                    && allowed(least, greatest) =>
+            {
+                Ok([least, greatest])
+            }
+            _ => {
+                let found = elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
+                Err(FieldError::new(self.path_of(key), format!("must be {wanted}, found [{found}]")))
+            }
+        }
+    }
+
     /// Three finite numbers, or `default` if they are left out.
     ///
     /// # Errors

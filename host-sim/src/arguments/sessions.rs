@@ -26,7 +26,8 @@ pub struct SitlArguments {
     /// link, nothing else sends a pose
     #[arg(long, value_name = "SOURCE", value_enum, default_value_t = Poses::Camera)]
     poses: Poses,
-    /// Let something fail: pose, gyro, accelerometer, motors, ground-station or battery=VOLTS; may be given again
+    /// Let something fail: pose, gyro, accelerometer, motors, ground-station, battery=VOLTS, rotor1, or rotor1=0.4 with
+    /// that share of its thrust left; may be given again
     #[arg(long = "fault", value_name = "WHAT@START..END")]
     faults: Vec<Fault>,
     /// Keep parameters in this file from one session to the next

@@ -14,6 +14,7 @@
 //! | gust | evenly in a ball, of which the level part is taken; a step, evenly within the first half of the flight |
 //! | turbulence, noises, delay | evenly from zero up |
 //! | errors of the model | evenly on both sides; the centre of mass in a ball |
+//! | a rotor's failure | in a share of the flights; each rotor alike, evenly within the first half, the thrust left evenly |
 //!
 //! A wind needs air: a vehicle whose file has no `[drag]` is given one of 0.5 1/s. Where the file has `[sensors]` or
 //! `[estimator]`, that stands, and only its seed is drawn. Of the file's own `[initial]` the attitude stands if none is
@@ -27,8 +28,9 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use scenario::Scenario;
 use scenario::body::BodyState;
-use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
+use scenario::campaign::{FailureRanges, ModelRanges, NoiseRanges, Ranges, Task};
 use scenario::reality::drag::Drag;
+use scenario::reality::failure::Failure;
 use scenario::reality::sensors::{Sensors, VelocitySource};
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Turbulence, Wind};
@@ -78,6 +80,7 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
     blow(&mut thrown, ranges, wind * ranges.wind, &mut drawn);
     measure(&mut thrown, &ranges.noise, &mut drawn);
     err(&mut thrown, &ranges.model, &mut drawn);
+    fail(&mut thrown, &ranges.failure, 0.5 * ranges.duration, &mut drawn);
     thrown
 }
 
@@ -163,6 +166,18 @@ fn err(scenario: &mut Scenario, ranges: &ModelRanges, drawn: &mut Drawn) {
         rotor_scales,
         ..truth
     });
+}
+
+/// A rotor that fails, at the `latest` at this time, s: so what follows can be seen.
+fn fail(scenario: &mut Scenario, ranges: &FailureRanges, latest: f64, drawn: &mut Drawn) {
+    let (fails, rotor, time, left) = (drawn.part() < ranges.flights, drawn.part(), drawn.part(), drawn.part());
+    let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+    if fails {
+        let [least, greatest] = ranges.thrust_left;
+        let rotor = (rotor * rotors as f64) as usize;
+        let failure = Failure { rotor, time: time * latest, thrust_left: least + (greatest - least) * left };
+        scenario.reality.failure = Some(failure);
+    }
 }
 
 /// A flight's own random numbers.

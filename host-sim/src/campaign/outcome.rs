@@ -13,8 +13,11 @@
 //!
 //! The share of a thrust or a rotor is its command over the greatest that is proven: the least is a constant near
 //! zero, which many a flight touches. That of a torque is |tau| over its bound. A command below a least counts as
-//! beyond.
+//! beyond. Once the law has found a rotor to be lost, no bound is certified but each rotor's range: from then on a
+//! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
+//! [`super::rotor_loss`].
 
+use super::rotor_loss::{HELD, RotorLoss, is_within_ranges};
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
 use crate::flown::{NEAR_MRP, claimed_error, heading_is_followed};
@@ -27,8 +30,9 @@ use scenario::Scenario;
 pub const NEAR: f64 = 0.2;
 /// How near its heading, rad.
 pub const NEAR_HEADING: f64 = 0.2;
-/// Room for the rounding of a wrench's components against a bound, relative; for a rotor that may stand still, N.
-const ROUNDING: f64 = 1e-6;
+/// Room for the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
+/// stand still, N.
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +59,8 @@ pub struct Outcome {
     pub shares: Shares,
     /// How often the law's fallback came.
     pub fallback: u64,
+    /// A rotor that failed, or was taken to.
+    pub rotor: RotorLoss,
     /// Ticks flown: fewer than the flight has where it could not go on.
     pub ticks: u64,
 }
@@ -96,16 +102,25 @@ impl Outcome {
             beyond: 0,
             shares: Shares::default(),
             fallback: 0,
+            rotor: RotorLoss::of(scenario),
             ticks: 0,
         };
+        let rotors = scenario.configuration.rotors();
         for _ in 0..scenario.timing.ticks {
             let Ok(tick) = flight.brief_tick() else {
                 let lost = f64::INFINITY;
-                let never = Self { settled: None, attitude: None, heading: None, ..outcome };
+                let rotor = outcome.rotor.unfinished();
+                let never = Self { settled: None, attitude: None, heading: None, rotor, ..outcome };
                 return Self { height_lost: lost, final_error: lost, ..never };
             };
             outcome.observe(&tick, start, scenario.timing.period_us, scenario.configuration.bounds());
-            outcome.beyond += u64::from(!outcome.shares.take(&tick, certificate));
+            let lost = flight.lost();
+            outcome.rotor.observe(&tick, lost);
+            let within = match lost {
+                None => outcome.shares.take(&tick, certificate),
+                Some(lost) => is_within_ranges(&tick, rotors, lost.rotor),
+            };
+            outcome.beyond += u64::from(!within);
         }
         outcome.fallback = flight.fallback_times().into();
         let duration = scenario.timing.duration();
@@ -138,10 +153,10 @@ impl Outcome {
     }
 
     /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
-    /// time and for good.
+    /// time and for good; or, where a rotor failed, it ends within [`HELD`] of its reference.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        self.in_time
+        if self.rotor.failure.is_some() { self.final_error <= HELD } else { self.in_time }
     }
 
     /// Whether it tracks, and no command went beyond its bound.

@@ -89,15 +89,27 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
             .refusal
             .as_ref()
             .map_or(summary.title.clone(), |refusal| format!("{}. Not certified: {refusal}", summary.title)),
-        highlights: vec![
+        highlights: [
             Fact::new("Flights", summary.flights.to_string()),
             Fact::new("Recover and track", share(summary.tracking, summary.flights)),
             Fact::new(beyond, summary.beyond.to_string()),
             Fact::new("Task a rotor for more than it has", summary.clipped.to_string()),
-        ],
+        ]
+        .into_iter()
+        .chain(rotors(summary))
+        .collect(),
         tracks: Vec::new(),
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
     }
+}
+
+/// Rotors that failed, and those that were taken to.
+fn rotors(summary: &Summary) -> Vec<Fact> {
+    let Summary { losses, looks, .. } = summary;
+    let failed = (losses.failed > 0)
+        .then(|| Fact::new("End near their place without a rotor", share(losses.held, losses.failed)));
+    let alarms = looks.then(|| Fact::new("Take a sound rotor for lost", losses.false_alarms.len().to_string()));
+    failed.into_iter().chain(alarms).collect()
 }
 
 /// A law that is not the scenario's, with its gains.

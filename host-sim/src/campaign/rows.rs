@@ -18,11 +18,16 @@
 //! | `clipped`, `beyond`, `ticks` | ticks | |
 //! | `fallback` | | how often the extended law's fallback came |
 //! | `verdict` | | `holds`, `away`, `late` or `beyond`; nothing is proven of another law's commands, so it is never `beyond` |
+//! | `failed_rotor`, `found_rotor` | | which rotor failed, from 1, and which one the law took for lost; null for none |
+//! | `failure_time`, `found_time` | s | when; null for none |
+//! | `thrust_left` | | what the failed rotor had left; null for none |
+//! | `failure_height_lost`, `failure_distance` | m | after the failure ([`RotorLoss`]); null for none |
 //!
 //! A file of another law than ours says which in its schema's metadata, under `law`.
 
 use super::manifest::Manifest;
 use super::outcome::Outcome;
+use super::rotor_loss::RotorLoss;
 use arrow_array::builder::Float64Builder;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray, UInt64Array};
 use arrow_schema::{ArrowError, DataType, Field, Schema};
@@ -69,7 +74,9 @@ impl Outcome {
     /// In a word; whether the bounds were kept counts where they are `proven` of the law that flew.
     #[must_use]
     pub fn verdict(&self, proven: bool) -> &'static str {
-        let there = self.settled.is_some() && self.attitude.is_some() && self.heading.is_some();
+        let reached = self.settled.is_some() && self.attitude.is_some() && self.heading.is_some();
+        // A flight without a rotor is held to its place at the end, so it cannot be late.
+        let there = if self.rotor.failure.is_some() { self.tracks() } else { reached };
         match (proven && self.beyond > 0, there) {
             (true, _) => BEYOND,
             (false, false) => AWAY,
@@ -95,6 +102,8 @@ const START: [&str; 13] = [
 const WIND: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
 const FIGURES: [&str; 3] = ["height_lost", "rise", "final_error"];
 const REACHED: [&str; 3] = ["settled", "attitude", "heading"];
+const ROTORS: [&str; 2] = ["failed_rotor", "found_rotor"];
+const LOSS: [&str; 5] = ["failure_time", "thrust_left", "found_time", "failure_height_lost", "failure_distance"];
 const SHARES: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
 /// The columns of what `manifest` describes.
@@ -109,6 +118,8 @@ pub fn schema(manifest: &Manifest) -> Schema {
     fields.extend((1..=manifest.rotors as usize).map(|rotor| number(&share_of_rotor(rotor))));
     fields.extend(["clipped", "beyond", "fallback", "ticks"].map(count));
     fields.push(Field::new("verdict", DataType::Utf8, false));
+    fields.extend(ROTORS.iter().map(|name| Field::new(*name, DataType::UInt64, true)));
+    fields.extend(LOSS.iter().map(|name| Field::new(*name, DataType::Float64, true)));
     let schema = Schema::new(fields);
     match manifest.rival() {
         Some(law) => schema.with_metadata([(LAW.to_owned(), law.to_owned())]),
@@ -138,7 +149,7 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     columns.push(numbers(&|row| row.outcome.height_lost));
     columns.push(numbers(&|row| row.outcome.rise));
     columns.push(numbers(&|row| row.outcome.final_error));
-    columns.extend(REACHED_OF.map(|since| reached(rows, since)));
+    columns.extend(REACHED_OF.map(|since| optional(rows, |row| since(&row.outcome))));
     columns.push(numbers(&|row| row.outcome.shares.thrust));
     columns.extend((0..3).map(|axis| numbers(&|row| row.outcome.shares.torque[axis])));
     columns.extend((0..manifest.rotors as usize).map(|rotor| numbers(&|row| row.outcome.shares.rotors[rotor])));
@@ -150,6 +161,11 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     ]);
     let proven = manifest.rival().is_none();
     columns.push(Arc::new(StringArray::from_iter_values(rows.iter().map(|row| row.outcome.verdict(proven)))));
+    columns.extend(ROTORS_OF.map(|rotor| -> ArrayRef {
+        let numbers = rows.iter().map(|row| rotor(&row.outcome.rotor).map(|rotor| rotor as u64 + 1));
+        Arc::new(UInt64Array::from_iter(numbers))
+    }));
+    columns.extend(LOSS_OF.map(|figure| optional(rows, |row| figure(&row.outcome.rotor))));
     RecordBatch::try_new(Arc::new(schema(manifest)), columns)
 }
 
@@ -157,10 +173,22 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
 const REACHED_OF: [fn(&Outcome) -> Option<f64>; 3] =
     [|outcome| outcome.settled, |outcome| outcome.attitude, |outcome| outcome.heading];
 
-fn reached(rows: &[Row], since: fn(&Outcome) -> Option<f64>) -> ArrayRef {
+/// [`ROTORS`], of a flight.
+const ROTORS_OF: [fn(&RotorLoss) -> Option<usize>; 2] = [|loss| Some(loss.failure?.rotor), |loss| Some(loss.found?.0)];
+
+/// [`LOSS`], of a flight.
+const LOSS_OF: [fn(&RotorLoss) -> Option<f64>; 5] = [
+    |loss| Some(loss.failure?.time),
+    |loss| Some(loss.failure?.thrust_left),
+    |loss| Some(loss.found?.1),
+    |loss| loss.failure.map(|_| loss.height_lost),
+    |loss| loss.failure.map(|_| loss.distance),
+];
+
+fn optional(rows: &[Row], value: impl Fn(&Row) -> Option<f64>) -> ArrayRef {
     let mut column = Float64Builder::with_capacity(rows.len());
     for row in rows {
-        column.append_option(since(&row.outcome));
+        column.append_option(value(row));
     }
     Arc::new(column.finish())
 }

@@ -1,9 +1,11 @@
 //! A campaign's summary: how many flights recover and track, quantiles, bounds, and the worst flights by number.
 
 use super::draw::timing;
+use super::losses::Losses;
 use super::manifest::Manifest;
 use super::outcome::{NEAR, NEAR_HEADING, in_time};
 use super::quantile;
+use super::rotor_loss::HELD;
 use super::rows::{HOLDS, share_of_rotor};
 use crate::flown::NEAR_MRP;
 use crate::table::{aligned, short};
@@ -34,6 +36,10 @@ pub struct Summary {
     pub clipped: u64,
     /// Flights in which the law's fallback came.
     pub fallback: u64,
+    /// Rotors that failed or were taken to.
+    pub losses: Losses,
+    /// Whether the law looks for rotors that fail.
+    pub looks: bool,
     /// Why the scenario may not fly, if so.
     pub refusal: Option<String>,
     /// Whether every flight tracks within all bounds, and the scenario may fly. Of another law, whether every flight
@@ -81,7 +87,13 @@ impl Summary {
         let slowest: Vec<f64> = (0..numbers.len())
             .map(|flight| reached.iter().filter_map(|times| times.get(flight)).copied().fold(0.0, f64::max))
             .collect();
-        let tracking = slowest.iter().filter(|time| in_time(Some(**time), duration)).count();
+        let (losses, ends) = (Losses::of(flown), floats(flown, "final_error"));
+        let failed = whole_numbers(flown, "failed_rotor");
+        let tracks = |flight: &usize| match failed[*flight] {
+            Some(_) => ends[*flight] <= HELD,
+            None => in_time(Some(slowest[*flight]), duration),
+        };
+        let tracking = (0..numbers.len()).filter(tracks).count();
         let greatest_share = (0..numbers.len()).map(|flight| {
             figures[6..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
         });
@@ -101,6 +113,11 @@ impl Summary {
         ];
         if !failing.is_empty() {
             worst.insert(0, ("failing", failing.join(", ")));
+        }
+        if losses.failed > 0 {
+            let failed = numbers.iter().zip(&failed).filter(|(_, failed)| failed.is_some());
+            let failed: Vec<u64> = failed.map(|(number, _)| *number).collect();
+            worst.push(("farthest after a failure", self::worst(&failed, losses.distances(), "m")));
         }
         let (part, parts) = manifest.shard;
         let shard = if parts > 1 { format!(", shard {part} of {parts}") } else { String::new() };
@@ -123,6 +140,8 @@ impl Summary {
             beyond: ever("beyond"),
             clipped: ever("clipped"),
             fallback: ever("fallback"),
+            looks: rival.is_none() && scenario.configuration.paper().is_none(),
+            losses,
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
                 && verdicts.iter().all(|verdict| *verdict == HOLDS),
@@ -151,6 +170,9 @@ impl fmt::Display for Summary {
         )?;
         if self.fallback > 0 {
             writeln!(f, "the extended law's fallback came in {} flights\n", self.fallback)?;
+        }
+        if self.looks || self.losses.failed > 0 {
+            writeln!(f, "{}\n", self.losses)?;
         }
         writeln!(f, "{}", self.quantiles)?;
         let [attitude, heading] = [4.0 * NEAR_MRP.atan(), NEAR_HEADING].map(|angle| angle.to_degrees().round());
@@ -213,6 +235,13 @@ pub fn verdicts(flown: &[RecordBatch]) -> Vec<&str> {
 pub fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     columns.flat_map(|column| column.as_primitive::<UInt64Type>().values().to_vec()).collect()
+}
+
+/// A column of whole numbers; none where there is none.
+#[must_use]
+pub fn whole_numbers(flown: &[RecordBatch], column: &str) -> Vec<Option<u64>> {
+    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
+    columns.flat_map(|column| column.as_primitive::<UInt64Type>().iter()).collect()
 }
 
 /// A column of numbers; infinite where there is none.

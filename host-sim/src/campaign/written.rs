@@ -15,7 +15,8 @@ use scenario::reference::ReferenceKind;
 pub fn above(text: &str, thrown: &Scenario, seed: u64, number: u64) -> String {
     let mut comments =
         format!("# Flight {number} of the campaign with seed {seed}. Drawn in place of what stands below:\n#\n");
-    for line in start(thrown).into_iter().chain(air(thrown)).chain(senses(thrown)).chain(truth(thrown)) {
+    let lines = start(thrown).into_iter().chain(air(thrown)).chain(senses(thrown)).chain(truth(thrown));
+    for line in lines.chain(failure(thrown)) {
         comments += &format!("#   {line}\n");
     }
     format!("{comments}\n{text}")
@@ -92,6 +93,13 @@ fn truth(thrown: &Scenario) -> Vec<String> {
     ]
 }
 
+/// The rotor that fails.
+fn failure(thrown: &Scenario) -> Option<String> {
+    let failure = thrown.reality.failure?;
+    let (rotor, time, left) = (failure.rotor + 1, Number(failure.time), Number(failure.thrust_left));
+    Some(format!("failure.rotor = {rotor}, failure.time = {time} s, failure.thrust_left = {left}"))
+}
+
 fn vector(v: &Vector3<f64>) -> String {
     array(v.as_slice())
 }
@@ -103,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_flight_s_circumstances_stand_above_its_file_which_stays_what_it_is() {
-        let text = "[campaign]\nmass = 0.1\ngust = 2.0\n";
+        let text = "[campaign]\nmass = 0.1\ngust = 2.0\nrotor_failures = 1.0\n";
         let text = format!("{}\n{text}", include_str!("../../../vehicles/hummingbird.toml"));
         let scenario = Scenario::parse(&text, "h").unwrap();
         let thrown = circumstances(&scenario, &scenario.campaign.ranges, 3, 8);
@@ -117,6 +125,7 @@ mod tests {
             "wind.gust: a step of ".to_owned(),
             format!("sensors.position_noise = {:?} m", reality.sensors.as_ref().unwrap().position_noise),
             format!("truth.mass = {:?} kg", reality.truth.as_ref().unwrap().mass),
+            format!("failure.rotor = {}, failure.time = ", reality.failure.unwrap().rotor + 1),
         ] {
             assert!(written.contains(&format!("\n#   {expected}")), "{expected} is not in:\n{written}");
         }

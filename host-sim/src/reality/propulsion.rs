@@ -6,7 +6,7 @@
 //! ```text
 //! u' = u V / V_0                                            a motor sees the command times the voltage
 //! w_s = w_max sqrt(a u' + (1 - a) u'^2)                     thrust curve; a = 0: w_s = w_c V / V_0
-//! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails
+//! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails; or as told
 //! w' = (w_s - w) / lag                                      first order; no lag: at once
 //! w_c stays                                                 if a new one differs by less than deadband w_c
 //! tau = J_r (sum s_i w_i' e3 + omega x e3 sum s_i w_i)      rotors as flywheels; s_i = 1 for a clockwise one
@@ -66,6 +66,8 @@ struct Motors {
     deadband: f64,
     /// With the plant step at which it happens.
     failure: Option<(Failure, u64)>,
+    /// The share of its thrust that each rotor has left besides.
+    left: [f64; ROTORS_MAX],
     battery: Option<BatteryState>,
 }
 
@@ -98,6 +100,13 @@ impl Propulsion {
     pub fn stop(&mut self) {
         if let Some(motors) = &mut self.motors {
             (motors.commands, motors.speeds) = ([0.0; ROTORS_MAX], [0.0; ROTORS_MAX]);
+        }
+    }
+
+    /// Leaves a rotor, counted from 0, this share of its thrust.
+    pub fn weaken(&mut self, rotor: usize, thrust_left: f64) {
+        if let Some(left) = self.motors.as_mut().and_then(|motors| motors.left.get_mut(rotor)) {
+            *left = thrust_left;
         }
     }
 
@@ -183,6 +192,7 @@ impl Motors {
             inertia: reality.truth.as_ref().map_or(0.0, |truth| truth.rotor_inertia),
             deadband: reality.truth.as_ref().map_or(0.0, |truth| truth.deadband),
             failure: reality.failure.map(|failure| (failure, first_step(failure.time, step))),
+            left: [1.0; ROTORS_MAX],
             battery: reality.battery.map(|battery| BatteryState::new(&battery)),
         };
         motors.speeds = motors.settled(0);
@@ -205,6 +215,9 @@ impl Motors {
             && let Some(speed) = settled.get_mut(failed.rotor)
         {
             *speed *= failed.thrust_left.sqrt();
+        }
+        for (speed, left) in settled.iter_mut().zip(self.left) {
+            *speed *= left.sqrt();
         }
         settled
     }

@@ -195,6 +195,24 @@ fn faults_come_at_their_times_and_do_what_the_flight_rules_say() {
 }
 
 #[test]
+fn a_rotor_falls_short_of_its_thrust_while_its_fault_lasts() {
+    let thrust = |flown: &Flown| flown.sitl.world.thrusts()[0];
+    let mut flown = Flown::in_the_air(STUDY, &["rotor1=0.4@21..21.02", "rotor1@25"]);
+    flown.pass(1.0);
+    let hovering = thrust(&flown);
+    // Too short to be found. With a lag of 30 ms its speed falls from 1 to 0.82.
+    flown.pass(0.02);
+    let share = thrust(&flown) / hovering;
+    assert!((0.6..0.75).contains(&share), "{share}");
+    flown.pass(2.5);
+    let share = thrust(&flown) / hovering;
+    assert!((0.95..1.05).contains(&share) && flown.mode() == Mode::Holding, "{share}, {:?}", flown.sitl.texts);
+    flown.pass(1.68);
+    let (share, all) = (thrust(&flown) / hovering, flown.sitl.world.thrusts().iter().sum::<f64>());
+    assert!(share < 0.01 && all > hovering, "{share}, {all} N");
+}
+
+#[test]
 fn the_batterys_voltage_is_the_vehicles_and_a_fault_overrules_it() {
     let battery = "\n[battery]\nfull_voltage = 12.6\nempty_voltage = 10.5\nresistance = 0.03\ncapacity = 2.2\n";
     let mut flown = Flown::in_the_air(&format!("{STUDY}{battery}"), &["battery=9.8@25"]);
@@ -278,6 +296,9 @@ fn what_no_board_could_fly_is_refused_by_name() {
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
     assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
+    let session = Session { faults: vec!["rotor5@20".parse().unwrap()], ..session };
+    let refused = Sitl::boot(&Scenario::parse(STUDY, "a test").unwrap(), &session).err().unwrap();
+    assert_eq!(refused, "--fault: rotor5 is not there: the vehicle's are rotor1 to rotor4");
 }
 
 #[test]

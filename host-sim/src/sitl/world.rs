@@ -204,6 +204,9 @@ impl Body {
         while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
             self.acting = thrusts;
         }
+        for rotor in 0..MOTORS {
+            self.vehicle.weaken(rotor, faults.thrust_left(rotor, self.now));
+        }
         for _ in 0..self.steps {
             if let Err(diverged) = self.vehicle.drive(&self.acting) {
                 self.diverged = Some(diverged);

@@ -541,6 +541,12 @@ class Campaign:
     def clipped(self) -> int:
         """Flights with a command that a rotor could not follow."""
     @property
+    def failed_rotors(self) -> int:
+        """Flights in which a rotor failed."""
+    @property
+    def false_alarms(self) -> int:
+        """Flights in which the law found a rotor to fail that had not."""
+    @property
     def refusal(self) -> str | None:
         """Why the scenario may not fly, if so."""
     @property
@@ -564,7 +570,7 @@ def campaign(
     give the same. What is there already is not flown again.
 
     Args:
-        scenario: its `[campaign]` section, if it has one, says what differs from flight to flight.
+        scenario: its `[campaign]` section, if it has one, says what differs from flight to flight, and in how many a rotor fails.
         directory: where `campaign.arrow` and the rest go.
         flights, seed: of the whole campaign; left out: the scenario's.
         shard: (I, N): part I of N, from 1; `merge` puts the parts together.

@@ -19,9 +19,8 @@
 //! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power
 //! that it draws from a `[battery]` do.
 
-use crate::section::{FieldError, Section, in_line};
+use crate::section::{FieldError, Section};
 use controller_core::error::{ParameterError, Reason};
-use toml::Value;
 
 /// The speed of a rotor of the second form at its greatest thrust, rad/s.
 pub const NOMINAL_SPEED: f64 = 1000.0;
@@ -117,7 +116,7 @@ fn form(section: &Section) -> Result<Form, FieldError> {
 fn read_speeds(section: &Section) -> Result<Propulsion, FieldError> {
     let thrust_coefficient = section.number("thrust_coefficient")? as f32;
     let drag_coefficient = section.number("drag_coefficient")? as f32;
-    let (slowest, fastest) = read_range(section)?;
+    let [slowest, fastest] = read_range(section)?;
     let thrust = |speed: f64| thrust_coefficient * (speed * speed) as f32;
     let (thrust_min, thrust_max) = (thrust(slowest), thrust(fastest));
     Ok(Propulsion { form: Form::Speeds, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
@@ -138,22 +137,9 @@ fn read_thrusts(section: &Section) -> Result<Propulsion, FieldError> {
     Ok(Propulsion { form: Form::Thrusts, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
 }
 
-fn read_range(section: &Section) -> Result<(f64, f64), FieldError> {
+fn read_range(section: &Section) -> Result<[f64; 2], FieldError> {
     const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
-    let elements = section.elements("speed", WANTED)?;
-    let found = || elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
-    let refuse = || FieldError::new(section.path_of("speed"), format!("must be {WANTED}, found [{}]", found()));
-    let numbers: Vec<f64> = elements.iter().filter_map(|(_, value)| number(value)).collect();
-    match numbers.as_slice() {
-        [least, greatest] if elements.len() == 2 && 0.0 <= *least && least < greatest && greatest.is_finite() => {
-            Ok((*least, *greatest))
-        }
-        _ => Err(refuse()),
-    }
-}
-
-fn number(value: &Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+    section.range("speed", WANTED, |least, greatest| 0.0 <= least && least < greatest && greatest.is_finite())
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ fn every_key_is_read() {
     let keys = "flights = 7\nseed = 3\nduration = 9\nreference = \"hover\"\nattitude = \"file\"\noffset = 1\nvelocity = 2\n\
         rate = 3\nyaw_rate = 4\nwind = 5.5\ngust = 6\nturbulence = 7\ngyro_noise = 0.08\nposition_noise = 0.09\n\
         attitude_noise_deg = 18\npose_delay = 0.11\nmass = 0.12\ninertia = 0.13\ncentre_of_mass = 0.14\n\
-        thrust_scale = 0.15\nrotor_scales = 0.16\n";
+        thrust_scale = 0.15\nrotor_scales = 0.16\nrotor_failures = 0.17\nthrust_left = [0.18, 0.19]\n";
     let Campaign { flights, seed, ranges } = hummingbird(keys).unwrap();
     assert_eq!((flights, seed), (7, 3));
     let noise = NoiseRanges { gyro: 0.08, position: 0.09, attitude: 18_f64.to_radians(), delay: 0.11 };
@@ -46,6 +46,7 @@ fn every_key_is_read() {
         turbulence: 7.0,
         noise,
         model,
+        failure: FailureRanges { flights: 0.17, thrust_left: [0.18, 0.19] },
     };
     assert_eq!(ranges, expected);
 }
@@ -67,13 +68,26 @@ fn what_cannot_be_is_refused_by_name() {
         ("wind = nan", "campaign.wind: must be a finite number"),
         ("wind = -1", "campaign.wind: must be from 0 to 100 m/s"),
         ("gyro_noise = 0.1\n[sensors]\n", "campaign.gyro_noise: [sensors] says what is measured"),
+        ("rotor_failures = 1.5", "campaign.rotor_failures: must be from 0 to 1, found 1.5"),
+        (
+            "thrust_left = 0.5",
+            "campaign.thrust_left: must be [least, greatest], 0 <= least <= greatest < 1, found float",
+        ),
+        ("thrust_left = [0.5, 0.4]", "campaign.thrust_left: must be [least, greatest], 0 <= least <= greatest < 1"),
+        ("thrust_left = [0, 1]", "campaign.thrust_left: must be [least, greatest], 0 <= least <= greatest < 1"),
+        (
+            "rotor_failures = 0.1\n[failure]\nrotor = 1\ntime = 2",
+            "campaign.rotor_failures: [failure] says which rotor fails",
+        ),
         ("pose_delay = 0.1\n[estimator]\n", "campaign.pose_delay: [estimator] says what is measured"),
     ] {
         let what = hummingbird(keys).unwrap_err();
         assert!(what.starts_with(expected), "{keys}: {what}");
     }
-    let what = parse(crate::PAPER, "[campaign]\nrotor_scales = 0.1\n").unwrap_err();
-    assert_eq!(what, "campaign.rotor_scales: needs [rotors]: add that section or leave this key out");
+    for key in ["rotor_scales", "rotor_failures"] {
+        let what = parse(crate::PAPER, &format!("[campaign]\n{key} = 0.1\n")).unwrap_err();
+        assert_eq!(what, format!("campaign.{key}: needs [rotors]: add that section or leave this key out"));
+    }
 }
 
 #[test]

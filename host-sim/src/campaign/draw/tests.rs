@@ -7,7 +7,8 @@ const HUMMINGBIRD: &str = include_str!("../../../../vehicles/hummingbird.toml");
 
 /// Every range open.
 const EVERYTHING: &str = "[campaign]\ngust = 2.0\nturbulence = 1.0\npose_delay = 0.05\nmass = 0.1\ninertia = 0.2\n\
-    centre_of_mass = 0.01\nthrust_scale = 0.15\nrotor_scales = 0.05\n";
+    centre_of_mass = 0.01\nthrust_scale = 0.15\nrotor_scales = 0.05\n\
+    rotor_failures = 0.5\nthrust_left = [0.1, 0.6]\n";
 
 fn hummingbird(sections: &str) -> Scenario {
     Scenario::parse(&format!("{HUMMINGBIRD}\n{sections}"), "f").unwrap()
@@ -112,4 +113,29 @@ fn what_the_file_says_of_sensors_stands_but_for_the_seed() {
     assert!(thrown.sensors.is_none() && estimator.seed != own.seed && estimator.pose_delay == own.pose_delay);
     let thrown = drawn(&hummingbird("[sensors]\ngyro_noise = 0.02\n"), 1).reality.sensors.unwrap();
     assert!(thrown.gyro_noise == 0.02 && thrown.seed != 0);
+}
+
+#[test]
+fn as_many_rotors_fail_as_are_to_each_alike_and_soon_enough() {
+    let scenario = hummingbird(EVERYTHING);
+    let failures: Vec<Failure> = (0..2000).filter_map(|number| drawn(&scenario, number).reality.failure).collect();
+    assert!((900..1100).contains(&failures.len()), "{}", failures.len());
+    for rotor in 0..4 {
+        let own = failures.iter().filter(|failure| failure.rotor == rotor).count();
+        assert!((200..300).contains(&own), "{rotor}: {own}");
+    }
+    let range = |value: fn(&Failure) -> f64| {
+        let values = failures.iter().map(value);
+        (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ((earliest, latest), (least, greatest)) = (range(|failure| failure.time), range(|failure| failure.thrust_left));
+    assert!((0.0..0.5).contains(&earliest) && (29.5..=30.0).contains(&latest), "{earliest} {latest}");
+    assert!((0.1..0.11).contains(&least) && (0.59..=0.6).contains(&greatest), "{least} {greatest}");
+}
+
+#[test]
+fn no_rotor_fails_unless_the_file_has_it() {
+    assert!((0..200).all(|number| drawn(&hummingbird(""), number).reality.failure.is_none()));
+    let own = hummingbird("[failure]\nrotor = 2\ntime = 3.0\n");
+    assert_eq!(drawn(&own, 1).reality.failure, own.reality.failure);
 }

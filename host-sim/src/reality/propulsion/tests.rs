@@ -71,6 +71,17 @@ fn a_failed_rotor_settles_at_its_share_of_the_thrust_with_the_rotors_lag() {
 }
 
 #[test]
+fn a_weakened_rotor_delivers_its_share_besides_its_failures_until_it_is_whole_again() {
+    let mut weak = propulsion("[failure]\nrotor = 1\ntime = 0.5\nthrust_left = 0.5", LAG);
+    weak.weaken(0, 0.5);
+    assert!((after(&mut weak, 0..500) - speed_of(1.0)).abs() < 1e-3);
+    assert!((after(&mut weak, 500..2000) - speed_of(0.5)).abs() < 1e-3);
+    weak.weaken(0, 1.0);
+    assert!((after(&mut weak, 2000..4000) - speed_of(1.0)).abs() < 1e-3);
+    assert!((weak.speeds()[1] - speed_of(2.0)).abs() < 1e-3);
+}
+
+#[test]
 fn thrust_falls_with_the_square_of_the_voltage() {
     let battery =
         "[battery]\nfull_voltage = 9.45\nempty_voltage = 9.45\nresistance = 0\ncapacity = 10\nnominal_voltage = 12.6";
