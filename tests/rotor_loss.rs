@@ -177,17 +177,18 @@ fn a_vehicle_without_a_rotor_lands_softly_from_every_phase() {
                 );
                 let what = format!("{vehicle} {phase:?} {lost:?}: {flown:?}");
                 let is_it = |found: Lost| found.rotor == lost.rotor && (found.left - lost.left).abs() < 0.15;
-                // What has lost less than half may go on unfound without a pose: then it leans, and drifts away.
+                // What has lost less than half may go on unfound without a pose.
                 let may_go_on = phase == Phase::WithoutPose && lost.left > 0.5;
                 assert!(found.map_or(may_go_on, is_it), "{what}");
                 assert!(lost.left > 0.0 || late <= 0.1, "{what}");
                 assert!(flown.stands.is_some() && flown.touch < 1.0, "{what}");
-                let last = if found.is_some() { Reason::Landed } else { Reason::ImuDoubtful };
-                assert_eq!(flown.reasons.last(), Some(&last), "{what}");
+                let last = flown.reasons.last();
+                let stops = may_go_on && last == Some(&Reason::ImuDoubtful);
+                assert!(last == Some(&Reason::Landed) || stops, "{what}");
                 let refused = found.map(|_| Err(Refusal::RotorLost));
                 assert!(flown.arming == refused || found.is_none(), "{what}");
                 // Without a pose nothing holds it in its place.
-                let (fell, farthest) = if phase == Phase::WithoutPose { (3.0, 15.0) } else { (2.0, 3.0) };
+                let (fell, farthest) = if phase == Phase::WithoutPose { (3.0, 12.0) } else { (2.0, 3.0) };
                 assert!(flown.fell < fell && flown.farthest < farthest, "{what}");
                 let guided = !matches!(phase, Phase::Landing | Phase::WithoutPose);
                 assert_eq!(guided && found.is_some(), flown.reasons.contains(&Reason::RotorLost), "{what}");

@@ -18,7 +18,7 @@
 //! | [`thrust_scale`] | an estimate of the delivered thrust over the commanded thrust | 9 |
 //! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
 //! | [`fallback`] | the same law, slowed down, if a flight makes no progress | 13 |
-//! | [`rotor_loss`] | a rotor that fails: found, and flown without | 15 |
+//! | [`rotor_loss`] | a rotor that fails: found, and flown without | 16 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`measured`] | an accelerometer's acceleration and the rotors' speeds, where there are any | 2, 10 |
 //! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |

@@ -119,8 +119,8 @@ impl Controller {
         self.memory.held = self.settling;
     }
 
-    /// Likewise, for every tick whose velocity is not the vehicle's. What is measured of its acceleration still tells
-    /// whether a rotor fails.
+    /// Likewise, for every tick whose velocity is not the vehicle's: what rates tell is learnt on, and what is measured
+    /// of the acceleration tells whether a rotor fails.
     pub fn hold_without_velocity(&mut self) {
         self.memory.blind = self.settling;
     }

@@ -3,7 +3,7 @@
 //!
 //! The acceleration, measured or else the difference of velocities, goes to the thrust scale, without gravity and known
 //! drag. Its rest beside the scaled thrust goes to the force. The rotation's rest beside the scaled torque goes to the
-//! torque bias.
+//! torque bias. Where no velocity is known, the torque bias alone is learnt: rates are enough for it.
 
 use super::force::ForceObserver;
 use super::measured::{Measured, Sensors};
@@ -13,6 +13,7 @@ use super::thrust_scale::ThrustScale;
 use super::torque_bias::TorqueBias;
 use crate::state::State;
 use crate::vehicle::{Limits, Vehicle};
+use core::hint::cold_path;
 use nalgebra::{Vector3, Vector4};
 
 /// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate
@@ -56,9 +57,16 @@ impl Learning {
         acted: &Vector4<f32>,
     ) -> Averages {
         let averages = &memory.averages;
-        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0 && memory.blind == 0) else {
+        let Some(last) = memory.last.as_ref().filter(|_| memory.held == 0) else {
             return *averages;
         };
+        let rates = [&last.angular_velocity, &state.angular_velocity];
+        if memory.blind > 0 {
+            cold_path();
+            let acted = Vector3::new(acted.y, acted.z, acted.w) * averages.scale.scale;
+            let torque = self.torque.averaged(&averages.torque, &self.torque.observed(rates, &acted));
+            return Averages { torque, ..*averages };
+        }
         let velocities = [&last.velocity, &state.velocity];
         let differed = self.force.differed(velocities);
         let made = self.force.made(differed, velocities);
@@ -76,7 +84,7 @@ impl Learning {
         let scale = self.scale.learnt(&averages.scale, &made, &commanded);
         let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
-        let torque = self.torque.observed([&last.angular_velocity, &state.angular_velocity], &torque);
+        let torque = self.torque.observed(rates, &torque);
         Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque), offset }
     }
 

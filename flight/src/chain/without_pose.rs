@@ -8,7 +8,7 @@
 //! vertical speed is the accelerometer's, summed up since the pose was lost, and is brought to zero and then to that of
 //! the descent; its lag behind the descent is summed up as well, so that the vehicle sinks in an updraft too. The
 //! extended law keeps what it knows of the vehicle, its torque bias, its thrust scale and the vertical force, and
-//! learns nothing meanwhile.
+//! learns the first alone meanwhile, for which rates are enough.
 
 use super::{Chain, Flown, resting};
 use crate::rules::Mode;
@@ -99,7 +99,7 @@ impl Chain<'_> {
         self.reference.velocity.z = if descends { -self.sinking.descent() } else { 0.0 };
         let mut position = self.reference.position;
         position.z += self.sinking.behind(self.reference.velocity.z, self.period);
-        // Without a pose there is nothing to learn from, but what is felt.
+        // Without a pose only rates and what is felt teach anything.
         self.law.hold_without_velocity();
         self.step(&State { position, velocity, attitude, angular_velocity })
     }

@@ -34,6 +34,7 @@ use crate::allocation::remaining::Lost;
 use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::Vehicle;
+use core::hint::cold_path;
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
@@ -83,6 +84,7 @@ struct Signature {
 pub struct Detector {
     rotors: Vec<Signature, ROTORS_MAX>,
     inertia: Vector3<f32>,
+    inertia_per_period: Vector3<f32>,
     mass: f32,
     gravity: f32,
     per_arm: f32,
@@ -91,7 +93,8 @@ pub struct Detector {
     /// 1 - e^(-h / time constant).
     slow: f32,
     quick: f32,
-    fading: f32,
+    /// What is left of A^2 after a period.
+    faded_squared: f32,
     /// The evidence that is enough, s.
     enough: f32,
     period: f32,
@@ -106,8 +109,8 @@ pub struct Suspicion {
     age: f32,
     /// r, N.
     residual: Vector4<f32>,
-    /// A, N.
-    commands: f32,
+    /// A^2, N^2.
+    commands_squared: f32,
     /// Who is suspected, and the evidence against it, s.
     rotor: usize,
     evidence: f32,
@@ -119,7 +122,7 @@ impl Suspicion {
         lasting: None,
         age: BELIEVED,
         residual: Vector4::new(0.0, 0.0, 0.0, 0.0),
-        commands: 0.0,
+        commands_squared: 0.0,
         rotor: 0,
         evidence: 0.0,
     };
@@ -162,13 +165,14 @@ impl Detector {
         Self {
             rotors: collected(signatures),
             inertia: vehicle.inertia,
+            inertia_per_period: vehicle.inertia / period,
             mass: vehicle.mass,
             gravity: vehicle.gravity,
             per_arm,
             share: vehicle.mass * vehicle.gravity / count as f32,
             slow: averaging(SLOW),
             quick: averaging(QUICK),
-            fading: averaging(FADING),
+            faded_squared: math::exp(-2.0 * f64::from(period) / FADING) as f32,
             // Half a period: sums of periods are rounded.
             enough: TIME + lag - 0.5 * period,
             period,
@@ -176,6 +180,7 @@ impl Detector {
     }
 
     /// Takes an interval in; the rotor that is found.
+    #[inline(never)] // a step behind a shield calls the same
     pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<Lost> {
         let (residual, acted) = (self.residual(interval), self.newtons(&interval.acted));
         // Inputs in range can overflow together.
@@ -185,27 +190,25 @@ impl Detector {
         }
         let [lasting, steady] = suspicion.lasting.unwrap_or([Vector4::zeros(), acted]);
         suspicion.residual += (residual - lasting - suspicion.residual) * self.quick;
-        let moving = math::sqrt((acted - steady).norm_squared());
-        suspicion.commands = math::greater(suspicion.commands - suspicion.commands * self.fading, moving);
+        let faded = suspicion.commands_squared * self.faded_squared;
+        suspicion.commands_squared = math::greater(faded, (acted - steady).norm_squared());
 
-        let [_, end] = interval.angular_velocities;
-        let turning = math::sqrt(end.xy().norm_squared());
-        let least = self.share * (LARGE + OF_TURNING * turning) + OF_COMMANDS * suspicion.commands;
-        let is_large = suspicion.residual.norm_squared() > least * least;
-        let suspected = if is_large && suspicion.age > BEGINNING { self.suspected(suspicion, interval) } else { None };
-        let Some((rotor, lost)) = suspected else {
-            // An average of all that there was, at first.
-            let first = self.period / (suspicion.age + self.period);
-            let averaging = math::greater(self.slow, first);
-            let lasting = lasting + (residual - lasting) * averaging;
-            let steady = steady + (acted - steady) * averaging;
-            suspicion.age = math::lesser(suspicion.age + self.period, SLOW as f32);
-            if self.would_tell(suspicion.rotor, interval) {
+        let Some((rotor, lost)) = self.suspected(suspicion, interval) else {
+            let mut averaging = self.slow;
+            if suspicion.age < SLOW as f32 {
+                cold_path();
+                // An average of all that there was, at first.
+                averaging = math::greater(averaging, self.period / (suspicion.age + self.period));
+                suspicion.age += self.period;
+            }
+            if suspicion.evidence > 0.0 && self.would_tell(suspicion.rotor, interval) {
                 suspicion.evidence = math::greater(suspicion.evidence - self.period, 0.0);
             }
-            suspicion.lasting = Some([lasting, steady]);
+            let average = [lasting + (residual - lasting) * averaging, steady + (acted - steady) * averaging];
+            suspicion.lasting = Some(average);
             return None;
         };
+        cold_path();
         suspicion.lasting = Some([lasting, steady]);
         let before = if rotor == suspicion.rotor { suspicion.evidence } else { 0.0 };
         let share = math::lesser(lost / GONE, 1.0);
@@ -234,7 +237,7 @@ impl Detector {
     fn residual(&self, interval: &Interval) -> Vector4<f32> {
         let Interval { acceleration, angular_velocities: [start, end], axis, acted } = interval;
         let mean = (*start + *end) * 0.5;
-        let turned = self.inertia.component_mul(&(*end - *start)) / self.period;
+        let turned = self.inertia_per_period.component_mul(&(*end - *start));
         let torque = turned + mean.cross(&self.inertia.component_mul(&mean));
         let thrust = self.mass * (acceleration.dot(axis) + self.gravity * axis.z);
         self.newtons(&(Vector4::new(thrust, torque.x, torque.y, torque.z) - acted))
@@ -248,6 +251,17 @@ impl Detector {
     /// The rotor that r is most aligned with, and the share that it has lost.
     fn suspected(&self, suspicion: &Suspicion, interval: &Interval) -> Option<(usize, f32)> {
         let residual = &suspicion.residual;
+        let (square, large) = (residual.norm_squared(), LARGE * self.share);
+        if square <= large * large || suspicion.age <= BEGINNING {
+            return None;
+        }
+        cold_path();
+        let [_, end] = interval.angular_velocities;
+        let turning = OF_TURNING * self.share * math::sqrt(end.xy().norm_squared());
+        let least = large + turning + OF_COMMANDS * math::sqrt(suspicion.commands_squared);
+        if square <= least * least {
+            return None;
+        }
         let (mut greatest, mut which) = (0.0, None);
         for (index, rotor) in self.rotors.iter().enumerate() {
             let along = -residual.dot(&rotor.column) * rotor.per_length;
@@ -257,10 +271,10 @@ impl Detector {
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
-        let tells = self.would_tell(index, interval);
         let lost = greatest * rotor.per_length / math::greater(thrust, TELLING * self.share);
-        let aligned = greatest * greatest >= ALIGNED * ALIGNED * residual.norm_squared();
+        let aligned = greatest * greatest >= ALIGNED * ALIGNED * square;
         let (least, most) = SHARES;
+        let tells = self.would_tell(index, interval);
         (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
     }
 }
