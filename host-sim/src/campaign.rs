@@ -16,6 +16,7 @@
 //! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
 
 pub mod batches;
+pub mod columns;
 pub mod draw;
 pub mod fly;
 pub mod losses;

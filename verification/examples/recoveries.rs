@@ -12,7 +12,7 @@ use host_sim::campaign::outcome::Outcome;
 use host_sim::campaign::quantile;
 use host_sim::campaign::step::longest;
 use scenario::Scenario;
-use scenario::campaign::{ModelRanges, NoiseRanges, Ranges, Task};
+use scenario::campaign::{FailureRanges, ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;
 use std::path::Path;
 use verification::campaign::fly_all;
@@ -31,6 +31,7 @@ const RANGES: Ranges = Ranges {
     turbulence: 0.0,
     noise: NoiseRanges { gyro: 0.0, position: 0.0, attitude: 0.0, delay: 0.0 },
     model: ModelRanges { mass: 0.0, inertia: 0.0, centre_of_mass: 0.0, thrust_scale: 0.0, rotor_scales: 0.0 },
+    failure: FailureRanges::DEFAULT,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {

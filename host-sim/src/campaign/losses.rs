@@ -1,8 +1,8 @@
 //! What all flights of a campaign showed of rotors that failed, or were taken to.
 
+use super::columns::{counts, floats, whole_numbers};
 use super::quantile;
 use super::rotor_loss::HELD;
-use super::summary::{counts, floats, whole_numbers};
 use crate::table::short;
 use arrow_array::RecordBatch;
 use std::fmt;

@@ -17,7 +17,7 @@
 //! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
 //! [`super::rotor_loss`].
 
-use super::rotor_loss::{HELD, RotorLoss, is_within_ranges};
+use super::rotor_loss::{HELD, ROUNDING, RotorLoss, is_within_ranges};
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
 use crate::flown::{NEAR_MRP, claimed_error, heading_is_followed};
@@ -30,9 +30,6 @@ use scenario::Scenario;
 pub const NEAR: f64 = 0.2;
 /// How near its heading, rad.
 pub const NEAR_HEADING: f64 = 0.2;
-/// Room for the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
-/// stand still, N.
-pub(super) const ROUNDING: f64 = 1e-6;
 
 /// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]

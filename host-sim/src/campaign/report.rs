@@ -1,8 +1,9 @@
 //! The page of a campaign: how its figures are spread, the worst flights by number, and what was flown.
 
+use super::columns::{counts, floats};
 use super::manifest::Manifest;
 use super::rows::{HOLDS, share_of_rotor};
-use super::summary::{Summary, counts, floats, verdicts};
+use super::summary::{Summary, verdicts};
 use crate::report::distribution::Distribution;
 use crate::report::document;
 use crate::report::page::{Block, Page, Section};

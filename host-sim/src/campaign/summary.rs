@@ -1,5 +1,6 @@
 //! A campaign's summary: how many flights recover and track, quantiles, bounds, and the worst flights by number.
 
+use super::columns::{counts, floats, whole_numbers};
 use super::draw::timing;
 use super::losses::Losses;
 use super::manifest::Manifest;
@@ -11,7 +12,6 @@ use crate::flown::NEAR_MRP;
 use crate::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, UInt64Type};
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::fmt;
@@ -228,26 +228,4 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
 pub fn verdicts(flown: &[RecordBatch]) -> Vec<&str> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name("verdict"));
     columns.flat_map(|column| column.as_string::<i32>().iter().flatten()).collect()
-}
-
-/// A column of whole numbers.
-#[must_use]
-pub fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
-    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
-    columns.flat_map(|column| column.as_primitive::<UInt64Type>().values().to_vec()).collect()
-}
-
-/// A column of whole numbers; none where there is none.
-#[must_use]
-pub fn whole_numbers(flown: &[RecordBatch], column: &str) -> Vec<Option<u64>> {
-    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
-    columns.flat_map(|column| column.as_primitive::<UInt64Type>().iter()).collect()
-}
-
-/// A column of numbers; infinite where there is none.
-#[must_use]
-pub fn floats(flown: &[RecordBatch], column: &str) -> Vec<f64> {
-    let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
-    let value = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
-    columns.flat_map(|column| column.as_primitive::<Float64Type>().iter().map(value).collect::<Vec<_>>()).collect()
 }

@@ -77,7 +77,7 @@ fn no_thrusts_within_the_ranges_cost_less() {
         let least = cost(&rotors, &wanted, &found);
         for _ in 0..40 {
             // Any others, near and far.
-            let size = *[0.01, 0.3, 12.0].get(random.below(3) as usize).unwrap();
+            let size = *[0.01, 0.3, 12.0].get(random.below(3)).unwrap();
             let other = |(rotor, thrust): (&Remaining, &f32)| rotor.within(thrust + random.between(-size, size));
             let others: Vec<f32, ROTORS_MAX> = collected(rotors.rotors.iter().zip(&found).map(other));
             let more = cost(&rotors, &wanted, &others);

@@ -6,18 +6,18 @@
 //! | here | equation |
 //! |---|---|
 //! | residual e | (m b . (v' + g e3) - T, (J omega' + omega x J omega - tau) / l) |
-//! | slow part e_s | e, averaged over [`SLOW`]: wind, drag, a wrong mass or centre of mass, a battery that sags |
-//! | quick part r | e - e_s, averaged over [`QUICK`] |
+//! | slow part e_s | e, averaged over `SLOW`: wind, drag, a wrong mass or centre of mass, a battery that sags |
+//! | quick part r | e - e_s, averaged over `QUICK` |
 //! | rotor i that lost a share lambda of its thrust f_i | r = -lambda f_i b_i, b_i its column of B in newtons |
 //! | alignment | -r . b_i / (\|r\| \|b_i\|) |
 //! | share | lambda = -r . b_i / (f_i \|b_i\|^2) |
-//! | large enough | \|r\| >= [`LARGE`] F + [`OF_COMMANDS`] A + [`OF_TURNING`] F \|omega_12\|, F a rotor's share of the weight |
-//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within [`FADING`] |
-//! | evidence | grows by h (lambda / [`GONE`])^3 in a tick that tells, falls by h in one that contradicts |
+//! | large enough | \|r\| >= `LARGE` F + `OF_COMMANDS` A + `OF_TURNING` F \|omega_12\|, F a rotor's share of the weight |
+//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING` |
+//! | evidence | grows by h (lambda / `GONE`)^3 in a tick that tells, falls by h in one that contradicts |
 //!
 //! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the greatest
-//! alignment is suspected while r is large enough, the alignment at least [`ALIGNED`] and lambda within [`SHARES`]. It is
-//! found once the evidence has grown to [`TIME`] and to the rotors' lag: a dead one at once, one that has lost a third
+//! alignment is suspected while r is large enough, the alignment at least `ALIGNED` and lambda within `SHARES`. It is
+//! found once the evidence has grown to `TIME` and to the rotors' lag: a dead one at once, one that has lost a third
 //! after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise, or not for so
 //! long. A rotor of which nothing is commanded tells nothing either way.
 //!
@@ -26,8 +26,8 @@
 //! middle of a flip is found a little later.
 //!
 //! While one is suspected the slow part waits. After a jump of the state, on the ground, or after a command that was
-//! not carried out there is nothing to compare. At first the model is believed as if it had been right for [`BELIEVED`]; no
-//! rotor is suspected before [`BEGINNING`].
+//! not carried out there is nothing to compare. At first the model is believed as if it had been right for `BELIEVED`; no
+//! rotor is suspected before `BEGINNING`.
 
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::remaining::Lost;
@@ -105,7 +105,7 @@ pub struct Detector {
 pub struct Suspicion {
     /// e_s and w_s, N; none before the first interval.
     lasting: Option<[Vector4<f32>; 2]>,
-    /// For how long they have been averaged, s, up to [`SLOW`].
+    /// For how long they have been averaged, s, up to `SLOW`.
     age: f32,
     /// r, N.
     residual: Vector4<f32>,

@@ -133,7 +133,7 @@ struct Memory {
     taken: f32,
     missed: f32,
     watched: f32,
-    /// How long it has taken to begin to turn, s, so far; at least [`BEGINNING_TIME`] once it has.
+    /// How long it has taken to begin to turn, s, so far; at least `BEGINNING_TIME` once it has.
     beginning: f32,
 }
 

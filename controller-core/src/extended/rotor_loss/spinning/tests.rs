@@ -156,7 +156,7 @@ fn nothing_it_is_told_takes_a_command_out_of_its_range_or_a_wrench_out_of_its_li
         let lost = Lost { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
         let mut law = law(&lost);
         for _ in 0..500 {
-            let size = *[1.0, 30.0, 1e4].get(random.below(3) as usize).unwrap();
+            let size = *[1.0, 30.0, 1e4].get(random.below(3)).unwrap();
             let state = State {
                 position: random.vector(size),
                 velocity: random.vector(size),
