@@ -1,6 +1,7 @@
 """Flies the whole firmware on emulated Cortex-M boards with a real MAVLink client, and holds it to the flight rules.
 
-Usage: flight.py MACHINE RUN...   with RUN one of: as-printed, flight, vanishing-client, failing-pose
+Usage: flight.py MACHINE RUN...   with RUN one of: as-printed, flight, vanishing-client, failing-pose, and failing-rotor in hover, -climbing,
+-landing or -weak
 
 Every time is the vehicle's. Figures that are printed were measured in that run.
 """
@@ -11,7 +12,7 @@ import sys
 
 from printed import as_printed
 from rig import NOISY, TICK, Rig
-from station import HOLDING
+from station import ARM_DISARM, HOLDING, LAND, TAKE_OFF, mavlink
 
 START = (1.0, 0.0, 0.0)
 HOVER = (1.0, 0.0, 1.5)
@@ -144,8 +145,41 @@ def failing_pose(machine):
     rig.check_landed()
 
 
+def failing_rotor(machine, fails=18.0, left=0.0, lands=None):
+    """A rotor that fails at `fails` s: the vehicle says which, comes down by itself, turning, and does not arm again."""
+    with Rig(machine, sensors=f"{NOISY}\n[failure]\nrotor = 1\ntime = {fails}\nthrust_left = {left}\n") as rig:
+        station = rig.station
+        station.until("heartbeat and telemetry", lambda: station.mode and station.position, 60.0)
+        station.wait(1.0)
+        station.arm()
+        station.order(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, HOVER[2])
+        if lands is not None:
+            station.until("time to land", lambda: station.now >= lands, 30.0)
+            station.order(LAND)
+        station.until("the rotor found", lambda: station.received("Rotor 1 lost"), 40.0)
+        print(f"    landed {station.landed(60.0):.2f} s after that, by telemetry")
+        station.wait(2.0)
+        assert station.command(ARM_DISARM, 1.0) == mavlink.MAV_RESULT_DENIED
+        station.until("why it does not arm", lambda: station.received("Refused: a rotor failed"), 2.0)
+        rig.land()
+        rig.check_pace()
+    away = max(math.dist((row["px"], row["py"]), HOVER[:2]) for row in rig.rows)
+    touch = max(speed for _, speed, _ in rig.touchdowns)
+    print(f"    {away:.2f} m away at most, touched the ground with {touch:.2f} m/s")
+    assert away < 2.0 and touch < 1.0, rig.touchdowns
+
+
 MACHINES = ["mps2-an386", "mps2-an500"]
-RUNS = {"as-printed": as_printed, "flight": flight, "vanishing-client": vanishing_client, "failing-pose": failing_pose}
+RUNS = {
+    "as-printed": as_printed,
+    "flight": flight,
+    "vanishing-client": vanishing_client,
+    "failing-pose": failing_pose,
+    "failing-rotor": failing_rotor,
+    "failing-rotor-climbing": lambda machine: failing_rotor(machine, fails=8.0),
+    "failing-rotor-landing": lambda machine: failing_rotor(machine, fails=17.0, lands=15.0),
+    "failing-rotor-weak": lambda machine: failing_rotor(machine, left=0.3),
+}
 
 
 def main():

@@ -1,16 +1,19 @@
 //! The vehicle of a session: delay, rotors, body and ground, moved by motor commands one control period at a time.
 //!
 //! It starts on the ground, below where the scenario starts, level, with its rotors standing still. A command u of a
-//! rotor means u^2 of its greatest thrust, as the firmware's thrust curve has it.
+//! rotor means u^2 of its greatest thrust, as the firmware's thrust curve has it; less of that from when it fails.
+//! The air is left out.
 
 use super::messages::{Controls, MOTORS};
 use crate::actuators::rotors::SpinningRotors;
 use crate::ground::{Ground, Touchdown};
 use crate::plant::Plant;
+use crate::reality::wind::first_step;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
+use scenario::reality::failure::Failure;
 use std::collections::VecDeque;
 
 /// Height of the ground, m.
@@ -48,6 +51,8 @@ pub struct HilVehicle {
     now: u64,
     /// Thrusts on their way, N, with the step at which they act.
     waiting: VecDeque<(u64, Vec<f32>)>,
+    /// What fails, from that plant step on.
+    failure: Option<(Failure, u64)>,
 }
 
 impl HilVehicle {
@@ -76,6 +81,7 @@ impl HilVehicle {
             delay: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
+            failure: scenario.reality.failure.map(|failure| (failure, first_step(failure.time, step))),
         })
     }
 
@@ -100,7 +106,12 @@ impl HilVehicle {
         let before = self.plant.state().velocity;
         let (mut thrust, mut touchdown, mut path) = (0.0, None, Vec::new());
         for step in 1..=self.steps {
-            while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+            while let Some((_, mut thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
+                if let Some((failed, _)) = self.failure.filter(|(_, first)| self.now >= *first)
+                    && let Some(thrust) = thrusts.get_mut(failed.rotor)
+                {
+                    *thrust *= failed.thrust_left as f32;
+                }
                 self.rotors.command(&thrusts);
             }
             let torque;
