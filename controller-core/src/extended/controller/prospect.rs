@@ -33,7 +33,7 @@ pub struct Prospect {
     pub places: [Vector3<f32>; 5],
     /// The cosine of the angle from the thrust axis to where it is wanted.
     pub alignment: f32,
-    /// Whether an estimate is held or at its level, or the force more than thrust holds.
+    /// Whether an estimate is held or at its level, or the force more than thrust holds, or a rotor has failed.
     pub doubtful: bool,
 }
 
@@ -74,6 +74,7 @@ impl Controller {
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
             doubtful: self.memory.held > 0
                 || self.memory.blind > 0
+                || self.spinning.is_some()
                 || self.is_at_a_level()
                 || !self.is_held(&force, greatest),
         }
