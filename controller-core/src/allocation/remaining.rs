@@ -11,13 +11,13 @@
 //! shares the weight equally. So every rotor stays within what it has, whatever is asked: a bound is part of the
 //! problem, and every step of its solution keeps to it.
 //!
-//! Solved by an active set: the rotors at a bound stay there, the others take B' (C + B B')^-1 (the rest); where
-//! one of them meets its bound it stays there; where none does, the rotor at a bound that pulls away from it most is let
-//! go. C + B B' is inverted column by column (Sherman and Morrison). At most three rounds for each rotor; the thrusts
-//! keep to their ranges after any number of them.
+//! Solved by an active set: the rotors at a bound stay there, the others take B' (C + B B')^-1 (the rest); where one of
+//! them meets its bound it stays there; where none does, the rotor at a bound that pulls away from it most is let go. C
+//! + B B' is inverted column by column (Sherman and Morrison). At most three rounds for each rotor; the thrusts keep to
+//! their ranges after any number of them.
 //!
-//! Then the whole is drawn back towards the least thrusts as far as the user's limits of thrust and torque ask: of what is
-//! delivered, and of what would be if no rotor had lost anything.
+//! Then the whole is drawn back towards the least thrusts as far as the user's limits of thrust and torque ask: of what
+//! is delivered, and of what would be if no rotor had lost anything.
 //!
 //! Method: O. Härkegård, *Efficient active set algorithms for solving constrained least squares problems in aircraft
 //! control allocation*, CDC 2002. Which of a multirotor's torques to give up first: E. J. J. Smeur, D. Höppener, C. de

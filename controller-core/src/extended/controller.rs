@@ -6,10 +6,11 @@
 //!                  -> budget: bias, feedback, turning about the tilt's axes -> heading -> thrust_range -> Wrench
 //! ```
 //!
-//! `sections` has the parts, `without_a_rotor` what flies once a rotor has failed. The order within a tick: first what can be refused, up to the desired motion, from the
-//! filters as they stand and with the averages that have taken in the last interval. Nothing is remembered before that.
-//! From there on every part of the memory advances by one period as soon as its last value has served. So the wrench is
-//! the one for the instant the state was taken, as in the paper's [`controller`](crate::controller).
+//! `sections` has the parts, `without_a_rotor` what flies once a rotor has failed. The order within a tick: first what
+//! can be refused, up to the desired motion, from the filters as they stand and with the averages that have taken in
+//! the last interval. Nothing is remembered before that. From there on every part of the memory advances by one period
+//! as soon as its last value has served. So the wrench is the one for the instant the state was taken, as in the
+//! paper's [`controller`](crate::controller).
 
 use super::actuators::ActuatorModel;
 use super::attitude::AttitudeLaw;

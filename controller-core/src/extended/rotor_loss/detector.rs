@@ -15,19 +15,19 @@
 //! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING` |
 //! | evidence | grows by h (lambda / `GONE`)^3 in a tick that tells, falls by h in one that contradicts |
 //!
-//! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the greatest
-//! alignment is suspected while r is large enough, the alignment at least `ALIGNED` and lambda within `SHARES`. It is
-//! found once the evidence has grown to `TIME` and to the rotors' lag: a dead one at once, one that has lost a third
-//! after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise, or not for so
-//! long. A rotor of which nothing is commanded tells nothing either way.
+//! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the
+//! greatest alignment is suspected while r is large enough, the alignment at least `ALIGNED` and lambda within
+//! `SHARES`. It is found once the evidence has grown to `TIME` and to the rotors' lag: a dead one at once, one that has
+//! lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise,
+//! or not for so long. A rotor of which nothing is commanded tells nothing either way.
 //!
-//! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should be
-//! with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
+//! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should
+//! be with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
 //! middle of a flip is found a little later.
 //!
 //! While one is suspected the slow part waits. After a jump of the state, on the ground, or after a command that was
-//! not carried out there is nothing to compare. At first the model is believed as if it had been right for `BELIEVED`; no
-//! rotor is suspected before `BEGINNING`.
+//! not carried out there is nothing to compare. At first the model is believed as if it had been right for `BELIEVED`;
+//! no rotor is suspected before `BEGINNING`.
 
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::remaining::Lost;

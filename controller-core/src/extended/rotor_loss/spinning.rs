@@ -2,8 +2,8 @@
 //!
 //! Three rotors of four hold a vehicle up only if it turns ever faster until drag stops that (*relaxed hover*: M. W.
 //! Mueller, R. D'Andrea, *Relaxed hover solutions for multicopters*, IJRR 35(8), 2016). Then a constant torque about an
-//! axis of the body averages out in the world. n is an axis in the body, near its z; the vehicle is to turn about n, and
-//! n to point along u:
+//! axis of the body averages out in the world. n is an axis in the body, near its z; the vehicle is to turn about n,
+//! and n to point along u:
 //!
 //! | here | equation |
 //! |---|---|
@@ -17,9 +17,9 @@
 //! | thrust | T = m \|u\| cos theta / n_3, or more while it begins to turn |
 //! | yaw | tau_3 = J_3 k_y (r - omega_3), r towards the heading: what is left for it, often nothing |
 //!
-//! delta x w makes delta fall in the world's axes, not in those of the turning body. The body turns by omega T within the
-//! lag and the delay T, at 18 rad/s and 25 ms by 26 degrees: all errors are those at its end, by the gyro and what past
-//! commands will still do.
+//! delta x w makes delta fall in the world's axes, not in those of the turning body. The body turns by omega T within
+//! the lag and the delay T, at 18 rad/s and 25 ms by 26 degrees: all errors are those at its end, by the gyro and what
+//! past commands will still do.
 //!
 //! **The axis.** The rotor opposite a failed one can only push that side further down, so about z it has nothing to do,
 //! and the tilt is held in one direction only. Turning about n = z cos phi + sin phi a, a from the failed rotor to
@@ -27,9 +27,9 @@
 //! vehicle's turning faster; and with a thrust to take back it holds the tilt both ways. It needs J_3 > J_1, as flat
 //! vehicles have it. Where thrusts that are left hold the tilt in every direction, n is z.
 //!
-//! **The beginning.** Until the vehicle has turned by a quarter, nothing stops it from falling over to the failed side. More
-//! thrust turns it sooner, and takes height while the axis still points up. Once it has turned, never again: a vehicle
-//! that touches the ground turns no more.
+//! **The beginning.** Until the vehicle has turned by a quarter, nothing stops it from falling over to the failed side.
+//! More thrust turns it sooner, and gains height while the axis still points up. Once it has turned, never again: a
+//! vehicle that touches the ground turns no more.
 
 use super::super::approach::Approach;
 use super::super::memory::Estimates;
@@ -78,8 +78,8 @@ const YAW: f32 = 5.0;
 const TOWARDS: (f32, f32) = (2.0, 1.0);
 const SPINNING: f32 = 2.0;
 
-/// The thrust while it begins to turn, in weights, for how long at most, s, up to which rate it does, rad/s, the least part of a rotor's share of
-/// the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
+/// The thrust while it begins to turn, in weights, for how long at most, s, up to which rate it does, rad/s, the least
+/// part of a rotor's share of the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
 const BEGINNING: f32 = 2.0;
 const BEGINNING_TIME: f32 = 0.6;
 const BEGUN: f32 = 6.0;

@@ -44,8 +44,8 @@ fn hover() -> Reference {
     Reference::resting(Vector3::zeros(), Heading::FORWARD)
 }
 
-/// Moves a rigid body with a drag of `drag`, N m s, about its z for a tick: of what is commanded, a rotor delivers what it
-/// has `left`.
+/// Moves a rigid body with a drag of `drag`, N m s, about its z for a tick: of what is commanded, a rotor delivers what
+/// it has `left`.
 fn advance(state: &mut State, law: &SpinningLaw, left: &Lost, drag: f32) {
     let share = |index| if index == left.rotor { left.left } else { 1.0 };
     let delivered: Vector4<f32> = quad()
