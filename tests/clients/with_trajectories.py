@@ -26,6 +26,7 @@ import stream_rows  # noqa: E402
 
 WITHIN = 0.05  # m, of each row
 TRIES = 3
+QUICKEST_SLOWER = 1.6
 MISSION_WITHIN = 0.45  # m, of each point: its acceptance radius, and what the vehicle is off the reference
 
 
@@ -78,11 +79,11 @@ def simulator(*arguments):
     subprocess.run([os.environ["SIMULATOR"], *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
 
-def stream(file, directory):
+def stream(file, directory, slower):
     """On a busy machine a setpoint may come too late to be followed: the vehicle then says so, and it is tried
     again."""
     rows = directory / "rows.csv"
-    simulator("reference", file, "--rows", rows)
+    simulator("reference", file, "--rows", rows, "--slower", slower)
     for _ in range(TRIES):
         worst, texts = stream_once(file, rows)
         if worst < WITHIN:
@@ -130,10 +131,11 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         directory = pathlib.Path(name)
         gates, mine = gates_files(directory)
-        shipped = [(ROOT / f"scenarios/{name}.toml").resolve() for name in ("eight", "pieces")]
-        for file in [*shipped, gates, mine]:
+        eight, pieces = ((ROOT / f"scenarios/{name}.toml").resolve() for name in ("eight", "pieces"))
+        # The quickest paths through points change their snap faster than the governor follows a stream.
+        for file, slower in [(eight, 1.1), (pieces, 1.1), (gates, QUICKEST_SLOWER), (mine, QUICKEST_SLOWER)]:
             simulator("certify", file)
-            stream(file, directory)
+            stream(file, directory, slower)
         fly_mission(mine)
 
 
