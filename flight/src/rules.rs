@@ -68,7 +68,7 @@ pub const TRACKING_DEBOUNCE: u64 = 5_000_000;
 pub const SATURATION_DEBOUNCE: u64 = 1_000_000;
 
 /// How long a vehicle without a rotor has been on its way at least before a reference at rest has arrived, us.
-pub const ARRIVING: u64 = 1_000_000;
+pub const ARRIVING_MIN: u64 = 1_000_000;
 
 /// How long control may be late with every tick, us.
 pub const OVERRUN_DEBOUNCE: u64 = 100_000;

@@ -224,6 +224,13 @@ impl Rotors {
         (sum(|rotor| rotor.thrust_min), sum(|rotor| rotor.thrust_max))
     }
 
+    /// The greatest distance of a rotor from body z, m.
+    #[must_use]
+    pub fn longest_arm(&self) -> f32 {
+        let squares = self.rotors.iter().map(|rotor| rotor.position.xy().norm_squared());
+        math::sqrt(squares.fold(f32::MIN_POSITIVE, math::greater))
+    }
+
     /// Checks that all rotors together can lift `weight`, N, and need not.
     ///
     /// # Errors

@@ -33,16 +33,16 @@ use heapless::Vec;
 use nalgebra::{Matrix4, Vector3, Vector4};
 
 /// The diagonal of C: thrust, roll, pitch, yaw.
-const GIVING_WAY: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
+const COMPLIANCE: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
 
 /// Rounds for each rotor.
-const ROUNDS: usize = 3;
+const ROUNDS_PER_ROTOR: usize = 3;
 
 /// The part of a limit that is left unused: more than the rounding of a wrench.
-const LIMITS_LEFT: f32 = 1e-5;
+const UNUSED_SHARE: f32 = 1e-5;
 
 /// How strongly a rotor has to pull away from its bound to be let go, N.
-const LEAST_PULL: f32 = 1e-4;
+const PULL_LEAST: f32 = 1e-4;
 
 /// What a rotor has left of its commanded thrust, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,9 +104,8 @@ impl RemainingRotors {
     #[must_use]
     pub fn new(rotors: &Rotors, limits: &Limits, lost: &Lost, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
-        let arm = columns().map(|column| column.yz().norm_squared()).fold(f32::MIN_POSITIVE, math::greater);
         let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::greater);
-        let arm = math::sqrt(arm);
+        let arm = rotors.longest_arm();
         let newtons = Vector4::new(1.0, 1.0 / arm, 1.0 / arm, 1.0 / drag);
         let share = weight / rotors.len() as f32;
         let all = rotors.iter().zip(columns()).enumerate().map(|(index, (rotor, column))| {
@@ -114,11 +113,11 @@ impl RemainingRotors {
             Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
         let torque = &limits.torque_max;
-        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - LIMITS_LEFT);
+        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - UNUSED_SHARE);
         Self { rotors: collected(all), newtons, limits: limits.component_mul(&newtons), scale, share }
     }
 
-    /// Other knowledge of what is lost.
+    /// Changes what the failed rotor has left.
     pub fn set_left(&mut self, lost: &Lost) {
         if let Some(rotor) = self.rotors.get_mut(lost.rotor) {
             *rotor = Remaining::new(rotor.column, rotor.commanded, self.scale * lost.left, self.share);
@@ -141,7 +140,7 @@ impl RemainingRotors {
         let mut places: Vec<Place, ROTORS_MAX> = collected(
             self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.greatest > rotor.least }),
         );
-        for _ in 0..ROUNDS * self.rotors.len() {
+        for _ in 0..ROUNDS_PER_ROTOR * self.rotors.len() {
             let pull = self.pull(&wanted, &places);
             if !self.approach(&pull, &mut places) && !self.let_go(&pull, &mut places) {
                 break;
@@ -201,7 +200,7 @@ impl RemainingRotors {
     /// (C + B B')^-1 (w - B f), with f_0 for the free rotors and B B' of these alone: how strongly each part of the
     /// wrench pulls at the thrusts.
     fn pull(&self, wanted: &Vector4<f32>, places: &[Place]) -> Vector4<f32> {
-        let mut inverse = Matrix4::from_diagonal(&GIVING_WAY.map(|way| 1.0 / way));
+        let mut inverse = Matrix4::from_diagonal(&COMPLIANCE.map(|way| 1.0 / way));
         let mut rest = *wanted;
         for (rotor, place) in self.rotors.iter().zip(places) {
             if place.is_free {
@@ -240,7 +239,7 @@ impl RemainingRotors {
 
     /// Lets the rotor go that pulls away from its bound most; whether one does.
     fn let_go(&self, pull: &Vector4<f32>, places: &mut [Place]) -> bool {
-        let (mut strongest, mut which) = (LEAST_PULL, None);
+        let (mut strongest, mut which) = (PULL_LEAST, None);
         for (rotor, place) in self.rotors.iter().zip(places) {
             let inwards = rotor.preferred + rotor.column.dot(pull) - place.thrust;
             let inwards = if place.thrust > rotor.least { -inwards } else { inwards };

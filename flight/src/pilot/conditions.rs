@@ -9,7 +9,7 @@ use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::{
-    ARRIVING, Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE,
+    ARRIVING_MIN, Condition, Conditions, DESCENDING_MAX, GROUND_STATION_SILENCE_MAX, IDLING_MAX, LANDING_PATIENCE,
     LANDING_REST, LEVELLING_MAX, Mode,
 };
 use crate::watch::Seen;
@@ -76,7 +76,7 @@ impl<P: Aboard> Pilot<'_, P> {
             _ => false,
         };
         let stands = self.chain.as_ref().is_ok_and(Chain::is_standing);
-        let is_there = elapsed >= ARRIVING && self.chain.as_ref().is_ok_and(Chain::rests);
+        let is_there = elapsed >= ARRIVING_MIN && self.chain.as_ref().is_ok_and(Chain::rests);
         let is_under_way = self.mode == Mode::Holding && self.lands_elsewhere && !is_there;
         let height = estimate.state.map_or(0.0, |estimated| estimated.state.position.z - self.fence.home().z);
         self.landing_from = self.landing_from.max(height.min(self.settings.fence_height));

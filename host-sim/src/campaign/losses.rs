@@ -28,7 +28,7 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Of what was `flown`.
+    /// Counts the failing rotors of all flights in `flown`.
     #[must_use]
     pub fn of(flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");

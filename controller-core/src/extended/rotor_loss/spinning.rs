@@ -44,57 +44,57 @@ use crate::vehicle::{Limits, Vehicle};
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// phi, rad: its cosine and sine.
-const AXIS: (f32, f32) = (0.968_912_4, 0.247_403_96);
+const AXIS_COSINE_SINE: (f32, f32) = (0.968_912_4, 0.247_403_96);
 
 /// The least J_3 over the mean of J_1 and J_2 for which n is not z.
-const FLAT: f32 = 1.15;
+const FLATNESS_LEAST: f32 = 1.15;
 
 /// How much of a torque that raises the failed side has to be had for n to be z.
-const HELD: f32 = 0.8;
+const RAISING_SHARE: f32 = 0.8;
 
 /// The greatest bandwidth of the attitude, 1/s; it times lag, delay and period; its damping.
-const BANDWIDTH: f32 = 20.0;
+const BANDWIDTH_MAX: f32 = 20.0;
 const BANDWIDTH_LATE: f32 = 0.7;
-const DAMPING: f32 = 0.8;
+const DAMPING_RATIO: f32 = 0.8;
 
 /// k_p, 1/s^2, and k_v, 1/s, across and along the vertical.
-const ACROSS: (f32, f32) = (2.4, 2.0);
-const VERTICAL: (f32, f32) = (5.4, 3.0);
+const GAINS_ACROSS: (f32, f32) = (2.4, 2.0);
+const GAINS_VERTICAL: (f32, f32) = (5.4, 3.0);
 
 /// The acceleration that an approach counts on to brake, m/s^2, and its greatest speed, m/s.
-const BRAKING: f32 = 4.0;
-const SPEED: f32 = 4.0;
+const BRAKING_ACCELERATION: f32 = 4.0;
+const APPROACH_SPEED: f32 = 4.0;
 
 /// u's vertical component, in g, and the tangent of its tilt.
-const LIFT: (f32, f32) = (0.4, 2.0);
-const TILT: f32 = 0.7;
+const LIFT_RANGE: (f32, f32) = (0.4, 2.0);
+const TILT_TANGENT: f32 = 0.7;
 
 /// Bandwidth of d, 1/s, and its greatest size along each axis, m/s^2.
-const LEARNING: f64 = 1.5;
-const FORCE: f32 = 6.0;
+const FORCE_BANDWIDTH: f64 = 1.5;
+const FORCE_MAX: f32 = 6.0;
 
 /// k_y, 1/s; the rate towards the heading, rad/s, for one rad and at most; and up to which rate it is looked for.
-const YAW: f32 = 5.0;
-const TOWARDS: (f32, f32) = (2.0, 1.0);
-const SPINNING: f32 = 2.0;
+const YAW_BANDWIDTH: f32 = 5.0;
+const HEADING_GAIN_AND_RATE: (f32, f32) = (2.0, 1.0);
+const HEADING_RATE_MAX: f32 = 2.0;
 
 /// The thrust while it begins to turn, in weights, for how long at most, s, up to which rate it does, rad/s, the least
 /// part of a rotor's share of the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
-const BEGINNING: f32 = 2.0;
+const BEGINNING_THRUST: f32 = 2.0;
 const BEGINNING_TIME: f32 = 0.6;
-const BEGUN: f32 = 6.0;
-const LACKING: f32 = 0.1;
-const UPWARDS: f32 = 0.5;
+const BEGUN_RATE: f32 = 6.0;
+const LACKING_TORQUE: f32 = 0.1;
+const UPWARD_COSINE: f32 = 0.5;
 
 /// How long what the failed rotor has left is watched, s; the least mean thrust of it that tells, in a share of the
 /// weight; the least share of that which has to be missing; and the least that a rotor has left that is not gone.
-const REFINING: f32 = 0.05;
-const TELLING: f32 = 0.15;
-const DOUBTED: f32 = 0.25;
-const LEAST_LEFT: f32 = 0.1;
+const REFINING_TIME: f32 = 0.05;
+const TELLING_THRUST: f32 = 0.15;
+const MISSING_SHARE: f32 = 0.25;
+const LEFT_LEAST: f32 = 0.1;
 
 /// Steps of the motion that is looked ahead.
-const STEPS: usize = 3;
+const STEPS_AHEAD: usize = 3;
 
 /// The law for a vehicle with a certain rotor lost, and its memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,7 +166,7 @@ impl SpinningLaw {
         let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
         let unit = arm * weight / rotors.len() as f32;
         let axis = axis(vehicle, &remaining, &away, unit);
-        let bandwidth = math::lesser(BANDWIDTH, BANDWIDTH_LATE / (late + period));
+        let bandwidth = math::lesser(BANDWIDTH_MAX, BANDWIDTH_LATE / (late + period));
         Self {
             lost: *lost,
             rotors: remaining,
@@ -174,12 +174,12 @@ impl SpinningLaw {
             axis,
             vehicle: *vehicle,
             stiffness: bandwidth * bandwidth,
-            damping: 2.0 * DAMPING * bandwidth,
-            approaches: [ACROSS, VERTICAL].map(|(k_p, k_v)| Approach::new(k_p, k_v, SPEED)),
+            damping: 2.0 * DAMPING_RATIO * bandwidth,
+            approaches: [GAINS_ACROSS, GAINS_VERTICAL].map(|(k_p, k_v)| Approach::new(k_p, k_v, APPROACH_SPEED)),
             late: late + 0.5 * period,
             unit,
             memory: Memory {
-                force: force.map(|x| math::within(x, FORCE)),
+                force: force.map(|x| math::within(x, FORCE_MAX)),
                 last: None,
                 lacking: 0.0,
                 taken: 0.0,
@@ -197,15 +197,15 @@ impl SpinningLaw {
     pub fn refine(&mut self, thrust: f32, missing: f32, period: f32) {
         let Memory { taken, missed, watched, .. } = &mut self.memory;
         (*taken, *missed, *watched) = (*taken + thrust * period, *missed + missing * period, *watched + period);
-        if *watched < REFINING {
+        if *watched < REFINING_TIME {
             return;
         }
-        let tells = *taken > REFINING * TELLING * self.rotors.share();
+        let tells = *taken > REFINING_TIME * TELLING_THRUST * self.rotors.share();
         let share = math::between(*missed / math::greater(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
         (*taken, *missed, *watched) = (0.0, 0.0, 0.0);
-        if tells && share.abs() > DOUBTED {
+        if tells && share.abs() > MISSING_SHARE {
             let left = math::lesser(self.lost.left * (1.0 - share), 1.0);
-            self.lost.left = if left > LEAST_LEFT { left } else { 0.0 };
+            self.lost.left = if left > LEFT_LEAST { left } else { 0.0 };
             self.rotors.set_left(&self.lost);
             self.axis = axis(&self.vehicle, &self.rotors, &self.away, self.unit);
         }
@@ -248,16 +248,16 @@ impl SpinningLaw {
         let inertia = &self.vehicle.inertia;
         let turning = error * self.stiffness - delta * self.damping + delta.cross(&spin);
         let mut torque = inertia.component_mul(&turning) + velocity.cross(&inertia.component_mul(&velocity));
-        torque.z = inertia.z * YAW * (towards(state, reference) - velocity.z);
+        torque.z = inertia.z * YAW_BANDWIDTH * (towards(state, reference) - velocity.z);
 
         // cos theta = 2 cos(theta / 2)^2 - 1.
         let along = self.vehicle.mass * length * (2.0 * half * half - 1.0) / self.axis.z;
         let upwards = 1.0 - 2.0 * (attitude.i * attitude.i + attitude.j * attitude.j) / length_squared(&attitude);
-        let turns = velocity.z.abs() > BEGUN;
+        let turns = velocity.z.abs() > BEGUN_RATE;
         self.memory.beginning += if turns { BEGINNING_TIME } else { period };
         let is_short = self.memory.beginning < BEGINNING_TIME;
-        let begins = is_short && self.memory.lacking > LACKING && upwards > UPWARDS;
-        let least = if begins { BEGINNING * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
+        let begins = is_short && self.memory.lacking > LACKING_TORQUE && upwards > UPWARD_COSINE;
+        let least = if begins { BEGINNING_THRUST * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
         let wanted = Wrench { thrust: math::greater(along, least), torque };
 
         let thrusts = self.rotors.allocate(&wanted);
@@ -275,10 +275,10 @@ impl SpinningLaw {
     /// d.
     fn learn(&mut self, velocity: &Vector3<f32>, period: f32) {
         let Some((before, falling)) = self.memory.last else { return };
-        let averaging = -math::exp_m1(-LEARNING * f64::from(period)) as f32;
+        let averaging = -math::exp_m1(-FORCE_BANDWIDTH * f64::from(period)) as f32;
         let beside = (velocity - before) / period - falling;
         let force = &mut self.memory.force;
-        *force += (beside.map(|x| math::within(x, FORCE)) - *force) * averaging;
+        *force += (beside.map(|x| math::within(x, FORCE_MAX)) - *force) * averaging;
     }
 
     /// u.
@@ -286,15 +286,15 @@ impl SpinningLaw {
         let [around, turned] = self.circle(state);
         let (p, v) = (state.position - around - reference.position, state.velocity - turned - reference.velocity);
         let [across, vertical] = &self.approaches;
-        let closing = across.factor(p.xy().norm_squared(), BRAKING);
-        let ((_, k_v), (_, k_v_vertical)) = (ACROSS, VERTICAL);
+        let closing = across.factor(p.xy().norm_squared(), BRAKING_ACCELERATION);
+        let ((_, k_v), (_, k_v_vertical)) = (GAINS_ACROSS, GAINS_VERTICAL);
         let gravity = self.vehicle.gravity;
         let rest = reference.acceleration - self.memory.force;
         let wanted = rest.xy() - (v.xy() + p.xy() * closing) * k_v;
-        let lift = rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING)) * k_v_vertical;
-        let (least, most) = LIFT;
+        let lift = rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION)) * k_v_vertical;
+        let (least, most) = LIFT_RANGE;
         let lift = math::between(lift, least * gravity, most * gravity);
-        let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT);
+        let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
     }
@@ -302,7 +302,7 @@ impl SpinningLaw {
     /// c and c', of a vehicle that turns.
     fn circle(&self, state: &State) -> [Vector3<f32>; 2] {
         let rate = state.angular_velocity.z / self.axis.z;
-        if rate.abs() < BEGUN {
+        if rate.abs() < BEGUN_RATE {
             return [Vector3::zeros(); 2];
         }
         let [thrust, turning] = [Vector3::z(), self.axis].map(|axis| rotate_back(&state.attitude.conjugate(), &axis));
@@ -313,10 +313,10 @@ impl SpinningLaw {
     /// Attitude, of any length, and body rate when a command of now acts.
     fn ahead(&self, state: &State, pending: &Vector4<f32>) -> (Quaternion<f32>, Vector3<f32>) {
         let inertia = &self.vehicle.inertia;
-        let step = self.late / STEPS as f32;
+        let step = self.late / STEPS_AHEAD as f32;
         let torque = Vector3::new(pending.y, pending.z, pending.w) / self.late;
         let (mut attitude, mut velocity) = (state.attitude, state.angular_velocity);
-        for _ in 0..STEPS {
+        for _ in 0..STEPS_AHEAD {
             let gyroscopic = velocity.cross(&inertia.component_mul(&velocity));
             let next = velocity + (torque - gyroscopic).component_div(inertia) * step;
             let half = (velocity + next) * (0.25 * step);
@@ -339,23 +339,23 @@ fn axis(vehicle: &Vehicle, rotors: &RemainingRotors, away: &Vector3<f32>, unit: 
     let raising = Vector3::new(-away.y, away.x, 0.0) * (0.5 * unit);
     let thrust = vehicle.mass * vehicle.gravity;
     let had = rotors.wrench(&rotors.allocate(&Wrench { thrust, torque: raising }));
-    let holds = had.torque.dot(&raising) >= HELD * raising.norm_squared();
+    let holds = had.torque.dot(&raising) >= RAISING_SHARE * raising.norm_squared();
     let inertia = &vehicle.inertia;
-    let is_flat = inertia.z > FLAT * 0.5 * (inertia.x + inertia.y);
-    let (cosine, sine) = AXIS;
+    let is_flat = inertia.z > FLATNESS_LEAST * 0.5 * (inertia.x + inertia.y);
+    let (cosine, sine) = AXIS_COSINE_SINE;
     if holds || !is_flat { Vector3::z() } else { Vector3::z() * cosine + away * sine }
 }
 
 /// r: the rate towards the reference's heading, rad/s; none of a vehicle that spins.
 fn towards(state: &State, reference: &Reference) -> f32 {
-    if state.angular_velocity.z.abs() > SPINNING {
+    if state.angular_velocity.z.abs() > HEADING_RATE_MAX {
         return 0.0;
     }
     let forward = crate::heading::Heading::of_attitude(&state.attitude).direction();
     let heading = reference.heading.direction();
     let sine = forward.x * heading.y - forward.y * heading.x;
     let behind = forward.dot(&heading) < 0.0;
-    let (of_one, most) = TOWARDS;
+    let (of_one, most) = HEADING_GAIN_AND_RATE;
     let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::within(of_one * sine, most) };
     turn + reference.heading.rate()
 }

@@ -1,28 +1,11 @@
-//! Failures that are found, and how soon; and what is none.
+//! Which failures are found, and how soon; and what is not taken for a failure.
 
 use super::*;
-use crate::allocation::QuadX;
 use crate::extended::tests::Random;
-use crate::vehicle::VehicleParameters;
+use crate::extended::tests::example::{rotors as quad, vehicle};
 
 const PERIOD: f32 = 0.01;
 const WEIGHT: f32 = 4.905;
-
-fn vehicle() -> Vehicle {
-    let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
-    Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap()
-}
-
-fn quad() -> Rotors {
-    Rotors::quad_x(QuadX {
-        arm: 0.17,
-        thrust_coefficient: 5.57e-6,
-        drag_coefficient: 1.36e-7,
-        speed_min: 0.0,
-        speed_max: 1500.0,
-    })
-    .unwrap()
-}
 
 /// A level vehicle whose rotors are commanded some thrusts, N, and deliver others, beside a force, N, along its z and a
 /// torque, N m; and its detector.

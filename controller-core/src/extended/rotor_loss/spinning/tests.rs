@@ -1,34 +1,15 @@
 //! A vehicle without a rotor: it turns, comes to its place and stays; its commands keep to what there is.
 
 use super::*;
-use crate::allocation::QuadX;
 use crate::extended::tests::Random;
+use crate::extended::tests::example::{Craft, rotors as quad, vehicle};
 use crate::heading::Heading;
-use crate::vehicle::{LimitParameters, VehicleParameters};
 use nalgebra::UnitQuaternion;
 
 const PERIOD: f32 = 0.01;
 
-/// The Hummingbird's numbers.
-fn vehicle() -> Vehicle {
-    let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3);
-    Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 }).unwrap()
-}
-
-fn quad() -> Rotors {
-    Rotors::quad_x(QuadX {
-        arm: 0.17,
-        thrust_coefficient: 5.57e-6,
-        drag_coefficient: 1.36e-7,
-        speed_min: 0.0,
-        speed_max: 1500.0,
-    })
-    .unwrap()
-}
-
 fn limits() -> Limits {
-    let limits = LimitParameters { thrust_max: 40.0, torque_max: Vector3::new(1.0, 1.0, 0.4) };
-    Limits::new(limits, &vehicle()).unwrap()
+    Craft::example().limits
 }
 
 fn law(lost: &Lost) -> SpinningLaw {
@@ -108,7 +89,7 @@ fn once_it_turns_its_axis_rests_and_so_do_the_thrusts() {
     assert!(moved.norm() < 0.05, "{moved} to {}", state.angular_velocity);
     // The body turns about n, which points upwards.
     let axis = state.angular_velocity / state.angular_velocity.z;
-    let [cosine, sine] = [AXIS.0, AXIS.1];
+    let [cosine, sine] = [AXIS_COSINE_SINE.0, AXIS_COSINE_SINE.1];
     let tangent = axis.xy().norm();
     assert!((tangent - sine / cosine).abs() < 0.06, "{axis}");
     let up = UnitQuaternion::new_normalize(state.attitude) * axis.normalize();
@@ -134,7 +115,7 @@ fn with_a_part_of_a_rotor_left_it_holds_its_heading_too() {
 fn what_a_rotor_has_left_is_learnt_on() {
     let thought = Lost { rotor: 0, left: 0.5 };
     let mut law = law(&thought);
-    // Of what it was taken to deliver, half was missing.
+    // Half of the thrust that it was taken to deliver was missing.
     for _ in 0..200 {
         let delivered = 1.0 * law.lost().left / 0.5;
         let missing = delivered - 1.0 * 0.25 / 0.5;
