@@ -12,9 +12,9 @@
 //! problem, and every step of its solution keeps to it.
 //!
 //! Solved by an active set: the rotors at a bound stay there, the others take B' (C + B B')^-1 (the rest); where one of
-//! them meets its bound it stays there; where none does, the rotor at a bound that pulls away from it most is let go. C
-//! + B B' is inverted column by column (Sherman and Morrison). At most three rounds for each rotor; the thrusts keep to
-//! their ranges after any number of them.
+//! them meets its bound it stays there; where none does, the rotor at a bound that pulls away from it most is let go.
+//! The inverse is built up column by column (Sherman and Morrison). At most three rounds for each rotor; the thrusts
+//! keep to their ranges after any number of them.
 //!
 //! Then the whole is drawn back towards the least thrusts as far as the user's limits of thrust and torque ask: of what
 //! is delivered, and of what would be if no rotor had lost anything.
