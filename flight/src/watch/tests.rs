@@ -2,6 +2,7 @@
 //! missing.
 
 extern crate std;
+use super::look::HELD_UP;
 use super::*;
 use crate::PERIOD;
 use crate::chain::Memory;
@@ -10,7 +11,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::governor::GovernorLimits;
 use controller_core::heading::Heading;
 use controller_core::state::State;
-use nalgebra::{Quaternion, UnitQuaternion};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::boxed::Box;
 
 /// The greatest distance from the reference that is in order, m.
