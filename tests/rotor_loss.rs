@@ -1,4 +1,4 @@
-//! A rotor that fails under the whole pilot, on sensors as they are: an IMU with noise, poses 20 ms late, motor commands.
+//! A rotor that fails under the whole pilot, on sensors as they are: IMU with noise, poses 20 ms late, motor commands.
 //! The vehicle says which rotor it is, turns, comes down by itself or where it is told, lands softly, and does not arm
 //! again.
 //!
@@ -13,12 +13,12 @@ use nalgebra::Vector3;
 use verification::piloted::{Meddler, PilotedVehicle, Place, PoseMeasurement};
 
 /// When it gets which command, ticks of 10 ms, and when it is watched no longer.
-const ARM: u64 = 200;
-const TAKE_OFF: u64 = 220;
-const END: u64 = 6_000;
+const ARM_TICK: u64 = 200;
+const TAKE_OFF_TICK: u64 = 220;
+const END_TICK: u64 = 6_000;
 
 /// How high it flies, m.
-const HEIGHT: f32 = 3.0;
+const HOVER_HEIGHT: f32 = 3.0;
 
 /// Where a rotor fails.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl Phase {
     /// Whether it is reached, in a mode that has lasted for so many ticks, m high.
     fn is_reached(self, mode: Mode, lasts: u64, height: f64) -> bool {
         match self {
-            Self::Climbing => mode == Mode::TakingOff && height > 0.5 * f64::from(HEIGHT),
+            Self::Climbing => mode == Mode::TakingOff && height > 0.5 * f64::from(HOVER_HEIGHT),
             Self::Holding => mode == Mode::Holding && lasts == 100,
             Self::UnderWay => mode == Mode::Holding && lasts == 110,
             Self::Landing => mode == Mode::Landing && lasts == 100,
@@ -48,7 +48,7 @@ impl Phase {
     fn request(self, mode: Mode, lasts: u64) -> Option<Request> {
         match self {
             Self::Landing if mode == Mode::Holding && lasts == 50 => Some(Request::Land),
-            Self::UnderWay if mode == Mode::Holding && lasts == 50 => Some(go_to([5.0, 0.0, HEIGHT])),
+            Self::UnderWay if mode == Mode::Holding && lasts == 50 => Some(go_to([5.0, 0.0, HOVER_HEIGHT])),
             _ => None,
         }
     }
@@ -107,11 +107,11 @@ fn fly(case: &Case) -> Flown {
     let mut flown = Flown::default();
     let (mut failed, mut from, mut poses) = (None::<u64>, Vector3::zeros(), Poses(true));
     let (mut mode, mut lasts) = (Mode::Boot, 0);
-    for tick in 1..END {
+    for tick in 1..END_TICK {
         let since = failed.map(|failed| tick - failed);
         let request = match tick {
-            ARM => Some(Request::Arm),
-            TAKE_OFF => Some(Request::TakeOff(Some(HEIGHT))),
+            ARM_TICK => Some(Request::Arm),
+            TAKE_OFF_TICK => Some(Request::TakeOff(Some(HOVER_HEIGHT))),
             _ if flown.stands.is_some() => Some(Request::Arm),
             _ if since == Some(100) => case.asked,
             _ => case.phase.request(mode, lasts),

@@ -9,34 +9,34 @@ use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
 /// The speed, m/s, that poses which lie may show of a standing vehicle.
-const LIED: f32 = 0.5;
+const STANDING_SPEED_BY_POSES: f32 = 0.5;
 
 /// How fast a vehicle sinks at least that meets the ground with a jerk, m/s.
-const SINKING: f32 = 0.2;
+const LEAST_SINKING_SPEED: f32 = 0.2;
 
 /// By how much a landing may be slower than its reference and goes down all the same, m/s.
-const FOLLOWING: f32 = 0.15;
+const LANDING_SLOWER_BY: f32 = 0.15;
 
 /// How far below the vehicle the reference is when it has landed, m; and how slow the vehicle is then, m/s.
-const GONE_ON: f32 = 0.25;
-const STANDING: f32 = 0.1;
+const REFERENCE_BELOW: f32 = 0.25;
+const STANDING_SPEED: f32 = 0.1;
 
 /// How far above the vehicle the reference may be that does not move towards it, m.
-const HELD_DOWN: f32 = 0.5;
+const REFERENCE_ABOVE: f32 = 0.5;
 
 /// The speed, m/s, and the rate, rad/s, at most, of what lies on the ground.
-const STILL: (f32, f32) = (0.15, 0.5);
+const STILL_SPEED_AND_RATE: (f32, f32) = (0.15, 0.5);
 
 /// The greatest vertical acceleration that the law commands on the ground, m/s^2, after a jerk and without one; and the
 /// greatest that is measured instead.
-pub(super) const HELD_UP: (f32, f32, f32) = (-0.25, -0.8, 0.4);
+pub(super) const HELD_UP_ACCELERATIONS: (f32, f32, f32) = (-0.25, -0.8, 0.4);
 
 /// The acceleration that is measured at most after a touchdown, m/s^2: across, an attitude that is off by 8 degrees
 /// leaves as much.
-const LEANING: f32 = 1.5;
+const LEANING_ACCELERATION: f32 = 1.5;
 
 /// The force that an IMU may feel beside the rotors', m/s^2: wind, drag, and rotors that are not what they should be.
-const UNEXPECTED: f32 = 4.0;
+const UNEXPECTED_ACCELERATION: f32 = 4.0;
 
 /// The cosine of the least tilt of a crash: 60 degrees, and 80 where the law wants the vehicle so.
 const LYING_COSINE: f32 = 0.5;
@@ -46,10 +46,10 @@ const LYING_WANTED_COSINE: f32 = 0.173_648_2;
 const LYING_BESIDE: f32 = 0.131_652_5;
 
 /// The acceleration that only a crash adds to what was commanded, m/s^2.
-const STRUCK: f32 = 25.0;
+const STRUCK_ACCELERATION: f32 = 25.0;
 
 /// The rate at which nothing turns that has been levelled for a while, rad/s.
-const TURNING: f32 = 4.0;
+const LEVELLED_RATE: f32 = 4.0;
 
 /// The inputs of a tick: the low-passed estimate, and what the last tick flew.
 pub(super) struct Look<'a> {
@@ -68,7 +68,8 @@ impl Look<'_> {
     /// Whether it stays where it should be going up; with a rotor lost it may turn on the ground.
     pub fn is_held_down(&self) -> bool {
         let (true, Some(state), Some(flown)) = (self.mode.is_guided(), self.state, self.flown) else { return false };
-        within(&state.state.velocity, STILL.0) && flown.reference.position.z > state.state.position.z + HELD_DOWN
+        within(&state.state.velocity, STILL_SPEED_AND_RATE.0)
+            && flown.reference.position.z > state.state.position.z + REFERENCE_ABOVE
     }
 
     /// Whether the rotors do not deliver the commanded wrench.
@@ -90,8 +91,8 @@ impl Look<'_> {
     /// Whether it stands still where it should be going down, by the estimate.
     pub fn is_left_behind(&self) -> bool {
         let (Mode::Landing, Some(state), Some(flown)) = (self.mode, self.state, self.flown) else { return false };
-        let stands = is_still(state) && within(&state.state.velocity, STANDING);
-        stands && flown.reference.position.z + GONE_ON < state.state.position.z
+        let stands = is_still(state) && within(&state.state.velocity, STANDING_SPEED);
+        stands && flown.reference.position.z + REFERENCE_BELOW < state.state.position.z
     }
 
     /// Whether something strikes a vehicle in guided flight, by this very tick's `state`.
@@ -100,7 +101,7 @@ impl Look<'_> {
         else {
             return false;
         };
-        !within(&chain.unexpected(flown, state), STRUCK)
+        !within(&chain.unexpected(flown, state), STRUCK_ACCELERATION)
     }
 
     /// The force that the IMU measures beside the rotors', m/s^2, world; and the commanded vertical acceleration.
@@ -118,14 +119,14 @@ impl Look<'_> {
     fn moves_landing(&self) -> bool {
         let (Some(state), Some(flown)) = (self.state, self.flown) else { return false };
         let speed = state.state.velocity.z;
-        speed < flown.reference.velocity.z + FOLLOWING || speed.abs() > LIED
+        speed < flown.reference.velocity.z + LANDING_SLOWER_BY || speed.abs() > STANDING_SPEED_BY_POSES
     }
 
     /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
     pub fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
         // Also before it goes down, if it still sinks.
-        let sinks =
-            self.chain.is_some_and(Chain::sinks) || self.flown.is_some_and(|flown| flown.state.velocity.z < -SINKING);
+        let sinks = self.chain.is_some_and(Chain::sinks)
+            || self.flown.is_some_and(|flown| flown.state.velocity.z < -LEAST_SINKING_SPEED);
         let now = Look { state, ..*self };
         sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
     }
@@ -133,7 +134,7 @@ impl Look<'_> {
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not,
     /// or with a `hit`.
     pub fn is_held_up(&self, jerked: bool, touched: bool, hit: bool) -> bool {
-        let (after_a_jerk, without, measured) = HELD_UP;
+        let (after_a_jerk, without, measured) = HELD_UP_ACCELERATIONS;
         let falling = if jerked { after_a_jerk } else { without };
         let may = self.mode == Mode::Descending || self.mode == Mode::Landing && jerked;
         self.feels().filter(|_| may).is_some_and(|(_, commanded, state)| {
@@ -145,14 +146,14 @@ impl Look<'_> {
                 && self.chain.is_some_and(Chain::sinks)
                 && commanded < falling
                 && state.acceleration.z.abs() <= measured
-                && within(&state.acceleration, if touched { LEANING } else { measured })
-                && within(&state.state.angular_velocity, STILL.1)
+                && within(&state.acceleration, if touched { LEANING_ACCELERATION } else { measured })
+                && within(&state.state.angular_velocity, STILL_SPEED_AND_RATE.1)
         })
     }
 
     /// Whether the IMU measures a force that the rotors do not explain.
     pub fn is_unexpected(&self) -> bool {
-        self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED))
+        self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED_ACCELERATION))
     }
 
     /// Whether a vehicle that is levelled turns, or is not level; one that has lost a rotor does both.
@@ -160,14 +161,14 @@ impl Look<'_> {
         let spins = self.chain.is_some_and(|chain| chain.lost().is_some());
         !spins
             && self.by_imu().is_some_and(|(_, _, EstimatedState { state, .. })| {
-                !within(&state.angular_velocity, TURNING) || up(&state.attitude) < LYING_COSINE
+                !within(&state.angular_velocity, LEVELLED_RATE) || up(&state.attitude) < LYING_COSINE
             })
     }
 }
 
 /// Whether it neither moves nor turns, at this moment.
 pub(in super::super) fn is_still(state: &EstimatedState) -> bool {
-    let (speed, rate) = STILL;
+    let (speed, rate) = STILL_SPEED_AND_RATE;
     within(&state.state.velocity, speed) && within(&state.state.angular_velocity, rate)
 }
 

@@ -2,7 +2,7 @@
 //! missing.
 
 extern crate std;
-use super::look::HELD_UP;
+use super::look::HELD_UP_ACCELERATIONS;
 use super::*;
 use crate::PERIOD;
 use crate::chain::Memory;
@@ -190,7 +190,7 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
         let mut estimated = at(0.0);
         let mut chain = descending(&estimated);
         let commanded = chain.commanded_acceleration(chain.flown().unwrap());
-        assert!(commanded < HELD_UP.1, "{commanded} m/s^2");
+        assert!(commanded < HELD_UP_ACCELERATIONS.1, "{commanded} m/s^2");
         change(&mut estimated);
         seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE)).landed
     };
@@ -225,7 +225,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         for _ in 0..3_000 {
             let seen = tick(&mut chain, &estimated, Mode::Descending, true);
             let commanded = chain.commanded_acceleration(chain.flown().unwrap());
-            if commanded < HELD_UP.1 {
+            if commanded < HELD_UP_ACCELERATIONS.1 {
                 return false;
             }
             if seen.landed {

@@ -2,13 +2,13 @@
 
 use super::columns::{counts, floats, whole_numbers};
 use super::quantile;
-use super::rotor_loss::HELD;
 use crate::table::short;
 use arrow_array::RecordBatch;
+use scenario::rotor_loss::PLACE_HELD;
 use std::fmt;
 
 /// How many false alarms are listed.
-const LISTED: usize = 20;
+const ALARMS_LISTED: usize = 20;
 
 /// Failing rotors of a campaign.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Losses {
     pub found: u64,
     /// Of these, those in which it found none.
     pub missed: u64,
-    /// Of these, those that end within [`HELD`] of their reference.
+    /// Of these, those that end within [`PLACE_HELD`] of their reference.
     pub held: u64,
     /// Flights in which the law found a rotor that had not failed, each with that rotor, from 1.
     pub false_alarms: Vec<(u64, u64)>,
@@ -57,7 +57,7 @@ impl Losses {
                 (_, Some(rotor)) => losses.false_alarms.push((numbers[flight], rotor)),
             }
             if failed[flight].is_some() {
-                losses.held += u64::from(ends[flight] <= HELD);
+                losses.held += u64::from(ends[flight] <= PLACE_HELD);
                 lost.push(depths[flight]);
                 away.push(distances[flight]);
             }
@@ -80,8 +80,8 @@ impl fmt::Display for Losses {
             let wrong = failed - found - missed;
             writeln!(
                 f,
-                "a rotor failed in {failed} flights, {held} of which end within {HELD} m of their reference; the law found \
-                 it in {found}, another one or too early in {wrong}, none in {missed}"
+                "a rotor failed in {failed} flights, {held} of which end within {PLACE_HELD} m of their reference; the \
+                 law found it in {found}, another one or too early in {wrong}, none in {missed}"
             )?;
             let figures =
                 [("found after", "s", delays), ("height lost", "m", depths), ("greatest distance", "m", distances)];
@@ -91,7 +91,7 @@ impl fmt::Display for Losses {
             }
         }
         write!(f, "false alarms, of rotors that had not failed: {}", false_alarms.len())?;
-        for (place, (number, rotor)) in false_alarms.iter().take(LISTED).enumerate() {
+        for (place, (number, rotor)) in false_alarms.iter().take(ALARMS_LISTED).enumerate() {
             write!(f, "{} {number} (rotor {rotor})", if place == 0 { ": flights" } else { "," })?;
         }
         Ok(())

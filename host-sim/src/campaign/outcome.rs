@@ -17,7 +17,7 @@
 //! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
 //! [`super::rotor_loss`].
 
-use super::rotor_loss::{HELD, ROUNDING, RotorLoss, is_within_ranges};
+use super::rotor_loss::{ROUNDING, RotorLoss, is_within_ranges};
 use crate::claims::REACHED_BY;
 use crate::flight::{Brief, Flight};
 use crate::flown::{NEAR_MRP, claimed_error, heading_is_followed};
@@ -25,6 +25,7 @@ use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
 use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
+use scenario::rotor_loss::PLACE_HELD;
 
 /// How near its reference a vehicle must stay to have settled, m.
 pub const NEAR: f64 = 0.2;
@@ -150,10 +151,10 @@ impl Outcome {
     }
 
     /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
-    /// time and for good; or, where a rotor failed, it ends within [`HELD`] of its reference.
+    /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD`] of its reference.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        if self.rotor.failure.is_some() { self.final_error <= HELD } else { self.in_time }
+        if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD } else { self.in_time }
     }
 
     /// Whether it tracks, and no command went beyond its bound.

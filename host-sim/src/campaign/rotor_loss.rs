@@ -8,7 +8,7 @@
 //! | distance | greatest distance from the reference, from then on |
 //!
 //! A vehicle that turns has no heading to hold. So a flight in which a rotor failed is held to its place alone: it
-//! *tracks* if it ends within [`HELD`] of its reference.
+//! *tracks* if it ends within [`PLACE_HELD`](scenario::rotor_loss::PLACE_HELD) of its reference.
 
 use crate::flight::Brief;
 use controller_core::allocation::remaining::Lost;
@@ -19,9 +19,6 @@ use scenario::reality::failure::Failure;
 /// Room for the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
 /// stand still, N.
 pub(super) const ROUNDING: f64 = 1e-6;
-
-/// How near its reference a vehicle without a rotor must end, m.
-pub const HELD: f64 = 3.0;
 
 /// A flight's failing rotor, and the one that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,13 +6,13 @@ use super::losses::Losses;
 use super::manifest::Manifest;
 use super::outcome::{NEAR, NEAR_HEADING, in_time};
 use super::quantile;
-use super::rotor_loss::HELD;
 use super::rows::{HOLDS, share_of_rotor};
 use crate::flown::NEAR_MRP;
 use crate::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use scenario::Scenario;
+use scenario::rotor_loss::PLACE_HELD;
 use scenario::verdict::Verdict;
 use std::fmt;
 
@@ -90,7 +90,7 @@ impl Summary {
         let (losses, ends) = (Losses::of(flown), floats(flown, "final_error"));
         let failed = whole_numbers(flown, "failed_rotor");
         let tracks = |flight: &usize| match failed[*flight] {
-            Some(_) => ends[*flight] <= HELD,
+            Some(_) => ends[*flight] <= PLACE_HELD,
             None => in_time(Some(slowest[*flight]), duration),
         };
         let tracking = (0..numbers.len()).filter(tracks).count();

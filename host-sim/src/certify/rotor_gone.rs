@@ -1,9 +1,9 @@
 //! What becomes of a vehicle when one of its rotors is gone: flights of the model, and what they lack where it is lost.
 //!
 //! The model, with the file's `[drag]` and nothing else of what is really there, hovers; a rotor goes; the reference
-//! stays. After [`WATCHED`] the vehicle is near its place, or lost. One that then turns faster and faster is flown on
-//! until it is lost, to say by when it must have landed. Beside the flights stand the relaxed hover that the vehicle
-//! comes to, and the sampled loop about it ([`scenario::rotor_loss`]). None of this decides whether it may fly.
+//! stays. After [`WATCHED_TIME`] the vehicle is near its place, or lost. One that then turns faster and faster is
+//! flown on until it is lost, to say by when it must have landed. Beside the flights stand the relaxed hover that the
+//! vehicle comes to, and the sampled loop about it ([`scenario::rotor_loss`]). None of this decides whether it may fly.
 
 use crate::flight::Flight;
 use crate::table::{aligned, short};
@@ -16,23 +16,19 @@ use scenario::Scenario;
 use scenario::reality::Reality;
 use scenario::reality::failure::Failure;
 use scenario::rotor_loss::relaxed_hover::{NoHover, RelaxedHover};
-use scenario::rotor_loss::{WithoutARotor, turning_loop};
+use scenario::rotor_loss::{PLACE_HELD, SOFT_LANDING, WithoutARotor, turning_loop};
 use scenario::sampled_loop::Timing;
 
 /// When the rotor goes, and for how long the vehicle is watched then, s; and how long if it turns ever faster.
-const FAILS: f64 = 1.0;
-const WATCHED: f64 = 10.0;
-const WATCHED_ON: f64 = 30.0;
+const FAILURE_TIME: f64 = 1.0;
+const WATCHED_TIME: f64 = 10.0;
+const LONGEST_WATCHED: f64 = 30.0;
 
-/// A vehicle is lost farther from its place, m, or faster, m/s, than this.
-const NEAR: f64 = 3.0;
-const SLOW: f64 = 1.0;
-
-/// The fastest soft landing, m/s.
-const SOFT: f64 = 1.0;
+/// A vehicle that moves faster after that, m/s, is lost, as one is that is farther from its place than [`PLACE_HELD`].
+const GREATEST_SPEED: f64 = 1.0;
 
 /// Up to here a vehicle keeps its heading, rad/s.
-const STILL: f64 = 0.5;
+const LEAST_TURNING: f64 = 0.5;
 
 /// A flight, from the failure on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +39,7 @@ struct Flown {
     farthest: f64,
     /// From higher than this above the ground, m, it never comes down faster than a soft landing.
     lands_from: f64,
-    /// Body rates after [`WATCHED`], rad/s.
+    /// Body rates after [`WATCHED_TIME`], rad/s.
     turning: Vector3<f64>,
     /// When the vehicle is lost, s.
     lost: Option<f64>,
@@ -83,9 +79,9 @@ impl Loss {
         Ok(Self { flown, hover, radius })
     }
 
-    /// Whether it is there after [`WATCHED`].
+    /// Whether it is there after [`WATCHED_TIME`].
     fn is_survived(&self) -> bool {
-        self.flown.lost.is_none_or(|lost| lost >= WATCHED)
+        self.flown.lost.is_none_or(|lost| lost >= WATCHED_TIME)
     }
 
     /// A row of the table, without the rotor's name.
@@ -96,7 +92,8 @@ impl Loss {
         }
         let from = if *lands_from > 0.0 { format!("{} m", rounded(*lands_from)) } else { "any height".to_owned() };
         let rate = turning.norm();
-        let turns = if rate < STILL { "keeps its heading".to_owned() } else { format!("{} rad/s", rounded(rate)) };
+        let turns =
+            if rate < LEAST_TURNING { "keeps its heading".to_owned() } else { format!("{} rad/s", rounded(rate)) };
         [format!("{} m", rounded(*height_lost)), format!("{} m", rounded(*farthest)), from, turns]
     }
 
@@ -104,7 +101,7 @@ impl Loss {
     fn lacks(&self, has_drag: bool) -> Option<String> {
         let lost = self.flown.lost?;
         let drag = if has_drag { "" } else { "; give [drag]: the air may slow it" };
-        let land = if lost < WATCHED { String::new() } else { format!("; land within {} s", lost.floor()) };
+        let land = if lost < WATCHED_TIME { String::new() } else { format!("; land within {} s", lost.floor()) };
         Some(match (&self.hover, self.radius) {
             (Err(NoHover::TooLittleThrust(share)), _) => {
                 format!("too little thrust: two rotors hold {share:.2} of the weight")
@@ -196,14 +193,14 @@ fn relaxed(loss: &Loss) -> String {
 /// Flies the loss of a rotor.
 fn flown(scenario: &Scenario, certified: &Certified, rotor: usize) -> Result<(Flown, Flight), ParameterError> {
     let mut model = hover(scenario, Vector3::zeros(), 0.0)?;
-    let failure = Failure { rotor, time: FAILS, thrust_left: 0.0 };
+    let failure = Failure { rotor, time: FAILURE_TIME, thrust_left: 0.0 };
     model.reality = Reality { drag: scenario.reality.drag, failure: Some(failure), ..Reality::default() };
     let mut flight = Flight::certified(&model, certified)?;
     let period = scenario.timing.period();
     let mut flown = Flown { height_lost: 0.0, farthest: 0.0, lands_from: 0.0, turning: Vector3::zeros(), lost: None };
     let (mut last, mut left) = (model.initial, None);
-    for number in 0..((FAILS + WATCHED) / period) as u64 {
-        let time = number as f64 * period - FAILS;
+    for number in 0..((FAILURE_TIME + WATCHED_TIME) / period) as u64 {
+        let time = number as f64 * period - FAILURE_TIME;
         let Ok(tick) = flight.brief_tick() else {
             flown.lost = Some(left.unwrap_or(time));
             return Ok((flown, flight));
@@ -212,29 +209,30 @@ fn flown(scenario: &Scenario, certified: &Certified, rotor: usize) -> Result<(Fl
         let fallen = -last.position.z;
         if fallen > flown.height_lost {
             flown.height_lost = fallen;
-            if -last.velocity.z > SOFT {
+            if -last.velocity.z > SOFT_LANDING {
                 flown.lands_from = fallen;
             }
         }
         flown.farthest = flown.farthest.max(last.position.xy().norm());
-        left = left.or((last.position.norm() > NEAR).then_some(time));
+        left = left.or((last.position.norm() > PLACE_HELD).then_some(time));
     }
     flown.turning = last.angular_velocity;
-    let is_there = last.position.norm() < NEAR && last.velocity.norm() < SLOW;
-    flown.lost = if is_there { None } else { left.or(Some(WATCHED - period)) };
+    let is_there = last.position.norm() < PLACE_HELD && last.velocity.norm() < GREATEST_SPEED;
+    flown.lost = if is_there { None } else { left.or(Some(WATCHED_TIME - period)) };
     Ok((flown, flight))
 }
 
-/// How long after the failure a flight that was watched is lost, s, if it is within [`WATCHED_ON`].
+/// How long after the failure a flight that was watched is lost, s, if it is within [`LONGEST_WATCHED`].
 fn lost_after(flight: &mut Flight, period: f64) -> Option<f64> {
-    let ticks = ((WATCHED_ON - WATCHED) / period) as u64;
-    let is_lost = |flight: &mut Flight| flight.brief_tick().map_or(true, |tick| tick.state.position.norm() > NEAR);
-    (0..ticks).find(|_| is_lost(flight)).map(|tick| WATCHED + tick as f64 * period)
+    let ticks = ((LONGEST_WATCHED - WATCHED_TIME) / period) as u64;
+    let is_lost =
+        |flight: &mut Flight| flight.brief_tick().map_or(true, |tick| tick.state.position.norm() > PLACE_HELD);
+    (0..ticks).find(|_| is_lost(flight)).map(|tick| WATCHED_TIME + tick as f64 * period)
 }
 
 /// The axis that a body turns about, the end that is up; the law's if it hardly turns.
 fn upwards(turning: &Vector3<f64>, law: &WithoutARotor) -> Vector3<f64> {
-    turning.try_normalize(STILL).map_or_else(|| law.axis(), |axis| axis * axis.z.signum())
+    turning.try_normalize(LEAST_TURNING).map_or_else(|| law.axis(), |axis| axis * axis.z.signum())
 }
 
 #[cfg(test)]

@@ -24,14 +24,14 @@ use controller_core::vehicle::Vehicle;
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// The rotors left, of four.
-const LEFT: usize = 3;
+const ROTORS_LEFT: usize = 3;
 
 /// The fastest turning that is looked for, rad/s, and how often that is halved.
-const FASTEST: f64 = 500.0;
-const HALVINGS: u32 = 60;
+const FASTEST_RATE: f64 = 500.0;
+const RATE_HALVINGS: u32 = 60;
 
 /// How often the air's part is put in anew: it shrinks by the drag's small share each time.
-const ROUNDS: u32 = 50;
+const DRAG_ROUNDS: u32 = 50;
 
 /// A relaxed hover.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub struct RelaxedHover {
     /// n, in the body.
     pub axis: Vector3<f64>,
     /// Each rotor's, N; zero of the one that is gone.
-    pub thrusts: [f64; LEFT + 1],
+    pub thrusts: [f64; ROTORS_LEFT + 1],
 }
 
 /// Why there is none.
@@ -68,7 +68,7 @@ impl RelaxedHover {
         axis: &Vector3<f64>,
     ) -> Result<Self, NoHover> {
         let left: Vec<(usize, &Rotor)> = rotors.iter().enumerate().filter(|(index, _)| *index != lost).collect();
-        let left = <[(usize, &Rotor); LEFT]>::try_from(left).map_err(|_| NoHover::Unbalanced)?;
+        let left = <[(usize, &Rotor); ROTORS_LEFT]>::try_from(left).map_err(|_| NoHover::Unbalanced)?;
         let turning = Turning {
             rotors: left.map(|(_, rotor)| rotor),
             drag,
@@ -84,11 +84,11 @@ impl RelaxedHover {
         }
         let sense = torque.signum();
         let goes_on = |rate: f64| turning.balanced(sense * rate).is_some_and(|(_, torque)| torque * sense > 0.0);
-        if goes_on(FASTEST) {
+        if goes_on(FASTEST_RATE) {
             return Err(NoHover::Unbounded);
         }
-        let (mut slower, mut faster) = (0.0, FASTEST);
-        for _ in 0..HALVINGS {
+        let (mut slower, mut faster) = (0.0, FASTEST_RATE);
+        for _ in 0..RATE_HALVINGS {
             let middle = 0.5 * (slower + faster);
             if goes_on(middle) { slower = middle } else { faster = middle }
         }
@@ -97,7 +97,7 @@ impl RelaxedHover {
         if found.iter().zip(&turning.rotors).any(|(thrust, rotor)| *thrust > f64::from(rotor.thrust_max)) {
             return Err(NoHover::Unbounded);
         }
-        let mut thrusts = [0.0; LEFT + 1];
+        let mut thrusts = [0.0; ROTORS_LEFT + 1];
         for ((index, _), thrust) in left.into_iter().zip(found.iter()) {
             thrusts[index] = *thrust;
         }
@@ -107,7 +107,7 @@ impl RelaxedHover {
 
 /// The rotors left, and what they have to balance.
 struct Turning<'a> {
-    rotors: [&'a Rotor; LEFT],
+    rotors: [&'a Rotor; ROTORS_LEFT],
     drag: &'a Drag,
     axis: &'a Vector3<f64>,
     weight: f64,
@@ -124,7 +124,7 @@ impl Turning<'_> {
         let inverse = Matrix3::from_columns(&self.rotors.map(column)).try_inverse()?;
         let mut thrusts = inverse * wanted;
         let mut of_air = Vector4::zeros();
-        for _ in 0..ROUNDS {
+        for _ in 0..DRAG_ROUNDS {
             of_air = self.air(&omega, &thrusts);
             thrusts = inverse * (wanted - of_air.xyz());
         }

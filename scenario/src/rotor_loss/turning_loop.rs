@@ -20,22 +20,22 @@ use controller_core::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector2, Vector3, Vector4};
 
 /// The differences' steps: rad, and rad/s; an impulse's is what makes that rate.
-const STEP: f64 = 5e-3;
-const STEP_RATE: f64 = 0.05;
+const TILT_STEP: f64 = 5e-3;
+const RATE_STEP: f64 = 0.05;
 
 /// The least lag, in periods: below it a rotor is at its thrust long before the next tick.
 const LEAST_LAG: f64 = 0.01;
 
-/// epsilon, delta, tau: two of each.
-const SIZE: usize = 6;
-/// With the held command.
-const AUGMENTED: usize = SIZE + 2;
+/// The states between ticks: epsilon, delta, tau, two of each.
+const STATES: usize = 6;
+/// The same with the two components of the held command.
+const STATES_AND_COMMAND: usize = STATES + 2;
 
 /// Of the matrix exponential: what is left out, of |A| up to 100, is below 1e-15.
-const SQUARINGS: u32 = 16;
-const TERMS: u32 = 8;
+const EXPONENTIAL_SQUARINGS: u32 = 16;
+const EXPONENTIAL_TERMS: u32 = 8;
 
-type State = SMatrix<f64, AUGMENTED, AUGMENTED>;
+type State = SMatrix<f64, STATES_AND_COMMAND, STATES_AND_COMMAND>;
 
 /// The largest magnitude of an eigenvalue of one tick: small motions of `vehicle` under `law`, as it turns at `rate`,
 /// rad/s, die out below one.
@@ -50,14 +50,14 @@ pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing
     let continuous = continuous((&axis, rate), vehicle, lag);
     let [late, rest] = [fraction * period, (1.0 - fraction) * period].map(|time| exponential(&(continuous * time)));
     // A command of so many ticks ago: first the older one, for the fraction, then the newer one.
-    let older = rest.fixed_view::<SIZE, SIZE>(0, 0) * late.fixed_view::<SIZE, 2>(0, SIZE);
-    let newer = rest.fixed_view::<SIZE, 2>(0, SIZE);
-    let free = rest.fixed_view::<SIZE, SIZE>(0, 0) * late.fixed_view::<SIZE, SIZE>(0, 0);
+    let older = rest.fixed_view::<STATES, STATES>(0, 0) * late.fixed_view::<STATES, 2>(0, STATES);
+    let newer = rest.fixed_view::<STATES, 2>(0, STATES);
+    let free = rest.fixed_view::<STATES, STATES>(0, 0) * late.fixed_view::<STATES, STATES>(0, 0);
 
     // c_(k-1), c_(k-2), ... follow epsilon, delta and tau.
     let held = whole + 1;
-    let size = SIZE + 2 * held;
-    let before = |age: usize| SIZE + 2 * (age - 1);
+    let size = STATES + 2 * held;
+    let before = |age: usize| STATES + 2 * (age - 1);
     let mut command = DMatrix::zeros(2, size);
     command.view_mut((0, 0), (2, 2)).copy_from(&of_error);
     command.view_mut((0, 2), (2, 2)).copy_from(&of_rate);
@@ -67,28 +67,29 @@ pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing
         command.view_mut((0, before(age)), (2, 2)).copy_from(&(of_pending * time));
     }
     let mut tick = DMatrix::zeros(size, size);
-    tick.view_mut((0, 0), (SIZE, SIZE)).copy_from(&free);
+    tick.view_mut((0, 0), (STATES, STATES)).copy_from(&free);
     for (age, response) in [(whole, newer.into_owned()), (whole + 1, older)] {
         if age == 0 {
-            let mut now = tick.view_mut((0, 0), (SIZE, size));
+            let mut now = tick.view_mut((0, 0), (STATES, size));
             now += response * &command;
         } else {
-            let mut then = tick.view_mut((0, before(age)), (SIZE, 2));
+            let mut then = tick.view_mut((0, before(age)), (STATES, 2));
             then += response;
         }
     }
-    tick.view_mut((SIZE, 0), (2, size)).copy_from(&command);
+    tick.view_mut((STATES, 0), (2, size)).copy_from(&command);
     for age in 2..=held {
         tick.view_mut((before(age), before(age - 1)), (2, 2)).fill_with_identity();
     }
     spectral_radius(tick)
 }
 
-/// e^A, from the series of A / 2^[`SQUARINGS`], squared that often.
+/// e^A, from the series of A / 2^[`EXPONENTIAL_SQUARINGS`], squared that often.
 fn exponential(matrix: &State) -> State {
-    let small = matrix / f64::from(SQUARINGS).exp2();
-    let series = (1..=TERMS).rev().fold(State::identity(), |sum, k| State::identity() + small * sum / f64::from(k));
-    (0..SQUARINGS).fold(series, |power, _| power * power)
+    let small = matrix / f64::from(EXPONENTIAL_SQUARINGS).exp2();
+    let one = State::identity();
+    let series = (1..=EXPONENTIAL_TERMS).rev().fold(one, |sum, k| one + small * sum / f64::from(k));
+    (0..EXPONENTIAL_SQUARINGS).fold(series, |power, _| power * power)
 }
 
 /// The motion in continuous time, its command held.
@@ -134,10 +135,10 @@ fn slopes(law: &WithoutARotor, (n, rate): (&Vector3<f64>, f64), vehicle: &Vehicl
         let each = [Vector2::x(), Vector2::y()].map(|axis| (at(axis * step) - at(axis * -step)) / (2.0 * step));
         Matrix2::from_columns(&each)
     };
-    let impulse = STEP_RATE * inertia.xy().min();
+    let impulse = RATE_STEP * inertia.xy().min();
     [
-        difference(STEP, &|error| torque(error, zero, zero)),
-        difference(STEP_RATE, &|rate| torque(zero, rate, zero)),
+        difference(TILT_STEP, &|error| torque(error, zero, zero)),
+        difference(RATE_STEP, &|rate| torque(zero, rate, zero)),
         if late > 0.0 { difference(impulse, &|pending| torque(zero, zero, pending)) } else { Matrix2::zeros() },
     ]
 }

@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 const HUMMINGBIRD: &str = include_str!("../../../../vehicles/hummingbird.toml");
 const CRAZYFLIE: &str = include_str!("../../../../vehicles/published/cf2x-pybullet.toml");
 
-/// Plant steps in a tick.
-const STEPS: usize = 100;
+/// The plant's steps in a tick.
+const TICK_STEPS: usize = 100;
 
 /// A body that turns at a steady omega_3, with its torque about x and y.
 struct Body {
@@ -25,16 +25,16 @@ impl Body {
         Self { attitude, omega: axis * rate, torque: holding, coming: vec![holding; delay].into() }
     }
 
-    /// A tick of the law and its period, s, in `STEPS`.
+    /// A tick of the law and its period, s, in `TICK_STEPS`.
     fn tick(&mut self, law: &WithoutARotor, vehicle: &Vehicle, timing: &Timing) {
-        let step = timing.period / STEPS as f64;
+        let step = timing.period / TICK_STEPS as f64;
         let under_way = self.coming.iter().sum::<Vector2<f64>>() * step;
         let pending = (self.torque * timing.rotor_lag + under_way).map(|x| x as f32);
         let attitude = Quaternion::from(self.attitude.coords.map(|x| x as f32));
         let pending = Vector4::new(0.0, pending.x, pending.y, 0.0);
         let command = law.clone().stepped(attitude, self.omega.map(|x| x as f32), &pending).0.map(f64::from).xy();
         let inertia = vehicle.inertia.map(f64::from);
-        for _ in 0..STEPS {
+        for _ in 0..TICK_STEPS {
             self.coming.push_back(command);
             let acting = self.coming.pop_front().unwrap();
             self.torque = acting + (self.torque - acting) * (-step / timing.rotor_lag).exp();
@@ -51,7 +51,7 @@ fn shrinking(text: &str, delay: usize, rate: Option<f64>) -> (f64, f64) {
     let scenario = Scenario::parse(text, "f").unwrap();
     let configuration = &scenario.configuration;
     let (vehicle, period) = (configuration.vehicle(), scenario.timing.period());
-    let timing = Timing { period, rotor_lag: scenario.rotor_lag, delay_samples: delay as f64 / STEPS as f64 };
+    let timing = Timing { period, rotor_lag: scenario.rotor_lag, delay_samples: delay as f64 / TICK_STEPS as f64 };
     let law = WithoutARotor::new(configuration, 0, period as f32).unwrap();
     let axis = law.axis();
     let drag = scenario.reality.drag.unwrap_or_default();
