@@ -15,8 +15,8 @@ to world, quaternions scalar first. Arrays of rows are
     demand      4   acceleration(3) world, m/s^2 | yaw rate, rad/s
                 5   attitude q(4) scalar first | thrust, N
 
-An input that cannot be used is a `ValueError` that names the field and the reason; an argument of another kind
-altogether is a `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a
+An input that cannot be used is a `ValueError` that names the field and the reason; an argument of a wrong
+type is a `TypeError`, whose note names it. Well-posed work that comes to nothing (a flight that diverges, a
 search that finds no gains) is a `RuntimeError`, and so is a call of an object that another thread uses. Long work lets
 other threads run, and Ctrl-C ends it.
 

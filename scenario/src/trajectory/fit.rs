@@ -61,7 +61,7 @@ fn weights(u: f64, order: usize) -> [f64; 6] {
 /// The path near `rows`, whose times begin at zero and whose headings go the way that is meant, within `near`, m.
 ///
 /// # Errors
-/// The nearest that was found, if none is near enough.
+/// The nearest path of those tried, if none is near enough.
 pub fn fit(rows: &[(f64, Row)], near: f64) -> Result<Fit, Fit> {
     let last = rows.last().map_or(0.0, |(time, _)| *time);
     let mut intervals = FEWEST;
