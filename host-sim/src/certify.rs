@@ -149,7 +149,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
         format!("tightest: {}, margin {}\n", tightest.name, percent(tightest.margin()))
     });
     let remarks = remarks(scenario, certificate.holds());
-    let remarks: String = remarks.iter().map(|remark| format!("reference: {remark}\n")).collect();
+    let remarks: String = remarks.iter().map(|remark| format!("{remark}\n")).collect();
     let projection = scenario
         .configuration
         .thrust_floor()

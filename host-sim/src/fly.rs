@@ -246,7 +246,7 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> FlyError {
 /// Whether the configuration is one that may fly for real, in a sentence.
 fn certification(scenario: &Scenario, verdict: &Verdict) -> String {
     let remarks = remarks(scenario, verdict.certificate().holds());
-    let remarks: String = remarks.iter().map(|remark| format!("; reference: {remark}")).collect();
+    let remarks: String = remarks.iter().map(|remark| format!("; {remark}")).collect();
     let sentence = match verdict.refusal() {
         None => "certified".to_owned(),
         Some(refusal) => {

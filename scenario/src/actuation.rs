@@ -7,18 +7,21 @@
 //! thrust_coefficient = 5.57e-6          # k_eta, N/(rad/s)^2; or thrusts in place of these three ([`propulsion`])
 //! drag_coefficient = 1.36e-7            # k_m, N m/(rad/s)^2
 //! speed = [0.0, 1500.0]                 # least and greatest while flying, rad/s
-//! lag = 0.005                           # first-order, s; 0 for none
+//! lag = 0.005                           # first-order, s
 //!
 //! [sampling]
 //! delay = 0.01                          # from a tick to the moment its wrench acts, s; whole plant steps
 //! ```
 
 pub mod propulsion;
+mod spin_order;
 
+use crate::plausibility::likely_slip;
 use crate::sampled_loop::GREATEST_DELAY;
 use crate::section::{FieldError, Section, in_line, vector_at};
 use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::error::Reason;
 use controller_core::vehicle::Vehicle;
 use propulsion::Propulsion;
 use toml::Value;
@@ -29,9 +32,15 @@ const LONGEST: f64 = 1.0;
 /// Reads the first-order lag of the rotors' speeds, s; zero without `[rotors]`.
 ///
 /// # Errors
-/// If it is negative or longer than any rotor's.
+/// If it is missing, since the law counts on it and no lag is the cautious one; negative or longer than any rotor's.
 pub fn read_lag(root: &Section) -> Result<f64, FieldError> {
-    root.optional_section("rotors")?.map_or(Ok(0.0), |section| read_time(&section, "lag"))
+    let Some(section) = root.optional_section("rotors")? else { return Ok(0.0) };
+    if !section.has("lag") {
+        let problem = "missing, must be the time in which the rotors follow a command, s: begin with 0.03, which is \
+                       much, and identify it from a flight (docs/identify.md)";
+        return Err(FieldError::new("rotors.lag", problem));
+    }
+    read_time(&section, "lag")
 }
 
 /// Reads `[rotors]` of `vehicle`; none without the section.
@@ -62,7 +71,10 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
             thrust_max: each.thrust_max,
         });
     }
-    let rotors = Rotors::new(&list).map_err(|error| root.refused(&each.in_file(error)))?;
+    let rotors = Rotors::new(&list).map_err(|error| match error.reason {
+        Reason::DoesNotSpan => spin_order::refused(&list),
+        _ => root.refused(&each.in_file(error)),
+    })?;
     let hover = vehicle.mass * vehicle.gravity;
     rotors.check_hover(hover).map_err(|error| {
         let field = each.in_file(error).field;
@@ -70,8 +82,9 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
         let (least, greatest) = rotors.thrust_together();
         let problem = format!(
             "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} {}: \
-             {least} to {greatest} N",
-            each.unit()
+             {least} to {greatest} N{}",
+            each.unit(),
+            likely_slip(root, vehicle, Some(&rotors))
         );
         FieldError::new(field, problem)
     })?;
@@ -108,7 +121,10 @@ fn read_time(section: &Section, key: &str) -> Result<f64, FieldError> {
     if (0.0..=LONGEST).contains(&time) {
         Ok(time)
     } else {
-        Err(FieldError::new(section.path_of(key), format!("must be from 0 to {LONGEST} s, found {time}")))
+        let in_seconds = time / 1000.0;
+        let is_slip = (0.0..=LONGEST).contains(&in_seconds);
+        let slip = if is_slip { format!("; if it is in ms, write {in_seconds}") } else { String::new() };
+        Err(FieldError::new(section.path_of(key), format!("must be from 0 to {LONGEST} s, found {time}{slip}")))
     }
 }
 

@@ -5,7 +5,7 @@
 //!
 //! ```toml
 //! [reference_bounds]
-//! horizontal_speed = 5.0             # K_v12, m/s; left out: 5, or what the reference takes if that is more
+//! horizontal_speed = 5.0             # K_v12, m/s
 //! horizontal_acceleration = 2.5      # K_a12, m/s^2, Euclidean
 //! vertical_acceleration = 0.5        # K_a3, m/s^2
 //! jerk = 4.0                         # K_j, m/s^3, Euclidean
@@ -14,7 +14,8 @@
 //! heading_second_derivative = 2.0    # K_nu'', 1/s^2: sqrt(psi''^2 + psi'^4)
 //! ```
 //!
-//! The other six are needed. Under the paper's law none may be less than the scenario's own reference takes.
+//! Keys that are left out follow likewise. Under the paper's law none may be less than the scenario's own reference
+//! takes, and `horizontal_speed` is 5 m/s where that is more.
 
 use crate::constants;
 use crate::section::{FieldError, Section};
@@ -38,12 +39,9 @@ pub fn read_bounds(
         return Ok(default());
     };
     section.allow(&constants::keys(&ReferenceBounds::TABLE, "reference_bounds"))?;
-    let mut values = [0.0_f32; ReferenceBounds::COUNT];
+    let mut values = default().values();
     for (value, (Constant { key, .. }, taken)) in values.iter_mut().zip(own.entries()) {
-        *value = match key {
-            "horizontal_speed" => section.number_or(key, f64::from(taken.max(DEFAULT_SPEED)))?,
-            _ => section.number(key)?,
-        } as f32;
+        *value = section.number_or(key, f64::from(*value))? as f32;
         if *value < taken {
             let slower = stretch(own, &given(&section)?);
             let remedy = format!("; {slower:.2} times as slowly it fits");

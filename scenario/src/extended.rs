@@ -11,6 +11,7 @@
 use crate::constants;
 use crate::section::{FieldError, Section};
 use controller_core::configuration::ExtendedLaw;
+use controller_core::error::ParameterError;
 use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
@@ -42,10 +43,25 @@ pub fn read_extended(root: &Section, airframe: &Airframe) -> Result<ExtendedLaw,
         given = core::array::from_fn(|place| read[place].or(given[place]));
     }
     let parameters = defaults::constants(airframe, &given);
-    let parameters = Extended::new(parameters, airframe.vehicle).map_err(|error| root.refused(&error))?;
-    Controller::check_period(&parameters, airframe.period).map_err(|error| root.refused(&error))?;
+    let parameters = Extended::new(parameters, airframe.vehicle).map_err(|error| refused(root, &error))?;
+    Controller::check_period(&parameters, airframe.period).map_err(|error| refused(root, &error))?;
     check_delay(root, &airframe.actuators, airframe.period)?;
     Ok(ExtendedLaw { parameters, actuators: airframe.actuators })
+}
+
+/// A refusal by the law's constructors in terms of the file, which may leave the refused constant out.
+#[must_use]
+pub fn refused(root: &Section, error: &ParameterError) -> FieldError {
+    let ParameterError { field, reason } = error;
+    let is_constant = ExtendedParameters::TABLE.iter().any(|constant| constant.path == *field);
+    if !is_constant || root.value(field).is_some() {
+        return root.refused(error);
+    }
+    let problem = format!(
+        "these numbers and those of [limits] and [rotors] make {field}, which the file leaves out and which {reason}: \
+         check them, or give it a value"
+    );
+    FieldError::new("vehicle", problem)
 }
 
 /// Refuses a constant that the law no longer has, and names what is in its place.

@@ -11,7 +11,7 @@ use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use crate::trajectory::Directory;
 use crate::trajectory::vehicle::Vehicle;
-use crate::{actuation, initial, vehicle};
+use crate::{actuation, initial, plausibility, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -77,6 +77,8 @@ pub struct Scenario {
     pub trajectory: Arc<dyn Trajectory + Send + Sync>,
     /// How its circumstances differ from flight to flight of a campaign.
     pub campaign: Campaign,
+    /// What few vehicles have, each number in a sentence.
+    pub unusual: Vec<String>,
 }
 
 impl Scenario {
@@ -117,15 +119,16 @@ impl Scenario {
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
         let delay_steps = actuation::read_delay(root, &timing)?;
-        let rotor_lag = actuation::read_lag(root)?;
         let delay = delay_steps as f64 * timing.step();
         let sensors = sensors::read(root, &timing, delay / timing.period())?;
         let estimator = estimator::read(root, &timing)?;
+        let vehicle = vehicle::read_vehicle(root)?;
+        let rotors = actuation::read_rotors(root, &vehicle)?;
+        let rotor_lag = actuation::read_lag(root)?;
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
-        let vehicle = vehicle::read_vehicle(root)?;
-        let rotors = actuation::read_rotors(root, &vehicle)?;
+        let unusual = plausibility::check(root, &vehicle, rotors.as_ref(), rotor_lag)?;
         let limits = vehicle::read_limits(root, &vehicle, rotors.as_ref())?;
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
@@ -161,6 +164,7 @@ impl Scenario {
             force_kept,
             trajectory,
             campaign,
+            unusual,
         })
     }
 

@@ -7,7 +7,7 @@
 //! | `duration` | 20 s |
 //! | `gravity` of `[vehicle]` | 9.81 m/s^2 |
 //! | `[limits]`, or a key of it | what `[rotors]` can give ([`mod@vehicle`]); without them an error |
-//! | `[control]` | `rate` 100 Hz; `law` the paper's beside `[gains]`, else the extended one; no `thrust_floor` |
+//! | `[control]` | `rate` 100 Hz; `law` the paper's beside its gains, else the extended one; no `thrust_floor` |
 //! | `[estimates]`, or keys of it | as `[gains]` |
 //! | `[plant]` | the longest step of at most 1 ms that divides the control period |
 //! | `[rotors]` | thrust and torque act directly, clipped to `[limits]` |
@@ -27,7 +27,7 @@
 //! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
 //! without one of its rotors.
 //!
-//! [`policy`] reads the files of policies.
+//! [`plausibility`] refuses numbers that no vehicle has, as those in other units. [`policy`] reads the files of policies.
 
 pub mod actuation;
 pub mod along;
@@ -45,6 +45,7 @@ pub mod judge;
 pub mod large_motions;
 pub mod number;
 pub mod path;
+pub mod plausibility;
 pub mod policy;
 pub mod reality;
 pub mod reference;

@@ -1,4 +1,4 @@
-//! What there is to say of a scenario's reference, whether it flies or not.
+//! What there is to say of a scenario's vehicle and reference, whether it flies or not.
 
 use crate::excess::Excess;
 use crate::file::Scenario;
@@ -6,8 +6,8 @@ use crate::path::Swing;
 use crate::reference::ReferenceKind;
 use crate::trajectory::{Route, Way};
 
-/// Of the reference of a scenario: where it swings out, how near it is to the rows of a file,
-/// and where it is too fast.
+/// Of the vehicle of a scenario: which of its numbers are unusual. Of the reference: where it swings out, how near it is
+/// to the rows of a file, and where it is too fast.
 #[must_use]
 pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     let route = match &scenario.reference {
@@ -16,7 +16,9 @@ pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     };
     let swing = Swing::of(&scenario.reference, &*scenario.trajectory).map(|swing| swing.to_string());
     let excess = if is_certified { None } else { Excess::of(scenario) };
-    route.into_iter().chain(swing).chain(excess.map(|excess| excess.to_string())).collect()
+    let reference = route.into_iter().chain(swing).chain(excess.map(|excess| excess.to_string()));
+    let vehicle = scenario.unusual.iter().map(|unusual| format!("vehicle, unusual: {unusual}"));
+    vehicle.chain(reference.map(|remark| format!("reference: {remark}"))).collect()
 }
 
 fn remark(route: &Route) -> Option<String> {

@@ -89,13 +89,19 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The value at a dotted path such as `limits.torque_max[0]`, as text.
+    /// The value at a dotted path such as `limits.torque_max[0]`.
     #[must_use]
-    pub fn lookup(&self, path: &str) -> Option<String> {
+    pub fn value(&self, path: &str) -> Option<&'a Value> {
         let (parents, last) = path.rsplit_once('.').map_or((None, path), |(parents, last)| (Some(parents), last));
         let mut parents = parents.into_iter().flat_map(|path| path.split('.'));
         let table = parents.try_fold(self.table, |table, key| element(table, key)?.as_table())?;
-        element(table, last).map(in_line)
+        element(table, last)
+    }
+
+    /// The same as text.
+    #[must_use]
+    pub fn lookup(&self, path: &str) -> Option<String> {
+        self.value(path).map(in_line)
     }
 
     /// A refusal by one of the law's constructors, which know the file's dotted paths; `self` is the whole file, for

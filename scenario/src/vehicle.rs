@@ -4,12 +4,13 @@
 //! `[rotors]`: then the limits are what the rotors can give, all their greatest thrusts together and
 //! [`greatest_torques`].
 //!
-//! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]), the paper's where it is left out and there are
-//! gains; `[control] thrust_floor` (N) is an option of the paper's law: see [`controller_core::projection`].
+//! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]). Left out it is the paper's where `[gains]` has a
+//! gain that the paper's law alone has. `[control] thrust_floor` (N) is an option of the paper's law: see
+//! [`controller_core::projection`].
 
 use crate::bounds::{DEFAULT_SPEED, read_bounds};
 use crate::constants;
-use crate::extended::read_extended;
+use crate::extended::{read_extended, refused};
 use crate::inertia;
 use crate::reality::drag::{self, Drag};
 use crate::section::{FieldError, Section};
@@ -18,6 +19,7 @@ use controller_core::certificate::airframe::flyable;
 use controller_core::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;
+use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
@@ -41,7 +43,7 @@ pub fn read_configuration(
     period: f64,
 ) -> Result<Configuration, FieldError> {
     let name = match named_law(root)? {
-        None if root.has("gains") => LawName::Paper,
+        None if has_papers_gains(root)? => LawName::Paper,
         None => LawName::Extended,
         Some(name) => name,
     };
@@ -70,6 +72,17 @@ pub fn read_configuration(
         }
     };
     let configuration = configuration.map_err(|error| {
+        if root.value(error.field).is_none() && root.has("reference_bounds") {
+            let field = "reference_bounds.vertical_acceleration";
+            let found = bounds.vertical_acceleration;
+            let left = vehicle.gravity - found;
+            let problem = format!(
+                "leaves {left} m/s^2 of vehicle.gravity to fall with, and {} needs more (left out: 0.63 of it), found \
+                 {found}",
+                error.field
+            );
+            return FieldError::new(field, problem);
+        }
         let refused = root.refused(&error);
         let problem = format!(
             "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
@@ -85,7 +98,7 @@ pub fn read_configuration(
         _ => configuration,
     };
     match rotors {
-        Some(rotors) => configuration.with_rotors(rotors).map_err(|error| root.refused(&error)),
+        Some(rotors) => configuration.with_rotors(rotors).map_err(|error| refused(root, &error)),
         None => Ok(configuration),
     }
 }
@@ -106,6 +119,13 @@ fn check_lifted(rotors: &Rotors) -> Result<(), FieldError> {
 enum LawName {
     Paper,
     Extended,
+}
+
+/// Whether `[gains]` has a gain of the paper's law that the extended one does not have.
+fn has_papers_gains(root: &Section) -> Result<bool, FieldError> {
+    let extended = constants::keys(&ExtendedParameters::TABLE, "gains");
+    let own = constants::keys(&GainParameters::TABLE, "gains").into_iter().filter(|key| !extended.contains(key));
+    Ok(root.optional_section("gains")?.is_some_and(|gains| own.into_iter().any(|key| gains.has(key))))
 }
 
 /// `[control] law`; none where it is left out.

@@ -40,7 +40,6 @@ fn left_out_there_are_neither_rotors_nor_delay() {
     let scenario = read("").unwrap();
     assert!(scenario.configuration.rotors().is_none() && scenario.rotor_lag == 0.0 && scenario.delay_steps == 0);
     assert_eq!(read("[sampling]").unwrap().delay_steps, 0);
-    assert_eq!(read(&ROTORS.replace("lag = 0.005", "")).unwrap().rotor_lag, 0.0);
 }
 
 #[test]
@@ -53,8 +52,15 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("position", "position = [[0.1, 0.1], [0, 0, 0], [0, 0, 0], [0, 0, 0]]", "rotors.position[0]", "three numbers"),
         ("position", "position = [[0.1, nan, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]", "rotors.position[0][1]", "finite"),
         ("position", three, "rotors.spin", "one element for each of 3 positions, found 4"),
-        ("position", aligned, "rotors", "cannot produce thrust and all three torques"),
-        ("spin", "spin = [\"cw\", \"cw\", \"cw\", \"cw\"]", "rotors", "cannot produce thrust and all three torques"),
+        ("position", aligned, "rotors.position", "cannot produce thrust and all three torques"),
+        ("spin", "spin = [\"cw\", \"cw\", \"cw\", \"cw\"]", "rotors.spin", "all rotors turn the same way"),
+        (
+            "spin",
+            "spin = [\"cw\", \"cw\", \"ccw\", \"ccw\"]",
+            "rotors.spin",
+            "rotors 1 and 2, which are neighbours, turn the same way, so that yaw comes with roll or pitch; neighbours \
+             must turn opposite ways: at these positions [\"cw\", \"ccw\", \"cw\", \"ccw\"] can yaw",
+        ),
         ("spin", "spin = [\"cw\", \"left\", \"cw\", \"ccw\"]", "rotors.spin[1]", "\"cw\" or \"ccw\""),
         ("spin", "spin = [\"cw\", \"ccw\"]", "rotors.spin", "found 2"),
         ("thrust_coefficient", "thrust_coefficient = 0.0", "rotors.thrust_coefficient", "greater than zero, found 0"),
@@ -69,7 +75,8 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("speed", "speed = [0.0, 400.0]", "rotors.speed", "cannot hover: must let the rotors' thrust together reach"),
         ("speed", "speed = [500.0, 800.0]", "rotors.speed", "cannot hover"),
         ("lag", "lag = -0.005", "rotors.lag", "from 0 to 1 s, found -0.005"),
-        ("lag", "lag = 5.0", "rotors.lag", "from 0 to 1 s, found 5"),
+        ("lag", "lag = 5.0", "rotors.lag", "from 0 to 1 s, found 5; if it is in ms, write 0.005"),
+        ("lag", "", "rotors.lag", "missing"),
         ("lag", "lagg = 0.005", "rotors.lagg", "did you mean \"lag\"?"),
         ("delay", "delay = 0.0105", "sampling.delay", "whole number of plant steps, found 0.0105 s (nearest:"),
         ("delay", "delay = -0.01", "sampling.delay", "from 0 to 1 s"),

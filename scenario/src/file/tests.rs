@@ -122,6 +122,39 @@ fn a_constant_of_the_extended_law_is_the_files_and_the_others_follow() {
 }
 
 #[test]
+fn a_constant_of_the_extended_law_alone_keeps_its_law() {
+    let bare = EXTENDED.replace("law = \"extended\"", "");
+    assert!(bare != EXTENDED);
+    let line = EXTENDED.lines().find(|line| line.starts_with("yaw_acceleration")).unwrap();
+    let with = |gains: &str| Scenario::parse(&bare.replace(line, gains), "f");
+    for gains in ["", "yaw_acceleration = 8.0", "k_f = 5.0"] {
+        let read = with(gains).unwrap();
+        assert!(matches!(read.configuration.law(), LawParameters::Extended(_)), "{gains}");
+    }
+    // One gain that only the paper's law has names that law, which needs all of them.
+    let refused = with("k_p = 9.0").err().unwrap().what;
+    assert!(refused.starts_with("gains.k_v: missing, as are k_f, "), "{refused}");
+    let refused = with("k_p = 9.0\nyaw_acceleration = 8.0").err().unwrap().what;
+    assert!(refused.starts_with("gains.yaw_acceleration: unknown key"), "{refused}");
+}
+
+#[test]
+fn what_a_file_makes_of_a_constant_that_it_leaves_out_is_refused_by_the_files_own_number() {
+    let refused = |changes: &[(&str, &str)]| {
+        let text = changes.iter().fold(EXTENDED.to_owned(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        });
+        Scenario::parse(&text, "f").err().unwrap().what
+    };
+    let what =
+        refused(&[("gravity = 9.81", "gravity = 3.5"), ("[control]", "[estimates]\nscale_greatest = 10\n[control]")]);
+    assert!(what.starts_with("vehicle: ") && what.contains("gains.floor_margin, which the file leaves out"), "{what}");
+    let what = refused(&[("vertical_acceleration = 0.1755", "vertical_acceleration = 5.0")]);
+    assert!(what.starts_with("reference_bounds.vertical_acceleration: leaves 4.81"), "{what}");
+}
+
+#[test]
 fn any_number_that_differs_makes_another_flight() {
     let paper = Scenario::paper().unwrap();
     for (from, to) in [

@@ -7,6 +7,7 @@ const PLACES: &str = "
 [rotors]
 position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]
 spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]
+lag = 0.02
 ";
 
 fn read(keys: &str) -> Result<Rotor, String> {
