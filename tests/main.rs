@@ -6,7 +6,7 @@
 //! |---|---|
 //! | the law | [`independent_law`], [`extended_independent`], [`kinematics`], [`lyapunov`], [`extended_flows`], [`attitude_sign`], [`bad_inputs`], [`bounds`] |
 //! | the laws beside it, at half a turn | [`half_turn`] |
-//! | a vehicle's numbers from a flight and a bench; from other programs' files | [`identify`], [`identify_px4`]; [`vehicle_import`] |
+//! | a vehicle's numbers from a flight and a bench; from other programs' files | [`identify`], [`identify_px4`]; [`vehicle_import`], [`vehicle_models`] |
 //! | the estimated state | [`estimator`], [`estimated_flights`] |
 //! | its proof | [`adversary`], [`extended_adversary`], [`sharp_derivation`], [`certified_flights`], [`vehicles`], [`published`] |
 //! | its flights | [`paper`], [`recovery`], [`hysteresis`], [`tuned`], [`reality`], [`beyond_the_model`], [`vibration`], [`touchdown`], [`pilots_table`], [`steady_circle`], [`progress`]; along files: [`trajectory_files`] |
@@ -69,5 +69,6 @@ mod touchdown;
 mod trajectory_files;
 mod tuned;
 mod vehicle_import;
+mod vehicle_models;
 mod vehicles;
 mod vibration;

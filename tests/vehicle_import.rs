@@ -189,7 +189,12 @@ fn products_of_inertia_are_refused_with_their_axes_unless_they_are_to_be_neglect
     assert!(file.contains("# products of inertia neglected: xy = 0.0, xz = -0.0021"), "{file}");
     // The published model's rotors on one side turn the same way.
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("rotors: cannot produce thrust and all three torques independently"), "{said}");
+    assert!(
+        said.contains(
+            "rotors.spin: cannot produce thrust and all three torques independently: rotors 1 and 4, which are"
+        ),
+        "{said}"
+    );
 }
 
 #[test]

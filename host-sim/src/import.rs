@@ -5,14 +5,15 @@
 //! | [`numbers`] | what a source says of a vehicle: numbers, each of which may be missing |
 //! | [`rotorpy`], [`literal`], [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
 //! | [`urdf`] | URDF of gym-pybullet-drones' kind |
-//! | [`sdf`] | SDF of Gazebo with its motor model |
+//! | [`sdf`], [`sdf_model`], [`sdf_frames`], [`sdf_motor`] | SDF of Gazebo with its motor model |
 //! | [`mujoco`], [`mujoco_frames`] | MuJoCo's XML |
 //! | [`px4`] | PX4's rotor geometry |
 //! | [`xml`], [`rigid`] | what the XML formats share; bodies put together |
-//! | [`written`] | the vehicle file, with what is missing marked |
+//! | [`written`], [`existing`] | the vehicle file, with what is missing marked; one that is there already |
 //!
 //! `docs/import.md` has each format's frames and units beside ours.
 
+pub mod existing;
 pub mod literal;
 pub mod mujoco;
 pub mod mujoco_frames;
@@ -21,6 +22,9 @@ pub mod px4;
 pub mod rigid;
 pub mod rotorpy;
 pub mod sdf;
+pub mod sdf_frames;
+pub mod sdf_model;
+pub mod sdf_motor;
 pub mod urdf;
 pub mod value;
 pub mod written;
@@ -67,6 +71,7 @@ impl Format {
                 "robot" => Ok(Self::Urdf),
                 "sdf" => Ok(Self::Sdf),
                 "mujoco" => Ok(Self::Mujoco),
+                "model" => Err("<model>: is a model.config: give the file that its <sdf> names".to_owned()),
                 _ => Err(format!("<{root}>: must be <robot> (URDF), <sdf> or <mujoco>")),
             };
         }

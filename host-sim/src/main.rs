@@ -23,6 +23,7 @@ use host_sim::hil::relay::Relay;
 use host_sim::hil::{self, Clients, End, HilError};
 use host_sim::identify::command::{self, Refused, Task};
 use host_sim::import;
+use host_sim::import::existing;
 use host_sim::import::written::written;
 use host_sim::law::LawServer;
 use host_sim::log::bytes_per_row;
@@ -323,8 +324,17 @@ fn run_vehicle(arguments: &VehicleArguments) -> Result<ExitCode, String> {
     let vehicle = vehicle.map_err(|what| format!("{source}: {what}"))?;
     let from = arguments.source.file_name().unwrap_or_default().to_string_lossy();
     let file = written(&vehicle, &name, &from, &arguments.wishes()).map_err(|what| format!("--with {what}"))?;
+    if arguments.out.is_file() && !arguments.overwrite {
+        let there = scenario::text::read(&arguments.out).map_err(|error| format!("{out}: is there: {error}"))?;
+        if let Some(why) = existing::objection(&there, &file.text) {
+            return Err(format!("{out}: {why}; --with KEY=VALUE keeps a number, --overwrite none"));
+        }
+    }
     WholeFile::write(&arguments.out, &file.text).map_err(|error| format!("{out}: cannot be written: {error}"))?;
-    let refused = Scenario::parse(&file.text, &out.to_string()).err().map(|error| error.to_string());
+    let parsed = Scenario::parse(&file.text, &out.to_string());
+    let unusual = parsed.iter().flat_map(|scenario| &scenario.unusual);
+    let unusual: String = unusual.map(|unusual| format!("unusual: {unusual}\n")).collect();
+    let refused = parsed.err().map(|error| error.to_string());
     let next = match &refused {
         None => format!("next: host-sim certify {out}"),
         Some(_) if !file.missing.is_empty() => format!(
@@ -333,7 +343,7 @@ fn run_vehicle(arguments: &VehicleArguments) -> Result<ExitCode, String> {
         ),
         Some(why) => format!("NOT to be used as it is: {why}"),
     };
-    print_text(&format!("{source}: {}; written to {out}\n{next}\n", vehicle.source))?;
+    print_text(&format!("{source}: {}; written to {out}\n{unusual}{next}\n", vehicle.source))?;
     Ok(status(refused.is_none(), None))
 }
 

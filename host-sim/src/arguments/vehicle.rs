@@ -21,6 +21,9 @@ pub struct VehicleArguments {
     /// A number of your own, in place of the source's or where it has none: rotors.lag=0.03; may be repeated
     #[arg(long = "with", value_name = "KEY=VALUE", value_parser = given)]
     given: Vec<Given>,
+    /// Write over a file that is there, and lose the numbers and comments in it
+    #[arg(long)]
+    pub overwrite: bool,
     /// Write the diagonal of an inertia whose products are not zero
     #[arg(long)]
     neglect_products: bool,
@@ -41,6 +44,8 @@ all other commands refuse the file until a number stands there. --with gives one
   host-sim vehicle cf2x.urdf --with rotors.lag=0.05 --out cf2x.toml
   host-sim certify cf2x.toml
   host-sim fly cf2x.toml
+
+A file that is there already is kept: it may hold what you measured. --overwrite writes it all the same.
 
 A vehicle's inertia is diagonal here. Products of inertia are written as they are, and certify refuses them with the angles by which
 the axes are off; --neglect-products leaves them out, and says so in the file. docs/import.md has every format from source to

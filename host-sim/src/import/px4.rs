@@ -42,6 +42,12 @@ pub fn read(text: &str) -> Result<VehicleNumbers, String> {
                 axis.x, axis.y, axis.z
             ));
         }
+        if of("PX", 0.0) == 0.0 && of("PY", 0.0) == 0.0 {
+            return Err(format!(
+                "{PREFIX}{index}_PX, _PY: missing: CA_ROTOR_COUNT says {count} rotors, and rotor {index} has no place: \
+                 add it, or set CA_ROTOR_COUNT to the rotors that are there"
+            ));
+        }
         position.push(Vector3::new(of("PX", 0.0), 0.0 - of("PY", 0.0), 0.0 - of("PZ", 0.0)));
         spin.push(match of("KM", DEFAULT_KM) {
             km if km > 0.0 => Spin::CounterClockwise,
@@ -60,18 +66,35 @@ pub fn read(text: &str) -> Result<VehicleNumbers, String> {
     Ok(vehicle)
 }
 
-/// Every `CA_ROTOR…` parameter; the last line of a name counts, as in a script.
+/// Every `CA_ROTOR…` parameter; the last line of a name counts, as in a script. A parameter file may hold those of
+/// several vehicles and components, which must not be mixed.
 fn parameters(text: &str) -> Result<HashMap<&str, f64>, String> {
     let mut found = HashMap::new();
+    let mut owner: Option<[&str; 2]> = None;
     for (index, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default();
         let mut words = line.split_whitespace().skip_while(|word| !word.starts_with(PREFIX));
+        let before: Vec<&str> = line.split_whitespace().take_while(|word| !word.starts_with(PREFIX)).collect();
         let Some(name) = words.next() else { continue };
         let value = words.next().unwrap_or_default();
         let number = value.parse().ok().filter(|number: &f64| number.is_finite());
         let shown: String = value.chars().take(40).collect();
         let place = || format!("line {}: {}", index + 1, name.chars().take(40).collect::<String>());
         let number = number.ok_or_else(|| format!("{}: must be a finite number, found {shown:?}", place()))?;
+        if let [vehicle, component] = before[..]
+            && before.iter().all(|word| word.parse::<u8>().is_ok())
+        {
+            let first = *owner.get_or_insert([vehicle, component]);
+            if first != [vehicle, component] {
+                return Err(format!(
+                    "{}: is of vehicle {vehicle}, component {component}, and others above are of vehicle {}, component \
+                     {}: keep the lines of one",
+                    place(),
+                    first[0],
+                    first[1]
+                ));
+            }
+        }
         found.insert(name, number);
     }
     Ok(found)
