@@ -13,21 +13,21 @@ pub fn of_inequality(name: &str) -> &'static str {
         "T1 fall A_- < g - K_a3" => {
             "falling. The law may fall with gains.a_down while the reference falls with \
              reference_bounds.vertical_acceleration: both at once must leave some of gravity to push against. Lower \
-             one of them."
+             gains.a_down or reference_bounds.vertical_acceleration."
         }
         "A1 thrust for the reference" => {
             "thrust, for the reference. Rotors that deliver only estimates.scale_least must hold its acceleration and \
-             drag beside the weight. Lower reference_bounds.horizontal_acceleration or vertical_acceleration; or fly \
-             lighter."
+             drag beside the weight. Lower reference_bounds.horizontal_acceleration or \
+             reference_bounds.vertical_acceleration; or fly lighter."
         }
         "A1 turning rate for the reference" => {
             "how fast the vehicle tilts. The reference's jerk wants the thrust to turn faster than gains.turn_rate. \
-             Lower reference_bounds.jerk, or raise turn_rate."
+             Lower reference_bounds.jerk, or raise gains.turn_rate."
         }
         "A1 turning acceleration" => {
             "how quickly the vehicle begins to tilt. The reference needs more than gains.turn_reserve, the \
-             acceleration that is always available. Lower reference_bounds.snap or jerk, or gains.k_f; or raise \
-             turn_reserve, which takes torque from gains.m_tilt."
+             acceleration that is always available. Lower reference_bounds.snap or reference_bounds.jerk; or raise \
+             gains.turn_reserve, which takes torque from gains.m_tilt."
         }
         "G floor at the target < thrust" => {
             "how low the thrust can go. A rotor at its least thrust gives no torque, so turning needs some thrust, \
@@ -41,20 +41,21 @@ pub fn of_inequality(name: &str) -> &'static str {
         "T2 roll and pitch torque" => {
             "torque about roll and pitch, limits.torque_max: gains.m_tilt and gains.turn_reserve use it up, as the \
              formulas intend. For more torque, raise limits.torque_max if the rotors can deliver it; if this row \
-             fails, lower m_tilt."
+             fails, lower gains.m_tilt."
         }
         "R rotors' range" => {
             "the rotors. With one at its greatest thrust and another at its least, gains.m_tilt and gains.turn_reserve \
              use up the whole range between them, as the formulas intend. More torque needs stronger rotors; if this \
-             row fails, lower m_tilt."
+             row fails, lower gains.m_tilt."
         }
         "T1 thrust floor at the greatest torque" => {
             "the greatest thrust. With gains.m_tilt and gains.turn_reserve in use, no rotor may fall below its least \
              thrust: that takes a thrust near limits.thrust_max. Raise limits.thrust_max if the rotors can deliver \
-             it, or lower m_tilt."
+             it, or lower gains.m_tilt."
         }
         "D greatest torque bias" => {
-            "torque beside a bias. A bias of estimates.torque_tilt must leave gains.turn_reserve. Lower one of them."
+            "torque beside a bias. A bias of estimates.torque_tilt must leave gains.turn_reserve. Lower \
+             estimates.torque_tilt or gains.turn_reserve."
         }
         "T2 yaw torque" => {
             "torque about yaw, limits.torque_max or what the reference's thrust leaves of the rotors. Lower \
@@ -69,12 +70,12 @@ pub fn of_inequality(name: &str) -> &'static str {
 pub fn of_path(row: Row) -> &'static str {
     match row {
         Row::Fall => {
-            "how fast the reference falls. gains.a_down must leave some of gravity to push against. Lower a_down, or fly \
-             a flatter path."
+            "how fast the reference falls. gains.a_down must leave some of gravity to push against. Lower \
+             gains.a_down, or fly a flatter path."
         }
         Row::Thrust => {
             "thrust, along the reference. Rotors that deliver only estimates.scale_least must hold it beside the force \
-             that is kept free. Lower reference.force_kept, or raise scale_least; or fly lighter."
+             that is kept free. Lower reference.force_kept, or raise estimates.scale_least; or fly lighter."
         }
         Row::TurningRate => "how fast the vehicle tilts along the reference. Raise gains.turn_rate.",
         Row::Torque => {
@@ -93,7 +94,7 @@ pub fn of_path(row: Row) -> &'static str {
 
 /// The change for a model flight that does not arrive.
 pub const OF_FLIGHT: &str = "a model of the vehicle circles or swings about its target, from far away. Raise \
-    gains.turn_rate or gains.k_f, or lower gains.v_across, v_up and v_down; or raise control.rate.";
+    gains.turn_rate or gains.k_f, or lower gains.v_across, gains.v_up and gains.v_down; or raise control.rate.";
 
 /// The change for a loop with too little margin.
 #[must_use]
@@ -102,9 +103,9 @@ pub fn of_loop(lack: &Lack) -> String {
         Axis::Roll | Axis::Pitch => "gains.k_omega_t and gains.k_tilt",
         Axis::Yaw => "gains.c_2 and gains.c_1",
         Axis::LateralX | Axis::LateralY => {
-            "gains.k_p_across and k_v_across, gains.k_f and estimates.force_bandwidth_across"
+            "gains.k_p_across and gains.k_v_across, gains.k_f and estimates.force_bandwidth_across"
         }
-        Axis::Vertical => "gains.k_p_vertical and k_v_vertical, gains.k_f and estimates.force_bandwidth_vertical",
+        Axis::Vertical => "gains.k_p_vertical and gains.k_v_vertical, gains.k_f and estimates.force_bandwidth_vertical",
     };
     let change = match lack.what {
         Shortfall::GainDown { .. } => "the loop inside is too slow for it: lower those of the slower loop, here",
@@ -112,3 +113,6 @@ pub fn of_loop(lack: &Lack) -> String {
     };
     format!("the sampled loop {}; {change} {gains}.", lack.axis.name())
 }
+
+#[cfg(test)]
+mod tests;
