@@ -16,7 +16,7 @@
 //! | the supervisor, whatever fails or lies; hours of it | [`fault_campaign`], [`lying_poses`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
 //! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_campaign_directory`], [`cli_certify`], [`cli_compare`], [`cli_identify`], |
-//! |  | [`cli_output`], [`cli_overwriting`], [`cli_verdicts`], [`documentation`] |
+//! |  | [`cli_output`], [`cli_overwriting`], [`cli_verdicts`], [`documentation`], [`documented_defaults`] |
 
 mod adversary;
 mod attitude_sign;
@@ -34,6 +34,7 @@ mod cli_output;
 mod cli_overwriting;
 mod cli_verdicts;
 mod documentation;
+mod documented_defaults;
 mod emulated_bits;
 mod endurance;
 mod estimated_flights;

@@ -14,8 +14,8 @@
 //! heading_second_derivative = 2.0    # K_nu'', 1/s^2: sqrt(psi''^2 + psi'^4)
 //! ```
 //!
-//! Keys that are left out follow likewise. Under the paper's law none may be less than the scenario's own reference
-//! takes, and `horizontal_speed` is 5 m/s where that is more.
+//! Keys that are left out follow likewise, unless that were zero. Under the paper's law none may be less than the
+//! scenario's own reference takes, and `horizontal_speed` is 5 m/s where that is more.
 
 use crate::constants;
 use crate::section::{FieldError, Section};
@@ -41,7 +41,9 @@ pub fn read_bounds(
     section.allow(&constants::keys(&ReferenceBounds::TABLE, "reference_bounds"))?;
     let mut values = default().values();
     for (value, (Constant { key, .. }, taken)) in values.iter_mut().zip(own.entries()) {
-        *value = section.number_or(key, f64::from(*value))? as f32;
+        // A bound of zero would let nothing fly that only this file knows.
+        let followed = *value > 0.0 && !section.has(key);
+        *value = if followed { *value } else { section.number(key)? as f32 };
         if *value < taken {
             let slower = stretch(own, &given(&section)?);
             let remedy = format!("; {slower:.2} times as slowly it fits");

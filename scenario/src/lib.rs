@@ -27,7 +27,9 @@
 //! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
 //! without one of its rotors.
 //!
-//! [`plausibility`] refuses numbers that no vehicle has, as those in other units. [`policy`] reads the files of policies.
+//! [`plausibility`] refuses numbers that no vehicle has, as those in other units.
+//!
+//! [`policy`] reads the files of policies.
 
 pub mod actuation;
 pub mod along;

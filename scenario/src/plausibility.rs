@@ -1,7 +1,7 @@
 //! Whether a vehicle's numbers can be those of a multirotor: what is impossible is refused, what is unusual is said.
 //!
-//! No proof notices an inertia in g cm^2: the certificate holds for the vehicle that the file describes. But the numbers
-//! of one vehicle belong together, whatever its size:
+//! No proof notices an inertia in g cm^2: the certificate holds for the vehicle that the file describes. But the
+//! numbers of one vehicle belong together, whatever its size:
 //!
 //! | quantity | unit | usual | possible |
 //! |---|---|---|---|
@@ -160,7 +160,8 @@ impl Numbers {
                 value: yaw / arm,
                 range: YAW,
                 says: format!(
-                    "makes a yaw torque of {} N m for each newton of thrust, where {} to {} are usual with arms of {} m",
+                    "makes a yaw torque of {} N m for each newton of thrust, where {} to {} are usual with arms of \
+                     {} m",
                     short(yaw),
                     short(YAW.usual[0] * arm),
                     short(YAW.usual[1] * arm),

@@ -13,7 +13,7 @@ pub fn refused(list: &[Rotor]) -> FieldError {
     const CANNOT: &str = "cannot produce thrust and all three torques independently";
     let order = round(list);
     let Some(better) = alternating(list, &order) else {
-        let problem = format!("{CANNOT}: the rotors must not stand along one line, and no two quadrotor arms alike");
+        let problem = format!("{CANNOT}: the rotors stand along one line, or where no spins that alternate can yaw");
         return FieldError::new("rotors.position", problem);
     };
     let next = order.iter().zip(order.iter().cycle().skip(1));

@@ -37,7 +37,10 @@ fn left_out_they_are_what_the_vehicle_can_fly_where_that_is_more() {
     // Stated ones are what was stated, and those that are left out beside them are what the vehicle can fly.
     let stated = |text: &str| read_bounds(&Section::root(&text.parse().unwrap()), &ReferenceBounds::REST, || flyable);
     assert_eq!(stated(WIDER).unwrap().jerk, 4.0);
-    assert_eq!(stated("[reference_bounds]\nsnap = 3.0"), Ok(ReferenceBounds { snap: 3.0, ..flyable }));
+    let wider = ReferenceBounds { snap: 9.0, ..OWN };
+    assert_eq!(read("[reference_bounds]\nsnap = 9.0"), Ok(wider));
+    // What would be zero is needed.
+    assert_eq!(stated("[reference_bounds]\nsnap = 3.0").unwrap_err().field, "reference_bounds.horizontal_speed");
 }
 
 #[test]
