@@ -118,7 +118,9 @@ impl Model {
         let uri = child(include, "uri").map(|uri| text(&uri).to_owned()).unwrap_or_default();
         let folder = uri.strip_prefix("model://").unwrap_or(&uri).trim_end_matches('/');
         if !is_plain(folder) {
-            return Err(format!("{place}: uri: must be model://NAME, found {uri:?}"));
+            return Err(format!(
+                "{place}: uri: must be model://NAME, the folder NAME beside the file's own, found {uri:?}"
+            ));
         }
         self.included += 1;
         if depth >= DEPTH_MAX || self.included > COUNT_MAX {

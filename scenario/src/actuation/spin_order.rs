@@ -17,7 +17,9 @@ pub fn refused(list: &[Rotor]) -> FieldError {
         return FieldError::new("rotors.position", problem);
     };
     let next = order.iter().zip(order.iter().cycle().skip(1));
-    let alike = next.filter(|(one, next)| list[**one].spin == list[**next].spin).map(|(one, next)| (one + 1, next + 1));
+    let alike = next
+        .filter(|(one, next)| list[**one].spin == list[**next].spin)
+        .map(|(one, next)| (one.min(next) + 1, one.max(next) + 1));
     let (one, next) = alike.min().unwrap_or((1, 2));
     let what = if list.iter().all(|rotor| rotor.spin == list[0].spin) {
         "all rotors turn the same way, so that none turns the vehicle against them".to_owned()

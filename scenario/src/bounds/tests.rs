@@ -32,7 +32,7 @@ fn left_out_they_are_the_references_own() {
 
 #[test]
 fn left_out_they_are_what_the_vehicle_can_fly_where_that_is_more() {
-    let flyable = ReferenceBounds { jerk: 6.0, snap: 4.0, ..ReferenceBounds::REST };
+    let flyable = ReferenceBounds { horizontal_speed: 5.0, jerk: 6.0, snap: 4.0, ..ReferenceBounds::REST };
     assert_eq!(OWN.covering(&flyable), ReferenceBounds { jerk: 6.0, ..OWN });
     // Stated ones are what was stated, and those that are left out beside them are what the vehicle can fly.
     let stated = |text: &str| read_bounds(&Section::root(&text.parse().unwrap()), &ReferenceBounds::REST, || flyable);
@@ -40,7 +40,8 @@ fn left_out_they_are_what_the_vehicle_can_fly_where_that_is_more() {
     let wider = ReferenceBounds { snap: 9.0, ..OWN };
     assert_eq!(read("[reference_bounds]\nsnap = 9.0"), Ok(wider));
     // What would be zero is needed.
-    assert_eq!(stated("[reference_bounds]\nsnap = 3.0").unwrap_err().field, "reference_bounds.horizontal_speed");
+    let needed = stated("[reference_bounds]\nsnap = 3.0").unwrap_err();
+    assert_eq!(needed.field, "reference_bounds.horizontal_acceleration");
 }
 
 #[test]
