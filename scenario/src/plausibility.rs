@@ -8,6 +8,8 @@
 //! | longest arm, per cube root of the mass | m/kg^(1/3) | 0.06 to 0.6 | 0.02 to 2 |
 //! | greatest radius of gyration sqrt(J / m), per longest arm | | 0.12 to 1.25 | 0.03 to 2 |
 //! | the same without rotors, per 0.2 m/kg^(1/3) times the cube root of the mass | | 0.12 to 2.5 | 0.003 to 20 |
+//! | without rotors: greatest thrust, per weight | | at most 20 | at most 50 |
+//! | without rotors: greatest torque limit, per greatest moment of inertia | rad/s^2 | 0.5 to 5e3 | 0.01 to 5e4 |
 //! | greatest thrust, per weight | | 1.2 to 20 | 1 to 50 |
 //! | yaw torque per thrust, per longest arm | | 0.02 to 0.8 | 0.001 to 3 |
 //! | greatest speed times longest arm | m/s | at most 750 | |
@@ -45,6 +47,8 @@ const RADIUS: Range = Range { typical: 0.6, usual: [0.12, 1.25], possible: [0.03
 const RADIUS_WITHOUT_ROTORS: Range = Range { typical: 0.6, usual: [0.12, 2.5], possible: [0.003, 20.0] };
 const THRUST: Range = Range { typical: 4.0, usual: [1.2, 20.0], possible: [1.0, 50.0] };
 const YAW: Range = Range { typical: 0.15, usual: [0.02, 0.8], possible: [0.001, 3.0] };
+const THRUST_LIMIT: Range = Range { typical: 4.0, usual: [0.0, 20.0], possible: [0.0, 50.0] };
+const TORQUE_LIMIT: Range = Range { typical: 100.0, usual: [0.5, 5e3], possible: [0.01, 5e4] };
 const SPEED: Range = Range { typical: 250.0, usual: [0.0, 750.0], possible: [0.0, f64::INFINITY] };
 
 fn within(value: f64, [least, greatest]: [f64; 2]) -> bool {
@@ -59,6 +63,8 @@ struct Numbers {
     /// The greatest moment of inertia.
     moment: f64,
     rotors: Option<RotorNumbers>,
+    /// Of `[limits]`, where there are any: thrust, N, and the greatest torque, N m.
+    limits: [Option<f64>; 2],
 }
 
 #[derive(Clone, Copy)]
@@ -95,7 +101,8 @@ impl Numbers {
             })
         });
         let [mass, gravity, moment] = [vehicle.mass, vehicle.gravity, vehicle.inertia.max()].map(f64::from);
-        Self { mass, gravity, moment, rotors }
+        let limits = ["limits.thrust_max", "limits.torque_max"].map(|path| greatest(root.value(path)?));
+        Self { mass, gravity, moment, rotors, limits }
     }
 
     /// Every quantity, sizes first: what is wrong with the arms is wrong with the other quantities as well.
@@ -111,7 +118,25 @@ impl Numbers {
                 short(2.0 * arm)
             );
             let range = RADIUS_WITHOUT_ROTORS;
-            return vec![Judged { field: "vehicle.inertia", value: radius / arm, range, says }];
+            let inertia = Judged { field: "vehicle.inertia", value: radius / arm, range, says };
+            let [thrust, torque] = self.limits;
+            let thrust = thrust.map(|thrust| {
+                let value = thrust / (self.mass * self.gravity);
+                let says =
+                    format!("is {} times the weight, where at most {} times is usual", short(value), THRUST.usual[1]);
+                Judged { field: "limits.thrust_max", value, range: THRUST_LIMIT, says }
+            });
+            let torque = torque.map(|torque| {
+                let value = torque / self.moment;
+                let says = format!(
+                    "makes an angular acceleration of {} rad/s^2, where {} to {} rad/s^2 are usual",
+                    short(value),
+                    TORQUE_LIMIT.usual[0],
+                    TORQUE_LIMIT.usual[1]
+                );
+                Judged { field: "limits.torque_max", value, range: TORQUE_LIMIT, says }
+            });
+            return [Some(inertia), thrust, torque].into_iter().flatten().collect();
         };
         let [least, greatest] = ARM.usual.map(|arm| short(arm * size));
         let [thrust_field, yaw_field] = if speed.is_some() {
@@ -186,6 +211,8 @@ impl Numbers {
         match (slip.number, &mut self.rotors) {
             (Slipped::Mass, _) => self.mass *= factor,
             (Slipped::Moment, _) => self.moment *= factor,
+            (Slipped::ThrustLimit, None) => self.limits[0] = self.limits[0].map(|thrust| thrust * factor),
+            (Slipped::TorqueLimit, None) => self.limits[1] = self.limits[1].map(|torque| torque * factor),
             (Slipped::Arm, Some(rotors)) => rotors.arm *= factor,
             (Slipped::Thrust, Some(rotors)) => rotors.thrust *= factor,
             (Slipped::Yaw, Some(rotors)) => rotors.yaw *= factor,
@@ -193,7 +220,7 @@ impl Numbers {
                 rotors.thrust *= factor * factor;
                 rotors.speed = rotors.speed.map(|speed| speed * factor);
             }
-            (_, None) => {}
+            (Slipped::ThrustLimit | Slipped::TorqueLimit, Some(_)) | (_, None) => {}
         }
         self
     }
@@ -208,6 +235,8 @@ enum Slipped {
     Thrust,
     Yaw,
     Speed,
+    ThrustLimit,
+    TorqueLimit,
 }
 
 /// A number in another unit than the file's.
@@ -227,13 +256,16 @@ const fn slip(field: &'static str, is: &'static str, factor: f64, number: Slippe
 /// What both coefficients of a rotor may be instead.
 const PER_RPM: &str = "in N/rpm^2 (and drag_coefficient in N m/rpm^2)";
 
-const SLIPS: [Slip; 14] = [
+const SLIPS: [Slip; 17] = [
     slip("vehicle.mass", "in g", 1e-3, Slipped::Mass),
     slip("vehicle.inertia", "in g m^2", 1e-3, Slipped::Moment),
     slip("vehicle.inertia", "in kg cm^2", 1e-4, Slipped::Moment),
     slip("vehicle.inertia", "in kg mm^2", 1e-6, Slipped::Moment),
     slip("vehicle.inertia", "in g cm^2", 1e-7, Slipped::Moment),
     slip("vehicle.inertia", "in g mm^2", 1e-9, Slipped::Moment),
+    slip("limits.thrust_max", "in grams-force", 9.80665e-3, Slipped::ThrustLimit),
+    slip("limits.torque_max", "in mN m", 1e-3, Slipped::TorqueLimit),
+    slip("limits.torque_max", "in N cm", 1e-2, Slipped::TorqueLimit),
     slip("rotors.position", "in cm", 1e-2, Slipped::Arm),
     slip("rotors.position", "in mm", 1e-3, Slipped::Arm),
     slip("rotors.thrust_max", "in grams-force", 9.80665e-3, Slipped::Thrust),
@@ -287,6 +319,19 @@ pub fn check(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f6
         unusual.push(format!("rotors.lag is {lag} s, where 0.005 to {USUAL_LAG_MAX} s are usual"));
     }
     Ok(unusual)
+}
+
+/// The greatest number of a value, if it has numbers alone, all above zero: other errors are others' to say.
+fn greatest(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(whole) => (*whole > 0).then_some(*whole as f64),
+        Value::Float(float) => (float.is_finite() && *float > 0.0).then_some(*float),
+        Value::Array(elements) => {
+            let all: Option<Vec<f64>> = elements.iter().map(greatest).collect();
+            all?.into_iter().reduce(f64::max)
+        }
+        _ => None,
+    }
 }
 
 /// Three digits.

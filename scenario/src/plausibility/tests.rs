@@ -100,6 +100,22 @@ fn a_vehicle_without_rotors_has_an_inertia_of_its_mass_too() {
 }
 
 #[test]
+fn limits_of_a_vehicle_without_rotors_are_in_newtons_and_newton_metres() {
+    let paper = |from: &str, to: &str| {
+        assert!(crate::PAPER.contains(from));
+        crate::PAPER.replace(from, to)
+    };
+    let grams = paper("thrust_max = 7.0", "thrust_max = 714");
+    assert_refused(&grams, "limits.thrust_max", &["158 times the weight", "in grams-force, write 7.00"]);
+    let thousandths = paper("torque_max = [0.5, 0.5, 0.5]", "torque_max = [500, 500, 500]");
+    assert_refused(&thousandths, "limits.torque_max", &["in mN m, write [0.5, 0.5, 0.5]"]);
+    // What is no number is said as of any other.
+    for wrong in ["thrust_max = nan", "thrust_max = \"7\"", "thrust_max = -7"] {
+        assert!(!read(&paper("thrust_max = 7.0", wrong)).err().unwrap().contains("weight"), "{wrong}");
+    }
+}
+
+#[test]
 fn what_is_unusual_but_possible_is_read_and_said() {
     for (line, words) in [
         ("inertia = [0.02, 0.02, 0.03]", "vehicle.inertia makes a radius of gyration"),
