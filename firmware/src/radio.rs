@@ -8,6 +8,8 @@
 //! | 6 | who flies | clients on the link | hold | the sticks |
 //! | 7 | kill switch | | | every motor stops |
 //!
+//! - A switch counts once several frames in a row say the same ([`debounced`]): a corrupted frame moves none. What the
+//!   sticks request (to begin a flight, to take it over, to land) counts in the same way.
 //! - A switch acts when it is moved, not where it is found: a transmitter that is turned on arms nothing. The kill
 //!   switch alone acts as it stands, and keeps its last received position when the receiver falls silent.
 //! - The sticks command velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
@@ -15,18 +17,22 @@
 //! - A transmitter counts as a ground station until it has been silent for [`SILENCE`]. If its sticks flew, the vehicle
 //!   then holds, and nothing takes over by itself: setpoints of the link stay refused until a client requests to fly
 //!   them, or the radio is received again and its switch selects the link.
+//! - A receiver that goes on with the last or with set positions when it has lost its transmitter says so in its link
+//!   statistics: an uplink quality of 0. That counts as silence.
 
+pub mod debounced;
 pub mod sticks;
 
 use crate::hardware::Clock;
 use crate::shared::{Event, QueuedRequest, RadioView, Severity};
+use debounced::Debounced;
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
 use flight::{Mode, Request};
-use sticks::Sticks;
+use sticks::{Push, Sticks};
 use uf_crsf::CrsfParser;
-use uf_crsf::packets::{CrsfPacket, RcChannelsPacked};
+use uf_crsf::packets::{CrsfPacket, LinkStatistics, RcChannelsPacked};
 
 /// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not receive its
 /// transmitter.
@@ -103,58 +109,116 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
     }
 }
 
-/// The last frame of the transmitter.
+/// What the transmitter says.
 pub struct Radio<'a, M: RawMutex> {
     parser: CrsfParser,
     shared: RadioView<'a, M>,
-    last: Option<(Frame, u64)>,
+    arm: Debounced<Switch>,
+    flies: Debounced<Switch>,
+    killed: Debounced<bool>,
+    push: Debounced<Push>,
+    /// Whether the receiver hears its transmitter, by its own statistics.
+    is_linked: Debounced<bool>,
+    /// When the last frame of channels came, us; none after silence.
+    heard: Option<u64>,
 }
 
 impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing received yet.
     #[must_use]
     pub fn new(shared: RadioView<'a, M>) -> Self {
-        Self { parser: CrsfParser::new(), shared, last: None }
+        Self {
+            parser: CrsfParser::new(),
+            shared,
+            arm: Debounced::default(),
+            flies: Debounced::default(),
+            killed: Debounced::default(),
+            push: Debounced::default(),
+            is_linked: Debounced::default(),
+            heard: None,
+        }
     }
 
-    /// Takes bytes that came at `now`, us, and acts on the frames of channels that they complete.
+    /// Takes bytes that came at `now`, us, and acts on the frames of channels and of statistics that they complete.
     pub fn feed(&mut self, mut bytes: &[u8], now: u64) {
+        const CHANNELS: u8 = RcChannelsPacked::PACKET_TYPE as u8;
+        const STATISTICS: u8 = LinkStatistics::PACKET_TYPE as u8;
         // By its type, because reading every kind of packet would take 12 KB of flash.
         while let Some(packet) = self.parser.next_raw_packet(&mut bytes) {
-            if let Ok(packet) = packet
-                && packet.raw_packet_type() == RcChannelsPacked::PACKET_TYPE as u8
-                && let Ok(channels) = RcChannelsPacked::from_bytes(packet.payload())
-            {
-                self.take(&channels.0, now);
+            let Ok(packet) = packet else { continue };
+            match (packet.raw_packet_type(), packet.payload()) {
+                (CHANNELS, payload) => {
+                    if let Ok(channels) = RcChannelsPacked::from_bytes(payload) {
+                        self.take(&channels.0, now);
+                    }
+                }
+                (STATISTICS, &[_, _, uplink_quality, ..]) => self.take_quality(uplink_quality, now),
+                _ => {}
             }
+        }
+    }
+
+    /// Acts on the part of its transmitter's frames, %, that the receiver says at `now`, us, that it receives.
+    fn take_quality(&mut self, uplink_quality: u8, now: u64) {
+        if self.is_linked.take(uplink_quality > 0, now) && uplink_quality == 0 {
+            self.lose();
         }
     }
 
     /// Acts on channels that came at `now`, us.
     pub fn take(&mut self, channels: &[u16; 16], now: u64) {
-        let frame = Frame::of(channels);
-        self.shared.ground_station().put((), now);
-        self.shared.killed().put(frame.killed, now);
-        self.shared.sticks().put(frame.flies == Switch::High, now);
-        // Switches act when they are moved while the radio is received.
-        if let Some((before, _)) = self.last.replace((frame, now)) {
-            self.moved(&before, &frame);
-        } else {
-            self.shared.announce(Event::new(Severity::Information, "Radio received"));
+        if self.is_linked.get() == Some(false) {
+            return;
         }
-        if frame.flies == Switch::High {
+        let frame = Frame::of(channels);
+        self.heard = Some(now);
+        if self.killed.take(frame.killed, now) {
+            self.shared.killed().put(frame.killed, now);
+        }
+        // Switches act when they are moved while the radio is received.
+        let before = self.arm.get();
+        if self.arm.take(frame.arm, now) && before.is_some() {
+            match frame.arm {
+                Switch::High => self.ask(Request::Arm),
+                Switch::Low => self.ask(Request::Disarm),
+                Switch::Middle => {}
+            }
+        }
+        let before = self.flies.get();
+        if self.flies.take(frame.flies, now) {
+            if before.is_none() {
+                self.shared.announce(Event::new(Severity::Information, "Radio received"));
+            } else if frame.flies == Switch::Middle {
+                self.ask(Request::Hold);
+            }
+        }
+        self.push.take(frame.sticks.push(), now);
+        let Some(flies) = self.flies.get() else { return };
+        self.shared.ground_station().put((), now);
+        self.shared.sticks().put(flies == Switch::High, now);
+        if flies == Switch::High {
             self.steer(&frame.sticks, now);
         }
     }
 
     /// Reports the radio lost after silence, and holds if its sticks flew.
     pub fn check_silence(&mut self, now: u64) {
-        if self.last.is_some_and(|(_, time)| now.saturating_sub(time) > SILENCE) {
-            self.last = None;
-            self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
-            if self.is_flown() && self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
-                self.ask(Request::Hold);
-            }
+        if self.heard.is_some_and(|heard| now.saturating_sub(heard) > SILENCE) {
+            self.lose();
+        }
+    }
+
+    fn lose(&mut self) {
+        let was_received = self.flies.get().is_some();
+        (self.arm, self.flies, self.push, self.heard) =
+            (Debounced::default(), Debounced::default(), Debounced::default(), None);
+        self.killed.interrupt();
+        if !was_received {
+            return;
+        }
+        self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
+        if self.is_flown() && self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
+            self.ask(Request::Hold);
         }
     }
 
@@ -164,36 +228,21 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         report.is_some_and(|report| matches!(report.value.mode, Mode::Flying | Mode::TakingOff))
     }
 
-    fn moved(&self, before: &Frame, frame: &Frame) {
-        if frame.arm != before.arm {
-            match frame.arm {
-                Switch::High => self.ask(Request::Arm),
-                Switch::Low => self.ask(Request::Disarm),
-                Switch::Middle => {}
-            }
-        }
-        if frame.flies != before.flies {
-            match frame.flies {
-                Switch::Middle => self.ask(Request::Hold),
-                Switch::Low | Switch::High => {}
-            }
-        }
-    }
-
     /// Puts down the sticks' setpoint. On the ground only a stick that is pushed up does.
     fn steer(&self, sticks: &Sticks, now: u64) {
         let Some(report) = self.shared.report().get().map(|report| report.value) else { return };
-        let begins = report.mode == Mode::Idling && sticks.begin();
+        let push = self.push.get().unwrap_or(Push::None);
+        let begins = report.mode == Mode::Idling && push == Push::Up;
         if !(report.is_airborne || begins || report.mode == Mode::Flying) {
             return;
         }
         if let Some(setpoint) = report.state.as_ref().and_then(|state| sticks.setpoint(state)) {
             self.shared.setpoint().put(setpoint, now);
         }
-        if begins || matches!(report.mode, Mode::Holding | Mode::TakingOff) && !sticks.rest() {
+        if begins || matches!(report.mode, Mode::Holding | Mode::TakingOff) && push != Push::None {
             self.ask(Request::FlySetpoints);
         }
-        if report.mode == Mode::Flying && sticks.land() {
+        if report.mode == Mode::Flying && push == Push::Down {
             self.ask(Request::Land);
         }
     }

@@ -1,16 +1,17 @@
-//! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch is
-//! where the last frame has it, nothing is armed but by a switch that was seen moving, and what the sticks ask for is
-//! made of numbers.
+//! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch moves
+//! only where several frames in a row have it, nothing is armed by the first frames, and what the sticks ask for is made
+//! of numbers.
 
 #![no_main]
 
 use arbitrary::Arbitrary;
-use flight::{Mode, Request};
 use controller_core::governor::Motion;
 use controller_core::state::State;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::radio::debounced::{DEBOUNCE, FRAMES_MIN};
 use firmware::radio::{Radio, SILENCE};
 use firmware::shared::{Report, Shared};
+use flight::{Mode, Request};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::{Quaternion, Vector3};
 use uf_crsf::packets::{PacketAddress, RcChannelsPacked, write_packet_to_buffer};
@@ -37,6 +38,9 @@ fuzz_target!(|events: Vec<Event>| {
     // Whether bytes that are no frame may have been the beginning of one.
     let mut whole = true;
     let mut last_frame = None;
+    // How the last frames had the kill switch: since when, and in how many of them.
+    let mut killing = (false, 1_000_000, 0_u32);
+    let mut last_killed = None;
     for event in events {
         match event {
             Event::Bytes(bytes) => {
@@ -51,8 +55,13 @@ fuzz_target!(|events: Vec<Event>| {
                         .unwrap();
                 let heard = last_frame.replace(now).is_some_and(|last| now - last <= SILENCE);
                 radio.feed(&frame[..length], now);
-                let killed = shared.killed.get().map(|killed| (killed.value, killed.time));
-                assert!(!whole || killed == Some((channels[6] >= HIGH, now)), "{channels:?}: {killed:?}");
+                let kills = channels[6] >= HIGH;
+                killing = if killing.0 == kills { (kills, killing.1, killing.2 + 1) } else { (kills, now, 1) };
+                let moved =
+                    shared.killed.get().filter(|killed| killed.time == now && last_killed != Some(killed.value));
+                let settled = killing.2 >= FRAMES_MIN.into() && now - killing.1 >= DEBOUNCE;
+                assert!(!whole || moved.is_none_or(|moved| settled && moved.value == kills), "{channels:?}: {moved:?}");
+                last_killed = shared.killed.get().map(|killed| killed.value);
                 while let Some(asked) = shared.requests.take() {
                     assert!(!whole || heard || asked.request != Request::Arm, "armed by the first frame: {channels:?}");
                 }

@@ -32,23 +32,29 @@ pub struct Sticks {
     pub yaw: f32,
 }
 
+/// How far sticks are pushed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Push {
+    /// All of them are in the dead zone.
+    None,
+    /// One of them is not: they take a flight over.
+    Any,
+    /// Up: they begin a flight, too.
+    Up,
+    /// All the way down: they request a landing.
+    Down,
+}
+
 impl Sticks {
-    /// Whether they are in the dead zone.
+    /// What they request beside a velocity.
     #[must_use]
-    pub fn rest(&self) -> bool {
-        [self.forward, self.right, self.up, self.yaw].iter().all(|stick| live(*stick) == 0.0)
-    }
-
-    /// Whether they begin a flight.
-    #[must_use]
-    pub fn begin(&self) -> bool {
-        self.up > BEGINS
-    }
-
-    /// Whether they request a landing: all the way down.
-    #[must_use]
-    pub fn land(&self) -> bool {
-        self.up < LANDS
+    pub fn push(&self) -> Push {
+        match self.up {
+            up if up < LANDS => Push::Down,
+            up if up > BEGINS => Push::Up,
+            _ if [self.forward, self.right, self.up, self.yaw].iter().all(|stick| live(*stick) == 0.0) => Push::None,
+            _ => Push::Any,
+        }
     }
 
     /// Their setpoint for a vehicle in this state; none where it points straight up or down.

@@ -1,12 +1,15 @@
-//! A radio's frames in, bytes as its receiver sends them: what switches and sticks do, and what silence does.
+//! A radio's frames in, bytes as its receiver sends them: what switches and sticks do, and what silence and corrupted
+//! frames do.
 
 use crate::support::Simulated;
 use crate::support::desk::Desk;
-use crate::support::line::{Delivery, Incoming, Line};
+use crate::support::line::Live;
 use crate::support::receiver::{Fed, Local, command, texts};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use firmware::radio::debounced::DEBOUNCE;
 use firmware::radio::{Radio, SILENCE, receive};
 use firmware::shared::Report;
 use flight::{Mode, Request};
@@ -34,7 +37,18 @@ const AT_REST: [u16; 16] = {
     channels
 };
 
-/// The frame that a receiver makes of channels: eleven bits each, least significant first, and DVB-S2's checksum.
+/// The frame that a receiver makes of a payload, with DVB-S2's checksum.
+fn packet(kind: u8, payload: &[u8]) -> Vec<u8> {
+    let mut frame = vec![0xC8, payload.len() as u8 + 2, kind];
+    frame.extend(payload);
+    let checksum = frame[2..].iter().fold(0_u8, |checksum, byte| {
+        (0..8).fold(checksum ^ byte, |crc, _| if crc & 0x80 == 0 { crc << 1 } else { crc << 1 ^ 0xD5 })
+    });
+    frame.push(checksum);
+    frame
+}
+
+/// Channels: eleven bits each, least significant first.
 fn frame(channels: &[u16; 16]) -> Vec<u8> {
     let mut bits = 0_u128;
     let mut payload = vec![];
@@ -48,13 +62,22 @@ fn frame(channels: &[u16; 16]) -> Vec<u8> {
             held -= 8;
         }
     }
-    let mut frame = vec![0xC8, payload.len() as u8 + 2, 0x16];
-    frame.extend(payload);
-    let checksum = frame[2..].iter().fold(0_u8, |checksum, byte| {
-        (0..8).fold(checksum ^ byte, |crc, _| if crc & 0x80 == 0 { crc << 1 } else { crc << 1 ^ 0xD5 })
-    });
-    frame.push(checksum);
-    frame
+    packet(0x16, &payload)
+}
+
+/// Link statistics with this uplink quality, %.
+fn statistics(quality: u8) -> Vec<u8> {
+    packet(0x14, &[60, 60, quality, 5, 0, 3, 2, 70, 100, 5])
+}
+
+/// The time between frames of the tests, us, and how many of them move a switch.
+const FRAME: u64 = 20_000;
+const FRAMES: u64 = DEBOUNCE / FRAME + 1;
+
+/// Frames that say the same for as long as moves a switch, from a time on, us; when the next one comes.
+fn held(radio: &mut Radio<'_, NoopRawMutex>, channels: &[u16; 16], from: u64) -> u64 {
+    (0..FRAMES).for_each(|step| radio.take(channels, from + step * FRAME));
+    from + FRAMES * FRAME
 }
 
 fn requests(shared: &Local) -> Vec<Request> {
@@ -71,23 +94,21 @@ fn report(shared: &Local, mode: Mode, is_airborne: bool) {
 
 #[test]
 fn bytes_in_pieces_with_noise_between_them_become_switches() {
-    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
-    let mut bytes = vec![0x55, 0xC8, 0xFF];
-    for kill in [LOW, LOW, HIGH] {
-        bytes.extend(frame(&channels(LOW, LOW, kill)));
-        bytes.extend([0x00, 0x16]);
+    for (broken, killed) in [(0, Some(true)), (1, None)] {
+        let (clock, shared, line) = (Simulated::default(), Local::new(), Live::default());
+        let mut bytes = frame(&channels(LOW, LOW, HIGH));
+        // One with a wrong checksum does not count.
+        *bytes.last_mut().unwrap() ^= broken;
+        clock.run(200_000, receive(line.clone(), &clock, shared.for_radio()), |now| {
+            let piece = (now / 1_000 % 20) as usize * 7;
+            line.say(bytes.get(piece..bytes.len().min(piece + 7)).unwrap_or(&[]));
+            if now % FRAME == 10_000 {
+                line.say(&[0x00, 0x16]);
+            }
+        });
+        assert_eq!(shared.killed.get().map(|killed| killed.value), killed);
+        assert_eq!(shared.ground_station.get().is_some(), killed.is_some());
     }
-    line.borrow_mut().extend(bytes.chunks(7).map(|piece| Delivery::Bytes(piece.to_vec())));
-    clock.run(300_000, receive(Incoming(&line), &clock, shared.for_radio()), |_| ());
-    assert!(shared.killed.get().unwrap().value);
-    assert!(shared.ground_station.get().is_some());
-    // One with a wrong checksum does not count.
-    let (shared, line) = (Local::new(), Line::default());
-    let mut wrong = frame(&channels(LOW, LOW, HIGH));
-    *wrong.last_mut().unwrap() ^= 1;
-    line.borrow_mut().push_back(Delivery::Bytes(wrong));
-    Simulated::default().run(300_000, receive(Incoming(&line), &Simulated::default(), shared.for_radio()), |_| ());
-    assert!(shared.killed.get().is_none());
 }
 
 #[test]
@@ -95,18 +116,16 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     // Turned on with the arm switch up.
-    radio.take(&channels(HIGH, LOW, LOW), 0);
-    radio.take(&channels(HIGH, LOW, LOW), 20_000);
+    let mut now = held(&mut radio, &channels(HIGH, LOW, LOW), 0);
     assert!(requests(&shared).is_empty());
-    radio.take(&channels(LOW, LOW, LOW), 40_000);
-    assert_eq!(requests(&shared), [Request::Disarm]);
-    radio.take(&channels(HIGH, LOW, LOW), 60_000);
-    assert_eq!(requests(&shared), [Request::Arm]);
-    radio.take(&channels(HIGH, MIDDLE, LOW), 80_000);
-    assert_eq!(requests(&shared), [Request::Hold]);
+    for (arm, flies, request) in [(LOW, LOW, Request::Disarm), (HIGH, LOW, Request::Arm), (HIGH, MIDDLE, Request::Hold)]
+    {
+        now = held(&mut radio, &channels(arm, flies, LOW), now);
+        assert_eq!(requests(&shared), [request]);
+    }
     // Silent for a while, it is as if it were turned on again.
-    radio.check_silence(80_001 + SILENCE);
-    radio.take(&channels(LOW, LOW, LOW), 1_000_000);
+    radio.check_silence(now + SILENCE);
+    held(&mut radio, &channels(LOW, LOW, LOW), 1_000_000);
     assert!(requests(&shared).is_empty());
     assert_eq!(texts(&shared), ["Radio received", "Radio lost", "Radio received"]);
 }
@@ -115,11 +134,100 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
 fn the_kill_switch_keeps_its_last_received_position() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    radio.take(&channels(LOW, LOW, HIGH), 0);
+    held(&mut radio, &channels(LOW, LOW, HIGH), 0);
     radio.check_silence(10_000_000);
     assert!(shared.killed.get().unwrap().value);
-    radio.take(&AT_REST, 20_000_000);
+    held(&mut radio, &AT_REST, 20_000_000);
     assert!(!shared.killed.get().unwrap().value);
+}
+
+/// How long after a switch was moved the motors' stop is requested, us, at most, by frames of so many hertz.
+fn slowest_kill(rate: u64) -> u64 {
+    let shared = Local::new();
+    let mut radio = Radio::new(shared.for_radio());
+    // Whole microseconds, so a little quicker: one frame more at 150 Hz.
+    let frames = |count: u64| count * (1_000_000 / rate);
+    (0..rate).for_each(|count| radio.take(&AT_REST, frames(count)));
+    // Moved right after the last of these.
+    let moved = frames(rate - 1);
+    let stopped = (rate..2 * rate).map(frames).find(|&now| {
+        radio.take(&channels(LOW, LOW, HIGH), now);
+        shared.killed.get().is_some_and(|killed| killed.value)
+    });
+    stopped.unwrap() - moved
+}
+
+#[test]
+fn the_kill_switch_takes_80_ms_at_most_as_the_page_says() {
+    let page = include_str!("../../../docs/firmware.md");
+    for rate in [50, 150, 500] {
+        let row = format!("| {rate} Hz | {} ms |", slowest_kill(rate).div_ceil(1_000));
+        assert!(page.contains(&row), "{row}");
+    }
+}
+
+/// Channels as noise makes them: any.
+fn corrupted(seed: &mut u64) -> [u16; 16] {
+    [(); 16].map(|()| {
+        // A linear congruential generator's upper bits.
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        [LOW, MIDDLE, HIGH, (*seed >> 40) as u16 % 2048][(*seed >> 60) as usize % 4]
+    })
+}
+
+#[test]
+fn corrupted_frames_whose_checksum_passes_move_no_switch_wherever_they_come() {
+    let mut seed = 44;
+    let modes = [Mode::Ready, Mode::Idling, Mode::TakingOff, Mode::Flying, Mode::Holding];
+    for (rate, burst) in [(50, 1), (50, 2), (150, 4), (500, 20)] {
+        for (place, mode) in (0..12).flat_map(|place| modes.map(|mode| (place, mode))) {
+            for flies in [LOW, MIDDLE, HIGH] {
+                let shared = Local::new();
+                report(&shared, mode, mode.flies());
+                let mut radio = Radio::new(shared.for_radio());
+                for count in 0..rate {
+                    let is_corrupted = (place..place + burst).contains(&(count % 60));
+                    let channels = if is_corrupted { corrupted(&mut seed) } else { channels(LOW, flies, LOW) };
+                    radio.feed(&frame(&channels), count * 1_000_000 / rate);
+                }
+                let killed = shared.killed.get().is_some_and(|killed| killed.value);
+                assert_eq!((requests(&shared), killed), (vec![], false), "{rate} Hz, {place}, {mode:?}, {flies}");
+                assert_eq!(texts(&shared), ["Radio received"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_receiver_that_has_lost_its_transmitter_and_repeats_its_frames_is_silent() {
+    let shared = Local::new();
+    report(&shared, Mode::Flying, true);
+    let mut radio = Radio::new(shared.for_radio());
+    let mut run = |seconds: Range<u64>, quality: u8| {
+        for now in (seconds.start * 1_000_000..seconds.end * 1_000_000).step_by(FRAME as usize) {
+            radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
+            if now.is_multiple_of(200_000) {
+                radio.feed(&statistics(quality), now);
+            }
+            radio.check_silence(now);
+        }
+        (requests(&shared), texts(&shared), shared.ground_station.get().unwrap().time)
+    };
+    let said = |words: &str| vec![words.to_owned()];
+    let (asked, words, _) = run(0..3, 100);
+    assert_eq!((asked, words), (vec![], said("Radio received")));
+    let (asked, words, received) = run(3..6, 0);
+    assert_eq!((asked, words), (vec![Request::Hold], said("Radio lost")));
+    assert!((3_000_000..3_500_000).contains(&received), "{received}");
+    // One corrupted frame of statistics says nothing.
+    radio.feed(&statistics(100), 6_000_000);
+    let (asked, words, received) = {
+        for now in (6_000_000..7_000_000).step_by(FRAME as usize) {
+            radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
+        }
+        (requests(&shared), texts(&shared), shared.ground_station.get().unwrap().time)
+    };
+    assert_eq!((asked, words, received < 3_500_000), (vec![], vec![], true));
 }
 
 /// What sticks (right, forward, up, yaw; -1 to 1) put down as a setpoint in a mode, and their request.
@@ -131,8 +239,10 @@ fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>
     for (channel, stick) in channels.iter_mut().zip(sticks) {
         *channel = (f32::from(MIDDLE) + stick * 819.0).round() as u16;
     }
-    radio.take(&channels, 5);
-    (shared.setpoint.get().map(|setpoint| setpoint.value), requests(&shared))
+    held(&mut radio, &channels, 5);
+    let mut requests = requests(&shared);
+    requests.dedup();
+    (shared.setpoint.get().map(|setpoint| setpoint.value), requests)
 }
 
 #[test]
@@ -189,7 +299,7 @@ fn offboard() -> COMMAND_LONG_DATA {
 #[test]
 fn while_the_sticks_fly_no_other_source_does() {
     let shared = Local::new();
-    Radio::new(shared.for_radio()).take(&channels(HIGH, HIGH, LOW), 0);
+    held(&mut Radio::new(shared.for_radio()), &channels(HIGH, HIGH, LOW), 0);
     let target = target();
     let mut fed = Fed::new(&shared);
     fed.message(&target, 100_000);
@@ -211,13 +321,14 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     let mut fed = Fed::new(&shared);
-    radio.take(&channels(HIGH, HIGH, LOW), 0);
+    held(&mut radio, &channels(HIGH, HIGH, LOW), 0);
     fed.message(&target(), 100_000);
     fed.message(&offboard(), SILENCE);
     fed.message(&target(), SILENCE + 100_000);
     assert!(shared.setpoint.get().is_none());
     // Received again, its switch selects who flies.
-    radio.take(&AT_REST, 10_000_000);
+    radio.check_silence(9_000_000);
+    held(&mut radio, &AT_REST, 9_900_000);
     fed.message(&target(), 10_000_000);
     assert!(shared.setpoint.get().is_some());
 }
@@ -226,11 +337,11 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
 fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    radio.take(&channels(HIGH, flies, LOW), 0);
+    let heard = held(&mut radio, &channels(HIGH, flies, LOW), 0) - FRAME;
     report(&shared, mode, true);
-    radio.check_silence(SILENCE);
+    radio.check_silence(heard + SILENCE);
     assert!(requests(&shared).is_empty());
-    (1..5).for_each(|wait| radio.check_silence(SILENCE + wait * 100_000));
+    (1..5).for_each(|wait| radio.check_silence(heard + SILENCE + wait * 100_000));
     requests(&shared)
 }
 
@@ -244,12 +355,12 @@ fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
     // Whatever the link requests meanwhile.
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    radio.take(&channels(HIGH, HIGH, LOW), 0);
+    let heard = held(&mut radio, &channels(HIGH, HIGH, LOW), 0) - FRAME;
     report(&shared, Mode::Flying, true);
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let mut fed = Fed::new(&shared);
     (0..20).for_each(|_| fed.message(&land, 0));
-    radio.check_silence(SILENCE + 1);
+    radio.check_silence(heard + SILENCE + 1);
     assert_eq!(requests(&shared), [Request::Land, Request::Hold]);
 }
 
@@ -266,7 +377,7 @@ fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
             fed.message(&companion, now);
             if is_received {
                 let mut channels = channels(if tick < 220 { LOW } else { HIGH }, HIGH, LOW);
-                channels[2] = if (230..236).contains(&tick) { 1400 } else { MIDDLE };
+                channels[2] = if (230..240).contains(&tick) { 1400 } else { MIDDLE };
                 radio.take(&channels, now);
             }
             radio.check_silence(now);

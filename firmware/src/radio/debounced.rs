@@ -1,0 +1,84 @@
+//! What a noisy line says again and again counts once it has come in [`FRAMES_MIN`] frames in a row, over [`DEBOUNCE`].
+//!
+//! CRSF has 8 bits of checksum, so of frames that are corrupted on their way one in some 256 passes. One of these must
+//! not move a switch.
+
+/// How long something must have come without anything else between, us.
+pub const DEBOUNCE: u64 = 60_000;
+
+/// In how many frames it must have come, also where a frame takes longer than usual.
+pub const FRAMES_MIN: u8 = 3;
+
+/// What counts, and what may count next.
+#[derive(Debug, Clone, Copy)]
+pub struct Debounced<T> {
+    counts: Option<T>,
+    /// Since when it comes, us, and in how many frames it came.
+    coming: Option<(T, u64, u8)>,
+}
+
+impl<T> Default for Debounced<T> {
+    /// Nothing came yet.
+    fn default() -> Self {
+        Self { counts: None, coming: None }
+    }
+}
+
+impl<T: Copy + PartialEq> Debounced<T> {
+    /// What counts; none before anything has come for long enough.
+    pub fn get(&self) -> Option<T> {
+        self.counts
+    }
+
+    /// Takes what a frame says at `now`, us; whether it counts from now on and did not before.
+    pub fn take(&mut self, value: T, now: u64) -> bool {
+        let (_, since, frames) = self.coming.filter(|(coming, ..)| *coming == value).unwrap_or((value, now, 0));
+        let frames = frames.saturating_add(1);
+        let is_new = self.counts != Some(value);
+        let changes = is_new && frames >= FRAMES_MIN && now.saturating_sub(since) >= DEBOUNCE;
+        if changes {
+            self.counts = Some(value);
+        }
+        self.coming = (is_new && !changes).then_some((value, since, frames));
+        changes
+    }
+
+    /// Forgets what may count next, after silence; what counts stays.
+    pub fn interrupt(&mut self) {
+        self.coming = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_in_three_frames_over_60_ms_counts() {
+        let mut debounced = Debounced::default();
+        for (now, counts) in [(0, None), (20_000, None), (59_999, None), (60_000, Some('a'))] {
+            debounced.take('a', now);
+            assert_eq!(debounced.get(), counts, "{now}");
+        }
+        // Slow frames: the third.
+        let taken = [100_000, 200_000, 300_000].map(|now| debounced.take('b', now));
+        assert_eq!((taken, debounced.get()), ([false, false, true], Some('b')));
+    }
+
+    #[test]
+    fn anything_else_between_begins_it_anew() {
+        let mut debounced = Debounced::default();
+        for now in (0..100_000).step_by(2_000) {
+            let other = if now % 58_000 == 0 { 'b' } else { 'a' };
+            debounced.take(other, now);
+        }
+        assert_eq!(debounced.get(), None);
+        for now in (100_000..200_000).step_by(2_000) {
+            debounced.take('a', now);
+        }
+        assert_eq!(debounced.get(), Some('a'));
+        // What counts already is not in doubt because of one frame.
+        debounced.take('b', 200_000);
+        assert_eq!(debounced.get(), Some('a'));
+    }
+}
