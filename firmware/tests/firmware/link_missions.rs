@@ -168,7 +168,7 @@ fn an_upload_that_breaks_off_leaves_the_mission_that_there_was() {
         asked.extend(replies(&shared));
     }
     let given_up = Reply::Mission(LIST, Verdict::MAV_MISSION_OPERATION_CANCELLED);
-    assert_eq!(asked, [vec![Reply::MissionRequest(LIST, 1); 4], vec![given_up]].concat());
+    assert_eq!(asked, [vec![Reply::MissionRequest(LIST, 1); 4], vec![given_up]].concat(), "every 0.3 s of 1.5");
     assert_eq!(texts(&shared), ["Mission: upload broken off, nothing changed"]);
     assert_eq!(shared.mission.count(), 1);
     assert_eq!(shared.mission.item(0), Some(item_of(&waypoint(0, 1.0, 0.0, -2.0), true)));
@@ -182,6 +182,40 @@ fn an_upload_that_breaks_off_leaves_the_mission_that_there_was() {
 }
 
 #[test]
+fn a_client_that_sends_other_items_than_requested_is_refused_and_makes_room_for_others() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.message(&count(3), 0);
+    fed.message(&waypoint(0, 1.0, 0.0, -2.0), 0);
+    assert_eq!(replies(&shared), [ask(0), ask(1)].concat());
+    // A hundred times a second, as it answers each request.
+    let mut answered = Vec::new();
+    for step in 1..=200 {
+        fed.message(&waypoint(7, 9.0, 0.0, -2.0), step * 10_000);
+        answered.extend(replies(&shared));
+    }
+    let requests = answered.iter().take_while(|reply| **reply == Reply::MissionRequest(LIST, 1)).count();
+    assert!((4..=5).contains(&requests), "{answered:?}");
+    // From then on each is refused by itself.
+    let refused = verdict(Verdict::MAV_MISSION_INVALID_SEQUENCE);
+    assert!(answered[requests..].iter().all(|reply| [reply.clone()] == refused[..]), "{answered:?}");
+    assert_eq!(texts(&shared), ["Mission: not the items requested, nothing changed"]);
+    fed.bytes(&from(7, 1, 1, &count(1)), 2_000_000);
+    assert_eq!(replies(&shared), [Reply::MissionRequest(OTHER, 0)]);
+}
+
+#[test]
+fn an_upload_that_was_left_behind_keeps_no_other_station_out() {
+    let shared = Local::new();
+    let mut fed = Fed::new(&shared);
+    fed.message(&count(3), 0);
+    replies(&shared);
+    fed.bytes(&from(7, 1, 1, &count(1)), 60_000_000);
+    let given_up = Reply::Mission(LIST, Verdict::MAV_MISSION_OPERATION_CANCELLED);
+    assert_eq!(replies(&shared), [given_up, Reply::MissionRequest(OTHER, 0)]);
+}
+
+#[test]
 fn a_frame_that_is_delivered_twice_counts_once_and_a_lost_answer_is_given_again() {
     let shared = Local::new();
     let mut fed = Fed::new(&shared);
@@ -190,8 +224,10 @@ fn a_frame_that_is_delivered_twice_counts_once_and_a_lost_answer_is_given_again(
     assert_eq!(replies(&shared), ask(0));
     twice(&mut fed, from(255, 190, 2, &waypoint(0, 1.0, 0.0, -2.0)));
     assert_eq!(replies(&shared), ask(1));
-    // Sent again on purpose, because the request for the next was lost.
+    // Sent again on purpose, because the request for the next was lost: that is repeated in a quarter of a second.
     fed.bytes(&from(255, 190, 3, &waypoint(0, 1.0, 0.0, -2.0)), 0);
+    assert_eq!(replies(&shared), []);
+    fed.bytes(&from(255, 190, 3, &waypoint(0, 1.0, 0.0, -2.0)), 250_000);
     assert_eq!(replies(&shared), ask(1));
     twice(&mut fed, from(255, 190, 4, &waypoint(1, 2.0, 0.0, -2.0)));
     assert_eq!(replies(&shared), verdict(Verdict::MAV_MISSION_ACCEPTED));

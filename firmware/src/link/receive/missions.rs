@@ -4,9 +4,10 @@
 //! MISSION_COUNT n -> MISSION_REQUEST_INT 0 -> item 0 -> ... -> item n - 1 -> MISSION_ACK
 //! ```
 //!
-//! One client uploads at a time. The next item is requested again while the client is silent, by the clock of whatever
-//! frames come; after [`TRIES`] the upload is given up, and the items that there were stay. A frame that the line
-//! delivers twice counts once. No mission is changed while it is flown. The fence and the rally points are empty lists.
+//! One client uploads at a time. The next item is requested again while it does not come, by the clock of whatever
+//! frames come; an item of another number is dropped. After [`GIVEN_UP_AFTER`] without the right one the upload is given
+//! up, and the items that there were stay. A frame that the line delivers twice counts once. No mission is changed while
+//! it is flown. The fence and the rally points are empty lists.
 
 use super::Receiver;
 use super::senders::Sender;
@@ -27,9 +28,10 @@ use mavlink::dialects::common::{
 };
 use nalgebra::Vector3;
 
-/// How long an item is waited for before it is requested again, us, and how often that is done.
-const PATIENCE: u64 = 700_000;
-const TRIES: u8 = 5;
+/// How long an item is waited for before it is requested again, us, and how long in all: five times more, as the
+/// protocol has it (<https://mavlink.io/en/services/mission.html>).
+const REQUESTED_AGAIN_AFTER: u64 = 250_000;
+const GIVEN_UP_AFTER: u64 = 1_500_000;
 
 /// MAV_MISSION_TYPE: the mission, and all lists.
 const MISSION: u8 = 0;
@@ -55,6 +57,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             self.upload = Upload {
                 client: Some(list.sender),
                 count: message.count,
+                progressed: frame.time,
                 last: self.upload.last,
                 taken: self.upload.taken,
                 ..Upload::default()
@@ -75,10 +78,11 @@ impl<M: RawMutex> Receiver<'_, M> {
         let result = if sent.list != MISSION {
             MavMissionResult::MAV_MISSION_UNSUPPORTED
         } else if self.upload.client == Some(list.sender) {
-            self.upload.tries = 0;
             if usize::from(sent.sequence) != self.upload.items.len() {
-                return self.ask_for_next(list.sender, frame.time);
+                self.upload.is_out_of_sequence = true;
+                return;
             }
+            (self.upload.progressed, self.upload.is_out_of_sequence) = (frame.time, false);
             match self.take_item(&sent) {
                 Ok(false) => return self.ask_for_next(list.sender, frame.time),
                 Ok(true) => self.finish(list.sender),
@@ -130,17 +134,21 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// Requests an item again that has not come by `now`, us, or gives the upload up.
     pub(super) fn chase_upload(&mut self, now: u64) {
-        let Some(client) = self.upload.client.filter(|_| now.saturating_sub(self.upload.requested) > PATIENCE) else {
+        let Some(client) = self.upload.client else { return };
+        if now.saturating_sub(self.upload.progressed) < GIVEN_UP_AFTER {
+            if now.saturating_sub(self.upload.requested) >= REQUESTED_AGAIN_AFTER {
+                self.ask_for_next(client, now);
+            }
             return;
-        };
-        self.upload.tries += 1;
-        if self.upload.tries < TRIES {
-            return self.ask_for_next(client, now);
         }
         self.upload.client = None;
-        self.say("Mission: upload broken off, nothing changed");
-        let list = MissionList { sender: client, list: MISSION };
-        self.shared.reply(Reply::Mission(list, MavMissionResult::MAV_MISSION_OPERATION_CANCELLED));
+        let (result, words) = if self.upload.is_out_of_sequence {
+            (MavMissionResult::MAV_MISSION_INVALID_SEQUENCE, "Mission: not the items requested, nothing changed")
+        } else {
+            (MavMissionResult::MAV_MISSION_OPERATION_CANCELLED, "Mission: upload broken off, nothing changed")
+        };
+        self.say(words);
+        self.shared.reply(Reply::Mission(MissionList { sender: client, list: MISSION }, result));
     }
 
     /// A client breaks its upload off.

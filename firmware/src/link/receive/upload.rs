@@ -12,9 +12,11 @@ pub(super) struct Upload {
     /// How many items there will be.
     pub count: u16,
     pub items: Vec<Item, ITEMS>,
-    /// When the next was requested, us, and how often.
+    /// When the next was requested, and when the last one came, us.
     pub requested: u64,
-    pub tries: u8,
+    pub progressed: u64,
+    /// Whether an item of another number has come since.
+    pub is_out_of_sequence: bool,
     /// The last frame that counted, by its sequence number and checksum.
     pub last: Option<(u8, u16)>,
     /// Whose items were taken last.
