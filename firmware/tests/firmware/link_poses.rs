@@ -3,7 +3,7 @@
 use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::{extended, patched, v1, v2};
 use core::f32::consts::FRAC_1_SQRT_2;
-use estimation::estimator::PoseMeasurement;
+use estimation::estimator::{PoseMeasurement, Settings};
 use firmware::link::pose::SOURCE_SILENCE;
 use flight::Stamped;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
@@ -190,6 +190,18 @@ fn odometrys_quality_reset_counter_and_covariance_go_along() {
             assert_eq!(sent(ODOMETRY_DATA { pose_covariance: covariance, ..odometry(1) }, [0, 0, 0]), plain);
         }
     }
+}
+
+#[test]
+fn a_velocity_and_its_covariance_change_nothing_that_is_flown_as_the_page_says() {
+    let plain = sent(odometry(1), [0, 0, 0]);
+    for variance in [f32::NAN, f32::INFINITY, 0.0, 1e-9, 1e9] {
+        let velocity_covariance = [variance; 21];
+        assert_eq!(sent(ODOMETRY_DATA { velocity_covariance, ..odometry(1) }, [0, 0, 0]), plain);
+    }
+    let vehicle = *firmware::configuration::embedded().unwrap().vehicle();
+    assert_eq!(Settings::bmi088(&vehicle).parameters().velocity_noise, 0.0, "no deviation: not fused");
+    assert!(include_str!("../../../docs/mocap.md").contains("`velocity_covariance` is\nnot read"));
 }
 
 #[test]
