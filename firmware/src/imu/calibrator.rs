@@ -98,7 +98,13 @@ fn place(unit: Unit) -> usize {
 impl<'a, M: RawMutex> Calibrator<'a, M> {
     /// Begins with what was kept, and with the gyro's bias of today.
     pub fn new(shared: ImuView<'a, M>, now: u64) -> Self {
-        let calibrations = [Unit::First, Unit::Second].map(|unit| calibration::load(shared.parameters(), unit));
+        let calibrations = [(Unit::First, 1), (Unit::Second, 2)].map(|(unit, number)| {
+            calibration::load(shared.parameters(), unit).unwrap_or_else(|unlevelled| {
+                let words = format_args!("IMU{number}_LEVEL: above 5 degrees, not used");
+                shared.announce(Event::new(Severity::Warning, words));
+                unlevelled
+            })
+        });
         Self { shared, calibrations, job: Some(Job::new(Procedure::Gyro, None, now)) }
     }
 

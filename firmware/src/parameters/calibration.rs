@@ -24,9 +24,11 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
     PARAMETERS.iter().skip(first as usize).take(ROWS).map(|row| row.parameter)
 }
 
-/// What corrects the samples of `unit`. A level that is tilted by more than 5 degrees levels nothing.
-#[must_use]
-pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Calibration {
+/// What corrects the samples of `unit`.
+///
+/// # Errors
+/// All of it but the level, where that is tilted by more than 5 degrees.
+pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Result<Calibration, Calibration> {
     let mut values = [0.0; ROWS];
     for (value, name) in values.iter_mut().zip(rows(unit)) {
         *value = parameters.get(name);
@@ -36,7 +38,7 @@ pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Ca
     let unlevelled = Calibration { gyro_bias: Vector3::new(b_x, b_y, b_z), offset, scale, ..Calibration::NONE };
     let up = Vector3::new(level_x, level_y, 1.0);
     let level = Rest { angular_velocity: Vector3::zeros(), specific_force: offset + up.component_div(&scale) };
-    unlevelled.levelled(&level).unwrap_or(unlevelled)
+    unlevelled.levelled(&level).map_err(|_| unlevelled)
 }
 
 /// Keeps what corrects the samples of `unit`.

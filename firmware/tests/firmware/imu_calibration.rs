@@ -4,6 +4,7 @@ use crate::support::PERIOD;
 use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, ordered, report, texts, whichever};
+use estimation::imu::Calibration;
 use firmware::hardware::Unit;
 use firmware::imu;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
@@ -64,8 +65,12 @@ fn run_both(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
     );
 }
 
+fn loaded(shared: &Local, unit: Unit) -> Calibration {
+    calibration::load((&shared.parameters).into(), unit).unwrap()
+}
+
 fn bias(shared: &Local, unit: Unit) -> Vector3<f32> {
-    calibration::load((&shared.parameters).into(), unit).gyro_bias
+    loaded(shared, unit).gyro_bias
 }
 
 #[test]
@@ -171,7 +176,7 @@ fn what_goes_wrong_is_answered_in_words_and_changes_nothing() {
         assert_eq!(results(&shared), expected, "{words}");
         let said = texts(&shared);
         assert!(said.iter().any(|text| text == words), "{said:?}");
-        let kept = calibration::load((&shared.parameters).into(), Unit::First);
+        let kept = loaded(&shared, Unit::First);
         assert!((kept.gyro_bias - FIRST.bias).norm() < 1e-4, "as found at boot");
         assert_eq!((kept.offset, kept.scale), (Vector3::zeros(), Vector3::repeat(1.0)));
     }
@@ -216,7 +221,7 @@ fn six_sides_and_a_level_calibrate_both_accelerometers() {
     let twice = [MAV_RESULT_IN_PROGRESS, MAV_RESULT_ACCEPTED];
     assert_eq!(results(&shared), [twice, twice].concat());
     for (unit, wrong) in [(Unit::First, FIRST), (Unit::Second, SECOND)] {
-        let found = calibration::load((&shared.parameters).into(), unit);
+        let found = loaded(&shared, unit);
         assert!((found.gyro_bias - wrong.bias).norm() < 1e-4, "{unit:?}: {}", found.gyro_bias);
         assert!((found.offset - wrong.offset).norm() < 2e-3, "{unit:?}: {}", found.offset);
         assert!((found.scale.component_mul(&wrong.factor) - Vector3::repeat(1.0)).norm() < 1e-3, "{unit:?}");
@@ -253,7 +258,7 @@ fn a_second_sensor_that_fails_meanwhile_is_reported_and_the_first_calibrated() {
         }
     });
     assert_eq!(texts(&shared), ["Calibration: not of the IMU that stands by", "Accelerometer calibrated: now level"]);
-    assert_eq!(calibration::load((&shared.parameters).into(), Unit::Second).offset, Vector3::zeros());
+    assert_eq!(loaded(&shared, Unit::Second).offset, Vector3::zeros());
     assert!((bias(&shared, Unit::Second) - SECOND.bias).norm() < 1e-4, "found at boot");
 }
 
@@ -269,11 +274,11 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
         }
     });
     clock.run(50_000, storage.keep(&clock, shared.for_storage()), |_| ());
-    let found = calibration::load((&shared.parameters).into(), Unit::First);
+    let found = loaded(&shared, Unit::First);
 
     let (body, shared) = (Body::new(), Local::new());
     Storage::load(Words::<32>(&chip), shared.for_storage());
-    assert_eq!(calibration::load((&shared.parameters).into(), Unit::First), found);
+    assert_eq!(loaded(&shared, Unit::First), found);
     let mut sensor = Sensor { body: &body, wrong: FIRST, is_second: false };
     body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |_| ());
     let sample = shared.imu.get().unwrap().value;
@@ -283,28 +288,30 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
 #[test]
 fn stored_rows_and_calibration_are_the_same_thing() {
     let shared = Local::new();
-    assert_eq!(calibration::load((&shared.parameters).into(), Unit::First), estimation::imu::Calibration::NONE);
+    assert_eq!(loaded(&shared, Unit::First), Calibration::NONE);
     for (name, value) in [(Name::Imu2ScaleX, 1.02), (Name::Imu2OffsetZ, -0.5), (Name::Imu2GyroX, 0.01)] {
         shared.parameters.set(name, value).unwrap();
     }
     for (x, y) in [(0.0, 0.0), (0.05, -0.03), (-0.087, 0.0)] {
         shared.parameters.set(Name::Imu2LevelX, x).unwrap();
         shared.parameters.set(Name::Imu2LevelY, y).unwrap();
-        let loaded = calibration::load((&shared.parameters).into(), Unit::Second);
+        let found = loaded(&shared, Unit::Second);
         // What the level vehicle feels comes out as straight up.
         let up = Vector3::new(x, y, 1.0).normalize() * GRAVITY;
         let felt = up.component_div(&Vector3::new(1.02, 1.0, 1.0)) + Vector3::new(0.0, 0.0, -0.5);
-        assert!((loaded.force(&felt) - Vector3::z() * GRAVITY).norm() < 1e-4, "{x} {y}");
-        calibration::store((&shared.parameters).into(), Unit::Second, &loaded).unwrap();
-        let again = calibration::load((&shared.parameters).into(), Unit::Second);
-        assert!((again.level - loaded.level).norm() < 1e-6);
-        assert_eq!((again.offset, again.scale, again.gyro_bias), (loaded.offset, loaded.scale, loaded.gyro_bias));
+        assert!((found.force(&felt) - Vector3::z() * GRAVITY).norm() < 1e-4, "{x} {y}");
+        calibration::store((&shared.parameters).into(), Unit::Second, &found).unwrap();
+        let again = loaded(&shared, Unit::Second);
+        assert!((again.level - found.level).norm() < 1e-6);
+        assert_eq!((again.offset, again.scale, again.gyro_bias), (found.offset, found.scale, found.gyro_bias));
     }
-    // Invalid rows: no level at all beats a wrong one.
+    // Invalid rows: no level at all beats a wrong one, and that is said.
     shared.parameters.set(Name::Imu2LevelX, 0.09).unwrap();
     shared.parameters.set(Name::Imu2LevelY, 0.09).unwrap();
-    let loaded = calibration::load((&shared.parameters).into(), Unit::Second);
-    assert_eq!((loaded.level, loaded.offset.z), (estimation::imu::Calibration::NONE.level, -0.5));
+    let unlevelled = calibration::load((&shared.parameters).into(), Unit::Second).unwrap_err();
+    assert_eq!((unlevelled.level, unlevelled.offset.z), (Calibration::NONE.level, -0.5));
+    run(&Body::new(), &shared, 1, |_| ());
+    assert!(texts(&shared).contains(&"IMU2_LEVEL: above 5 degrees, not used".to_owned()));
 }
 
 fn preflight(gyro: f32, accelerometer: f32) -> COMMAND_LONG_DATA {
