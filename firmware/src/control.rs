@@ -22,7 +22,7 @@ use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
-use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Transition};
+use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Stored, Transition};
 use heapless::Vec;
 
 /// How long the motors' frame may take to write at most, us: half of a period, where that is less.
@@ -163,6 +163,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             disarm: self.shared.disarm().take() || handed_over,
             killed: self.shared.killed().get().is_some_and(|killed| killed.value),
             is_busy: self.shared.is_busy(),
+            lost: self.lost(),
             is_clock_doubtful: self.shared.clock_doubtful().is_raised(),
             motors_fail: self.reported.writing.is_some(),
             battery: self.battery(now),
@@ -172,6 +173,12 @@ impl<'a, M: RawMutex> Control<'a, M> {
             mission_item: self.mission_item(asked.as_ref()),
             ..Inputs::default()
         }
+    }
+
+    /// What was stored and cannot be read any more.
+    fn lost(&self) -> Option<Stored> {
+        let parameter = self.shared.parameters().lost().map(Stored::Parameter);
+        if self.shared.signing().is_lost() { Some(Stored::SigningKey) } else { parameter }
     }
 
     /// The mission's item that the pilot needs.

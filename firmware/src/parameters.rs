@@ -25,6 +25,11 @@ use tuned::{Built, Unfit};
 /// One value for each row of the table.
 type Values = [f32; PARAMETERS.len()];
 
+/// Words with a bit for each row, and the bit above them: every value is lost, and nothing was set since.
+const LOST_WORDS: usize = PARAMETERS.len() / BITS + 1;
+const ALL_LOST: usize = LOST_WORDS * BITS - 1;
+const BITS: usize = u32::BITS as usize;
+
 /// The table's defaults.
 const DEFAULTS: Values = {
     let mut values = [0.0; PARAMETERS.len()];
@@ -40,6 +45,8 @@ const DEFAULTS: Values = {
 pub struct Parameters<M: RawMutex> {
     /// The numbers' bits. Each stands alone: no reader needs two that belong together.
     values: [AtomicU32; PARAMETERS.len()],
+    /// A bit for each row whose stored value is lost, and [`ALL_LOST`].
+    lost: [AtomicU32; LOST_WORDS],
     /// Something changed since it was last saved.
     changed: Signal<M, ()>,
     /// What the rows of the configuration change; none before boot.
@@ -87,7 +94,8 @@ impl<M: RawMutex> Parameters<M> {
             values[index] = AtomicU32::new(DEFAULTS[index].to_bits());
             index += 1;
         }
-        Self { values, changed: Signal::new(), built: Mutex::new(Cell::new(None)) }
+        let lost = [const { AtomicU32::new(0) }; LOST_WORDS];
+        Self { values, lost, changed: Signal::new(), built: Mutex::new(Cell::new(None)) }
     }
 
     /// Boots: the rows of the configuration change what was `built`. Values that were tuned on another one are dropped;
@@ -145,6 +153,7 @@ impl<M: RawMutex> Parameters<M> {
         }
         let value = if name.is_tuned() { self.judged(name, value)? } else { value };
         self.put(name, value);
+        self.find(name as usize);
         self.changed.signal(());
         Ok(())
     }
@@ -164,10 +173,37 @@ impl<M: RawMutex> Parameters<M> {
     fn restore(&self, name: Name, value: f32) -> Result<(), ValueRefusal> {
         let is_as_built = name.is_tuned() && value.is_nan();
         if !is_as_built && !name.row().allows(value) {
+            self.lose(name as usize);
             return Err(ValueRefusal::OutOfRange(name));
         }
         self.put(name, value);
         Ok(())
+    }
+
+    /// Every stored value is lost.
+    fn lose_all(&self) {
+        self.lose(ALL_LOST);
+    }
+
+    /// An operator sets values again, after all of them were lost.
+    pub fn set_again(&self) {
+        self.find(ALL_LOST);
+    }
+
+    /// What was stored, cannot be read, and was not set since: the first such row, or all of them.
+    #[must_use]
+    pub fn lost(&self) -> Option<&'static str> {
+        let is_lost = |bit: usize| self.lost[bit / BITS].load(Ordering::Relaxed) >> (bit % BITS) & 1 == 1;
+        let row = PARAMETERS.iter().find(|row| is_lost(row.parameter as usize));
+        if is_lost(ALL_LOST) { Some("parameters") } else { row.map(|row| row.name) }
+    }
+
+    fn lose(&self, bit: usize) {
+        self.lost[bit / BITS].fetch_or(1 << (bit % BITS), Ordering::Relaxed);
+    }
+
+    fn find(&self, bit: usize) {
+        self.lost[bit / BITS].fetch_and(!(1 << (bit % BITS)), Ordering::Relaxed);
     }
 
     /// Has storage look for something to save.

@@ -205,7 +205,7 @@ values! {
         Read: ControlView, SimulatorView, TransmitView, StatusView, CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
-    pub signing: Signing<M> { All: StorageView; Read: ReceiveView, TransmitView }
+    pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
     /// The memory card, where the board has one. Its task may be silent for [`CARD_SILENCE`].

@@ -4,7 +4,7 @@ use super::chain::Flown;
 use super::mission::{MissionItem, MissionStep};
 use super::motor::Word;
 use super::policy::Handed;
-use super::refusal::Refusal;
+use super::refusal::{Refusal, Stored};
 use super::request::Request;
 use super::rules::{Mode, Transition};
 use super::stream_check::Streamed;
@@ -59,6 +59,8 @@ pub struct Inputs<'a> {
     pub killed: bool,
     /// Whether a flash write is under way, which may stall the processor.
     pub is_busy: bool,
+    /// What an operator had stored, and what cannot be read any more.
+    pub lost: Option<Stored>,
     /// Whether the clock's accuracy is unknown: its crystal does not run.
     pub is_clock_doubtful: bool,
     /// Whether the last tick's command did not reach the motors.

@@ -83,7 +83,7 @@ pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;
 pub use policy::{Aboard, Guarded, Handed, NoPolicy, Shielded};
 pub use reason::Reason;
-pub use refusal::{Grounded, Refusal};
+pub use refusal::{Grounded, Refusal, Stored};
 pub use request::{Request, SETPOINT_AGE_MAX};
 pub use rules::{Mode, Transition};
 pub use settings::FlightSettings;

@@ -49,6 +49,16 @@ impl fmt::Display for Grounded {
     }
 }
 
+/// What is stored over a restart and guards flights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Stored {
+    /// The key that frames are signed with.
+    SigningKey,
+    /// The parameter of this name, of at most 16 characters; or all of them.
+    Parameter(&'static str),
+}
+
 /// Why a request or a setpoint was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -64,6 +74,8 @@ pub enum Refusal {
     /// Flash is being written, which may stall the processor; or a changed configuration is certified; or a restart is
     /// under way.
     Busy,
+    /// This was stored and cannot be read any more; a default would be weaker than what the operator chose.
+    Lost(Stored),
     /// The clock's crystal does not run.
     ClockDoubtful,
     /// Commands do not reach the motors.
@@ -141,6 +153,8 @@ impl fmt::Display for Refusal {
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Refused: {field:.28} out of range"),
             Self::Mission(refusal) => return write!(f, "Mission refused: {refusal}"),
+            Self::Lost(Stored::Parameter(name)) => return write!(f, "Refused: {name:.16} lost; set again"),
+            Self::Lost(Stored::SigningKey) => "Refused: signing key lost; set it over USB",
             Self::AlreadyArmed => "Refused: armed already",
             Self::Stopped => "Refused: stopped in flight; disarm first",
             Self::Killed => "Refused: the kill switch is on",

@@ -5,7 +5,7 @@ use crate::support::{Flight, Handed, PERIOD, SETTLING, at_rest, at_rest_with, di
 use controller_core::prelude::*;
 use estimation::estimator::{Fault, Increment};
 use estimation::imu::ImuFault;
-use flight::{Battery, Mode, MotorTest, Output, Refusal, Request, Stamped};
+use flight::{Battery, Mode, MotorTest, Output, Refusal, Request, Stamped, Stored};
 
 const NOW: u64 = 5_000_000;
 
@@ -220,6 +220,13 @@ fn nothing_turns_while_flash_is_written() {
     flight.inputs.is_busy = true;
     let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1_000_000 });
     assert_eq!(flight.answer(test), Err(Refusal::Busy));
+}
+
+#[test]
+fn what_was_stored_and_is_lost_does_not_arm() {
+    for stored in [Stored::SigningKey, Stored::Parameter("FENCE_RADIUS")] {
+        refuses(Handed { lost: Some(stored), ..at_rest(NOW) }, Refusal::Lost(stored));
+    }
 }
 
 #[test]

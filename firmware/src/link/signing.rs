@@ -106,6 +106,8 @@ pub enum Refusal {
     Replayed,
     /// Its stamp is too far ahead: its sender's clock is wrong.
     Ahead,
+    /// There was a key, and it cannot be read any more.
+    KeyLost,
 }
 
 impl fmt::Display for Refusal {
@@ -115,6 +117,7 @@ impl fmt::Display for Refusal {
             Self::Forged => "Refused: signed with another key",
             Self::Replayed => "Refused: its time stamp was used before",
             Self::Ahead => "Refused: its time stamp is too far ahead",
+            Self::KeyLost => "Refused: signing key lost; set it over USB",
         })
     }
 }
@@ -141,12 +144,15 @@ struct State {
     kept: Stamp,
     /// Whether flash has another key.
     changed: bool,
+    /// Whether there was a key in flash that cannot be read any more.
+    is_lost: bool,
 }
 
 impl State {
     const fn new() -> Self {
         let streams = [Stream { id: [0; 3], newest: 0 }; STREAMS];
-        Self { key: None, newest: 0, since: 0, is_set: false, streams, floor: 0, kept: 0, changed: false }
+        let (key, is_set, changed, is_lost) = (None, false, false, false);
+        Self { key, newest: 0, since: 0, is_set, streams, floor: 0, kept: 0, changed, is_lost }
     }
 
     #[inline(never)]
@@ -215,7 +221,7 @@ impl<M: RawMutex> Signing<M> {
     pub fn set(&self, key: Option<Key>, stamp: Stamp, now: u64) {
         let stamp = if stamp < LATEST { stamp } else { 0 };
         self.with(|state| {
-            if state.key != key {
+            if state.key != key || state.is_lost {
                 *state = State { key, floor: stamp, changed: true, ..State::new() };
             }
             state.follow(stamp, now);
@@ -227,7 +233,9 @@ impl<M: RawMutex> Signing<M> {
     /// # Errors
     /// [`Refusal`].
     pub fn judge(&self, frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal> {
-        let Some(key) = self.key() else { return Ok(()) };
+        let Some(key) = self.key() else {
+            return if must_be_signed && self.is_lost() { Err(Refusal::KeyLost) } else { Ok(()) };
+        };
         let Some((signed, [link, stamp @ ..], value)) = parts(frame) else {
             return if must_be_signed { Err(Refusal::Unsigned) } else { Ok(()) };
         };
@@ -269,13 +277,13 @@ impl<M: RawMutex> Signing<M> {
         }
     }
 
-    /// What is to be written to flash at `now`, us, if it is not up to date.
+    /// What is to be written to flash at `now`, us, if it is not up to date there, or `is_endangered`.
     #[must_use]
-    pub fn unkept(&self, now: u64) -> Option<[u32; WORDS]> {
+    pub fn unkept(&self, now: u64, is_endangered: bool) -> Option<[u32; WORDS]> {
         self.with(|state| {
             let clock = state.clock(now);
             let does = clock.saturating_add(LEAST_AHEAD) <= state.kept || state.key.is_none();
-            if does && !state.changed {
+            if does && !state.changed && !is_endangered {
                 return None;
             }
             (state.kept, state.changed) = (clock.saturating_add(AHEAD), false);
@@ -290,6 +298,18 @@ impl<M: RawMutex> Signing<M> {
         let [key @ .., low, high] = *words;
         let (key, kept) = (Key::of_words(key), Stamp::from(high) << u32::BITS | Stamp::from(low));
         self.with(|state| *state = State { key, newest: kept, floor: kept, kept, ..State::new() });
+    }
+
+    /// There was a key in flash at boot, and it cannot be read: until another is set, or none any more, no frame counts
+    /// that would have to be signed.
+    pub fn lose(&self) {
+        self.with(|state| state.is_lost = true);
+    }
+
+    /// Whether that is so.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.with(|state| state.is_lost).unwrap_or(true)
     }
 }
 

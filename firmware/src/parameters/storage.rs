@@ -3,10 +3,14 @@
 //! All values are one record of a [`journal`](super::journal), each known by its place in the table, so a firmware with
 //! more parameters reads what an older one wrote. The key that frames are signed with is another.
 //!
+//! What was stored and cannot be read is lost, and the vehicle does not arm until it is set again: a default would open
+//! a fence or a link that its owner closed. Nothing is written over lost parameters before that, so a restart does not
+//! forget the loss.
+//!
 //! Erasing a sector of internal flash can stall the whole processor for seconds on some boards. So nothing is written
 //! while a motor turns, and while something is, none begins to: control refuses.
 
-use super::journal::{Journal, Kind, VALUES_MAX};
+use super::journal::{Journal, Kept, Kind, VALUES_MAX};
 use super::table::PARAMETERS;
 use super::{DEFAULTS, Values};
 use crate::deadline::within;
@@ -31,26 +35,37 @@ pub struct Storage<F> {
 }
 
 impl<F: Flash> Storage<F> {
-    /// Reads every parameter, once, before the first tick. What is missing, damaged or out of range stays at its
-    /// default; all but the first is announced.
+    /// Reads every parameter, once, before the first tick. What was never stored stays at its default; what is lost, or
+    /// out of range, as well, and that is announced.
     pub fn load<M: RawMutex>(flash: F, shared: StorageView<'_, M>) -> Self {
-        let (mut journal, found) = Journal::open(flash);
+        let mut journal = Journal::open(flash);
         let mut values = DEFAULTS.map(f32::to_bits);
-        let _ = journal.read(Kind::Parameters, &mut values);
-        let mut signing = [0; WORDS];
-        if journal.read(Kind::Signing, &mut signing).is_ok() {
-            shared.signing().restore(&signing);
-            // Its stamps are to be kept ahead before anything flies.
-            shared.parameters().save_soon();
+        if journal.read(Kind::Parameters, &mut values) == Kept::Lost {
+            shared.parameters().lose_all();
+            shared.announce(Event::new(Severity::Critical, "Parameters lost: defaults taken; set them again"));
         }
-        if found.is_err() {
-            shared.announce(Event::new(Severity::Warning, "Parameters: stored values unusable, defaults taken"));
+        let mut signing = [0; WORDS];
+        match journal.read(Kind::Signing, &mut signing) {
+            Kept::Whole => {
+                shared.signing().restore(&signing);
+                // Its stamps are to be kept ahead before anything flies.
+                shared.parameters().save_soon();
+            }
+            Kept::Lost => {
+                shared.signing().lose();
+                shared.announce(Event::new(Severity::Critical, "Signing key lost: set it over USB"));
+            }
+            Kept::Never => {}
         }
         for (row, value) in PARAMETERS.iter().zip(values) {
             if shared.parameters().restore(row.parameter, f32::from_bits(value)).is_err() {
-                let words = format_args!("{}: stored value unusable, default taken", row.name);
-                shared.announce(Event::new(Severity::Warning, words));
+                let words = format_args!("{} lost: default taken; set it again", row.name);
+                shared.announce(Event::new(Severity::Critical, words));
             }
+        }
+        if [Kind::Parameters, Kind::Signing].iter().any(|kind| journal.is_endangered(*kind)) {
+            shared.announce(Event::new(Severity::Warning, "Stored values: one copy only, written anew"));
+            shared.parameters().save_soon();
         }
         Self { journal, saved: shared.parameters().all() }
     }
@@ -73,12 +88,15 @@ impl<F: Flash> Storage<F> {
         }
     }
 
-    /// Writes the values if one differs from what was saved.
+    /// Writes the values if one differs from what was saved, or has no copy; none while one is lost.
     fn save<M: RawMutex>(&mut self, shared: StorageView<'_, M>) {
         let values = shared.parameters().all();
         // By their bits: what is as built is no number, and no number is equal to itself.
         let differ = |value: &f32, saved: &f32| value.to_bits() != saved.to_bits();
-        if !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved)) {
+        let is_saved = !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved))
+            && !self.journal.is_endangered(Kind::Parameters)
+            && !self.journal.is_lost(Kind::Parameters);
+        if is_saved || shared.parameters().lost().is_some() {
             return;
         }
         let written = self.append(Kind::Parameters, &values.map(f32::to_bits)).is_ok();
@@ -93,7 +111,7 @@ impl<F: Flash> Storage<F> {
 
     /// Writes the key and how far its stamps have come, if what was written does not do any more.
     fn save_signing<M: RawMutex>(&mut self, shared: StorageView<'_, M>, now: u64) {
-        let unkept = shared.signing().unkept(now);
+        let unkept = shared.signing().unkept(now, self.journal.is_endangered(Kind::Signing));
         if unkept.is_some_and(|words| self.append(Kind::Signing, &words).is_err()) {
             shared.announce(Event::new(Severity::Warning, "Signing: key or stamps could not be saved"));
         }

@@ -78,9 +78,14 @@ offers! {
     [M: RawMutex] Take<'_, Requests<M>> { fn take() -> Option<QueuedRequest>; }
     [M: RawMutex] Write<'_, Signal<M, ()>> { fn signal(what: ()); }
     [M: RawMutex] Take<'_, Signal<M, ()>> { fn wait() -> impl Future<Output = ()>; }
-    [M: RawMutex] Read<'_, Parameters<M>> { fn get(name: Name) -> f32; fn flight_settings() -> FlightSettings; }
+    [M: RawMutex] Read<'_, Parameters<M>> {
+        fn get(name: Name) -> f32;
+        fn flight_settings() -> FlightSettings;
+        fn lost() -> Option<&'static str>;
+    }
     [M: RawMutex] Write<'_, Parameters<M>> {
         fn set(name: Name, value: f32) -> Result<(), ValueRefusal>;
+        fn set_again();
         fn get(name: Name) -> f32;
         fn flight_settings() -> FlightSettings;
     }
@@ -93,6 +98,7 @@ offers! {
     [M: RawMutex] Read<'_, Signing<M>> {
         fn judge(frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal>;
         fn sign(frame: &mut MAVLinkV2MessageRaw, now: u64);
+        fn is_lost() -> bool;
     }
     [M: RawMutex] Read<'_, Recorder<M>> {
         fn size() -> Option<u32>;

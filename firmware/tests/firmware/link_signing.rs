@@ -318,7 +318,7 @@ fn one_stamp_far_ahead_blocks_no_other_sender() {
     assert_eq!(judged(&signing, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
     // After a start it may be set once more.
     let started = Signing::<NoopRawMutex>::new();
-    started.restore(&signing.unkept(0).unwrap());
+    started.restore(&signing.unkept(0, false).unwrap());
     let mut sender = Sender::new(9, Key::new([9; 32]), FIRST + 9 * year);
     assert_eq!(judged(&started, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
 }

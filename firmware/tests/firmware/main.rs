@@ -9,6 +9,7 @@ mod card_cuts;
 mod card_link;
 mod control;
 mod embedded;
+mod guards;
 mod hil_answers;
 mod hil_lines;
 mod hil_samples;

@@ -149,8 +149,19 @@ fn record(number: u32, values: &[f32]) -> Record {
 /// A chip in which another firmware left these values.
 pub fn chip_with(values: &[f32]) -> RefCell<Chip> {
     let chip = Chip::erased();
-    Words::<4>(&chip).write(0, &record(1, values)).unwrap();
+    (0..2).for_each(|copy| Words::<4>(&chip).write(copy, &record(1 + copy as u32, values)).unwrap());
     chip
+}
+
+#[test]
+fn a_record_without_a_copy_is_used_reported_and_written_anew() {
+    let chip = Chip::erased();
+    Words::<4>(&chip).write(0, &record(1, &[42.0])).unwrap();
+    let shared = Local::new();
+    kept::<4>(&chip, &shared, 10_000, |_| ());
+    assert_eq!(shared.parameters.get(Name::SystemId), 42.0);
+    assert_eq!((texts(&shared), chip.borrow().writes), (vec!["Stored values: one copy only, written anew".into()], 3));
+    assert!(texts(&booted::<4>(&chip)).is_empty());
 }
 
 #[test]
@@ -159,7 +170,8 @@ fn a_stored_value_out_of_range_is_reported_and_the_default_used() {
         let shared = booted::<4>(&chip_with(&[value, 25.0, 7.0, 2.0, 0.0]));
         assert_eq!(shared.parameters.get(Name::SystemId), 1.0);
         assert_eq!(shared.parameters.get(Name::HorizontalSpeed), 7.0);
-        assert_eq!(texts(&shared), ["SYS_ID: stored value unusable, default taken"]);
+        assert_eq!(texts(&shared), ["SYS_ID lost: default taken; set it again"]);
+        assert_eq!(shared.parameters.lost(), Some("SYS_ID"));
     }
 }
 
@@ -179,15 +191,22 @@ fn records_of_firmware_with_fewer_parameters_and_with_more_are_read() {
 }
 
 #[test]
-fn flash_that_fails_is_reported_and_flown_without() {
+fn flash_that_fails_is_reported_and_nothing_is_written_before_something_is_set() {
     let chip = Chip::erased();
     chip.borrow_mut().fails = true;
     let shared = booted::<4>(&chip);
-    assert_eq!(texts(&shared), ["Parameters: stored values unusable, defaults taken"]);
+    let lost = ["Parameters lost: defaults taken; set them again", "Signing key lost: set it over USB"];
+    assert_eq!(texts(&shared), lost);
+    // What the vehicle sets by itself, a calibration, is no word of an operator's.
     let shared = Local::new();
-    kept::<4>(&chip, &shared, 10_000, |_| shared.parameters.set(Name::SystemId, 42.0).unwrap());
-    let texts = texts(&shared);
-    assert_eq!(texts, ["Parameters: stored values unusable, defaults taken", "SYS_ID: set, but could not be saved"]);
+    kept::<4>(&chip, &shared, 10_000, |_| shared.parameters.set(Name::Imu1GyroX, 0.01).unwrap());
+    assert_eq!((texts(&shared), chip.borrow().writes), (lost.map(str::to_owned).to_vec(), 0));
+    let shared = Local::new();
+    kept::<4>(&chip, &shared, 10_000, |_| {
+        shared.parameters.set_again();
+        shared.parameters.set(Name::SystemId, 42.0).unwrap();
+    });
+    assert_eq!(texts(&shared)[2..], ["SYS_ID: set, but could not be saved"]);
 }
 
 #[test]

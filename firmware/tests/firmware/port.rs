@@ -161,7 +161,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
         }
     });
     assert!(bench.shared.on_port.is_raised());
-    assert_eq!(bench.shared.signing.unkept(0), None);
+    assert_eq!(bench.shared.signing.unkept(0, false), None);
     // All of it but its last byte before the port is opened, and a frame from there.
     let bench = Bench::new(true, SECOND, |bench, now| {
         bench.port.0.set(now > LOOK);
@@ -175,7 +175,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
         }
     });
     assert_eq!(bench.frames(), 1);
-    assert_eq!(bench.shared.signing.unkept(0), None);
+    assert_eq!(bench.shared.signing.unkept(0, false), None);
     // It would have counted there.
     let bench = Bench::new(true, 2 * SECOND, |bench, now| {
         bench.port.0.set(true);
@@ -183,5 +183,5 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
             bench.incoming[1].say(&key());
         }
     });
-    assert!(bench.shared.signing.unkept(0).is_some());
+    assert!(bench.shared.signing.unkept(0, false).is_some());
 }

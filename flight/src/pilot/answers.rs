@@ -21,6 +21,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         self.chain.as_ref().map_err(|grounded| Refusal::Grounded(*grounded))?;
         require(!inputs.killed, Refusal::Killed)?;
         require(!inputs.is_busy, Refusal::Busy)?;
+        inputs.lost.map_or(Ok(()), |stored| Err(Refusal::Lost(stored)))?;
         require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
         require(!inputs.motors_fail, Refusal::MotorsFail)?;
         require(!self.has_lost_a_rotor(), Refusal::RotorLost)?;

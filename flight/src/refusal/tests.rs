@@ -37,6 +37,8 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Stopped,
         Refusal::Killed,
         Refusal::Busy,
+        Refusal::Lost(Stored::SigningKey),
+        Refusal::Lost(Stored::Parameter(LONG)),
         Refusal::ClockDoubtful,
         Refusal::MotorsFail,
         Refusal::BatteryLow,

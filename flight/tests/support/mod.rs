@@ -22,7 +22,7 @@ use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Sett
 use estimation::imu::ImuFault;
 use flight::{
     Aboard, Battery, FlightSettings, Inputs, Memory, MissionItem, NoPolicy, Outcome, Output, Pilot, Pose, Reason,
-    Refusal, Request, Stamped, Velocity,
+    Refusal, Request, Stamped, Stored, Velocity,
 };
 pub use hummingbird::{certified, paper_law as configuration, rotors};
 use nalgebra::UnitQuaternion;
@@ -66,6 +66,7 @@ pub struct Handed {
     pub disarm: bool,
     pub killed: bool,
     pub is_busy: bool,
+    pub lost: Option<Stored>,
     pub is_clock_doubtful: bool,
     pub motors_fail: bool,
     pub battery: Battery,
@@ -88,6 +89,7 @@ impl Handed {
             disarm,
             killed,
             is_busy,
+            lost,
             is_clock_doubtful,
             motors_fail,
             battery,
@@ -107,6 +109,7 @@ impl Handed {
             disarm: *disarm,
             killed: *killed,
             is_busy: *is_busy,
+            lost: *lost,
             is_clock_doubtful: *is_clock_doubtful,
             motors_fail: *motors_fail,
             battery: *battery,

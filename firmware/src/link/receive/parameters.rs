@@ -66,7 +66,11 @@ impl<M: RawMutex> Receiver<'_, M> {
         } else if name.is_tuned() && shared.is_turning() {
             warn(&format_args!("{}: not while a motor turns", name.row().name));
         } else {
-            match shared.parameters().set(name, value) {
+            let result = shared.parameters().set(name, value);
+            if result.is_ok() {
+                shared.parameters().set_again();
+            }
+            match result {
                 Ok(()) if name.is_tuned() => {
                     let words = format_args!("{}: may be flown, from the next boot on", name.row().name);
                     shared.announce(Event::new(Severity::Information, words));
