@@ -4,7 +4,7 @@
 //! | word of a record | holds |
 //! |---|---|
 //! | 0 | its number, one more than that of the record before it |
-//! | 1 | how many words it holds, and in its upper half whether there is a record of the other kind beside it |
+//! | 1 | how many words it holds, and in its upper half the number of the other kind's newest |
 //! | 2 to 62 | these, the rest of them blank |
 //! | 63 | CRC-32 of the others, and its kind |
 //!
@@ -15,7 +15,8 @@
 //! ever continued. Reading back after writing finds a place that looked blank and was not.
 //!
 //! A bit that flips later, or a record that is gone, costs one of two copies. [`Kept::Lost`] is what is gone with both:
-//! because the other kind's record knows of it, or because the flash holds something, and no record. It does not become
+//! because the other kind's record knows of a newer one, because two places behind the newest record of all are neither
+//! blank nor whole (a cut leaves one), or because the flash holds something, and no record. It does not become
 //! [`Kept::Never`] by writing the other kind.
 
 use crate::hardware::{Fault, Flash, Record};
@@ -30,10 +31,14 @@ const VALUES_END: usize = size_of::<Record>() / size_of::<u32>() - 1;
 /// A word without anything in it.
 const BLANK: u32 = u32::MAX;
 
-/// The upper half of a record's second word where there is a record of the other kind. Older firmware wrote zeros, and
-/// reads this as more words than there are.
-const HAS_OTHER: u32 = 0x5AA5_0000;
+/// Where a record's second word has how many words it holds. Older firmware wrote zeros above it, and reads anything
+/// else there as more words than there are.
 const COUNT_MASK: u32 = 0xFFFF;
+
+/// Above it: the other kind has a record, that is lost, and the lowest bits of the number of its first copy.
+const HAS_OTHER: u32 = 1 << 31;
+const OTHER_LOST: u32 = 1 << 30;
+const OTHER_BITS: u32 = 14;
 
 /// Copies of a record.
 const COPIES: usize = 2;
@@ -70,8 +75,8 @@ struct Newest {
     values: u32,
     /// Whether the record before it is its copy.
     is_doubled: bool,
-    /// Whether it knows of the other kind's.
-    has_other: bool,
+    /// Its second word.
+    head: u32,
 }
 
 /// The journal and where it goes on.
@@ -113,11 +118,38 @@ impl<F: Flash> Journal<F> {
         if journal.number > 0 {
             (journal.next, journal.end) = (ends[journal.sector], (journal.sector + 1) * F::RECORDS);
         }
-        journal.lost = [Kind::Parameters, Kind::Signing].map(|kind| {
-            let [this, other] = [kind, kind.other()].map(|kind| journal.newest[kind as usize]);
-            this.is_none() && other.map_or(!journal.is_blank, |other| other.has_other)
-        });
+        journal.lost = [Kind::Parameters, Kind::Signing].map(|kind| journal.has_lost(kind));
         journal
+    }
+
+    /// Whether a kind's newest record is gone.
+    fn has_lost(&mut self, kind: Kind) -> bool {
+        let [this, other] = [kind, kind.other()].map(|kind| self.newest[kind as usize]);
+        let known = other.map_or(0, |other| other.head & !COUNT_MASK);
+        match (this, other) {
+            (None, None) => return !self.is_blank,
+            (None, Some(_)) => return known != 0,
+            (Some(this), Some(other)) if other.number > this.number && known != 0 => {
+                // Any of the two copies will do.
+                if known != stated(this.number) && known != stated(this.number.wrapping_sub(1)) {
+                    return true;
+                }
+            }
+            _ => {}
+        }
+        // What is left of records behind the newest of all, less those that hold as many words as the other kind's.
+        let newest = self.newest.iter().flatten().map(|newest| newest.place + 1);
+        let begin = newest.filter(|place| (place - 1) / F::RECORDS == self.sector).max().unwrap_or(self.next);
+        let is_others = |count: u32| match (this, other) {
+            (Some(this), _) if this.count() == count => false,
+            (_, Some(other)) => other.count() == count,
+            (this, None) => this.is_some_and(|this| this.knows_other()),
+        };
+        let remains = (begin..self.next).filter(|place| match self.flash.read(*place) {
+            Ok(record) => !is_others(record[1] & COUNT_MASK),
+            Err(Fault) => true,
+        });
+        remains.count() >= COPIES
     }
 
     /// Takes note of a whole record.
@@ -133,8 +165,7 @@ impl<F: Flash> Journal<F> {
             _ => {
                 let is_copy = |before: &Newest| before.values == values && follows(before.number, number);
                 let is_doubled = newest.as_ref().is_some_and(is_copy);
-                let has_other = record[1] & !COUNT_MASK == HAS_OTHER;
-                *newest = Some(Newest { place, number, values, is_doubled, has_other });
+                *newest = Some(Newest { place, number, values, is_doubled, head: record[1] });
             }
         }
         if number >= self.number {
@@ -148,23 +179,24 @@ impl<F: Flash> Journal<F> {
         self.lost[kind as usize]
     }
 
-    /// Reads a kind's newest record over as many of `words` as it holds; what there is of it.
+    /// Reads a kind's newest record that is whole over as many of `words` as it holds; what there is of the newest.
     pub fn read(&mut self, kind: Kind, words: &mut [u32]) -> Kept {
+        let kept = if self.is_lost(kind) { Kept::Lost } else { Kept::Whole };
         let Some(newest) = self.newest[kind as usize] else {
-            return if self.is_lost(kind) { Kept::Lost } else { Kept::Never };
+            return if kept == Kept::Lost { kept } else { Kept::Never };
         };
         let Ok(record) = self.flash.read(newest.place) else { return Kept::Lost };
         let stored = record[VALUES..VALUES_END].iter().take((record[1] & COUNT_MASK) as usize);
         words.iter_mut().zip(stored).for_each(|(word, stored)| *word = *stored);
-        Kept::Whole
+        kept
     }
 
     /// Whether one more damage would lose a kind's newest record, if there is one: it has no copy, or does not know of
     /// the other kind's.
     #[must_use]
     pub fn is_endangered(&self, kind: Kind) -> bool {
-        let has_other = self.exists(kind.other());
-        self.newest[kind as usize].is_some_and(|newest| !newest.is_doubled || has_other && !newest.has_other)
+        let has_other = self.newest(kind.other()).is_some();
+        self.newest(kind).is_some_and(|newest| !newest.is_doubled || has_other && !newest.knows_other())
     }
 
     /// Writes a record of `words`, of which there are at most [`VALUES_MAX`].
@@ -180,8 +212,8 @@ impl<F: Flash> Journal<F> {
         self.lost[kind as usize] = false;
         // The other kind's is to know of it.
         let other = kind.other();
-        match self.newest[other as usize] {
-            Some(newest) if !newest.has_other => {
+        match self.newest(other) {
+            Some(newest) if !newest.knows_other() => {
                 let mut record = self.flash.read(newest.place)?;
                 self.put(other, &mut record)
             }
@@ -189,19 +221,24 @@ impl<F: Flash> Journal<F> {
         }
     }
 
-    /// Writes both copies of a record.
-    fn put(&mut self, kind: Kind, record: &mut Record) -> Result<(), Fault> {
-        (0..COPIES).try_for_each(|_| {
-            self.make_room(kind.other())?;
-            self.write(kind, record)
-        })
+    /// A kind's newest record; none if that is lost, whatever older one there is.
+    fn newest(&self, kind: Kind) -> Option<Newest> {
+        self.newest[kind as usize].filter(|_| !self.is_lost(kind))
     }
 
-    /// Erases the other sector where this one is full, and copies the newest of the kind that would be `left` behind.
+    /// Writes both copies of a record, one behind the other.
+    fn put(&mut self, kind: Kind, record: &mut Record) -> Result<(), Fault> {
+        self.make_room(kind.other())?;
+        (0..COPIES).try_for_each(|_| self.write(kind, record))
+    }
+
+    /// Erases the other sector where this one has no room for both copies, and copies the newest of the kind that would
+    /// be `left` behind.
     fn make_room(&mut self, left: Kind) -> Result<(), Fault> {
-        if self.next == self.end {
+        if self.next + COPIES > self.end {
             let other = 1 - self.sector;
-            if self.newest.iter().flatten().any(|newest| newest.place / F::RECORDS == other) {
+            let newest = [Kind::Parameters, Kind::Signing].map(|kind| self.newest(kind));
+            if newest.iter().flatten().any(|newest| newest.place / F::RECORDS == other) {
                 return Err(Fault);
             }
             if !self.is_blank {
@@ -209,7 +246,7 @@ impl<F: Flash> Journal<F> {
             }
             (self.next, self.end) = (other * F::RECORDS, (other + 1) * F::RECORDS);
         }
-        match self.newest[left as usize] {
+        match self.newest(left) {
             Some(newest) if newest.place / F::RECORDS != self.next / F::RECORDS => {
                 let mut record = self.flash.read(newest.place)?;
                 (0..COPIES).try_for_each(|_| self.write(left, &mut record))
@@ -227,9 +264,13 @@ impl<F: Flash> Journal<F> {
         self.next += 1;
         self.is_blank = false;
         self.number = self.number.wrapping_add(1);
-        let has_other = if self.exists(kind.other()) { HAS_OTHER } else { 0 };
+        let other = match self.newest(kind.other()) {
+            Some(newest) => stated(newest.number.wrapping_sub(newest.is_doubled.into())),
+            None if self.is_lost(kind.other()) => HAS_OTHER | OTHER_LOST,
+            None => 0,
+        };
         record[0] = self.number;
-        record[1] = record[1] & COUNT_MASK | has_other;
+        record[1] = record[1] & COUNT_MASK | other;
         record[VALUES_END] = checksum(&record[..VALUES_END]) ^ SEALS[kind as usize];
         self.flash.write(place, record)?;
         if self.flash.read(place)? != *record {
@@ -238,11 +279,23 @@ impl<F: Flash> Journal<F> {
         self.find(kind as usize, place, record);
         Ok(())
     }
+}
 
-    /// Whether there is a record of a kind, or was one.
-    fn exists(&self, kind: Kind) -> bool {
-        self.newest[kind as usize].is_some() || self.is_lost(kind)
+impl Newest {
+    /// How many words it holds.
+    fn count(&self) -> u32 {
+        self.head & COUNT_MASK
     }
+
+    /// Whether it knows that there is a record of the other kind.
+    fn knows_other(&self) -> bool {
+        self.head & HAS_OTHER != 0
+    }
+}
+
+/// What a record says of the other kind's newest, the first copy of which has this number.
+fn stated(number: u32) -> u32 {
+    HAS_OTHER | (number & ((1 << OTHER_BITS) - 1)) << (u32::BITS / 2)
 }
 
 impl Kind {

@@ -41,6 +41,7 @@ impl<F: Flash> Storage<F> {
         let mut journal = Journal::open(flash);
         let mut values = DEFAULTS.map(f32::to_bits);
         if journal.read(Kind::Parameters, &mut values) == Kept::Lost {
+            values = DEFAULTS.map(f32::to_bits);
             shared.parameters().lose_all();
             shared.announce(Event::new(Severity::Critical, "Parameters lost: defaults taken; set them again"));
         }

@@ -6,7 +6,7 @@ use crate::support::chip::{Chip, Words};
 use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, disarm, texts};
 use firmware::boot;
-use firmware::link::signing::Key;
+use firmware::link::signing::{Key, WORDS};
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::QueuedRequest;
@@ -35,15 +35,14 @@ fn key() -> Option<Key> {
     Key::new([0xC5; 32])
 }
 
-fn bytes_of_the_key() -> [u8; 32] {
-    [0xC5; 32]
-}
-
-/// A chip on which a vehicle has kept all of it.
+/// A chip on which a vehicle has kept all of it, and other values and another key before.
 fn chip() -> RefCell<Chip> {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
     let mut storage = Storage::load(Words::<4>(&chip), shared.for_storage());
     boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
+    shared.parameters.set(Name::FenceRadius, 500.0).unwrap();
+    shared.set_signing(Key::new([0x11; 32]), 0, 0);
+    clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
     for (name, value) in PARAMETER_GUARDS.iter().flat_map(|(_, values)| *values) {
         shared.parameters.set(*name, *value).unwrap();
     }
@@ -92,14 +91,20 @@ fn texts_of_arming(shared: &Local) -> Vec<String> {
     texts(shared)
 }
 
-/// The places of records with the key, and of those without.
-fn places(chip: &RefCell<Chip>) -> [Vec<usize>; 2] {
+/// Bytes of a record.
+const RECORD: usize = 256;
+
+/// The places of records of as many words as the key has, or the parameters, the newest first.
+fn places(chip: &RefCell<Chip>, words: u8) -> Vec<usize> {
     let bytes = &chip.borrow().bytes;
-    let used = bytes.chunks(256).enumerate().filter(|(_, record)| record.iter().any(|byte| *byte != 0xFF));
-    let (with, without): (Vec<_>, Vec<_>) =
-        used.partition(|(_, record)| record.windows(32).any(|part| part == bytes_of_the_key()));
-    [with, without].map(|places| places.into_iter().map(|(place, _)| place).collect())
+    let records = bytes.chunks(RECORD).enumerate().filter(|(_, record)| record[4..6] == [words, 0]);
+    let mut numbers: Vec<_> = records.map(|(place, record)| (record[0], place)).collect();
+    numbers.sort_by(|a, b| b.cmp(a));
+    numbers.into_iter().map(|(_, place)| place).collect()
 }
+
+const OF_THE_KEY: u8 = WORDS as u8;
+const OF_PARAMETERS: u8 = PARAMETERS.len() as u8;
 
 #[test]
 fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
@@ -112,9 +117,10 @@ fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
         assert!(!shared.signing.is_lost() && shared.parameters.lost().is_none(), "{what}");
         assert!(!obeys_a_stranger(&shared), "{what}");
     };
-    let places = places(&chip).concat();
-    assert!(places.len() >= 4, "two copies of both");
-    for bit in places.iter().flat_map(|place| place * 2048..(place + 1) * 2048) {
+    let places = [OF_THE_KEY, OF_PARAMETERS].map(|words| places(&chip, words));
+    assert!(places.iter().all(|places| places.len() >= 4), "two copies, and two older: {places:?}");
+    let places = places.concat();
+    for bit in places.iter().flat_map(|place| place * 8 * RECORD..(place + 1) * 8 * RECORD) {
         let damaged = chip.clone();
         damaged.borrow_mut().bytes[bit / 8] ^= 1 << (bit % 8);
         holds(&damaged, &format!("bit {bit}"));
@@ -122,66 +128,77 @@ fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
     for place in places {
         for byte in [0x00, 0xFF, 0x5A] {
             let damaged = chip.clone();
-            damaged.borrow_mut().bytes[place * 256..(place + 1) * 256].fill(byte);
+            damaged.borrow_mut().bytes[place * RECORD..(place + 1) * RECORD].fill(byte);
             holds(&damaged, &format!("record {place}, {byte}"));
         }
     }
 }
 
-/// A bit damaged in every record that holds the key, or in every other.
-fn without(chip: &RefCell<Chip>, kind: usize) -> RefCell<Chip> {
+/// A bit damaged in so many of the newest records of one kind.
+fn without(chip: &RefCell<Chip>, words: u8, records: usize) -> RefCell<Chip> {
     let damaged = chip.clone();
-    for place in &places(chip)[kind] {
-        damaged.borrow_mut().bytes[place * 256 + 20] ^= 1;
+    for place in places(chip, words).into_iter().take(records) {
+        damaged.borrow_mut().bytes[place * RECORD + 20] ^= 1;
     }
     damaged
 }
 
+/// Newest records that are damaged: both copies, and with them everything older.
+const DAMAGES: [usize; 2] = [2, usize::MAX];
+
 #[test]
-fn with_both_copies_gone_it_does_not_arm_and_says_so_until_it_is_set_again() {
-    let chip = chip();
-    // The key.
-    let damaged = without(&chip, 0);
-    for _ in 0..2 {
-        let shared = booted(&damaged, 30_000_000, true);
-        assert_eq!(texts(&shared)[0], KEY_LOST[0]);
-        assert_eq!(changed(&shared), ["signing key"]);
-        assert!(!obeys_a_stranger(&shared));
-        assert_eq!(texts(&shared), [KEY_LOST[1]], "a station that comes late");
-        assert_eq!(texts_of_arming(&shared), [KEY_LOST[1]]);
+fn with_both_copies_of_the_key_gone_nothing_counts_but_over_usb_until_it_is_set_again() {
+    for records in DAMAGES {
+        let damaged = without(&chip(), OF_THE_KEY, records);
+        // A restart does not forget it, whatever the vehicle finds out by itself.
+        for _ in 0..2 {
+            let shared = booted(&damaged, 30_000_000, true);
+            assert_eq!(texts(&shared)[0], KEY_LOST[0]);
+            assert_eq!(changed(&shared), ["signing key"]);
+            assert!(!obeys_a_stranger(&shared));
+            assert_eq!(texts(&shared), [KEY_LOST[1]], "a station that comes late");
+            assert_eq!(texts_of_arming(&shared), [KEY_LOST[1]]);
+        }
+        for again in [key(), None] {
+            let (chip, shared, clock) = (damaged.clone(), Local::new(), Simulated::default());
+            let mut storage = Storage::load(Words::<4>(&chip), shared.for_storage());
+            shared.set_signing(again, 0, 0);
+            clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
+            let shared = booted(&chip, 10_000, false);
+            assert_eq!((shared.signing.key(), shared.signing.is_lost()), (again, false));
+        }
     }
-    let shared = booted(&damaged, 10_000, false);
-    let mut storage = Storage::load(Words::<4>(&damaged), shared.for_storage());
-    shared.set_signing(key(), 0, 0);
-    let clock = Simulated::default();
-    clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
-    assert_eq!(changed(&booted(&damaged, 10_000, false)), [""; 0]);
-    // Parameters: what the vehicle finds out by itself is no operator's word.
-    let damaged = without(&chip, 1);
-    for _ in 0..2 {
-        let shared = booted(&damaged, 30_000_000, true);
-        assert_eq!(texts(&shared)[0], PARAMETERS_LOST[0]);
-        let lost = PARAMETER_GUARDS.map(|(name, _)| name).into_iter().filter(|name| *name != "`SIGN_ONLY`");
-        assert!(changed(&shared).into_iter().eq(lost), "only signing is by default as it was");
-        assert!(!obeys_a_stranger(&shared));
-        texts(&shared);
-        assert_eq!(texts_of_arming(&shared), [PARAMETERS_LOST[1]]);
+}
+
+#[test]
+fn with_both_copies_of_the_parameters_gone_it_does_not_arm_until_one_is_set_again() {
+    for records in DAMAGES {
+        let damaged = without(&chip(), OF_PARAMETERS, records);
+        for _ in 0..2 {
+            let shared = booted(&damaged, 30_000_000, true);
+            assert_eq!(texts(&shared)[0], PARAMETERS_LOST[0]);
+            let lost = PARAMETER_GUARDS.map(|(name, _)| name).into_iter().filter(|name| *name != "`SIGN_ONLY`");
+            assert!(changed(&shared).into_iter().eq(lost), "only signing is by default as it was");
+            assert!(!obeys_a_stranger(&shared));
+            texts(&shared);
+            assert_eq!(texts_of_arming(&shared), [PARAMETERS_LOST[1]]);
+        }
+        let (shared, clock) = (Local::new(), Simulated::default());
+        let mut storage = Storage::load(Words::<4>(&damaged), shared.for_storage());
+        shared.on_port.raise();
+        let fence = PARAM_SET_DATA {
+            param_value: 20.0,
+            target_system: 1,
+            target_component: 1,
+            param_id: "FENCE_RADIUS".into(),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+        };
+        Fed::new(&shared).message(&fence, 0);
+        clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
+        let shared = booted(&damaged, 10_000, false);
+        assert_eq!((shared.parameters.lost(), shared.parameters.get(Name::FenceRadius)), (None, 20.0));
+        assert_eq!(shared.signing.key(), key());
     }
-    let (shared, clock) = (Local::new(), Simulated::default());
-    let mut storage = Storage::load(Words::<4>(&damaged), shared.for_storage());
-    shared.on_port.raise();
-    let fence = PARAM_SET_DATA {
-        param_value: 20.0,
-        target_system: 1,
-        target_component: 1,
-        param_id: "FENCE_RADIUS".into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    };
-    Fed::new(&shared).message(&fence, 0);
-    clock.run(10_000, storage.keep(&clock, shared.for_storage()), |_| ());
-    let shared = booted(&damaged, 10_000, false);
-    assert_eq!((shared.parameters.lost(), shared.parameters.get(Name::FenceRadius)), (None, 20.0));
-    assert_eq!(shared.signing.key(), key());
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn cut_everywhere<const WORD: usize>(
 fn survives_cuts<const WORD: usize>(nested: bool) {
     // From blank flash to a second time through both sectors.
     let chip = Chip::erased();
-    for round in 0..2 * RECORDS + 3 {
+    for round in 0..RECORDS + 3 {
         let (before, new) = (round as f32, round as f32 + 1.0);
         for torn in TORN {
             cut_everywhere::<WORD>(&chip, torn, new, &|cut, done| {
@@ -150,7 +150,7 @@ fn either_kind_survives_a_cut_at_any_word_while_the_other_is_saved() {
     for (kept, saved) in [(Kind::Signing, Kind::Parameters), (Kind::Parameters, Kind::Signing)] {
         let chip = Chip::erased();
         assert!(save(&chip, kept, KEPT));
-        for round in 1..2 * RECORDS as u32 + 3 {
+        for round in 1..RECORDS as u32 + 3 {
             for torn in TORN {
                 for power in 1.. {
                     let cut = chip.clone();
