@@ -85,7 +85,8 @@ fn anchor(heading: &str) -> String {
 
 #[test]
 fn every_link_between_pages_leads_to_a_file() {
-    let mut pages = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "vehicles/README.md"].map(str::to_owned).to_vec();
+    let pages = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "vehicles/README.md"];
+    let mut pages = pages.map(str::to_owned).to_vec();
     for entry in fs::read_dir(Path::new(ROOT).join("docs")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         pages.extend(name.ends_with(".md").then(|| format!("docs/{name}")));

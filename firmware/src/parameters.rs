@@ -25,10 +25,12 @@ use tuned::{Built, Unfit};
 /// One value for each row of the table.
 type Values = [f32; PARAMETERS.len()];
 
-/// Words with a bit for each row, and the bit above them: every value is lost, and nothing was set since.
+/// Words with a bit for each row that is lost, and their last bit: every value is lost, and none was set since.
 const LOST_WORDS: usize = PARAMETERS.len() / BITS + 1;
 const ALL_LOST: usize = LOST_WORDS * BITS - 1;
 const BITS: usize = u32::BITS as usize;
+
+const _: () = assert!(PARAMETERS.len() <= ALL_LOST);
 
 /// The table's defaults.
 const DEFAULTS: Values = {
@@ -153,7 +155,7 @@ impl<M: RawMutex> Parameters<M> {
         }
         let value = if name.is_tuned() { self.judged(name, value)? } else { value };
         self.put(name, value);
-        self.find(name as usize);
+        self.note(name as usize, false);
         self.changed.signal(());
         Ok(())
     }
@@ -173,7 +175,8 @@ impl<M: RawMutex> Parameters<M> {
     fn restore(&self, name: Name, value: f32) -> Result<(), ValueRefusal> {
         let is_as_built = name.is_tuned() && value.is_nan();
         if !is_as_built && !name.row().allows(value) {
-            self.lose(name as usize);
+            // Nobody can set that one; without it the rows of the configuration are as built, and boot says so.
+            self.note(name as usize, name != Name::TunedOn);
             return Err(ValueRefusal::OutOfRange(name));
         }
         self.put(name, value);
@@ -182,12 +185,12 @@ impl<M: RawMutex> Parameters<M> {
 
     /// Every stored value is lost.
     fn lose_all(&self) {
-        self.lose(ALL_LOST);
+        self.note(ALL_LOST, true);
     }
 
     /// An operator sets values again, after all of them were lost.
     pub fn set_again(&self) {
-        self.find(ALL_LOST);
+        self.note(ALL_LOST, false);
     }
 
     /// What was stored, cannot be read, and was not set since: the first such row, or all of them.
@@ -198,12 +201,14 @@ impl<M: RawMutex> Parameters<M> {
         if is_lost(ALL_LOST) { Some("parameters") } else { row.map(|row| row.name) }
     }
 
-    fn lose(&self, bit: usize) {
-        self.lost[bit / BITS].fetch_or(1 << (bit % BITS), Ordering::Relaxed);
-    }
-
-    fn find(&self, bit: usize) {
-        self.lost[bit / BITS].fetch_and(!(1 << (bit % BITS)), Ordering::Relaxed);
+    /// Takes note of what is lost, or not any more.
+    fn note(&self, bit: usize, is_lost: bool) {
+        let (word, mask) = (&self.lost[bit / BITS], 1 << (bit % BITS));
+        if is_lost {
+            word.fetch_or(mask, Ordering::Relaxed);
+        } else {
+            word.fetch_and(!mask, Ordering::Relaxed);
+        }
     }
 
     /// Has storage look for something to save.

@@ -201,7 +201,7 @@ fn a_velocity_and_its_covariance_change_nothing_that_is_flown_as_the_page_says()
     }
     let vehicle = *firmware::configuration::embedded().unwrap().vehicle();
     assert_eq!(Settings::bmi088(&vehicle).parameters().velocity_noise, 0.0, "no deviation: not fused");
-    assert!(include_str!("../../../docs/mocap.md").contains("`velocity_covariance` is\nnot read"));
+    assert!(include_str!("../../../docs/mocap.md").contains("`velocity_covariance`\nis not read"));
 }
 
 #[test]
