@@ -126,15 +126,13 @@ impl<F: Flash> Journal<F> {
     fn has_lost(&mut self, kind: Kind) -> bool {
         let [this, other] = [kind, kind.other()].map(|kind| self.newest[kind as usize]);
         let known = other.map_or(0, |other| other.head & !COUNT_MASK);
+        // Any of the two copies will do.
+        let numbers = |this: Newest| [this.number, this.number.wrapping_sub(1)].map(stated);
+        let is_known = |this: Newest| known == 0 || numbers(this).contains(&known);
         match (this, other) {
             (None, None) => return !self.is_blank,
             (None, Some(_)) => return known != 0,
-            (Some(this), Some(other)) if other.number > this.number && known != 0 => {
-                // Any of the two copies will do.
-                if known != stated(this.number) && known != stated(this.number.wrapping_sub(1)) {
-                    return true;
-                }
-            }
+            (Some(this), Some(other)) if other.number > this.number && !is_known(this) => return true,
             _ => {}
         }
         // What is left of records behind the newest of all, less those that hold as many words as the other kind's.
