@@ -12,12 +12,16 @@ const LINKS: usize = 40;
 /// How the name ends under which a file grows.
 const UNFINISHED: &str = ".part";
 
+/// Unix's mode of a file that only its owner reads and writes.
+#[cfg(unix)]
+const ONLY_THE_OWNER: u32 = 0o600;
+
 /// How many files this program has started: no two grow under one name.
 static STARTED: AtomicU64 = AtomicU64::new(0);
 
 /// A file that shows up under its name only when it is complete; dropped before that, it leaves nothing behind.
 ///
-/// A device or a pipe is written to as it stands: it must not be replaced by a file of its name.
+/// It has the owner and the mode of the file that it replaces. A device or a pipe is written to as it stands: it must not be replaced by a file of its name.
 #[derive(Debug)]
 pub struct WholeFile {
     writer: BufWriter<File>,
@@ -31,6 +35,18 @@ impl WholeFile {
     /// # Errors
     /// If it cannot be created, or the name is a directory's: at once, not when the work is done.
     pub fn create(path: &Path) -> io::Result<Self> {
+        Self::begin(path, false)
+    }
+
+    /// As [`Self::create`], for what nobody else is to read: where it replaces nothing, only its owner may.
+    ///
+    /// # Errors
+    /// As [`Self::create`]'s.
+    pub fn private(path: &Path) -> io::Result<Self> {
+        Self::begin(path, true)
+    }
+
+    fn begin(path: &Path, is_private: bool) -> io::Result<Self> {
         if path.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
@@ -39,10 +55,15 @@ impl WholeFile {
         }
         let path = followed(path)?;
         let beginning = hidden(&path).ok_or(io::ErrorKind::InvalidInput)?;
-        let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
-        let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED}"));
-        let writer = BufWriter::new(File::create(&temporary)?);
-        Ok(Self { writer, names: Some((temporary, path)) })
+        loop {
+            let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
+            let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED}"));
+            match opened(&temporary, &path, is_private) {
+                // What a killed program of this number left, or a link that somebody laid there.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                file => return Ok(Self { writer: BufWriter::new(file?), names: Some((temporary, path)) }),
+            }
+        }
     }
 
     /// As [`Self::create`], and keeps other programs from starting the same file in this way until it is dropped or
@@ -126,6 +147,33 @@ impl Drop for WholeFile {
         if let Some((temporary, _)) = &self.names {
             remove(temporary);
         }
+    }
+}
+
+/// Opens the new file `temporary`, which is to replace `path`. Nobody may read what only some may read in the end.
+fn opened(temporary: &Path, path: &Path, is_private: bool) -> io::Result<File> {
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
+        let replaced = path.metadata().ok();
+        if is_private || replaced.is_some() {
+            options.mode(ONLY_THE_OWNER);
+        }
+        let file = options.open(temporary)?;
+        if let Some(replaced) = replaced {
+            // Only a superuser may: it then stays the owner's file. Before the mode, which this would change.
+            let _ = fchown(&file, Some(replaced.uid()), Some(replaced.gid()));
+            file.set_permissions(replaced.permissions()).inspect_err(|_| remove(temporary))?;
+        }
+        Ok(file)
+    }
+    #[cfg(not(unix))]
+    {
+        // There a file has its directory's permissions.
+        let _ = (path, is_private);
+        options.open(temporary)
     }
 }
 

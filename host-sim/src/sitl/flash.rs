@@ -65,7 +65,8 @@ impl DeskFlash {
         let Some(path) = &self.file else { return Ok(()) };
         let image: Vec<u8> = self.records.borrow().iter().flatten().flat_map(|word| word.to_le_bytes()).collect();
         let write = || {
-            let mut file = WholeFile::create(path)?;
+            // The key that signs frames may be among them.
+            let mut file = WholeFile::private(path)?;
             file.write_all(&image)?;
             file.finish()
         };

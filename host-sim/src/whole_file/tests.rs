@@ -43,6 +43,65 @@ fn a_name_that_is_taken_by_a_directory_leaves_nothing_behind() {
 
 #[cfg(unix)]
 #[test]
+fn a_private_file_is_its_owners_alone_and_a_file_that_is_replaced_keeps_its_mode() {
+    use std::fs::{Permissions, set_permissions};
+    use std::os::unix::fs::PermissionsExt;
+    let directory = directory("mode");
+    let (secret, log) = (directory.join("parameters.bin"), directory.join("log.csv"));
+    let modes = || {
+        let entries = std::fs::read_dir(&directory).unwrap().map(|entry| entry.unwrap().metadata().unwrap());
+        entries.map(|found| found.permissions().mode() & 0o777).collect::<Vec<u32>>()
+    };
+    let write_secret = |expected: u32| {
+        let mut file = WholeFile::private(&secret).unwrap();
+        file.write_all(b"key").unwrap();
+        // Also while it grows.
+        assert!(modes().iter().all(|mode| *mode == expected), "{:?}", modes());
+        file.finish().unwrap();
+        assert_eq!(modes(), [expected]);
+    };
+    write_secret(0o600);
+    write_secret(0o600);
+    for mode in [0o400, 0o640] {
+        set_permissions(&secret, Permissions::from_mode(mode)).unwrap();
+        write_secret(mode);
+    }
+    std::fs::remove_file(&secret).unwrap();
+    std::fs::write(&log, "by the system's own means").unwrap();
+    let usual = modes();
+    std::fs::remove_file(&log).unwrap();
+    WholeFile::write(&log, "new").unwrap();
+    assert_eq!(modes(), usual);
+    for mode in [0o600, 0o444] {
+        set_permissions(&log, Permissions::from_mode(mode)).unwrap();
+        WholeFile::write(&log, "replaced").unwrap();
+        assert_eq!(modes(), [mode]);
+    }
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_that_lies_where_a_file_is_to_grow_is_not_written_through() {
+    let directory = directory("laid");
+    let (path, victim) = (directory.join("log.csv"), directory.join("victim"));
+    std::fs::write(&victim, "untouched").unwrap();
+    let grows = WholeFile::create(&path).unwrap().names.as_ref().unwrap().0.clone();
+    let name = grows.file_name().unwrap().to_str().unwrap();
+    let parts: Vec<&str> = name.split('.').collect();
+    let number: u64 = parts[3].parse().unwrap();
+    for next in number..number + 50 {
+        let laid = name.replace(&format!(".{number}."), &format!(".{next}."));
+        std::os::unix::fs::symlink(&victim, directory.join(laid)).unwrap();
+    }
+    WholeFile::write(&path, "whole").unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "whole");
+    assert_eq!(std::fs::read_to_string(&victim).unwrap(), "untouched");
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
 fn a_device_is_written_to_and_stays_a_device() {
     let directory = directory("device");
     let link = directory.join("sink");
