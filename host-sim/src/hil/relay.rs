@@ -11,7 +11,7 @@
 use super::port::{Address, PortError, connected};
 use crate::interrupt::Interrupt;
 use crate::sitl::port::{Port, Ports};
-use firmware::link::frame::{Frame, Parser, Version};
+use firmware::link::frame::{Frame, Parser};
 use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavState, STATUSTEXT_DATA};
 use std::fmt;
@@ -27,9 +27,6 @@ const PAUSE: Duration = Duration::from_millis(1);
 
 /// The longest that the flight controller may take no byte of what clients send; it is lost after that, as on any line.
 const FULL: Duration = Duration::from_millis(100);
-
-/// Bytes of a version 2 frame around its payload: ten before it, a checksum behind.
-const AROUND: usize = 12;
 
 /// The line cannot be served.
 #[derive(Debug)]
@@ -119,21 +116,22 @@ fn locked(received: &Mutex<Received>) -> MutexGuard<'_, Received> {
 
 /// Hands on what comes, either way, until it is over or the line has ended.
 fn serve(mut line: TcpStream, mut clients: Port, received: &Mutex<Received>, over: &AtomicBool) {
-    let mut frames = Frames::default();
+    let mut parser = Parser::new();
     let mut chunk = [0; 4096];
     while !over.load(Ordering::Relaxed) {
         match line.read(&mut chunk) {
             Ok(0) => break,
-            Ok(count) => frames.take(chunk.get(..count).unwrap_or(&chunk), |bytes, frame| {
+            // Time does not matter here: a stream neither loses nor ages anything.
+            Ok(count) => parser.feed(chunk.get(..count).unwrap_or(&chunk), 0, &mut |frame| {
                 // First, so that a client that has the frame finds its text here.
                 follow(frame, received);
-                clients.send(bytes);
+                clients.send(frame.bytes);
             }),
             Err(error) if is_a_pause(&error) => {}
             Err(_) => break,
         }
         // Bytes that find no room are lost; a line that is gone shows at the next read.
-        clients.receive(|datagram| drop(line.write_all(datagram)));
+        clients.receive(|frame| drop(line.write_all(frame)));
     }
 }
 
@@ -154,35 +152,6 @@ fn follow(frame: &Frame<'_>, received: &Mutex<Received>) {
             }
         }
         _ => {}
-    }
-}
-
-/// Cuts a stream into frames of version 2, bytes and all; other bytes are left out.
-struct Frames {
-    parser: Parser,
-    /// The bytes since the last frame's end, or the newest of them.
-    bytes: Vec<u8>,
-}
-
-impl Default for Frames {
-    fn default() -> Self {
-        Self { parser: Parser::new(), bytes: Vec::new() }
-    }
-}
-
-impl Frames {
-    fn take(&mut self, stream: &[u8], mut act: impl FnMut(&[u8], &Frame<'_>)) {
-        for &byte in stream {
-            self.bytes.push(byte);
-            // Time does not matter here: a stream neither loses nor ages anything.
-            let Some(frame) = self.parser.push(byte, 0).filter(|frame| frame.version == Version::V2) else { continue };
-            // A frame is complete with its last byte, and nothing of it is signed.
-            let begin = self.bytes.len().checked_sub(frame.payload.len() + AROUND);
-            if let Some(bytes) = begin.and_then(|begin| self.bytes.get(begin..)) {
-                act(bytes, &frame);
-            }
-            self.bytes.clear();
-        }
     }
 }
 
@@ -208,17 +177,6 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_with_noise_comes_out_as_its_frames() {
-        let (one, two) = (frame(1, &HEARTBEAT_DATA::default()), frame(2, &STATUSTEXT_DATA::default()));
-        let stream = [&[7, 7, 7][..], &one, &two, &[1, 2, 3], &one].concat();
-        for pieces in [1, 7, stream.len()] {
-            let (mut frames, mut found) = (Frames::default(), Vec::new());
-            stream.chunks(pieces).for_each(|piece| frames.take(piece, |bytes, _| found.push(bytes.to_vec())));
-            assert_eq!(found, [one.clone(), two.clone(), one.clone()], "{pieces} at once");
-        }
-    }
-
-    #[test]
     fn clients_and_the_line_receive_each_others_frames_and_texts_are_kept() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
@@ -232,7 +190,10 @@ mod tests {
         let state = HEARTBEAT_DATA { system_status: MavState::MAV_STATE_STANDBY, ..Default::default() };
         let said = STATUSTEXT_DATA { text: "Armed: idling".into(), ..Default::default() };
         let (state, said) = (frame(1, &state), frame(2, &said));
-        board.write_all(&[&state[..], &said].concat()).unwrap();
+        // In pieces, with noise between them.
+        for piece in [&[7, 7, 7][..], &state[..5], &state[5..], &[1, 2, 3], &said] {
+            board.write_all(piece).unwrap();
+        }
         for socket in [&offboard, &ground] {
             for expected in [&state, &said] {
                 let mut datagram = [0; 300];
@@ -242,10 +203,12 @@ mod tests {
         }
         assert_eq!((relay.state(), relay.texts(), relay.texts()), ("ready", vec!["Armed: idling".to_owned()], vec![]));
 
-        offboard.send_to(b"a command", (Ipv4Addr::LOCALHOST, local)).unwrap();
-        let mut bytes = [0; 9];
+        for datagram in [&said[..10], &state[..]] {
+            offboard.send_to(datagram, (Ipv4Addr::LOCALHOST, local)).unwrap();
+        }
+        let mut bytes = vec![0; state.len()];
         board.read_exact(&mut bytes).unwrap();
-        assert_eq!(&bytes, b"a command");
+        assert_eq!(bytes, state, "a fragment before it is left out");
         let started = Instant::now();
         drop(relay);
         assert!(started.elapsed() < LONG);

@@ -1,8 +1,12 @@
-//! The clients: MAVLink over UDP on this machine's loopback, a frame a datagram.
+//! The clients: MAVLink over UDP on this machine's loopback, whole frames in each datagram.
+//!
+//! Each datagram is parsed by itself. What it leaves unfinished is dropped, and so is whatever is no frame: nothing that
+//! one client sends can swallow a frame of another's.
 //!
 //! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
 //! Nothing from outside this machine gets in.
 
+use firmware::link::frame::Parser;
 use std::fmt;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -75,14 +79,14 @@ impl Port {
         Ok(Self { socket, fixed: [here(ports.offboard), here(ports.ground)], clients: Vec::new() })
     }
 
-    /// Hands over what has come.
+    /// Hands over the frames that have come, one by one.
     pub fn receive(&mut self, mut take: impl FnMut(&[u8])) {
         let mut datagram = [0; 65_536];
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut datagram) {
                 Ok((length, from)) => {
                     self.remember(from);
-                    take(&datagram[..length]);
+                    Parser::new().feed(&datagram[..length], 0, &mut |frame| take(frame.bytes));
                 }
                 // An address without a listener shows as an error of the next call that receives.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
@@ -113,6 +117,8 @@ impl Port {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mavlink::dialects::common::HEARTBEAT_DATA;
+    use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
     /// A socket on a port that the system chooses.
     fn client() -> (UdpSocket, u16) {
@@ -128,17 +134,52 @@ mod tests {
         datagram[..length].to_vec()
     }
 
+    fn heartbeat(sequence: u8) -> Vec<u8> {
+        let mut frame = MAVLinkV2MessageRaw::new();
+        let header = MavHeader { system_id: 255, component_id: 190, sequence };
+        frame.serialize_message_data(header, &HEARTBEAT_DATA::DEFAULT);
+        frame.raw_bytes().to_vec()
+    }
+
+    /// What has arrived at the port.
+    fn taken(port: &mut Port) -> Vec<Vec<u8>> {
+        std::thread::sleep(Duration::from_millis(50));
+        let mut frames = Vec::new();
+        port.receive(|frame| frames.push(frame.to_vec()));
+        frames
+    }
+
+    #[test]
+    fn fragments_and_noise_swallow_no_frame_of_another_client_nor_of_the_same() {
+        let ((good, _), (bad, _)) = (client(), client());
+        let mut port = Port::open(&Ports { local: 0, ..Ports::default() }).unwrap();
+        let address = port.socket.local_addr().unwrap();
+        let frames: Vec<Vec<u8>> = (0..20).map(heartbeat).collect();
+        let longest = [0xFD, 0xFF, 0, 0, 0, 255, 190, 0, 0, 0];
+        for frame in &frames {
+            for fragment in [&frame[..10], &frame[10..], &longest, &[0xFE; 3], &[0; 7]] {
+                bad.send_to(fragment, address).unwrap();
+                good.send_to(fragment, address).unwrap();
+            }
+            good.send_to(frame, address).unwrap();
+        }
+        let first = taken(&mut port);
+        let all: Vec<Vec<u8>> = first.into_iter().chain((0..4).flat_map(|_| taken(&mut port))).collect();
+        assert_eq!(all, frames);
+        // Several to a datagram, with something else before and behind.
+        good.send_to(&[&frames[0][..], &frames[1], &frames[2][..9]].concat(), address).unwrap();
+        assert_eq!(taken(&mut port), frames[..2]);
+    }
+
     #[test]
     fn both_addresses_receive_everything_and_each_sender_is_answered() {
         let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
         let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
         port.send(b"one");
         assert_eq!((received(&offboard), received(&ground)), (b"one".to_vec(), b"one".to_vec()));
-        other.send_to(b"here", port.socket.local_addr().unwrap()).unwrap();
-        std::thread::sleep(Duration::from_millis(50));
-        let mut taken = Vec::new();
-        port.receive(|bytes| taken.extend_from_slice(bytes));
-        assert_eq!(taken, b"here");
+        let here = heartbeat(0);
+        other.send_to(&here, port.socket.local_addr().unwrap()).unwrap();
+        assert_eq!(taken(&mut port), [here]);
         port.send(b"two");
         assert_eq!((received(&other), received(&ground)), (b"two".to_vec(), b"two".to_vec()));
     }
