@@ -1,7 +1,9 @@
 //! Interruption: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so
 //! that nothing half-written stays behind.
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+#[cfg(unix)]
+use signal_hook::consts::SIGHUP;
+use signal_hook::consts::{SIGINT, SIGTERM};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,7 +20,7 @@ impl Interrupt {
     /// If the system refuses.
     pub fn watch() -> io::Result<Self> {
         let interrupt = Self::default();
-        for signal in [SIGINT, SIGTERM].into_iter().chain(ends_on_hangup().then_some(SIGHUP)) {
+        for signal in [SIGINT, SIGTERM].into_iter().chain(hangup()) {
             signal_hook::flag::register_usize(signal, Arc::clone(&interrupt.0), signal as usize)?;
         }
         Ok(interrupt)
@@ -36,9 +38,16 @@ impl Interrupt {
     }
 }
 
-/// Whether a SIGHUP would end this program, if the system says so: it does on Linux.
-fn ends_on_hangup() -> bool {
+/// SIGHUP, if the system says that it would end this program: Linux does.
+#[cfg(unix)]
+fn hangup() -> Option<i32> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
-    ignored.is_some_and(|ignored| ignored & 1 << (SIGHUP - 1) == 0)
+    ignored.filter(|ignored| ignored & 1 << (SIGHUP - 1) == 0).map(|_| SIGHUP)
+}
+
+/// Windows has none.
+#[cfg(not(unix))]
+fn hangup() -> Option<i32> {
+    None
 }
