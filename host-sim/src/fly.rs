@@ -1,5 +1,7 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
+pub mod show;
+
 use crate::claims::{self, Claim};
 use crate::directory_lock::DirectoryLock;
 use crate::flier::{Flier, LawChoice};

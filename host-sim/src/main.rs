@@ -17,6 +17,7 @@ use host_sim::certify::rigorous::{self, Rigorous};
 use host_sim::certify::{certify, may_fly, shown};
 use host_sim::claims;
 use host_sim::flier::LawChoice;
+use host_sim::fly::show::{Show, show};
 use host_sim::fly::{FlyError, fly, watched};
 use host_sim::hil::port::Port;
 use host_sim::hil::relay::Relay;
@@ -96,7 +97,7 @@ fn given_or_study(file: Option<&Path>) -> Result<(String, String), String> {
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
     let text = text_of(file)?;
     let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
-    let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
+    let Show { scenario, text, added } = show(text, &name).map_err(|error| error.to_string())?;
     let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
     permit(&scenario, &named, "duration", large_log)?;
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
@@ -105,6 +106,9 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
 
 /// Flies one flight of a scenario from a file with this `text`, and prints its claims.
 fn fly_into(
+    if let Some(added) = added {
+        print_text(&format!("{named}has neither [initial] nor [reference], so it flies {added}\n"))?;
+    }
     scenario: &Scenario,
     text: &str,
     law: &LawChoice,
@@ -159,7 +163,9 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
 }
 
 fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
-    let scenario = load(arguments.file.as_deref())?;
+    let file = arguments.file.as_deref();
+    let name = file.map_or_else(String::new, |file| file.display().to_string());
+    let scenario = show(text_of(file)?, &name).map_err(|error| error.to_string())?.scenario;
     let stretch = arguments.stretch(scenario.timing.duration())?;
     let path = &arguments.gif;
     if arguments.file.as_ref().is_some_and(|file| same_file(path, file)) {

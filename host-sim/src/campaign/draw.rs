@@ -39,7 +39,7 @@ use scenario::timing::Timing;
 use std::sync::Arc;
 
 /// The drag over mass of a vehicle without `[drag]`, 1/s.
-const DRAG: f64 = 0.5;
+pub const DRAG: f64 = 0.5;
 /// Turbulence is that of this height, m.
 const ALTITUDE: f64 = 10.0;
 /// The least airspeed that turbulence drifts past with, m/s.

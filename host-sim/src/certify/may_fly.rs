@@ -14,8 +14,8 @@ use scenario::Scenario;
 use scenario::along::name;
 use scenario::judge::judge;
 
-/// m.
-const RADIUS: f64 = 3.0;
+/// The circle's, m.
+pub const RADIUS: f64 = 3.0;
 
 /// The greatest speed, m/s, acceleration, m/s^2, and jerk, m/s^3, that are looked for, and how finely.
 const MOST: [f64; 3] = [100.0, 1_000.0, 10_000.0];
