@@ -359,7 +359,7 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
     let session = arguments.session(text, name)?;
     // A session goes on after the reader of its output has gone.
     let show = |line: &str| drop(print_text(&format!("{line}\n")));
-    match sitl::run(&scenario, &session, &watch()?, show) {
+    match sitl::run(&scenario, &session, &watch()?, |line| complain(line), show) {
         Ok(summary) => {
             print_text(&format!("{}: {summary}\n", scenario.name))?;
             Ok(status(true, summary.signal))

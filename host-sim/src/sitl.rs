@@ -181,18 +181,25 @@ impl Restart for Desk {
 
 impl Sitl {
     /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if
-    /// it will not.
+    /// it will not. What can be refused at once is; then `say` gets a line, and the scenario is judged, which takes
+    /// seconds.
     ///
     /// # Errors
     /// In words: what the firmware cannot fly, and files and ports that cannot be used.
-    pub fn boot(scenario: &Scenario, session: &Session) -> Result<(Self, Option<String>), String> {
-        let warning = board::check(scenario, &session.file)?;
+    pub fn boot(
+        scenario: &Scenario,
+        session: &Session,
+        say: impl FnOnce(&str),
+    ) -> Result<(Self, Option<String>), String> {
+        board::fits(scenario, &session.file)?;
         let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
         faults.check(scenario.configuration.rotors().map_or(0, |rotors| rotors.len()))?;
         let in_file = |what| format!("{}: {what}", session.file);
         let world = World::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;
         let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
+        say(&format!("{}: starting; its loops and its model's flights are judged first, some seconds", scenario.name));
+        let warning = board::check(scenario, &session.file)?;
 
         let identity = board::identity(scenario);
         let loops = match identity {
@@ -275,9 +282,9 @@ impl Sitl {
     /// Takes what clients have sent, and lets time pass until `end`, us.
     pub fn pass(&mut self, end: u64) {
         let (up, silent) = (&self.up, self.faults.has(Part::GroundStation, self.clock.now()));
-        self.port.borrow_mut().receive(|datagram| {
+        self.port.borrow_mut().receive(|frame| {
             if !silent {
-                up.push(datagram);
+                up.push(frame);
             }
         });
         self.clock.run(&mut self.pool, end);
@@ -327,7 +334,8 @@ fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'st
     let _ = spawner.spawn_local(async move { drop(task.await) });
 }
 
-/// Runs a session until its duration is over or a signal comes; `show` gets lines to print.
+/// Runs a session until its duration is over or a signal comes; `say` gets a line before it starts, `show` those about
+/// it.
 ///
 /// # Errors
 /// [`SitlError`].
@@ -335,11 +343,12 @@ pub fn run(
     scenario: &Scenario,
     session: &Session,
     interrupt: &Interrupt,
+    say: impl FnOnce(&str),
     mut show: impl FnMut(&str),
 ) -> Result<Summary, SitlError> {
     let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
-    let (mut sitl, warning) = Sitl::boot(scenario, session).map_err(SitlError::Input)?;
+    let (mut sitl, warning) = Sitl::boot(scenario, session, say).map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
     show(&format!(

@@ -29,15 +29,11 @@ const PAPERS_RATE: f64 = 100.0;
 /// Rotors that the boards have outputs for.
 pub const ROTORS: usize = 4;
 
-/// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not
-/// arm: why, if so.
-///
-/// One whose sampled loops are unstable or without margin, or whose model does not arrive, is refused: no board works
-/// that out, so nothing else would keep it on the ground.
+/// Whether boards have what `scenario`, of the file `name`, needs: its rate and its rotors. [`check`] asks this first.
 ///
 /// # Errors
-/// One line: the file, the field, the loop or the flight, and what is wrong.
-pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> {
+/// One line: the file, the field, and what is wrong.
+pub fn fits(scenario: &Scenario, name: &str) -> Result<(), String> {
     let rate = 1.0 / scenario.timing.period();
     if !RATES.contains(&rate) {
         let (least, most) = (RATES.start(), RATES.end());
@@ -53,6 +49,19 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
     if rotors.len() != ROTORS {
         return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
     }
+    Ok(())
+}
+
+/// Whether the firmware can fly `scenario`, of the file `name`. One that is not certified it boots with, and does not
+/// arm: why, if so.
+///
+/// One whose sampled loops are unstable or without margin, or whose model does not arrive, is refused: no board works
+/// that out, so nothing else would keep it on the ground.
+///
+/// # Errors
+/// One line: the file, the field, the loop or the flight, and what is wrong.
+pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> {
+    fits(scenario, name)?;
     let verdict = Verdict::of(scenario).map_err(|error| format!("{name}: {error}"))?;
     let law = scenario.configuration.law();
     let loops = LoopModel::new(scenario.configuration.vehicle(), law, timing(scenario));

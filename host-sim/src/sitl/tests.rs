@@ -52,8 +52,11 @@ impl Flown {
             truth: None,
             recording: None,
         };
-        let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).unwrap();
+        let mut said = String::new();
+        let say = |line: &str| said.push_str(line);
+        let (sitl, warning) = Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session, say).unwrap();
         assert_eq!(warning, None);
+        assert!(said.contains(": starting"), "{said}");
         Self { sitl, client, local: ports.local, sequence: 0, signing: Signing::new() }
     }
 
@@ -280,7 +283,7 @@ fn set_down_at_a_lean_it_keeps_its_pose() {
 fn what_no_board_could_fly_is_refused_by_name() {
     let session = Session {
         file: "a file".to_owned(),
-        ports: Ports::default(),
+        ports: Ports { local: 0, ..Ports::default() },
         speed: 1.0,
         duration: None,
         poses: PoseSource::Camera,
@@ -290,14 +293,15 @@ fn what_no_board_could_fly_is_refused_by_name() {
         truth: None,
         recording: None,
     };
-    let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session).err().unwrap();
+    let quiet = |_: &str| ();
+    let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session, quiet).err().unwrap();
     assert!(refused(scenario::PAPER).starts_with("a file: rotors: missing"));
     let slow = STUDY.replace("lag = 0.030 ", "lag = 1.0 ");
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
     assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
     let session = Session { faults: vec!["rotor5@20".parse().unwrap()], ..session };
-    let refused = Sitl::boot(&Scenario::parse(STUDY, "a test").unwrap(), &session).err().unwrap();
+    let refused = Sitl::boot(&Scenario::parse(STUDY, "a test").unwrap(), &session, quiet).err().unwrap();
     assert_eq!(refused, "--fault: rotor5 is not there: the vehicle's are rotor1 to rotor4");
 }
 
