@@ -135,7 +135,8 @@ fn head(scenario: &Scenario, log: &FlightLog) -> String {
              the bench's thrust stand has it"
         }
     };
-    format!("{}: {} s flown without a gap, state: {source}\n\n", scenario.name, short(log.seconds()))
+    let (seconds, damage) = (short(log.seconds()), &log.damage);
+    format!("{}: {seconds} s flown without a gap, state: {source}{damage}\n\n", scenario.name)
 }
 
 fn table(identified: &Quantities, scenario: &Scenario) -> String {

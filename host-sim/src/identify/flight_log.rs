@@ -6,6 +6,7 @@
 //! World frame z up, body frame x forward, y left, z up, SI units.
 
 use super::foreign::COLUMNS;
+use crate::ulog::reader::Damage;
 use controller_core::state::Wrench;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -48,6 +49,8 @@ pub struct FlightLog {
     pub source: Source,
     /// Tick by tick.
     pub moments: Vec<Moment>,
+    /// What could not be read of the file.
+    pub damage: Damage,
 }
 
 /// By how much the time between two ticks may differ from the usual one, as a part of it.
@@ -84,7 +87,7 @@ impl FlightLog {
             current.extend(moment);
         }
         let moments = if current.len() > longest.len() { current } else { longest };
-        Ok(Self { period, source, moments })
+        Ok(Self { period, source, moments, damage: Damage::default() })
     }
 
     /// Reads log.csv.

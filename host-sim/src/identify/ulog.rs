@@ -12,14 +12,16 @@ use controller_core::allocation::Rotors;
 /// Reads the flight of a recording; what is to be known of PX4's is `rotors` and the `curve` of their thrust.
 ///
 /// # Errors
-/// The file's error, and at which byte; or what it lacks.
+/// The file's error, or what it lacks.
 pub fn read(bytes: &[u8], rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, String> {
     let log = Ulog::read(bytes, &[&[TICK], &px4::TOPICS[..]].concat())?;
-    match log.topic(TICK) {
+    let flight = match log.topic(TICK) {
         Some(ticks) => own(ticks),
         None if px4::is_one(&log) => px4::read(&log, rotors, curve),
         None => Err("holds no record of a tick, nor PX4's actuator_motors or actuator_outputs".to_owned()),
-    }
+    };
+    let flight = flight.map_err(|what| format!("{what}{}", log.damage))?;
+    Ok(FlightLog { damage: log.damage, ..flight })
 }
 
 /// The firmware's.

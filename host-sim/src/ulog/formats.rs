@@ -81,6 +81,12 @@ impl Number {
 }
 
 impl Field {
+    /// The byte behind it.
+    #[must_use]
+    pub fn end(&self) -> usize {
+        self.at + self.number.size()
+    }
+
     /// Its value in a message; none if that ends before it, as PX4's do before padding.
     #[must_use]
     pub fn read(&self, message: &[u8]) -> Option<f64> {

@@ -79,7 +79,7 @@ fn fields_are_found_behind_arrays_nested_messages_and_padding() {
 }
 
 #[test]
-fn a_file_that_does_not_fit_is_refused_with_its_byte_and_none_panics() {
+fn a_message_that_does_not_fit_is_skipped_with_its_byte_and_none_panics() {
     let subscribed = [&[0, 1, 0][..], b"t"].concat();
     let format: (u8, &[u8]) = (b'F', b"t:uint64_t timestamp;");
     let subscription: (u8, &[u8]) = (b'A', &subscribed);
@@ -94,11 +94,14 @@ fn a_file_that_does_not_fit_is_refused_with_its_byte_and_none_panics() {
         (vec![(b'F', b"t:float[99999] a;"), subscription], "byte 36: t: is longer than 65535 bytes"),
         (vec![(b'F', b"t:float[-1] a;"), subscription], "byte 33: t: the field \"float[-1] a\" has no length"),
         (vec![format, subscription, (b'D', &[1, 0, 5])], "byte 47: a record of t is cut short"),
-        (vec![(b'B', &[0; 3])], "byte 16: flags are cut short"),
-        (vec![(b'B', &[0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0])], "byte 16: is of a ULog that needs a newer"),
+        (vec![(0, &[5; 7])], "byte 16: a message of no kind"),
     ] {
-        let refused = Ulog::read(&file(&messages), &["t"]).unwrap_err();
-        assert!(refused.starts_with(said), "{refused}");
+        let log = Ulog::read(&file(&[&messages[..], &[(b'L', &[b'6'; 12])]].concat()), &["t"]).unwrap();
+        assert_eq!((log.damage.places, log.texts.len()), (1, 1), "{said}");
+        assert!(log.damage.first.starts_with(said), "{}", log.damage);
+    }
+    for (flags, said) in [(&[0; 3][..], "flags are cut short"), (&[2; 16], "is of a ULog that needs a newer reader")] {
+        assert_eq!(Ulog::read(&file(&[(b'B', flags)]), &[]).unwrap_err(), said);
     }
     // Every prefix of a file, and every byte of it changed, is read or refused.
     let whole = recording();
@@ -109,8 +112,59 @@ fn a_file_that_does_not_fit_is_refused_with_its_byte_and_none_panics() {
         let _ = Ulog::read(&changed, &[TICK]).map(|log| written(&log));
     }
     assert!(Ulog::read(&whole[..HEAD - 1], &[TICK]).is_err());
-    assert_eq!(Ulog::read(&whole[..whole.len() - 1], &[TICK]).unwrap().topic(TICK).unwrap().len(), 1);
+    let cut = Ulog::read(&whole[..whole.len() - 1], &[TICK]).unwrap();
+    assert_eq!((cut.topic(TICK).unwrap().len(), cut.damage.to_string()), (1, String::new()));
     assert!(Formats::default().fields("t").is_err());
+}
+
+/// A file of a hundred records of `t`, a and its square, with what is done to its bytes from the 50th record on.
+fn damaged(damage: impl FnOnce(&mut Vec<u8>, usize)) -> Ulog {
+    let topics = [Topic { name: "t", fields: "uint64_t timestamp;float a;float squared;" }];
+    let mut writer = Writer::new(4, &topics, &[], &[]);
+    let mut at = 0;
+    for number in 0..100_u16 {
+        if number == 50 {
+            at = writer.clone().finish().len();
+        }
+        let a = f32::from(number);
+        writer.record(0, 1000 * u64::from(number), &[a.to_le_bytes(), (a * a).to_le_bytes()].concat());
+    }
+    let mut bytes = writer.finish();
+    damage(&mut bytes, at);
+    let log = Ulog::read(&bytes, &["t"]).unwrap();
+    let rows = log.topic("t").unwrap().columns(&["timestamp", "a", "squared"]).unwrap();
+    assert!(rows.iter().all(|row| row[0] == 1000.0 * row[1] && row[2] == row[1] * row[1]), "{rows:?}");
+    log
+}
+
+#[test]
+fn one_damaged_message_costs_itself_alone_whatever_byte_of_it_is_damaged() {
+    // Length, 2 bytes; kind; topic, 2 bytes; time, 8 bytes. What follows are numbers, any of which may be right, and so
+    // may a time that is still between its neighbours'.
+    const RECORD: usize = 21;
+    for byte in (0..5).chain(7..13) {
+        for bit in 0..8 {
+            let log = damaged(|bytes, at| bytes[at + byte] ^= 1 << bit);
+            let rows = log.topic("t").unwrap().len();
+            assert!(rows == 99, "byte {byte}, bit {bit}: {rows} rows, {:?}", log.damage);
+            // A message of a kind that is to come is no damage.
+            assert!(byte == 2 || log.damage.places == 1, "byte {byte}, bit {bit}: {:?}", log.damage);
+        }
+    }
+    for (what, lost, log) in [
+        ("bytes missing", 1, damaged(|bytes, at| drop(bytes.drain(at + 4..at + 9)))),
+        ("bytes too many", 0, damaged(|bytes, at| drop(bytes.splice(at..at, [7; 40])))),
+        ("a sector of zeros", 25, damaged(|bytes, at| bytes[at + 2..at + 514].fill(0))),
+        ("a sector of ones", 25, damaged(|bytes, at| bytes[at + 2..at + 514].fill(0xFF))),
+    ] {
+        assert_eq!(log.topic("t").unwrap().len(), 100 - lost, "{what}: {:?}", log.damage);
+        assert!(log.damage.places > 0 && log.damage.bytes <= 25 * RECORD, "{what}: {:?}", log.damage);
+    }
+    let said = damaged(|bytes, at| bytes[at] = 0xFF).damage.to_string();
+    assert_eq!(
+        said,
+        format!("; 1 damaged place of {RECORD} bytes skipped: byte 1162: a message that ends where none begins")
+    );
 }
 
 #[test]
