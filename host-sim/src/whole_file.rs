@@ -14,7 +14,7 @@ const UNFINISHED: &str = ".part";
 
 /// Unix's mode of a file that only its owner reads and writes.
 #[cfg(unix)]
-const ONLY_THE_OWNER: u32 = 0o600;
+const OWNER_ONLY_MODE: u32 = 0o600;
 
 /// How many files this program has started: no two grow under one name.
 static STARTED: AtomicU64 = AtomicU64::new(0);
@@ -159,7 +159,7 @@ fn opened(temporary: &Path, path: &Path, is_private: bool) -> io::Result<File> {
         use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
         let replaced = path.metadata().ok();
         if is_private || replaced.is_some() {
-            options.mode(ONLY_THE_OWNER);
+            options.mode(OWNER_ONLY_MODE);
         }
         let file = options.open(temporary)?;
         if let Some(replaced) = replaced {

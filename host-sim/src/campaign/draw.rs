@@ -39,7 +39,7 @@ use scenario::timing::Timing;
 use std::sync::Arc;
 
 /// The drag over mass of a vehicle without `[drag]`, 1/s.
-pub const DRAG: f64 = 0.5;
+pub const DRAG_PER_MASS: f64 = 0.5;
 /// Turbulence is that of this height, m.
 const ALTITUDE: f64 = 10.0;
 /// The least airspeed that turbulence drifts past with, m/s.
@@ -100,7 +100,7 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
         return;
     }
     let mass = f64::from(scenario.configuration.vehicle().mass);
-    let drag = Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() };
+    let drag = Drag { linear: Vector3::repeat(DRAG_PER_MASS * mass), ..Drag::default() };
     scenario.reality.drag.get_or_insert(drag);
     let level = |wind: Vector3<f64>| Vector3::new(wind.x, wind.y, 0.0);
     let steady = level(steady);

@@ -34,7 +34,7 @@ fn every_published_vehicle_recovers_flies_a_circle_and_holds_every_claim() {
             flown.strayed
         );
         assert!(claims::all_hold(&claims), "{file}: {added}\n{}", claims::table(&claims));
-        assert!(flown.height_lost < HEIGHT, "{file}: falls {} m", flown.height_lost);
+        assert!(flown.height_lost < START_HEIGHT, "{file}: falls {} m", flown.height_lost);
     }
 }
 
@@ -44,6 +44,7 @@ fn a_file_with_a_start_a_reference_or_the_papers_law_is_flown_as_it_is() {
     for text in [
         scenario::PAPER.to_owned(),
         scenario::STUDY.to_owned(),
+        format!("duration = 5.0\n{vehicle}"),
         format!("{vehicle}\n[initial]\nposition = [0.0, 0.0, 2.0]\n"),
         format!("{vehicle}\n[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 2.0]\n"),
     ] {
