@@ -39,12 +39,51 @@ fn assert_not_written(output: &Output, words: &str) {
     assert!(message.contains(words) && message.contains("cannot be written: No space left on device"), "{message}");
 }
 
+/// The commands, as the program's help lists them.
+fn commands(directory: &Path) -> Vec<String> {
+    let help = stdout(&host_sim(directory, &["--help"]));
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    // What goes on in a second line is indented by more.
+    let named = listed.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    named.map(|line| line.split_whitespace().next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn help_fits_eighty_columns() {
+    let directory = directory("help");
+    let commands = commands(&directory);
+    assert!(commands.len() > 15 && commands.contains(&"sitl".to_owned()), "{commands:?}");
+    for arguments in commands.iter().map(|command| vec![command, "--help"]).chain([vec!["--help"]]) {
+        let help = stdout(&host_sim(&directory, &arguments));
+        let long: Vec<&str> = help.lines().filter(|line| line.chars().count() > 80).collect();
+        assert!(!help.is_empty() && long.is_empty(), "{arguments:?}: {long:#?}");
+    }
+}
+
+#[test]
+fn completions_and_manual_pages_know_every_command() {
+    let directory = directory("manual");
+    let mut pages: Vec<String> =
+        commands(&directory).iter().filter(|name| *name != "help").map(|name| format!("host-sim-{name}.1")).collect();
+    for shell in ["bash", "zsh", "fish"] {
+        let output = host_sim(&directory, &["completions", shell]);
+        assert!(status(&output) == 0 && stdout(&output).contains("rotor-loss"), "{shell}");
+    }
+    assert_eq!(status(&host_sim(&directory, &["man", "--out", "man"])), 0);
+    pages.push("host-sim.1".to_owned());
+    pages.sort();
+    assert_eq!(files(&directory.join("man")), pages);
+    let page = std::fs::read_to_string(directory.join("man/host-sim-sitl.1")).unwrap();
+    assert!(page.starts_with(".ie") && page.contains("truth\\-port") && page.contains("battery=9.8@30"), "{page}");
+    let refused = host_sim(&directory, &["man", "--out", "man/host-sim.1"]);
+    assert_eq!((status(&refused), stderr(&refused).lines().count()), (2, 1));
+    assert_not_written(&into_full(&directory, &["completions", "bash"]), "standard output");
+}
+
 #[test]
 fn what_a_pipe_receives_fits_a_hundred_columns() {
     let directory = directory("columns");
-    let commands = ["fly", "certify", "tune", "identify", "campaign", "merge", "compare", "law", "hil", "sitl"];
-    let mut printed = vec![stdout(&host_sim(&directory, &["--help"]))];
-    printed.extend(commands.map(|command| stdout(&host_sim(&directory, &[command, "--help"]))));
+    let mut printed = Vec::new();
     for (name, text) in [
         ("extended.toml", include_str!("../vehicles/hummingbird.toml")),
         ("paper.toml", include_str!("../vehicles/hummingbird-paper-law.toml")),

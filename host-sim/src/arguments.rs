@@ -7,29 +7,32 @@ mod log;
 mod reference;
 mod replay;
 mod sessions;
+mod shells;
+mod tune;
 mod vehicle;
 
-use crate::terminal::WIDTH_MAX;
 pub use campaign::{CampaignArguments, MergeArguments};
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 pub use compare::{CompareArguments, GainsWanted};
-use host_sim::tune::effort::Effort;
-use host_sim::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;
 pub use log::LogArguments;
 pub use reference::ReferenceArguments;
 pub use replay::ReplayArguments;
-use scenario::stability::LoopMargin;
 pub use sessions::{HilArguments, SitlArguments};
+pub use shells::{CompletionsArguments, ManArguments, completions, manual};
 use std::path::PathBuf;
+pub use tune::TuneArguments;
 use vehicle::VEHICLE_HELP;
 pub use vehicle::VehicleArguments;
 
+/// Widest line of help, columns: no terminal is narrower by default.
+const HELP_WIDTH_MAX: usize = 80;
+
 /// Fly a quadrotor under the saturated hybrid law, and check what was claimed against what was flown.
 #[derive(Parser)]
-#[command(version, arg_required_else_help = false, max_term_width = WIDTH_MAX, after_help = HELP)]
+#[command(version, arg_required_else_help = false, max_term_width = HELP_WIDTH_MAX, after_help = HELP)]
 pub struct Arguments {
     /// What to do; left out: fly the paper's scenario.
     #[command(subcommand)]
@@ -38,59 +41,71 @@ pub struct Arguments {
 
 const HELP: &str = "\
 Examples:
-  host-sim                                   the paper's experiment: 40 s from upside down
-  host-sim fly scenarios/circle.toml         another flight; results in flights/circle
-  host-sim fly mine.toml --out results       choose where the results go
-  host-sim certify mine.toml                 prove its limits, down to each rotor, or say what fails
-  host-sim tune mine.toml --out tuned.toml   search for gains that certify and fly well
-  host-sim identify log.csv --scenario mine.toml --bench bench.toml --out found.toml
-                                             mass, inertia, lag, centre of mass and drag, from a log
-  host-sim log LOG00012.ULG --ulog px4.ulg   a card's log for Flight Review and PlotJuggler
-  host-sim vehicle cf2x.urdf --out cf2x.toml a vehicle from a URDF, SDF, MuJoCo, RotorPy or PX4 file
-  host-sim campaign mine.toml --flights 1000 a thousand random throws, in wind and noise
-  host-sim compare vehicles/hummingbird.toml our law beside others, in the same flights
-  host-sim law scenarios/hover.toml < lines  the controller alone, for simulators of your own
+  host-sim                           the paper's experiment, from upside down
+  host-sim fly mine.toml             a flight; results in flights/<its name>
+  host-sim fly mine.toml --out here  choose where the results go
+  host-sim certify mine.toml         prove its limits, or say what fails
+  host-sim tune mine.toml --out tuned.toml
+                                     search for gains that certify and fly well
+  host-sim identify log.csv --scenario mine.toml --out found.toml
+                                     mass, inertia, lag, drag ... from a log
+  host-sim log LOG00012.ULG --ulog px4.ulg
+                                     for Flight Review and PlotJuggler
+  host-sim vehicle cf2x.urdf --out cf2x.toml
+                                     a vehicle from another program's file
+  host-sim campaign mine.toml        a thousand random throws
+  host-sim compare mine.toml         our law beside others, in the same flights
+  host-sim law mine.toml < lines     the law alone, for simulators of your own
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
-                                             the vehicle alone, for emulated or real firmware
-  host-sim sitl                              firmware and vehicle, for MAVLink on UDP 14540 and 14550
+                                     the vehicle alone, for firmware elsewhere
+  host-sim sitl                      firmware and vehicle, for MAVLink on UDP
+                                     14540 and 14550
 
-A scenario file is TOML: start from one in scenarios/ or vehicles/; docs/scenario-file.md describes
-every key.
+A scenario file is TOML: start from one in scenarios/ or vehicles/;
+docs/scenario-file.md describes every key.
 
 Exit status:
-  0    every claim holds (certify: the scenario may fly; tune: gains were found; law: the input
-       ended)
-  1    a well-posed run that fails: a claim, an inequality of the certificate, a sampled loop that is
-       unstable or without margin, a flight that does not reach or hold its reference, gains not
-       found
-  2    input that cannot be used, or output that cannot be written; one line on stderr says why
+  0    every claim holds (certify: the scenario may fly; tune: gains were found;
+       law: the input ended)
+  1    a well-posed run that fails: a claim, an inequality of the certificate, a
+       sampled loop that is unstable or without margin, a flight that does not
+       reach or hold its reference, gains not found
+  2    input that cannot be used, or output that cannot be written; one line on
+       stderr says why
   129, 130, 143  interrupted by SIGHUP, SIGINT or SIGTERM";
 
 const FLY_HELP: &str = "\
 Besides the file's limits and the certificate's bounds a flight claims
 - that every inequality of its certificate holds;
-- that its sampled loops are stable, with 1.5 times the gain, 1 / 1.5 of it or 2 ms more delay;
-- that it reached its reference for good within the first 90 % of its duration: from then on its
-  position is within 0.2 m of the reference's, off the ground, and its attitude, heading included,
-  within 0.05 (modified Rodrigues parameters; 11 degrees);
-- that once there it never strayed further than reference.tolerance (default: 0.5 m).
-The scenario is flown even where a claim cannot hold; the last line names the claims that fail. A waypoint path that
-leaves the box of its points is said, with place and time; a reference that goes below the ground is
-refused. While it flies, no other run writes into the directory. Interrupted, it leaves no file.";
+- that its sampled loops are stable, with 1.5 times the gain, 1 / 1.5 of it or 2
+  ms more delay;
+- that it reached its reference for good within the first 90 % of its duration:
+  from then on its position is within 0.2 m of the reference's, off the ground,
+  and its attitude, heading included, within 0.05 (modified Rodrigues
+  parameters; 11 degrees);
+- that once there it never strayed further than reference.tolerance (default:
+  0.5 m).
+The scenario is flown even where a claim cannot hold; the last line names the
+claims that fail. A waypoint path that leaves the box of its points is said,
+with place and time; a reference that goes below the ground is refused. While it
+flies, no other run writes into the directory. Interrupted, it leaves no file.";
 
 const CERTIFY_HELP: &str = "\
-CERTIFIED means two things. The commands are proven to stay within every limit, whatever the vehicle
-does: that is the certificate, and it says nothing about stability. And small motions about hover
-die out at this rate, delay and rotor lag: that is an analysis of the sampled loops, each of which
-must be stable with 1.5 times its gain, with 1 / 1.5 of it, and with 2 ms more delay.
+CERTIFIED means two things. The commands are proven to stay within every limit,
+whatever the vehicle does: that is the certificate, and it says nothing about
+stability. And small motions about hover die out at this rate, delay and rotor
+lag: that is an analysis of the sampled loops, each of which must be stable with
+1.5 times its gain, with 1 / 1.5 of it, and with 2 ms more delay.
 docs/certificate.md and docs/sampled-loop.md explain the tables.
 
-Under the extended law the report ends with the vehicle's abilities, and with the inequality that
-limits it or those that fail: their meaning, and which number to change in which direction.
-Constants that the file leaves out follow from the vehicle's numbers; --show prints them all.
+Under the extended law the report ends with the vehicle's abilities, and with
+the inequality that limits it or those that fail: their meaning, and which
+number to change in which direction. Constants that the file leaves out follow
+from the vehicle's numbers; --show prints them all.
 
---rigorous adds what rounding can have changed, in shares of each figure, and exits with 1 if that
-can have decided an inequality: then CERTIFIED rests on the last digits of double precision.";
+--rigorous adds what rounding can have changed, in shares of each figure, and
+exits with 1 if that can have decided an inequality: then CERTIFIED rests on the
+last digits of double precision.";
 
 /// One command.
 #[derive(Subcommand)]
@@ -129,7 +144,7 @@ pub enum Command {
         rigorous: bool,
     },
     /// Refine a vehicle's constants by trial flights: certified first, then pleasant to fly. About a minute.
-    #[command(after_help = TUNE_HELP)]
+    #[command(after_help = tune::HELP)]
     Tune(TuneArguments),
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
     #[command(after_help = IDENTIFY_HELP)]
@@ -160,202 +175,103 @@ pub enum Command {
     /// Run the firmware's own tasks with a simulated vehicle; MAVLink clients connect by UDP on this machine.
     #[command(after_help = SITL_HELP)]
     Sitl(SitlArguments),
+    /// Print what a shell needs to complete commands, options and their values.
+    #[command(after_help = shells::COMPLETIONS_HELP)]
+    Completions(CompletionsArguments),
+    /// Write the manual pages: one for the program, one for each command.
+    Man(ManArguments),
 }
-
-/// The arguments of a search for gains.
-#[derive(Args)]
-pub struct TuneArguments {
-    /// Scenario file: vehicle, limits, rotors, delay, reference; its constants, or the formulas', are where the search
-    /// starts
-    pub file: PathBuf,
-    /// Scenario file to write [default: <name>-tuned.toml]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Least margin of every inequality, as a fraction
-    #[arg(long, default_value_t = Requirements::default().margin)]
-    margin: f64,
-    /// Least gain margin of every sampled loop, as a factor, 1.5 or more: at the actuators, and of k_p and k_v together
-    #[arg(long, default_value_t = Requirements::default().loops.gain)]
-    gain_margin: f64,
-    /// Least delay margin of every sampled loop, ms, 2 or more
-    #[arg(long, default_value_t = 1e3 * Requirements::default().loops.delay)]
-    delay_margin: f64,
-    /// Greatest position error of the file's own flight in its last quarter, m
-    #[arg(long, default_value_t = Requirements::default().position_error)]
-    position_error: f64,
-    /// Greatest norm of its modified Rodrigues parameters there
-    #[arg(long, default_value_t = Requirements::default().mrp_error)]
-    mrp_error: f64,
-    /// How long a recovery from upside down may take, s, 2 or more; its last quarter must be still
-    #[arg(long, default_value_t = Requirements::default().recovery)]
-    recovery: f64,
-    /// Keep the paper's thrust T = m |u|: no thrust projection
-    #[arg(long)]
-    no_projection: bool,
-    /// Generations
-    #[arg(long, default_value_t = Effort::default().generations)]
-    pub generations: u32,
-    /// Candidates of each generation, 4 to 1000
-    #[arg(long, default_value_t = Effort::default().population)]
-    pub population: usize,
-    /// Seed of the search
-    #[arg(long, default_value_t = Effort::default().seed)]
-    pub seed: u64,
-    /// Also report the largest factor by which the reference bounds could grow with these gains
-    #[arg(long)]
-    pub widen: bool,
-}
-
-const TUNE_HELP: &str = "\
-A search starts from the file's constants, or from those that follow from the vehicle's numbers, and
-never ends with worse ones: the start is judged first. Under the extended law fourteen constants are
-searched and the others follow from them, unless the file has them; only constants that do not
-follow from the vehicle's numbers are written. Under the paper's law nine gains and the thrust floor
-are searched.
-
-Every candidate must meet all of these:
-- the certificate holds, each inequality with --margin to spare;
-- the sampled loops bear --gain-margin, its inverse, and --delay-margin more delay; so do they with
-  k_p and k_v times --gain-margin;
-- from upside down it is within 0.1 m of its place for good before three quarters of --recovery are
-  over;
-- a law that estimates leaves at most 10 mm of a gust;
-- no limit cuts a command, in any trial;
-- the file's own flight reaches its reference in time, and ends with at most --position-error and
-  --mrp-error.
-
-The search minimises the weighted sum of the figures in the table that it prints, before and after:
-the figures of `compare`. Most are flown on four models: the vehicle as the file says, and with
-mass, thrust, centre of mass, lag and delay off. The same file and seed give the same constants.
-Progress shows on stderr, through a pipe as well.
-
-Exit status 0: the start or better is written; 1: no candidate met the requirements, and the line on
-stderr says which one the closest candidate failed. Interrupted, a search writes the best it has
-found so far and says so; the exit status is then 129, 130 or 143. If it has found nothing yet, it
-writes nothing.";
 
 const COMPARE_HELP: &str = "\
-Each figure is better the less it is; a star begins each row in which another law does better than
-ours. docs/rivals.md describes the laws and why the comparison is fair. Random flights are those of
-`campaign --law NAME`, the same for every law.
+Each figure is better the less it is; a star begins each row in which another
+law does better than ours. docs/rivals.md describes the laws and why the
+comparison is fair. Random flights are those of `campaign --law NAME`, the same
+for every law.
 
-The rivals' gains are built in for the Hummingbird, the study vehicle and the paper's. For any other
-vehicle they are searched first, each rival's as hard as `tune` searches ours by default. That takes
-minutes; progress shows on stderr. gains.toml, beside compare.csv, has the gains found, for --gains.
-If no gains of a rival fly every trial to its end, the rival is left out, and named.
+The rivals' gains are built in for the Hummingbird, the study vehicle and the
+paper's. For any other vehicle they are searched first, each rival's as hard as
+`tune` searches ours by default. That takes minutes; progress shows on stderr.
+gains.toml, beside compare.csv, has the gains found, for --gains. If no gains of
+a rival fly every trial to its end, the rival is left out, and named.
 
-Exit status 0: every random flight of ours settles, and none of its commands is cut or leaves its
-certified bounds; 1: one does not, or the scenario is not certified.";
+Exit status 0: every random flight of ours settles, and none of its commands is
+cut or leaves its certified bounds; 1: one does not, or the scenario is not
+certified.";
 
 const LAW_HELP: &str = "\
-One line of 33 numbers in, one line of 4 numbers out, flushed, until end of input. SI units, rad,
-world z up.
+One line of 33 numbers in, one line of 4 numbers out, flushed, until end of
+input. SI units, rad, world z up.
   in:   t dt | x(3) v(3) | q(4) as x y z w, body to world | omega(3) body |
         reference x(3) v(3) a(3) j(3) s(3) yaw yaw_rate yaw_acceleration
   out:  thrust [N], torque x y z [N m]; not clipped to any limit
-The output uses the filters as they stand, which then advance by the line's dt (0.00025 to 0.1 s,
-and under the extended law at most 0.6 over the greater estimates.force_bandwidth). A line that
-cannot be used, or is longer than 64 KB, is answered by \"error: ...\" on its turn and changes
-nothing. Beyond these, numbers cannot be used: x 1e6 m; v 1e4 m/s; omega and yaw rate 1e4 rad/s; a
-1e4 m/s^2, j 1e6 m/s^3, s 1e8 m/s^4; yaw 1e6 rad, its acceleration 1e6 rad/s^2.";
+The output uses the filters as they stand, which then advance by the line's dt
+(0.00025 to 0.1 s, and under the extended law at most 0.6 over the greater
+estimates.force_bandwidth). A line that cannot be used, or is longer than 64 KB,
+is answered by \"error: ...\" on its turn and changes nothing. Beyond these,
+numbers cannot be used: x 1e6 m; v 1e4 m/s; omega and yaw rate 1e4 rad/s; a 1e4
+m/s^2, j 1e6 m/s^3, s 1e8 m/s^4; yaw 1e6 rad, its acceleration 1e6 rad/s^2.";
 
 const HIL_HELP: &str = "\
-The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for each rotor in the
-file's order. Each moves the vehicle on by one control period, and is answered by ODOMETRY and then
-HIL_SENSOR. Their times are those at which they are true, by the flight controller's clock: the
-command's, and what the vehicle has moved since. The HIL_SENSOR of the period's end comes last.
-Vehicle time counts from the first command.
+The flight controller sends HIL_ACTUATOR_CONTROLS: its time, and from 0 to 1 for
+each rotor in the file's order. Each moves the vehicle on by one control period,
+and is answered by ODOMETRY and then HIL_SENSOR. Their times are those at which
+they are true, by the flight controller's clock: the command's, and what the
+vehicle has moved since. The HIL_SENSOR of the period's end comes last. Vehicle
+time counts from the first command.
 
-Sensors are exact, one pose and one sample a period. With [estimator] in the file they are those of
-a real vehicle: a sample each millisecond, with a BMI088's noise and biases, and poses that are
-noisy, late or missing; the same in every run. [sensors] does not count here.
+Sensors are exact, one pose and one sample a period. With [estimator] in the
+file they are those of a real vehicle: a sample each millisecond, with a
+BMI088's noise and biases, and poses that are noisy, late or missing; the same
+in every run. [sensors] does not count here.
 
-With QEMU, from the top of the repository (this firmware's emulated board; its second serial port is
-for the ground station):
+With QEMU, from the top of the repository (this firmware's emulated board; its
+second serial port is for the ground station):
   cargo build --profile board -p firmware --target thumbv7em-none-eabihf \\
     --no-default-features --features mps2 --bin mps2
-  qemu-system-arm -M mps2-an386 -display none -monitor none -icount shift=0,sleep=off \\
+  qemu-system-arm -M mps2-an386 -display none -monitor none \\
+    -icount shift=0,sleep=off \\
     -serial tcp:127.0.0.1:5760,server=on,nodelay=on \\
     -serial tcp:127.0.0.1:5761,server=on,wait=off,nodelay=on \\
-    -semihosting-config enable=on,target=native -kernel target/thumbv7em-none-eabihf/board/mps2
-  cargo run --release -p host-sim -- hil --connect 127.0.0.1:5760 vehicles/study.toml
-The two stay in lock-step however slow they are. For clients in real time (MAVSDK, MAVProxy and so
-on), add --ground 127.0.0.1:5761 to have the second serial port on UDP 14540 and 14550, and --speed
-to keep the vehicle's time steady.
+    -semihosting-config enable=on,target=native \\
+    -kernel target/thumbv7em-none-eabihf/board/mps2
+  host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
+The two stay in lock-step however slow they are. For clients in real time
+(MAVSDK, MAVProxy and so on), add --ground 127.0.0.1:5761 to have the second
+serial port on UDP 14540 and 14550, and --speed to keep the vehicle's time
+steady.
 
 With a board, bridge its serial port:
   socat TCP-LISTEN:5760,nodelay /dev/ttyUSB0,raw,b921600
-Such a line carries 92 bytes a millisecond; an exact answer has 315, one with [estimator] up to 972,
-too many for a period of 10 ms.
+Such a line carries 92 bytes a millisecond; an exact answer has 315, one with
+[estimator] up to 972, too many for a period of 10 ms.
 
-Interrupted, a session ends as if its duration were over, and its log is kept; the exit status is
-then 129, 130 or 143.";
+Interrupted, a session ends as if its duration were over, and its log is kept;
+the exit status is then 129, 130 or 143.";
 
 const SITL_HELP: &str = "\
-The vehicle stands on the ground below the file's initial position. Its poses come from a camera
-inside, as ODOMETRY: a client need send none. Without [estimator] in the file the sensors are a
-BMI088 and a camera with that section's defaults; [reference] and [sensors] do not count. Connect,
-and wait until it is ready (about 4 s):
+The vehicle stands on the ground below the file's initial position. Its poses
+come from a camera inside, as ODOMETRY: a client need send none. Without
+[estimator] in the file the sensors are a BMI088 and a camera with that
+section's defaults; [reference] and [sensors] do not count. Connect, and wait
+until it is ready (about 4 s):
 
   MAVSDK        connect udpin://127.0.0.1:14540
   pymavlink     mavutil.mavlink_connection(\"udpin:127.0.0.1:14540\")
   MAVProxy      mavproxy.py --master=udp:127.0.0.1:14550
   QGroundControl finds it by itself on 14550
 
-A client commands by heartbeats: one a second, before it arms and ever after. docs/sitl.md has whole
-examples.
+A client commands by heartbeats: one a second, before it arms and ever after.
+docs/sitl.md has whole examples.
 
 Faults, in seconds of the vehicle's time:
-  --fault pose@12..15          no pose arrives for 3 s
-  --fault gyro@20              the IMU falls silent, for good; accelerometer, motors: likewise
-  --fault ground-station@10..40  what clients send is lost, and what is sent to them
-  --fault battery=9.8@30       the battery shows 9.8 V (set BAT_LOW or BAT_CRIT above it)
+  --fault pose@12..15            no pose arrives for 3 s
+  --fault gyro@20                the IMU falls silent, for good; accelerometer,
+                                 motors: likewise
+  --fault ground-station@10..40  what clients send is lost, and what is sent to
+                                 them
+  --fault battery=9.8@30         the battery shows 9.8 V (set BAT_LOW or
+                                 BAT_CRIT above it)
 
-A line of status each second, and every text of the vehicle's, go to standard output. The exit
-status is 0 after --duration, 129, 130 or 143 when interrupted, 2 for what cannot be used.";
-
-impl TuneArguments {
-    /// The requirements on gains.
-    ///
-    /// # Errors
-    /// Names the argument that asks for something impossible, or for less than what may fly.
-    pub fn requirements(&self) -> Result<Requirements, String> {
-        let least = LoopMargin::LEAST;
-        let positive = [("--position-error", self.position_error), ("--mrp-error", self.mrp_error)];
-        if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
-            return Err(format!("{name}: must be greater than zero and finite, found {value}"));
-        }
-        if !(LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&self.recovery) {
-            let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
-            return Err(format!("--recovery: {allowed}, found {}", self.recovery));
-        }
-        if !(0.0..1.0).contains(&self.margin) {
-            return Err(format!("--margin: must be from 0 to below 1, found {}", self.margin));
-        }
-        let margins = [
-            ("--gain-margin", self.gain_margin, least.gain, ""),
-            ("--delay-margin", self.delay_margin, 1e3 * least.delay, " ms"),
-        ];
-        for (name, found, least, unit) in margins {
-            if !(found >= least && found.is_finite()) {
-                return Err(format!(
-                    "{name}: must be at least {least}{unit}, which certify asks for, and finite; found {found}"
-                ));
-            }
-        }
-        if self.generations == 0 {
-            return Err("--generations: must be at least 1, found 0".to_owned());
-        }
-        if !(4..=1000).contains(&self.population) {
-            return Err(format!("--population: must be from 4 to 1000, found {}", self.population));
-        }
-        Ok(Requirements {
-            margin: self.margin,
-            loops: LoopMargin { gain: self.gain_margin, delay: 1e-3 * self.delay_margin },
-            position_error: self.position_error,
-            mrp_error: self.mrp_error,
-            recovery: self.recovery,
-            projection: !self.no_projection,
-        })
-    }
-}
+A line of status each second, and every text of the vehicle's, go to standard
+output. The exit status is 0 after --duration, 129, 130 or 143 when interrupted,
+2 for what cannot be used.";

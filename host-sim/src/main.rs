@@ -5,10 +5,10 @@ mod searches;
 mod terminal;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, LogArguments, MergeArguments,
-    ReferenceArguments, ReplayArguments, SitlArguments, VehicleArguments,
+    Arguments, CampaignArguments, Command, HilArguments, IdentifyArguments, LogArguments, ManArguments, MergeArguments,
+    ReferenceArguments, ReplayArguments, SitlArguments, VehicleArguments, completions, manual,
 };
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use host_sim::campaign::draw::circumstances;
 use host_sim::campaign::summary::Summary;
 use host_sim::campaign::written::above;
@@ -63,6 +63,11 @@ fn main() -> ExitCode {
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
+            Some(Command::Completions(arguments)) => {
+                print(|| io::stdout().write_all(&completions(&arguments, Arguments::command())))
+                    .map(|()| ExitCode::SUCCESS)
+            }
+            Some(Command::Man(arguments)) => run_man(&arguments),
         },
     };
     outcome.unwrap_or_else(|message| {
@@ -101,14 +106,14 @@ fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: boo
     let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
     permit(&scenario, &named, "duration", large_log)?;
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
+    if let Some(added) = added {
+        print_text(&format!("{named}has neither [initial] nor [reference], so it flies {added}\n"))?;
+    }
     fly_into(&scenario, &text, &LawChoice::Ours, &directory, mcap)
 }
 
 /// Flies one flight of a scenario from a file with this `text`, and prints its claims.
 fn fly_into(
-    if let Some(added) = added {
-        print_text(&format!("{named}has neither [initial] nor [reference], so it flies {added}\n"))?;
-    }
     scenario: &Scenario,
     text: &str,
     law: &LawChoice,
@@ -370,6 +375,17 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
         }
         Err(SitlError::Input(what)) => Err(what),
     }
+}
+
+fn run_man(ManArguments { out }: &ManArguments) -> Result<ExitCode, String> {
+    let pages =
+        manual(out, Arguments::command()).map_err(|error| format!("{}: cannot be written: {error}", out.display()))?;
+    print_text(&format!(
+        "{pages} pages in {}; man -l {} shows one\n",
+        out.display(),
+        out.join("host-sim.1").display()
+    ))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCode, String> {

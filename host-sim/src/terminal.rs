@@ -35,7 +35,7 @@ pub fn complain(what: impl fmt::Display) {
 }
 
 /// Widest line of printed prose, columns.
-pub const WIDTH_MAX: usize = 100;
+const WIDTH_MAX: usize = 100;
 
 /// Writes a text to standard output with its prose folded; on a terminal no wider than that, and with failures in red.
 pub fn print_text(text: &str) -> Result<(), String> {

@@ -61,25 +61,27 @@ pub struct MergeArguments {
 
 /// The help of `campaign`.
 pub const HELP: &str = "\
-Each flight's circumstances come from the seed and its number alone: where it starts, wind, noise
-and, if the file asks for it, what the model has wrong. A flight recovers and tracks if it comes
-within 0.2 m of its reference in the first 90 % of its time and stays there to the end. The same
-flights give the same bytes at any number of threads, in any split, and after any interruption: what
-was finished is kept, and the same command goes on from there. campaign.arrow has a row for each
-flight; docs/campaign.md has its columns, and how to read them in Python.
+Each flight's circumstances come from the seed and its number alone: where it
+starts, wind, noise and, if the file asks for it, what the model has wrong. A
+flight recovers and tracks if it comes within 0.2 m of its reference in the
+first 90 % of its time and stays there to the end. The same flights give the
+same bytes at any number of threads, in any split, and after any interruption:
+what was finished is kept, and the same command goes on from there.
+campaign.arrow has a row for each flight; docs/campaign.md has its columns, and
+how to read them in Python.
 
   host-sim campaign vehicles/hummingbird.toml --flights 10000
   host-sim campaign vehicles/hummingbird.toml --replay 6194
-  host-sim campaign vehicles/hummingbird.toml --shard 1/2 --out first     on one machine
-  host-sim campaign vehicles/hummingbird.toml --shard 2/2 --out second    on another
+  host-sim campaign vehicles/hummingbird.toml --shard 1/2 --out first
+  host-sim campaign vehicles/hummingbird.toml --shard 2/2 --out second
   host-sim merge first second --out whole
 
-Another law flies the very same circumstances: --law indi, into campaigns/<name>-indi.
-docs/rivals.md says what the laws are.
+Another law flies the very same circumstances: --law indi, into
+campaigns/<name>-indi. docs/rivals.md says what the laws are.
 
-The exit status is 1 if a flight does not track, a command goes beyond its certified bound, or the
-scenario is not certified. Nothing is certified of another law: its status is 1 if a flight does not
-track.";
+The exit status is 1 if a flight does not track, a command goes beyond its
+certified bound, or the scenario is not certified. Nothing is certified of
+another law: its status is 1 if a flight does not track.";
 
 /// The values of --law.
 fn law_names() -> PossibleValuesParser {

@@ -22,26 +22,31 @@ pub struct IdentifyArguments {
 
 /// The end of `identify --help`.
 pub const IDENTIFY_HELP: &str = "\
-`identify` finds thrust scale over mass, inertia over thrust scale, rotor lag and delay, centre of
-mass (x, y) and linear drag. Each has a standard uncertainty, and an interval of 3.515 of them (more
-if the flight is shorter than 80 s) to either side, meant for all sixteen together (docs/identify.md
-says how often that held). The mass
-itself is not observable in flight: give its weighing in a bench file, or the file's mass is taken.
+`identify` finds thrust scale over mass, inertia over thrust scale, rotor lag
+and delay, centre of mass (x, y) and linear drag. Each has a standard
+uncertainty, and an interval of 3.515 of them (more if the flight is shorter
+than 80 s) to either side, meant for all sixteen together (docs/identify.md says
+how often that held). The mass itself is not observable in flight: give its
+weighing in a bench file, or the file's mass is taken.
 
   [weighing]
   mass = [0.5021, 0.5023]     # kg
   uncertainty = 0.0005        # kg
 
-What to fly: a minute or more, steps there and back along both body axes, climbing and sinking by
-metres, and turning, as scenarios/identify.toml does; within the reference bounds. Of the state only
-what the vehicle measured or estimated is used, not the simulated truth.
+What to fly: a minute or more, steps there and back along both body axes,
+climbing and sinking by metres, and turning, as scenarios/identify.toml does;
+within the reference bounds. Of the state only what the vehicle measured or
+estimated is used, not the simulated truth.
 
   host-sim fly scenarios/identify.toml
-  host-sim identify flights/identify/log.csv --scenario scenarios/identify.toml --bench bench.toml --out mine.toml
+  host-sim identify flights/identify/log.csv --bench bench.toml \\
+    --scenario scenarios/identify.toml --out mine.toml
   host-sim certify mine.toml
 
-The report ends with each margin of the certificate and of the sampled loops: with the file's
-numbers, with those found, and in the worst corner of their intervals.
+The report ends with each margin of the certificate and of the sampled loops:
+with the file's numbers, with those found, and in the worst corner of their
+intervals.
 
-Exit status: 0 if the vehicle was identified, 1 if a quantity is not observable in the log (it says
-which, and what to fly for it), 2 if a file cannot be used or written.";
+Exit status: 0 if the vehicle was identified, 1 if a quantity is not observable
+in the log (it says which, and what to fly for it), 2 if a file cannot be used
+or written.";

@@ -15,10 +15,12 @@ pub struct LogArguments {
 
 /// The end of `log --help`.
 pub const LOG_HELP: &str = "\
-The firmware's own ULog has one topic, tick, in its own frames; PlotJuggler and pyulog read it as it
-is. The file written has vehicle_attitude, vehicle_angular_velocity, vehicle_local_position with its
-setpoint, trajectory_setpoint, actuator_motors, battery_status, vehicle_status and
-vehicle_land_detected in PX4's frames (north, east, down; forward, right, down), so that Flight
-Review plots them. Information, parameters and texts are kept. docs/log.md says what is left out.
+The firmware's own ULog has one topic, tick, in its own frames; PlotJuggler and
+pyulog read it as it is. The file written has vehicle_attitude,
+vehicle_angular_velocity, vehicle_local_position with its setpoint,
+trajectory_setpoint, actuator_motors, battery_status, vehicle_status and
+vehicle_land_detected in PX4's frames (north, east, down; forward, right, down),
+so that Flight Review plots them. Information, parameters and texts are kept.
+docs/log.md says what is left out.
 
 Exit status: 0, or 2 if a file cannot be used or written.";

@@ -6,15 +6,16 @@ use std::path::PathBuf;
 
 /// The end of `reference --help`.
 pub const HELP: &str = "\
-The columns are t, x to z, vx to vz, ax to az and yaw_deg: s, m, degrees, z up. Whatever the file's
-[reference] is, this is what the law is given: smooth, with a beginning and an end at rest; but a
-tenth slower, since a vehicle guesses the jerk and snap of a stream, and smooths one that seems to
-be beyond its bounds.
-python/examples/stream_rows.py streams the rows to a vehicle over MAVLink; as file = \"rows.csv\" they
-are a reference again.
+The columns are t, x to z, vx to vz, ax to az and yaw_deg: s, m, degrees, z up.
+Whatever the file's [reference] is, this is what the law is given: smooth, with
+a beginning and an end at rest; but a tenth slower, since a vehicle guesses the
+jerk and snap of a stream, and smooths one that seems to be beyond its bounds.
+python/examples/stream_rows.py streams the rows to a vehicle over MAVLink; as
+file = \"rows.csv\" they are a reference again.
 
-Exit status: 0; 1 if the vehicle is not certified for the reference, as `certify` says; the rows are
-written all the same. 2 if a file cannot be used or written.";
+Exit status: 0; 1 if the vehicle is not certified for the reference, as
+`certify` says; the rows are written all the same. 2 if a file cannot be used or
+written.";
 
 /// A reference, and where its rows go.
 #[derive(Args)]

@@ -5,11 +5,13 @@ use host_sim::plots::replay::Stretch;
 use std::path::PathBuf;
 
 pub const HELP: &str = "\
-The picture shows the path, the reference, the path's shadow on the floor and the vehicle larger than life, in 20 pictures
-a second; the bar below is how much is over. Any browser plays it, and a page of GitHub. `fly` writes the same flight as
-report.html, which can be turned and stopped.
+The picture shows the path, the reference, the path's shadow on the floor and
+the vehicle larger than life, in 20 pictures a second; the bar below is how much
+is over. Any browser plays it, and a page of GitHub. `fly` writes the same
+flight as report.html, which can be turned and stopped.
 
-Exit status 0: the picture is written, whether or not the flight's claims hold; 1: the flight could not go on.";
+Exit status 0: the picture is written, whether or not the flight's claims hold;
+1: the flight could not go on.";
 
 /// The longest moving picture, s.
 const LONGEST: f64 = 60.0;

@@ -76,6 +76,9 @@ const SPEED_MIN: f64 = 0.1;
 /// The arguments of `hil`.
 #[derive(Args)]
 #[command(group(ArgGroup::new("other side").required(true).args(["connect", "listen"])))]
+#[command(override_usage = "\
+host-sim hil [OPTIONS] --connect <HOST:PORT> <FILE>
+       host-sim hil [OPTIONS] --listen <HOST:PORT> <FILE>")]
 pub struct HilArguments {
     /// Scenario file: vehicle, rotors, delay, [estimator]; it starts on the ground below its initial position
     pub file: PathBuf,

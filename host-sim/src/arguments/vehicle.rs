@@ -32,27 +32,36 @@ pub struct VehicleArguments {
 /// What `vehicle --help` ends with.
 pub const VEHICLE_HELP: &str = "\
 The format is recognised by the content:
-  rotorpy   a dictionary with rotor_pos, in a Python file (read, never run) or as JSON: everything
-  sdf       <sdf> with Gazebo's motor model, as PX4's models: everything; included models are looked for beside its folder
-  urdf      <robot> with gym-pybullet-drones' <properties>: everything but the rotors' lag
-  mujoco    <mujoco> with a free body and motors at sites: everything but the rotors' lag
-  px4       CA_ROTOR... parameters: where the rotors stand and which way they turn
+  rotorpy   a dictionary with rotor_pos, in a Python file (read, never run) or
+            as JSON: everything
+  sdf       <sdf> with Gazebo's motor model, as PX4's models: everything;
+            included models are looked for beside its folder
+  urdf      <robot> with gym-pybullet-drones' <properties>: everything but the
+            rotors' lag
+  mujoco    <mujoco> with a free body and motors at sites: everything but the
+            rotors' lag
+  px4       CA_ROTOR... parameters: where the rotors stand and which way they
+            turn
 
-What the source has not is marked, never guessed: key = \"missing\", below a comment that says how to measure it. certify, fly and
-all other commands refuse the file until a number stands there. --with gives one here:
+What the source has not is marked, never guessed: key = \"missing\", below a
+comment that says how to measure it. certify, fly and all other commands refuse
+the file until a number stands there. --with gives one here:
 
   host-sim vehicle cf2x.urdf --with rotors.lag=0.05 --out cf2x.toml
   host-sim certify cf2x.toml
   host-sim fly cf2x.toml
 
-A file that is there already is kept: it may hold what you measured. --overwrite writes it all the same.
+A file that is there already is kept: it may hold what you measured.
+--overwrite writes it all the same.
 
-A vehicle's inertia is diagonal here. Products of inertia are written as they are, and certify refuses them with the angles by which
-the axes are off; --neglect-products leaves them out, and says so in the file. docs/import.md has every format from source to
-certified flight, and how frames and units are turned into ours.
+A vehicle's inertia is diagonal here. Products of inertia are written as they
+are, and certify refuses them with the angles by which the axes are off;
+--neglect-products leaves them out, and says so in the file. docs/import.md has
+every format from source to certified flight, and how frames and units are
+turned into ours.
 
-Exit status: 0 if the file can be used, 1 if it is written but numbers are missing or are refused, 2 if the source cannot be read or
-the file not written.";
+Exit status: 0 if the file can be used, 1 if it is written but numbers are
+missing or are refused, 2 if the source cannot be read or the file not written.";
 
 impl VehicleArguments {
     /// The format that is asked for.
