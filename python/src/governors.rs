@@ -1,6 +1,6 @@
 //! The governor of a scenario: setpoints in, references inside its bounds out.
 
-use crate::refused::{refused, refused_field};
+use crate::refused::{in_flight, refused, refused_field};
 use crate::rows::{array, of_reference, row};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
@@ -9,6 +9,7 @@ use controller_core::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 /// Any stream of setpoints in, a reference within the scenario's reference bounds out, once per control period.
 ///
@@ -19,6 +20,8 @@ use pyo3::prelude::*;
 ///     timeout: how long velocities and rates are valid without renewal, s.
 #[pyclass(module = "saturated_hybrid")]
 pub struct Governor {
+    scenario: Py<Scenario>,
+    limits: GovernorLimits,
     governor: Box<governor::Governor>,
     /// K_v12 of the scenario, m/s.
     greatest_speed: f32,
@@ -29,7 +32,7 @@ impl Governor {
     #[new]
     #[pyo3(signature = (scenario, *, horizontal_speed=5.0, vertical_speed=2.0, snap_ramp=0.1, heading_ramp=0.2, timeout=0.5))]
     fn new(
-        scenario: &Scenario,
+        scenario: &Bound<'_, Scenario>,
         horizontal_speed: f32,
         vertical_speed: f32,
         snap_ramp: f32,
@@ -37,11 +40,35 @@ impl Governor {
         timeout: f32,
     ) -> PyResult<Self> {
         let limits = GovernorLimits { horizontal_speed, vertical_speed, snap_ramp, heading_ramp, timeout };
-        let period = scenario.read.timing.period() as f32;
-        let mut memory = Box::new(Memory::EMPTY);
-        let bounds = scenario.read.configuration.bounds();
-        let made = governor::Governor::new(bounds, &limits, period, &mut memory).map_err(refused)?;
-        Ok(Self { governor: Box::new(made.clone()), greatest_speed: bounds.horizontal_speed })
+        let read = &scenario.get().read;
+        Ok(Self {
+            scenario: scenario.clone().unbind(),
+            limits,
+            governor: made(read, &limits)?,
+            greatest_speed: read.configuration.bounds().horizontal_speed,
+        })
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        Self { scenario: self.scenario.clone_ref(py), governor: self.governor.clone(), ..*self }
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.__copy__(py)
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Py<Scenario>,), Bound<'py, PyDict>)> {
+        if self.governor != made(&self.scenario.get().read, &self.limits)? {
+            return Err(in_flight("Governor"));
+        }
+        let GovernorLimits { horizontal_speed, vertical_speed, snap_ramp, heading_ramp, timeout } = self.limits;
+        let named = PyDict::new(py);
+        named.set_item("horizontal_speed", horizontal_speed)?;
+        named.set_item("vertical_speed", vertical_speed)?;
+        named.set_item("snap_ramp", snap_ramp)?;
+        named.set_item("heading_ramp", heading_ramp)?;
+        named.set_item("timeout", timeout)?;
+        Ok(((self.scenario.clone_ref(py),), named))
     }
 
     /// Starts anew at a steady motion: (3,) m, (3,) m/s, world, across at most the scenario's
@@ -113,6 +140,14 @@ impl Governor {
         self.governor = governor;
         array(py, references)
     }
+}
+
+/// A governor at rest at the origin.
+fn made(scenario: &scenario::Scenario, limits: &GovernorLimits) -> PyResult<Box<governor::Governor>> {
+    let (bounds, period) = (scenario.configuration.bounds(), scenario.timing.period() as f32);
+    let mut memory = Box::new(Memory::EMPTY);
+    let made = governor::Governor::new(bounds, limits, period, &mut memory).map_err(refused)?;
+    Ok(Box::new(made.clone()))
 }
 
 /// Of one call: about half a gigabyte of references.

@@ -96,6 +96,25 @@ impl Vehicle {
         Scenario::of(document.to_string(), self.name.clone())
     }
 
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Vec<String>))> {
+        let Self { file: Written { text, missing }, name } = slf.get();
+        Ok((slf.getattr("_read_before")?, (name.clone(), text.clone(), missing.clone())))
+    }
+
+    /// What another object of this class was.
+    #[staticmethod]
+    fn _read_before(name: String, text: String, missing: Vec<String>) -> Self {
+        Self { file: Written { text, missing }, name }
+    }
+
     fn __repr__(&self) -> String {
         format!("<Vehicle {:?}, {} numbers missing>", self.name, self.file.missing.len())
     }

@@ -3,7 +3,7 @@
 //! A step that is refused changes nothing, of rows none of them.
 
 use crate::cores::shared;
-use crate::refused::{refused, refused_field};
+use crate::refused::{in_flight, refused, refused_field};
 use crate::rows::{REFERENCE, STATE, WRENCH, array, measured, of_wrench, reference_of, row, rows, wrench, wrench_rows};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
@@ -29,6 +29,7 @@ pub const MOST_ROWS: u64 = 1_000_000;
 /// What nothing certifies may be simulated too; `certified` says which it is.
 #[pyclass(module = "saturated_hybrid")]
 pub struct Law {
+    scenario: Py<Scenario>,
     law: law::Law,
     certified: bool,
     diagnostics: Option<Diagnostics>,
@@ -37,13 +38,14 @@ pub struct Law {
 #[pymethods]
 impl Law {
     #[new]
-    fn new(scenario: &Scenario) -> PyResult<Self> {
-        let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
+    fn new(scenario: &Bound<'_, Scenario>) -> PyResult<Self> {
+        let read = &scenario.get().read;
+        let (configuration, period) = (&read.configuration, read.timing.period() as f32);
         let (law, certified) = match Certified::new(configuration.clone()) {
             Ok(certified) => (law::Law::new(&certified, period), true),
             Err(_) => (law::Law::uncertified(configuration, period), false),
         };
-        Ok(Self { law: law.map_err(refused)?, certified, diagnostics: None })
+        Ok(Self { scenario: scenario.clone().unbind(), law: law.map_err(refused)?, certified, diagnostics: None })
     }
 
     /// Whether its commands are proven to stay within the limits.
@@ -53,8 +55,21 @@ impl Law {
     }
 
     /// Another law that remembers the same.
-    fn copy(&self) -> Self {
-        Self { law: self.law.clone(), ..*self }
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self { scenario: self.scenario.clone_ref(py), law: self.law.clone(), ..*self }
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copy(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy(py)
+    }
+
+    fn __getnewargs__(&self, py: Python<'_>) -> PyResult<(Py<Scenario>,)> {
+        let fresh = Self::new(self.scenario.bind(py))?;
+        if self.law == fresh.law { Ok((self.scenario.clone_ref(py),)) } else { Err(in_flight("Law")) }
     }
 
     /// Everything forgotten: how a flight begins.
@@ -162,6 +177,7 @@ type Stepped = (law::Law, [f32; WRENCH]);
 /// The law of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 #[pyclass(module = "saturated_hybrid")]
 pub struct LawRows {
+    scenario: Py<Scenario>,
     reset: law::Law,
     laws: Vec<law::Law>,
 }
@@ -169,10 +185,23 @@ pub struct LawRows {
 #[pymethods]
 impl LawRows {
     #[new]
-    fn new(scenario: &Scenario, rows: Whole) -> PyResult<Self> {
+    fn new(scenario: &Bound<'_, Scenario>, rows: Whole) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
-        let reset = flight::law(&scenario.read).map_err(refused)?;
-        Ok(Self { laws: vec![reset.clone(); rows], reset })
+        let reset = flight::law(&scenario.get().read).map_err(refused)?;
+        Ok(Self { scenario: scenario.clone().unbind(), laws: vec![reset.clone(); rows], reset })
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        Self { scenario: self.scenario.clone_ref(py), reset: self.reset.clone(), laws: self.laws.clone() }
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.__copy__(py)
+    }
+
+    fn __getnewargs__(&self, py: Python<'_>) -> PyResult<(Py<Scenario>, usize)> {
+        let fresh = self.laws.iter().all(|law| *law == self.reset);
+        if fresh { Ok((self.scenario.clone_ref(py), self.laws.len())) } else { Err(in_flight("LawRows")) }
     }
 
     fn __len__(&self) -> usize {

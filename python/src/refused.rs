@@ -14,6 +14,11 @@ pub fn refused_field(field: &str, problem: impl Display) -> PyErr {
     PyValueError::new_err(format!("{field}: {problem}"))
 }
 
+/// Of an object of this `class` that is to be pickled in the middle of a flight.
+pub fn in_flight(class: &str) -> PyErr {
+    refused_field(class, "is in flight: pickle it as after a reset; copy.deepcopy copies it as it is, within a process")
+}
+
 /// Of output that cannot be written: an `OSError`.
 pub fn unwritable(error: impl Display) -> PyErr {
     PyOSError::new_err(error.to_string())

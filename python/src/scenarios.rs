@@ -202,6 +202,14 @@ impl Scenario {
         format!("<Scenario {:?}, {} law, {} s>", self.read.name, self.law(), self.read.timing.duration())
     }
 
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
         let this = slf.get();
         Ok((slf.getattr("parse")?, (this.text.clone(), this.file.clone())))

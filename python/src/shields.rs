@@ -5,7 +5,7 @@
 
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, ROWS_AT_ONCE, for_rotors, named, numbers};
-use crate::refused::refused;
+use crate::refused::{in_flight, refused};
 use crate::rows::{
     REFERENCE, STATE, WRENCH, array, demand_row, demand_rows, measured, of_reference, of_wrench, row, rows, wrench,
     wrench_rows,
@@ -45,6 +45,11 @@ impl One {
         Ok(Self { law, shield, fresh: true, reason: None, reference })
     }
 
+    /// Whether it is as before a flight, as `start` is.
+    fn is_as(&self, start: &Self) -> bool {
+        self.fresh && self.law == start.law
+    }
+
     fn by_policy(&self) -> bool {
         !self.fresh && self.reason.is_none()
     }
@@ -65,16 +70,34 @@ impl One {
     }
 }
 
-fn settings(
+fn settings(&Wanted { low, high, numbers, hand_overs }: &Wanted) -> Settings {
+    let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
+    let [speed, silence, patience, patience_greatest] = numbers.map(|value| value as f32);
+    Settings { speed, silence, patience, patience_greatest, hand_overs, ..Settings::new(corner(low), corner(high)) }
+}
+
+/// What a shield was made of.
+#[derive(Clone, Copy)]
+struct Wanted {
     low: [f64; 3],
     high: [f64; 3],
-    [speed, silence, patience, patience_greatest]: [f64; 4],
+    /// Speed, silence, patience and its greatest.
+    numbers: [f64; 4],
     hand_overs: u32,
-) -> Settings {
-    let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
-    let [speed, silence, patience, patience_greatest] =
-        [speed, silence, patience, patience_greatest].map(|value| value as f32);
-    Settings { speed, silence, patience, patience_greatest, hand_overs, ..Settings::new(corner(low), corner(high)) }
+}
+
+impl Wanted {
+    /// As Python names it.
+    fn named<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        named.set_item("low", self.low)?;
+        named.set_item("high", self.high)?;
+        for (name, number) in ["speed", "silence", "patience", "patience_greatest"].into_iter().zip(self.numbers) {
+            named.set_item(name, number)?;
+        }
+        named.set_item("hand_overs", self.hand_overs)?;
+        Ok(named)
+    }
 }
 
 /// The extended law flying what a policy demands, within its limits, and taking over while it must.
@@ -91,6 +114,8 @@ fn settings(
 ///     hand_overs: after so many the law keeps the vehicle, until `ask_again` or `reset`.
 #[pyclass(module = "saturated_hybrid")]
 pub struct Shield {
+    scenario: Py<Scenario>,
+    wanted: Wanted,
     start: One,
     one: One,
     diagnostics: Option<Diagnostics>,
@@ -105,7 +130,7 @@ impl Shield {
 hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
-        scenario: &Scenario,
+        scenario: &Bound<'_, Scenario>,
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
         speed: f64,
@@ -116,14 +141,27 @@ hand_overs=10)")]
     ) -> PyResult<Self> {
         let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
         let (low, high) = (row::<3>(low, "low")?, row::<3>(high, "high")?);
-        let settings = settings(low, high, [speed, silence, patience, patience_greatest], hand_overs);
-        let start = One::new(scenario, &settings)?;
-        Ok(Self { one: start.clone(), start, diagnostics: None })
+        let wanted = Wanted { low, high, numbers: [speed, silence, patience, patience_greatest], hand_overs };
+        let start = One::new(scenario.get(), &settings(&wanted))?;
+        Ok(Self { scenario: scenario.clone().unbind(), wanted, one: start.clone(), start, diagnostics: None })
     }
 
     /// Another shield that remembers the same.
-    fn copy(&self) -> Self {
-        Self { start: self.start.clone(), one: self.one.clone(), diagnostics: self.diagnostics }
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self { scenario: self.scenario.clone_ref(py), start: self.start.clone(), one: self.one.clone(), ..*self }
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copy(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy(py)
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Py<Scenario>,), Bound<'py, PyDict>)> {
+        let fresh = self.one.is_as(&self.start);
+        if fresh { Ok(((self.scenario.clone_ref(py),), self.wanted.named(py)?)) } else { Err(in_flight("Shield")) }
     }
 
     /// As before a flight, law included.
@@ -219,6 +257,8 @@ type Stepped = (One, [f32; WRENCH]);
 /// Arguments as of `Shield`.
 #[pyclass(module = "saturated_hybrid")]
 pub struct ShieldRows {
+    scenario: Py<Scenario>,
+    wanted: Wanted,
     start: One,
     ones: Vec<One>,
 }
@@ -232,7 +272,7 @@ impl ShieldRows {
 hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
-        scenario: &Scenario,
+        scenario: &Bound<'_, Scenario>,
         rows: Whole,
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
@@ -243,9 +283,24 @@ hand_overs=10)")]
         hand_overs: Whole,
     ) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
-        let Shield { start, .. } =
+        let Shield { scenario, wanted, start, .. } =
             Shield::new(scenario, low, high, speed, silence, patience, patience_greatest, hand_overs)?;
-        Ok(Self { ones: vec![start.clone(); rows], start })
+        Ok(Self { scenario, wanted, ones: vec![start.clone(); rows], start })
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        Self { scenario: self.scenario.clone_ref(py), start: self.start.clone(), ones: self.ones.clone(), ..*self }
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.__copy__(py)
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Py<Scenario>, usize), Bound<'py, PyDict>)> {
+        if !self.ones.iter().all(|one| one.is_as(&self.start)) {
+            return Err(in_flight("ShieldRows"));
+        }
+        Ok(((self.scenario.clone_ref(py), self.ones.len()), self.wanted.named(py)?))
     }
 
     fn __len__(&self) -> usize {

@@ -8,7 +8,7 @@
 
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, numbers};
-use crate::refused::{refused, refused_field};
+use crate::refused::{in_flight, refused, refused_field};
 use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, wrench_rows};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
@@ -28,6 +28,7 @@ use scenario::body::{BodyState, GREATEST_TURN_PER_STEP};
 const STRETCH: usize = 16;
 
 /// One vehicle.
+#[derive(Clone)]
 struct Row {
     vehicle: SimulatedVehicle,
     sensors: Option<Sensors>,
@@ -91,9 +92,12 @@ struct Stretch {
 
 impl Stretch {
     fn new(scenario: &scenario::Scenario, count: usize) -> Self {
-        let rows: Vec<Row> = (0..count).map(|_| Row::new(scenario)).collect();
+        Self::of((0..count).map(|_| Row::new(scenario)).collect())
+    }
+
+    fn of(rows: Vec<Row>) -> Self {
         let bare = rows.first().and_then(|row| row.vehicle.bare());
-        let mut bodies = bare.map(|plant| (plant.body().clone(), Rows::new(Arch::new(), count)));
+        let mut bodies = bare.map(|plant| (plant.body().clone(), Rows::new(Arch::new(), rows.len())));
         if let Some((_, bodies)) = &mut bodies {
             rows.iter().enumerate().for_each(|(number, row)| bodies.place(number, row.vehicle.state()));
         }
@@ -127,12 +131,35 @@ impl Stretch {
 /// Rows of the vehicle that a flight of the scenario simulates, under given wrenches.
 #[pyclass(module = "saturated_hybrid")]
 pub struct VehicleRows {
-    scenario: scenario::Scenario,
+    scenario: Py<Scenario>,
     count: usize,
     stretches: Vec<Stretch>,
+    /// Where each row was put last, and with which seed; none where it began as the scenario does.
+    starts: Vec<Start>,
 }
 
+/// A state and a seed.
+type Start = Option<([f64; STATE], u64)>;
+
 impl VehicleRows {
+    fn read(&self) -> &scenario::Scenario {
+        &self.scenario.get().read
+    }
+
+    /// Starts a row anew.
+    fn put(&mut self, number: usize, state: [f64; STATE], seed: u64) {
+        let mut scenario = self.read().clone();
+        scenario.initial = body(&state);
+        if let Some(sensors) = &mut scenario.reality.sensors {
+            sensors.seed = seed;
+        }
+        if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
+            turbulence.seed = seed;
+        }
+        self.stretches[number / STRETCH].place(number % STRETCH, Row::new(&scenario));
+        self.starts[number] = Some((state, seed));
+    }
+
     fn rows(&self) -> impl Iterator<Item = &Row> {
         self.stretches.iter().flat_map(|stretch| &stretch.rows)
     }
@@ -141,16 +168,51 @@ impl VehicleRows {
 #[pymethods]
 impl VehicleRows {
     #[new]
-    fn new(scenario: &Scenario, rows: Whole) -> PyResult<Self> {
+    fn new(scenario: &Bound<'_, Scenario>, rows: Whole) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
-        if scenario.read.reality.estimator.is_some() {
+        let Scenario { read, file, .. } = scenario.get();
+        if read.reality.estimator.is_some() {
             let problem = "estimator: rows of vehicles have none; leave that section out, [sensors] may stay";
-            return Err(refused_field(&scenario.file, problem));
+            return Err(refused_field(file, problem));
         }
-        let scenario = scenario.read.clone();
-        let stretch = |first| Stretch::new(&scenario, STRETCH.min(rows - first));
+        let stretch = |first| Stretch::new(read, STRETCH.min(rows - first));
         let stretches = (0..rows).step_by(STRETCH).map(stretch).collect();
-        Ok(Self { count: rows, stretches, scenario })
+        Ok(Self { scenario: scenario.clone().unbind(), count: rows, stretches, starts: vec![None; rows] })
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        Self {
+            scenario: self.scenario.clone_ref(py),
+            stretches: self.stretches.iter().map(|stretch| Stretch::of(stretch.rows.clone())).collect(),
+            starts: self.starts.clone(),
+            ..*self
+        }
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.__copy__(py)
+    }
+
+    fn __getnewargs__(&self, py: Python<'_>) -> PyResult<(Py<Scenario>, usize)> {
+        let stand = self.rows().all(|row| row.tick == 0);
+        if stand { Ok((self.scenario.clone_ref(py), self.count)) } else { Err(in_flight("VehicleRows")) }
+    }
+
+    fn __getstate__(&self) -> Vec<Start> {
+        self.starts.clone()
+    }
+
+    fn __setstate__(&mut self, starts: Vec<Start>) -> PyResult<()> {
+        if starts.len() != self.count {
+            return Err(refused_field("starts", format!("must be {}, found {}", self.count, starts.len())));
+        }
+        for (number, begun) in starts.into_iter().enumerate() {
+            if let Some((state, seed)) = begun {
+                start(&state, self.read().timing.step()).map_err(refused)?;
+                self.put(number, state, seed);
+            }
+        }
+        Ok(())
     }
 
     fn __len__(&self) -> usize {
@@ -176,21 +238,13 @@ impl VehicleRows {
             return Err(refused_field("seeds", format!("must have shape ({count},), found ({},)", seeds.len())));
         }
         let chosen = numbers(chosen, self.count)?;
-        let step = self.scenario.timing.step();
+        let step = self.read().timing.step();
         for number in &chosen {
             let start = start(&states[*number], step);
             start.map_err(|problem| refused(format!("row {number}: {problem}")))?;
         }
         for number in chosen {
-            let mut scenario = self.scenario.clone();
-            scenario.initial = body(&states[number]);
-            if let Some(sensors) = &mut scenario.reality.sensors {
-                sensors.seed = seeds[number];
-            }
-            if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
-                turbulence.seed = seeds[number];
-            }
-            self.stretches[number / STRETCH].place(number % STRETCH, Row::new(&scenario));
+            self.put(number, states[number], seeds[number]);
         }
         Ok(())
     }
@@ -204,7 +258,8 @@ impl VehicleRows {
         wrenches: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<bool>>)> {
         let wrenches = wrench_rows(wrenches, self.count)?;
-        let (stretches, steps) = (&mut self.stretches, self.scenario.timing.steps_per_tick);
+        let steps = self.read().timing.steps_per_tick;
+        let stretches = &mut self.stretches;
         let clipped: PyResult<Vec<Vec<bool>>> = py.detach(|| {
             let brief = stretches.len() < 2;
             let given = stretches.par_iter_mut().zip(wrenches.par_chunks(STRETCH));
@@ -231,8 +286,8 @@ impl VehicleRows {
     /// (rows, 19): the scenario's, each at its row's own time.
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let period = self.scenario.timing.period_us;
-        let at = |row: &Row| of_reference(&self.scenario.trajectory.at(row.tick * period));
+        let period = self.read().timing.period_us;
+        let at = |row: &Row| of_reference(&self.read().trajectory.at(row.tick * period));
         array(py, self.rows().map(at).collect())
     }
 

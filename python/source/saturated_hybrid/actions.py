@@ -56,6 +56,21 @@ def quaternions(roll, pitch, yaw):
     return np.stack(each, axis=-1)
 
 
+def as_it_is(columns, headings):
+    """The demand of columns that are one."""
+    return columns
+
+
+def of_forward(columns, headings):
+    """The demand of an acceleration seen from the heading."""
+    return np.concatenate([turned(columns[:, :3], headings), columns[:, 3:]], axis=1)
+
+
+def of_attitude(columns, headings):
+    """The demand of a thrust and of roll, pitch and yaw."""
+    return np.concatenate([quaternions(*np.moveaxis(columns[..., 1:], -1, 0)), columns[..., :1]], axis=-1)
+
+
 def kinds(scenario):
     """The kinds of action, for a scenario's vehicle, by their names."""
     mass, gravity, greatest = scenario.mass, scenario.gravity, scenario.thrust_max
@@ -64,15 +79,6 @@ def kinds(scenario):
     climb = min(SHARE * gravity, SHARE_OF_CLIMB * (greatest / mass - gravity))
     across = SHARE * gravity
     accelerations = [-across, -across, -climb, -YAW_RATE], np.zeros(4), [across, across, climb, YAW_RATE]
-
-    def as_it_is(columns, headings):
-        return columns
-
-    def of_forward(columns, headings):
-        return np.concatenate([turned(columns[:, :3], headings), columns[:, 3:]], axis=1)
-
-    def of_attitude(columns, headings):
-        return np.concatenate([quaternions(*np.moveaxis(columns[..., 1:], -1, 0)), columns[..., :1]], axis=-1)
 
     def kind(low, middle, high, demand=as_it_is):
         return Kind(*(np.array(each, float) for each in (low, middle, high)), demand)

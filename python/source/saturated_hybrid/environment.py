@@ -10,6 +10,9 @@ the one environment that was reset with `s + k`. With gymnasium installed they a
     terminated                   further than `lost` from the reference, or no longer finite
     truncated                    the scenario's duration is over
 
+`copy.copy` and `copy.deepcopy` give an environment that flies on, to the same bits, from where this one is. One that has
+just been made or reset can be pickled; in the middle of an episode `pickle` refuses.
+
 A subclass of either defines anything else that is in `Task`. `saturated_hybrid.tasks` has two that are registered with
 Gymnasium.
 
@@ -18,6 +21,7 @@ observations[:, 13:]))` are its actions; report those that were `clipped` to it:
 `law.hold_estimates(info["clipped"].tolist())`.
 """
 
+import copy
 import functools
 import operator
 
@@ -191,6 +195,10 @@ class VectorEnvironment(Task, spaces.Many):
     def close(self, **_):
         """Nothing is left open."""
 
+    def __copy__(self):
+        """Another environment that flies on from where this one is: nothing of what flies is shared."""
+        return copy.deepcopy(self)
+
 
 class Environment(Task, spaces.One):
     """One vehicle: what a row of `VectorEnvironment` is, without starting anew by itself. Arguments as there."""
@@ -240,7 +248,9 @@ class Environment(Task, spaces.One):
 
     def step(self, action):
         """Holds a command (4,) for one control period. Returns observation, reward, terminated, truncated and a
-        dictionary."""
+        dictionary; after an episode's end `RuntimeError`."""
+        if self._rows.over[0]:
+            raise RuntimeError("step: the episode is over: call reset first")
         observations, rewards, terminated, truncated, info = self._rows.step(np.asarray(action)[None])
         info = {key: value[0] if key == "reasons" else bool(value[0]) for key, value in info.items()}
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
@@ -255,6 +265,10 @@ class Environment(Task, spaces.One):
 
     def close(self):
         """Nothing is left open."""
+
+    def __copy__(self):
+        """Another environment that flies on from where this one is: nothing of what flies is shared."""
+        return copy.deepcopy(self)
 
 
 def _state(options):
