@@ -104,6 +104,7 @@ impl Vehicle {
         slf
     }
 
+    #[allow(clippy::type_complexity)] // what pickle asks for
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Vec<String>))> {
         let Self { file: Written { text, missing }, name } = slf.get();
         Ok((slf.getattr("_read_before")?, (name.clone(), text.clone(), missing.clone())))

@@ -296,6 +296,7 @@ hand_overs=10)")]
         self.__copy__(py)
     }
 
+    #[allow(clippy::type_complexity)] // what pickle asks for
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Py<Scenario>, usize), Bound<'py, PyDict>)> {
         if !self.ones.iter().all(|one| one.is_as(&self.start)) {
             return Err(in_flight("ShieldRows"));
