@@ -1,6 +1,7 @@
 //! `[initial]`: where a flight starts. Left out, in whole or in part: on the reference, at rest, level, facing world x.
 
 use crate::body::{BodyState, GREATEST_TURN_PER_STEP, attitude_from_euler};
+use crate::resolution;
 use crate::section::{FieldError, Section};
 use controller_core::state::STATE_RANGE;
 use nalgebra::Vector3;
@@ -11,7 +12,13 @@ use nalgebra::Vector3;
 /// If it is not three numbers, or out of the law's range.
 pub fn read_position(root: &Section) -> Result<Option<Vector3<f64>>, FieldError> {
     let section = root.optional_section("initial")?.filter(|section| section.has("position"));
-    section.map(|section| within_range(&section, "position", Vector3::zeros())).transpose()
+    section.map(|section| position(&section, Vector3::zeros())).transpose()
+}
+
+fn position(section: &Section, default: Vector3<f64>) -> Result<Vector3<f64>, FieldError> {
+    let position = section.vector_or("position", default)?;
+    resolution::check(&section.path_of("position"), &position, "start nearer")?;
+    Ok(position)
 }
 
 /// Reads `[initial]`; `on_reference` is the reference's first position, m.
@@ -25,7 +32,7 @@ pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Re
         return Ok(BodyState { position: on_reference, velocity: rest, attitude, angular_velocity: rest });
     };
     section.allow(&["position", "velocity", "euler_deg", "angular_velocity"])?;
-    let position = within_range(&section, "position", on_reference)?;
+    let position = position(&section, on_reference)?;
     let velocity = within_range(&section, "velocity", rest)?;
     let euler = section.vector_or("euler_deg", rest)?.map(f64::to_radians);
     let angular_velocity = section.vector_or("angular_velocity", rest)?;

@@ -52,6 +52,7 @@ pub mod policy;
 pub mod reality;
 pub mod reference;
 pub mod remarks;
+pub mod resolution;
 pub mod rotor_loss;
 pub mod sampled_loop;
 pub mod section;

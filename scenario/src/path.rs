@@ -63,7 +63,8 @@ impl fmt::Display for Swing {
     }
 }
 
-/// Refuses a reference that goes below the ground: below `ground`, or below zero between waypoints that all lie above.
+/// Refuses a reference that goes below the ground: below `ground`, or below zero between waypoints that all lie above,
+/// or with all of them.
 ///
 /// # Errors
 /// Names the field, the place and the time.
@@ -82,20 +83,34 @@ pub fn check_ground(
             let time = if frequency == 0.0 { 0.0 } else { turned / frequency.abs() };
             ("reference.center", at(time), "raise it")
         }
-        ReferenceKind::Route(Route { points, way, .. }) => {
+        ReferenceKind::Route(Route { points, way, name, .. }) => {
             let lowest = places(points, trajectory).min_by(|a, b| a.position.z.total_cmp(&b.position.z));
             let remedy = match way {
                 Way::Smooth => "take path = \"inside\", or raise the points",
                 Way::Paced { .. } => "narrow the corridor, or raise the points",
                 Way::Inside | Way::Near { .. } => "raise the points",
             };
-            ("reference.points", lowest.unwrap_or_else(|| at(0.0)), remedy)
+            (name.as_str(), lowest.unwrap_or_else(|| at(0.0)), remedy)
         }
     };
-    let above_zero = |points: &[Waypoint]| points.iter().all(|point| point.position[2] >= 0.0);
     let height = match (ground, reference) {
         (Some(ground), _) => ground.height,
-        (None, ReferenceKind::Route(Route { points, .. })) if above_zero(points) => 0.0,
+        (None, ReferenceKind::Route(Route { points, .. })) => {
+            let highest = points.iter().map(|point| point.position[2]).fold(f64::NEG_INFINITY, f64::max);
+            if highest < -LEAST {
+                let problem = format!(
+                    "lies below zero everywhere, from z = {:.2} to {highest:.2} m, and z points up: where it points \
+                     down (NED), turn it round to (x, -y, -z) and -yaw; where the ground is that low, say so in \
+                     [ground] height",
+                    lowest.position.z
+                );
+                return Err(FieldError::new(field, problem));
+            }
+            if points.iter().any(|point| point.position[2] < 0.0) {
+                return Ok(());
+            }
+            0.0
+        }
         _ => return Ok(()),
     };
     if lowest.position.z >= height - LEAST {

@@ -2,6 +2,7 @@
 //! starts, or 1 m above the origin if `[initial]` does not say where that is, facing world x.
 
 use crate::initial::read_position;
+use crate::resolution;
 use crate::section::{FieldError, Section};
 use crate::trajectory::{self, Allowed, Directory, Route, stretch};
 use controller_core::certificate::path::FORCE_KEPT;
@@ -18,6 +19,9 @@ pub const TOLERANCE: f64 = 0.5;
 
 /// Where to hover if the file says nothing of it, m.
 const DEFAULT_POSITION: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
+
+/// What to do about a place that is too far away.
+const COUNT_FROM_NEAR: &str = "count all positions from an origin nearby";
 
 /// A reference as the file describes it, double precision.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,6 +110,7 @@ impl ReferenceKind {
 fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
     section.allow(&["kind", "tolerance", "force_kept", "position", "heading_deg"])?;
     let position = section.vector("position")?;
+    resolution::check(&section.path_of("position"), &position, COUNT_FROM_NEAR)?;
     let heading = section.number_or("heading_deg", 0.0)?.to_radians();
     Ok(ReferenceKind::Hover { position, heading })
 }
@@ -121,9 +126,12 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
         heading.amplitude = section.number_or("amplitude", 0.0)?;
         heading.frequency = section.number_or("frequency", 0.0)?;
     }
+    let (center, amplitude) = (section.vector("center")?, section.vector("amplitude")?);
+    resolution::check(&section.path_of("center"), &center, COUNT_FROM_NEAR)?;
+    resolution::check(&section.path_of("amplitude"), &amplitude, "fly a smaller one")?;
     Ok(HarmonicParameters {
-        center: section.vector("center")?.into(),
-        amplitude: section.vector("amplitude")?.into(),
+        center: center.into(),
+        amplitude: amplitude.into(),
         frequency: section.vector("frequency")?.into(),
         phase: section.vector_or("phase", Vector3::zeros())?.into(),
         heading,

@@ -11,17 +11,19 @@ use crate::trajectory::{Route, Way};
 #[must_use]
 pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     let route = match &scenario.reference {
-        ReferenceKind::Route(route) => remark(route),
+        ReferenceKind::Route(route) => Some(route),
         _ => None,
     };
+    let summary = route.and_then(summary);
+    let source = route.into_iter().flat_map(|route| route.remarks.clone());
     let swing = Swing::of(&scenario.reference, &*scenario.trajectory).map(|swing| swing.to_string());
     let excess = if is_certified { None } else { Excess::of(scenario) };
-    let reference = route.into_iter().chain(swing).chain(excess.map(|excess| excess.to_string()));
+    let reference = summary.into_iter().chain(source).chain(swing).chain(excess.map(|excess| excess.to_string()));
     let vehicle = scenario.unusual.iter().map(|unusual| format!("vehicle, unusual: {unusual}"));
     vehicle.chain(reference.map(|remark| format!("reference: {remark}"))).collect()
 }
 
-fn remark(route: &Route) -> Option<String> {
+fn summary(route: &Route) -> Option<String> {
     let (points, duration) = (route.points.len(), route.duration());
     match route.way {
         Way::Near { farthest: (distance, time), lead_in } => Some(format!(

@@ -11,10 +11,30 @@ pub const LONGEST: u64 = 4 << 20;
 /// The text of `path`.
 ///
 /// # Errors
-/// If it cannot be read, is no UTF-8, or is longer than [`LONGEST`].
+/// If it cannot be read, is neither UTF-8 nor UTF-16, or is longer than [`LONGEST`].
 pub fn read(path: &Path) -> io::Result<String> {
-    String::from_utf8(bytes(path, LONGEST)?)
-        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
+    decoded(&bytes(path, LONGEST)?).map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, problem))
+}
+
+/// Text in UTF-8 or, as spreadsheets and PowerShell write it, in UTF-16; with a byte order mark or without.
+fn decoded(bytes: &[u8]) -> Result<String, String> {
+    let units = |pair: fn([u8; 2]) -> u16| bytes.chunks_exact(2).map(|bytes| pair([bytes[0], bytes[1]])).collect();
+    let wide: Option<Vec<u16>> = match bytes {
+        // A mark, or a first letter of which the upper byte is zero.
+        [0xFF, 0xFE, ..] | [1..=255, 0, ..] => Some(units(u16::from_le_bytes)),
+        [0xFE, 0xFF, ..] | [0, 1..=255, ..] => Some(units(u16::from_be_bytes)),
+        _ => None,
+    };
+    let text = match wide {
+        Some(units) => String::from_utf16(&units).map_err(|_| "is no UTF-16; save it as UTF-8".to_owned())?,
+        None => {
+            let problem = |error: std::str::Utf8Error| {
+                format!("is no UTF-8 from byte {} on; save it as UTF-8", error.valid_up_to())
+            };
+            std::str::from_utf8(bytes).map_err(problem)?.to_owned()
+        }
+    };
+    Ok(text.strip_prefix('\u{FEFF}').map(str::to_owned).unwrap_or(text))
 }
 
 /// Where what the program was started with is, a pipe or a device as well: standard input, and a shell's `<(...)`.
@@ -59,6 +79,21 @@ pub fn bytes(path: &Path, longest: u64) -> io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_encoding_of_a_text_is_read_and_what_is_none_is_refused_with_the_remedy() {
+        let text = "t;x [µm];y\r\n";
+        let wide = |text: &str, pair: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(pair).collect::<Vec<u8>>();
+        for start in ["", "\u{FEFF}"] {
+            let marked = format!("{start}{text}");
+            for bytes in [marked.clone().into(), wide(&marked, u16::to_le_bytes), wide(&marked, u16::to_be_bytes)] {
+                assert_eq!(decoded(&bytes).as_deref(), Ok(text));
+            }
+        }
+        assert_eq!(decoded(b"t;x [\xB0]"), Err("is no UTF-8 from byte 5 on; save it as UTF-8".to_owned()));
+        assert_eq!(decoded(b"\xFF\xFE\x00\xD8"), Err("is no UTF-16; save it as UTF-8".to_owned()));
+        assert_eq!(decoded(b""), Ok(String::new()));
+    }
 
     #[test]
     fn a_file_of_the_greatest_length_is_read_and_a_longer_one_refused() {

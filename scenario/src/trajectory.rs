@@ -6,6 +6,7 @@
 //! file = "lemniscate.csv"            # beside this file: t, x, y, z and more (table), or polynomial pieces
 //! within = 0.02                      # m: how near the path is to every row; left out: 0.02
 //! stretch = 1.0                      # the rows' times are multiplied by this; left out: 1
+//! origin = [0.0, 0.0, 0.0]           # m: subtracted from every position of the file
 //! ```
 //!
 //! ```toml
@@ -19,6 +20,8 @@
 //! | module | |
 //! |---|---|
 //! | `row`, `table`, `pieces` | rows from a file |
+//! | `source` | where the rows are, and from which origin they count |
+//! | `slips` | what rows are probably not meant to say |
 //! | `fit`, `band`, `lead` | a smooth path near rows, which begins and ends at rest |
 //! | `pace` | the quickest path through points that have no times |
 //! | [`mod@stretch`] | by how much times must grow for a path's derivatives to fit |
@@ -29,6 +32,8 @@ mod lead;
 mod pace;
 mod pieces;
 mod row;
+mod slips;
+mod source;
 pub mod stretch;
 mod table;
 pub mod vehicle;
@@ -43,6 +48,7 @@ use pace::limits::Limits;
 use pace::merge::Point;
 use pace::{Paced, Problem};
 use row::Row;
+use source::Source;
 use std::path::Path;
 use vehicle::Vehicle;
 
@@ -51,7 +57,7 @@ const NEAR: f64 = 0.02;
 const CORRIDOR: f64 = 0.3;
 
 /// A path through or near points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Route {
     /// The points, at the times at which they are passed.
     pub points: Vec<Waypoint>,
@@ -59,6 +65,17 @@ pub struct Route {
     pub knots: Vec<Knot>,
     /// Which way between the points.
     pub way: Way,
+    /// The field that has them, with the name of the file if they are in one.
+    pub name: String,
+    /// What there is to say of where they come from.
+    pub remarks: Vec<String>,
+}
+
+/// Two are equal that are flown alike, wherever they come from.
+impl PartialEq for Route {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.points, &self.knots, self.way) == (&other.points, &other.knots, other.way)
+    }
 }
 
 impl Route {
@@ -101,12 +118,14 @@ pub type Directory<'a> = Option<&'a Path>;
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "force_kept", "points", "file", "data", "path", "speed", "corridor"])?;
-    let (rows, field) = if section.has("points") { points(section)? } else { rows(section, directory)? };
-    if section.has("speed") || rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
-        return paced(section, &rows, &field, &allow()?);
+    let own = ["points", "file", "data", "origin", "path", "speed", "corridor"];
+    section.allow(&[["kind", "tolerance", "force_kept"].as_slice(), &own].concat())?;
+    let source = Source::read(section, directory)?;
+    if section.has("speed") || source.rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
+        return paced(section, source, &allow()?);
     }
-    refuse_speeds(&rows, &field)?;
+    source.check_times(1.0)?;
+    let Source { rows, field, name, remarks, .. } = source;
     let way = match section.has("path").then(|| section.text("path")).transpose()? {
         None | Some("smooth") => Way::Smooth,
         Some("inside") => Way::Inside,
@@ -138,18 +157,7 @@ pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -
             spline::solve(&mut knots, &mut stages);
         }
     }
-    Ok(Route { points, knots, way })
-}
-
-/// Refuses a speed of rows whose times say how fast they are passed.
-fn refuse_speeds(rows: &[Row], field: &str) -> Result<(), FieldError> {
-    match rows.iter().position(|row| row.speed.is_some()) {
-        Some(number) => {
-            let problem = "goes with points without times; leave it out, or the times";
-            Err(FieldError::new(format!("{field}[{number}].speed"), problem))
-        }
-        None => Ok(()),
-    }
+    Ok(Route { points, knots, way, name, remarks })
 }
 
 /// A refusal of a field of the point at `place`, with the value that the file has there.
@@ -161,7 +169,8 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 }
 
 /// Times for points that are to be passed with a speed at most.
-fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Result<Route, FieldError> {
+fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, FieldError> {
+    let Source { rows, field, name, remarks, .. } = source;
     let corridor = positive(section, "corridor", CORRIDOR)?;
     let speed = positive(section, "speed", f64::INFINITY)?;
     if section.has("path") {
@@ -175,10 +184,10 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
         let problem = "missing; give every point a speed, or one for all of them";
         return Err(FieldError::new(format!("{field}[{number}].speed"), problem));
     }
-    let rows = slowed(rows, 1.0);
+    let rows = slowed(&rows, 1.0);
     let place = |row: &Row| row.position.push(row.heading);
     if let Some(same) = rows.windows(2).position(|pair| place(&pair[0]) == place(&pair[1])) {
-        let problem = "is the same as the one before: to wait, give the points times in place of speed";
+        let problem = "is the same as the one before: leave it out or, to wait, give times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
     let limits = Limits::of(vehicle);
@@ -202,7 +211,7 @@ fn paced(section: &Section, rows: &[Row], field: &str, vehicle: &Vehicle) -> Res
         FieldError::new(field, problem)
     })?;
     let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
-    Ok(Route { points, knots, way: Way::Paced { corridor } })
+    Ok(Route { points, knots, way: Way::Paced { corridor }, name, remarks })
 }
 
 fn waypoint(time: f64, row: &Row) -> Waypoint {
@@ -215,10 +224,11 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "within", "stretch"])?;
-    let (rows, field) = rows(section, directory)?;
-    refuse_speeds(&rows, &field)?;
+    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "origin", "within", "stretch"])?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
+    let source = Source::read(section, directory)?;
+    source.check_times(stretch)?;
+    let Source { rows, field, name, remarks, .. } = source;
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
     let (Some(times), true) = (times, rows.len() > 1) else {
         let problem =
@@ -230,7 +240,8 @@ pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) 
     let found = fit::fit(&timed, near).map_err(|nearest| {
         let (distance, time) = nearest.farthest;
         let problem = format!(
-            "no smooth path is within {near} m of every row: the nearest is {distance:.3} m off at {time:.2} s; raise within"
+            "no smooth path is within {near} m of every row: the nearest is {distance:.3} m off at {time:.2} s; \
+             raise within"
         );
         FieldError::new(field.clone(), problem)
     })?;
@@ -239,7 +250,13 @@ pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) 
         .map_err(|error| FieldError::new(field, error.to_string()))? as f64
         * 1e-6;
     let points = timed.iter().map(|(time, row)| waypoint(led_in + time, row));
-    Ok(Route { points: points.collect(), knots, way: Way::Near { farthest: found.farthest, lead_in: led_in } })
+    Ok(Route {
+        points: points.collect(),
+        knots,
+        way: Way::Near { farthest: found.farthest, lead_in: led_in },
+        name,
+        remarks,
+    })
 }
 
 /// The rows with headings that go the shorter way from each to the next, and flown `stretch` times as slowly.
@@ -256,44 +273,6 @@ fn slowed(rows: &[Row], stretch: f64) -> Vec<Row> {
         }
     });
     slowed.collect()
-}
-
-/// The points that stand in the scenario itself, with the name that errors use.
-fn points(section: &Section) -> Result<(Vec<Row>, String), FieldError> {
-    let read = |point: &Section| {
-        point.allow(&["t", "position", "heading_deg", "speed"])?;
-        Ok(Row {
-            time: point.has("t").then(|| point.number("t")).transpose()?,
-            position: point.vector("position")?,
-            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
-            velocity: None,
-            acceleration: None,
-            speed: point.has("speed").then(|| positive(point, "speed", 0.0)).transpose()?,
-        })
-    };
-    let field = section.path_of("points");
-    let rows: Vec<Row> = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
-    if rows.is_empty() { Err(FieldError::new(field, "needs at least 1 element")) } else { Ok((rows, field)) }
-}
-
-/// The rows of the file that is named, or of the text that stands in its place.
-fn rows(section: &Section, directory: Directory) -> Result<(Vec<Row>, String), FieldError> {
-    let (field, text) = match (section.has("file"), section.has("data")) {
-        (true, false) => (section.path_of("file"), beside(section, directory)?),
-        (false, true) => (section.path_of("data"), section.text("data")?.to_owned()),
-        _ => return Err(FieldError::new(section.path_of("file"), "needs one of file and data")),
-    };
-    let name = if section.has("file") { format!("{field}: {}", section.text("file")?) } else { field.clone() };
-    table::read(&text, &name).map(|rows| (rows, field))
-}
-
-/// The text of the file that `file` names.
-fn beside(section: &Section, directory: Directory) -> Result<String, FieldError> {
-    let file = section.text("file")?;
-    let path = directory.unwrap_or_else(|| Path::new("")).join(file);
-    crate::text::read(&path).map_err(|error| {
-        FieldError::new(section.path_of("file"), format!("{}: cannot be read: {error}", path.display()))
-    })
 }
 
 fn positive(section: &Section, key: &str, default: f64) -> Result<f64, FieldError> {

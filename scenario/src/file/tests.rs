@@ -230,3 +230,13 @@ fn numbers_marked_missing_are_refused_by_their_keys_all_in_one_line_and_a_name_m
     let named = EXTENDED.replace("name = \"hummingbird\"", "name = \"missing\"");
     assert_eq!(Scenario::parse(&named, "f").unwrap().name, "missing");
 }
+
+#[test]
+fn a_start_that_single_precision_is_too_coarse_for_is_refused() {
+    let text = PAPER.replace("position = [5.0, 5.0, 10.0]", "position = [5.0, 5e6, 10.0]");
+    let error = Scenario::parse(&text, "f").err().unwrap().what;
+    assert!(
+        error.starts_with("initial.position: must be within 16 km of the origin, found (5, 5000000, 10) m"),
+        "{error}"
+    );
+}

@@ -29,7 +29,8 @@ pub fn rows(lines: &[(u64, Vec<f64>)]) -> Result<Vec<Row>, String> {
             return Err(format!("line {line}: a piece has 25 numbers, or 33 with yaw, found {found}"));
         }
         if *duration <= 0.0 || start + duration > LONGEST {
-            return Err(format!("line {line}, duration: must be positive, all together below {LONGEST} s"));
+            let problem = "must be positive, all together at most";
+            return Err(format!("line {line}, duration: {problem} {LONGEST} s, found {duration}"));
         }
         let steps = (duration / INTERVAL).ceil();
         // The end of a piece is the beginning of the next one.

@@ -5,12 +5,19 @@ use controller_core::reference::ReferenceBounds;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
+mod corpus;
+
 /// The Hummingbird on this reference.
 fn on(reference: &str) -> Result<Scenario, String> {
+    on_in(reference, "a test")
+}
+
+/// The Hummingbird on this reference, in a file of this name.
+fn on_in(reference: &str, file: &str) -> Result<Scenario, String> {
     let hummingbird = include_str!("../../../vehicles/hummingbird.toml");
     let (head, _) = hummingbird.split_once("\n[reference]").unwrap();
     let head = head.lines().filter(|line| !line.starts_with("duration")).collect::<Vec<_>>().join("\n");
-    Scenario::parse(&format!("{head}\n[reference]\n{reference}\n"), "a test").map_err(|error| error.to_string())
+    Scenario::parse(&format!("{head}\n[reference]\n{reference}\n"), file).map_err(|error| error.to_string())
 }
 
 fn route(scenario: &Scenario) -> &Route {
@@ -134,11 +141,11 @@ fn what_cannot_be_flown_is_refused_by_line_and_column_or_key() {
     let table = |text: &str| on(&format!("kind = \"trajectory\"\ndata = '''\n{text}'''")).err().unwrap();
     for (text, expected) in [
         ("t,x,y\n0,0,0\n", "reference.data: line 1: column z is missing"),
-        ("t,x,y,z,q\n0,0,0,0,0\n", "reference.data: line 1: unknown column \"q\""),
+        ("t,x,y,z,px\n0,0,0,0,0\n", "reference.data: line 1: columns x and px both say x: leave one out"),
         ("t,x,y,z,vx\n0,0,0,0,0\n", "reference.data: line 1: column vy is missing"),
-        ("t,x,y,z\n0,0,0,1\n0,0,0,1\n", "reference.data: line 3, column t: must be after 0, found 0"),
+        ("t,x,y,z\n0,0,0,1\n0,0,0,2\n", "reference.data: line 3, column t: must be after 0, found 0; leave one out"),
         ("t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "reference.data: line 3, column y: must be a finite number, found \"nan\""),
-        ("t,x,y,z\n0,0,0,1\n1,0,1\n", "reference.data: CSV error: record 2 (line: 3"),
+        ("t,x,y,z\n0,0,0,1\n1,0,1\n", "reference.data: line 3: has 3 cells, and there are 4 names of columns"),
         ("t,x,y,z\n", "reference.data: has no row below its header"),
         ("x,y,z\n0,0,1\n1,0,1\n", "needs two rows or more, each with its time t"),
         ("t,x,y,z,speed\n0,0,0,1,2\n1,1,0,1,2\n", "reference.data[0].speed: goes with points without times"),
@@ -182,4 +189,57 @@ fn what_cannot_be_flown_is_refused_by_line_and_column_or_key() {
         let refused = on(reference).err().unwrap();
         assert!(refused.contains(expected), "{refused}\ninstead of {expected}");
     }
+}
+
+#[test]
+fn three_columns_without_names_are_points() {
+    let scenario = on("kind = \"waypoints\"\nspeed = 1.0\ndata = '''\n0.0 0.0 1.0\n0.5 0.0 1.0\n'''").unwrap();
+    let route = route(&scenario);
+    let positions: Vec<_> = route.points.iter().map(|point| point.position).collect();
+    assert_eq!(positions, [[0.0, 0.0, 1.0], [0.5, 0.0, 1.0]]);
+    assert_eq!(route.remarks, ["rows without a header are read as x,y,z"]);
+}
+
+#[test]
+fn what_single_precision_is_too_coarse_for_is_refused_with_the_remedy() {
+    let far = "must be within 16 km of the origin, found (0, 5427000, 1) m, where single precision is 500 mm coarse; ";
+    let (nearby, origin) = (
+        "count all positions from an origin nearby",
+        "write origin = [0.0, 5427000.0, 0.0], from which the flight then counts",
+    );
+    let point = "{ t = 0, position = [0, 5427000, 1] }";
+    for (reference, field, remedy) in [
+        ("kind = \"hover\"\nposition = [0, 5427000, 1]", "reference.position", nearby),
+        (
+            "kind = \"harmonic\"\ncenter = [0, 5427000, 1]\namplitude = [1, 1, 0]\nfrequency = [1, 1, 0]",
+            "reference.center",
+            nearby,
+        ),
+        (&format!("kind = \"waypoints\"\npoints = [{point}]"), "reference.points", origin),
+        ("kind = \"trajectory\"\ndata = '''\nt,x,y,z\n0,0,5427000,1\n1,0,5427001,1\n'''", "reference.data", origin),
+    ] {
+        assert_eq!(on(reference).err().unwrap(), format!("a test: {field}: {far}{remedy}"));
+    }
+    let scenario = on(&format!("kind = \"waypoints\"\norigin = [0, 5427000, 0]\npoints = [{point}]")).unwrap();
+    assert_eq!(scenario.trajectory.at(0).position.z, 1.0);
+    assert_eq!(scenario.trajectory.at(0).position.y, 0.0);
+}
+
+#[test]
+fn a_path_below_zero_is_flown_where_the_ground_is_as_low() {
+    let points = "kind = \"waypoints\"\npoints = [{ t = 0, position = [0, 0, -1] }, { t = 2, position = [1, 0, -2] }]";
+    let refused = on(points).err().unwrap();
+    assert!(refused.contains("reference.points: lies below zero everywhere, from z = -2.00 to -1.00 m"), "{refused}");
+    let ground = "[initial]\nposition = [0.0, 0.0, -1.0]\n[ground]\nheight = -3.0";
+    let text = include_str!("../../../vehicles/hummingbird.toml");
+    let (head, _) = text.split_once("\n[initial]").unwrap();
+    Scenario::parse(&format!("{head}\n[reference]\n{points}\n{ground}\n"), "a test").unwrap();
+}
+
+#[test]
+fn headings_in_radians_are_suspected_where_degrees_are_asked_for() {
+    let points = "{ t = 0, position = [0, 0, 1] }, { t = 4, position = [1, 0, 1], heading_deg = 1.5708 }";
+    let scenario = on(&format!("kind = \"waypoints\"\npoints = [{points}]")).unwrap();
+    let [remark] = &route(&scenario).remarks[..] else { panic!("{:?}", route(&scenario).remarks) };
+    assert!(remark.starts_with("heading_deg stays between 0 and 1.57") && remark.ends_with("radians"), "{remark}");
 }

@@ -1,0 +1,115 @@
+//! Where a path's rows come from: the scenario itself, or a file that it names; and the origin from which they count.
+//!
+//! Single precision is too coarse far away ([`crate::resolution`]). So `origin` is subtracted from all positions of the
+//! file, and the flight, its log and its reports count from there.
+
+use super::row::Row;
+use super::{Directory, positive, slips, table};
+use crate::resolution;
+use crate::section::{FieldError, Section};
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// The rows of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// One or more, in their order.
+    pub rows: Vec<Row>,
+    /// The field, which errors of single rows begin with.
+    pub field: String,
+    /// The field with the name of the file.
+    pub name: String,
+    /// Whether it is said what times are counted in.
+    pub has_time_unit: bool,
+    /// What there is to say of them.
+    pub remarks: Vec<String>,
+}
+
+impl Source {
+    /// The rows that `section` has or names.
+    ///
+    /// # Errors
+    /// Names the field and what is wrong.
+    pub fn read(section: &Section, directory: Directory) -> Result<Self, FieldError> {
+        let mut source = if section.has("points") { points(section)? } else { file(section, directory)? };
+        let origin = section.vector_or("origin", Vector3::zeros())?;
+        if origin != Vector3::zeros() {
+            source.rows.iter_mut().for_each(|row| row.position -= origin);
+            let [x, y, z] = origin.into();
+            source.remarks.push(format!("positions count from origin, ({x}, {y}, {z}) m of the file"));
+        }
+        for row in &source.rows {
+            resolution::check(&source.name, &row.position, &near(&(source.rows[0].position + origin)))?;
+        }
+        Ok(source)
+    }
+
+    /// Refuses what cannot be meant where rows have times, which are multiplied by `stretch`.
+    ///
+    /// # Errors
+    /// If they have speeds as well, or are slower than anybody flies and do not say in which unit.
+    pub fn check_times(&self, stretch: f64) -> Result<(), FieldError> {
+        if let Some(number) = self.rows.iter().position(|row| row.speed.is_some()) {
+            let problem = "goes with points without times; leave it out, or the times";
+            return Err(FieldError::new(format!("{}[{number}].speed", self.field), problem));
+        }
+        match slips::too_slow(&self.rows, stretch).filter(|_| !self.has_time_unit) {
+            Some(slip) => Err(FieldError::new(self.name.as_str(), slip)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What to write where `first`, m, is far away.
+fn near(first: &Vector3<f64>) -> String {
+    let far = first.map(|value| if value.abs() < resolution::FARTHEST { 0.0 } else { (value / 100.0).floor() * 100.0 });
+    format!("write origin = {}, from which the flight then counts", crate::number::array(far.as_slice()))
+}
+
+/// The points that stand in the scenario itself.
+fn points(section: &Section) -> Result<Source, FieldError> {
+    let read = |point: &Section| {
+        point.allow(&["t", "position", "heading_deg", "speed"])?;
+        Ok(Row {
+            time: point.has("t").then(|| point.number("t")).transpose()?,
+            position: point.vector("position")?,
+            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
+            velocity: None,
+            acceleration: None,
+            speed: point.has("speed").then(|| positive(point, "speed", 0.0)).transpose()?,
+        })
+    };
+    let field = section.path_of("points");
+    let rows: Vec<Row> = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
+    if rows.is_empty() {
+        return Err(FieldError::new(field, "needs at least 1 element"));
+    }
+    let slip = slips::radians_as_degrees(rows.iter().map(|row| row.heading.to_degrees()));
+    let remarks = slip.map(|slip| format!("heading_deg {slip}")).into_iter().collect();
+    Ok(Source { rows, name: field.clone(), field, has_time_unit: true, remarks })
+}
+
+/// The rows of the file that is named, or of the text that stands in its place.
+fn file(section: &Section, directory: Directory) -> Result<Source, FieldError> {
+    let (key, text) = match (section.has("file"), section.has("data")) {
+        (true, false) => ("file", beside(section, directory)?),
+        (false, true) => ("data", section.text("data")?.to_owned()),
+        _ => return Err(FieldError::new(section.path_of("file"), "needs one of file and data")),
+    };
+    let field = section.path_of(key);
+    let name = if key == "file" { format!("{field}: {}", section.text("file")?) } else { field.clone() };
+    let table::Table { mut rows, has_time_unit, remarks } = table::read(&text, &name)?;
+    // Clocks begin anywhere.
+    let start = rows[0].time;
+    rows.iter_mut().for_each(|row| row.time = row.time.zip(start).map(|(time, start)| time - start));
+    Ok(Source { rows, field, name, has_time_unit, remarks })
+}
+
+/// The text of the file that `file` names.
+fn beside(section: &Section, directory: Directory) -> Result<String, FieldError> {
+    let file = section.text("file")?;
+    let path = directory.unwrap_or_else(|| Path::new("")).join(file);
+    crate::text::read(&path).map_err(|error| {
+        FieldError::new(section.path_of("file"), format!("{}: cannot be read: {error}", path.display()))
+    })
+}
