@@ -27,7 +27,8 @@
 //! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
 //! without one of its rotors.
 //!
-//! [`plausibility`] refuses numbers that no vehicle has, as those in other units.
+//! [`plausibility`] refuses numbers that no vehicle has, as those in other units; [`resolution`] says how far from the
+//! origin single precision goes.
 //!
 //! [`policy`] reads the files of policies.
 

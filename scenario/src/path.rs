@@ -15,6 +15,10 @@ const INSTANTS: u32 = 256;
 /// The greatest distance that is not reported, and the rounding of single precision, m.
 const LEAST: f64 = 0.01;
 
+/// A path that goes deeper than this, m, and less than this share of that above zero, has its z axis downwards.
+const DEEP: f64 = 0.2;
+const HARDLY: f64 = 0.1;
+
 /// A point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
@@ -63,8 +67,8 @@ impl fmt::Display for Swing {
     }
 }
 
-/// Refuses a reference that goes below the ground: below `ground`, or below zero between waypoints that all lie above,
-/// or with all of them.
+/// Refuses a reference that goes below the ground: below `ground`, or below zero between waypoints that all lie above;
+/// or, where nothing is said of the ground, one that is hardly anywhere above zero.
 ///
 /// # Errors
 /// Names the field, the place and the time.
@@ -74,14 +78,14 @@ pub fn check_ground(
     ground: Option<Ground>,
 ) -> Result<(), FieldError> {
     let at = |time: f64| place(trajectory, time);
-    let (field, lowest, remedy) = match reference {
-        ReferenceKind::Hover { .. } => ("reference.position", at(0.0), "raise it"),
+    let (field, lowest, highest, remedy) = match reference {
+        ReferenceKind::Hover { position, .. } => ("reference.position", at(0.0), position.z, "raise it"),
         ReferenceKind::Harmonic(harmonic) => {
             let [(frequency, phase, amplitude)] = [(harmonic.frequency[2], harmonic.phase[2], harmonic.amplitude[2])];
             let down = if amplitude > 0.0 { std::f64::consts::PI } else { 0.0 };
             let turned = (down - phase).rem_euclid(std::f64::consts::TAU);
             let time = if frequency == 0.0 { 0.0 } else { turned / frequency.abs() };
-            ("reference.center", at(time), "raise it")
+            ("reference.center", at(time), harmonic.center[2] + amplitude.abs(), "raise it")
         }
         ReferenceKind::Route(Route { points, way, name, .. }) => {
             let lowest = places(points, trajectory).min_by(|a, b| a.position.z.total_cmp(&b.position.z));
@@ -90,27 +94,21 @@ pub fn check_ground(
                 Way::Paced { .. } => "narrow the corridor, or raise the points",
                 Way::Inside | Way::Near { .. } => "raise the points",
             };
-            (name.as_str(), lowest.unwrap_or_else(|| at(0.0)), remedy)
+            let highest = points.iter().map(|point| point.position[2]).fold(f64::NEG_INFINITY, f64::max);
+            (name.as_str(), lowest.unwrap_or_else(|| at(0.0)), highest, remedy)
         }
     };
     let height = match (ground, reference) {
         (Some(ground), _) => ground.height,
-        (None, ReferenceKind::Route(Route { points, .. })) => {
-            let highest = points.iter().map(|point| point.position[2]).fold(f64::NEG_INFINITY, f64::max);
-            if highest < -LEAST {
-                let problem = format!(
-                    "lies below zero everywhere, from z = {:.2} to {highest:.2} m, and z points up: where it points \
-                     down (NED), turn it round to (x, -y, -z) and -yaw; where the ground is that low, say so in \
-                     [ground] height",
-                    lowest.position.z
-                );
-                return Err(FieldError::new(field, problem));
-            }
-            if points.iter().any(|point| point.position[2] < 0.0) {
-                return Ok(());
-            }
-            0.0
+        (None, _) if lowest.position.z < -DEEP && highest < -HARDLY * lowest.position.z => {
+            let problem = format!(
+                "lies below zero, from z = {:.2} to {highest:.2} m, and z points up: where it points down (NED), turn \
+                 it round to (x, -y, -z) and -yaw; where the ground is that low, say so in [ground] height",
+                lowest.position.z
+            );
+            return Err(FieldError::new(field, problem));
         }
+        (None, ReferenceKind::Route(Route { points, .. })) if points.iter().all(|p| p.position[2] >= 0.0) => 0.0,
         _ => return Ok(()),
     };
     if lowest.position.z >= height - LEAST {

@@ -120,7 +120,7 @@ pub type Directory<'a> = Option<&'a Path>;
 pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     let own = ["points", "file", "data", "origin", "path", "speed", "corridor"];
     section.allow(&[["kind", "tolerance", "force_kept"].as_slice(), &own].concat())?;
-    let source = Source::read(section, directory)?;
+    let mut source = Source::read(section, directory)?;
     if section.has("speed") || source.rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
         return paced(section, source, &allow()?);
     }
@@ -226,28 +226,27 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "force_kept", "file", "data", "origin", "within", "stretch"])?;
     let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
-    let source = Source::read(section, directory)?;
+    let mut source = Source::read(section, directory)?;
     source.check_times(stretch)?;
-    let Source { rows, field, name, remarks, .. } = source;
+    let Source { rows, name, remarks, .. } = source;
     let times: Option<Vec<f64>> = rows.iter().map(|row| row.time).collect();
     let (Some(times), true) = (times, rows.len() > 1) else {
         let problem =
             "needs two rows or more, each with its time t; without times take kind = \"waypoints\" with speed";
-        return Err(FieldError::new(field, problem));
+        return Err(FieldError::new(name, problem));
     };
-    let timed: Vec<(f64, Row)> =
-        times.iter().map(|time| (time - times[0]) * stretch).zip(slowed(&rows, stretch)).collect();
+    let timed: Vec<(f64, Row)> = times.iter().map(|time| time * stretch).zip(slowed(&rows, stretch)).collect();
     let found = fit::fit(&timed, near).map_err(|nearest| {
         let (distance, time) = nearest.farthest;
         let problem = format!(
             "no smooth path is within {near} m of every row: the nearest is {distance:.3} m off at {time:.2} s; \
              raise within"
         );
-        FieldError::new(field.clone(), problem)
+        FieldError::new(name.as_str(), problem)
     })?;
     let mut knots = found.knots;
     let led_in = lead::lead(&mut knots, allow()?.configuration.bounds())
-        .map_err(|error| FieldError::new(field, error.to_string()))? as f64
+        .map_err(|error| FieldError::new(name.as_str(), error.to_string()))? as f64
         * 1e-6;
     let points = timed.iter().map(|(time, row)| waypoint(led_in + time, row));
     Ok(Route {

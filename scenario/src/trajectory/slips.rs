@@ -22,32 +22,39 @@ pub fn since_1970(first: f64) -> Option<(&'static str, f64)> {
     [("ns", 1e-9), ("us", 1e-6), ("ms", 1e-3)].into_iter().find(|(_, factor)| (1e8..1e10).contains(&(first * factor)))
 }
 
-/// What is wrong with rows that, `stretch` times as slowly, are slower than a snail.
-pub fn too_slow(rows: &[Row], stretch: f64) -> Option<String> {
-    let (mut fastest, mut way) = (0.0_f64, 0.0);
-    for pair in rows.windows(2) {
-        let distance = (pair[1].position - pair[0].position).norm();
-        fastest = fastest.max(distance / (stretch * (pair[1].time? - pair[0].time?)));
-        way += distance;
-    }
-    if way < MOVING || fastest >= SNAIL {
-        return None;
-    }
-    let duration = stretch * (rows.last()?.time? - rows.first()?.time?);
-    let units = [("t_ms", 1e3), ("t_us", 1e6), ("t_ns", 1e9)];
-    let (name, _) = units.into_iter().find(|(_, factor)| fastest * factor >= LEAST_SPEED)?;
-    Some(format!(
-        "takes {duration:.0} s for {way:.1} m, at {:.3} mm/s at most: name its times {name} if they are no seconds, \
-         t_s if they are",
-        1e3 * fastest
-    ))
+/// Rows that are flown more slowly than anybody flies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TooSlow {
+    /// How slowly.
+    pub what: String,
+    /// What their times are probably counted in.
+    pub unit: &'static str,
 }
 
-/// What is wrong with headings that are read as radians.
-pub fn degrees_as_radians(headings: impl Iterator<Item = f64>) -> Option<String> {
+impl TooSlow {
+    /// What is wrong with rows that, `stretch` times as slowly, are slower than a snail.
+    pub fn of(rows: &[Row], stretch: f64) -> Option<Self> {
+        let (mut fastest, mut way) = (0.0_f64, 0.0);
+        for pair in rows.windows(2) {
+            let distance = (pair[1].position - pair[0].position).norm();
+            fastest = fastest.max(distance / (stretch * (pair[1].time? - pair[0].time?)));
+            way += distance;
+        }
+        if way < MOVING || fastest >= SNAIL {
+            return None;
+        }
+        let duration = stretch * (rows.last()?.time? - rows.first()?.time?);
+        let units = [("ms", 1e3), ("us", 1e6), ("ns", 1e9)];
+        let (unit, _) = units.into_iter().find(|(_, factor)| fastest * factor >= LEAST_SPEED)?;
+        let what = format!("takes {duration:.0} s for {way:.1} m, {:.3} mm/s at most", 1e3 * fastest);
+        Some(Self { what, unit })
+    }
+}
+
+/// The greatest of headings in rad, if it is so great that they are probably degrees.
+pub fn degrees_as_radians(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let most = headings.map(f64::abs).fold(0.0, f64::max);
-    let slip = format!("is in rad, and reaches {most}: name it yaw_deg if these are degrees, yaw_rad if not");
-    (most > TAU + ROUNDING).then_some(slip)
+    (most > TAU + ROUNDING).then_some(most)
 }
 
 /// What may be wrong with headings that are read as degrees.

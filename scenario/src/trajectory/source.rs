@@ -4,11 +4,23 @@
 //! file, and the flight, its log and its reports count from there.
 
 use super::row::Row;
-use super::{Directory, positive, slips, table};
+use super::slips::{self, TooSlow};
+use super::{Directory, positive, table};
 use crate::resolution;
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 use std::path::Path;
+
+/// Who says what times are counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TimeUnit {
+    /// The scenario's key.
+    Key,
+    /// The file's header.
+    Header,
+    /// Nobody.
+    Unsaid,
+}
 
 /// The rows of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +31,8 @@ pub struct Source {
     pub field: String,
     /// The field with the name of the file.
     pub name: String,
-    /// Whether it is said what times are counted in.
-    pub has_time_unit: bool,
+    /// Who says what times are counted in.
+    unit: TimeUnit,
     /// What there is to say of them.
     pub remarks: Vec<String>,
 }
@@ -48,15 +60,22 @@ impl Source {
     ///
     /// # Errors
     /// If they have speeds as well, or are slower than anybody flies and do not say in which unit.
-    pub fn check_times(&self, stretch: f64) -> Result<(), FieldError> {
+    pub fn check_times(&mut self, stretch: f64) -> Result<(), FieldError> {
         if let Some(number) = self.rows.iter().position(|row| row.speed.is_some()) {
             let problem = "goes with points without times; leave it out, or the times";
             return Err(FieldError::new(format!("{}[{number}].speed", self.field), problem));
         }
-        match slips::too_slow(&self.rows, stretch).filter(|_| !self.has_time_unit) {
-            Some(slip) => Err(FieldError::new(self.name.as_str(), slip)),
-            None => Ok(()),
+        match (TooSlow::of(&self.rows, stretch), self.unit) {
+            (Some(TooSlow { what, unit }), TimeUnit::Unsaid) => {
+                let remedy = format!("name its times t_{unit} if that is what they are, t_s if they are seconds");
+                return Err(FieldError::new(self.name.as_str(), format!("{what}: {remedy}")));
+            }
+            (Some(TooSlow { what, unit }), TimeUnit::Key) => {
+                self.remarks.push(format!("{what}; are its times {unit}, and not s?"));
+            }
+            _ => {}
         }
+        Ok(())
     }
 }
 
@@ -86,7 +105,7 @@ fn points(section: &Section) -> Result<Source, FieldError> {
     }
     let slip = slips::radians_as_degrees(rows.iter().map(|row| row.heading.to_degrees()));
     let remarks = slip.map(|slip| format!("heading_deg {slip}")).into_iter().collect();
-    Ok(Source { rows, name: field.clone(), field, has_time_unit: true, remarks })
+    Ok(Source { rows, name: field.clone(), field, unit: TimeUnit::Key, remarks })
 }
 
 /// The rows of the file that is named, or of the text that stands in its place.
@@ -102,7 +121,8 @@ fn file(section: &Section, directory: Directory) -> Result<Source, FieldError> {
     // Clocks begin anywhere.
     let start = rows[0].time;
     rows.iter_mut().for_each(|row| row.time = row.time.zip(start).map(|(time, start)| time - start));
-    Ok(Source { rows, field, name, has_time_unit, remarks })
+    let unit = if has_time_unit { TimeUnit::Header } else { TimeUnit::Unsaid };
+    Ok(Source { rows, field, name, unit, remarks })
 }
 
 /// The text of the file that `file` names.

@@ -80,6 +80,9 @@ fn table(text: &str) -> Result<Table, String> {
             return Err(refuse(format!("column {}: must be in s, as the coefficients are", names[0])));
         }
         let rows = pieces::rows(&numbers(&lines)?)?;
+        let slip = slips::degrees_as_radians(rows.iter().map(|row| row.heading));
+        remarks
+            .extend(slip.map(|most| format!("yaw is in rad, and reaches {most:.1}: divide it by 57.3 if in degrees")));
         return Ok(Table { rows, has_time_unit: unit.is_some(), remarks });
     }
     check_lengths(&lines, names.len())?;
@@ -234,9 +237,14 @@ fn judged(columns: &mut [Column]) -> Result<Vec<String>, String> {
                 *unit = Some(factor);
                 factor
             }),
-            (Heading, None) => {
-                slips::degrees_as_radians(numbers()).map_or(Ok(None), |slip| Err(format!("column {name}: {slip}")))?
-            }
+            (Heading, None) => match slips::degrees_as_radians(numbers()) {
+                Some(most) => {
+                    let problem = "is in rad, and reaches";
+                    let remedy = "name it yaw_deg if these are degrees, yaw_rad if not";
+                    return Err(format!("column {name}: {problem} {most}: {remedy}"));
+                }
+                None => None,
+            },
             (Heading, Some(factor)) if *factor < 1.0 => {
                 remarks.extend(slips::radians_as_degrees(numbers()).map(|slip| format!("column {name}: {slip}")));
                 *unit

@@ -229,7 +229,7 @@ fn what_single_precision_is_too_coarse_for_is_refused_with_the_remedy() {
 fn a_path_below_zero_is_flown_where_the_ground_is_as_low() {
     let points = "kind = \"waypoints\"\npoints = [{ t = 0, position = [0, 0, -1] }, { t = 2, position = [1, 0, -2] }]";
     let refused = on(points).err().unwrap();
-    assert!(refused.contains("reference.points: lies below zero everywhere, from z = -2.00 to -1.00 m"), "{refused}");
+    assert!(refused.contains("reference.points: lies below zero, from z = -2.00 to -1.00 m"), "{refused}");
     let ground = "[initial]\nposition = [0.0, 0.0, -1.0]\n[ground]\nheight = -3.0";
     let text = include_str!("../../../vehicles/hummingbird.toml");
     let (head, _) = text.split_once("\n[initial]").unwrap();
@@ -242,4 +242,15 @@ fn headings_in_radians_are_suspected_where_degrees_are_asked_for() {
     let scenario = on(&format!("kind = \"waypoints\"\npoints = [{points}]")).unwrap();
     let [remark] = &route(&scenario).remarks[..] else { panic!("{:?}", route(&scenario).remarks) };
     assert!(remark.starts_with("heading_deg stays between 0 and 1.57") && remark.ends_with("radians"), "{remark}");
+}
+
+#[test]
+fn points_and_pieces_that_seem_to_be_in_other_units_are_said() {
+    let points = "{ t = 0, position = [0, 0, 1] }, { t = 4000, position = [1, 0, 1] }";
+    let scenario = on(&format!("kind = \"waypoints\"\npoints = [{points}]")).unwrap();
+    assert_eq!(route(&scenario).remarks, ["takes 4000 s for 1.0 m, 0.250 mm/s at most; are its times ms, and not s?"]);
+    let zeros = |count: usize| ",0".repeat(count);
+    let piece = format!("2,0,1,-0.25{}{},1{},90{}", zeros(5), zeros(8), zeros(7), zeros(7));
+    let scenario = on(&format!("kind = \"trajectory\"\ndata = \"\"\"\nduration\n{piece}\"\"\"")).unwrap();
+    assert_eq!(route(&scenario).remarks, ["yaw is in rad, and reaches 90.0: divide it by 57.3 if in degrees"]);
 }
