@@ -68,11 +68,7 @@ impl ReferenceKind {
     /// Names the field if it is no positive number.
     pub fn tolerance(root: &Section) -> Result<f64, FieldError> {
         let Some(section) = root.optional_section("reference")? else { return Ok(TOLERANCE) };
-        let tolerance = section.number_or("tolerance", TOLERANCE)?;
-        if tolerance > 0.0 {
-            return Ok(tolerance);
-        }
-        Err(FieldError::new(section.path_of("tolerance"), format!("must be positive, found {tolerance}")))
+        section.positive_or("tolerance", TOLERANCE)
     }
 
     /// Reads `force_kept` of `[reference]`, m/s^2: the force per mass, in any direction, that is kept free along it.

@@ -212,6 +212,19 @@ impl<'a> Section<'a> {
         if self.has(key) { self.number(key) } else { Ok(default) }
     }
 
+    /// A positive number, or `default` if it is left out.
+    ///
+    /// # Errors
+    /// As [`Self::number`], or if it is not positive.
+    pub fn positive_or(&self, key: &str, default: f64) -> Result<f64, FieldError> {
+        let number = self.number_or(key, default)?;
+        if number > 0.0 {
+            Ok(number)
+        } else {
+            Err(FieldError::new(self.path_of(key), format!("must be positive, found {number}")))
+        }
+    }
+
     /// Three finite numbers that must be there.
     ///
     /// # Errors

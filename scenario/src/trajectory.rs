@@ -48,8 +48,8 @@ use pace::limits::Limits;
 use pace::merge::Point;
 use pace::{Paced, Problem};
 use row::Row;
+pub use source::Directory;
 use source::Source;
-use std::path::Path;
 use vehicle::Vehicle;
 
 /// How near a path is to the rows, and how far from straight legs, if the file does not say, m.
@@ -110,9 +110,6 @@ pub enum Way {
 /// What the vehicle may fly, which is worked out only where it matters.
 pub type Allowed<'a> = &'a dyn Fn() -> Result<Vehicle, FieldError>;
 
-/// Where files that a scenario names lie: beside the scenario's own.
-pub type Directory<'a> = Option<&'a Path>;
-
 /// Reads a `[reference]` of points that are passed; what the bounds `allow` matters where only a speed is given.
 ///
 /// # Errors
@@ -171,8 +168,8 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 /// Times for points that are to be passed with a speed at most.
 fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, FieldError> {
     let Source { rows, field, name, remarks, .. } = source;
-    let corridor = positive(section, "corridor", CORRIDOR)?;
-    let speed = positive(section, "speed", f64::INFINITY)?;
+    let corridor = section.positive_or("corridor", CORRIDOR)?;
+    let speed = section.positive_or("speed", f64::INFINITY)?;
     if section.has("path") {
         return Err(FieldError::new(section.path_of("path"), "goes with times; with speed there is corridor"));
     }
@@ -225,7 +222,7 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 /// Names the field and what is wrong.
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
     section.allow(&["kind", "tolerance", "force_kept", "file", "data", "origin", "within", "stretch"])?;
-    let (near, stretch) = (positive(section, "within", NEAR)?, positive(section, "stretch", 1.0)?);
+    let (near, stretch) = (section.positive_or("within", NEAR)?, section.positive_or("stretch", 1.0)?);
     let mut source = Source::read(section, directory)?;
     source.check_times(stretch)?;
     let Source { rows, name, remarks, .. } = source;
@@ -272,15 +269,6 @@ fn slowed(rows: &[Row], stretch: f64) -> Vec<Row> {
         }
     });
     slowed.collect()
-}
-
-fn positive(section: &Section, key: &str, default: f64) -> Result<f64, FieldError> {
-    let number = section.number_or(key, default)?;
-    if number > 0.0 {
-        Ok(number)
-    } else {
-        Err(FieldError::new(section.path_of(key), format!("must be positive, found {number}")))
-    }
 }
 
 #[cfg(test)]

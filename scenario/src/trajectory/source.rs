@@ -5,11 +5,14 @@
 
 use super::row::Row;
 use super::slips::{self, TooSlow};
-use super::{Directory, positive, table};
+use super::table;
 use crate::resolution;
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 use std::path::Path;
+
+/// Where files that a scenario names lie: beside the scenario's own.
+pub type Directory<'a> = Option<&'a Path>;
 
 /// Who says what times are counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,7 +98,7 @@ fn points(section: &Section) -> Result<Source, FieldError> {
             heading: point.number_or("heading_deg", 0.0)?.to_radians(),
             velocity: None,
             acceleration: None,
-            speed: point.has("speed").then(|| positive(point, "speed", 0.0)).transpose()?,
+            speed: point.has("speed").then(|| point.positive_or("speed", 0.0)).transpose()?,
         })
     };
     let field = section.path_of("points");

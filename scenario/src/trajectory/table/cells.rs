@@ -13,6 +13,9 @@ const COMMENT: [char; 2] = ['#', '%'];
 /// The most rows of one file.
 const MOST_ROWS: usize = 100_000;
 
+/// The most lines above the numbers.
+const MOST_LINES_ABOVE: u64 = 1000;
+
 /// A file's cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
@@ -47,6 +50,9 @@ pub fn read(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Cells, String>
         }
         before += 1;
         start += line.len();
+        if before > MOST_LINES_ABOVE {
+            return Err(format!("has no numbers in its first {MOST_LINES_ABOVE} lines"));
+        }
         // With spaces for separators, a unit belongs to the name before it.
         let words = words.replace(" [", "[").replace(" (", "(");
         let (known, separator) = separated(&words, 0, &is_name);
