@@ -12,6 +12,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use nalgebra::{Vector2, Vector3};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// How far a flight may stray from its reference once it is there, if the file does not say, m.
@@ -22,6 +23,9 @@ const DEFAULT_POSITION: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 
 /// What to do about a place that is too far away.
 const COUNT_FROM_NEAR: &str = "count all positions from an origin nearby";
+
+/// The greatest angle of a harmonic, turns.
+const MOST_TURNS: f64 = 2.0;
 
 /// A reference as the file describes it, double precision.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,6 +122,7 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
     if let Some(section) = section.optional_section("heading")? {
         section.allow(&["offset", "rate", "amplitude", "frequency"])?;
         heading.offset = section.number_or("offset", 0.0)?;
+        check_radians(&section, "offset", heading.offset)?;
         heading.rate = section.number_or("rate", 0.0)?;
         heading.amplitude = section.number_or("amplitude", 0.0)?;
         heading.frequency = section.number_or("frequency", 0.0)?;
@@ -125,11 +130,22 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
     let (center, amplitude) = (section.vector("center")?, section.vector("amplitude")?);
     resolution::check(&section.path_of("center"), &center, COUNT_FROM_NEAR)?;
     resolution::check(&section.path_of("amplitude"), &amplitude, "fly a smaller one")?;
+    let phase = section.vector_or("phase", Vector3::zeros())?;
+    check_radians(section, "phase", phase.amax())?;
     Ok(HarmonicParameters {
         center: center.into(),
         amplitude: amplitude.into(),
         frequency: section.vector("frequency")?.into(),
-        phase: section.vector_or("phase", Vector3::zeros())?.into(),
+        phase: phase.into(),
         heading,
     })
+}
+
+/// Refuses an angle of so many turns that it is probably in degrees.
+fn check_radians(section: &Section, key: &str, angle: f64) -> Result<(), FieldError> {
+    if angle.abs() < MOST_TURNS * TAU {
+        return Ok(());
+    }
+    let problem = format!("is in rad, and at most {MOST_TURNS} turns, found {angle}; degrees are rad times 57.3");
+    Err(FieldError::new(section.path_of(key), problem))
 }

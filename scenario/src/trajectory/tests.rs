@@ -254,3 +254,13 @@ fn points_and_pieces_that_seem_to_be_in_other_units_are_said() {
     let scenario = on(&format!("kind = \"trajectory\"\ndata = \"\"\"\nduration\n{piece}\"\"\"")).unwrap();
     assert_eq!(route(&scenario).remarks, ["yaw is in rad, and reaches 90.0: divide it by 57.3 if in degrees"]);
 }
+
+#[test]
+fn angles_of_a_harmonic_in_degrees_are_refused() {
+    let circle = "kind = \"harmonic\"\ncenter = [0, 0, 1]\namplitude = [1, 1, 0]\nfrequency = [1, 1, 0]";
+    for (line, field) in [("phase = [0, -90, 0]", "phase"), ("heading = { offset = 90 }", "heading.offset")] {
+        let refused = on(&format!("{circle}\n{line}")).err().unwrap();
+        let expected = format!("a test: reference.{field}: is in rad, and at most 2 turns, found 90");
+        assert!(refused.starts_with(&expected), "{refused}");
+    }
+}
