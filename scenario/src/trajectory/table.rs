@@ -22,6 +22,7 @@ use crate::section::FieldError;
 use column::Quantity::{self, Acceleration, Duration, Heading, Position, Quaternion, Speed, Time, Velocity};
 use csv::StringRecord;
 use nalgebra::{Vector3, Vector4};
+use std::collections::BTreeSet;
 
 /// What rows without names hold, by how many cells they have.
 const NAMELESS: [(usize, &str); 4] =
@@ -33,6 +34,8 @@ const UNIT_LENGTH_TOLERANCE: f64 = 0.01;
 /// The horizontal share of the forward axis below which an attitude has no heading.
 const LEAST_FORWARD: f64 = 0.1;
 
+/// Columns that may say whose a row is.
+const VEHICLES: [&str; 7] = ["id", "drone", "drone_id", "uav", "uav_id", "vehicle", "vehicle_id"];
 /// The most names of columns that a remark lists.
 const MOST_NAMES: usize = 8;
 
@@ -93,6 +96,9 @@ fn table(text: &str) -> Result<Table, String> {
                 let values = lines.iter().map(|row| value(row, place, name)).collect::<Result<_, _>>()?;
                 columns.push(Column { quantity, name, unit, values });
             }
+            None if is_vehicle(name, place, &lines) => {
+                return Err(refuse(format!("column {name} numbers several vehicles: give each a file")));
+            }
             None if !name.is_empty() => unused.push(name.as_str()),
             None => {}
         }
@@ -126,6 +132,12 @@ fn names(
     })?;
     remarks.push(format!("rows without a header are read as {names}"));
     Ok((*first, names.split(',').map(str::to_owned).collect()))
+}
+
+/// Whether a column says whose each row is: it has fewer different cells than rows, but more than one.
+fn is_vehicle(name: &str, place: usize, lines: &[Line]) -> bool {
+    let whose = lines.iter().map(|(_, row)| row.get(place)).collect::<BTreeSet<_>>();
+    VEHICLES.contains(&name.to_lowercase().as_str()) && (2..lines.len()).contains(&whose.len())
 }
 
 /// The rows, times increasing; two at one time and in one place are one.
