@@ -40,6 +40,15 @@ fn eighteen() -> String {
     format!("{head}points = [{points}]\n")
 }
 
+/// Rows in UTM coordinates, 5,000 km from the origin, on the Hummingbird.
+fn far() -> Scenario {
+    let gates = gates();
+    let (head, _) = gates.split_once("[reference]").unwrap();
+    let reference = "kind = \"trajectory\"\nfile = \"utm.csv\"\norigin = [465000.0, 5427000.0, 0.0]";
+    let file = format!("{ROOT}/tests/trajectory_files/far");
+    Scenario::parse(&format!("{head}[reference]\n{reference}\n"), &file).unwrap()
+}
+
 /// How far from its points, at their times, and from its reference the vehicle flies at worst, m.
 fn flown(scenario: &Scenario) -> (f64, f64) {
     assert_eq!(Verdict::of(scenario).unwrap().refusal(), None, "{}", scenario.name);
@@ -67,7 +76,7 @@ fn flown(scenario: &Scenario) -> (f64, f64) {
 fn files_of_rows_pieces_and_points_are_certified_and_flown_near_what_they_say() {
     let eighteen = Scenario::parse(&eighteen(), "eighteen").unwrap();
     for (scenario, most) in
-        [(shipped("eight"), 0.02), (shipped("pieces"), 0.03), (shipped("gates"), 0.15), (eighteen, 0.15)]
+        [(shipped("eight"), 0.02), (shipped("pieces"), 0.03), (shipped("gates"), 0.15), (eighteen, 0.15), (far(), 0.02)]
     {
         let (missed, off) = flown(&scenario);
         println!("{}: {missed:.4} m from its points at worst, {off:.4} m from its reference", scenario.name);
