@@ -126,8 +126,8 @@ pub struct Estimator {
     checkpoints: Checkpoints,
     candidate: Option<Candidate>,
     stream: Stream,
-    /// Whether the vehicle is known to be in the air.
-    airborne: bool,
+    /// Whether the vehicle may stand still, for all that is known.
+    may_stand: bool,
     /// The biases of gyro, rad/s, and accelerometer, m/s^2, when it last was not.
     grounded: Option<(Vector3<f32>, Vector3<f32>)>,
     /// What [`EstimatedState::gained`] was at the end of the history, m/s.
@@ -154,7 +154,7 @@ impl Estimator {
             checkpoints: Checkpoints::EMPTY,
             candidate: None,
             stream: Stream::EMPTY,
-            airborne: false,
+            may_stand: true,
             grounded: None,
             gained: 0.0,
             climb: 0.0,
@@ -184,7 +184,7 @@ impl Estimator {
             self.checkpoints.forget_before(end);
         }
         self.history.push(increment);
-        self.stream.note(if self.airborne { self.stirs(increment) } else { self.moves(increment) });
+        self.stream.note(if self.may_stand { self.moves(increment) } else { self.stirs(increment) });
         if let Some(latest) = &mut self.latest {
             let before = latest.velocity;
             latest.advance(increment, self.settings.parameters().gravity);
@@ -200,9 +200,16 @@ impl Estimator {
         self.take_waiting(increment.end);
     }
 
-    /// The vehicle is known to be in the air, or not: there nothing stands still, and poses that do are frozen.
+    /// The vehicle may stand still, or not: in the air nothing does, and poses that do are frozen.
+    pub fn may_stand(&mut self, may_stand: bool) {
+        if may_stand && !self.may_stand {
+            self.stream.come_to_stand();
+        }
+        self.may_stand = may_stand;
+    }
+
+    /// The vehicle is known to be in the air, or not.
     pub fn is_airborne(&mut self, airborne: bool) {
-        self.airborne = airborne;
         if let (false, Some(Filter { nominal, .. })) = (airborne, &self.filter) {
             self.grounded = Some((nominal.gyro_bias, nominal.accelerometer_bias));
             self.climb = 0.0;

@@ -76,6 +76,11 @@ impl<'m> Estimation<'m> {
         self.estimator.distrust();
     }
 
+    /// The vehicle may stand still, or not: in the air poses that do are refused.
+    pub fn may_stand(&mut self, may_stand: bool) {
+        self.estimator.may_stand(may_stand);
+    }
+
     /// Takes what the IMU did and the poses that came since the last tick, `armed` or not, in the air or not. Poses of
     /// a source that is `given_up` are refused.
     pub fn tick(&mut self, inputs: &Inputs, armed: bool, airborne: bool, given_up: bool) -> Estimate {

@@ -85,7 +85,7 @@ pub(super) struct Watch {
     struck: Option<u64>,
     /// When something first stopped a vehicle that goes down, us, and when it last did.
     jerked: Option<(u64, u64)>,
-    /// The same of a jerk that nothing but the ground gives, without a pose.
+    /// The same of a jerk that nothing but the ground gives.
     touched: Option<(u64, u64)>,
     /// Whether it has hit something.
     hit: bool,
@@ -230,6 +230,11 @@ impl Watch {
         }
         let recently = self.struck.is_some_and(|struck| now.saturating_sub(struck) < STRUCK_DEBOUNCE);
         look.mode.is_guided() && jumps && recently
+    }
+
+    /// Whether a vehicle that goes down has met with a jerk that nothing but the ground gives.
+    pub fn has_touched(&self) -> bool {
+        self.touched.is_some()
     }
 
     /// Latches that a low battery has been acted on.

@@ -6,7 +6,8 @@
 //! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved
 //!   meanwhile. A simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the
 //!   least of the IMU's noise is motion enough: a vehicle that hovers well hardly moves, and poses that stand still
-//!   would be believed while it drifts away.
+//!   would be believed while it drifts away. What counted as motion in the air only says nothing about a vehicle that
+//!   has come to stand since.
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;
@@ -38,6 +39,11 @@ impl Stream {
     /// Takes note of an increment of the IMU: whether the vehicle moved.
     pub fn note(&mut self, moves: bool) {
         self.moved = self.moved.saturating_add(u16::from(moves));
+    }
+
+    /// The vehicle has come to stand: it may have done so without a motion.
+    pub fn come_to_stand(&mut self) {
+        self.moved = 0;
     }
 
     /// Judges a pose at `now`, us.

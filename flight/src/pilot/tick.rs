@@ -18,6 +18,7 @@ impl<P: Aboard> Pilot<'_, P> {
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         let (armed, airborne, given_up) = (self.mode.is_armed(), self.is_airborne(), self.trust.is_given_up());
+        self.estimation.may_stand(!airborne || self.mode == Mode::Landing && self.watch.has_touched());
         let estimate = self.estimation.tick(inputs, armed, airborne, given_up);
         self.decide(inputs, &estimate)
     }

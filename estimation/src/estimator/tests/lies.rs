@@ -92,6 +92,25 @@ fn a_frozen_stream_is_detected_by_the_accelerometer_alone() {
 }
 
 #[test]
+fn poses_that_stand_still_are_frozen_in_the_air_and_true_once_the_vehicle_may_stand() {
+    let still = |rig: &Rig, _| motion::pose(&rig.truth(0), &Vector3::zeros(), &STRAIGHT);
+    let mut rig = Rig::new(rest);
+    rig.fly(3_000_000, 20_000);
+    rig.estimator.may_stand(false);
+    // What noise there is at rest as well.
+    rig.biases.1 = Vector3::new(0.0, 0.0, 0.1);
+    assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Err(Rejected::Frozen)));
+    rig.estimator.may_stand(true);
+    assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Ok(Taken::Fused)));
+    // Carried about, it moves beyond any noise; then it does not matter that it is put down.
+    rig.biases.1.z = 1.0;
+    assert_eq!(rig.fly_with(50_000, 20_000, still), Some(Err(Rejected::Frozen)));
+    rig.biases.1.z = 0.0;
+    rig.estimator.may_stand(true);
+    assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Err(Rejected::Frozen)));
+}
+
+#[test]
 fn a_drift_is_reported_and_not_followed() {
     for path in [rest as motion::Path, tumble] {
         let mut rig = Rig::new(path);
