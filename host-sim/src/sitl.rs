@@ -279,14 +279,18 @@ impl Sitl {
         Ok(())
     }
 
-    /// Takes what clients have sent, and lets time pass until `end`, us.
-    pub fn pass(&mut self, end: u64) {
+    /// Takes what clients have sent.
+    pub fn receive(&mut self) {
         let (up, silent) = (&self.up, self.faults.has(Part::GroundStation, self.clock.now()));
         self.port.borrow_mut().receive(|frame| {
             if !silent {
                 up.push(frame);
             }
         });
+    }
+
+    /// Lets time pass until `end`, us.
+    pub fn pass(&mut self, end: u64) {
         self.clock.run(&mut self.pool, end);
         if self.restart.take() {
             // What is refused is refused at the first start: the vehicle has as many rotors as then.
@@ -370,10 +374,14 @@ pub fn run(
         let due = record.as_ref().map_or(u64::MAX, Record::due);
         let due = due.min(truth.as_ref().map_or(u64::MAX, Truth::due));
         let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
-        pace.wait(next);
+        // What a client stamps by the desk's clock must not come before that time of a vehicle that lags behind.
+        let keeps_up = pace.wait(next);
+        if keeps_up || session.poses == PoseSource::Camera {
+            sitl.receive();
+        }
         sitl.pass(next);
         if let Some(truth) = &mut truth {
-            truth.look(sitl.clock.now(), &sitl.world.state());
+            truth.look(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.world.state());
         }
         if sitl.world.check().is_err() {
             break Err(SitlError::Diverged(next as f64 * 1e-6));

@@ -87,6 +87,7 @@ impl Flown {
             if now.is_multiple_of(500_000) {
                 self.send(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT });
             }
+            self.sitl.receive();
             self.sitl.pass((now + 10_000).min(end));
         }
     }
@@ -157,6 +158,23 @@ fn a_client_that_sends_the_poses_is_warned_that_their_delay_is_unknown() {
     assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
     // A camera that answers TIMESYNC says how late it is.
     assert!(!Flown::in_the_air(STUDY, &[]).said("delay unknown"));
+}
+
+#[test]
+fn a_client_that_sends_the_poses_flies_lands_and_flies_again() {
+    let mut flown = Flown::boot_with(PoseSource::Link, STUDY, &[], None, None);
+    for flight in 1..=3 {
+        flown.pass_with_poses(5.0);
+        assert_eq!(flown.mode(), Mode::Ready, "before flight {flight}: {:?}", flown.sitl.texts);
+        flown.ask(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0]);
+        flown.ask(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0]);
+        flown.pass_with_poses(8.0);
+        flown.ask(MavCmd::MAV_CMD_NAV_LAND, [0.0, 0.0]);
+        flown.pass_with_poses(9.0);
+        assert!(!flown.mode().is_armed(), "after flight {flight}: {:?}", flown.sitl.texts);
+        // While it stands each pose is the last one to the bit.
+        assert!(!flown.said("frozen") && !flown.said("no believable pose"), "{:?}", flown.sitl.texts);
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Where the vehicle really is, for a bridge that is tried on it: 100 lines of JSON a second, a datagram each.
 //!
 //! ```text
-//! {"t":12.34,"position":[1.0,0.0,0.5],"quaternion":[1.0,0.0,0.0,0.0]}
+//! {"t":1760000012.34,"position":[1.0,0.0,0.5],"quaternion":[1.0,0.0,0.0,0.0]}
 //! ```
 //!
-//! Metres and a quaternion of body to world, scalar first, both with z up: x east, y north; x ahead, y left.
+//! The time is this machine's, s since 1970, as a motion capture on it would stamp what it sees. Metres and a quaternion of body to world, scalar first, both with z up: x east, y north; x ahead, y left.
 
 use scenario::body::BodyState;
 use std::net::{Ipv4Addr, UdpSocket};
@@ -38,8 +38,8 @@ impl Truth {
         self.due
     }
 
-    /// Sends a line of the vehicle at `now`, us, if one is due.
-    pub fn look(&mut self, now: u64, state: &BodyState) {
+    /// Sends a line of the vehicle at `now`, us, if one is due; by the desk's clock that is `desk_time`, s.
+    pub fn look(&mut self, now: u64, desk_time: f64, state: &BodyState) {
         if now < self.due {
             return;
         }
@@ -47,12 +47,8 @@ impl Truth {
         let [x, y, z] = <[f64; 3]>::from(state.position);
         let q = state.attitude;
         let line = format!(
-            "{{\"t\":{},\"position\":[{x},{y},{z}],\"quaternion\":[{},{},{},{}]}}",
-            now as f64 * 1e-6,
-            q.w,
-            q.i,
-            q.j,
-            q.k
+            "{{\"t\":{desk_time:.6},\"position\":[{x},{y},{z}],\"quaternion\":[{},{},{},{}]}}",
+            q.w, q.i, q.j, q.k
         );
         // There may be no listener.
         let _ = self.socket.send_to(line.as_bytes(), (Ipv4Addr::LOCALHOST, self.port));
