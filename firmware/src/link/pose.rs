@@ -37,6 +37,9 @@ use nalgebra::{Quaternion, Vector3};
 /// How long a source must have been silent before another is listened to, us.
 pub const SOURCE_SILENCE: u64 = 1_000_000;
 
+/// How long a delay that TIMESYNC gave counts as known, us: single messages may be stamped too early for it.
+const DELAY_KNOWN: u64 = 1_000_000;
+
 /// Where ODOMETRY's extension fields lie, which the message's type does not have.
 const RESET_COUNTER: usize = ODOMETRY_DATA::ENCODED_LEN;
 const QUALITY: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
@@ -68,9 +71,11 @@ pub enum PoseRefusal {
     Repeated,
     /// It was under way for more than [`LATE_MAX`], by TIMESYNC.
     Late,
-    /// It was under way for that much longer than others, or its sender's clock stood still: without TIMESYNC the two
-    /// look alike.
+    /// It was under way for that much longer than others, or its sender's clock was set or stood still: without
+    /// TIMESYNC the two look alike.
     LateOrSet,
+    /// Its sender's clock was set or stood still: TIMESYNC says that it is not late.
+    Set,
     /// Another source is being listened to.
     SecondSource,
 }
@@ -83,6 +88,7 @@ impl fmt::Display for PoseRefusal {
             Self::Repeated => f.write_str("its time does not advance"),
             Self::Late => f.write_str("more than 0.5 s late"),
             Self::LateOrSet => f.write_str("0.5 s late; let it answer TIMESYNC"),
+            Self::Set => f.write_str("its sender's clock was set"),
             Self::SecondSource => f.write_str("another source is in use"),
         }
     }
@@ -101,9 +107,9 @@ struct Source {
     arrived: u64,
     /// When its pose was true, us; none before the first.
     stamped: Option<u64>,
-    /// What it was taken to have been under way, us, and whether by TIMESYNC.
+    /// What it was taken to have been under way, us, and when it arrived of which that was last known by TIMESYNC.
     delay: u64,
-    synchronised: bool,
+    synchronised: Option<u64>,
 }
 
 /// Turns messages into poses.
@@ -120,10 +126,10 @@ impl Poses {
         }
     }
 
-    /// Whether the last pose's delay is known by TIMESYNC.
+    /// Whether the poses' delay is known by TIMESYNC.
     #[must_use]
     pub fn is_synchronised(&self) -> bool {
-        self.source.is_some_and(|source| source.synchronised)
+        self.source.as_ref().is_some_and(Source::is_synchronised)
     }
 
     /// The pose in `frame`; none in another message. Where the delay is unknown otherwise, it took `delay`, us, at
@@ -168,7 +174,7 @@ impl Poses {
             arrived: frame.time,
             stamped: None,
             delay,
-            synchronised: false,
+            synchronised: None,
         };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
@@ -179,6 +185,10 @@ impl Poses {
         }
         if source.is_late(time, frame.time) {
             return Err(PoseRefusal::Late);
+        }
+        let is_set = source.is_synchronised() && source.sync.recent(frame.time).is_some();
+        if let (Some(clock), Some(Offset { value, error })) = (&mut source.clock, source.sync.offset(frame.time)) {
+            clock.restore(value - i128::from(error), time, frame.time);
         }
         let begun = source.clock.as_ref().map(SenderClock::begun);
         let advances = source.clock.as_ref().is_some_and(|clock| clock.advances(time));
@@ -193,9 +203,13 @@ impl Poses {
         if begun.is_some() && begun != source.clock.as_ref().map(SenderClock::begun) {
             source.begin_anew();
         }
-        let synchronised = source.delay(time);
-        let delay = synchronised.unwrap_or(delay);
-        let refusal = if advances { PoseRefusal::LateOrSet } else { PoseRefusal::Repeated };
+        let known = source.delay(time);
+        let delay = known.unwrap_or(delay);
+        let refusal = match (advances, is_set) {
+            (false, _) => PoseRefusal::Repeated,
+            (true, false) => PoseRefusal::LateOrSet,
+            (true, true) => PoseRefusal::Set,
+        };
         let stamp = stamp.map(|stamp| stamp.saturating_sub(delay)).ok_or(refusal)?;
         // A sender whose clock comes and goes is stamped in two ways, which need not keep the order.
         if source.stamped.is_some_and(|last| stamp <= last) {
@@ -203,12 +217,17 @@ impl Poses {
             return if delay > source.delay { Ok(None) } else { Err(PoseRefusal::Repeated) };
         }
         (source.arrived, source.stamped, source.delay) = (frame.time, Some(stamp), delay);
-        source.synchronised = synchronised.is_some();
+        source.synchronised = known.map_or(source.synchronised, |_| Some(frame.time));
         Ok(Some(stamp))
     }
 }
 
 impl Source {
+    /// Whether TIMESYNC gave the delay of its last messages.
+    fn is_synchronised(&self) -> bool {
+        self.synchronised.is_some_and(|known| self.arrived.saturating_sub(known) <= DELAY_KNOWN)
+    }
+
     /// What a message of `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps the
     /// messages.
     fn delay(&self, time: u64) -> Option<u64> {
@@ -224,7 +243,7 @@ impl Source {
     /// is not late: it is no new one, or its clock was set.
     fn is_late(&self, time: u64, arrived: u64) -> bool {
         let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
-        let known = self.sync.recent(arrived).filter(|_| self.synchronised && goes_on && time != 0);
+        let known = self.sync.recent(arrived).filter(|_| self.is_synchronised() && goes_on && time != 0);
         known.is_some_and(|Offset { value, error }| {
             i128::from(arrived) - i128::from(time) - value > i128::from(LATE_MAX) + i128::from(error)
         })
@@ -233,7 +252,7 @@ impl Source {
     /// The sender's clock was set: TIMESYNC's offset is of the old one. The line's delay is kept until the next answer.
     fn begin_anew(&mut self) {
         let value =
-            self.clock.as_ref().filter(|_| self.synchronised).map(|clock| clock.offset() - i128::from(self.delay));
+            self.clock.as_ref().filter(|_| self.is_synchronised()).map(|clock| clock.offset() - i128::from(self.delay));
         self.sync = value.map_or_else(TimeSync::default, |value| TimeSync::presumed(value, self.arrived));
     }
 }

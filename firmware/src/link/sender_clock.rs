@@ -11,6 +11,9 @@
 //! The least delay is not observable that way and stays part of o: [`super::time_sync`] may give it, or a measurement.
 //! A message is never stamped later than it arrived.
 //!
+//! One message that is stamped too early, by either clock, would bring o down for minutes. Where TIMESYNC gives the
+//! least that o can be, since no message arrives before it is sent, the next message that keeps to it brings o back.
+//!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
 //! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
 //! [`LEAD_MAX`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
@@ -87,6 +90,15 @@ impl SenderClock {
     #[must_use]
     pub fn advances(&self, time: u64) -> bool {
         time > self.last.0
+    }
+
+    /// Brings o back to `least`, us, the least that it can be, if the message of `time` that arrived at `arrived` keeps
+    /// to that.
+    pub fn restore(&mut self, least: i128, time: u64, arrived: u64) {
+        if self.offset < least && least <= difference(arrived, time) {
+            let raised = u64::try_from(least - self.offset).unwrap_or(u64::MAX);
+            *self = Self { offset: least, spare: self.spare.saturating_add(raised).min(LEAD_MAX), ..*self };
+        }
     }
 
     /// When a message of `time` that arrived at `arrived` was true, us of the vehicle's clock; none if its time is not

@@ -197,3 +197,51 @@ fn a_clock_that_stood_still_is_believed_once_timesync_confirms_it() {
     assert!(back < 8_000_000 && worst(&stamps, back) <= 25_000, "{back}, {} us", worst(&stamps, back));
     assert!(worst(&stamps, back + 1_500_000) <= 3_500);
 }
+
+/// A pose each 10 ms, 5 ms late, of a sender that answers TIMESYNC; from 3 s on the vehicle's clock stands still for
+/// `stall`, us, and then makes up for it. Each pose's stamp, and whether the delay counts as unknown after it.
+fn stalled(shared: &Local, stall: u64) -> Vec<(u64, Option<u64>, bool)> {
+    let shown = |truth: u64| match truth {
+        3_000_000.. => {
+            truth - stall.saturating_sub(2 * (truth - 3_000_000).saturating_sub(stall)).min(truth - 3_000_000)
+        }
+        _ => truth,
+    };
+    let mut fed = Fed::new(shared);
+    let truths = (0..600).map(|count| 1_000_000 + 10_000 * count);
+    let stamps = truths.map(|truth| {
+        let ahead = 1_700_000_000_000_000;
+        fed.message(&odometry(truth + ahead), shown(truth + 5_000));
+        let stamp = newest(shared).map(|pose| pose.time);
+        let is_unknown = shared.pose_delay_unknown.is_raised();
+        if truth % 1_000_000 == 0 && !(3_000_000..4_000_000).contains(&truth) {
+            let (asked, arrived) = (shown(truth + 5_000), shown(truth + 7_000));
+            let sent = truth + 6_000 + ahead;
+            fed.message(&TIMESYNC_DATA { tc1: sent as i64 * 1_000, ts1: asked as i64 * 1_000 }, arrived);
+        }
+        (truth, stamp, is_unknown)
+    });
+    stamps.collect()
+}
+
+#[test]
+fn a_clock_that_stalls_and_makes_up_for_it_leaves_the_delay_known() {
+    for stall in [3_000, 20_000, 90_000] {
+        let shared = Local::new();
+        let stamps = stalled(&shared, stall);
+        let known = stamps.iter().filter(|(truth, ..)| *truth > 1_000_000);
+        assert!(known.clone().all(|(.., is_unknown)| !is_unknown), "{stall}");
+        // It has made up for it within twice the time.
+        let after = known.filter(|(truth, ..)| *truth > 3_000_000 + 2 * stall);
+        let errors: Vec<_> = after.map(|(truth, stamp, _)| stamp.unwrap().abs_diff(*truth)).collect();
+        assert!(errors.iter().all(|error| *error <= 2_100), "{stall}: {:?}", errors.iter().max());
+    }
+}
+
+#[test]
+fn a_clock_that_was_set_is_not_called_late_where_timesync_answers() {
+    let shared = Local::new();
+    let clock = |truth: u64| 1_700_000_000_000_000 + truth + if truth >= 5_500_000 { 300_000 } else { 0 };
+    synchronised(&shared, 1_500, |truth| (clock(truth), 20_000));
+    assert_eq!(texts(&shared), ["Pose refused: its sender's clock was set"]);
+}

@@ -119,3 +119,19 @@ fn a_clock_that_stood_still_is_believed_again() {
     assert_eq!(taken[4], Some(3_600_050_000));
     assert!(taken[..4].iter().all(Option::is_none) && taken[5..].iter().all(Option::is_some), "{taken:?}");
 }
+
+#[test]
+fn what_one_early_message_brought_down_comes_back_to_the_least_that_it_can_be() {
+    let mut clock = SenderClock::new(1_000_000, 0);
+    for k in 1..1_000_u64 {
+        // Each tenth comes 60 ms early: the vehicle's clock stalled.
+        let (time, arrived) = (1_000_000 + 100_000 * k, 100_000 * k - if k % 10 == 0 { 60_000 } else { 0 });
+        clock.restore(-1_000_500, time, arrived);
+        let stamp = clock.stamp(time, arrived).unwrap();
+        assert!(stamp <= arrived && arrived - stamp <= 500, "{k}: {stamp} {arrived}");
+    }
+    // A message that does not keep to the bound is of another clock: nothing is brought back for it.
+    let mut clock = SenderClock::new(1_000_000, 0);
+    clock.restore(-500_000, 1_010_000, 10_000);
+    assert_eq!(clock.offset(), -1_000_000);
+}
