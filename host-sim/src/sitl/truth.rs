@@ -4,7 +4,8 @@
 //! {"t":1760000012.34,"position":[1.0,0.0,0.5],"quaternion":[1.0,0.0,0.0,0.0]}
 //! ```
 //!
-//! The time is this machine's, s since 1970, as a motion capture on it would stamp what it sees. Metres and a quaternion of body to world, scalar first, both with z up: x east, y north; x ahead, y left.
+//! The time is this machine's, s since 1970, as a motion capture on it would stamp what it sees. Metres and a
+//! quaternion of body to world, scalar first, both with z up: x east, y north; x ahead, y left.
 
 use scenario::body::BodyState;
 use std::net::{Ipv4Addr, UdpSocket};
