@@ -16,8 +16,8 @@ const INSTANTS: u32 = 256;
 const LEAST: f64 = 0.01;
 
 /// A path that goes deeper than this, m, and less than this share of that above zero, has its z axis downwards.
-const DEEP: f64 = 0.2;
-const HARDLY: f64 = 0.1;
+const DEPTH_OF_Z_DOWN: f64 = 0.2;
+const HEIGHT_SHARE_OF_Z_DOWN: f64 = 0.1;
 
 /// A point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +100,7 @@ pub fn check_ground(
     };
     let height = match (ground, reference) {
         (Some(ground), _) => ground.height,
-        (None, _) if lowest.position.z < -DEEP && highest < -HARDLY * lowest.position.z => {
+        (None, _) if lowest.position.z < -DEPTH_OF_Z_DOWN && highest < -HEIGHT_SHARE_OF_Z_DOWN * lowest.position.z => {
             let problem = format!(
                 "lies below zero, from z = {:.2} to {highest:.2} m, and z points up: where it points down (NED), turn \
                  it round to (x, -y, -z) and -yaw; where the ground is that low, say so in [ground] height",

@@ -4,7 +4,7 @@ use crate::section::FieldError;
 use nalgebra::Vector3;
 
 /// From here on neighbouring numbers are 1 mm apart or more, m: 2^14 of 2^-10.
-pub const FARTHEST: f64 = 16_384.0;
+pub const DISTANCE_MAX: f64 = 16_384.0;
 
 /// The way between neighbouring numbers of single precision at a distance, m.
 fn step(distance: f64) -> f64 {
@@ -18,14 +18,14 @@ fn step(distance: f64) -> f64 {
 /// Names the `field`, the position, and how coarse.
 pub fn check(field: &str, position: &Vector3<f64>, remedy: &str) -> Result<(), FieldError> {
     let distance = position.amax();
-    if distance < FARTHEST {
+    if distance < DISTANCE_MAX {
         return Ok(());
     }
     let [x, y, z] = (*position).into();
     let problem = format!(
         "must be within {:.0} km of the origin, found ({x}, {y}, {z}) m, where single precision is {:.0} mm coarse; \
          {remedy}",
-        (FARTHEST / 1e3).floor(),
+        (DISTANCE_MAX / 1e3).floor(),
         1e3 * step(distance)
     );
     Err(FieldError::new(field, problem))

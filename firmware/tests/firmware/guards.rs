@@ -92,12 +92,12 @@ fn texts_of_arming(shared: &Local) -> Vec<String> {
 }
 
 /// Bytes of a record.
-const RECORD: usize = 256;
+const RECORD_BYTES: usize = 256;
 
 /// The places of records of as many words as the key has, or the parameters, the newest first.
 fn places(chip: &RefCell<Chip>, words: u8) -> Vec<usize> {
     let bytes = &chip.borrow().bytes;
-    let records = bytes.chunks(RECORD).enumerate().filter(|(_, record)| record[4..6] == [words, 0]);
+    let records = bytes.chunks(RECORD_BYTES).enumerate().filter(|(_, record)| record[4..6] == [words, 0]);
     let mut numbers: Vec<_> = records.map(|(place, record)| (record[0], place)).collect();
     numbers.sort_by(|a, b| b.cmp(a));
     numbers.into_iter().map(|(_, place)| place).collect()
@@ -120,7 +120,7 @@ fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
     let places = [OF_THE_KEY, OF_PARAMETERS].map(|words| places(&chip, words));
     assert!(places.iter().all(|places| places.len() >= 4), "two copies, and two older: {places:?}");
     let places = places.concat();
-    for bit in places.iter().flat_map(|place| place * 8 * RECORD..(place + 1) * 8 * RECORD) {
+    for bit in places.iter().flat_map(|place| place * 8 * RECORD_BYTES..(place + 1) * 8 * RECORD_BYTES) {
         let damaged = chip.clone();
         damaged.borrow_mut().bytes[bit / 8] ^= 1 << (bit % 8);
         holds(&damaged, &format!("bit {bit}"));
@@ -128,7 +128,7 @@ fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
     for place in places {
         for byte in [0x00, 0xFF, 0x5A] {
             let damaged = chip.clone();
-            damaged.borrow_mut().bytes[place * RECORD..(place + 1) * RECORD].fill(byte);
+            damaged.borrow_mut().bytes[place * RECORD_BYTES..(place + 1) * RECORD_BYTES].fill(byte);
             holds(&damaged, &format!("record {place}, {byte}"));
         }
     }
@@ -138,7 +138,7 @@ fn one_bit_or_one_record_less_changes_nothing_that_is_kept() {
 fn without(chip: &RefCell<Chip>, words: u8, records: usize) -> RefCell<Chip> {
     let damaged = chip.clone();
     for place in places(chip, words).into_iter().take(records) {
-        damaged.borrow_mut().bytes[place * RECORD + 20] ^= 1;
+        damaged.borrow_mut().bytes[place * RECORD_BYTES + 20] ^= 1;
     }
     damaged
 }

@@ -9,7 +9,7 @@ use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use firmware::radio::debounced::DEBOUNCE;
+use firmware::radio::debounced::SWITCH_DEBOUNCE;
 use firmware::radio::{Radio, SILENCE, receive};
 use firmware::shared::Report;
 use flight::{Mode, Request};
@@ -71,13 +71,13 @@ fn statistics(quality: u8) -> Vec<u8> {
 }
 
 /// The time between frames of the tests, us, and how many of them move a switch.
-const FRAME: u64 = 20_000;
-const FRAMES: u64 = DEBOUNCE / FRAME + 1;
+const FRAME_PERIOD: u64 = 20_000;
+const FRAMES_TO_COUNT: u64 = SWITCH_DEBOUNCE / FRAME_PERIOD + 1;
 
 /// Frames that say the same for as long as moves a switch, from a time on, us; when the next one comes.
 fn held(radio: &mut Radio<'_, NoopRawMutex>, channels: &[u16; 16], from: u64) -> u64 {
-    (0..FRAMES).for_each(|step| radio.take(channels, from + step * FRAME));
-    from + FRAMES * FRAME
+    (0..FRAMES_TO_COUNT).for_each(|step| radio.take(channels, from + step * FRAME_PERIOD));
+    from + FRAMES_TO_COUNT * FRAME_PERIOD
 }
 
 fn requests(shared: &Local) -> Vec<Request> {
@@ -102,7 +102,7 @@ fn bytes_in_pieces_with_noise_between_them_become_switches() {
         clock.run(200_000, receive(line.clone(), &clock, shared.for_radio()), |now| {
             let piece = (now / 1_000 % 20) as usize * 7;
             line.say(bytes.get(piece..bytes.len().min(piece + 7)).unwrap_or(&[]));
-            if now % FRAME == 10_000 {
+            if now % FRAME_PERIOD == 10_000 {
                 line.say(&[0x00, 0x16]);
             }
         });
@@ -204,7 +204,7 @@ fn a_receiver_that_has_lost_its_transmitter_and_repeats_its_frames_is_silent() {
     report(&shared, Mode::Flying, true);
     let mut radio = Radio::new(shared.for_radio());
     let mut run = |seconds: Range<u64>, quality: u8| {
-        for now in (seconds.start * 1_000_000..seconds.end * 1_000_000).step_by(FRAME as usize) {
+        for now in (seconds.start * 1_000_000..seconds.end * 1_000_000).step_by(FRAME_PERIOD as usize) {
             radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
             if now.is_multiple_of(200_000) {
                 radio.feed(&statistics(quality), now);
@@ -222,7 +222,7 @@ fn a_receiver_that_has_lost_its_transmitter_and_repeats_its_frames_is_silent() {
     // One corrupted frame of statistics says nothing.
     radio.feed(&statistics(100), 6_000_000);
     let (asked, words, received) = {
-        for now in (6_000_000..7_000_000).step_by(FRAME as usize) {
+        for now in (6_000_000..7_000_000).step_by(FRAME_PERIOD as usize) {
             radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
         }
         (requests(&shared), texts(&shared), shared.ground_station.get().unwrap().time)
@@ -337,7 +337,7 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
 fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    let heard = held(&mut radio, &channels(HIGH, flies, LOW), 0) - FRAME;
+    let heard = held(&mut radio, &channels(HIGH, flies, LOW), 0) - FRAME_PERIOD;
     report(&shared, mode, true);
     radio.check_silence(heard + SILENCE);
     assert!(requests(&shared).is_empty());
@@ -355,7 +355,7 @@ fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
     // Whatever the link requests meanwhile.
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    let heard = held(&mut radio, &channels(HIGH, HIGH, LOW), 0) - FRAME;
+    let heard = held(&mut radio, &channels(HIGH, HIGH, LOW), 0) - FRAME_PERIOD;
     report(&shared, Mode::Flying, true);
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let mut fed = Fed::new(&shared);

@@ -6,15 +6,15 @@ use super::row::Row;
 use std::f64::consts::TAU;
 
 /// A path that is nowhere as fast is flown by nobody, m/s.
-const SNAIL: f64 = 0.02;
+const SLOWEST_FLOWN_SPEED: f64 = 0.02;
 /// What is shorter may stand still, m.
-const MOVING: f64 = 0.1;
+const LEAST_WAY: f64 = 0.1;
 /// The least speed at which such a path makes sense, m/s.
 const LEAST_SPEED: f64 = 0.05;
 /// A heading that swings by less may be in degrees, degrees.
 const LEAST_SWING: f64 = 1.5;
 /// What rounding may add to a turn, rad.
-const ROUNDING: f64 = 0.01;
+const TURN_ROUNDING: f64 = 0.01;
 
 /// In what times are counted, if they are so great that they count from 1970, and that in s.
 pub fn since_1970(first: f64) -> Option<(&'static str, f64)> {
@@ -32,7 +32,7 @@ pub struct TooSlow {
 }
 
 impl TooSlow {
-    /// What is wrong with rows that, `stretch` times as slowly, are slower than a snail.
+    /// What is wrong with rows that, `stretch` times as slowly, are slower than that.
     pub fn of(rows: &[Row], stretch: f64) -> Option<Self> {
         let (mut fastest, mut way) = (0.0_f64, 0.0);
         for pair in rows.windows(2) {
@@ -40,7 +40,7 @@ impl TooSlow {
             fastest = fastest.max(distance / (stretch * (pair[1].time? - pair[0].time?)));
             way += distance;
         }
-        if way < MOVING || fastest >= SNAIL {
+        if way < LEAST_WAY || fastest >= SLOWEST_FLOWN_SPEED {
             return None;
         }
         let duration = stretch * (rows.last()?.time? - rows.first()?.time?);
@@ -54,13 +54,13 @@ impl TooSlow {
 /// The greatest of headings in rad, if it is so great that they are probably degrees.
 pub fn degrees_as_radians(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let most = headings.map(f64::abs).fold(0.0, f64::max);
-    (most > TAU + ROUNDING).then_some(most)
+    (most > TAU + TURN_ROUNDING).then_some(most)
 }
 
 /// What may be wrong with headings that are read as degrees.
 pub fn radians_as_degrees(headings: impl Iterator<Item = f64>) -> Option<String> {
     let range = headings.map(|heading| (heading, heading)).reduce(|(low, high), (h, _)| (low.min(h), high.max(h)));
     let (low, high) = range?;
-    let is_suspect = high - low > LEAST_SWING && high.max(-low) < TAU + ROUNDING;
+    let is_suspect = high - low > LEAST_SWING && high.max(-low) < TAU + TURN_ROUNDING;
     is_suspect.then(|| format!("stays between {low} and {high} degrees: name it yaw if these are radians"))
 }

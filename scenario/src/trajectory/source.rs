@@ -84,7 +84,8 @@ impl Source {
 
 /// What to write where `first`, m, is far away.
 fn near(first: &Vector3<f64>) -> String {
-    let far = first.map(|value| if value.abs() < resolution::FARTHEST { 0.0 } else { (value / 100.0).floor() * 100.0 });
+    let far =
+        first.map(|value| if value.abs() < resolution::DISTANCE_MAX { 0.0 } else { (value / 100.0).floor() * 100.0 });
     format!("write origin = {}, from which the flight then counts", crate::number::array(far.as_slice()))
 }
 

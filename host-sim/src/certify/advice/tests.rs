@@ -22,15 +22,15 @@ const HUMMINGBIRD: &str = include_str!("../../../../vehicles/hummingbird.toml");
 const STUDY: &str = include_str!("../../../../vehicles/study.toml");
 
 /// By how much a number is changed.
-const CHANGE: f64 = 0.02;
+const CHANGE_SHARE: f64 = 0.02;
 
 /// The numbers that an advice names after "lower" or "raise", each with the factor that does so.
 fn steps(advice: &str) -> Vec<(&str, f64)> {
     let (mut factor, mut found) = (None, Vec::new());
     for word in advice.split_whitespace() {
         match word.to_lowercase().as_str() {
-            "lower" => factor = Some(1.0 - CHANGE),
-            "raise" => factor = Some(1.0 + CHANGE),
+            "lower" => factor = Some(1.0 - CHANGE_SHARE),
+            "raise" => factor = Some(1.0 + CHANGE_SHARE),
             _ => {}
         }
         let name = word.trim_matches(|c: char| !c.is_ascii_alphanumeric());
