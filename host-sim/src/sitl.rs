@@ -14,6 +14,7 @@
 //! | [`faults`] | simulated faults and their times |
 //! | [`flash`] | the parameters' memory |
 //! | [`key`] | the key that signs frames |
+//! | [`session`] | what a session is told, and how it ended |
 //! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
@@ -28,6 +29,7 @@ pub mod line;
 pub mod pace;
 pub mod port;
 mod record;
+pub mod session;
 mod truth;
 mod voice;
 pub mod world;
@@ -39,18 +41,16 @@ use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::tuning::judged::JudgedLoops;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use faults::{Fault, Faults, Part};
+use faults::{Faults, Part};
 use firmware::control::Control;
 use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
-use firmware::link::signing::Key;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT};
 use firmware::shared::Shared;
 use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
-use flight::Mode;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
 use line::Line;
@@ -58,8 +58,8 @@ use pace::Pace;
 use port::{Port, Ports};
 use record::Record;
 use scenario::{Scenario, board};
+pub use session::{Session, SitlError, Summary};
 use std::cell::{Cell, RefCell};
-use std::fmt;
 use std::future::Future;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -73,73 +73,6 @@ const RECORDED: usize = 6_000;
 
 /// Time between lines of status, by the desk's clock.
 const STATUS: Duration = Duration::from_secs(1);
-
-/// How a session is run.
-#[derive(Debug, Clone)]
-pub struct Session {
-    /// The scenario's name in errors: its file.
-    pub file: String,
-    /// Where the clients are.
-    pub ports: Ports,
-    /// How many times as fast as the desk's the vehicle's time passes.
-    pub speed: f64,
-    /// Vehicle time after which it ends, s; none: at a signal.
-    pub duration: Option<f64>,
-    /// Where its poses come from.
-    pub poses: PoseSource,
-    /// The faults.
-    pub faults: Vec<Fault>,
-    /// Where parameters are kept.
-    pub parameters: Option<PathBuf>,
-    /// The key that signs frames.
-    pub signing_key: Option<Key>,
-    /// The port to which its true pose goes.
-    pub truth: Option<u16>,
-    /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
-    pub recording: Option<(PathBuf, String)>,
-}
-
-/// Why a session could not be run, or not to its end.
-#[derive(Debug)]
-pub enum SitlError {
-    /// The scenario, a file or a port cannot be used, or a file not be written: why, in a line.
-    Input(String),
-    /// The vehicle's motion is not finite any more, at this time, s.
-    Diverged(f64),
-}
-
-impl fmt::Display for SitlError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Input(what) => f.write_str(what),
-            Self::Diverged(time) => write!(f, "at {time} s: the motion is not finite"),
-        }
-    }
-}
-
-/// How a session ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary {
-    /// Vehicle time, s.
-    pub time: f64,
-    /// The vehicle's mode; none before its first tick.
-    pub mode: Option<Mode>,
-    /// Where it really was, m.
-    pub position: [f64; 3],
-    /// Control ticks that were late.
-    pub missed: u32,
-    /// The signal that ended it, if one did.
-    pub signal: Option<u8>,
-}
-
-impl fmt::Display for Summary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.position;
-        let why = if self.signal.is_some() { "interrupted" } else { "the duration was over" };
-        let mode = self.mode.map_or("silent", Mode::text);
-        write!(f, "{why} after {:.1} s; {mode}, at {x:.3} {y:.3} {z:.3} m; {} ticks missed", self.time, self.missed)
-    }
-}
 
 /// The firmware and its world on one thread.
 pub struct Sitl {

@@ -1,6 +1,7 @@
 use super::*;
 use estimation::estimator::Fault as EstimatorFault;
-use firmware::link::signing::{AHEAD, Signing};
+use firmware::link::signing::{AHEAD, Key, Signing};
+use flight::Mode;
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,
     SET_POSITION_TARGET_LOCAL_NED_DATA,
