@@ -1,24 +1,26 @@
-//! Level ground: standing, touching down, lifting off.
+//! Level ground: standing, sliding, touching down, lifting off.
 //!
-//! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, friction and the legs'
-//! spread hold it against any torque, and nothing moves until the upward thrust exceeds the weight. So it can rest for
-//! ever without drifting. In the air the ground does nothing.
+//! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, their spread holds it
+//! against any torque, and friction against as much force as [`friction`] says; beyond that it slides. So it can rest
+//! for ever without drifting, and one that nearly hovers is hardly held. In the air the ground does nothing.
 //!
-//! A vehicle that comes down stops where it touches: the impact is perfectly plastic, without a bounce. One that leans
-//! is then on its lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its
-//! `rocking`); one that leaned further lies as it fell. No energy comes from any of this: a body is not lifted back to
-//! the ground's height, which it passes by at most what it falls in one plant step, or, after a hop that leaned, by
-//! what its foot did.
+//! A vehicle that comes down stops its fall and its turning where it touches: the impact is perfectly plastic, without
+//! a bounce. Along the ground it stops if friction suffices, and else slides on, slower. One that leans is then on its
+//! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that
+//! leaned further lies as it fell. No energy comes from any of this: a body is not lifted back to the ground's height,
+//! which it passes by at most what it falls in one plant step, or, after a hop that leaned, by what its foot did.
 //!
-//! There is no sliding, no tipping over an edge by a torque from standing, and a fall breaks nothing. What the ground
-//! does to rotors above it is [`crate::reality::air`]'s.
+//! There is no turning about the vertical, no tipping over an edge by a torque from standing, and a fall breaks
+//! nothing. What the ground does to rotors above it is [`crate::reality::air`]'s.
 
+mod friction;
 mod rocking;
 
 pub use rocking::TILT_MAX;
 
 use crate::plant::Plant;
 use controller_core::vehicle::Vehicle;
+use friction::{FRICTION, slowed};
 use nalgebra::{Quaternion, Vector3};
 use rocking::{Lean, Rocked, Rocking, Weight, tilt, up};
 use scenario::body::BodyState;
@@ -41,8 +43,8 @@ pub struct Touchdown {
 enum Stance {
     /// Not at all.
     Air,
-    /// At rest.
-    Still,
+    /// On all feet, or as it fell: at rest, or sliding.
+    Flat,
     /// On one foot.
     Rocking(Rocking),
 }
@@ -66,7 +68,7 @@ impl Ground {
         let (mass, inertia) = (f64::from(vehicle.mass), vehicle.inertia.map(f64::from));
         let weight = Weight { mass, inertia, gravity: f64::from(vehicle.gravity) };
         let position = Vector3::new(start.position.x, start.position.y, height);
-        (Self { height, weight, step, stance: Stance::Still }, standing(position, upright(start)))
+        (Self { height, weight, step, stance: Stance::Flat }, standing(position, upright(start)))
     }
 
     /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it
@@ -97,14 +99,16 @@ impl Ground {
     pub fn hold(&mut self, state: &BodyState, force: &Vector3<f64>, torque: &Vector3<f64>) -> Option<BodyState> {
         let rocked = match &mut self.stance {
             Stance::Air => Rocked::Off,
-            Stance::Still if force.z <= self.weight.newtons() => Rocked::Ended(*state),
-            Stance::Still => Rocked::Off,
+            Stance::Flat if force.z <= self.weight.newtons() => {
+                Rocked::Ended(self.weight.slide(state, force, self.step))
+            }
+            Stance::Flat => Rocked::Off,
             Stance::Rocking(rocking) => rocking.advance(&self.weight, force, torque, self.step),
         };
         match rocked {
             Rocked::Leaning(state) => Some(state),
             Rocked::Ended(state) => {
-                self.stance = Stance::Still;
+                self.stance = Stance::Flat;
                 Some(state)
             }
             Rocked::Off => None,
@@ -122,8 +126,10 @@ impl Ground {
             return None;
         }
         let touchdown = Touchdown { speed: -climbing, tilt: tilt(state), position: state.position };
-        self.stance = lean.map_or(Stance::Still, |lean| Stance::Rocking(Rocking::begin(state, lean, &self.weight)));
-        Some((standing(state.position, state.attitude), touchdown))
+        let velocity = slowed(&state.velocity, FRICTION * touchdown.speed);
+        let touched = BodyState { velocity, ..standing(state.position, state.attitude) };
+        self.stance = lean.map_or(Stance::Flat, |lean| Stance::Rocking(Rocking::begin(&touched, lean, &self.weight)));
+        Some((touched, touchdown))
     }
 
     /// One plant step under thrust, N, and torque, N m, as the ground lets it happen.

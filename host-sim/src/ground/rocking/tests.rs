@@ -24,19 +24,23 @@ fn the_origin_rises_as_fast_as_the_lean_lifts_it() {
 }
 
 #[test]
-fn a_foot_lets_go_of_what_turns_fast_about_it() {
+fn a_foot_slides_under_what_turns_fast_about_it_and_lets_go_of_what_turns_faster() {
     let on_foot = |rate: f64| {
         let state = rolled(0.2, 0.0);
         let mut rocking = Rocking::begin(&state, Lean::of(&state).unwrap(), &WEIGHT);
         rocking.lean.rate = rate;
-        rocking.advance(&WEIGHT, &Vector3::zeros(), &Vector3::zeros(), 1e-3)
+        (rocking.advance(&WEIGHT, &Vector3::zeros(), &Vector3::zeros(), 1e-3), rocking.sliding.norm())
     };
-    // z'' = -g holds nothing: SPREAD (cos - sin) theta'' - r_z theta'^2, theta'' = -m g SPREAD (cos - sin) / I.
-    let (near, inertia): (f64, f64) = (0.1 * (0.2_f64.cos() - 0.2_f64.sin()), 4e-3 + 0.5 * 0.02);
-    let falling = 0.5 * 9.81 * near * near / inertia;
-    let free = ((9.81 - falling) / (0.1 * (0.2_f64.cos() + 0.2_f64.sin()))).sqrt();
+    // Turning freely at theta', the foot rises by r_z theta'^2 against g.
+    let free = (9.81 / (0.1 * (0.2_f64.cos() + 0.2_f64.sin()))).sqrt();
+    for (rate, slides) in [(0.5 * free, false), (0.99 * free, true), (-0.5 * free, false), (-0.99 * free, true)] {
+        let (rocked, sliding) = on_foot(rate);
+        assert!(
+            matches!(rocked, Rocked::Leaning(_)) && (sliding > 1e-4) == slides,
+            "{rate}: {rocked:?}, {sliding} m/s"
+        );
+    }
     for rate in [free, -free] {
-        assert!(matches!(on_foot(0.99 * rate), Rocked::Leaning(_)), "{rate}");
-        assert_eq!(on_foot(1.01 * rate), Rocked::Off, "{rate}");
+        assert_eq!(on_foot(1.01 * rate), (Rocked::Off, 0.0), "{rate}");
     }
 }
