@@ -7,7 +7,7 @@
 //! A vehicle that comes down stops its fall and its turning where it touches: the impact is perfectly plastic, without
 //! a bounce. Along the ground it stops if friction suffices, and else slides on, slower. One that leans is then on its
 //! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that
-//! leaned further lies as it fell. No energy comes from any of this: a body is not lifted back to the ground's height,
+//! leaned further lies as it fell, and stays there. No energy comes from any of this: a body is not lifted back to the ground's height,
 //! which it passes by at most what it falls in one plant step, or, after a hop that leaned, by what its foot did.
 //!
 //! There is no turning about the vertical, no tipping over an edge by a torque from standing, and a fall breaks
@@ -43,8 +43,10 @@ pub struct Touchdown {
 enum Stance {
     /// Not at all.
     Air,
-    /// On all feet, or as it fell: at rest, or sliding.
-    Flat,
+    /// On all feet: at rest, or sliding.
+    Feet,
+    /// As it fell: what it lies on holds it.
+    Lying,
     /// On one foot.
     Rocking(Rocking),
 }
@@ -68,7 +70,7 @@ impl Ground {
         let (mass, inertia) = (f64::from(vehicle.mass), vehicle.inertia.map(f64::from));
         let weight = Weight { mass, inertia, gravity: f64::from(vehicle.gravity) };
         let position = Vector3::new(start.position.x, start.position.y, height);
-        (Self { height, weight, step, stance: Stance::Flat }, standing(position, upright(start)))
+        (Self { height, weight, step, stance: Stance::Feet }, standing(position, upright(start)))
     }
 
     /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it
@@ -99,16 +101,15 @@ impl Ground {
     pub fn hold(&mut self, state: &BodyState, force: &Vector3<f64>, torque: &Vector3<f64>) -> Option<BodyState> {
         let rocked = match &mut self.stance {
             Stance::Air => Rocked::Off,
-            Stance::Flat if force.z <= self.weight.newtons() => {
-                Rocked::Ended(self.weight.slide(state, force, self.step))
-            }
-            Stance::Flat => Rocked::Off,
+            Stance::Feet | Stance::Lying if force.z > self.weight.newtons() => Rocked::Off,
+            Stance::Feet => Rocked::Ended(self.weight.slide(state, force, self.step)),
+            Stance::Lying => Rocked::Ended(*state),
             Stance::Rocking(rocking) => rocking.advance(&self.weight, force, torque, self.step),
         };
         match rocked {
             Rocked::Leaning(state) => Some(state),
             Rocked::Ended(state) => {
-                self.stance = Stance::Flat;
+                self.stance = if is_upright(&state) { Stance::Feet } else { Stance::Lying };
                 Some(state)
             }
             Rocked::Off => None,
@@ -126,9 +127,12 @@ impl Ground {
             return None;
         }
         let touchdown = Touchdown { speed: -climbing, tilt: tilt(state), position: state.position };
-        let velocity = slowed(&state.velocity, FRICTION * touchdown.speed);
+        let lies = lean.is_none() && !is_upright(state);
+        let sliding = slowed(&state.velocity, FRICTION * touchdown.speed);
+        let velocity = if lies { Vector3::zeros() } else { sliding };
         let touched = BodyState { velocity, ..standing(state.position, state.attitude) };
-        self.stance = lean.map_or(Stance::Flat, |lean| Stance::Rocking(Rocking::begin(&touched, lean, &self.weight)));
+        let flat = if lies { Stance::Lying } else { Stance::Feet };
+        self.stance = lean.map_or(flat, |lean| Stance::Rocking(Rocking::begin(&touched, lean, &self.weight)));
         Some((touched, touchdown))
     }
 
@@ -144,6 +148,11 @@ impl Ground {
         plant.place(state);
         Some(touchdown)
     }
+}
+
+/// Whether a vehicle that is on no single foot is on all of them.
+fn is_upright(state: &BodyState) -> bool {
+    tilt(state) <= TILT_MAX
 }
 
 /// Level, with the yaw that `state` has.

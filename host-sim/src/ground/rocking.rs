@@ -172,7 +172,7 @@ impl Rocking {
         }
         let moved = self.state().velocity;
         self.lean.rate = 0.0;
-        let slides = self.sliding != Vector3::zeros();
+        let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX;
         let velocity = if slides { slowed(&moved, FRICTION * moved.z.abs()) } else { Vector3::zeros() };
         Rocked::Ended(BodyState { velocity, ..self.state() })
     }
