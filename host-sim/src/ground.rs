@@ -7,8 +7,9 @@
 //! A vehicle that comes down stops its fall and its turning where it touches: the impact is perfectly plastic, without
 //! a bounce. Along the ground it stops if friction suffices, and else slides on, slower. One that leans is then on its
 //! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that
-//! leaned further lies as it fell, and stays there. No energy comes from any of this: a body is not lifted back to the ground's height,
-//! which it passes by at most what it falls in one plant step, or, after a hop that leaned, by what its foot did.
+//! leaned further lies as it fell, and does not slide: arms and rotors catch on what they lie on. No energy comes from
+//! any of this: a body is not lifted back to the ground's height, which it passes by at most what it falls in one plant
+//! step, or, after a hop that leaned, by what its foot did.
 //!
 //! There is no turning about the vertical, no tipping over an edge by a torque from standing, and a fall breaks
 //! nothing. What the ground does to rotors above it is [`crate::reality::air`]'s.

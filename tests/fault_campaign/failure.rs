@@ -183,7 +183,9 @@ impl Meddler for Failures {
             Some(since) if since < lasts => acceleration,
             _ => 0.0,
         };
-        let across = blows(Failure::Gust, GUST) + blows(Failure::Wind, WIND);
+        // What stands is in the lee of the ground.
+        let in_the_air = if vehicle.stands() { 0.0 } else { 1.0 };
+        let across = (blows(Failure::Gust, GUST) + blows(Failure::Wind, WIND)) * in_the_air;
         let upwards = blows(Failure::Updraft, UPDRAFT) + blows(Failure::Thermal, THERMAL);
         let downwards = if self.has(Failure::HeldDown) { HELD_DOWN } else { 0.0 };
         vehicle.push(Vector3::new(across, 0.0, upwards - downwards) * self.mass);

@@ -112,8 +112,8 @@ impl Lean {
         (SPREAD * sin - LENGTH * (1.0 - cos), (SPREAD * cos - LENGTH * sin) * self.rate)
     }
 
-    /// r.
-    fn arm(&self) -> Vector3<f64> {
+    /// r, from the foot to the origin, m.
+    pub fn arm(&self) -> Vector3<f64> {
         let (sin, cos) = self.angle.sin_cos();
         self.toward * (LENGTH * sin - SPREAD * cos) + Vector3::z() * (LENGTH * cos + SPREAD * sin)
     }
