@@ -8,7 +8,7 @@
 //!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
 //!   false speed.
 //! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the ground's,
-//!   or the vehicle does not come upright, or turns on.
+//!   friction's among it, or the vehicle does not come upright, or turns on.
 //! - *Crashed*: still, and by 30 degrees or more beside where the law wants it, or tilted by 80, or by 60 while no law
 //!   flies it. In the air such a vehicle turns or falls; one that the law tilts holds against a wind.
 //! - *Tracking lost*: far from the reference; still, well below it: a vehicle that does not get off the ground; or
@@ -167,7 +167,8 @@ impl Watch {
         let rests = look.is_held_up(jerked, self.touched.is_some(), self.hit);
         let held_up = self.resting.holds_for(rests, GROUND_DEBOUNCE, now);
         let far = look.is_far(tracking_error_max) || look.is_held_down();
-        let doubtful = self.doubtful.holds_for(look.is_unexpected() && !rests, DOUBT_DEBOUNCE, now);
+        let doubtful =
+            self.doubtful.holds_for(look.is_unexpected(self.touched.is_some()) && !rests, DOUBT_DEBOUNCE, now);
         let turning = self.turning.holds_for(look.turns(), TURNING_DEBOUNCE, now);
         let is_thrown = self.is_thrown(&look, state, jumps, now);
         Seen {

@@ -38,6 +38,9 @@ const LEANING_ACCELERATION: f32 = 1.5;
 /// The force that an IMU may feel beside the rotors', m/s^2: wind, drag, and rotors that are not what they should be.
 const UNEXPECTED_ACCELERATION: f32 = 4.0;
 
+/// The greatest friction of feet on the ground, as a share of what it carries.
+const FRICTION: f32 = 1.0;
+
 /// The cosine of the least tilt of a crash: 60 degrees, and 80 where the law wants the vehicle so.
 const LYING_COSINE: f32 = 0.5;
 const LYING_WANTED_COSINE: f32 = 0.173_648_2;
@@ -151,9 +154,14 @@ impl Look<'_> {
         })
     }
 
-    /// Whether the IMU measures a force that the rotors do not explain.
-    pub fn is_unexpected(&self) -> bool {
-        self.by_imu().is_some_and(|(unexpected, ..)| !within(&unexpected, UNEXPECTED_ACCELERATION))
+    /// Whether the IMU measures a force that the rotors do not explain, nor, once the vehicle has `touched` it, the
+    /// ground, along which it may slide.
+    pub fn is_unexpected(&self, touched: bool) -> bool {
+        self.by_imu().is_some_and(|(unexpected, _, state)| {
+            let carried = touched && state.acceleration.z.abs() <= HELD_UP_ACCELERATIONS.2;
+            let slides = carried && unexpected.xy().norm() <= FRICTION * unexpected.z;
+            !within(&unexpected, UNEXPECTED_ACCELERATION) && !slides
+        })
     }
 
     /// Whether a vehicle that is levelled turns, or is not level; one that has lost a rotor does both.

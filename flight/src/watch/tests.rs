@@ -2,7 +2,7 @@
 //! missing.
 
 extern crate std;
-use super::look::HELD_UP_ACCELERATIONS;
+use super::look::{HELD_UP_ACCELERATIONS, Look};
 use super::*;
 use crate::PERIOD;
 use crate::chain::Memory;
@@ -258,6 +258,26 @@ fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
     let long = ticks(GROUND_DEBOUNCE) + 60;
     assert!(!seen_after(1.0, long).landed && seen_after(15.0, long).landed);
     assert!(!seen_after(15.0, long).imu_doubtful);
+}
+
+#[test]
+fn friction_on_ground_that_was_touched_is_expected_and_more_than_that_is_not() {
+    let mut estimated = at(0.0);
+    let chain = descending(&estimated);
+    let mut flown = *chain.flown().unwrap();
+    // Half the weight is the ground's.
+    flown.wrench.thrust *= 0.5;
+    let carried = -chain.commanded_acceleration(&flown);
+    assert!((4.5..6.0).contains(&carried), "{carried} m/s^2");
+    let mut is_unexpected = |across: f32, upwards: f32, touched: bool| {
+        estimated.acceleration = Vector3::new(0.6 * across, -0.8 * across, upwards);
+        let look = Look { mode: Mode::Descending, state: Some(&estimated), chain: Some(&chain), flown: Some(&flown) };
+        look.is_unexpected(touched)
+    };
+    assert!(!is_unexpected(0.6 * carried, 0.0, true) && !is_unexpected(0.0, 0.0, true));
+    assert!(is_unexpected(0.6 * carried, 0.0, false), "it has touched nothing");
+    assert!(is_unexpected(1.1 * carried, 0.0, true), "no ground holds so much");
+    assert!(is_unexpected(0.6 * carried, 0.5, true) && is_unexpected(0.6 * carried, -0.5, true), "nothing holds it up");
 }
 
 #[test]
