@@ -11,9 +11,9 @@
 //! K = m r'' - F                                                          the ground's force on the foot, N
 //! ```
 //!
-//! Where the foot would have to pull, K . z < 0, it lets go. Where K is steeper than friction holds
-//! ([`super::friction`]), or the foot slides already, with s' along the ground, the ground's force is N c, c = z + mu t,
-//! t against the motion or where K points:
+//! Where the foot would have to pull, K . z < 0, it lets go. Where K leans further than friction ([`super::friction`])
+//! holds, or the foot slides already, with s' along the ground, the ground's force is N c, c = z + mu t, t against the
+//! motion or where K points:
 //!
 //! ```text
 //! J_a theta'' = a . (tau - r x c N),    N = m (z . (a x r) theta'' - r_z theta'^2) - F_z
