@@ -57,7 +57,7 @@ pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
-use crate::math::{between, single, whole, within};
+use crate::math::{self, between, single, whole, within};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
@@ -286,6 +286,18 @@ impl Governor {
             && self.pursue() == Vector3::zeros()
             && self.smoother.at_rest(self.averages.commanded())
             && self.turning.at_rest(&self.turn_goal())
+    }
+
+    /// How far the reference would go if it were stopped now, m: what it is behind the command, and the command's own
+    /// braking. Infinite where it follows a stream directly.
+    #[must_use]
+    pub fn way_to_rest(&self) -> f32 {
+        if !self.direct.is_averaged() {
+            return f32::INFINITY;
+        }
+        let behind = (self.averages.commanded() - self.smoother.place()).map(single);
+        let way = behind + self.pursuit.braking_way(&self.averages.speed().map(single));
+        math::sqrt(way.norm_squared()) / self.windows.per_metre
     }
 
     /// How the stream that is sent is followed, if there is one: position, velocity and acceleration, not at rest.

@@ -78,6 +78,11 @@ impl Pursuit {
         self.accelerations.limited(&(self.speeds.limited(wanted) - u)).map(|component| component as i32)
     }
 
+    /// How far velocity `u` goes until it has been braked to rest.
+    pub fn braking_way(&self, u: &Vector3<f32>) -> Vector3<f32> {
+        u * (0.5 * self.accelerations.measure(u))
+    }
+
     /// The velocity wanted to reach a target `error` away that moves with `feed` and accelerates with `acceleration`
     /// (units per tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what
     /// following the target leaves.

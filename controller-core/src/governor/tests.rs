@@ -93,6 +93,22 @@ fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
 }
 
 #[test]
+fn the_way_to_rest_is_how_far_a_stop_takes_the_reference() {
+    for (ticks, target) in [(0, 10.0), (60, 10.0), (200, 10.0), (400, 10.0), (400, 1.0)] {
+        let governor = governor();
+        governor.accept(&go_to(target, 0.0, 0.5 * target)).unwrap();
+        let here = (0..=ticks).map(|_| governor.tick()).last().unwrap().position;
+        let way = governor.way_to_rest();
+        governor.stop();
+        let (_, last) = run(governor);
+        let gone = (last.position - here).norm();
+        assert!((gone - way).abs() < 0.02 + 0.02 * gone, "after {ticks} ticks: {gone} m, {way} m said");
+    }
+    let governor = governor();
+    assert_eq!(governor.way_to_rest(), 0.0);
+}
+
+#[test]
 fn at_any_rate_the_reference_takes_the_same_way_and_stops_as_long_after_the_last_setpoint() {
     let motion = Motion::Velocity(Vector3::new(1.0, -2.0, 0.3));
     let flown = |rate: u16| -> Vec<Reference> {
