@@ -13,7 +13,7 @@
 //! | sampling, delay and rotor lag | [`sampled_loop`], [`rotor_lag`] |
 //! | references from setpoints | [`governor_campaign`] |
 //! | other people's controllers within the limits | [`shield`] |
-//! | the supervisor, whatever fails or lies; hours of it | [`fault_campaign`], [`lying_poses`], [`endurance`] |
+//! | the supervisor, whatever fails or lies; how it brakes; hours of it | [`fault_campaign`], [`lying_poses`], [`braking`], [`endurance`] |
 //! | the firmware's tasks | [`lockstep`], [`emulated_bits`] |
 //! | the program and the pages | [`cli`], [`cli_campaign`], [`cli_campaign_directory`], [`cli_certify`], [`cli_compare`], [`cli_identify`], |
 //! |  | [`cli_output`], [`cli_overwriting`], [`cli_verdicts`], [`documentation`], [`documented_defaults`] |
@@ -23,6 +23,7 @@ mod attitude_sign;
 mod bad_inputs;
 mod beyond_the_model;
 mod bounds;
+mod braking;
 mod certified_flights;
 mod cli;
 mod cli_campaign;

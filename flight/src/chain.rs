@@ -1,10 +1,10 @@
 //! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
-//! `without_pose` levels and goes down, and takes a flight up again; `delivered` estimates delivered over commanded
-//! thrust.
+//! `braking` brings a flight to rest, or takes it up, from the vehicle's motion; `without_pose` levels and goes down;
+//! `delivered` estimates delivered over commanded thrust.
 //!
-//! Starting on the ground, finding the pose again and a jump of the estimate all start the governor at a steady
-//! velocity, with the heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
+//! Starting on the ground, braking and a jump of the estimate all start the governor at a steady velocity, with the
+//! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
 use super::lift_off::LiftOff;
 use super::policy::{Aboard, Handed};
@@ -12,6 +12,7 @@ use super::refusal::Grounded;
 use super::rules::REFUSAL_MAX;
 use super::sinking::Sinking;
 use super::spool::Spool;
+use braking::Braking;
 use controller_core::allocation::remaining::Lost;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
@@ -67,9 +68,9 @@ pub(super) struct Chain<'m> {
     law: Law,
     mixer: &'m mut Mixer,
     rotors: usize,
-    /// The greatest horizontal speed of a reference, m/s, and its greatest vertical acceleration, m/s^2.
+    /// The greatest horizontal speed of a reference, m/s.
     speed: f32,
-    brakes: f32,
+    braking: Braking,
     /// The vehicle's mass, kg, and gravity, m/s^2.
     mass: f32,
     gravity: f32,
@@ -124,7 +125,7 @@ impl<'m> Chain<'m> {
             mixer,
             rotors: rotors.len(),
             speed: configuration.bounds().horizontal_speed,
-            brakes: configuration.bounds().vertical_acceleration,
+            braking: Braking::within(configuration.bounds()),
             mass: vehicle.mass,
             gravity: vehicle.gravity,
             period,
@@ -154,6 +155,7 @@ impl<'m> Chain<'m> {
     /// The governor's; it goes on as before then.
     pub fn start(&mut self, position: &Vector3<f32>, heading: &Heading) -> Result<(), InputError> {
         self.governor.start(position, &Vector3::zeros(), heading)?;
+        self.braking.end();
         self.law.reset();
         self.reference = resting(position, heading);
         self.thrusts = None;
@@ -203,11 +205,6 @@ impl<'m> Chain<'m> {
         let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
     }
 
-    /// Brings the reference to rest.
-    pub fn hold(&mut self) {
-        self.governor.stop();
-    }
-
     /// Takes a setpoint that was true `late` seconds ago.
     ///
     /// # Errors
@@ -237,7 +234,7 @@ impl<'m> Chain<'m> {
     /// What the law or the allocation cannot use.
     pub fn fly(&mut self, state: &State) -> Result<Flown, InputError> {
         if self.spool.is_over() {
-            self.reference = self.governor.tick();
+            self.reference = self.braking.advance(self.governor.tick(), self.period);
         }
         if self.lift_off.stands(state) {
             self.law.hold_estimates();
@@ -349,6 +346,7 @@ impl<'m> Chain<'m> {
     }
 }
 
+mod braking;
 mod delivered;
 #[cfg(test)]
 mod tests;

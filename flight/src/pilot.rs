@@ -253,14 +253,19 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             }
             // The request has set the reference already.
             (Mode::Holding, Reason::HoldCommanded | Reason::PoseRegained) => {}
-            (Mode::Holding, _) => chain.hold(),
+            (Mode::Holding, _) => hold(chain, &self.fence, estimate),
             (Mode::Descending, _) => {
                 let certain = !estimate.health.faults.contain(Fault::Uncertain);
                 let known = estimate.state.filter(|_| certain).map(|estimated| estimated.state.velocity.z);
                 let climbs = if lied { Some(self.estimation.climb()) } else { known };
                 chain.level(if touched { Some(0.0) } else { climbs }, lied);
             }
-            (Mode::Landing, _) => self.landing_from = 0.0,
+            (Mode::Landing, _) => {
+                self.landing_from = 0.0;
+                if let Some(estimated) = &estimate.state {
+                    chain.land(&estimated.state, self.settings.landing_speed);
+                }
+            }
             _ => {}
         }
     }
@@ -311,6 +316,13 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         };
         let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
         Done { output, flown: Some(flown), handed }
+    }
+}
+
+/// Brings the vehicle to rest where it is known, not below the place of arming.
+fn hold(chain: &mut Chain, fence: &Fence, estimate: &Estimate) {
+    if let Some(estimated) = &estimate.state {
+        chain.hold(&estimated.state, fence.home().z);
     }
 }
 

@@ -1,5 +1,4 @@
 extern crate std;
-use super::without_pose::slowed;
 use super::*;
 use crate::PERIOD;
 use crate::hummingbird;
@@ -7,34 +6,16 @@ use estimation::estimator::EstimatedState;
 use nalgebra::Quaternion;
 use std::boxed::Box;
 
-fn chain() -> Chain<'static> {
+pub(super) fn chain() -> Chain<'static> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), PERIOD, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain
 }
 
-fn at_rest() -> State {
+pub(super) fn at_rest() -> State {
     let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
     State { position: zero, velocity: zero, attitude, angular_velocity: zero }
-}
-
-#[test]
-fn a_velocity_is_slowed_across_and_keeps_its_direction_and_its_vertical_part() {
-    let slowed = |x, y, z| slowed(&Vector3::new(x, y, z), 5.0);
-    assert_eq!(slowed(3.0, -4.0, 9.0), Vector3::new(3.0, -4.0, 9.0));
-    assert!((slowed(6.0, -8.0, 9.0) - Vector3::new(3.0, -4.0, 9.0)).norm() < 1e-6);
-    assert_eq!(slowed(0.0, 0.0, -2.0), Vector3::new(0.0, 0.0, -2.0));
-}
-
-#[test]
-fn a_flight_is_taken_up_no_faster_across_than_references_may_be() {
-    let mut chain = chain();
-    (0..100).for_each(|_| _ = chain.fly(&at_rest()));
-    let fast = State { velocity: Vector3::new(0.0, 8.0, 0.0), ..at_rest() };
-    chain.regain(&fast).unwrap();
-    let reference = chain.fly(&fast).unwrap().reference;
-    assert!((reference.velocity.y - chain.speed).abs() < 0.01, "{}", reference.velocity);
 }
 
 #[test]

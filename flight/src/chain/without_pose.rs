@@ -1,4 +1,4 @@
-//! Flight without a pose, and what becomes of the references when there is one again.
+//! Flight without a pose.
 //!
 //! **Why levelling is within the certificate.** The certificate bounds thrust and torque for every state of the vehicle
 //! and every reference inside Omega_r, as long as the filters started at zero: it follows what the filters can reach,
@@ -11,23 +11,11 @@
 //! learns the first alone meanwhile, for which rates are enough.
 
 use super::{Chain, Flown, resting};
-use crate::rules::Mode;
 use crate::sinking::Sinking;
-use crate::tilt::heading;
 use controller_core::error::InputError;
 use controller_core::state::State;
 use estimation::estimator::EstimatedState;
-use nalgebra::{Vector2, Vector3};
-
-/// The speed, m/s, at which a vehicle hardly sinks: less than a landing's.
-const HARDLY: f32 = 0.3;
-
-/// `velocity` with its horizontal part at most `speed` long.
-pub(super) fn slowed(velocity: &Vector3<f32>, speed: f32) -> Vector3<f32> {
-    let across: Vector2<f32> = velocity.xy();
-    let share = (speed / across.norm().max(speed)).min(1.0);
-    Vector3::new(across.x * share, across.y * share, velocity.z)
-}
+use nalgebra::Vector3;
 
 impl Chain<'_> {
     /// Turns to levelling: a hover at the last heading, the law restarted, at the vertical speed `sinking`, m/s, or at
@@ -36,57 +24,8 @@ impl Chain<'_> {
         let sinking = sinking.unwrap_or(self.reference.velocity.z);
         self.reference = resting(&self.reference.position, &self.reference.heading);
         self.sinking = Sinking::at(sinking, lied);
+        self.braking.end();
         self.law.restart();
-    }
-
-    /// Takes a flight up again where the vehicle is found, at its velocity as far as references may be as fast, with
-    /// the heading that was held; then brakes to a stop. The law needs no restart: levelling has left its filters at
-    /// zero.
-    ///
-    /// # Errors
-    /// As [`Self::start`].
-    pub fn regain(&mut self, state: &State) -> Result<(), InputError> {
-        let velocity = slowed(&state.velocity, self.speed);
-        self.governor.start(&state.position, &velocity, &self.reference.heading)?;
-        if !self.spool.is_over() {
-            // The governor's reference is not flown yet: this one waits at rest for the rotors, where the vehicle is.
-            self.reference = resting(&state.position, &self.reference.heading);
-        }
-        Ok(())
-    }
-
-    /// Whether a reference that moves like `state` comes to rest within `height`, m, below it; one that hardly sinks
-    /// does, wherever the ground is.
-    pub fn stops_within(&self, height: f32, state: &State) -> bool {
-        let down = state.velocity.z.min(0.0);
-        down > -HARDLY || down * down < 2.0 * self.brakes * height
-    }
-
-    /// Goes along where the estimate has jumped to `state`: as [`Self::regain`], but with the vehicle's heading, which
-    /// may have jumped too. The reference of a take-off goes as far up as the vehicle jumped; that of a landing stays
-    /// as far below the vehicle as it was, and does not rise. Nothing is learnt from the jump. The certificate covers
-    /// it as it covers any other jump of the reference.
-    ///
-    /// # Errors
-    /// Names the field the governor refuses.
-    pub fn jump(&mut self, before: &State, state: &State, mode: Mode) -> Result<(), &'static str> {
-        if let Some(heading) = heading(&state.attitude) {
-            self.reference.heading = heading;
-        }
-        self.law.hold_estimates();
-        self.lift_off.displace(&state.position);
-        let mut from = *state;
-        if mode == Mode::Landing {
-            from.position.z += (self.reference.position.z - before.position.z).min(0.0);
-            from.velocity.z = self.reference.velocity.z.min(0.0);
-        }
-        self.regain(&from).map_err(|error| error.field())?;
-        if mode == Mode::TakingOff {
-            self.reference.position = state.position;
-            self.rising_to += state.position.z - before.position.z;
-            self.rise_on()?;
-        }
-        Ok(())
     }
 
     /// One tick of levelling, after [`Self::level`], or of going down.

@@ -1,7 +1,7 @@
 //! Which requests are granted.
 
-use super::Pilot;
 use super::policies::place;
+use super::{Pilot, hold};
 use crate::bench::Bench;
 use crate::chain::Chain;
 use crate::estimate::Estimate;
@@ -85,10 +85,10 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate) || self.has_lost_a_rotor())?;
-                self.with_chain(|chain| {
-                    chain.hold();
-                    Ok(())
-                })
+                self.take_over(estimate);
+                let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
+                hold(chain, &self.fence, estimate);
+                Ok(())
             }
             Request::GoTo(setpoint) => {
                 permission::to_hold(self.mode, self.must_land(seen, estimate))?;

@@ -71,7 +71,7 @@ impl<P: Aboard> Pilot<'_, P> {
         }
         let regained = match (self.mode, &mut self.chain, &estimate.state) {
             (Mode::Descending, Ok(chain), Some(estimated)) if may && self.trust.regain(self.must_still_land) => {
-                chain.regain(&estimated.state).is_ok()
+                chain.regain(&estimated.state, self.fence.home().z).is_ok()
             }
             _ => false,
         };

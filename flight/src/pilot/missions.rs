@@ -1,6 +1,6 @@
 //! Flying a mission, item by item.
 
-use super::Pilot;
+use super::{Pilot, hold};
 use crate::estimate::Estimate;
 use crate::exchange::Inputs;
 use crate::mission::{Leg, MissionItem, MissionRefusal, MissionStep, Progress};
@@ -90,10 +90,9 @@ impl<P: Aboard> Pilot<'_, P> {
                 Err(refusal) => {
                     self.mission = self.mission.paused();
                     // Without a chain nothing flies.
-                    let _ = self.with_chain(|chain| {
-                        chain.hold();
-                        Ok(())
-                    });
+                    if let Ok(chain) = &mut self.chain {
+                        hold(chain, &self.fence, estimate);
+                    }
                     return Some(MissionStep::Refused(next, refusal));
                 }
             },

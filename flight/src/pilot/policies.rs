@@ -36,7 +36,7 @@ impl<P: Aboard> Pilot<'_, P> {
             && let (Ok(chain), Some(estimated)) = (&mut self.chain, &estimate.state)
         {
             // Out of its range it goes on from where it was.
-            let _ = chain.regain(&estimated.state);
+            let _ = chain.take_up(&estimated.state);
         }
     }
 }

@@ -1,0 +1,186 @@
+//! What takes over a flight brakes from the vehicle's motion within what braking needs: the whole pilot on a simulated
+//! vehicle, on honest poses.
+//!
+//! `cargo test -p host-sim braking -- --nocapture` prints the figures.
+
+use controller_core::certificate::certified::Certified;
+use controller_core::governor::{Motion, Setpoint, Turn};
+use flight::{FlightSettings, Inputs, Reason, Request};
+use nalgebra::{UnitQuaternion, Vector3};
+use rayon::prelude::*;
+use scenario::Scenario;
+use verification::piloted::{PilotedVehicle, Place, Undisturbed};
+
+/// How far a landing may climb on, m: the extended law from a take-off to 10 m; and the paper's law, whose filters
+/// answer 1.6 s late, from one to 3 m.
+const CLIMBS_ON_MAX: f64 = 0.5;
+const CLIMBS_ON_MAX_PAPER: f64 = 0.9;
+
+/// What a file of a vehicle under the paper's law is called.
+const PAPER: &str = "hummingbird-paper-law";
+
+/// How much farther than braking needs a vehicle may go, times, and besides, m: the law answers late.
+const FARTHER_MAX: (f64, f64) = (1.1, 0.3);
+
+/// The vehicles' greatest acceleration across of a reference and its jerk, and how they brake along the vertical, m/s^2
+/// and m/s^3.
+const ACROSS: (f64, f64) = (2.4675, 3.876);
+const VERTICAL: (f64, f64) = (4.0, 40.0);
+
+/// How fast a vehicle is that has stopped, m/s.
+const STOPPED: f64 = 0.05;
+
+/// A fast flight for which there is room.
+const SETTINGS: FlightSettings =
+    FlightSettings { fence_radius: 1_000.0, fence_height: 100.0, ..FlightSettings::DEFAULT };
+
+/// When the operator arms, and lets it fly, in ticks.
+const ARM: u64 = 250;
+const GO: u64 = 300;
+
+fn certified(name: &str) -> (Scenario, Certified) {
+    let file = format!("{}/../vehicles/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let scenario = Scenario::parse(&std::fs::read_to_string(file).unwrap(), name).unwrap();
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    (scenario, certified)
+}
+
+/// What became of a vehicle that was interrupted.
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    /// Its velocity when it was, m/s.
+    from: Vector3<f64>,
+    /// Where it ended, and how far up it went, from where it was, m.
+    way: Vector3<f64>,
+    rose: f64,
+    /// By how much it came back, m.
+    back: f64,
+    /// How long it took until it had stopped, s.
+    time: f64,
+    /// The greatest tilt, degrees.
+    tilt: f64,
+}
+
+/// Lets a vehicle `begin` a flight, on setpoints of a velocity or without, and interrupts it by `request` once it is
+/// `due`, by the ticks since the beginning and its velocity.
+fn interrupted(
+    (scenario, certified): &(Scenario, Certified),
+    begin: Request,
+    setpoint: Option<Vector3<f32>>,
+    request: Request,
+    due: impl Fn(u64, Vector3<f64>) -> bool,
+) -> Stop {
+    let mut place = Place::new(&scenario.configuration);
+    let mut vehicle = PilotedVehicle::new(scenario, Ok(certified), &SETTINGS, &mut place, 0).unwrap();
+    let mut begun: Option<(u64, Vector3<f64>)> = None;
+    let nothing = Vector3::zeros();
+    let mut stop = Stop { from: nothing, way: nothing, rose: 0.0, back: 0.0, time: 0.0, tilt: 0.0 };
+    let (mut farthest, mut still) = (0.0_f64, 0);
+    for tick in 0..6_000_u64 {
+        let state = *vehicle.vehicle().state();
+        let is_due = begun.is_none() && tick > GO && due(tick - GO, state.velocity);
+        if is_due {
+            begun = Some((tick, state.position));
+            stop.from = state.velocity;
+        }
+        let asked = match tick {
+            ARM => Some(Request::Arm),
+            GO => Some(begin),
+            _ if is_due => Some(request),
+            _ => None,
+        };
+        // Up to 5 m first.
+        let motion = |velocity| {
+            if tick < GO + 1_000 { Motion::Position(Vector3::z() * 5.0) } else { Motion::Velocity(velocity) }
+        };
+        let given = Inputs {
+            ground_station: Some(vehicle.now()),
+            request: asked,
+            setpoint: setpoint
+                .filter(|_| begun.is_none() && tick.is_multiple_of(10))
+                .map(|velocity| Setpoint { motion: motion(velocity), turn: Turn::Keep }),
+            ..Inputs::default()
+        };
+        let (outcome, _) = vehicle.tick(&given, &mut Undisturbed).unwrap();
+        if let Some(transition) = outcome.transition.filter(|_| begun.is_some()) {
+            let expected = [Reason::LandCommanded, Reason::HoldCommanded, Reason::Landed];
+            assert!(expected.contains(&transition.reason), "{transition:?}");
+        }
+        let state = *vehicle.vehicle().state();
+        if let Some((tick_begun, from)) = begun {
+            let way = state.position - from;
+            stop.rose = stop.rose.max(way.z);
+            let along = way.dot(&stop.from.try_normalize(0.01).unwrap_or_default());
+            farthest = farthest.max(along);
+            stop.back = farthest - along;
+            let up = UnitQuaternion::new_unchecked(state.attitude) * Vector3::z();
+            stop.tilt = stop.tilt.max(up.z.clamp(-1.0, 1.0).acos().to_degrees());
+            still = if state.velocity.norm() < STOPPED { still + 1 } else { 0 };
+            if still == 1 {
+                (stop.way, stop.time) = (way, (tick - tick_begun) as f64 * 0.01);
+            }
+            if still == 100 || !outcome.mode.is_armed() {
+                break;
+            }
+        }
+    }
+    assert!(begun.is_some(), "it was never due");
+    stop
+}
+
+#[test]
+fn a_landing_at_any_time_after_a_take_off_climbs_on_by_half_a_metre_at_most() {
+    for name in ["study", "hummingbird", PAPER] {
+        let vehicle = certified(name);
+        let cases: Vec<(f32, u64)> =
+            [1.5, 3.0, 10.0].into_iter().flat_map(|height| (1..=20).map(move |half| (height, 50 * half))).collect();
+        let flown: Vec<(f32, Stop)> = cases
+            .into_par_iter()
+            .map(|(height, ticks)| {
+                let begin = Request::TakeOff(Some(height));
+                (height, interrupted(&vehicle, begin, None, Request::Land, |tick, _| tick >= ticks))
+            })
+            .collect();
+        for height in [1.5, 3.0, 10.0] {
+            let of_height = flown.iter().filter(|(of, _)| *of == height);
+            let worst = of_height.clone().map(|(_, stop)| *stop).max_by(|a, b| a.rose.total_cmp(&b.rose)).unwrap();
+            println!(
+                "{name}: to {height} m, LAND after 0.5 to 10 s: climbs on by {:.2} m at most, from {:.2} m/s",
+                worst.rose, worst.from.z
+            );
+            let most = if name == PAPER { CLIMBS_ON_MAX_PAPER } else { CLIMBS_ON_MAX };
+            assert!(name == PAPER && height > 3.0 || worst.rose < most, "{name}: {worst:?}");
+        }
+    }
+}
+
+#[test]
+fn a_hold_at_full_speed_stops_within_what_the_references_braking_needs() {
+    for name in ["study", "hummingbird", PAPER] {
+        let vehicle = certified(name);
+        for (velocity, fast, (acceleration, jerk)) in [
+            (Vector3::new(8.0, 0.0, 0.0), 4.9, ACROSS),
+            (Vector3::new(2.0, 0.0, 0.0), 1.95, ACROSS),
+            (Vector3::new(0.0, 0.0, 3.0), 1.9, VERTICAL),
+            (Vector3::new(0.0, 0.0, -2.0), 0.6, VERTICAL),
+        ] {
+            let toward = velocity.map(f64::from).normalize();
+            let due = |tick: u64, now: Vector3<f64>| tick > 1_000 && now.dot(&toward) >= fast;
+            let stop = interrupted(&vehicle, Request::FlySetpoints, Some(velocity), Request::Hold, due);
+            let speed = stop.from.norm();
+            let needed = 0.5 * speed * (speed / acceleration + acceleration / jerk);
+            let taken = stop.way.norm();
+            println!(
+                "{name}: HOLD at {speed:.2} m/s along {toward:?}: braking needs {needed:.2} m; ends {taken:.2} m away, \
+                 after {:.2} m back and {:.1} s; tilts by {:.0} degrees",
+                stop.back, stop.time, stop.tilt
+            );
+            let (times, besides) = FARTHER_MAX;
+            // Along the vertical the paper's law has feedback alone.
+            assert!(
+                name == PAPER && velocity.z != 0.0 || taken + stop.back < times * needed + besides,
+                "{name}: {stop:?}"
+            );
+        }
+    }
+}
