@@ -5,7 +5,7 @@
 
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{Motion, Setpoint, Turn};
-use flight::{FlightSettings, Inputs, Reason, Request};
+use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request, Transition};
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use scenario::Scenario;
@@ -38,6 +38,9 @@ const SETTINGS: FlightSettings =
 const ARM: u64 = 250;
 const GO: u64 = 300;
 
+/// For how long a flight on setpoints goes up to 5 m, in ticks.
+const UP: u64 = 1_000;
+
 fn certified(name: &str) -> (Scenario, Certified) {
     let file = format!("{}/../vehicles/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let scenario = Scenario::parse(&std::fs::read_to_string(file).unwrap(), name).unwrap();
@@ -61,53 +64,53 @@ struct Stop {
     tilt: f64,
 }
 
-/// Lets a vehicle `begin` a flight, on setpoints of a velocity or without, and interrupts it by `request` once it is
-/// `due`, by the ticks since the beginning and its velocity.
+/// What takes over: it is told whether it begins in this tick.
+type TakeOver = fn(&mut Inputs, bool);
+
+const LAND: TakeOver = |inputs, begins| inputs.request = begins.then_some(Request::Land).or(inputs.request);
+const HOLD: TakeOver = |inputs, begins| inputs.request = begins.then_some(Request::Hold).or(inputs.request);
+
+/// Lets a vehicle `begin` a flight, on setpoints of a velocity or without, until something takes over once it is `due`,
+/// by the ticks since the beginning and its velocity.
 fn interrupted(
     (scenario, certified): &(Scenario, Certified),
     begin: Request,
     setpoint: Option<Vector3<f32>>,
-    request: Request,
+    take_over: TakeOver,
     due: impl Fn(u64, Vector3<f64>) -> bool,
 ) -> Stop {
     let mut place = Place::new(&scenario.configuration);
     let mut vehicle = PilotedVehicle::new(scenario, Ok(certified), &SETTINGS, &mut place, 0).unwrap();
-    let mut begun: Option<(u64, Vector3<f64>)> = None;
+    let (mut is_due, mut begun) = (false, None::<(u64, Vector3<f64>)>);
     let nothing = Vector3::zeros();
     let mut stop = Stop { from: nothing, way: nothing, rose: 0.0, back: 0.0, time: 0.0, tilt: 0.0 };
     let (mut farthest, mut still) = (0.0_f64, 0);
     for tick in 0..6_000_u64 {
-        let state = *vehicle.vehicle().state();
-        let is_due = begun.is_none() && tick > GO && due(tick - GO, state.velocity);
-        if is_due {
-            begun = Some((tick, state.position));
-            stop.from = state.velocity;
-        }
-        let asked = match tick {
-            ARM => Some(Request::Arm),
-            GO => Some(begin),
-            _ if is_due => Some(request),
-            _ => None,
+        let was_due = is_due;
+        is_due |= tick > GO && due(tick - GO, vehicle.vehicle().state().velocity);
+        let motion = match setpoint {
+            Some(velocity) if tick >= GO + UP => Motion::Velocity(velocity),
+            _ => Motion::Position(Vector3::z() * 5.0),
         };
-        // Up to 5 m first.
-        let motion = |velocity| {
-            if tick < GO + 1_000 { Motion::Position(Vector3::z() * 5.0) } else { Motion::Velocity(velocity) }
-        };
-        let given = Inputs {
+        let mut given = Inputs {
             ground_station: Some(vehicle.now()),
-            request: asked,
-            setpoint: setpoint
-                .filter(|_| begun.is_none() && tick.is_multiple_of(10))
-                .map(|velocity| Setpoint { motion: motion(velocity), turn: Turn::Keep }),
+            request: [(ARM, Request::Arm), (GO, begin)].into_iter().find(|(at, _)| *at == tick).map(|(_, it)| it),
+            setpoint: (setpoint.is_some() && tick.is_multiple_of(10)).then_some(Setpoint { motion, turn: Turn::Keep }),
             ..Inputs::default()
         };
-        let (outcome, _) = vehicle.tick(&given, &mut Undisturbed).unwrap();
-        if let Some(transition) = outcome.transition.filter(|_| begun.is_some()) {
-            let expected = [Reason::LandCommanded, Reason::HoldCommanded, Reason::Landed];
-            assert!(expected.contains(&transition.reason), "{transition:?}");
+        if is_due {
+            take_over(&mut given, !was_due);
         }
+        let (outcome, _) = vehicle.tick(&given, &mut Undisturbed).unwrap();
         let state = *vehicle.vehicle().state();
+        let takes_over = |transition: Transition| {
+            matches!(transition.to, Mode::Holding | Mode::Landing) && transition.reason != Reason::TakenOff
+        };
+        if is_due && begun.is_none() && outcome.transition.is_some_and(takes_over) {
+            (begun, stop.from) = (Some((tick, state.position)), state.velocity);
+        }
         if let Some((tick_begun, from)) = begun {
+            assert!(!matches!(outcome.mode, Mode::Descending | Mode::Stopped), "{:?}", outcome.transition);
             let way = state.position - from;
             stop.rose = stop.rose.max(way.z);
             let along = way.dot(&stop.from.try_normalize(0.01).unwrap_or_default());
@@ -120,12 +123,11 @@ fn interrupted(
                 (stop.way, stop.time) = (way, (tick - tick_begun) as f64 * 0.01);
             }
             if still == 100 || !outcome.mode.is_armed() {
-                break;
+                return stop;
             }
         }
     }
-    assert!(begun.is_some(), "it was never due");
-    stop
+    panic!("nothing took over, or it never stopped: {stop:?}")
 }
 
 #[test]
@@ -138,7 +140,7 @@ fn a_landing_at_any_time_after_a_take_off_climbs_on_by_half_a_metre_at_most() {
             .into_par_iter()
             .map(|(height, ticks)| {
                 let begin = Request::TakeOff(Some(height));
-                (height, interrupted(&vehicle, begin, None, Request::Land, |tick, _| tick >= ticks))
+                (height, interrupted(&vehicle, begin, None, LAND, |tick, _| tick >= ticks))
             })
             .collect();
         for height in [1.5, 3.0, 10.0] {
@@ -165,8 +167,8 @@ fn a_hold_at_full_speed_stops_within_what_the_references_braking_needs() {
             (Vector3::new(0.0, 0.0, -2.0), 0.6, VERTICAL),
         ] {
             let toward = velocity.map(f64::from).normalize();
-            let due = |tick: u64, now: Vector3<f64>| tick > 1_000 && now.dot(&toward) >= fast;
-            let stop = interrupted(&vehicle, Request::FlySetpoints, Some(velocity), Request::Hold, due);
+            let due = |tick: u64, now: Vector3<f64>| tick > UP && now.dot(&toward) >= fast;
+            let stop = interrupted(&vehicle, Request::FlySetpoints, Some(velocity), HOLD, due);
             let speed = stop.from.norm();
             let needed = 0.5 * speed * (speed / acceleration + acceleration / jerk);
             let taken = stop.way.norm();
@@ -182,5 +184,23 @@ fn a_hold_at_full_speed_stops_within_what_the_references_braking_needs() {
                 "{name}: {stop:?}"
             );
         }
+    }
+}
+
+#[test]
+fn every_failsafe_in_a_climb_brakes_as_a_command_does() {
+    let vehicle = certified("study");
+    let failsafes: [(&str, TakeOver); 4] = [
+        ("no setpoints", |inputs, _| inputs.setpoint = None),
+        ("no ground station", |inputs, _| inputs.ground_station = None),
+        ("an empty battery", |inputs, _| inputs.battery = Battery::Critical),
+        ("ticks that are late", |inputs, _| inputs.is_late = true),
+    ];
+    for (what, failsafe) in failsafes {
+        let due = |tick: u64, now: Vector3<f64>| tick > UP && now.z >= 0.5;
+        let up = Some(Vector3::new(0.0, 0.0, 2.0));
+        let stop = interrupted(&vehicle, Request::FlySetpoints, up, failsafe, due);
+        println!("{what}: climbs on by {:.2} m from {:.2} m/s", stop.rose, stop.from.z);
+        assert!(stop.from.z > 0.3 && stop.rose < CLIMBS_ON_MAX, "{what}: {stop:?}");
     }
 }

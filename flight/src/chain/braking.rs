@@ -60,6 +60,7 @@ impl Stop {
     }
 
     /// After `time`, s, from `speed`, m/s: the way that is left, m, the speed, and how fast it falls, m/s^2.
+    #[inline(never)] // or its two callers would each get a copy; likewise below
     fn after(self, time: f32, speed: f32) -> [f32; 3] {
         if speed <= 0.0 {
             return [0.0; 3];
@@ -156,8 +157,9 @@ pub(super) fn slowed(velocity: &Vector3<f32>, speed: f32) -> Vector3<f32> {
 impl Chain<'_> {
     /// Brings a vehicle in `state` to rest, not below `ground`, m. A reference that rests, or nearly does, stays where
     /// it is: the law holds the vehicle there.
+    #[inline(never)]
     pub fn hold(&mut self, state: &State, ground: f32) {
-        if self.braking.is_over() && self.governor.way_to_rest() < NEARLY_AT_REST {
+        if self.is_nearly_at_rest() {
             return self.governor.stop();
         }
         // Out of its range it stops where it is.
@@ -168,12 +170,17 @@ impl Chain<'_> {
 
     /// Begins a landing at `speed`, m/s, of a vehicle in `state`; one that sinks more slowly goes on as it does.
     pub fn land(&mut self, state: &State, speed: f32) {
-        if self.braking.is_over() && self.governor.way_to_rest() < NEARLY_AT_REST {
+        if self.is_nearly_at_rest() {
             return;
         }
         let sinking = Vector3::new(0.0, 0.0, math::between(state.velocity.z, -speed, 0.0));
         // Out of its range it goes down from where the reference is.
         let _ = self.brake(state, &sinking, f32::NEG_INFINITY);
+    }
+
+    #[inline(never)]
+    fn is_nearly_at_rest(&self) -> bool {
+        self.braking.is_over() && self.governor.way_to_rest() < NEARLY_AT_REST
     }
 
     /// Takes a flight up again where the vehicle is found, and brings it to rest, not below `ground`, m, with the
@@ -186,6 +193,7 @@ impl Chain<'_> {
     }
 
     /// From the motion in `state` to a steady `velocity`, m/s.
+    #[inline(never)]
     fn brake(&mut self, state: &State, velocity: &Vector3<f32>, ground: f32) -> Result<(), InputError> {
         let mut braking = self.braking;
         let mut end = state.position + braking.begin(&slowed(&(state.velocity - velocity), self.speed));
@@ -204,6 +212,7 @@ impl Chain<'_> {
     }
 
     /// The governor anew, with the heading at hand.
+    #[inline(never)]
     fn go_on(&mut self, position: &Vector3<f32>, velocity: &Vector3<f32>) -> Result<(), InputError> {
         let heading = &self.reference.heading;
         self.governor.start(position, velocity, heading)?;
