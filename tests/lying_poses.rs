@@ -1,5 +1,6 @@
-//! Poses that lie: random faults of a pose source in any phase of a flight, flown in closed loop by the whole pilot on
-//! a simulated vehicle; each flight is held to the limits that an operator may rely on.
+//! Poses that lie: random faults of a pose source at any height and any time after any command, flown in closed loop by
+//! the whole pilot on a simulated vehicle, with a landing at any moment; each flight is held to the limits that an
+//! operator may rely on. So are flights whose poses are honest.
 //!
 //! - `lie`: what a source says instead of the truth; `flight`: one flight, to the ground.
 //!
@@ -10,7 +11,7 @@ mod lie;
 
 use ::flight::Reason;
 use controller_core::certificate::certified::Certified;
-use flight::{Begins, Case, Flown, fly};
+use flight::{Begins, Case, Event, Flown, fly};
 use lie::{Lie, drawn};
 use nalgebra::Vector3;
 use rand::rngs::ChaCha8Rng;
@@ -21,12 +22,32 @@ use scenario::Scenario;
 /// Flights in each test run.
 const FLIGHTS: u64 = 300;
 
+/// Honest flights in each test run.
+const HONEST_FLIGHTS: u64 = 140;
+
+/// How high take-offs go, m: as far as the fence lets them.
+const HEIGHTS: std::ops::Range<f32> = 0.5..2.9;
+
+/// How long after a command something begins at most, s: as long as flights last.
+const LASTS: f64 = 12.0;
+
+/// How high the others fly in flights about one lie, m.
+const HEIGHT: f32 = 1.5;
+
+/// Half a second into a hold, a second into going round, and a second into a landing.
+const HOLDING: Begins = Begins::After(Event::Up, 0.0);
+const MOVING: Begins = Begins::After(Event::Setpoints, 7.0);
+const LANDING: Begins = Begins::After(Event::Land, 1.0);
+
 /// The limits that an operator may rely on: s, m.
 const DOWN_WITHIN: f64 = 30.0;
 const OFF_WITHIN: f64 = 3.0;
 const OFF_MEDIAN: f64 = 1.0;
 const ROSE_MAX: f64 = 0.5;
 const OUT_MAX: f64 = 3.0;
+
+/// A touchdown that is said, m/s: a vehicle that goes down by the IMU after lies is slower.
+const HARD: f64 = 1.6;
 
 fn fly_all(cases: Vec<Case>) -> Vec<Flown> {
     let scenario = Scenario::parse(scenario::STUDY, "study").unwrap();
@@ -77,15 +98,24 @@ fn print(name: &str, flown: &[Flown]) {
     );
 }
 
+/// At boot, or at any time after any command.
+fn begins(random: &mut ChaCha8Rng) -> Begins {
+    match random.random_range(0..=Event::ALL.len()) {
+        0 => Begins::AtBoot,
+        event => Begins::After(Event::ALL[event - 1], random.random_range(0.0..LASTS)),
+    }
+}
+
 #[test]
 fn whatever_poses_say_a_flight_ends_on_the_ground_with_motors_off() {
     let count = std::env::var("LYING_FLIGHTS").ok().map_or(FLIGHTS, |count| count.parse().unwrap());
     let mut random = ChaCha8Rng::seed_from_u64(30);
     let cases = (0..count).map(|seed| Case {
-        begins: Begins::ALL[random.random_range(0..Begins::ALL.len())],
+        begins: begins(&mut random),
+        height: random.random_range(HEIGHTS),
         lies: drawn(&mut random),
         ends_after: random.random_bool(0.3).then(|| random.random_range(0.5..10.0)),
-        land_after: random.random_range(1.0..15.0),
+        land_after: random.random_range(0.0..15.0),
         seed,
     });
     let mut flown = fly_all(cases.collect());
@@ -98,13 +128,37 @@ fn whatever_poses_say_a_flight_ends_on_the_ground_with_motors_off() {
     let mut off: Vec<f64> = flown.iter().filter_map(|flown| flown.off_after).collect();
     off.sort_by(f64::total_cmp);
     println!("motors off {:.2} s after touchdown in the median", off[off.len() / 2]);
+    for hard in flown.iter().filter(|flown| flown.touchdown > HARD) {
+        println!("touched down at {:.2} m/s: {hard:?}", hard.touchdown);
+    }
     judge(&flown);
     assert!(off[off.len() / 2] <= OFF_MEDIAN);
 }
 
+#[test]
+fn a_landing_at_any_moment_on_honest_poses_rises_by_half_a_metre_at_most() {
+    let count = std::env::var("LYING_FLIGHTS").ok().map_or(HONEST_FLIGHTS, |count| count.parse().unwrap());
+    let mut random = ChaCha8Rng::seed_from_u64(44);
+    let cases = (0..count).map(|seed| Case {
+        begins: Begins::After(Event::ALL[seed as usize % Event::ALL.len()], random.random_range(0.0..LASTS)),
+        height: random.random_range(HEIGHTS),
+        lies: Vec::new(),
+        ends_after: None,
+        land_after: 0.0,
+        seed,
+    });
+    let mut flown = fly_all(cases.collect());
+    flown.retain(|flown| flown.flew);
+    for event in Event::ALL {
+        let is_after = |flown: &&Flown| matches!(flown.case.begins, Begins::After(after, _) if after == event);
+        print(&format!("after {event:?}"), &flown.iter().filter(is_after).cloned().collect::<Vec<_>>());
+    }
+    judge(&flown);
+}
+
 /// Flies one lie from a phase on, for so long until LAND, with some seeds.
 fn flights(lie: Lie, begins: Begins, land_after: f64) -> Vec<Flown> {
-    let case = |seed| Case { begins, lies: vec![lie], ends_after: None, land_after, seed };
+    let case = |seed| Case { begins, height: HEIGHT, lies: vec![lie], ends_after: None, land_after, seed };
     let flown = fly_all((0..4).map(case).collect());
     print(lie.name(), &flown);
     judge(&flown);
@@ -118,7 +172,7 @@ fn took(flown: &Flown, reason: Reason) -> usize {
 #[test]
 fn a_heading_that_is_wrong_at_the_source_is_given_up() {
     for degrees in [45.0_f32, 60.0, 75.0, -60.0] {
-        for begins in [Begins::AtBoot, Begins::Holding] {
+        for begins in [Begins::AtBoot, HOLDING] {
             flights(Lie::HeadingOff(degrees.to_radians()), begins, 15.0);
         }
     }
@@ -127,7 +181,7 @@ fn a_heading_that_is_wrong_at_the_source_is_given_up() {
 #[test]
 fn a_heading_that_drifts_is_detected_by_the_gyro() {
     for degrees in [1.0_f32, 2.0, 3.0, 5.0] {
-        for begins in [Begins::Holding, Begins::Moving] {
+        for begins in [HOLDING, MOVING] {
             let flown = flights(Lie::HeadingDrifts(degrees.to_radians()), begins, 60.0);
             let is_detected = |flown: &Flown| {
                 [Reason::PosesGivenUp, Reason::PoseLost, Reason::FenceBreached].iter().any(|why| took(flown, *why) > 0)
@@ -140,7 +194,7 @@ fn a_heading_that_drifts_is_detected_by_the_gyro() {
 #[test]
 fn poses_that_come_and_go_make_a_landing_resume_once_at_most() {
     for every in [1.1, 1.3, 1.6, 2.0, 2.8] {
-        for begins in [Begins::Holding, Begins::Landing] {
+        for begins in [HOLDING, LANDING] {
             let flown = flights(Lie::Comes { for_seconds: 0.03, every }, begins, 10.0);
             assert!(flown.iter().all(|flown| took(flown, Reason::LandingResumed) <= 1), "{flown:?}");
         }
@@ -150,7 +204,7 @@ fn poses_that_come_and_go_make_a_landing_resume_once_at_most() {
 #[test]
 fn a_landing_on_noisy_poses_does_not_rise() {
     for noise in [0.02, 0.05, 0.1] {
-        flights(Lie::Noisy(noise, 1e-3), Begins::Landing, 10.0);
+        flights(Lie::Noisy(noise, 1e-3), LANDING, 10.0);
     }
 }
 
@@ -170,19 +224,19 @@ fn a_source_that_claims_to_be_exact_is_flown_like_any_other() {
 fn how_far_undetectable_lies_lead() {
     let drift = |speed: f32| Lie::Drifts(Vector3::new(speed, 0.0, 0.0));
     for (lie, begins) in [
-        (drift(0.01), Begins::Holding),
-        (drift(0.03), Begins::Holding),
-        (drift(0.1), Begins::Holding),
-        (drift(0.3), Begins::Holding),
-        (Lie::Drifts(Vector3::new(0.0, 0.0, -0.05)), Begins::Holding),
+        (drift(0.01), HOLDING),
+        (drift(0.03), HOLDING),
+        (drift(0.1), HOLDING),
+        (drift(0.3), HOLDING),
+        (Lie::Drifts(Vector3::new(0.0, 0.0, -0.05)), HOLDING),
         (Lie::Scaled(0.8), Begins::AtBoot),
         (Lie::Scaled(0.5), Begins::AtBoot),
         (Lie::Scaled(0.3), Begins::AtBoot),
         (Lie::Leans(0.035), Begins::AtBoot),
-        (Lie::HeadingDrifts(0.5_f32.to_radians()), Begins::Holding),
+        (Lie::HeadingDrifts(0.5_f32.to_radians()), HOLDING),
         (Lie::Late(5), Begins::AtBoot),
     ] {
-        let case = Case { begins, lies: vec![lie], ends_after: None, land_after: 30.0, seed: 1 };
+        let case = Case { begins, height: HEIGHT, lies: vec![lie], ends_after: None, land_after: 30.0, seed: 1 };
         let flown = fly_all(vec![case]);
         println!("{lie:?}: {:.2} m off in 30 s; {:?}", flown[0].off, flown[0].path);
         judge(&flown);

@@ -3,7 +3,7 @@
 use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{Motion, Setpoint, Turn};
-use flight::{FlightSettings, Inputs, Mode, Output, Reason, Request};
+use flight::{FlightSettings, Inputs, Leg, MissionItem, Mode, Output, Reason, Request};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -17,34 +17,94 @@ pub const BOX: f32 = 3.0;
 const SETTINGS: FlightSettings =
     FlightSettings { fence_radius: BOX, fence_height: BOX, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
 
-/// How high it flies, m.
-const HEIGHT: f32 = 1.5;
-
-/// When the operator arms, and lets it take off, in ticks.
+/// When the operator arms, and commands something, in ticks.
 const ARM: u64 = 250;
 const GO: u64 = 300;
 
-/// Where in a flight the source begins to lie.
+/// How long it holds before it is commanded to go on, and goes on before it is commanded to hold, in ticks.
+const HOLDS: u64 = 50;
+const GOES: u64 = 150;
+
+/// How long it flies a setpoint that is a point before it goes round, in ticks.
+const AT_POINT: u64 = 600;
+
+/// What an operator commands, or what has become of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Begins {
-    /// From the first pose on.
-    AtBoot,
-    Climbing,
-    Holding,
-    /// On setpoints that go round.
-    Moving,
-    /// A second into a landing.
-    Landing,
+pub enum Event {
+    TakeOff,
+    /// The take-off is over: it holds.
+    Up,
+    /// Setpoints, to a point and then round.
+    Setpoints,
+    /// A mission from the ground: two places and a landing.
+    Mission,
+    /// A place to go to.
+    GoTo,
+    /// A hold on the way there.
+    Hold,
+    /// A landing out of a hold.
+    Land,
 }
 
-impl Begins {
-    pub const ALL: [Self; 5] = [Self::AtBoot, Self::Climbing, Self::Holding, Self::Moving, Self::Landing];
+impl Event {
+    pub const ALL: [Self; 7] =
+        [Self::TakeOff, Self::Up, Self::Setpoints, Self::Mission, Self::GoTo, Self::Hold, Self::Land];
+
+    /// What the operator requests at `tick`, in a mode that has lasted for so many ticks.
+    fn request(self, tick: u64, mode: Mode, lasts: u64, height: f32) -> Option<Request> {
+        match self {
+            _ if tick == ARM => Some(Request::Arm),
+            Self::Setpoints if tick == GO => Some(Request::FlySetpoints),
+            Self::Mission if tick == GO => Some(Request::FlyMission(Some(0))),
+            _ if tick == GO => Some(Request::TakeOff(Some(height))),
+            Self::GoTo | Self::Hold if mode == Mode::Holding && lasts == HOLDS => {
+                let motion = Motion::Position(Vector3::new(1.5, -1.5, 0.5 * height + 0.5));
+                Some(Request::GoTo(Setpoint { motion, turn: Turn::Keep }))
+            }
+            Self::Hold if mode == Mode::Holding && lasts == HOLDS + GOES => Some(Request::Hold),
+            Self::Land if mode == Mode::Holding && lasts == HOLDS => Some(Request::Land),
+            _ => None,
+        }
+    }
+
+    /// Whether it happens in this tick, or has happened.
+    fn has_happened(self, tick: u64, mode: Mode, lasts: u64) -> bool {
+        match self {
+            Self::TakeOff | Self::Setpoints | Self::Mission => tick >= GO,
+            Self::Up | Self::GoTo => mode == Mode::Holding && lasts >= HOLDS,
+            Self::Hold => mode == Mode::Holding && lasts >= HOLDS + GOES,
+            Self::Land => mode == Mode::Landing,
+        }
+    }
+}
+
+/// The mission's item of a number.
+fn mission_item(number: u8, height: f32) -> Option<MissionItem> {
+    let (leg, position) = match number {
+        0 => (Leg::Waypoint, Vector3::new(1.0, 0.5, height)),
+        1 => (Leg::Waypoint, Vector3::new(-1.0, 1.0, 0.5 * height + 0.5)),
+        2 => (Leg::Land, Vector3::new(-0.5, 0.0, 0.0)),
+        _ => return None,
+    };
+    Some(MissionItem { leg, position, turn: Turn::Keep, radius: 0.3, hold: 0 })
+}
+
+/// Where in a flight the source begins to lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Begins {
+    /// From the first pose on, in a flight that takes off.
+    AtBoot,
+    /// So long after this, s.
+    After(Event, f64),
 }
 
 /// A flight to be flown.
 #[derive(Debug, Clone)]
 pub struct Case {
     pub begins: Begins,
+    /// How high it flies, m.
+    pub height: f32,
+    /// None: the poses are honest throughout.
     pub lies: Vec<Lie>,
     /// When it says the truth again, s after it began to lie, if it does.
     pub ends_after: Option<f64>,
@@ -101,36 +161,37 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         off: 0.0,
         path: Vec::new(),
     };
-    let (mut mode, mut lasts, mut down) = (Mode::Boot, 0_u64, None::<Down>);
+    let mut was_wanted_down = false;
+    let (event, after) = match case.begins {
+        Begins::AtBoot => (Event::TakeOff, 0.0),
+        Begins::After(event, seconds) => (event, seconds),
+    };
+    let (mut mode, mut lasts, mut down, mut happened) = (Mode::Boot, 0_u64, None::<Down>, None);
     for tick in 0..12_000_u64 {
         let now = vehicle.now() + 10_000;
-        let begins = match case.begins {
-            Begins::AtBoot => true,
-            Begins::Climbing => mode == Mode::TakingOff && vehicle.vehicle().state().position.z > 0.75,
-            Begins::Holding => mode == Mode::Holding && lasts >= 50,
-            Begins::Moving => mode == Mode::Flying && lasts >= 700,
-            Begins::Landing => mode == Mode::Landing && lasts >= 100,
-        };
-        if liar.since.is_none() && begins {
-            liar.since = Some(now);
+        if event.has_happened(tick, mode, lasts) {
+            happened = happened.or(Some(now));
+        }
+        let begun = happened.map(|then| then + (after * 1e6) as u64).filter(|begun| *begun <= now);
+        let lies_from = if case.begins == Begins::AtBoot { Some(0) } else { begun };
+        if liar.since.is_none() && lies_from.is_some() {
+            liar.since = lies_from;
             liar.until = case.ends_after.map_or(u64::MAX, |after| now + (after * 1e6) as u64);
         }
-        let begun = liar.since.map(|since| if case.begins == Begins::AtBoot { 6_000_000 } else { since });
         let seconds = begun.map_or(0.0, |since| now as f64 * 1e-6 - since as f64 * 1e-6);
         let wanted_down = begun.is_some() && seconds >= case.land_after;
-        let land = case.begins == Begins::Landing && mode == Mode::Holding && lasts == 50;
-        let request = match tick {
-            ARM => Some(Request::Arm),
-            GO if case.begins == Begins::Moving => Some(Request::FlySetpoints),
-            GO => Some(Request::TakeOff(Some(HEIGHT))),
-            _ if land || wanted_down && tick.is_multiple_of(100) => Some(Request::Land),
-            _ => None,
-        };
-        let moving = case.begins == Begins::Moving && tick.is_multiple_of(20) && !wanted_down;
+        let lands = wanted_down && (!was_wanted_down || tick.is_multiple_of(100));
+        was_wanted_down = wanted_down;
+        let request = if lands { Some(Request::Land) } else { event.request(tick, mode, lasts, case.height) };
+        let moving = event == Event::Setpoints && tick.is_multiple_of(20) && !wanted_down;
         let given = Inputs {
             ground_station: Some(now - tick % 100 * 10_000),
             request,
-            setpoint: moving.then(|| setpoint(mode, lasts)),
+            setpoint: moving.then(|| setpoint(mode, lasts, case.height)),
+            mission_item: vehicle
+                .pilot()
+                .mission_item(request.as_ref())
+                .and_then(|number| mission_item(number, case.height)),
             ..Inputs::default()
         };
         let Ok((outcome, _)) = vehicle.tick(&given, &mut liar) else { break };
@@ -148,15 +209,11 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
             let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX);
             flown.out = flown.out.max(out);
             if mode == Mode::Holding && lasts >= 50 {
-                flown.off = flown.off.max((state.position - Vector3::z() * f64::from(HEIGHT)).norm());
+                flown.off = flown.off.max((state.position - Vector3::z() * f64::from(case.height)).norm());
             }
         }
         if begun.is_some() && (goes_down || !mode.is_armed() && flown.flew) {
-            let down = down.get_or_insert(Down {
-                since: now,
-                from: state.position.z + braking(state.velocity.z),
-                touched: None,
-            });
+            let down = down.get_or_insert(Down { since: now, from: state.position.z, touched: None });
             flown.rose = flown.rose.max(state.position.z - down.from);
             if let Some(touchdown) = touched {
                 down.touched = down.touched.or(Some(now));
@@ -177,22 +234,13 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
     flown
 }
 
-/// How far a vehicle that rises at `speed`, m/s, still does while its reference brakes, m.
-fn braking(speed: f64) -> f64 {
-    /// The study's vertical bound, m/s^2, and how fast it may be reached, m/s^3.
-    const BRAKES: f64 = 0.1755;
-    const JERK: f64 = 3.876;
-    let up = speed.max(0.0);
-    up.powi(2) / (2.0 * BRAKES) + up * BRAKES / (2.0 * JERK)
-}
-
 /// Up to a point, and then once round in 12 s on a circle of 1 m.
-fn setpoint(mode: Mode, lasts: u64) -> Setpoint {
-    let motion = if mode == Mode::Flying && lasts >= 600 {
-        let (sine, cosine) = (0.5 * (lasts - 600) as f32 * 0.01).sin_cos();
+fn setpoint(mode: Mode, lasts: u64, height: f32) -> Setpoint {
+    let motion = if mode == Mode::Flying && lasts >= AT_POINT {
+        let (sine, cosine) = (0.5 * (lasts - AT_POINT) as f32 * 0.01).sin_cos();
         Motion::Velocity(Vector3::new(-sine, cosine, 0.0) * 0.5)
     } else {
-        Motion::Position(Vector3::new(0.0, 0.0, HEIGHT))
+        Motion::Position(Vector3::new(0.0, 0.0, height))
     };
     Setpoint { motion, turn: Turn::Keep }
 }
