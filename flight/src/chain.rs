@@ -1,18 +1,18 @@
 //! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
-//! `braking` brings a flight to rest, or takes it up, from the vehicle's motion; `without_pose` levels and goes down;
-//! `delivered` estimates delivered over commanded thrust.
+//! `taking_over` brings a flight to rest, or takes it up, from the vehicle's motion; `without_pose` levels and goes
+//! down; `delivered` estimates delivered over commanded thrust.
 //!
 //! Starting on the ground, braking and a jump of the estimate all start the governor at a steady velocity, with the
 //! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
 
+use super::braking::Braking;
 use super::lift_off::LiftOff;
 use super::policy::{Aboard, Handed};
 use super::refusal::Grounded;
 use super::rules::REFUSAL_MAX;
 use super::sinking::Sinking;
 use super::spool::Spool;
-use braking::Braking;
 use controller_core::allocation::remaining::Lost;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
@@ -346,8 +346,8 @@ impl<'m> Chain<'m> {
     }
 }
 
-mod braking;
 mod delivered;
+mod taking_over;
 #[cfg(test)]
 mod tests;
 mod without_pose;

@@ -17,8 +17,8 @@
 //! - `trust`: whether a source of poses may still be believed;
 //! - `thrust_check`: delivered over commanded thrust, checked;
 //! - `stream_check`: whether a stream of setpoints is flown as it is sent;
-//! - `chain`: from setpoints to thrusts, how a flight brakes, and why that and levelling are within the certificate;
-//!   `spool`, `sinking`: how rotors are brought up, and how a vehicle without a pose goes down.
+//! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `braking`, `spool`, `sinking`:
+//!   how a reference comes to rest, rotors are brought up, and a vehicle without a pose goes down.
 //!
 //! An armed vehicle idles until a command to take off or to fly setpoints; then its rotors are brought up to the law's
 //! thrusts within a second. A landing ends with the ground found and the motors stopped. A vehicle set down by its
@@ -46,6 +46,7 @@ mod hummingbird;
 const PERIOD: u64 = 10_000;
 
 mod bench;
+mod braking;
 mod chain;
 mod debounce;
 mod estimate;
