@@ -18,6 +18,9 @@ const MOVING: (f32, f32) = (0.3, 0.01);
 /// The same after poses that lied, which leave a speed that may be off.
 const MOVING_AFTER_LIES: (f32, f32) = (0.8, 0.05);
 
+/// How much more slowly than it should a vehicle may sink against the air, m/s.
+const HELD_BACK: f32 = 0.1;
+
 /// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no
 /// more is left to be made up for where the draft ends.
 const BEHIND: f32 = 0.3;
@@ -66,8 +69,18 @@ impl Sinking {
 
     /// Whether the vehicle rises or sinks faster than an accelerometer's drift explains.
     pub fn is_motion(&self) -> bool {
+        self.speed.abs() > self.moving()
+    }
+
+    /// Whether its descent shows as motion, in an updraft as well: if not, no speed tells what sinks from what stands.
+    pub fn shows(&self) -> bool {
+        self.descent() > self.moving() + HELD_BACK
+    }
+
+    /// The speed beyond which it moves, m/s.
+    fn moving(&self) -> f32 {
         let (speed, drift) = if self.lied { MOVING_AFTER_LIES } else { MOVING };
-        self.speed.abs() > speed + drift * self.time
+        speed + drift * self.time
     }
 
     /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.

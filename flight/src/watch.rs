@@ -5,8 +5,9 @@
 //! - *Landed*, by the IMU alone: something has stopped the vehicle with a jerk, and the law now commands less thrust
 //!   than carries it. Or, where the ground was soft, for so little that the vehicle must fall faster, and it does not.
 //!   Rotors that deliver 8 % more than commanded would look the same: with the law's thrust scale and force they do
-//!   not. What rises or sinks on stands on nothing; but a hit is more than an accelerometer can show, and leaves a
-//!   false speed.
+//!   not. So would the air's drag of a vehicle that sinks. What rises or sinks on stands on nothing, and nothing is
+//!   believed before it should sink so fast that it shows, unless it has touched something; but a hit is more than an
+//!   accelerometer can show, and leaves a false speed.
 //! - *The IMU is doubtful*, where nothing else is left: it measures another force than commanded, and not the ground's,
 //!   friction's among it, or the vehicle does not come upright, or turns on.
 //! - *Crashed*: still, and by 30 degrees or more beside where the law wants it, or tilted by 80, or by 60 while no law
@@ -155,7 +156,7 @@ impl Watch {
         let look = Look { mode, state: smoothed.as_ref(), chain, flown };
         let is_blind = mode == Mode::Descending;
         self.note_jerks(&look, state, now);
-        let jerked = self.has_jerked(mode, now);
+        let jerked = self.jerked.is_some();
         let begins = |(first, last): (u64, u64)| last == now && now.saturating_sub(first) < TOUCHING_DEBOUNCE;
         let touches = is_blind && self.touched.is_some_and(begins);
         let touched = if is_blind { self.touched.is_some() } else { jerked };
@@ -186,23 +187,22 @@ impl Watch {
         }
     }
 
-    /// Remembers what stops a vehicle that goes down.
+    /// Remembers what stops a vehicle that goes down: a landing for as long as it may have met the ground, one without a
+    /// pose, which is not revised later, to its end.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
-        let descends = look.mode == Mode::Descending;
-        if !descends && look.mode != Mode::Landing {
-            self.jerked = None;
-        } else if look.jerks(state, JERK) {
-            let first = self.jerked.filter(|_| self.has_jerked(look.mode, now)).map_or(now, |(first, _)| first);
-            self.jerked = Some((first, now));
+        let (lands, descends) = (look.mode == Mode::Landing, look.mode == Mode::Descending);
+        let counts = |(_, last): &(u64, u64)| descends || lands && now.saturating_sub(*last) < TOUCHED_DEBOUNCE;
+        (self.jerked, self.touched) = (self.jerked.filter(counts), self.touched.filter(counts));
+        let jerks = |least: f32| (lands || descends) && look.jerks(state, least);
+        let since = |before: Option<(u64, u64)>| Some((before.map_or(now, |(first, _)| first), now));
+        if jerks(JERK) {
+            self.jerked = since(self.jerked);
         }
         let fresh = self.jerked.is_some_and(|(first, _)| now.saturating_sub(first) < JERKING);
-        self.touched = match self.touched {
-            _ if !descends && look.mode != Mode::Landing => None,
-            None if look.jerks(state, TOUCH) && fresh => Some((now, now)),
-            Some((first, _)) if look.jerks(state, TOUCH) => Some((first, now)),
-            touched => touched,
-        };
-        self.hit = descends && (self.hit || look.jerks(state, HIT));
+        if jerks(TOUCH) && (fresh || self.touched.is_some()) {
+            self.touched = since(self.touched);
+        }
+        self.hit = descends && (self.hit || jerks(HIT));
     }
 
     /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and
@@ -216,12 +216,6 @@ impl Watch {
         }
         let possible = flown.reference.velocity.z - TAUGHT..=TAUGHT;
         (taught - self.taught).abs() > TAUGHT && !possible.contains(&speed)
-    }
-
-    /// Whether something has stopped it that may be the ground: without a pose that is not revised later.
-    fn has_jerked(&self, mode: Mode, now: u64) -> bool {
-        let recently = |last: u64| now.saturating_sub(last) < TOUCHED_DEBOUNCE;
-        self.jerked.is_some_and(|(_, last)| mode == Mode::Descending || recently(last))
     }
 
     /// Whether the estimate jumps just after the vehicle was struck.

@@ -168,8 +168,10 @@ fn without_a_ground_station_it_holds_for_ten_seconds_and_lands() {
     flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
     assert_eq!(flight.tick().setpoint, None);
     let still = flight.ticks(700).flown.unwrap().unwrap().reference;
-    assert!(still.velocity.norm() < 1e-6 && (flight.body.position - still.position.cast()).norm() < 0.02);
-    assert!(still.position.x < 25.0, "it went on to the setpoint: {}", still.position);
+    // The paper's law takes out slowly what a vehicle braked from its own motion is off by.
+    assert!(still.velocity.norm() < 1e-6 && flight.body.velocity.norm() < 0.05, "{}", flight.body.velocity);
+    assert!((flight.body.position - still.position.cast()).norm() < 0.2, "{}", flight.body.position);
+    assert!(still.position.x < 20.0, "it went on to the setpoint: {}", still.position);
     flight.ground = flight.body.position.z - 2.0;
     let (ticks, landing) = flight.until(Reason::GroundStationGone, 60);
     assert_eq!(landing.mode, Mode::Landing);

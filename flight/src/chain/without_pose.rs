@@ -53,8 +53,9 @@ impl Chain<'_> {
         self.sinking.stop();
     }
 
-    /// Whether the vehicle rises or sinks, without a pose, faster than an accelerometer's drift explains.
-    pub fn moves(&self) -> bool {
-        self.sinking.is_motion()
+    /// Whether the vehicle rises or sinks, without a pose, faster than an accelerometer's drift explains; or may, since
+    /// its descent would not show: of one that is not known to have `touched` the ground.
+    pub fn may_move(&self, touched: bool) -> bool {
+        self.sinking.is_motion() || !touched && !self.sinking.shows()
     }
 }

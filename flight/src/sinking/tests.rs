@@ -46,3 +46,13 @@ fn after_lies_it_goes_down_faster_and_faster() {
     (0..1_000).for_each(|_| _ = sinking.advance(&gained(0.0, 0.0), 0.01));
     assert!((sinking.descent() - 2.6).abs() < 1e-3, "{}", sinking.descent());
 }
+
+#[test]
+fn a_descent_shows_as_motion_from_the_beginning_on_and_after_lies_from_two_seconds_on() {
+    assert!(Sinking::at(0.0, false).shows());
+    for (ticks, shows) in [(0, false), (199, false), (202, true), (3_000, true)] {
+        let mut sinking = Sinking::at(0.0, true);
+        (0..ticks).for_each(|_| _ = sinking.advance(&gained(0.0, 0.0), 0.01));
+        assert_eq!(sinking.shows(), shows, "{ticks}");
+    }
+}

@@ -143,7 +143,7 @@ impl Look<'_> {
         self.feels().filter(|_| may).is_some_and(|(_, commanded, state)| {
             let moves = match self.mode {
                 Mode::Landing => self.moves_landing(),
-                _ => !hit && self.chain.is_some_and(Chain::moves),
+                _ => !hit && self.chain.is_some_and(|chain| chain.may_move(touched)),
             };
             !moves
                 && self.chain.is_some_and(Chain::sinks)

@@ -204,6 +204,43 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
     assert!(!landed(|estimated| estimated.gained = 0.52) && !landed(|estimated| estimated.gained = -0.52));
 }
 
+/// Whether it is seen as landed within so many seconds from a speed, m/s, on, at which its poses were given up, with a
+/// jerk, m/s^2: of a vehicle in the air, whose drag is so much of its speed in a second, or of one on the ground.
+fn is_landed_after_lies(speed: f32, drag: Option<f32>, jerk: f32, seconds: u64) -> bool {
+    let mut chain = chain_of(&Certified::new(hummingbird::extended_law()).unwrap());
+    (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
+    chain.level(Some(speed), true);
+    let (mut watch, mut estimated, mut sinks) = (Watch::new(PERIOD), at(0.0), speed);
+    let period = PERIOD as f32 * 1e-6;
+    (1..=seconds * 1_000_000 / PERIOD).any(|tick| {
+        let flown = chain.fly_level(&estimated, true).unwrap();
+        let acceleration = drag.map_or(0.0, |drag| chain.commanded_acceleration(&flown) - drag * sinks);
+        sinks += acceleration * period;
+        estimated.gained += acceleration * period;
+        estimated.acceleration.z = acceleration + if tick == 1 { jerk } else { 0.0 };
+        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
+        watch.tick(Mode::Descending, Some(&estimated), Some(&chain), FAR, &inputs).landed
+    })
+}
+
+#[test]
+fn after_lies_what_sinks_against_the_air_as_it_should_has_not_landed() {
+    for drag in [0.0, 0.3, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5] {
+        for speed in [-1.0, -0.5, -0.2, -0.05, 0.0, 0.05, 0.2, 0.5, 1.0] {
+            let landed = |jerk: f32| is_landed_after_lies(speed, Some(drag), jerk, 10);
+            assert!(!landed(0.0) && !landed(6.0), "{drag} of {speed} m/s");
+        }
+    }
+}
+
+#[test]
+fn after_lies_what_stands_on_a_ground_that_is_not_felt_has_landed_within_three_seconds() {
+    for error in [-0.7, -0.3, 0.0, 0.3, 0.7] {
+        assert!(is_landed_after_lies(error, None, 0.0, 3), "{error} m/s");
+        assert!(is_landed_after_lies(error, None, 6.0, 3), "{error} m/s, with a jerk");
+    }
+}
+
 #[test]
 fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
     let landed = |descends: bool, jerk: f32, then: Mode| {
@@ -237,6 +274,26 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
     assert!(landed(true, 5.5, Mode::Descending) && !landed(true, 4.5, Mode::Descending));
     assert!(!landed(false, 5.5, Mode::Descending), "it was only levelled");
     assert!(!landed(true, 5.5, Mode::Holding), "a jerk of an earlier descent");
+}
+
+#[test]
+fn a_jerk_that_was_no_landing_is_forgotten_before_the_poses_are_given_up() {
+    let touched = |later: u64| {
+        let (mut chain, mut watch, mut now) = (chain(), Watch::new(PERIOD), 0);
+        let mut tick = |mode: Mode, acceleration: f32| {
+            now += PERIOD;
+            let mut estimated = at(1.0);
+            estimated.acceleration.z = acceleration;
+            chain.come_down(0.5, true);
+            chain.fly(&estimated.state).unwrap();
+            watch.tick(mode, Some(&estimated), Some(&chain), FAR, &Inputs { now, ..Inputs::default() }).touched
+        };
+        (0..200).for_each(|_| assert!(!tick(Mode::Landing, 0.0)));
+        assert!(tick(Mode::Landing, 20.0));
+        (1..later / PERIOD).for_each(|_| _ = tick(Mode::Landing, 0.0));
+        tick(Mode::Descending, 0.0)
+    };
+    assert!(touched(TOUCHED_DEBOUNCE) && !touched(TOUCHED_DEBOUNCE + PERIOD));
 }
 
 /// What is seen in the last of so many ticks on the ground, at a speed of NaN, after an upward acceleration.
