@@ -87,8 +87,8 @@ fn greatest(flown: &[Flown], of: impl Fn(&Flown) -> f64) -> f64 {
 
 fn print(name: &str, flown: &[Flown]) {
     println!(
-        "{name:<16} {:>5} flights: down after {:>4.1} s, motors off {:>4.2} s after touchdown, rose {:>4.2} m, {:>4.2} m out, \
-         touched down at {:.2} m/s, at most",
+        "{name:<16} {:>5} flights: down after {:>4.1} s, motors off {:>4.2} s after touchdown, rose {:>4.2} m, \
+         {:>4.2} m out, touched down at {:.2} m/s, at most",
         flown.len(),
         greatest(flown, |flown| flown.down_after.unwrap_or(f64::INFINITY)),
         greatest(flown, |flown| flown.off_after.unwrap_or(f64::INFINITY)),

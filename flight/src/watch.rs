@@ -187,8 +187,8 @@ impl Watch {
         }
     }
 
-    /// Remembers what stops a vehicle that goes down: a landing for as long as it may have met the ground, one without a
-    /// pose, which is not revised later, to its end.
+    /// Remembers what stops a vehicle that goes down: in a landing for as long as it may have met the ground, without a
+    /// pose, where that is not revised later, to the end.
     fn note_jerks(&mut self, look: &Look, state: Option<&EstimatedState>, now: u64) {
         let (lands, descends) = (look.mode == Mode::Landing, look.mode == Mode::Descending);
         let counts = |(_, last): &(u64, u64)| descends || lands && now.saturating_sub(*last) < TOUCHED_DEBOUNCE;
