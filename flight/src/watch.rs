@@ -193,16 +193,16 @@ impl Watch {
         let (lands, descends) = (look.mode == Mode::Landing, look.mode == Mode::Descending);
         let counts = |(_, last): &(u64, u64)| descends || lands && now.saturating_sub(*last) < TOUCHED_DEBOUNCE;
         (self.jerked, self.touched) = (self.jerked.filter(counts), self.touched.filter(counts));
-        let jerks = |least: f32| (lands || descends) && look.jerks(state, least);
+        let jerk = if lands || descends { look.jerk(state) } else { 0.0 };
         let since = |before: Option<(u64, u64)>| Some((before.map_or(now, |(first, _)| first), now));
-        if jerks(JERK) {
+        if jerk > JERK {
             self.jerked = since(self.jerked);
         }
         let fresh = self.jerked.is_some_and(|(first, _)| now.saturating_sub(first) < JERKING);
-        if jerks(TOUCH) && (fresh || self.touched.is_some()) {
+        if jerk > TOUCH && (fresh || self.touched.is_some()) {
             self.touched = since(self.touched);
         }
-        self.hit = descends && (self.hit || jerks(HIT));
+        self.hit = descends && (self.hit || jerk > HIT);
     }
 
     /// Whether poses have given a landing that was `jerked` a speed that it cannot have: one that they have added, and

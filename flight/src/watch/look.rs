@@ -125,13 +125,13 @@ impl Look<'_> {
         speed < flown.reference.velocity.z + LANDING_SLOWER_BY || speed.abs() > STANDING_SPEED_BY_POSES
     }
 
-    /// Whether something stops a vehicle that goes down with more than `least`, m/s^2, in this very tick's `state`.
-    pub fn jerks(&self, state: Option<&EstimatedState>, least: f32) -> bool {
+    /// With which upward acceleration something stops a vehicle that goes down, m/s^2, in this very tick's `state`.
+    pub fn jerk(&self, state: Option<&EstimatedState>) -> f32 {
         // Also before it goes down, if it still sinks.
         let sinks = self.chain.is_some_and(Chain::sinks)
             || self.flown.is_some_and(|flown| flown.state.velocity.z < -LEAST_SINKING_SPEED);
         let now = Look { state, ..*self };
-        sinks && now.feels().is_some_and(|(unexpected, ..)| unexpected.z > least)
+        now.feels().filter(|_| sinks).map_or(0.0, |(unexpected, ..)| unexpected.z)
     }
 
     /// Whether a vehicle that goes down should accelerate downwards and does not, `jerked` or `touched` before or not,
