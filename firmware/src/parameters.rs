@@ -196,6 +196,10 @@ impl<M: RawMutex> Parameters<M> {
     /// What was stored, cannot be read, and was not set since: the first such row, or all of them.
     #[must_use]
     pub fn lost(&self) -> Option<&'static str> {
+        // Control asks in every tick.
+        if self.lost.iter().all(|word| word.load(Ordering::Relaxed) == 0) {
+            return None;
+        }
         let is_lost = |bit: usize| self.lost[bit / BITS].load(Ordering::Relaxed) >> (bit % BITS) & 1 == 1;
         let row = PARAMETERS.iter().find(|row| is_lost(row.parameter as usize));
         if is_lost(ALL_LOST) { Some("parameters") } else { row.map(|row| row.name) }
