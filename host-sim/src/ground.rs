@@ -1,7 +1,7 @@
 //! Level ground: standing, sliding, touching down, lifting off.
 //!
 //! A vehicle on the ground stands still: its legs carry what of its weight the rotors do not, their spread holds it
-//! against any torque, and friction against as much force as [`friction`] says; beyond that it slides. So it can rest
+//! against any torque, and friction against as much force as `friction` says; beyond that it slides. So it can rest
 //! for ever without drifting, and one that nearly hovers is hardly held. In the air the ground does nothing.
 //!
 //! A vehicle that comes down stops its fall and its turning where it touches: the impact is perfectly plastic, without

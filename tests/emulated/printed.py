@@ -1,4 +1,4 @@
-"""The QEMU line of `host-sim hil --help`, run as it is printed: the board and the vehicle find each other and fly their ticks."""
+"""The lines of `host-sim hil --help`, run as they are printed: the board and the vehicle find each other and fly their ticks."""
 
 import pathlib
 import re
@@ -15,7 +15,7 @@ def lines():
     """The commands of the help, continued lines joined."""
     said = subprocess.run([SIMULATOR, "hil", "--help"], check=True, capture_output=True, text=True).stdout
     joined = said.replace("\\\n", " ")
-    return [line.strip() for line in joined.splitlines() if re.match(r"  (cargo|qemu-system-arm) ", line)]
+    return [line.strip() for line in joined.splitlines() if re.match(r"  (cargo|qemu-system-arm|host-sim) ", line)]
 
 
 def as_printed(_machine):
@@ -27,8 +27,7 @@ def as_printed(_machine):
     assert (profile, feature, binary) == ("board", "mps2", "mps2"), build
     assert kernel == pathlib.Path("target", target, profile, binary), kernel
     assert IMAGE.parts[-3:] == kernel.parts[-3:], f"{IMAGE} is not what the help has built"
-    # The simulator's arguments, behind `cargo run … --`.
-    vehicle = [SIMULATOR, *vehicle[vehicle.index("--") + 1 :], "--duration", str(DURATION), "--patience", str(PATIENCE)]
+    vehicle = [SIMULATOR, *vehicle[1:], "--duration", str(DURATION), "--patience", str(PATIENCE)]
     process = subprocess.Popen([IMAGE if word == str(kernel) else word for word in board], cwd=TOP, stdout=subprocess.DEVNULL)
     try:
         report = subprocess.run(vehicle, cwd=TOP, check=True, capture_output=True, text=True, timeout=PATIENCE).stdout
