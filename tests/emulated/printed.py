@@ -1,4 +1,4 @@
-"""The lines of `host-sim hil --help`, run as they are printed: the board and the vehicle find each other and fly their ticks."""
+"""The lines of `host-sim hil --help`, run as printed: board and vehicle find each other and fly their ticks."""
 
 import pathlib
 import re
