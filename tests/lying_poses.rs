@@ -20,8 +20,8 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use scenario::Scenario;
 
-/// The seed of the one flight of the nightly 6,000 that breaks a limit, which docs/measured.md tells: it is printed, and
-/// not judged.
+/// The seed of the one flight of the nightly 6,000 that breaks a limit, which docs/measured.md tells: it is printed,
+/// and not judged.
 const NOT_MENDED_SEED: u64 = 4352;
 
 /// Flights in each test run.

@@ -1,6 +1,6 @@
 //! Bytes of a radio's receiver, and frames of channels whose checksums are right. Whatever comes, the kill switch moves
-//! only where several frames in a row have it, nothing is armed by the first frames, and what the sticks ask for is made
-//! of numbers.
+//! only where several frames in a row have it, nothing is armed by the first frames, and what the sticks ask for is
+//! made of numbers.
 
 #![no_main]
 

@@ -21,7 +21,8 @@ static STARTED: AtomicU64 = AtomicU64::new(0);
 
 /// A file that shows up under its name only when it is complete; dropped before that, it leaves nothing behind.
 ///
-/// It has the owner and the mode of the file that it replaces. A device or a pipe is written to as it stands: it must not be replaced by a file of its name.
+/// It has the owner and the mode of the file that it replaces. A device or a pipe is written to as it stands: it must
+/// not be replaced by a file of its name.
 #[derive(Debug)]
 pub struct WholeFile {
     writer: BufWriter<File>,

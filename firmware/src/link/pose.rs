@@ -14,9 +14,9 @@
 //!
 //! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
 //! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count. Velocities and body rates
-//! must be finite too, though the IMU's are flown (docs/mocap.md says why). Of the pose's covariance the greatest variances of position and of attitude
-//! count, where they are positive (NaN means unknown, and zero that the sender left it out). Infinite ones mean that
-//! the sender has no pose, and are refused.
+//! must be finite too, though the IMU's are flown (docs/mocap.md says why). Of the pose's covariance the greatest
+//! variances of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender
+//! left it out). Infinite ones mean that the sender has no pose, and are refused.
 
 use super::frame::Frame;
 use super::sender_clock::{LATE_MAX, SenderClock};

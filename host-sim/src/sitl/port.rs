@@ -1,7 +1,7 @@
 //! The clients: MAVLink over UDP on this machine's loopback, whole frames in each datagram.
 //!
-//! Each datagram is parsed by itself. What it leaves unfinished is dropped, and so is whatever is no frame: nothing that
-//! one client sends can swallow a frame of another's.
+//! Each datagram is parsed by itself. What it leaves unfinished is dropped, and so is whatever is no frame: nothing
+//! that one client sends can swallow a frame of another's.
 //!
 //! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
 //! Nothing from outside this machine gets in.

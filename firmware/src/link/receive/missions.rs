@@ -5,9 +5,9 @@
 //! ```
 //!
 //! One client uploads at a time. The next item is requested again while it does not come, by the clock of whatever
-//! frames come; an item of another number is dropped. After [`GIVEN_UP_AFTER`] without the right one the upload is given
-//! up, and the items that there were stay. A frame that the line delivers twice counts once. No mission is changed while
-//! it is flown. The fence and the rally points are empty lists.
+//! frames come; an item of another number is dropped. After [`GIVEN_UP_AFTER`] without the right one the upload is
+//! given up, and the items that there were stay. A frame that the line delivers twice counts once. No mission is
+//! changed while it is flown. The fence and the rally points are empty lists.
 
 use super::Receiver;
 use super::senders::Sender;
