@@ -34,10 +34,10 @@ const HONEST_FLIGHTS: u64 = 140;
 const HEIGHTS: std::ops::Range<f32> = 0.5..2.9;
 
 /// How long after a command something begins at most, s: as long as flights last.
-const LASTS: f64 = 12.0;
+const BEGINS_WITHIN: f64 = 12.0;
 
 /// How high the others fly in flights about one lie, m.
-const HEIGHT: f32 = 1.5;
+const HOVER_HEIGHT: f32 = 1.5;
 
 /// Half a second into a hold, a second into going round, and a second into a landing.
 const HOLDING: Begins = Begins::After(Event::Up, 0.0);
@@ -106,7 +106,7 @@ fn print(name: &str, flown: &[Flown]) {
 fn begins(random: &mut ChaCha8Rng) -> Begins {
     match random.random_range(0..=Event::ALL.len()) {
         0 => Begins::AtBoot,
-        event => Begins::After(Event::ALL[event - 1], random.random_range(0.0..LASTS)),
+        event => Begins::After(Event::ALL[event - 1], random.random_range(0.0..BEGINS_WITHIN)),
     }
 }
 
@@ -144,7 +144,7 @@ fn a_landing_at_any_moment_on_honest_poses_rises_by_half_a_metre_at_most() {
     let count = std::env::var("LYING_FLIGHTS").ok().map_or(HONEST_FLIGHTS, |count| count.parse().unwrap());
     let mut random = ChaCha8Rng::seed_from_u64(44);
     let cases = (0..count).map(|seed| Case {
-        begins: Begins::After(Event::ALL[seed as usize % Event::ALL.len()], random.random_range(0.0..LASTS)),
+        begins: Begins::After(Event::ALL[seed as usize % Event::ALL.len()], random.random_range(0.0..BEGINS_WITHIN)),
         height: random.random_range(HEIGHTS),
         lies: Vec::new(),
         ends_after: None,
@@ -162,7 +162,7 @@ fn a_landing_at_any_moment_on_honest_poses_rises_by_half_a_metre_at_most() {
 
 /// Flies one lie from a phase on, for so long until LAND, with some seeds.
 fn flights(lie: Lie, begins: Begins, land_after: f64) -> Vec<Flown> {
-    let case = |seed| Case { begins, height: HEIGHT, lies: vec![lie], ends_after: None, land_after, seed };
+    let case = |seed| Case { begins, height: HOVER_HEIGHT, lies: vec![lie], ends_after: None, land_after, seed };
     let flown = fly_all((0..4).map(case).collect());
     print(lie.name(), &flown);
     judge(&flown);
@@ -240,7 +240,7 @@ fn how_far_undetectable_lies_lead() {
         (Lie::HeadingDrifts(0.5_f32.to_radians()), HOLDING),
         (Lie::Late(5), Begins::AtBoot),
     ] {
-        let case = Case { begins, height: HEIGHT, lies: vec![lie], ends_after: None, land_after: 30.0, seed: 1 };
+        let case = Case { begins, height: HOVER_HEIGHT, lies: vec![lie], ends_after: None, land_after: 30.0, seed: 1 };
         let flown = fly_all(vec![case]);
         println!("{lie:?}: {:.2} m off in 30 s; {:?}", flown[0].off, flown[0].path);
         judge(&flown);

@@ -26,9 +26,9 @@ use tuned::{Built, Unfit};
 type Values = [f32; PARAMETERS.len()];
 
 /// Words with a bit for each row that is lost, and their last bit: every value is lost, and none was set since.
-const LOST_WORDS: usize = PARAMETERS.len() / BITS + 1;
-const ALL_LOST: usize = LOST_WORDS * BITS - 1;
-const BITS: usize = u32::BITS as usize;
+const LOST_WORDS: usize = PARAMETERS.len() / WORD_BITS + 1;
+const ALL_LOST: usize = LOST_WORDS * WORD_BITS - 1;
+const WORD_BITS: usize = u32::BITS as usize;
 
 const _: () = assert!(PARAMETERS.len() <= ALL_LOST);
 
@@ -200,14 +200,14 @@ impl<M: RawMutex> Parameters<M> {
         if self.lost.iter().all(|word| word.load(Ordering::Relaxed) == 0) {
             return None;
         }
-        let is_lost = |bit: usize| self.lost[bit / BITS].load(Ordering::Relaxed) >> (bit % BITS) & 1 == 1;
+        let is_lost = |bit: usize| self.lost[bit / WORD_BITS].load(Ordering::Relaxed) >> (bit % WORD_BITS) & 1 == 1;
         let row = PARAMETERS.iter().find(|row| is_lost(row.parameter as usize));
         if is_lost(ALL_LOST) { Some("parameters") } else { row.map(|row| row.name) }
     }
 
     /// Takes note of what is lost, or not any more.
     fn note(&self, bit: usize, is_lost: bool) {
-        let (word, mask) = (&self.lost[bit / BITS], 1 << (bit % BITS));
+        let (word, mask) = (&self.lost[bit / WORD_BITS], 1 << (bit % WORD_BITS));
         if is_lost {
             word.fetch_or(mask, Ordering::Relaxed);
         } else {

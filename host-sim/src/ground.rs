@@ -21,7 +21,7 @@ pub use rocking::TILT_MAX;
 
 use crate::plant::Plant;
 use controller_core::vehicle::Vehicle;
-use friction::{FRICTION, slowed};
+use friction::{FRICTION_COEFFICIENT, slowed};
 use nalgebra::{Quaternion, Vector3};
 use rocking::{Lean, Rocked, Rocking, Weight, tilt, up};
 use scenario::body::BodyState;
@@ -129,7 +129,7 @@ impl Ground {
         }
         let touchdown = Touchdown { speed: -climbing, tilt: tilt(state), position: state.position };
         let lies = lean.is_none() && !is_upright(state);
-        let sliding = slowed(&state.velocity, FRICTION * touchdown.speed);
+        let sliding = slowed(&state.velocity, FRICTION_COEFFICIENT * touchdown.speed);
         let velocity = if lies { Vector3::zeros() } else { sliding };
         let touched = BodyState { velocity, ..standing(state.position, state.attitude) };
         let flat = if lies { Stance::Lying } else { Stance::Feet };

@@ -42,7 +42,7 @@ struct Range {
     possible: [f64; 2],
 }
 
-const ARM: Range = Range { typical: 0.16, usual: [0.06, 0.6], possible: [0.02, 2.0] };
+const ARM_RANGE: Range = Range { typical: 0.16, usual: [0.06, 0.6], possible: [0.02, 2.0] };
 const RADIUS: Range = Range { typical: 0.6, usual: [0.12, 1.25], possible: [0.03, 2.0] };
 const RADIUS_WITHOUT_ROTORS: Range = Range { typical: 0.6, usual: [0.12, 2.5], possible: [0.003, 20.0] };
 const THRUST: Range = Range { typical: 4.0, usual: [1.2, 20.0], possible: [1.0, 50.0] };
@@ -138,7 +138,7 @@ impl Numbers {
             });
             return [Some(inertia), thrust, torque].into_iter().flatten().collect();
         };
-        let [least, greatest] = ARM.usual.map(|arm| short(arm * size));
+        let [least, greatest] = ARM_RANGE.usual.map(|arm| short(arm * size));
         let [thrust_field, yaw_field] = if speed.is_some() {
             ["rotors.speed", "rotors.drag_coefficient"]
         } else {
@@ -149,7 +149,7 @@ impl Numbers {
             Judged {
                 field: "rotors.position",
                 value: arm / size,
-                range: ARM,
+                range: ARM_RANGE,
                 says: format!(
                     "makes arms of {} m on a vehicle of {} kg, where {least} to {greatest} m are usual",
                     short(arm),

@@ -18,12 +18,12 @@ const SETTINGS: FlightSettings =
     FlightSettings { fence_radius: BOX, fence_height: BOX, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
 
 /// When the operator arms, and commands something, in ticks.
-const ARM: u64 = 250;
-const GO: u64 = 300;
+const ARM_TICK: u64 = 250;
+const GO_TICK: u64 = 300;
 
 /// How long it holds before it is commanded to go on, and goes on before it is commanded to hold, in ticks.
-const HOLDS: u64 = 50;
-const GOES: u64 = 150;
+const HOLD_TICKS: u64 = 50;
+const GOING_TICKS: u64 = 150;
 
 /// How long it flies a setpoint that is a point before it goes round, in ticks.
 const AT_POINT: u64 = 600;
@@ -53,16 +53,16 @@ impl Event {
     /// What the operator requests at `tick`, in a mode that has lasted for so many ticks.
     fn request(self, tick: u64, mode: Mode, lasts: u64, height: f32) -> Option<Request> {
         match self {
-            _ if tick == ARM => Some(Request::Arm),
-            Self::Setpoints if tick == GO => Some(Request::FlySetpoints),
-            Self::Mission if tick == GO => Some(Request::FlyMission(Some(0))),
-            _ if tick == GO => Some(Request::TakeOff(Some(height))),
-            Self::GoTo | Self::Hold if mode == Mode::Holding && lasts == HOLDS => {
+            _ if tick == ARM_TICK => Some(Request::Arm),
+            Self::Setpoints if tick == GO_TICK => Some(Request::FlySetpoints),
+            Self::Mission if tick == GO_TICK => Some(Request::FlyMission(Some(0))),
+            _ if tick == GO_TICK => Some(Request::TakeOff(Some(height))),
+            Self::GoTo | Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS => {
                 let motion = Motion::Position(Vector3::new(1.5, -1.5, 0.5 * height + 0.5));
                 Some(Request::GoTo(Setpoint { motion, turn: Turn::Keep }))
             }
-            Self::Hold if mode == Mode::Holding && lasts == HOLDS + GOES => Some(Request::Hold),
-            Self::Land if mode == Mode::Holding && lasts == HOLDS => Some(Request::Land),
+            Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS + GOING_TICKS => Some(Request::Hold),
+            Self::Land if mode == Mode::Holding && lasts == HOLD_TICKS => Some(Request::Land),
             _ => None,
         }
     }
@@ -70,9 +70,9 @@ impl Event {
     /// Whether it happens in this tick, or has happened.
     fn has_happened(self, tick: u64, mode: Mode, lasts: u64) -> bool {
         match self {
-            Self::TakeOff | Self::Setpoints | Self::Mission => tick >= GO,
-            Self::Up | Self::GoTo => mode == Mode::Holding && lasts >= HOLDS,
-            Self::Hold => mode == Mode::Holding && lasts >= HOLDS + GOES,
+            Self::TakeOff | Self::Setpoints | Self::Mission => tick >= GO_TICK,
+            Self::Up | Self::GoTo => mode == Mode::Holding && lasts >= HOLD_TICKS,
+            Self::Hold => mode == Mode::Holding && lasts >= HOLD_TICKS + GOING_TICKS,
             Self::Land => mode == Mode::Landing,
         }
     }

@@ -41,7 +41,7 @@ const OTHER_LOST: u32 = 1 << 30;
 const OTHER_BITS: u32 = 14;
 
 /// Copies of a record.
-const COPIES: usize = 2;
+const RECORD_COPIES: usize = 2;
 
 /// What a record holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,7 +147,7 @@ impl<F: Flash> Journal<F> {
             Ok(record) => !is_others(record[1] & COUNT_MASK),
             Err(Fault) => true,
         });
-        remains.count() >= COPIES
+        remains.count() >= RECORD_COPIES
     }
 
     /// Takes note of a whole record.
@@ -227,13 +227,13 @@ impl<F: Flash> Journal<F> {
     /// Writes both copies of a record, one behind the other.
     fn put(&mut self, kind: Kind, record: &mut Record) -> Result<(), Fault> {
         self.make_room(kind.other())?;
-        (0..COPIES).try_for_each(|_| self.write(kind, record))
+        (0..RECORD_COPIES).try_for_each(|_| self.write(kind, record))
     }
 
     /// Erases the other sector where this one has no room for both copies, and copies the newest of the kind that would
     /// be `left` behind.
     fn make_room(&mut self, left: Kind) -> Result<(), Fault> {
-        if self.next + COPIES > self.end {
+        if self.next + RECORD_COPIES > self.end {
             let other = 1 - self.sector;
             let newest = [Kind::Parameters, Kind::Signing].map(|kind| self.newest(kind));
             if newest.iter().flatten().any(|newest| newest.place / F::RECORDS == other) {
@@ -247,7 +247,7 @@ impl<F: Flash> Journal<F> {
         match self.newest(left) {
             Some(newest) if newest.place / F::RECORDS != self.next / F::RECORDS => {
                 let mut record = self.flash.read(newest.place)?;
-                (0..COPIES).try_for_each(|_| self.write(left, &mut record))
+                (0..RECORD_COPIES).try_for_each(|_| self.write(left, &mut record))
             }
             _ => Ok(()),
         }

@@ -39,7 +39,7 @@ const LEANING_ACCELERATION: f32 = 1.5;
 const UNEXPECTED_ACCELERATION: f32 = 4.0;
 
 /// The greatest friction of feet on the ground, as a share of what it carries.
-const FRICTION: f32 = 1.0;
+const FRICTION_SHARE_MAX: f32 = 1.0;
 
 /// The cosine of the least tilt of a crash: 60 degrees, and 80 where the law wants the vehicle so.
 const LYING_COSINE: f32 = 0.5;
@@ -159,7 +159,7 @@ impl Look<'_> {
     pub fn is_unexpected(&self, touched: bool) -> bool {
         self.by_imu().is_some_and(|(unexpected, _, state)| {
             let carried = touched && state.acceleration.z.abs() <= HELD_UP_ACCELERATIONS.2;
-            let slides = carried && unexpected.xy().norm() <= FRICTION * unexpected.z;
+            let slides = carried && unexpected.xy().norm() <= FRICTION_SHARE_MAX * unexpected.z;
             !within(&unexpected, UNEXPECTED_ACCELERATION) && !slides
         })
     }

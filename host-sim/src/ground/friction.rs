@@ -12,7 +12,7 @@
 use nalgebra::Vector3;
 
 /// mu, of rubber feet on a floor: between 0.4 and 0.9, as a rule.
-pub const FRICTION: f64 = 0.6;
+pub const FRICTION_COEFFICIENT: f64 = 0.6;
 
 /// The part of a vector along the ground.
 pub fn across(vector: &Vector3<f64>) -> Vector3<f64> {

@@ -30,7 +30,7 @@
 //! Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes*, 1963: a block that rocks;
 //! here with rotors, and at rest after each impact.
 
-use super::friction::{FRICTION, across, slowed};
+use super::friction::{FRICTION_COEFFICIENT, across, slowed};
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use scenario::body::BodyState;
 
@@ -66,7 +66,7 @@ impl Weight {
     pub fn slide(&self, state: &BodyState, force: &Vector3<f64>, step: f64) -> BodyState {
         let carried = self.newtons() - force.z;
         let pushed = across(&state.velocity) + across(force) * (step / self.mass);
-        let velocity = slowed(&pushed, FRICTION * carried * step / self.mass);
+        let velocity = slowed(&pushed, FRICTION_COEFFICIENT * carried * step / self.mass);
         let position = state.position + across(&(state.velocity + velocity)) * (0.5 * step);
         BodyState { position, velocity, ..*state }
     }
@@ -173,7 +173,7 @@ impl Rocking {
         let moved = self.state().velocity;
         self.lean.rate = 0.0;
         let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX;
-        let velocity = if slides { slowed(&moved, FRICTION * moved.z.abs()) } else { Vector3::zeros() };
+        let velocity = if slides { slowed(&moved, FRICTION_COEFFICIENT * moved.z.abs()) } else { Vector3::zeros() };
         Rocked::Ended(BodyState { velocity, ..self.state() })
     }
 
@@ -185,11 +185,11 @@ impl Rocking {
         let stuck = (axis.dot(&r.cross(all)) + torque) / self.inertia;
         let needed = bent(stuck) * mass - all;
         let slides = self.sliding != Vector3::zeros();
-        if !slides && across(&needed).norm() <= FRICTION * needed.z {
+        if !slides && across(&needed).norm() <= FRICTION_COEFFICIENT * needed.z {
             return Some(stuck);
         }
         let along = if slides { -self.sliding } else { across(&needed) };
-        let contact = Vector3::z() + along.try_normalize(0.0).unwrap_or_default() * FRICTION;
+        let contact = Vector3::z() + along.try_normalize(0.0).unwrap_or_default() * FRICTION_COEFFICIENT;
         let lever = axis.dot(&r.cross(&contact));
         let left = self.inertia - mass * r.norm_squared() + mass * lever * axis.cross(&r).z;
         let digs_in = left <= DIGS_IN * self.inertia;

@@ -135,7 +135,7 @@ fn one_that_leans_falls_back_onto_its_feet_as_fast_as_its_weight_makes_it_and_a_
             // Where the foot slides back, friction takes its force times the way.
             let carried = weight + weight / 9.81 * (plant.state().velocity.z - last.velocity.z) / STEP;
             let slid = foot(plant.state()).zip(foot(&last)).map_or(0.0, |(foot, last)| (foot - last).xy().norm());
-            rubbed += FRICTION * carried * slid;
+            rubbed += FRICTION_COEFFICIENT * carried * slid;
             // Until the last step, in which the feet take what it has.
             let left = began - rubbed - 0.06 * start * weight * 0.1;
             assert!(tilt(plant.state()) < 1e-9 || now > left, "{began} {rubbed} {now}");

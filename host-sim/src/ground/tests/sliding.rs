@@ -29,7 +29,7 @@ fn what_is_pulled_harder_than_friction_holds_slides_by_the_rest() {
     }
     for (share, lift) in [(0.7, 0.0), (0.4, 0.5), (0.3, 1.0)] {
         let speed = pulled(Vector3::new(share * weight, 0.0, lift * weight), 1000);
-        let expected = (share - FRICTION * (1.0 - lift)) * weight / mass;
+        let expected = (share - FRICTION_COEFFICIENT * (1.0 - lift)) * weight / mass;
         assert!((speed - expected).abs() < 1e-9, "{share}: {speed} m/s, not {expected}");
     }
 }
@@ -39,10 +39,10 @@ fn a_slope_holds_what_stands_on_it_up_to_the_angle_of_friction() {
     let (_, _, weight) = on_the_ground();
     // Gravity that leans is a slope.
     let speed = |angle: f64| pulled(Vector3::new(angle.sin(), 0.0, 1.0 - angle.cos()) * weight, 500);
-    let steepest = FRICTION.atan();
+    let steepest = FRICTION_COEFFICIENT.atan();
     assert_eq!((speed(0.1), speed(0.99 * steepest)), (0.0, 0.0));
     for angle in [1.05 * steepest, 1.0] {
-        let expected = 0.5 * GRAVITY * (angle.sin() - FRICTION * angle.cos());
+        let expected = 0.5 * GRAVITY * (angle.sin() - FRICTION_COEFFICIENT * angle.cos());
         assert!((speed(angle) - expected).abs() < 1e-9, "{angle}: {} m/s, not {expected}", speed(angle));
     }
 }
@@ -51,7 +51,7 @@ fn a_slope_holds_what_stands_on_it_up_to_the_angle_of_friction() {
 fn what_slides_without_a_push_stops_by_friction_and_stays() {
     let (mut ground, plant, _) = on_the_ground();
     let mut state = BodyState { velocity: Vector3::new(0.3, -0.4, 0.0), ..*plant.state() };
-    let stop = 0.5 / (FRICTION * GRAVITY);
+    let stop = 0.5 / (FRICTION_COEFFICIENT * GRAVITY);
     for _ in 0..(stop / STEP) as u32 + 2 {
         state = ground.hold(&state, &Vector3::zeros(), &Vector3::zeros()).unwrap();
     }
@@ -107,7 +107,7 @@ fn a_sliding_foot_feels_friction_times_what_it_carries() {
             assert_eq!(ground.act(&mut plant, 0.0, &Vector3::zeros()), None);
             let change = (plant.state().velocity - before.velocity) / STEP;
             let carried = change.z + GRAVITY;
-            let expected = -FRICTION * carried * along.signum();
+            let expected = -FRICTION_COEFFICIENT * carried * along.signum();
             assert!(carried > 0.0 && (change.y - expected).abs() < 0.15, "{roll} {along} {step}: {change}");
             before = *plant.state();
         }
