@@ -19,8 +19,9 @@ use std::fmt;
 const FLAGS: [usize; 2] = [8, 16];
 const APPENDED: u8 = 1;
 
-/// The kinds of messages of the format's version 1, with those that mean nothing here.
-const MESSAGE_KINDS: &[u8] = b"FIMPQADLCORSB";
+/// The kinds of messages of the format's version 1, with those that mean nothing here; and Z, with which the firmware
+/// fills the sectors of a card.
+const MESSAGE_KINDS: &[u8] = b"FIMPQADLCORSBZ";
 
 /// So many messages that follow one another do so by no chance.
 const MESSAGES_IN_A_ROW: usize = 3;

@@ -3,9 +3,10 @@ use super::reader::Ulog;
 use super::topics::{TICK, written};
 use super::writer::{Topic, Writer};
 use super::{HEAD, MAGIC};
+use firmware::card::sector;
 use firmware::hardware::MotorCommand;
 use firmware::recorder::ring::{Ring, SLOT};
-use firmware::recorder::tick::Tick;
+use firmware::recorder::tick::{self, Tick};
 use firmware::recorder::ulog;
 use flight::Mode;
 use nalgebra::{Quaternion, Vector3};
@@ -165,6 +166,21 @@ fn one_damaged_message_costs_itself_alone_whatever_byte_of_it_is_damaged() {
         said,
         format!("; 1 damaged place of {RECORD} bytes skipped: byte 1162: a message that ends where none begins")
     );
+}
+
+#[test]
+fn a_card_whose_sectors_end_with_filler_is_read_whole() {
+    let recording = recording();
+    let last = &recording[recording.len() - ulog::DATA.len() - tick::SIZE..];
+    let mut sector = sector::BLANK;
+    let (record, filler) = sector.split_at_mut(last.len());
+    record.copy_from_slice(last);
+    let head = ulog::head(sector::FILLER, filler.len() - sector::HEAD);
+    filler[..sector::HEAD].copy_from_slice(&head);
+    let card = [recording, sector.repeat(40), sector::BLANK.repeat(20)].concat();
+    let read = Ulog::read(&card, &[TICK]).unwrap();
+    assert_eq!(read.damage.to_string(), "");
+    assert_eq!(read.topic(TICK).unwrap().len(), 2 + 40);
 }
 
 #[test]
