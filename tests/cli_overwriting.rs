@@ -3,8 +3,8 @@
 
 use crate::support::binary;
 use crate::support::binary::{brief, files, host_sim, status, stderr, stdout, with};
+use host_sim::output::whole_file::WholeFile;
 use host_sim::rivals::gains::BUILT_IN;
-use host_sim::whole_file::WholeFile;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

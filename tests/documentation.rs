@@ -4,7 +4,7 @@
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
-use host_sim::log;
+use host_sim::reports::log;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::collections::BTreeSet;

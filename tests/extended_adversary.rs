@@ -24,7 +24,7 @@ use controller_core::extended::rotor_loss::spinning::SpinningLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
-use host_sim::law::LawServer;
+use host_sim::commands::law::LawServer;
 use nalgebra::{Quaternion, Vector3};
 use rand::RngExt;
 use rayon::prelude::*;

@@ -5,7 +5,7 @@ use controller_core::controller::Memory;
 use controller_core::law::Law;
 use controller_core::path_lifting::Lift;
 use controller_core::position::FilterState;
-use host_sim::controller::Controller;
+use host_sim::flight::controller::Controller;
 use host_sim::flight::law;
 use host_sim::rivals::continuous::Continuous;
 use host_sim::rivals::memoryless::Memoryless;

@@ -1,9 +1,9 @@
 //! Identification from a log of PX4: a simulated flight, written in PX4's topics, frames, motor order and rates.
 
 use controller_core::allocation::{Mixer, Rotors};
-use host_sim::identify::flight_log::{FlightLog, Source};
-use host_sim::identify::{identify, observability, ulog};
-use host_sim::ulog::writer::{Topic, Writer};
+use host_sim::identification::identify::flight_log::{FlightLog, Source};
+use host_sim::identification::identify::{identify, observability, ulog};
+use host_sim::identification::ulog::writer::{Topic, Writer};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use verification::identify_trials::{Drag, Trial};

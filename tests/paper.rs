@@ -1,9 +1,9 @@
 //! The paper's experiment, flown: every figure that Section VI claims, and the sharper ones this project aims at.
 
 use controller_core::certificate::Certificate;
-use host_sim::claims::{all_hold, claims, table};
 use host_sim::flight::Flight;
-use host_sim::flown::Flown;
+use host_sim::flight::claims::{all_hold, claims, table};
+use host_sim::flight::flown::Flown;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::path::Path;

@@ -3,9 +3,9 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
-use host_sim::course::Course;
 use host_sim::flight::Flight;
-use host_sim::tune::trials::{hover, noise, recovery};
+use host_sim::flight::course::Course;
+use host_sim::studies::tune::trials::{hover, noise, recovery};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::reality::disturbance::Disturbance;

@@ -2,8 +2,8 @@
 //! of noise in wind, and two flights of a campaign with slow rotors and weak yaw.
 //! `cargo test -p host-sim progress -- --nocapture` prints how far each was off.
 
-use host_sim::campaign::draw::circumstances;
 use host_sim::flight::Flight;
+use host_sim::studies::campaign::draw::circumstances;
 use scenario::Scenario;
 use std::path::Path;
 

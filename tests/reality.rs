@@ -3,8 +3,8 @@
 
 use crate::support::binary::{directory, host_sim, status};
 use controller_core::certificate::certified::Certified;
-use host_sim::course::Course;
 use host_sim::flight::Flight;
+use host_sim::flight::course::Course;
 use nalgebra::Vector3;
 use scenario::Scenario;
 use std::time::Instant;

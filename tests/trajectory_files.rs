@@ -6,7 +6,7 @@ use crate::support::binary::{self, host_sim, status, stdout};
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::reference::Reference;
 use host_sim::flight::Flight;
-use host_sim::reference_rows::SLOWER;
+use host_sim::reports::reference_rows::SLOWER;
 use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
 use scenario::trajectory::{Route, Way};

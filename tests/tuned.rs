@@ -2,10 +2,10 @@
 //! down in a sixth of the height that Table I takes. `-- --nocapture` prints the heights.
 
 use controller_core::certificate::Certificate;
-use host_sim::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};
 use host_sim::flight::Flight;
-use host_sim::flown::Flown;
-use host_sim::tune::trials::recovery;
+use host_sim::flight::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR};
+use host_sim::flight::flown::Flown;
+use host_sim::studies::tune::trials::recovery;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;
 use std::path::Path;

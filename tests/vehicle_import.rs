@@ -4,9 +4,9 @@
 
 use crate::support::binary::{self, files, host_sim, status, stderr, stdout};
 use crate::support::random;
-use host_sim::import::written::{Wishes, written};
-use host_sim::import::{Format, read};
-use host_sim::tune::trials::recovery;
+use host_sim::identification::import::written::{Wishes, written};
+use host_sim::identification::import::{Format, read};
+use host_sim::studies::tune::trials::recovery;
 use rand::RngExt;
 use scenario::Scenario;
 use std::fs;
@@ -73,7 +73,7 @@ fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down
         let verdict = scenario::verdict::Verdict::of(&read).unwrap();
         let flown = if weak { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
-        let course = host_sim::course::Course::over(&flown, flight, 0.1).unwrap();
+        let course = host_sim::flight::course::Course::over(&flown, flight, 0.1).unwrap();
         let settled = course.settled.unwrap_or(f64::INFINITY);
         assert!(settled < 8.0 && course.clipped == 0, "{name}: {settled} s, {} clipped", course.clipped);
     }
@@ -143,7 +143,7 @@ fn px4s_right_is_our_minus_left_and_its_positive_moment_is_counter_clockwise() {
         .map(|line| format!("1\t1\t{}\t9\n", line.replacen(' ', "\t", 1)))
         .collect();
     let vehicle = read(&(saved + "1\t1\tCA_ROTOR0_PZ\t-0.05\t9\n"), &path, None).unwrap();
-    let host_sim::import::numbers::Actuation::Rotors(rotors) = vehicle.actuation else { panic!() };
+    let host_sim::identification::import::numbers::Actuation::Rotors(rotors) = vehicle.actuation else { panic!() };
     assert_eq!(rotors.position.unwrap()[0], nalgebra::Vector3::new(0.13, -0.22, 0.05));
 }
 

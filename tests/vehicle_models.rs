@@ -2,9 +2,9 @@
 //! of docs/import.md says; where their parts stand; and that a vehicle file that is there already is kept.
 
 use crate::support::binary::{self, files, host_sim, status, stderr, stdout};
-use host_sim::import::numbers::{Actuation, VehicleNumbers};
-use host_sim::import::read;
-use host_sim::import::written::{Wishes, written};
+use host_sim::identification::import::numbers::{Actuation, VehicleNumbers};
+use host_sim::identification::import::read;
+use host_sim::identification::import::written::{Wishes, written};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::verdict::Verdict;

@@ -5,8 +5,8 @@
 //! positions are compared with those of steps of half a millisecond. The machine's best repetition counts: the others
 //! measure its neighbours.
 
-use host_sim::campaign::step;
 use host_sim::flight::Flight;
+use host_sim::studies::campaign::step;
 use scenario::Scenario;
 use std::error::Error;
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 // A drawing area with axes: what plots over time and distributions have in common.
 
-// The axes' rules are those of host-sim/src/plots/axis.rs, which draws the same plots as SVG.
+// The axes' rules are those of host-sim/src/reports/plots/axis.rs, which draws the same plots as SVG.
 
 /** Round numbers between two ends, at most so many. */
 function ticks(least, greatest, most) {

@@ -2,17 +2,32 @@
 //!
 //! At each tick the law gets the vehicle's state in single precision, true, measured or estimated, and the reference;
 //! its wrench is held until the next tick. Time is integer microseconds.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`controller`] | our law or a rival, in the loop |
+//! | [`estimation`] | the core's estimator on the simulated instruments |
+//! | [`flier`] | a law on a vehicle, ready for any number of flights |
+//! | [`course`] | a flight's figures: height lost, overshoot, settling time |
+//! | [`flown`], [`claims`] | a flight's extremes; its claims and verdicts |
 
-use crate::actuators::{ActuationError, Asked};
-use crate::controller::Controller;
-use crate::estimation::{Estimation, NoEstimate};
-use crate::ground::Touchdown;
-use crate::reality::Surroundings;
+pub mod claims;
+pub mod controller;
+pub mod course;
+pub mod estimation;
+pub mod flier;
+pub mod flown;
+
+use crate::flight::controller::Controller;
+use crate::flight::estimation::{Estimation, NoEstimate};
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
-use crate::sensed::{Sensed, specific_force};
-use crate::sensors::Sensors;
 use crate::vehicle::SimulatedVehicle;
+use crate::vehicle::actuators::{ActuationError, Asked};
+use crate::vehicle::ground::Touchdown;
+use crate::vehicle::reality::Surroundings;
+use crate::vehicle::sensed::{Sensed, specific_force};
+use crate::vehicle::sensors::Sensors;
 use controller_core::allocation::Thrusts;
 use controller_core::allocation::remaining::Lost;
 use controller_core::certificate::certified::Certified;

@@ -3,7 +3,7 @@
 //!
 //! They are references for comparison, written from their papers in double precision. They are not proven, and not
 //! meant to fly. Each module says what its paper leaves open, and what it lacks that ours has (feed-forward, separate
-//! gains for tilt and yaw). Their gains are found by the cost that ours are tuned by ([`tuning`]).
+//! gains for tilt and yaw). Their gains are found by the cost that ours are tuned by ([`crate::studies::tune::rivals`]).
 //!
 //! | module | law |
 //! |---|---|
@@ -17,10 +17,12 @@
 //! | [`rival`], [`pilot`] | a rival's inputs and outputs; its place in a flight |
 //! | [`jet`], [`frame`], [`low_pass`], [`quaternion_feedback`] | parts that several of them share |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
-//! | [`start`], [`tuning`] | where the search for them starts; the search |
+//! | [`start`] | where the search for them starts ([`crate::studies::tune::rivals`]) |
+//! | [`choice`] | which law flies, ours or one of these |
 //! | [`rate`] | a scenario under a law of another rate |
 
 pub mod cascade;
+pub mod choice;
 pub mod continuous;
 pub mod frame;
 pub mod gains;
@@ -37,7 +39,6 @@ pub mod quaternion_feedback;
 pub mod rate;
 pub mod rival;
 pub mod start;
-pub mod tuning;
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,29 @@
 //! The vehicle that a flight simulates: the scenario's model, or what it says the vehicle really is.
 //!
+//! | module | what it holds |
+//! |---|---|
+//! | [`plant`] | the paper's rigid body, eq. (2) |
+//! | [`actuators`] | delay, allocation and rotors that lag |
+//! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
+//! | [`ground`] | level ground, for flights that start and end there |
+//! | [`sensors`], [`sensed`] | the measured state; what an IMU and motor controllers say beside it |
+//! | [`instruments`] | an IMU at 1 kHz and late poses, for an estimator |
+//!
 //! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
 
-use crate::actuators::rotors::SpinningRotors;
-use crate::actuators::{ActuationError, Actuators, Asked};
-use crate::ground::Touchdown;
-use crate::plant::Plant;
-use crate::reality::{RealVehicle, Surroundings};
+pub mod actuators;
+pub mod ground;
+pub mod instruments;
+pub mod plant;
+pub mod reality;
+pub mod sensed;
+pub mod sensors;
+
+use crate::vehicle::actuators::rotors::SpinningRotors;
+use crate::vehicle::actuators::{ActuationError, Actuators, Asked};
+use crate::vehicle::ground::Touchdown;
+use crate::vehicle::plant::Plant;
+use crate::vehicle::reality::{RealVehicle, Surroundings};
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
 use nalgebra::Vector4;

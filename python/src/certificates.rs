@@ -3,7 +3,7 @@
 use crate::refused::refused;
 use crate::rows::array;
 use crate::scenarios::Scenario;
-use host_sim::certify::{certify as report_on, may_fly};
+use host_sim::commands::certify::{certify as report_on, may_fly};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use scenario::sampled_loop::LoopReport;

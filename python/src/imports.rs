@@ -2,10 +2,10 @@
 
 use crate::refused::{refused, refused_field};
 use crate::scenarios::{Scenario, change};
-use host_sim::import::numbers::VehicleNumbers;
-use host_sim::import::value::Value;
-use host_sim::import::written::{Wishes, Written, written};
-use host_sim::import::{self, Format, rotorpy};
+use host_sim::identification::import::numbers::VehicleNumbers;
+use host_sim::identification::import::value::Value;
+use host_sim::identification::import::written::{Wishes, Written, written};
+use host_sim::identification::import::{self, Format, rotorpy};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use scenario::check_name;

@@ -5,12 +5,12 @@
 use crate::refused::{failed, refused_field, unwritable};
 use crate::rows::{REFERENCE, Rows, STATE, WRENCH, counted, rows, vector};
 use crate::scenarios::Scenario;
-use host_sim::plots::path::poses;
-use host_sim::plots::replay::{Stretch, gif, still};
-use host_sim::report::page::{Block, Page, Section};
-use host_sim::report::plot::{Color, Curve, Plot};
-use host_sim::report::replay::{Body, Replay};
-use host_sim::report::track::Track;
+use host_sim::reports::plots::path::poses;
+use host_sim::reports::plots::replay::{Stretch, gif, still};
+use host_sim::reports::report::page::{Block, Page, Section};
+use host_sim::reports::report::plot::{Color, Curve, Plot};
+use host_sim::reports::report::replay::{Body, Replay};
+use host_sim::reports::report::track::Track;
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;

@@ -4,7 +4,7 @@
 //! scenario has any. A row whose motion is no longer finite goes no further until it is put somewhere.
 //!
 //! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's
-//! vector registers ([`host_sim::plant::rows`]), to the bits that each has alone.
+//! vector registers ([`host_sim::vehicle::plant::rows`]), to the bits that each has alone.
 
 use crate::cores::shared;
 use crate::laws::{MOST_ROWS, numbers};
@@ -13,11 +13,11 @@ use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, 
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::state::Wrench;
-use host_sim::actuators::Asked;
-use host_sim::plant::body::Body;
-use host_sim::plant::rows::Rows;
-use host_sim::sensors::Sensors;
 use host_sim::vehicle::SimulatedVehicle;
+use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::plant::body::Body;
+use host_sim::vehicle::plant::rows::Rows;
+use host_sim::vehicle::sensors::Sensors;
 use numpy::{PyArray1, PyArray2};
 use pulp::Arch;
 use pyo3::prelude::*;

@@ -3,7 +3,7 @@
 //! The work has a thread of its own; this one waits for it without Python's lock, and looks for signals now and then.
 //! Python raises them in its main thread only, so Ctrl-C ends what the main thread waits for.
 
-use host_sim::interrupt::Interrupt;
+use host_sim::output::interrupt::Interrupt;
 use pyo3::prelude::*;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;

@@ -2,9 +2,9 @@
 
 use controller_core::certificate::certified::Certified;
 use controller_core::law::Law;
-use host_sim::actuators::Asked;
-use host_sim::tune::trials::recovery;
+use host_sim::studies::tune::trials::recovery;
 use host_sim::vehicle::SimulatedVehicle;
+use host_sim::vehicle::actuators::Asked;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;

@@ -2,7 +2,7 @@
 
 use estimation::estimator::PoseMeasurement;
 use flight::{Battery, ImuSample, Inputs, Pose, Stamped, Velocity};
-use host_sim::reality::RealVehicle;
+use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use scenario::body::BodyState;
 use std::f64::consts::{FRAC_PI_4, PI};

@@ -1,10 +1,10 @@
 //! The flight and the bench of docs/identify.md: the numbers they give, and why they are refused.
 
 use super::parse;
-use host_sim::identify::bench::{self, Bench};
-use host_sim::identify::flight_log::FlightLog;
-use host_sim::identify::quantities::Quantities;
-use host_sim::identify::{identify, observability};
+use host_sim::identification::identify::bench::{self, Bench};
+use host_sim::identification::identify::flight_log::FlightLog;
+use host_sim::identification::identify::quantities::Quantities;
+use host_sim::identification::identify::{identify, observability};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 use verification::identify_trials::{MANOEUVRE, fly};

@@ -6,7 +6,7 @@ use controller_core::configuration::Configuration;
 use controller_core::state::State;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
-use host_sim::plant::Plant;
+use host_sim::vehicle::plant::Plant;
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};

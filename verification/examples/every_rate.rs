@@ -4,10 +4,10 @@
 //! They hover at the end, for at 10 Hz the study is up to 0.2 m beside a circle of one metre in a wind. Fails if a
 //! flight does not come to its place, attitude and heading for good within 54 s: at no rate may anything cycle.
 
-use host_sim::campaign::draw::circumstances;
-use host_sim::campaign::outcome::Outcome;
-use host_sim::campaign::quantile;
-use host_sim::campaign::step::longest;
+use host_sim::studies::campaign::draw::circumstances;
+use host_sim::studies::campaign::outcome::Outcome;
+use host_sim::studies::campaign::quantile;
+use host_sim::studies::campaign::step::longest;
 use scenario::Scenario;
 use scenario::campaign::{Ranges, Task};
 use scenario::verdict::Verdict;

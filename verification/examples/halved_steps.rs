@@ -3,10 +3,10 @@
 //! verdict changes.
 
 use controller_core::certificate::certified::Certified;
-use host_sim::campaign::draw::circumstances;
-use host_sim::campaign::outcome::Outcome;
-use host_sim::campaign::quantile;
-use host_sim::campaign::step::{longest, of};
+use host_sim::studies::campaign::draw::circumstances;
+use host_sim::studies::campaign::outcome::Outcome;
+use host_sim::studies::campaign::quantile;
+use host_sim::studies::campaign::step::{longest, of};
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;

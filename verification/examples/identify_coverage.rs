@@ -11,9 +11,9 @@
 //! mean square, 1 if uncertainties are right), and how many intervals missed. Fails if of any but the last fewer than
 //! 95 of 100 were identified correctly.
 
-use host_sim::identify::flight_log::FlightLog;
-use host_sim::identify::quantities::Quantity;
-use host_sim::identify::{identify, observability};
+use host_sim::identification::identify::flight_log::FlightLog;
+use host_sim::identification::identify::quantities::Quantity;
+use host_sim::identification::identify::{identify, observability};
 use rayon::prelude::*;
 use scenario::{STUDY, Scenario};
 use std::error::Error;

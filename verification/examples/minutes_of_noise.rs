@@ -6,10 +6,10 @@
 //! turbulence as on a stormy day. Fails if a flight ends more than a metre off, could not go on, or had the fallback.
 
 use controller_core::certificate::certified::Certified;
-use host_sim::campaign::draw::circumstances;
-use host_sim::campaign::quantile;
-use host_sim::campaign::step::longest;
 use host_sim::flight::Flight;
+use host_sim::studies::campaign::draw::circumstances;
+use host_sim::studies::campaign::quantile;
+use host_sim::studies::campaign::step::longest;
 use scenario::Scenario;
 use scenario::campaign::Ranges;
 use std::error::Error;

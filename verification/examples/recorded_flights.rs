@@ -8,7 +8,7 @@ use firmware::replay::recovery::{self, Recovery};
 use firmware::replay::shielded::Shielded;
 use firmware::replay::{PERIODS, RECORD, TICKS, record};
 use host_sim::flight::Flight;
-use host_sim::tune::trials;
+use host_sim::studies::tune::trials;
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;

@@ -7,10 +7,10 @@
 //! reference. Fails if a flight does not recover.
 
 use controller_core::certificate::certified::Certified;
-use host_sim::campaign::draw::circumstances;
-use host_sim::campaign::outcome::Outcome;
-use host_sim::campaign::quantile;
-use host_sim::campaign::step::longest;
+use host_sim::studies::campaign::draw::circumstances;
+use host_sim::studies::campaign::outcome::Outcome;
+use host_sim::studies::campaign::quantile;
+use host_sim::studies::campaign::step::longest;
 use scenario::Scenario;
 use scenario::campaign::{FailureRanges, ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;

@@ -27,7 +27,7 @@ use crate::piloted::{Meddler, PilotedError, PilotedVehicle, Place};
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
 use flight::{FlightSettings, Mode, Outcome, Pose, Reason, Refusal, Stamped, Velocity};
-use host_sim::reality::RealVehicle;
+use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::Vector3;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

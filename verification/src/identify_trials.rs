@@ -5,9 +5,9 @@
 //! with a BMI088 and poses 20 ms late, and leaves what `fly` leaves: log.csv.
 
 use host_sim::flight::Flight;
-use host_sim::identify::bench::{Bench, Measured};
-use host_sim::identify::quantities::{Quantities, Quantity};
-use host_sim::log;
+use host_sim::identification::identify::bench::{Bench, Measured};
+use host_sim::identification::identify::quantities::{Quantities, Quantity};
+use host_sim::reports::log;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

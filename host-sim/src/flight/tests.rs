@@ -1,7 +1,7 @@
 //! Both doors into a flight, and what its rotors show.
 
 use super::*;
-use crate::campaign::draw::circumstances;
+use crate::studies::campaign::draw::circumstances;
 
 const STUDY: &str = include_str!("../../../vehicles/study.toml");
 

@@ -25,8 +25,8 @@
 
 use super::kind::Kind;
 use super::pilot::model;
-use crate::flier::{LawChoice, OURS};
-use crate::table::short;
+use crate::output::table::short;
+use crate::rivals::choice::{LawChoice, OURS};
 use scenario::Scenario;
 use scenario::number::{self, Number};
 use std::fmt::Write;

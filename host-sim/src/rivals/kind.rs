@@ -11,7 +11,6 @@ use super::pilot::model;
 use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::Rival;
 use super::start::{Pace, Start};
-use crate::flight::Flight;
 use scenario::Scenario;
 
 /// About x and y, of a vehicle that the starts serve, kg m^2: the Hummingbird's.
@@ -121,12 +120,5 @@ impl Kind {
             Self::Continuous => Box::new(Continuous::new(feedback(gains)?)),
             Self::Memoryless => Box::new(Memoryless(feedback(gains)?)),
         })
-    }
-
-    /// A flight of it in the circumstances of `scenario`; none as in [`Self::build`]. It knows the vehicle as in
-    /// `knowledge`: rotor lag and delay may differ in the circumstances.
-    #[must_use]
-    pub fn flight(self, knowledge: &Scenario, scenario: &Scenario, gains: &[f64]) -> Option<Flight> {
-        Some(Flight::of_rival(scenario, self.build(knowledge, gains)?))
     }
 }

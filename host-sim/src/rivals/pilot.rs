@@ -7,7 +7,7 @@
 
 use super::jet::Jet;
 use super::rival::{Commanded, Model, Rival, Seen, Wanted};
-use crate::sensed::Sensed;
+use crate::vehicle::sensed::Sensed;
 use controller_core::allocation::Mixer;
 use controller_core::configuration::LawParameters;
 use controller_core::controller::Diagnostics;

@@ -3,7 +3,7 @@
 //! World frame z up; body x forward, y left, z up; attitudes are body to world; SI units; double precision.
 
 use super::jet::Jet;
-use crate::sensed::Sensed;
+use crate::vehicle::sensed::Sensed;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rival's model of its vehicle: the same numbers as ours has, rotor lag and delay included.

@@ -5,17 +5,22 @@ use super::gains::{BUILT_IN, Set};
 use super::kind::Kind;
 use super::rate;
 use super::start::Speed;
-use super::tuning::RivalJudge;
-use crate::course::Course;
-use crate::flight::Tick;
-use crate::interrupt::Interrupt;
-use crate::tune::candidate::Judging;
-use crate::tune::trials::{hover, recovery};
+use crate::flight::course::Course;
+use crate::flight::{Flight, Tick};
+use crate::output::interrupt::Interrupt;
+use crate::studies::tune::candidate::Judging;
+use crate::studies::tune::rivals::RivalJudge;
+use crate::studies::tune::trials::{hover, recovery};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::timing::Timing;
 
 const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird.toml");
+
+/// A flight of it in the circumstances of `scenario`; it knows the vehicle as in `knowledge`.
+fn flight(kind: Kind, knowledge: &Scenario, scenario: &Scenario, gains: &[f64]) -> Flight {
+    Flight::of_rival(scenario, kind.build(knowledge, gains).unwrap())
+}
 
 fn hummingbird() -> Scenario {
     Scenario::parse(HUMMINGBIRD, "hummingbird.toml").unwrap()
@@ -25,7 +30,7 @@ fn hummingbird() -> Scenario {
 fn course(kind: Kind, scenario: &Scenario, near: f64) -> Course {
     let set = Set::of(scenario, BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
     let (_, gains, _) = set.rivals.into_iter().find(|(rival, ..)| *rival == kind).unwrap();
-    Course::over(scenario, kind.flight(scenario, scenario, &gains).unwrap(), near).unwrap()
+    Course::over(scenario, flight(kind, scenario, scenario, &gains), near).unwrap()
 }
 
 #[test]
@@ -149,7 +154,7 @@ fn a_rival_keeps_the_files_limits() {
     let limited = Scenario::parse(&text, "limited.toml").unwrap();
     let upside_down = recovery(&limited, 2.0).unwrap();
     let gains = Set::built_in(&limited, &[Kind::Indi]).unwrap().rivals.remove(0).1;
-    let mut flight = Kind::Indi.flight(&limited, &upside_down, &gains).unwrap();
+    let mut flight = flight(Kind::Indi, &limited, &upside_down, &gains);
     let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
     let greatest = |axis: usize| ticks.iter().map(|tick| tick.wrench.torque[axis].abs()).fold(0.0, f32::max);
     assert_eq!([0, 1, 2].map(greatest)[0], 0.3);

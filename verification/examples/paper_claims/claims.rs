@@ -1,6 +1,6 @@
 //! The table of claims.
 
-use host_sim::table::{aligned, short};
+use host_sim::output::table::{aligned, short};
 
 /// The table.
 pub struct Claims(Vec<Vec<String>>);

@@ -12,9 +12,9 @@ mod pictures;
 mod section_six;
 
 use claims::Claims;
-use host_sim::campaign::draw::circumstances;
-use host_sim::course::Course;
 use host_sim::flight::Flight;
+use host_sim::flight::course::Course;
+use host_sim::studies::campaign::draw::circumstances;
 use scenario::Scenario;
 use scenario::campaign::{NoiseRanges, Ranges, Task};
 use section_six::{MATCHED, SectionSix, nested};

@@ -1,9 +1,9 @@
 //! Two pictures: Section VI, and the half turn.
 
 use crate::section_six::SectionSix;
-use host_sim::plots::four;
-use host_sim::report::plot::{Bound, Color, Curve, Plot};
-use host_sim::report::track::Track;
+use host_sim::reports::plots::four;
+use host_sim::reports::report::plot::{Bound, Color, Curve, Plot};
+use host_sim::reports::report::track::Track;
 use verification::half_turn::Course;
 
 /// Width and height of a plot, pixels.

@@ -201,9 +201,12 @@ pub fn rates(claims: &mut Claims, paper: &Scenario) {
 
 /// Torque that noise makes: what the derivatives cost that need the measured attitude and velocity.
 pub fn noise(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>> {
-    let mut noisy = host_sim::tune::trials::hover(paper, Vector3::zeros(), 10.0)?;
-    noisy.reality.sensors =
-        Some(Sensors { pose_delay_ticks: 0, imu_delay: 0.0, ..host_sim::tune::trials::noise(paper.timing.period()) });
+    let mut noisy = host_sim::studies::tune::trials::hover(paper, Vector3::zeros(), 10.0)?;
+    noisy.reality.sensors = Some(Sensors {
+        pose_delay_ticks: 0,
+        imu_delay: 0.0,
+        ..host_sim::studies::tune::trials::noise(paper.timing.period())
+    });
     let restless = |mut flight: Flight| {
         let (mut squares, mut before) = (0.0, None::<Vector3<f64>>);
         for _ in 0..noisy.timing.ticks {

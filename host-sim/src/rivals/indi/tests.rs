@@ -1,10 +1,11 @@
 //! The turn that is wanted, and what measured force and torque are for: what the model does not know leaves no offset.
 
 use super::*;
-use crate::course::Course;
+use crate::flight::Flight;
+use crate::flight::course::Course;
 use crate::rivals::gains::{BUILT_IN, Set};
 use crate::rivals::kind::Kind;
-use crate::tune::trials::hover;
+use crate::studies::tune::trials::hover;
 use scenario::Scenario;
 use scenario::reality::truth::Truth;
 
@@ -35,7 +36,9 @@ fn a_wrong_mass_weak_rotors_and_an_off_centre_mass_leave_no_offset() {
     ] {
         let mut hovering = hover(&file, Vector3::new(0.2, 0.0, 0.1), 12.0).unwrap();
         hovering.reality.truth = Some(truth.clone());
-        let course = Course::over(&hovering, Kind::Indi.flight(&file, &hovering, &gains).unwrap(), 0.1).unwrap();
+        let course =
+            Course::over(&hovering, Flight::of_rival(&hovering, Kind::Indi.build(&file, &gains).unwrap()), 0.1)
+                .unwrap();
         assert!(course.end_error < 1e-3, "{truth:?}: {course:?}");
     }
 }

@@ -1,0 +1,335 @@
+//! `sitl`: the firmware's own tasks on a desktop, with MAVLink on UDP for the clients that fly real vehicles.
+//!
+//! ```text
+//! clients -- UDP --> receive -> Shared -> control -> motors -> world
+//!         <-- UDP -- transmit <-'   ^------- IMU, poses, battery <-'
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`clock`], [`mod@line`] | time that moves when every task waits; bytes in memory |
+//! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
+//! | `voice` | the vehicle's frames to the clients ([`crate::sessions::ports`]) |
+//! | [`faults`] | simulated faults and their times |
+//! | [`flash`] | the parameters' memory |
+//! | [`key`] | the key that signs frames |
+//! | [`session`] | what a session is told, and how it ended |
+//! | `record` | the session as MCAP |
+//!
+//! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
+//! they share a thread and a simulated clock, which is let go no further than the desk's. The configuration is
+//! certified as at a board's boot, and a scenario that could not be built for a board is refused ([`scenario::board`]).
+
+pub mod clock;
+pub mod faults;
+pub mod flash;
+pub mod key;
+pub mod line;
+mod record;
+pub mod session;
+mod truth;
+mod voice;
+pub mod world;
+
+use crate::output::interrupt::Interrupt;
+use crate::reports::recording::session::Moment;
+use crate::sessions::pace::Pace;
+use crate::sessions::ports::{Port, Ports};
+use clock::SimClock;
+use controller_core::configuration::Configuration;
+use controller_core::error::ParameterError;
+use controller_core::tuning::judged::JudgedLoops;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use faults::{Faults, Part};
+use firmware::control::Control;
+use firmware::hardware::{Clock, Restart};
+use firmware::link::frame::Parser;
+use firmware::parameters::storage::Storage;
+use firmware::parameters::tuned::Built;
+use firmware::recorder::ring::{Ring, SLOT};
+use firmware::shared::Shared;
+use firmware::{boot, imu, link, restart, status};
+use flash::DeskFlash;
+use futures::executor::{LocalPool, LocalSpawner};
+use futures::task::LocalSpawnExt;
+use line::Line;
+use record::Record;
+use scenario::{Scenario, board};
+pub use session::{Session, SitlError, Summary};
+use std::cell::{Cell, RefCell};
+use std::future::Future;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use truth::Truth;
+use voice::Voice;
+use world::{PoseSource, World};
+
+/// Records that the flight recorder holds: a minute.
+const RECORDED: usize = 6_000;
+
+/// Time between lines of status, by the desk's clock.
+const STATUS: Duration = Duration::from_secs(1);
+
+/// The firmware and its world on one thread.
+pub struct Sitl {
+    pool: LocalPool,
+    clock: SimClock,
+    world: World,
+    shared: &'static Shared<NoopRawMutex>,
+    port: Rc<RefCell<Port>>,
+    up: Line,
+    faults: Faults,
+    texts: Rc<RefCell<Vec<(u64, String)>>>,
+    flash: DeskFlash,
+    configuration: Configuration,
+    loops: &'static JudgedLoops,
+    identity: u32,
+    /// The time between control ticks, us.
+    period: u64,
+    /// What the vehicle is called.
+    name: &'static str,
+    /// Set by the firmware: start it anew.
+    restart: Rc<Cell<bool>>,
+}
+
+/// Restarts the firmware, once its tasks have come to rest.
+struct Desk(Rc<Cell<bool>>);
+
+impl Restart for Desk {
+    const HAS_BOOTLOADER: bool = false;
+
+    fn restart(&mut self) {
+        self.0.set(true);
+    }
+
+    /// Never called: there is no bootloader.
+    fn start_bootloader(&mut self) {
+        self.restart();
+    }
+}
+
+impl Sitl {
+    /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if
+    /// it will not. What can be refused at once is; then `say` gets a line, and the scenario is judged, which takes
+    /// seconds.
+    ///
+    /// # Errors
+    /// In words: what the firmware cannot fly, and files and ports that cannot be used.
+    pub fn boot(
+        scenario: &Scenario,
+        session: &Session,
+        say: impl FnOnce(&str),
+    ) -> Result<(Self, Option<String>), String> {
+        board::fits(scenario, &session.file)?;
+        let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
+        faults.check(scenario.configuration.rotors().map_or(0, |rotors| rotors.len()))?;
+        let in_file = |what| format!("{}: {what}", session.file);
+        let world = World::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
+        let flash = DeskFlash::open(session.parameters.clone())?;
+        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
+        say(&format!("{}: starting; its loops and its model's flights are judged first, some seconds", scenario.name));
+        let warning = board::check(scenario, &session.file)?;
+
+        let identity = board::identity(scenario);
+        let loops = match identity {
+            // Judged already, when the firmware's library was built.
+            firmware::configuration::IDENTITY => &firmware::configuration::LOOPS,
+            _ => Box::leak(Box::new(board::judged(scenario))),
+        };
+        let mut sitl = Self {
+            pool: LocalPool::new(),
+            clock,
+            world,
+            shared: Box::leak(Box::new(Shared::new())),
+            port,
+            up,
+            faults,
+            texts: Rc::default(),
+            flash,
+            configuration: scenario.configuration.clone(),
+            loops,
+            identity,
+            period: scenario.timing.period_us,
+            name: Box::leak(scenario.name.clone().into_boxed_str()),
+            restart: Rc::default(),
+        };
+        sitl.start().map_err(|error| in_file(error.to_string()))?;
+        if let Some(key) = session.signing_key {
+            sitl.shared.set_signing(Some(key), key::now(), 0);
+        }
+        // Also with one that was kept from an earlier session.
+        if let Some(key) = sitl.shared.signing.key() {
+            sitl.world.sign(key, key::now());
+        }
+        Ok((sitl, warning))
+    }
+
+    /// Starts the firmware: with nothing in memory, on what is in flash. The vehicle's clock goes on.
+    fn start(&mut self) -> Result<(), ParameterError> {
+        // As long as the program: what tasks share is static on a board as well.
+        let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
+        let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
+        let memory = Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice());
+        shared.recorder.attach(Ring::recover(memory), self.name);
+        let place = Box::leak(Box::new(boot::Place::new()));
+        let (configuration, period) = (self.configuration.clone(), self.period);
+        let built = Built { configuration, loops: self.loops, identity: self.identity, period };
+        let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;
+
+        let pool = LocalPool::new();
+        let spawner = pool.spawner();
+        let (clock, world) = (&self.clock, &self.world);
+        let voice = Voice {
+            clock: clock.clone(),
+            faults: self.faults.clone(),
+            port: Rc::clone(&self.port),
+            world: world.clone(),
+            texts: Rc::clone(&self.texts),
+            parser: Parser::new(),
+        };
+        let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
+        spawn(&spawner, async move {
+            Control::new(shared.for_control(), pilot, outputs).run(&time, &mut motors, &mut watchdog).await
+        });
+        let (mut sensor, time) = (world.clone(), clock.clone());
+        spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor, period).await });
+        let (ear, time) = (self.up.clone(), clock.clone());
+        spawn(&spawner, async move { link::receive::receive(ear, &time, shared.for_receive()).await });
+        let time = clock.clone();
+        spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared.for_transmit()).await });
+        let (light, battery, time) = (world.clone(), world.clone(), clock.clone());
+        spawn(&spawner, async move { status::run(light, battery, &time, shared.for_status()).await });
+        let time = clock.clone();
+        spawn(&spawner, async move { parameters.keep(&time, shared.for_storage()).await });
+        let (mut desk, time) = (Desk(Rc::clone(&self.restart)), clock.clone());
+        spawn(&spawner, async move { restart::run(shared.for_restart(), &time, &mut desk).await });
+        spawn(&spawner, world.clone().run());
+        (self.pool, self.shared) = (pool, shared);
+        Ok(())
+    }
+
+    /// Takes what clients have sent.
+    pub fn receive(&mut self) {
+        let (up, silent) = (&self.up, self.faults.has(Part::GroundStation, self.clock.now()));
+        self.port.borrow_mut().receive(|frame| {
+            if !silent {
+                up.push(frame);
+            }
+        });
+    }
+
+    /// Lets time pass until `end`, us.
+    pub fn pass(&mut self, end: u64) {
+        self.clock.run(&mut self.pool, end);
+        if self.restart.take() {
+            // What is refused is refused at the first start: the vehicle has as many rotors as then.
+            let _ = self.start();
+        }
+    }
+
+    /// Its state, for a line of status.
+    fn moment(&self) -> Moment {
+        Moment {
+            now: self.clock.now(),
+            truth: self.world.state(),
+            rotors: self.world.thrusts(),
+            report: self.shared.report.get().map(|report| report.value),
+            voltage: self.shared.voltage.get().map(|voltage| voltage.value),
+        }
+    }
+
+    /// One line: time, mode, position, battery.
+    fn status(&self) -> String {
+        let report = self.shared.report.get().map(|report| report.value);
+        let mode = report.as_ref().map_or("no report", |report| report.mode.text());
+        let place = report.and_then(|report| report.state).map_or_else(
+            || "position unknown".to_owned(),
+            |state| format!("at {:8.3} {:8.3} {:8.3} m", state.position.x, state.position.y, state.position.z),
+        );
+        let battery = self.shared.voltage.get().map_or_else(String::new, |volts| format!("  {:.2} V", volts.value));
+        format!("{:9.2} s  {mode:<11}  {place}{battery}", self.clock.now() as f64 * 1e-6)
+    }
+
+    fn summary(&self, signal: Option<u8>) -> Summary {
+        let report = self.shared.report.get().map(|report| report.value);
+        Summary {
+            time: self.clock.now() as f64 * 1e-6,
+            mode: report.as_ref().map(|report| report.mode),
+            position: self.world.state().position.into(),
+            missed: report.map_or(0, |report| report.timing.missed),
+            signal,
+        }
+    }
+}
+
+fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'static) {
+    // It can only be refused by a pool that is gone.
+    let _ = spawner.spawn_local(async move { drop(task.await) });
+}
+
+/// Runs a session until its duration is over or a signal comes; `say` gets a line before it starts, `show` those about
+/// it.
+///
+/// # Errors
+/// [`SitlError`].
+pub fn run(
+    scenario: &Scenario,
+    session: &Session,
+    interrupt: &Interrupt,
+    say: impl FnOnce(&str),
+    mut show: impl FnMut(&str),
+) -> Result<Summary, SitlError> {
+    let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
+    let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
+    let (mut sitl, warning) = Sitl::boot(scenario, session, say).map_err(SitlError::Input)?;
+    warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
+    let Ports { offboard, ground, local } = session.ports;
+    show(&format!(
+        "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
+        scenario.name
+    ));
+    let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
+    let mut truth = session.truth.map(Truth::open).transpose().map_err(SitlError::Input)?;
+    let mut pace = Pace::new(session.speed);
+    let mut shown = Instant::now();
+    let ended = loop {
+        let now = sitl.clock.now();
+        if let Some(signal) = interrupt.signal() {
+            break Ok(sitl.summary(Some(signal)));
+        }
+        if end.is_some_and(|end| now >= end) {
+            break Ok(sitl.summary(None));
+        }
+        let due = record.as_ref().map_or(u64::MAX, Record::due);
+        let due = due.min(truth.as_ref().map_or(u64::MAX, Truth::due));
+        let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
+        // What a client stamps by the desk's clock must not come before that time of a vehicle that lags behind.
+        let keeps_up = pace.wait(next);
+        if keeps_up || session.poses == PoseSource::Camera {
+            sitl.receive();
+        }
+        sitl.pass(next);
+        if let Some(truth) = &mut truth {
+            truth.look(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.world.state());
+        }
+        if sitl.world.check().is_err() {
+            break Err(SitlError::Diverged(next as f64 * 1e-6));
+        }
+        for (time, text) in sitl.texts.take() {
+            show(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
+            record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
+        }
+        record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
+        if shown.elapsed() >= STATUS {
+            shown += STATUS;
+            show(&sitl.status());
+        }
+    };
+    // Also of a session that ended badly: what led to it is in there.
+    record.map_or(Ok(()), Record::finish).map_err(SitlError::Input)?;
+    ended
+}
+
+#[cfg(test)]
+mod tests;

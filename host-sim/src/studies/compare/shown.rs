@@ -1,0 +1,149 @@
+//! The figures of one law in one scene, and in the random flights.
+
+use super::scenes::Scene;
+use crate::flight::course::Activity;
+use crate::flight::flier::Flier;
+use crate::flight::{Flight, FlightError};
+use crate::output::interrupt::Interrupt;
+use crate::studies::campaign::outcome::Outcome;
+use crate::studies::campaign::quantile;
+use crate::studies::campaign::throw;
+use controller_core::certificate::Certificate;
+use rayon::prelude::*;
+use scenario::Scenario;
+
+/// The distance from its reference within which a vehicle counts as arrived, m: as in the trials of a search.
+const NEAR: f64 = 0.1;
+/// Between two points of a picture, us; the same for laws of every rate.
+pub const THINNED: u64 = 20_000;
+
+/// One law in one scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// Start minus lowest height, m.
+    pub height_lost: f64,
+    /// The time from which it stays near, s; `None` if it was away at the end.
+    pub settled: Option<f64>,
+    /// Greatest distance from the reference, and that at the end, m.
+    pub excursion: f64,
+    /// m.
+    pub end_error: f64,
+    /// Distance from the reference over the last half, RMS, m.
+    pub rms: f64,
+    /// Change of a rotor's command within 10 ms over the last half, RMS, N.
+    pub activity: f64,
+    /// Share of ticks at which a command was cut.
+    pub clipped: f64,
+    /// (s, m): distance from the reference, and height above the start.
+    pub error: Vec<(f64, f64)>,
+    /// Likewise.
+    pub height: Vec<(f64, f64)>,
+}
+
+/// Flies `scene`; none if it cannot be flown to its end.
+#[must_use]
+pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
+    course(flier, scene, NEAR)
+}
+
+/// Likewise; it has arrived within `near`, m.
+#[must_use]
+pub fn course(flier: &Flier, scene: &Scene, near: f64) -> Option<Shown> {
+    over(&scene.scenario, flier.flight(&scene.scenario).ok()?, near).ok()
+}
+
+fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Shown, FlightError> {
+    let ticks = scenario.timing.ticks;
+    let mut shown = Shown {
+        height_lost: 0.0,
+        settled: Some(0.0),
+        excursion: 0.0,
+        end_error: 0.0,
+        rms: 0.0,
+        activity: 0.0,
+        clipped: 0.0,
+        error: Vec::new(),
+        height: Vec::new(),
+    };
+    let (mut squares, mut activity) = (0.0, Activity::new(scenario.timing.period_us));
+    for number in 0..ticks {
+        let tick = flight.tick()?;
+        let (position, time) = (&tick.state.position, tick.time_us as f64 * 1e-6);
+        let rise = position.z - scenario.initial.position.z;
+        let error = (position - tick.reference.position.map(f64::from)).norm();
+        shown.height_lost = shown.height_lost.max(-rise);
+        shown.excursion = shown.excursion.max(error);
+        shown.end_error = error;
+        shown.clipped += f64::from(u8::from(tick.clipped)) / ticks as f64;
+        if error > near {
+            shown.settled = Some(time + scenario.timing.period());
+        }
+        while shown.error.len() as u64 * THINNED <= tick.time_us {
+            shown.error.push((time, error));
+            shown.height.push((time, rise));
+        }
+        if 2 * number >= ticks {
+            squares += error * error;
+            activity.observe(&tick.rotor_thrusts);
+        }
+    }
+    shown.settled = shown.settled.filter(|_| shown.end_error <= near);
+    shown.rms = (squares / (ticks - ticks / 2) as f64).sqrt();
+    shown.activity = activity.rms();
+    Ok(shown)
+}
+
+/// One law in all random flights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thrown {
+    /// The figures of each flight, by its number.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with its plant step: the flights of
+/// `campaign --law`. `None` after an interrupt.
+#[must_use]
+pub fn throw_all(
+    flier: &Flier,
+    scenario: &Scenario,
+    certificate: &Certificate,
+    count: u64,
+    interrupt: &Interrupt,
+) -> Option<Thrown> {
+    let fly = |number| {
+        let row = throw::throw(flier, scenario, certificate, scenario.campaign.seed, number).ok()?;
+        interrupt.signal().is_none().then_some(row.outcome)
+    };
+    Some(Thrown { outcomes: (0..count).into_par_iter().map(fly).collect::<Option<_>>()? })
+}
+
+impl Thrown {
+    /// Share of the flights for which `holds` is true.
+    #[must_use]
+    pub fn share(&self, holds: impl Fn(&Outcome) -> bool) -> f64 {
+        let count = self.outcomes.iter().filter(|outcome| holds(outcome)).count();
+        count as f64 / self.outcomes.len().max(1) as f64
+    }
+
+    /// The height lost that this share of the flights does not exceed, m.
+    #[must_use]
+    pub fn height(&self, part: f64) -> f64 {
+        let heights: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.height_lost).collect();
+        quantile(&heights, part).unwrap_or(f64::INFINITY)
+    }
+
+    /// The time until within 0.2 m for good that this share of the flights does not exceed, s; infinite for never.
+    #[must_use]
+    pub fn settled(&self, part: f64) -> f64 {
+        let times: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.settled.unwrap_or(f64::INFINITY)).collect();
+        quantile(&times, part).unwrap_or(f64::INFINITY)
+    }
+
+    /// Share of all ticks for which `count` counts.
+    #[must_use]
+    pub fn ticks(&self, count: impl Fn(&Outcome) -> u64) -> f64 {
+        let (counted, all) =
+            self.outcomes.iter().fold((0, 0), |(counted, all), one| (counted + count(one), all + one.ticks));
+        counted as f64 / all.max(1) as f64
+    }
+}
