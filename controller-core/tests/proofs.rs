@@ -66,7 +66,7 @@ const COMPARISONS: [fn(); 31] = [
 const OF_WHAT_IS_COMPARED: &str = "it says something of definitions that are compared, for all numbers";
 const OF_ALL_FUNCTIONS: &str = "it is about every function of time";
 const OF_THE_PROOF: &str = "a notion of the proof alone";
-const NOT_COMPUTED: &str = "no code computes it: tests/extended_flows differentiates V along flows";
+const NOT_COMPUTED: &str = "no code computes it: tests/law/extended_flows differentiates V along flows";
 const ONLY_PROOFS_NEED_IT: &str = "only a proof needs it: where a bound is reached, or by which weights it is shown";
 
 /// What stands in no number of the code: the file, the names, and the reason.

@@ -24,7 +24,7 @@ SILENCE_MAX = 2.5
 SILENCE_LANDS = 10.0
 
 # With noise, m: how well a hover is held, and how far telemetry is from the truth. A touchdown at 0.5 m/s is beyond the accelerometer's
-# range: for a moment, s, telemetry is further off. Both figures are those of tests/touchdown.rs, which has touchdowns at every moment.
+# range: for a moment, s, telemetry is further off. Both figures are those of tests/flights/touchdown.rs, which has touchdowns at every moment.
 NOISY_HOVER = 0.01
 NOISY_ERROR = 0.003
 TOUCHDOWN_ERROR = 0.025

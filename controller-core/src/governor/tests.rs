@@ -1,5 +1,5 @@
 //! The governor as a whole: times, arrivals, refusals. Streams are in `following/tests.rs`, and by the thousand in
-//! `tests/governor_campaign.rs`.
+//! `tests/setpoints/governor_campaign.rs`.
 
 extern crate std;
 use super::*;

@@ -1,5 +1,5 @@
 //! The estimator as a whole, on synthesised flights: noise-free here, so that every figure is the method's own. Flights
-//! with noise, by the hundred, are in `tests/estimator.rs`.
+//! with noise, by the hundred, are in `tests/estimated/estimator.rs`.
 
 mod felt;
 mod lies;

@@ -1,5 +1,5 @@
 //! The noise that is left, bench data, and the scenario that is written, without a flight. Those with flights are in
-//! tests/identify.rs.
+//! tests/numbers/identify.rs.
 
 use super::bench;
 use super::noise::Noise;

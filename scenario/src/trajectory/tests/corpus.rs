@@ -1,4 +1,4 @@
-//! The files in `tests/trajectory_files`, in shapes that other programs write: each is read or refused as the table in
+//! The files in `tests/flights/trajectory_files`, in shapes that other programs write: each is read or refused as the table in
 //! `docs/trajectories.md` says, and all that are read are the same path.
 
 use super::{on_in, route};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-const DIRECTORY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/trajectory_files");
+const DIRECTORY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/flights/trajectory_files");
 const PAGE: &str = include_str!("../../../../docs/trajectories.md");
 
 /// A row of the page's table.
@@ -23,7 +23,7 @@ struct Case<'a> {
 
 fn cases() -> Vec<Case<'static>> {
     let case = |line: &'static str| {
-        let (file, rest) = line.strip_prefix("| [")?.split_once("](../tests/trajectory_files/")?;
+        let (file, rest) = line.strip_prefix("| [")?.split_once("](../tests/flights/trajectory_files/")?;
         let cells: Vec<&str> = rest.split(" | ").map(|cell| cell.trim_matches([' ', '|', '`'])).collect();
         let [_, _, with, verdict, said] = cells[..] else { panic!("{line}") };
         Some(Case { file, with, verdict, said })

@@ -1,0 +1,4 @@
+//! The estimator, and flights on its estimates.
+
+mod estimated_flights;
+mod estimator;

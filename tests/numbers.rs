@@ -1,0 +1,6 @@
+//! A vehicle's numbers from flights, benches and other programs' files.
+
+mod identify;
+mod identify_px4;
+mod vehicle_import;
+mod vehicle_models;
