@@ -173,6 +173,8 @@ fn more_chunks(out: &Path, than: usize) -> Vec<String> {
     }
 }
 
+// Windows has no such signal.
+#[cfg(unix)]
 #[test]
 fn neither_a_signal_nor_a_kill_loses_what_was_finished() {
     let directory = directory("interrupted", "duration = 4\nflights = 400\n");
