@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A spline has a knot in every control tick up to 100 Hz, and above that in every second, third ... so that knots lie
-//! `KNOTS_APART` or more apart. In the ticks between two knots the reference is the spline at their time. So neither
-//! the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
+//! `KNOT_INTERVAL_MIN_S` or more apart. In the ticks between two knots the reference is the spline at their time. So
+//! neither the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
@@ -52,8 +52,8 @@ mod turning;
 mod windows;
 
 pub use demand::Following;
-pub use limits::{GovernorLimits, SPEED_RANGE};
-pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
+pub use limits::{GovernorLimits, SPEED_RANGE_M_PER_S};
+pub use setpoint::{Motion, POSITION_RANGE_M, Setpoint, Turn};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
@@ -159,11 +159,11 @@ impl Governor {
         }
         for (value, most, field) in [
             (period, 0.1, "governor.period"),
-            (limits.horizontal_speed, SPEED_RANGE, "governor.horizontal_speed"),
-            (limits.vertical_speed, SPEED_RANGE, "governor.vertical_speed"),
-            (limits.snap_ramp, LONGEST_TIME, "governor.snap_ramp"),
-            (limits.heading_ramp, LONGEST_TIME, "governor.heading_ramp"),
-            (limits.timeout, LONGEST_TIME, "governor.timeout"),
+            (limits.horizontal_speed, SPEED_RANGE_M_PER_S, "governor.horizontal_speed"),
+            (limits.vertical_speed, SPEED_RANGE_M_PER_S, "governor.vertical_speed"),
+            (limits.snap_ramp, DURATION_MAX_S, "governor.snap_ramp"),
+            (limits.heading_ramp, DURATION_MAX_S, "governor.heading_ramp"),
+            (limits.timeout, DURATION_MAX_S, "governor.timeout"),
         ] {
             require_positive(value, field)?;
             require(value <= most, field, Reason::Above(most))?;
@@ -204,7 +204,10 @@ impl Governor {
         velocity: &Vector3<f32>,
         heading: &Heading,
     ) -> Result<(), InputError> {
-        check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
+        check_vectors(&[
+            (position, POSITION_RANGE_M, "initial.position"),
+            (velocity, SPEED_RANGE_M_PER_S, "initial.velocity"),
+        ])?;
         let (position, speed) = (self.length(position), self.length(&(velocity * self.period)));
         let ahead = self.windows.span() + 1;
         let steady = |position: i64, speed: i64| {
@@ -232,9 +235,9 @@ impl Governor {
         self.crackle = Vector3::zeros();
     }
 
-    /// Metres as length units, no more than [`FARTHEST`].
+    /// Metres as length units, no more than [`LENGTH_MAX_UNITS`].
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(|length| whole(within(length, FARTHEST)))
+        (metres * self.windows.per_metre).map(|length| whole(within(length, LENGTH_MAX_UNITS)))
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -245,8 +248,8 @@ impl Governor {
         self.accept_late(setpoint, 0.0)
     }
 
-    /// The same for a setpoint that was true `late` seconds ago, cut to [0, [`LATEST`]]: a moving point has gone on
-    /// since.
+    /// The same for a setpoint that was true `late` seconds ago, cut to [0, [`SETPOINT_AGE_MAX_S`]]: a moving point has
+    /// gone on since.
     ///
     /// # Errors
     /// As [`Self::accept`]'s.
@@ -254,7 +257,7 @@ impl Governor {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         let held = position.map(|position| position.is_some());
         let last = (self.goal_age <= self.timeout).then_some(&self.goal);
-        let late = between(late, 0.0, LATEST);
+        let late = between(late, 0.0, SETPOINT_AGE_MAX_S);
         let stream = Goal::stream(held, velocity, acceleration, last, self.goal_time() - late);
         self.goal_late = late;
         let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
@@ -368,24 +371,24 @@ impl Governor {
 }
 
 /// The least time between two knots, s: a hundredth of a second is short beside the averages, and keeps them in memory.
-const KNOTS_APART: f32 = 0.01;
+const KNOT_INTERVAL_MIN_S: f32 = 0.01;
 
 /// The control ticks of `period`, s, between two knots.
 fn parts(period: f32) -> u32 {
     // A little less: a period is a rounded number.
-    let exact = KNOTS_APART / period * (1.0 - windows::ROUNDING_ROOM);
+    let exact = KNOT_INTERVAL_MIN_S / period * (1.0 - windows::ROUNDING_MARGIN);
     let whole = exact as u32;
     whole.saturating_add(u32::from((whole as f32) < exact)).max(1)
 }
 
 /// The greatest length, units: 2^61, so that a target, its lead and the command's own place add up within 64 bits.
-const FARTHEST: f32 = 2_305_843_009_213_693_952.0;
+const LENGTH_MAX_UNITS: f32 = 2_305_843_009_213_693_952.0;
 
 /// How late a setpoint counts as at most, s: a line with more is not one to stream over.
-pub const LATEST: f32 = 0.3;
+pub const SETPOINT_AGE_MAX_S: f32 = 0.3;
 
 /// The longest ramp or timeout, s.
-const LONGEST_TIME: f32 = 60.0;
+const DURATION_MAX_S: f32 = 60.0;
 
 #[cfg(test)]
 mod tests;

@@ -96,9 +96,9 @@ pub fn single(x: i64) -> f32 {
 /// as [`single`].
 #[must_use]
 pub fn whole(x: f32) -> i64 {
-    const HALF: f32 = 2_147_483_648.0;
-    let high = (x * (1.0 / HALF)) as i32;
-    let low = (x - high as f32 * HALF) as i32;
+    const HALF_RANGE: f32 = 2_147_483_648.0;
+    let high = (x * (1.0 / HALF_RANGE)) as i32;
+    let low = (x - high as f32 * HALF_RANGE) as i32;
     (i64::from(high) << 31) + i64::from(low)
 }
 
@@ -128,12 +128,12 @@ extern "C" fn sqrtf(x: f32) -> f32 {
 #[must_use]
 pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
     /// Radians per unit of a phase whose full turn is 2^32.
-    const RADIANS: f32 = core::f32::consts::TAU / 4_294_967_296.0;
+    const RAD_PER_UNIT: f32 = core::f32::consts::TAU / 4_294_967_296.0;
     // The nearest quarter turn, and what is left of it in [-1/8, 1/8) turn as a signed 32-bit phase.
     let rounded = phase.wrapping_add(1 << 61);
     let quadrant = rounded >> 62;
     let rest = (((rounded << 2) >> 2) as i64).wrapping_sub(1 << 61) >> 32;
-    let x = rest as f32 * RADIANS;
+    let x = rest as f32 * RAD_PER_UNIT;
     let x2 = x * x;
     let sin = x + x * x2 * (-0.166_666_55 + x2 * (0.008_332_161 - x2 * 0.000_195_152_96));
     let cos = 1.0 - 0.5 * x2 + x2 * x2 * (0.041_666_646 + x2 * (-0.001_388_731_6 + x2 * 0.000_024_433_157));
@@ -158,9 +158,9 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 #[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
     let z2 = z * z;
-    if z2 <= LINEAR {
+    if z2 <= LINEAR_SQUARE_MAX {
         linear(z)
-    } else if z2 <= SATURATION {
+    } else if z2 <= UNSATURATED_SQUARE_MAX {
         unsaturated(z)
     } else if z.is_nan() {
         z
@@ -175,9 +175,9 @@ pub fn tanh_of_scaled(z: f32) -> f32 {
 #[must_use]
 pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
     let z2 = z.norm_squared();
-    if z2 <= LINEAR {
+    if z2 <= LINEAR_SQUARE_MAX {
         z.map(linear)
-    } else if z2 <= SATURATION {
+    } else if z2 <= UNSATURATED_SQUARE_MAX {
         z.map(unsaturated)
     } else {
         z.map(tanh_of_scaled)
@@ -185,11 +185,11 @@ pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
 }
 
 /// Up to this z^2 the leading coefficients are all that is left of A and Q after rounding, and Q^2 of the denominator.
-const LINEAR: f32 = 5e-11;
+const LINEAR_SQUARE_MAX: f32 = 5e-11;
 
 /// Where z^2 is beyond this, |x| > 8.69, tanh is within a rounding of one: so it is one, before a quotient rounds
 /// beyond.
-const SATURATION: f32 = 0.034_9;
+const UNSATURATED_SQUARE_MAX: f32 = 0.034_9;
 
 #[inline(always)]
 fn unsaturated(z: f32) -> f32 {
@@ -200,8 +200,8 @@ fn unsaturated(z: f32) -> f32 {
     2.0 * a * q / (a * a + q * q)
 }
 
-/// [`unsaturated`] to the bit, up to [`LINEAR`]: without the powers of z that fall below the normal numbers, which cost
-/// a desktop a quarter of its time where a vehicle has settled.
+/// [`unsaturated`] to the bit, up to [`LINEAR_SQUARE_MAX`]: without the powers of z that fall below the normal numbers,
+/// which cost a desktop a quarter of its time where a vehicle has settled.
 #[inline(always)]
 fn linear(z: f32) -> f32 {
     2.0 * (z * A_0) * Q_0 / (Q_0 * Q_0)

@@ -59,30 +59,30 @@ pub struct FilterTransition {
 
 impl FilterTransition {
     /// The longest period, s: the slowest tick of the link's simulators.
-    pub const LONGEST_PERIOD: f32 = 0.1;
+    pub const PERIOD_MAX_S: f32 = 0.1;
 
     /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].
-    const GREATEST_WEIGHT: f64 = 1.0 - 8.0 / 16_777_216.0;
+    const WEIGHT_MAX: f64 = 1.0 - 8.0 / 16_777_216.0;
 
-    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::LONGEST_PERIOD`]] s.
+    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::PERIOD_MAX_S`]] s.
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
     pub fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
-        let longest = Self::LONGEST_PERIOD;
+        let longest = Self::PERIOD_MAX_S;
         require(period <= longest, "control.period", Reason::Above(longest))?;
         let (k_f, k_s, h) = (f64::from(k_f), f64::from(k_s), f64::from(period));
         let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
         let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
-        let towards_intermediate = (k_f * h * mixed).min(Self::GREATEST_WEIGHT);
-        let both = (-math::exp_m1(-k_f * h)).min(Self::GREATEST_WEIGHT);
+        let towards_intermediate = (k_f * h * mixed).min(Self::WEIGHT_MAX);
+        let both = (-math::exp_m1(-k_f * h)).min(Self::WEIGHT_MAX);
         Ok(Self {
             towards_intermediate: towards_intermediate as f32,
             towards_input: (both - towards_intermediate).max(0.0) as f32,
-            intermediate_towards_input: (-math::exp_m1(-k_s * h)).min(Self::GREATEST_WEIGHT) as f32,
+            intermediate_towards_input: (-math::exp_m1(-k_s * h)).min(Self::WEIGHT_MAX) as f32,
         })
     }
 

@@ -94,7 +94,7 @@ fn stopping(gravity: f32) -> Most {
 
 /// How near its refuge a vehicle is to be before a policy gets it back: |z_1|, m, and |z_2|, m/s. A quarter of it is
 /// too little where states are noisy and air is rough.
-const NEAR: f32 = 0.2;
+const REFUGE_RADIUS: f32 = 0.2;
 
 /// A shield, as before a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -244,7 +244,8 @@ impl Shield {
             }
             (Pilot::Law { refuge, near, .. }, against) => {
                 let away = (prospect.z_1 - *refuge).norm_squared();
-                let arrived = away < NEAR * NEAR && prospect.z_2.norm_squared() < NEAR * NEAR;
+                let arrived =
+                    away < REFUGE_RADIUS * REFUGE_RADIUS && prospect.z_2.norm_squared() < REFUGE_RADIUS * REFUGE_RADIUS;
                 *near = if arrived && against.is_none() { near.saturating_add(1) } else { 0 };
                 let waited = *near as f32 * self.period;
                 let patience = self.settings.patience(self.hand_overs);

@@ -27,13 +27,13 @@ pub struct Percent(u8);
 
 impl Percent {
     /// The least.
-    pub const LEAST: u8 = 70;
+    pub const FACTOR_MIN_PERCENT: u8 = 70;
     /// From one to the next.
-    pub const STEP: u8 = 10;
+    pub const FACTOR_STEP_PERCENT: u8 = 10;
     /// How many there are.
     pub const COUNT: usize = 7;
     /// As built.
-    pub const FULL: Self = Self(3);
+    pub const AS_BUILT: Self = Self(3);
 
     /// The factor of this many percent, if it is one.
     #[must_use]
@@ -49,10 +49,10 @@ impl Percent {
     /// In percent.
     #[must_use]
     pub fn percent(self) -> f32 {
-        f32::from(Self::LEAST + Self::STEP * self.0)
+        f32::from(Self::FACTOR_MIN_PERCENT + Self::FACTOR_STEP_PERCENT * self.0)
     }
 
-    /// `gain` times the factor; with [`Self::FULL`] the same to the bit.
+    /// `gain` times the factor; with [`Self::AS_BUILT`] the same to the bit.
     fn of(self, gain: f32) -> f32 {
         gain * (self.percent() / 100.0)
     }
@@ -83,12 +83,12 @@ pub struct Factors {
 impl Factors {
     /// The gains as built.
     pub const BUILT: Self = Self {
-        attitude: Percent::FULL,
-        rate: Percent::FULL,
-        position_across: Percent::FULL,
-        velocity_across: Percent::FULL,
-        position_vertical: Percent::FULL,
-        velocity_vertical: Percent::FULL,
+        attitude: Percent::AS_BUILT,
+        rate: Percent::AS_BUILT,
+        position_across: Percent::AS_BUILT,
+        velocity_across: Percent::AS_BUILT,
+        position_vertical: Percent::AS_BUILT,
+        velocity_vertical: Percent::AS_BUILT,
     };
 
     /// The law's constants with these factors, for `vehicle`.
@@ -101,7 +101,7 @@ impl Factors {
                 for (factor, field) in
                     [(self.position_vertical, "gains.k_p_vertical"), (self.velocity_vertical, "gains.k_v_vertical")]
                 {
-                    require(factor == Percent::FULL, field, Reason::OtherLaw)?;
+                    require(factor == Percent::AS_BUILT, field, Reason::OtherLaw)?;
                 }
                 let gains = GainParameters {
                     k_theta: self.attitude.of(gains.k_theta),

@@ -214,7 +214,7 @@ fn extreme_vehicles_are_served_as_well() {
         }
     }
     println!("{served} random vehicles: inside {inside:.1e}, worst excess {excess:.1e}");
-    // Some are close to not spanning the wrench: there rounding counts up to 1 / INDEPENDENCE times.
+    // Some are close to not spanning the wrench: there rounding counts up to 1 / ROW_INDEPENDENCE_SINE_MIN times.
     assert!(inside < 100.0 * f64::from(f32::EPSILON) && excess < ROUNDING, "{inside:e} {excess:e}");
 }
 

@@ -59,14 +59,14 @@ mod present;
 mod stream;
 mod taking;
 
-pub use health::{COASTING_AFTER, Faults, Health};
-pub use history::{Clipped, EXTRAPOLATION_MAX, Increment};
+pub use health::{COASTING_AFTER_US, Faults, Health};
+pub use history::{Clipped, EXTRAPOLATION_MAX_US, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
 pub use verdict::{Fault, Rejected, Taken};
 
-use crate::measurement::{STAMP_LEAD_MAX, Stamped};
+use crate::measurement::{STAMP_LEAD_MAX_US, Stamped};
 use candidate::Candidate;
 use checkpoints::Checkpoints;
 use controller_core::state::State;
@@ -82,22 +82,22 @@ use stream::Stream;
 
 /// How long after a move of the sender's frame the next one is believed, us: a running counter is no moving frame.
 /// Longer than the vehicle flies without a believed pose, or a stream of lies would be flown from one move to the next.
-pub const REBASE_EVERY: u64 = 3_000_000;
+pub const REBASE_INTERVAL_MIN_US: u64 = 3_000_000;
 
 /// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it
 /// moved: 10 degrees.
-const TILT_COSINE: f32 = 0.984_807_8;
+const TILT_COSINE_MIN: f32 = 0.984_807_8;
 
 /// What the biases of a sound gyro, rad/s, and of a sound accelerometer, m/s^2, change by in a flight: a BMI088's by 30
 /// K, at 0.015 deg/s and 0.2 mg a kelvin.
-const GYRO_CHANGE: f32 = 0.008;
-const ACCELEROMETER_CHANGE: f32 = 0.06;
+const GYRO_BIAS_CHANGE_MAX_RAD_PER_S: f32 = 0.008;
+const ACCELEROMETER_BIAS_CHANGE_MAX_M_PER_S2: f32 = 0.06;
 
 /// The time constant with which the vertical speed goes from the accelerometer's to that of the poses, s.
-const CLIMB_TIME: f32 = 8.0;
+const CLIMB_TIME_CONSTANT_S: f32 = 8.0;
 
 /// Poses that may wait for the IMU.
-const WAITING: usize = 4;
+const WAITING_POSES_MAX: usize = 4;
 
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,7 +135,7 @@ pub struct Estimator {
     /// The vertical speed of [`Self::climb`], m/s.
     climb: f32,
     felt: Felt,
-    waiting: Vec<Stamped<Pose>, WAITING>,
+    waiting: Vec<Stamped<Pose>, WAITING_POSES_MAX>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
     statistics: Statistics,
@@ -169,10 +169,10 @@ impl Estimator {
     /// everything begins anew, with the biases as they were: no state carries over a time without measurements.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
-        if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {
+        if !follows || !increment.is_usable(EXTRAPOLATION_MAX_US) {
             self.restart();
         }
-        if !increment.is_usable(EXTRAPOLATION_MAX) {
+        if !increment.is_usable(EXTRAPOLATION_MAX_US) {
             return;
         }
         if let Some(leaving) = self.history.leaving() {
@@ -195,7 +195,7 @@ impl Estimator {
             self.gained += felt;
             self.climb += felt
                 + taught * increment.seconds()
-                + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
+                + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME_CONSTANT_S);
         }
         self.take_waiting(increment.end);
     }
@@ -229,10 +229,10 @@ impl Estimator {
     pub fn distrust(&mut self) {
         let (Some(filter), Some((gyro, accelerometer))) = (&mut self.filter, self.grounded) else { return };
         let nominal = &mut filter.nominal;
-        if (nominal.gyro_bias - gyro).norm_squared() > GYRO_CHANGE * GYRO_CHANGE {
+        if (nominal.gyro_bias - gyro).norm_squared() > GYRO_BIAS_CHANGE_MAX_RAD_PER_S * GYRO_BIAS_CHANGE_MAX_RAD_PER_S {
             nominal.gyro_bias = gyro;
         }
-        if (nominal.accelerometer_bias.z - accelerometer.z).abs() > ACCELEROMETER_CHANGE {
+        if (nominal.accelerometer_bias.z - accelerometer.z).abs() > ACCELEROMETER_BIAS_CHANGE_MAX_M_PER_S2 {
             nominal.accelerometer_bias.z = accelerometer.z;
         }
         self.carry_on();
@@ -250,12 +250,12 @@ impl Estimator {
 
     /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included.
     /// The increment that is `under_way` since the last one turns the attitude on, and beyond it the mean rate of the
-    /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it,
-    /// and with a rate that is not finite or beyond every sensor.
+    /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX_US`] after the last increment, before
+    /// it, and with a rate that is not finite or beyond every sensor.
     #[must_use]
     pub fn state(&self, now: u64, rate: &Vector3<f32>, under_way: Option<&Increment>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX && is_measurable(rate))?;
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US && is_measurable(rate))?;
         let Present { force, vibration } = Present::of(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
@@ -290,7 +290,7 @@ impl Estimator {
     /// By how much the velocity changes from the end of the last increment to `now`, m/s, world.
     fn velocity_ahead(&self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US)?;
         let Present { force, .. } = Present::of(last, self.history.before_newest(), self.history.slow_force());
         let goes_on = |next: &&Increment| next.start == last.end && next.is_usable(ahead);
         let (pushed, known) =
@@ -331,7 +331,7 @@ impl Estimator {
     /// How long ago the last increment ended, us; none before the first, or if the clock has run back since.
     fn imu_age(&self, now: u64) -> Option<u64> {
         let end = self.history.newest()?.end;
-        (end <= now.saturating_add(STAMP_LEAD_MAX)).then(|| now.saturating_sub(end))
+        (end <= now.saturating_add(STAMP_LEAD_MAX_US)).then(|| now.saturating_sub(end))
     }
 
     /// Begins anew, with the biases as they are if they are plausible.

@@ -26,9 +26,9 @@
 //!
 //! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
 //! sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged, for the
-//! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without samples
-//! are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does the
-//! estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX_US`] without
+//! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
+//! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
@@ -51,11 +51,11 @@ use nalgebra::Vector3;
 use watch::{Ranges, Watch};
 
 /// How long an increment lasts, us, where no sample is missing.
-pub const INCREMENT: u64 = 5_000;
+pub const INCREMENT_US: u64 = 5_000;
 
 /// The longest time without samples that is bridged, us: an increment then stays below
-/// [`crate::estimator::EXTRAPOLATION_MAX`].
-pub const BRIDGED_MAX: u64 = 15_000;
+/// [`crate::estimator::EXTRAPOLATION_MAX_US`].
+pub const BRIDGED_MAX_US: u64 = 15_000;
 
 /// A sensor and how it is to be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -154,8 +154,8 @@ impl Conditioner {
         })
     }
 
-    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the
-    /// last.
+    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX_US`] of
+    /// the last.
     ///
     /// # Errors
     /// As [`Self::new`]; nothing has changed then.
@@ -205,9 +205,9 @@ impl Conditioner {
         let sample = Sample { time, rate, force, clipped: self.watch.clipped() };
         match self.integrator.age(time) {
             Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
-            Some(age) if age <= BRIDGED_MAX => {
+            Some(age) if age <= BRIDGED_MAX_US => {
                 let smooth = self.low_pass.take(&rate);
-                let increment = self.integrator.take(&sample, INCREMENT);
+                let increment = self.integrator.take(&sample, INCREMENT_US);
                 self.keep(time, &smooth, force);
                 Conditioned { increment, fault }
             }

@@ -12,7 +12,7 @@
 //! that out, on the ground.
 //!
 //! A takeover by silence lasts at most 15 ms from the first's last sample to the second's first, which is bridged
-//! ([`estimation::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up
+//! ([`estimation::imu::BRIDGED_MAX_US`]): the faults are counted before either sensor's driver begins to power it up
 //! anew.
 
 use crate::hardware::{Fault, Imu, RawImu, Unit};

@@ -7,7 +7,7 @@ use super::exchange::Inputs;
 use super::rules::COASTING_MAX;
 use controller_core::state::State;
 use estimation::estimator::{
-    COASTING_AFTER, EXTRAPOLATION_MAX, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
+    COASTING_AFTER_US, EXTRAPOLATION_MAX_US, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
 };
 use estimation::measurement::is_fresh;
 use nalgebra::{Quaternion, Vector3};
@@ -39,7 +39,7 @@ impl Estimate {
 
     /// Whether poses are believed, and the estimate may be flown again.
     pub fn is_found(&self) -> bool {
-        self.is_certain_within(COASTING_AFTER)
+        self.is_certain_within(COASTING_AFTER_US)
     }
 
     fn is_certain_within(&self, age_max: u64) -> bool {
@@ -101,7 +101,7 @@ impl<'m> Estimation<'m> {
             // That it has is counted with the other jumps.
             let _ = self.estimator.adopt();
         }
-        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX, now));
+        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX_US, now));
         let (health, state) = (
             self.estimator.health(now),
             rate.and_then(|rate| self.estimator.state(now, &rate.value, inputs.under_way.as_ref())),

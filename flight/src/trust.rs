@@ -14,7 +14,7 @@
 //!
 //! At [`DOUBT_MAX`] the source is given up until the vehicle is disarmed.
 
-use estimation::estimator::{COASTING_AFTER, Rejected, Taken};
+use estimation::estimator::{COASTING_AFTER_US, Rejected, Taken};
 
 /// Doubt at which a source is given up, s.
 pub const DOUBT_MAX: f32 = 3.0;
@@ -73,12 +73,12 @@ impl Trust {
 
     /// Whether poses have lied: one outlier before an outage is no lie.
     pub fn has_lied(&self) -> bool {
-        self.is_given_up || self.refused.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER)
+        self.is_given_up || self.refused.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER_US)
     }
 
     /// Whether poses lied before `levelled`, us, or still did then: what they agree on later is no better.
     pub fn lied_until(&self, levelled: u64) -> bool {
-        self.has_lied() || self.refused.is_some_and(|(_, last)| levelled.saturating_sub(last) <= COASTING_AFTER)
+        self.has_lied() || self.refused.is_some_and(|(_, last)| levelled.saturating_sub(last) <= COASTING_AFTER_US)
     }
 
     /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.

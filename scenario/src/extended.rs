@@ -12,7 +12,7 @@ use crate::constants;
 use crate::section::{FieldError, Section};
 use controller_core::configuration::ExtendedLaw;
 use controller_core::error::ParameterError;
-use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
+use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX_TICKS};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
@@ -77,7 +77,7 @@ fn refuse_retired(section: &Section, name: &str) -> Result<(), FieldError> {
 
 /// Refuses a delay longer than the memory of the law's actuator model.
 fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> Result<(), FieldError> {
-    const MOST: usize = DELAY_MAX - 1;
+    const MOST: usize = DELAY_MAX_TICKS - 1;
     ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {
         let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
         let longest = MOST as f64 * f64::from(period);

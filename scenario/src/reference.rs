@@ -5,7 +5,7 @@ use crate::initial::read_position;
 use crate::resolution;
 use crate::section::{FieldError, Section};
 use crate::trajectory::{self, Allowed, Directory, Route, stretch};
-use controller_core::certificate::path::FORCE_KEPT;
+use controller_core::certificate::path::FORCE_KEPT_M_PER_S2;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
@@ -80,8 +80,8 @@ impl ReferenceKind {
     /// # Errors
     /// Names the field if it is negative or no number.
     pub fn force_kept(root: &Section) -> Result<f32, FieldError> {
-        let Some(section) = root.optional_section("reference")? else { return Ok(FORCE_KEPT) };
-        let force = section.number_or("force_kept", f64::from(FORCE_KEPT))?;
+        let Some(section) = root.optional_section("reference")? else { return Ok(FORCE_KEPT_M_PER_S2) };
+        let force = section.number_or("force_kept", f64::from(FORCE_KEPT_M_PER_S2))?;
         if force >= 0.0 {
             return Ok(force as f32);
         }

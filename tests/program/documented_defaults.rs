@@ -2,7 +2,7 @@
 //! what the law's own formulas give for every vehicle that is here, and is what the page shows.
 
 use controller_core::constants::Constant;
-use controller_core::extended::budget::{THRUST_LEFT, TorqueBudget};
+use controller_core::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
 use controller_core::extended::defaults::{Airframe, Given, NOTHING_GIVEN, constants};
 use controller_core::extended::parameters::ExtendedParameters;
 use scenario::Scenario;
@@ -69,7 +69,7 @@ fn formulas(airframe: &Airframe, given: &dyn Fn(&str) -> Option<f64>) -> Vec<For
     let tilt_torque = min(budget.radius(scale_least), budget.radius(scale_greatest));
     let U = budget.held(vehicle, limits, 1.0);
     let [tilt_reach, yaw_reach] = budget.reach.map(|reach| max(reach, 1e-12));
-    let least = (1.0 - THRUST_LEFT) * mass * (g - force_up - 1.0);
+    let least = (1.0 - TORQUE_THRUST_SHARE) * mass * (g - force_up - 1.0);
     let above = max(least - scale_greatest * budget.ends[0] - budget.margin, 0.0);
     let below = max(scale_least * min(budget.ends[1], thrust_max) - 1.1 * mass * g, 0.0);
     let yaw_torque = min(torque_max_z, 0.8 * min(above, below) / yaw_reach);

@@ -5,7 +5,7 @@
 use crate::support::extended::vehicle;
 use crate::support::random;
 use crate::support::random::ChaCha8Rng;
-use controller_core::allocation::support::ROUNDING;
+use controller_core::allocation::support::TICK_ROUNDING_SHARE;
 use controller_core::allocation::{MinimumNorm, Mixer, Rotors};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
@@ -272,7 +272,7 @@ fn without_any_margin_clipping_takes_no_more_than_rounding() {
             let achieved = flown.wrench(&flown.allocate(&wrench).unwrap().thrusts);
             let thrust = f64::from((achieved.thrust - wrench.thrust).abs());
             let torque = f64::from((achieved.torque - wrench.torque).norm());
-            let rounding = ROUNDING * certificate.thrust().greatest;
+            let rounding = TICK_ROUNDING_SHARE * certificate.thrust().greatest;
             assert!(thrust < rounding && torque < rounding, "{name}: {wrench:?} {achieved:?}");
         }
     }

@@ -29,15 +29,15 @@ pub const ROTORS_MIN: usize = 4;
 pub const ROTORS_MAX: usize = 8;
 
 /// The greatest distance of a rotor from the centre of mass along an axis, and the greatest k_m / k_eta, m.
-const LENGTH_MAX: f32 = 100.0;
+const ROTOR_LENGTH_MAX_M: f32 = 100.0;
 
 /// The greatest thrust of one rotor, N.
-const THRUST_MAX: f32 = 1e6;
+const ROTOR_THRUST_MAX_N: f32 = 1e6;
 
 /// How far each row of B must stay from every combination of the other three: the least sine of the angle between them.
 ///
 /// Below it, one wrench component can only be had with rotor thrusts 100 times those it would need alone.
-pub const INDEPENDENCE: f64 = 0.01;
+pub const ROW_INDEPENDENCE_SINE_MIN: f64 = 0.01;
 
 /// The eight names of a field that every rotor has; rotors are numbered from 1.
 macro_rules! of_each_rotor {
@@ -55,11 +55,11 @@ macro_rules! of_each_rotor {
     };
 }
 
-const POSITION: [&str; ROTORS_MAX] = of_each_rotor!("position");
-const THRUST_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("thrust_coefficient");
-const DRAG_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("drag_coefficient");
-const MINIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_min");
-const MAXIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_max");
+const POSITION_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("position");
+const THRUST_COEFFICIENT_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_coefficient");
+const DRAG_COEFFICIENT_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("drag_coefficient");
+const THRUST_MIN_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_min");
+const THRUST_MAX_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_max");
 
 /// Which way a rotor turns, seen from above (from +z, looking down).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,30 +147,30 @@ impl Rotors {
     ///
     /// # Errors
     /// Names the field, with the rotor's number from 1; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
-    /// combination of the others to within [`INDEPENDENCE`].
+    /// combination of the others to within [`ROW_INDEPENDENCE_SINE_MIN`].
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
         let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
         let list = Vec::from_slice(rotors).map_err(|_| too_many)?;
-        for (rotor, field) in rotors.iter().zip(POSITION) {
+        for (rotor, field) in rotors.iter().zip(POSITION_FIELDS) {
             for component in rotor.position.iter() {
                 require_finite(*component, field)?;
-                require(component.abs() < LENGTH_MAX, field, Reason::NotBelow(LENGTH_MAX))?;
+                require(component.abs() < ROTOR_LENGTH_MAX_M, field, Reason::NotBelow(ROTOR_LENGTH_MAX_M))?;
             }
         }
-        for (rotor, field) in rotors.iter().zip(THRUST_COEFFICIENT) {
+        for (rotor, field) in rotors.iter().zip(THRUST_COEFFICIENT_FIELDS) {
             require_positive(rotor.thrust_coefficient, field)?;
         }
-        for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT) {
+        for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT_FIELDS) {
             require_positive(rotor.drag_coefficient, field)?;
-            let greatest = LENGTH_MAX * rotor.thrust_coefficient;
+            let greatest = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
             require(rotor.drag_coefficient < greatest, field, Reason::NotBelow(greatest))?;
         }
-        for (rotor, field) in rotors.iter().zip(MAXIMUM) {
+        for (rotor, field) in rotors.iter().zip(THRUST_MAX_FIELDS) {
             require_positive(rotor.thrust_max, field)?;
-            require(rotor.thrust_max < THRUST_MAX, field, Reason::NotBelow(THRUST_MAX))?;
+            require(rotor.thrust_max < ROTOR_THRUST_MAX_N, field, Reason::NotBelow(ROTOR_THRUST_MAX_N))?;
         }
-        for (rotor, field) in rotors.iter().zip(MINIMUM) {
+        for (rotor, field) in rotors.iter().zip(THRUST_MIN_FIELDS) {
             require_finite(rotor.thrust_min, field)?;
             require(rotor.thrust_min >= 0.0, field, Reason::Negative)?;
             require(rotor.thrust_min < rotor.thrust_max, field, Reason::NotBelow(rotor.thrust_max))?;
@@ -264,7 +264,8 @@ impl Rotors {
         let inverted =
             [(&x, normal(&y, &z, &w)), (&y, normal(&x, &z, &w)), (&z, normal(&x, &y, &w)), (&w, normal(&x, &y, &z))]
                 .map(|(row, normal)| normal / normal.dot(row));
-        let independent = |of_row: f64| of_row > 0.0 && of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
+        let independent =
+            |of_row: f64| of_row > 0.0 && of_row < 1.0 / (ROW_INDEPENDENCE_SINE_MIN * ROW_INDEPENDENCE_SINE_MIN);
         let [x, y, z, w] = &inverted;
         if ![x.x, y.y, z.z, w.w].into_iter().all(independent) {
             return None;

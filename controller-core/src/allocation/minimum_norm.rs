@@ -3,8 +3,8 @@
 //! The certificate bounds every rotor's b . w, row b of B+, for every state and every reference inside Omega_r, from a
 //! reset on ([`crate::certificate`]); the governor's references are inside, and levelling is a reset onto a hover (the
 //! `flight` crate). So in flight B+ w never leaves the rotors' ranges, not even by the rounding of this module: its f32
-//! arithmetic is in the bound ([`super::support::ROUNDING`]), as the law's is. What to give up where a vehicle is not
-//! what it was certified as is [`Mixer`](super::Mixer)'s question, which starts from here.
+//! arithmetic is in the bound ([`super::support::TICK_ROUNDING_SHARE`]), as the law's is. What to give up where a
+//! vehicle is not what it was certified as is [`Mixer`](super::Mixer)'s question, which starts from here.
 //!
 //! Each thrust is clipped to its rotor's range nevertheless: nothing beyond leaves this module, whatever it is given.
 

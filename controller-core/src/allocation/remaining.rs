@@ -33,16 +33,16 @@ use heapless::Vec;
 use nalgebra::{Matrix4, Vector3, Vector4};
 
 /// The diagonal of C: thrust, roll, pitch, yaw.
-const COMPLIANCE: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
+const WRENCH_COMPLIANCE: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
 
 /// Rounds for each rotor.
 const ROUNDS_PER_ROTOR: usize = 3;
 
 /// The part of a limit that is left unused: more than the rounding of a wrench.
-const UNUSED_SHARE: f32 = 1e-5;
+const UNUSED_LIMIT_SHARE: f32 = 1e-5;
 
 /// How strongly a rotor has to pull away from its bound to be let go, N.
-const PULL_LEAST: f32 = 1e-4;
+const RELEASE_PULL_MIN_N: f32 = 1e-4;
 
 /// What a rotor has left of its commanded thrust, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,7 +113,7 @@ impl RemainingRotors {
             Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
         let torque = &limits.torque_max;
-        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - UNUSED_SHARE);
+        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - UNUSED_LIMIT_SHARE);
         Self { rotors: collected(all), newtons, limits: limits.component_mul(&newtons), scale, share }
     }
 
@@ -200,7 +200,7 @@ impl RemainingRotors {
     /// (C + B B')^-1 (w - B f), with f_0 for the free rotors and B B' of these alone: how strongly each part of the
     /// wrench pulls at the thrusts.
     fn pull(&self, wanted: &Vector4<f32>, places: &[Place]) -> Vector4<f32> {
-        let mut inverse = Matrix4::from_diagonal(&COMPLIANCE.map(|way| 1.0 / way));
+        let mut inverse = Matrix4::from_diagonal(&WRENCH_COMPLIANCE.map(|way| 1.0 / way));
         let mut rest = *wanted;
         for (rotor, place) in self.rotors.iter().zip(places) {
             if place.is_free {
@@ -239,7 +239,7 @@ impl RemainingRotors {
 
     /// Lets the rotor go that pulls away from its bound most; whether one does.
     fn let_go(&self, pull: &Vector4<f32>, places: &mut [Place]) -> bool {
-        let (mut strongest, mut which) = (PULL_LEAST, None);
+        let (mut strongest, mut which) = (RELEASE_PULL_MIN_N, None);
         for (rotor, place) in self.rotors.iter().zip(places) {
             let inwards = rotor.preferred + rotor.column.dot(pull) - place.thrust;
             let inwards = if place.thrust > rotor.least { -inwards } else { inwards };

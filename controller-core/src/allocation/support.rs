@@ -23,7 +23,7 @@
 //!
 //! For four rotors this is exact: a set of wrenches fits the rotors if and only if every [`RotorDemand::fits`]. For
 //! more it is sufficient only: the mixer also reaches wrenches for which B+ leaves a range. T and tau count as
-//! independent. Results are rounded outwards by [`ROUNDING`], which covers the f32 of the mixer's tick.
+//! independent. Results are rounded outwards by [`TICK_ROUNDING_SHARE`], which covers the f32 of the mixer's tick.
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
@@ -33,7 +33,7 @@ use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
 /// Relative to the sum of all contributions: eight times the rounding of single precision.
-pub const ROUNDING: f64 = 1e-6;
+pub const TICK_ROUNDING_SHARE: f64 = 1e-6;
 
 /// A set of torques around zero, N m, body axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -150,7 +150,7 @@ impl<'a, R: Real> Commands<'a, R> {
         let thrust = (least * row.x).greater(greatest * row.x);
         let direction = torque_part(row).map(R::from);
         let torque = self.torque.iter().fold(R::from(0.0), |sum, term| sum + term.support(&direction));
-        thrust + torque + (thrust.abs() + torque) * ROUNDING
+        thrust + torque + (thrust.abs() + torque) * TICK_ROUNDING_SHARE
     }
 }
 

@@ -9,7 +9,7 @@ use crate::extended::parameters::Extended;
 use crate::reference::ReferenceBounds;
 
 /// How often the bounds are lessened by a tenth: to a hundredth.
-const TRIES: usize = 44;
+const ATTEMPTS_MAX: usize = 44;
 
 impl Configuration {
     /// The extended law for `airframe`, with every constant from its numbers and the widest references that certify.
@@ -38,7 +38,7 @@ fn of(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> Result<
 pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
     let most = defaults::reference_bounds(airframe, &law.parameters);
     let mut share = 1.0;
-    for _ in 0..TRIES {
+    for _ in 0..ATTEMPTS_MAX {
         let bounds = ReferenceBounds {
             horizontal_acceleration: share * most.horizontal_acceleration,
             vertical_acceleration: share * most.vertical_acceleration,

@@ -23,7 +23,7 @@ use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::error::ParameterError;
-use crate::extended::budget::{Bound, Row, THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{Bound, Row, TORQUE_THRUST_SHARE, TorqueBudget};
 use crate::extended::fallback::Slowed;
 use crate::extended::parameters::Extended;
 use crate::math::real::Real;
@@ -33,7 +33,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 /// The greatest number of inequalities.
-const MOST: usize = 11;
+const INEQUALITIES_MAX: usize = 11;
 
 /// Everything the extended law can command.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +52,7 @@ pub struct ExtendedCertificate<R = f64> {
     /// The law's greatest commands.
     pub bounds: ExtendedBounds<R>,
     /// The inequalities, in the order of this module's table.
-    pub inequalities: Vec<Inequality<R>, MOST>,
+    pub inequalities: Vec<Inequality<R>, INEQUALITIES_MAX>,
 }
 
 impl<R: Real> ExtendedCertificate<R> {
@@ -83,7 +83,7 @@ fn feasibility<R: Real>(
     let p = parameters;
     let reference = with_drag(bounds, p.drag_across);
     let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
-    let left = R::from(1.0) - THRUST_LEFT;
+    let left = R::from(1.0) - TORQUE_THRUST_SHARE;
     let vertical = R::from(bounds.vertical_acceleration);
     let up = R::from(p.force_up);
 

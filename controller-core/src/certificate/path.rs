@@ -15,10 +15,10 @@ use crate::math::real::Real;
 use crate::reference::Reference;
 
 /// D where the user does not say: the force per mass, in any direction, that a path keeps free, m/s^2.
-pub const FORCE_KEPT: f32 = 1.0;
+pub const FORCE_KEPT_M_PER_S2: f32 = 1.0;
 
 /// The part of the tilt's torque that a path keeps for a torque bias and for the tilt's feedback.
-pub const TORQUE_KEPT: f64 = 0.05;
+pub const TORQUE_KEPT_SHARE: f64 = 0.05;
 
 /// A row of the judgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

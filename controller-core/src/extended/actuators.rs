@@ -14,13 +14,13 @@ use crate::math;
 use nalgebra::Vector4;
 
 /// The number of remembered commands, a power of two, so that an index wraps by a remainder.
-const REMEMBERED: usize = 32;
+const COMMANDS_KEPT: usize = 32;
 
 /// The greatest delay of the model, samples.
-pub const DELAY_MAX: usize = 31;
+pub const DELAY_MAX_TICKS: usize = 31;
 
 /// The greatest rounding error of a delay in single precision, samples.
-const ROUNDING: f64 = 1e-5;
+const DELAY_ROUNDING_TICKS: f64 = 1e-5;
 
 /// How a vehicle's wrench follows its commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +73,7 @@ pub struct ActuatorModel {
 pub struct ActuatorState {
     acting: Vector4<f32>,
     /// A ring of commands, with the index of the newest.
-    commanded: [Vector4<f32>; REMEMBERED],
+    commanded: [Vector4<f32>; COMMANDS_KEPT],
     newest: usize,
 }
 
@@ -81,20 +81,20 @@ impl ActuatorState {
     /// The memory after the same command for ever.
     #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
-        Self { acting: wrench, commanded: [wrench; REMEMBERED], newest: 0 }
+        Self { acting: wrench, commanded: [wrench; COMMANDS_KEPT], newest: 0 }
     }
 
     /// Takes up the command of this tick.
     pub fn command(&mut self, wrench: Vector4<f32>) {
-        self.newest = (self.newest + 1) % REMEMBERED;
+        self.newest = (self.newest + 1) % COMMANDS_KEPT;
         if let Some(slot) = self.commanded.get_mut(self.newest) {
             *slot = wrench;
         }
     }
 
-    /// The command of `age` ticks before the newest, at most [`DELAY_MAX`].
+    /// The command of `age` ticks before the newest, at most [`DELAY_MAX_TICKS`].
     fn command_before(&self, age: usize) -> Vector4<f32> {
-        self.commanded.get(self.newest.wrapping_sub(age) % REMEMBERED).copied().unwrap_or_default()
+        self.commanded.get(self.newest.wrapping_sub(age) % COMMANDS_KEPT).copied().unwrap_or_default()
     }
 }
 
@@ -102,19 +102,24 @@ impl ActuatorModel {
     /// For ticks `period` seconds apart.
     ///
     /// # Errors
-    /// Names `rotors.lag` or `sampling.delay` if negative or not finite, or a delay beyond [`DELAY_MAX`] - 1 periods.
+    /// Names `rotors.lag` or `sampling.delay` if negative or not finite, or a delay beyond [`DELAY_MAX_TICKS`] - 1
+    /// periods.
     pub fn new(parameters: &ActuatorParameters, period: f32) -> Result<Self, ParameterError> {
         let ActuatorParameters { lag, delay } = *parameters;
         for (value, field) in [(lag, "rotors.lag"), (delay, "sampling.delay")] {
             require_finite(value, field)?;
             require(value >= 0.0, field, Reason::Negative)?;
         }
-        let longest = (DELAY_MAX - 1) as f32 * period;
+        let longest = (DELAY_MAX_TICKS - 1) as f32 * period;
         let (lag, period) = (f64::from(lag), f64::from(period));
         let samples = f64::from(delay) / period;
         // A delay of whole samples that rounding put just below or above is one.
-        require(samples <= (DELAY_MAX - 1) as f64 + ROUNDING, "sampling.delay", Reason::Above(longest))?;
-        let whole = math::floor(samples + ROUNDING);
+        require(
+            samples <= (DELAY_MAX_TICKS - 1) as f64 + DELAY_ROUNDING_TICKS,
+            "sampling.delay",
+            Reason::Above(longest),
+        )?;
+        let whole = math::floor(samples + DELAY_ROUNDING_TICKS);
         let late = (samples - whole).max(0.0) * period;
         // e(t), and the mean of e over t times t, which is the lag times 1 - e(t).
         let decay = |time: f64| if lag > 0.0 { math::exp(-time / lag) } else { 0.0 };

@@ -28,13 +28,13 @@ use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
 
 /// mu: the part of a thrust that torques may use near the target.
-pub const THRUST_LEFT: f64 = 0.05;
+pub const TORQUE_THRUST_SHARE: f64 = 0.05;
 
 /// The part of a row that a tick leaves unused: more than the rounding of what it adds up.
-const ROW_LEFT: f64 = 1e-3;
+const UNUSED_ROW_SHARE: f64 = 1e-3;
 
 /// The greatest number of rows: pairs of rotors, rotors, two limits.
-const ROWS: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
+const ROWS_MAX: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
 
 /// The source of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl<R: Real> Row<R> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorqueBudget<R = f64> {
     /// The rows.
-    pub rows: Vec<Row<R>, ROWS>,
+    pub rows: Vec<Row<R>, ROWS_MAX>,
     /// |beta_12| and |beta_3|, the greatest of all rotors, 1/m; none without rotors.
     pub reach: [R; 2],
     /// max f_min / b_T and min f_max / b_T, N; without rotors none and infinitely much.
@@ -132,7 +132,7 @@ impl<R: Real> TorqueBudget<R> {
     #[must_use]
     pub fn held(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
         let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
-        most * (1.0 - THRUST_LEFT) / R::from(vehicle.mass)
+        most * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
     }
 
     /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
@@ -190,14 +190,14 @@ fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TickBudget {
     /// w, and R's two parts.
-    rows: Vec<[f32; 4], ROWS>,
+    rows: Vec<[f32; 4], ROWS_MAX>,
 }
 
 impl TickBudget {
     /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
     #[must_use]
     pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
-        let mut binding: Vec<Row, ROWS> = Vec::new();
+        let mut binding: Vec<Row, ROWS_MAX> = Vec::new();
         for (place, row) in budget.rows.iter().enumerate() {
             let others = || binding.iter().chain(budget.rows.iter().skip(place + 1));
             if !implied(row, others, scales.map(f64::from)) {
@@ -206,7 +206,7 @@ impl TickBudget {
             }
         }
         let single = |row: &Row| {
-            let left = 1.0 - ROW_LEFT;
+            let left = 1.0 - UNUSED_ROW_SHARE;
             [row.direction[0], row.direction[1], left * row.per_scale, left * row.fixed].map(|x| x as f32)
         };
         Self { rows: collected(binding.iter().map(single)) }

@@ -26,7 +26,7 @@
 //! | D_t, D_y | 0.4 M, half of the limit of yaw |
 
 use super::actuators::ActuatorParameters;
-use super::budget::{THRUST_LEFT, TorqueBudget};
+use super::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
 use super::fallback::Slowed;
 use super::parameters::ExtendedParameters;
 use crate::allocation::Rotors;
@@ -52,13 +52,13 @@ pub struct Airframe<'a> {
 }
 
 /// delta and alpha.
-const LIFTING: [f32; 2] = [0.01, 0.25];
+const PATH_LIFTING: [f32; 2] = [0.01, 0.25];
 /// The least and the greatest estimate of the thrust scale.
-const SCALE: [f64; 2] = [0.9, 1.15];
+const THRUST_SCALE_RANGE: [f64; 2] = [0.9, 1.15];
 /// A vehicle that falls with this acceleration still has thrust to turn, in shares of g.
 const FALL_SHARE: f64 = 0.63;
 /// The references' vertical acceleration that the thrust floor allows, m/s^2.
-const REFERENCE_FALL: f64 = 1.0;
+const REFERENCE_FALL_M_PER_S2: f64 = 1.0;
 
 /// Constants that the file gives, in the table's order; the others follow from them.
 pub type Given = [Option<f32>; ExtendedParameters::COUNT];
@@ -73,11 +73,11 @@ fn chosen(given: &Given, key: &str, formula: f64) -> f64 {
 }
 
 /// What stays unknown of when a pose was true and when a command acts, s, beside half a tick and a part of T.
-const UNKNOWN_DELAY: f64 = 0.01;
+const UNKNOWN_DELAY_S: f64 = 0.01;
 /// w_0 times the delay that projection leaves, rad.
-const PHASE: f64 = 0.22;
+const DELAY_PHASE_RAD: f64 = 0.22;
 /// r up to which w_a is w_0, m.
-const SMALL_RADIUS: f64 = 0.15;
+const SMALL_RADIUS_M: f64 = 0.15;
 
 /// The bandwidths that inertia, torque, lag and sampling allow.
 struct Speeds {
@@ -96,11 +96,11 @@ impl Speeds {
             [airframe.vehicle.mass, airframe.vehicle.inertia.x, airframe.vehicle.inertia.y].map(f64::from);
         let inertia = 0.5 * (j_1 + j_2);
         let late = f64::from(airframe.actuators.lag) + f64::from(airframe.actuators.delay);
-        let left = 0.5 * f64::from(airframe.period) + 0.12 * late + UNKNOWN_DELAY;
+        let left = 0.5 * f64::from(airframe.period) + 0.12 * late + UNKNOWN_DELAY_S;
         let radius = 2.0 * math::sqrt_f64(inertia / mass);
-        let by_size = math::sqrt_f64(lesser_f64(SMALL_RADIUS / radius, 1.0));
+        let by_size = math::sqrt_f64(lesser_f64(SMALL_RADIUS_M / radius, 1.0));
         let by_torque = math::sqrt_f64(2.0 * strength.tilt / inertia);
-        let tilt = lesser_f64(by_size * PHASE / left, by_torque);
+        let tilt = lesser_f64(by_size * DELAY_PHASE_RAD / left, by_torque);
         let heading = lesser_f64(0.3 * tilt, 2.4 * math::sqrt_f64(strength.yaw_acceleration));
         Self { inertia, late, tilt, heading }
     }
@@ -129,7 +129,7 @@ impl Strength {
         let Airframe { vehicle, limits, rotors, .. } = *airframe;
         let [mass, gravity, j_3] = [vehicle.mass, vehicle.gravity, vehicle.inertia.z].map(f64::from);
         // Without rotors the delivered thrust is the commanded one.
-        let usual = if rotors.is_some() { SCALE } else { [1.0, 1.0] };
+        let usual = if rotors.is_some() { THRUST_SCALE_RANGE } else { [1.0, 1.0] };
         let scale = [or("scale_least", usual[0]), or("scale_greatest", usual[1])];
         let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
         let budget = TorqueBudget::<f64>::new(floor_margin as f32, limits, rotors);
@@ -141,7 +141,7 @@ impl Strength {
         // Near the target the least thrust is above the idle thrust and the share of A and alpha_0 in it.
         let a_down = or("a_down", FALL_SHARE * gravity);
         let force_up = or("force_up", 0.36 * a_down);
-        let least = (1.0 - THRUST_LEFT) * mass * (gravity - force_up - REFERENCE_FALL);
+        let least = (1.0 - TORQUE_THRUST_SHARE) * mass * (gravity - force_up - REFERENCE_FALL_M_PER_S2);
         let above = greater_f64(least - scale[1] * bottom - budget.margin, 0.0);
         let below = greater_f64(scale[0] * lesser_f64(top, thrust_max) - 1.1 * mass * gravity, 0.0);
         let yaw = lesser_f64(yaw_limit, 0.8 * lesser_f64(above, below) / yaw_reach);
@@ -207,7 +207,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let stiffer = lesser_f64(1.4, 0.42 / (k_v * greater_f64(speeds.late, 1e-3)));
     let follow = 1.5 * w_a;
     let yaw_acceleration = strength.yaw_acceleration;
-    let [delta, alpha] = LIFTING;
+    let [delta, alpha] = PATH_LIFTING;
     let formulas = ExtendedParameters {
         k_p_across: single(k_p),
         k_p_vertical: single(stiffer * stiffer * k_p),

@@ -18,8 +18,8 @@ use nalgebra::{Vector3, Vector4};
 
 /// The greatest mean acceleration of an interval that can teach anything, m/s^2, and the greatest change of a body rate
 /// in it, rad/s. Beyond them the state has jumped: a line of nonsense, a new frame.
-const GREATEST_ACCELERATION: f32 = 1e3;
-const GREATEST_CHANGE: f32 = 1e3;
+const ACCELERATION_MAX_M_PER_S2: f32 = 1e3;
+const RATE_CHANGE_MAX_RAD_PER_S: f32 = 1e3;
 
 /// The constants of the three estimates, for intervals of one length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,8 +71,8 @@ impl Learning {
         let differed = self.force.differed(velocities);
         let made = self.force.made(differed, velocities);
         let turned = (state.angular_velocity - last.angular_velocity).norm_squared();
-        let moves = made.norm_squared() < GREATEST_ACCELERATION * GREATEST_ACCELERATION;
-        if !(moves & (turned < GREATEST_CHANGE * GREATEST_CHANGE)) {
+        let moves = made.norm_squared() < ACCELERATION_MAX_M_PER_S2 * ACCELERATION_MAX_M_PER_S2;
+        if !(moves & (turned < RATE_CHANGE_MAX_RAD_PER_S * RATE_CHANGE_MAX_RAD_PER_S)) {
             return *averages;
         }
         let felt = measured.usable_acceleration();

@@ -106,11 +106,11 @@ pub struct Extended(ExtendedParameters);
 impl Extended {
     /// The least margin of the thrust floor, as a share of the greatest thrust: rounding in single precision takes less
     /// of it on the way from a wanted thrust and yaw torque to a rotor's command (`proofs/Rounding.v`).
-    pub const FLOOR_MARGIN_LEAST: f32 = 4e-6;
+    pub const FLOOR_MARGIN_SHARE_MIN: f32 = 4e-6;
 
     /// What a number of the thrust range's constants is at least, in SI units, and its inverse at most
     /// (`proofs/Rounding.v`).
-    const SIZE_LEAST: f64 = 1e-4;
+    const SIZE_MIN: f64 = 1e-4;
 
     /// Checks every constant, and that the command never pushes down.
     ///
@@ -137,7 +137,7 @@ impl Extended {
     pub fn check_rotors(&self, rotors: &Rotors) -> Result<(), ParameterError> {
         let lifted = rotors.pseudo_inverse().iter().all(|row| {
             let most = row.y.abs() + row.z.abs() + row.w.abs();
-            row.x >= Self::SIZE_LEAST && Self::SIZE_LEAST * most <= row.x
+            row.x >= Self::SIZE_MIN && Self::SIZE_MIN * most <= row.x
         });
         require(lifted, "rotors.position", Reason::DoesNotSpan)?;
         // All rotors' torques together, which are more than what the tilt may get.
@@ -152,7 +152,7 @@ impl Extended {
             math::greater_f64(f64::from(rotor.thrust_max) / row.x, 0.5 * parts)
         });
         let greatest = sizes.fold(0.0, math::greater_f64);
-        let least = Self::FLOOR_MARGIN_LEAST * self.scale_greatest * greatest as f32;
+        let least = Self::FLOOR_MARGIN_SHARE_MIN * self.scale_greatest * greatest as f32;
         require(self.floor_margin >= least, "gains.floor_margin", Reason::Below(least))
     }
 }

@@ -35,7 +35,7 @@ use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// The least level of a feedback, m/s^2, where a force takes the whole envelope.
-const LEVEL_LEAST: f32 = 0.3;
+const LEVEL_MIN_M_PER_S2: f32 = 0.3;
 
 /// The share of tilt and horizontal thrust for the feedback: the reference needs the rest.
 const SHARE_ACROSS: f32 = 0.95;
@@ -151,7 +151,7 @@ impl PositionLaw {
     pub fn new(parameters: &ExtendedParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let p = parameters;
         require_positive(period, "control.period")?;
-        let longest = FilterTransition::LONGEST_PERIOD;
+        let longest = FilterTransition::PERIOD_MAX_S;
         require(period <= longest, "control.period", Reason::Above(longest))?;
         let lags = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / bandwidth);
         let [of_command, of_intermediate, of_smoothed] = lags;
@@ -280,8 +280,8 @@ impl PositionLaw {
         most: &Most,
     ) -> Vector3<f32> {
         let [braking_across, braking_vertical] = self.braking;
-        let up = math::greater(greatest - self.gravity + force.z, LEVEL_LEAST);
-        let down = math::greater(self.a_down - force.z, LEVEL_LEAST);
+        let up = math::greater(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
+        let down = math::greater(self.a_down - force.z, LEVEL_MIN_M_PER_S2);
         let (up, down) = (math::lesser(up, most.up), math::lesser(down, most.down));
         // Above the reference the vehicle descends, and what pushes up brakes it.
         let (approach, braking) = if z_1.z > 0.0 { (&self.approach_down, up) } else { (&self.approach_up, down) };
@@ -292,7 +292,7 @@ impl PositionLaw {
 
         let reach = self.reach(self.gravity + vertical, greatest);
         let (across, wind) = (z_1.xy(), force.xy());
-        let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
+        let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_MIN_M_PER_S2);
         let level = math::lesser(level, most.across);
         let closing = across * self.approach_across.factor(across.norm_squared(), braking_across * level);
         let wanted = (z_2.xy() + closing) * self.k_v_across;

@@ -17,10 +17,10 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// c_0, m/s^2: variations below it carry little information about the scale.
-const LEAST_VARIATION: f64 = 2.0;
+const VARIATION_MIN_M_PER_S2: f64 = 2.0;
 
 /// Bandwidth of the slow averages, 1/s.
-const SLOW: f64 = 0.7;
+const AVERAGES_BANDWIDTH_PER_S: f64 = 0.7;
 
 /// The scale and the averages behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,9 +44,9 @@ impl ScaleEstimate {
 pub struct ThrustScale {
     /// gamma_s h.
     gain: f32,
-    /// 1 - e^(-h SLOW).
+    /// 1 - e^(-h AVERAGES_BANDWIDTH_PER_S).
     slow: f32,
-    /// c_0^2 / e^(-2 h SLOW), m^2/s^4.
+    /// c_0^2 / e^(-2 h AVERAGES_BANDWIDTH_PER_S), m^2/s^4.
     least_square: f32,
     least: f32,
     greatest: f32,
@@ -56,11 +56,11 @@ impl ThrustScale {
     /// For steps of `period`, s.
     #[must_use]
     pub fn new(parameters: &ExtendedParameters, period: f32) -> Self {
-        let kept = math::exp(-SLOW * f64::from(period));
+        let kept = math::exp(-AVERAGES_BANDWIDTH_PER_S * f64::from(period));
         Self {
             gain: parameters.scale_rate * period,
             slow: (1.0 - kept) as f32,
-            least_square: (LEAST_VARIATION * LEAST_VARIATION / (kept * kept)) as f32,
+            least_square: (VARIATION_MIN_M_PER_S2 * VARIATION_MIN_M_PER_S2 / (kept * kept)) as f32,
             least: parameters.scale_least,
             greatest: parameters.scale_greatest,
         }
@@ -74,7 +74,8 @@ impl ThrustScale {
         let Some([slow_made, slow_commanded]) = estimate.slow else {
             return ScaleEstimate { slow: Some([*made, *commanded]), scale };
         };
-        // From the averages before this interval; those with it are e^(-h SLOW) times as far, which is in c_0.
+        // From the averages before this interval; those with it are e^(-h AVERAGES_BANDWIDTH_PER_S) times as far, which
+        // is in c_0.
         let (made, commanded) = (made - slow_made, commanded - slow_commanded);
         let square = commanded.norm_squared();
         let step = self.gain * (made.dot(&commanded) - scale * square) / (square + self.least_square);

@@ -29,10 +29,10 @@ use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// k, 1/s: how softly u arrives at its ends; at most half a tick's.
-pub const SOFTNESS: f32 = 10.0;
+pub const END_SOFTNESS_PER_S: f32 = 10.0;
 
 /// How much of what thrust takes at once may push across, m/s^2.
-pub const PUSH_ACROSS: f32 = 5.0;
+pub const PUSH_ACROSS_MAX_M_PER_S2: f32 = 5.0;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +59,7 @@ impl TurningLimit {
             acceleration,
             cosine: (1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))) as f32,
             closing: closing(f64::from(acceleration)) as f32,
-            softness: math::lesser(SOFTNESS, 0.5 / period),
+            softness: math::lesser(END_SOFTNESS_PER_S, 0.5 / period),
             a_down: p.a_down,
         }
     }
@@ -68,7 +68,7 @@ impl TurningLimit {
     #[must_use]
     #[inline(always)] // see position.rs
     pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
-        let most = PUSH_ACROSS / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
+        let most = PUSH_ACROSS_MAX_M_PER_S2 / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
         let length = magnitude + math::within(more / math::greater(up.z, self.cosine), most);
         math::lesser(math::greater(length, 0.0), greatest)
     }

@@ -21,15 +21,15 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// The greatest beta' to beta'''', times powers of T_b.
-const STEEPEST: [f32; 4] = [2.461, 9.373, 78.75, 622.0];
+const STEP_DERIVATIVES_MAX: [f32; 4] = [2.461, 9.373, 78.75, 622.0];
 
 /// The share of the bounds left by a stream that blending may need. More than one: each term counts with its greatest
 /// value, and these do not come together.
-const BLENDING: f32 = 1.2;
+const BLENDING_SHARE: f32 = 1.2;
 
 /// T_b: the longest, s; from one span of the averages on it is tried this much longer.
-const LONGEST: f32 = 40.0;
-const LONGER: f32 = 1.15;
+const DURATION_MAX_S: f32 = 40.0;
+const DURATION_FACTOR: f32 = 1.15;
 
 /// How far a stream was from the averages, and what it took of the bounds, at most, for some ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,8 +68,8 @@ impl Watched {
 
     /// The shortest T_b, s, from one `span` on, whose terms fit into what is left of the bounds.
     fn duration(&self, envelope: &Envelope, span: f32) -> Option<f32> {
-        let left = BLENDING * (1.0 - self.used);
-        let [b1, b2, b3, b4] = STEEPEST;
+        let left = BLENDING_SHARE * (1.0 - self.used);
+        let [b1, b2, b3, b4] = STEP_DERIVATIVES_MAX;
         let ([f, f1, f2, f3], [across, along]) = (self.most, self.flat);
         let fits = |duration: f32| {
             let x = 1.0 / duration;
@@ -83,8 +83,8 @@ impl Watched {
         };
         let mut duration = span;
         while !fits(duration) {
-            duration *= LONGER;
-            if duration > LONGEST {
+            duration *= DURATION_FACTOR;
+            if duration > DURATION_MAX_S {
                 return None;
             }
         }

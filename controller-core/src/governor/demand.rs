@@ -7,10 +7,10 @@
 use crate::math;
 
 /// The greatest f that counts: so f^24 is finite.
-const GREATEST: f32 = 16.0;
+const SLOWDOWN_MAX: f32 = 16.0;
 
 /// Seconds after which what was asked is forgotten, at the latest after twice as long.
-const REMEMBERED: f32 = 10.0;
+const MEMORY_S: f32 = 10.0;
 
 /// What a stream asked, and how far off it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ impl Demand {
     pub fn with(&self, speed: f32, [acceleration, jerk, snap]: [f32; 3], off: f32, period: f32) -> Self {
         let cubed = |x: f32| x * x * x;
         let squared = |x: f32| x * x;
-        let most = squared(GREATEST);
+        let most = squared(SLOWDOWN_MAX);
         let v = math::lesser(speed, most);
         let a = math::lesser(acceleration, squared(most));
         let j = math::lesser(jerk, cubed(most));
@@ -48,7 +48,7 @@ impl Demand {
         let greatest = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
             .into_iter()
             .fold(0.0, math::greater);
-        let (present, last, lasted) = if self.lasted > REMEMBERED {
+        let (present, last, lasted) = if self.lasted > MEMORY_S {
             (greatest, self.present, 0.0)
         } else {
             (math::greater(self.present, greatest), self.last, self.lasted + period)
@@ -71,7 +71,7 @@ impl Following {
         let cube = math::sqrt(math::sqrt(math::sqrt(self.demand)));
         // Newton's steps for the cube root of at most 4096, from above; each takes a third off, then twice the digits.
         let mut root = 1.0 + cube / 3.0;
-        for _ in 0..NEWTON {
+        for _ in 0..NEWTON_STEPS {
             root -= (root - cube / (root * root)) / 3.0;
         }
         root
@@ -79,7 +79,7 @@ impl Following {
 }
 
 /// Enough for single precision.
-const NEWTON: u32 = 20;
+const NEWTON_STEPS: u32 = 20;
 
 #[cfg(test)]
 mod tests;

@@ -29,40 +29,40 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// The share of each bound that a stream may use, and of a jerk from which there is a way out.
-const FEASIBLE: f32 = 0.9995;
-const RETREATING: f32 = 0.98;
+const FEASIBLE_SHARE: f32 = 0.9995;
+const RETREATING_SHARE: f32 = 0.98;
 
 /// The share of the bounds on jerk and snap up to which a stream that is followed is believed to keep them.
-const GUESSED: f32 = 1.5;
+const DERIVATIVE_TOLERANCE_SHARE: f32 = 1.5;
 
 /// The stiffness times the averages' span at the beginning, at most; and the share of it for which a stream is near
 /// enough.
-const SLACK: f32 = 2.5;
-const SLACKEST: f32 = 0.4;
+const JOINING_STIFFNESS_SPANS_MAX: f32 = 2.5;
+const JOINING_STIFFNESS_SHARE_MIN: f32 = 0.4;
 
 /// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too
 /// late.
-const DELAYED: f32 = 0.15;
-const SAMPLED: f32 = 0.05;
+const TURN_WITHIN_DELAY_MAX_RAD: f32 = 0.15;
+const TURN_WITHIN_TICK_MAX_RAD: f32 = 0.05;
 
 /// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest
 /// acceleration; one that the head is blended onto so far.
-const FARTHER: f32 = 1.5;
-const FAR: f32 = 0.01;
-const ASTRAY: f32 = 0.04;
+const LOST_DISTANCE_FACTOR: f32 = 1.5;
+const LOST_DISTANCE_SHARE: f32 = 0.01;
+const BLEND_LOST_DISTANCE_SHARE: f32 = 0.04;
 
 /// What rests: within so many m, m/s and m/s^2.
-const RESTING: [f32; 3] = [1e-3, 1e-3, 0.1];
+const REST_TOLERANCES: [f32; 3] = [1e-3, 1e-3, 0.1];
 
 /// Spans that the averages are given to come as near to a stream as they will, and for which it is then watched before
 /// the head is blended onto it.
-const SETTLED: f32 = 1.5;
-const WATCHED: f32 = 1.5;
+const SETTLING_SPANS: f32 = 1.5;
+const WATCHING_SPANS: f32 = 1.5;
 
 /// Spans that a stream must be near for, and that a lost one is left alone for, the first time and at most.
-const AGREEING: f32 = 0.4;
-const BARRED: f32 = 1.0;
-const BARRED_LONGEST: f32 = 32.0;
+const NEAR_SPANS_MIN: f32 = 0.4;
+const RETRY_SPANS: f32 = 1.0;
+const RETRY_SPANS_MAX: f32 = 32.0;
 
 /// What the head is driven by.
 /// Tagged, so that averaged at the beginning is all zeros: [`super::Memory::EMPTY`] counts on it.
@@ -136,7 +136,7 @@ impl Direct {
     /// of them `last`.
     pub fn design(&mut self, envelope: Envelope, [horizontal, vertical]: [f32; 2], span: u32, last: u32, period: f32) {
         // The last average delays by half of it.
-        let fastest = (2.0 * DELAYED / last as f32).min(SAMPLED) / period;
+        let fastest = (2.0 * TURN_WITHIN_DELAY_MAX_RAD / last as f32).min(TURN_WITHIN_TICK_MAX_RAD) / period;
         *self = Self {
             envelope,
             period,
@@ -155,7 +155,7 @@ impl Direct {
         self.stage = Stage::AVERAGED;
         self.demand = Demand::NONE;
         self.barred = 0;
-        self.next = self.ticks(BARRED);
+        self.next = self.ticks(RETRY_SPANS);
     }
 
     fn ticks(&self, spans: f32) -> u32 {
@@ -223,7 +223,7 @@ impl Direct {
     fn rest(&mut self, near: u32) {
         self.stage = Stage::Averaged { near: near.saturating_add(1), watched: Watched::NONE };
         self.demand = Demand::NONE;
-        self.next = self.ticks(BARRED);
+        self.next = self.ticks(RETRY_SPANS);
     }
 
     fn averaged(
@@ -235,18 +235,22 @@ impl Direct {
         watched: &Watched,
     ) -> Drive {
         let room = self.room(sought);
-        let slack = SLACK / self.span;
+        let slack = JOINING_STIFFNESS_SPANS_MAX / self.span;
         let stiffness = self.affordable(sought, room).min(slack);
-        let near = stiffness >= SLACKEST * slack && self.is_near(sought, slack, room);
+        let near = stiffness >= JOINING_STIFFNESS_SHARE_MIN * slack && self.is_near(sought, slack, room);
         let out = self.envelope.way_out(head).filter(|_| near);
         match out {
-            Some(out) if agreed >= self.ticks(AGREEING) => {
+            Some(out) if agreed >= self.ticks(NEAR_SPANS_MIN) => {
                 // From rest nothing is to be caught up with.
-                let [_, slow, _] = RESTING;
+                let [_, slow, _] = REST_TOLERANCES;
                 let (stiffness, far) = if head.velocity.norm_squared() < 4.0 * slow * slow {
                     (self.affordable(sought, room), self.astray())
                 } else {
-                    (stiffness, FARTHER * self.off(sought) + FAR * self.acceleration * self.span * self.span)
+                    (
+                        stiffness,
+                        LOST_DISTANCE_FACTOR * self.off(sought)
+                            + LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span,
+                    )
                 };
                 self.follow(head, sought, stiffness, &out, far)
             }
@@ -265,16 +269,16 @@ impl Direct {
             math::sqrt(self.envelope.share_of_speed(velocity)),
         );
         let flat = [self.flat(&error.position), self.flat(&error.velocity)];
-        let is_settled = watched.ticks >= self.ticks(SETTLED);
+        let is_settled = watched.ticks >= self.ticks(SETTLING_SPANS);
         let watched = if is_settled { watched.with(error, flat, used) } else { watched.later() };
-        if near > 0 || watched.ticks < self.ticks(SETTLED + WATCHED) {
+        if near > 0 || watched.ticks < self.ticks(SETTLING_SPANS + WATCHING_SPANS) {
             self.stage = Stage::Averaged { near, watched };
             return Drive::Averages;
         }
         match (watched.blend(&self.envelope, self.span), self.envelope.way_out(head)) {
             (Some(blend), Some(out)) => {
                 let target = blend.target(head, sought, snap, self.period);
-                self.blend(head, &target, snap, SLACK / self.span, &out, &blend)
+                self.blend(head, &target, snap, JOINING_STIFFNESS_SPANS_MAX / self.span, &out, &blend)
             }
             _ => {
                 self.stage = Stage::AVERAGED;
@@ -313,7 +317,7 @@ impl Direct {
     /// Gives up a stream that is lost, and leaves the next alone for longer each time.
     fn give_up(&mut self, head: &Moving, out: &WayOut) -> Drive {
         self.barred = self.next;
-        self.next = (2 * self.next).min(self.ticks(BARRED_LONGEST));
+        self.next = (2 * self.next).min(self.ticks(RETRY_SPANS_MAX));
         self.level(head, out, 0)
     }
 
@@ -330,7 +334,7 @@ impl Direct {
 
     /// How far off a stream that was blended onto is lost, m.
     fn astray(&self) -> f32 {
-        ASTRAY * self.acceleration * self.span * self.span
+        BLEND_LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span
     }
 
     /// Takes down what a stream asks; whether it moves, not round too fast, keeps the bounds, and leaves a way out.
@@ -352,20 +356,21 @@ impl Direct {
         let [of_acceleration, of_jerk, of_snap] = shares;
         if matches!(self.stage, Stage::Blending { .. } | Stage::Direct { .. }) {
             // Jerk and snap are guesses from sample to sample, and the envelope has the last word on the head's.
-            return of_acceleration <= 1.0 && of_jerk.max(of_snap) <= GUESSED * GUESSED;
+            return of_acceleration <= 1.0
+                && of_jerk.max(of_snap) <= DERIVATIVE_TOLERANCE_SHARE * DERIVATIVE_TOLERANCE_SHARE;
         }
         let on = Moving {
             velocity: *velocity,
-            acceleration: acceleration / FEASIBLE,
-            difference: jerk * (self.period / RETREATING),
+            acceleration: acceleration / FEASIBLE_SHARE,
+            difference: jerk * (self.period / RETREATING_SHARE),
         };
-        shares.iter().all(|share| *share <= FEASIBLE * FEASIBLE) && self.envelope.way_out(&on).is_some()
+        shares.iter().all(|share| *share <= FEASIBLE_SHARE * FEASIBLE_SHARE) && self.envelope.way_out(&on).is_some()
     }
 }
 
 /// Whether the head and the point both rest, at one place.
 fn rests(head: &Moving, Sought { point, error }: &Sought) -> bool {
-    let [near, slow, steady] = RESTING;
+    let [near, slow, steady] = REST_TOLERANCES;
     let within = |vector: &Vector3<f32>, most: f32| vector.norm_squared() < most * most;
     within(&error.position, near)
         && within(&head.velocity, slow)

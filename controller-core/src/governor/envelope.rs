@@ -22,14 +22,14 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// Relative room for rounding, of the head to whole units and of all this to single precision.
-const ROOM: f32 = 1e-4;
+const ROUNDING_MARGIN: f32 = 1e-4;
 
 /// The turn's direction: so much inwards, so much back.
-const INWARDS: f32 = 0.8;
-const BACK: f32 = 0.6;
+const TURN_INWARDS_WEIGHT: f32 = 0.8;
+const TURN_BACK_WEIGHT: f32 = 0.6;
 
 /// How often what is wanted is halved towards the way out before that is taken.
-const HALVINGS: u32 = 3;
+const HALVINGS_MAX: u32 = 3;
 
 /// A cylinder about the vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,10 +133,10 @@ impl Envelope {
         let few = 4.0 * period;
         Self {
             period,
-            speed: speed.map(|speed| (speed * (1.0 - ROOM) - blur).max(0.0)),
-            acceleration: acceleration.map(|acceleration| acceleration * (1.0 - ROOM)),
-            jerk: jerk * period * (1.0 - ROOM),
-            snap: snap * period * period * (1.0 - ROOM),
+            speed: speed.map(|speed| (speed * (1.0 - ROUNDING_MARGIN) - blur).max(0.0)),
+            acceleration: acceleration.map(|acceleration| acceleration * (1.0 - ROUNDING_MARGIN)),
+            jerk: jerk * period * (1.0 - ROUNDING_MARGIN),
+            snap: snap * period * period * (1.0 - ROUNDING_MARGIN),
             turn,
             stopping: turn * period + jerk / snap + few,
             fading: (greatest / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
@@ -174,7 +174,7 @@ impl Envelope {
     /// Where braking ends, and whether it stays inside.
     fn braked(&self, a: &Vector3<f32>, d: &Vector3<f32>) -> Option<Vector3<f32>> {
         let square = d.norm_squared();
-        let reach = a + d * (math::sqrt(square) / (2.0 * (1.0 - ROOM) * self.snap));
+        let reach = a + d * (math::sqrt(square) / (2.0 * (1.0 - ROUNDING_MARGIN) * self.snap));
         let inside = square <= self.jerk * self.jerk && self.acceleration.holds(&reach) && self.acceleration.holds(a);
         inside.then_some(reach)
     }
@@ -186,7 +186,8 @@ impl Envelope {
             return self.is_slow(v, &[a, &reach], &reach).then_some(WayOut::STRAIGHT);
         }
         let inwards = -Vector3::new(a.x, a.y, 0.0);
-        let snap = unit(&(unit(&inwards) * INWARDS - unit(d) * BACK)) * ((1.0 - ROOM) * self.snap);
+        let snap = unit(&(unit(&inwards) * TURN_INWARDS_WEIGHT - unit(d) * TURN_BACK_WEIGHT))
+            * ((1.0 - ROUNDING_MARGIN) * self.snap);
         let n = self.turn;
         let middle = a + (d + snap * 0.5) * (0.5 * n);
         let turned = a + d * n + snap * (0.5 * n * (n + 1.0));
@@ -204,7 +205,7 @@ impl Envelope {
     pub fn step(&self, head: &Moving, wanted: &Vector3<f32>, out: &WayOut) -> (Vector3<f32>, WayOut) {
         let mut snap = self.limited(wanted);
         let (fallback, after) = self.follow(head, out);
-        for _ in 0..HALVINGS {
+        for _ in 0..HALVINGS_MAX {
             if let Some(way) = self.way_out(&head.after(&snap, self.period)) {
                 return (snap, way);
             }

@@ -87,14 +87,14 @@ impl Pursuit {
     /// (units per tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what
     /// following the target leaves.
     pub fn approach(&self, error: &Vector3<i64>, feed: &Vector3<i64>, acceleration: &Vector3<f32>) -> Vector3<i64> {
-        let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
+        let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(CLOSING_SHARE_MIN);
         let distance = self.accelerations.measure(&single(error)) / share;
         feed + shortened(error, distance, approach_speed(distance))
     }
 }
 
 /// The share of the acceleration with which targets are closed in on that take all of it.
-const LEAST_SHARE: f32 = 0.1;
+const CLOSING_SHARE_MIN: f32 = 0.1;
 
 #[cfg(test)]
 mod tests;

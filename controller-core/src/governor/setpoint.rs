@@ -6,7 +6,7 @@ use crate::state::check_vectors;
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a setpoint's or a starting position's component, m.
-pub const POSITION_RANGE: f32 = 1e7;
+pub const POSITION_RANGE_M: f32 = 1e7;
 
 /// Where to be, or how to move. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,7 +99,7 @@ impl Setpoint {
         };
         let (angle, rate) = turn.unwrap_or_default();
         check_vectors(&[
-            (&Vector3::from(position.map(Option::unwrap_or_default)), POSITION_RANGE, "setpoint.position"),
+            (&Vector3::from(position.map(Option::unwrap_or_default)), POSITION_RANGE_M, "setpoint.position"),
             (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
             (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
             (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),

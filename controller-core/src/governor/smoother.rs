@@ -13,7 +13,7 @@
 //!
 //! All sums carry the factor N = N_1 N_2 N_3 of the averages: nothing is divided, nothing rounds, nothing drifts.
 
-use super::limits::LAST;
+use super::limits::LAST_AVERAGE_MAX_TICKS;
 use super::steady::{Outcome, Steady};
 use super::windows::Windows;
 use crate::math::{single, whole};
@@ -128,7 +128,7 @@ struct Scales {
 /// The filter's memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Smoother {
-    history: [Vector3<i32>; LAST],
+    history: [Vector3<i32>; LAST_AVERAGE_MAX_TICKS],
     newest: usize,
     /// N_3.
     length: usize,
@@ -139,7 +139,7 @@ pub(super) struct Smoother {
 impl Smoother {
     /// Not designed yet, at rest at the origin.
     pub const NONE: Self = Self {
-        history: [Vector3::new(0, 0, 0); LAST],
+        history: [Vector3::new(0, 0, 0); LAST_AVERAGE_MAX_TICKS],
         newest: 0,
         length: 0,
         scales: Scales {
@@ -190,8 +190,8 @@ impl Smoother {
 
     /// Advances by one tick of the head's snap: its second difference.
     pub fn push(&mut self, snap: &Vector3<i32>) {
-        self.newest = (self.newest + 1) % LAST;
-        let oldest = (self.newest + LAST - self.length) % LAST;
+        self.newest = (self.newest + 1) % LAST_AVERAGE_MAX_TICKS;
+        let oldest = (self.newest + LAST_AVERAGE_MAX_TICKS - self.length) % LAST_AVERAGE_MAX_TICKS;
         // Read first: a window as long as the history drops what is about to be overwritten.
         let dropped = self.history.get(oldest).copied().unwrap_or_default();
         if let Some(slot) = self.history.get_mut(self.newest) {

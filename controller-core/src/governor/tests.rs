@@ -317,7 +317,7 @@ fn the_farthest_targets_in_the_finest_units_stay_within_the_integers() {
         let governor = Governor::new(&weak, &patient, PERIOD, memory()).unwrap();
         let all = |range: f32| Vector3::repeat(sign * range);
         let motion = Motion::PositionVelocityAcceleration {
-            position: all(0.99 * POSITION_RANGE),
+            position: all(0.99 * POSITION_RANGE_M),
             velocity: all(0.0),
             acceleration: all(0.99 * crate::reference::DERIVATIVE_RANGE),
         };

@@ -14,7 +14,7 @@
 
 use super::braking::{BRAKING_SHARE, approach_speed};
 use super::limits::GovernorLimits;
-use super::windows::{ROUNDING_ROOM, ticks};
+use super::windows::{ROUNDING_MARGIN, ticks};
 use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
 use crate::math::{self, single, whole};
@@ -26,10 +26,10 @@ const TURN_BITS: u32 = 44;
 const SPARE_BITS: u32 = 64 - TURN_BITS;
 
 /// Units in a radian.
-const PER_RADIAN: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
+const UNITS_PER_RAD: f32 = (1_u64 << TURN_BITS) as f32 / core::f32::consts::TAU;
 
 /// Longest average, ticks.
-const TURN_HISTORY: usize = 64;
+const TURN_HISTORY_TICKS: usize = 64;
 
 /// The share of sqrt(K_nu'') that makes the shortest half turn: the minimum of pi/r + r/sqrt(1-r^4).
 const RATE_SHARE: f32 = 0.857;
@@ -50,7 +50,7 @@ impl TurnGoal {
 /// Command, average and spline of the heading.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Turning {
-    history: [i64; TURN_HISTORY],
+    history: [i64; TURN_HISTORY_TICKS],
     newest: usize,
     length: usize,
     /// By how many ticks a steady turn comes out late.
@@ -77,7 +77,7 @@ pub(super) struct Turning {
 impl Turning {
     /// Not designed yet, at rest along world x.
     pub const NONE: Self = Self {
-        history: [0; TURN_HISTORY],
+        history: [0; TURN_HISTORY_TICKS],
         newest: 0,
         length: 0,
         delay: 0.0,
@@ -103,15 +103,19 @@ impl Turning {
         period: f32,
     ) -> Result<(), ParameterError> {
         let length = ticks(limits.heading_ramp, period);
-        require(length <= TURN_HISTORY, "governor.heading_ramp", Reason::Above(TURN_HISTORY as f32 * period))?;
-        let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
-        let rate = (bounds.heading_rate * (1.0 - ROUNDING_ROOM)).min(RATE_SHARE * math::sqrt(second));
+        require(
+            length <= TURN_HISTORY_TICKS,
+            "governor.heading_ramp",
+            Reason::Above(TURN_HISTORY_TICKS as f32 * period),
+        )?;
+        let second = bounds.heading_second_derivative * (1.0 - ROUNDING_MARGIN);
+        let rate = (bounds.heading_rate * (1.0 - ROUNDING_MARGIN)).min(RATE_SHARE * math::sqrt(second));
         let strongest = strongest_at(rate, bounds, period);
         require(strongest > 0, "reference_bounds.heading_second_derivative", Reason::NotPositive)?;
         self.length = length;
         self.per_length = (1.0 / length as f32).next_up();
         self.delay = (length as f32 - 1.0) * 0.5 + 1.0;
-        self.unit = 1.0 / (PER_RADIAN * length as f32 * period);
+        self.unit = 1.0 / (UNITS_PER_RAD * length as f32 * period);
         self.per_period = 1.0 / period;
         self.fastest = units(rate, period);
         self.strongest = strongest;
@@ -151,8 +155,8 @@ impl Turning {
     }
 
     fn push(&mut self, acceleration: i64) {
-        self.newest = (self.newest + 1) % TURN_HISTORY;
-        let oldest = (self.newest + TURN_HISTORY - self.length) % TURN_HISTORY;
+        self.newest = (self.newest + 1) % TURN_HISTORY_TICKS;
+        let oldest = (self.newest + TURN_HISTORY_TICKS - self.length) % TURN_HISTORY_TICKS;
         // Read first: a window as long as the history drops what is about to be overwritten.
         let dropped = self.history.get(oldest).copied().unwrap_or(0);
         if let Some(slot) = self.history.get_mut(self.newest) {
@@ -195,9 +199,9 @@ impl Turning {
 
 /// The B that a rate (rad/s) leaves, units per tick squared.
 fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
-    let second = bounds.heading_second_derivative * (1.0 - ROUNDING_ROOM);
+    let second = bounds.heading_second_derivative * (1.0 - ROUNDING_MARGIN);
     let left = (second * second - rate * rate * rate * rate).max(0.0);
-    (math::sqrt(left) * period * period * PER_RADIAN) as i64
+    (math::sqrt(left) * period * period * UNITS_PER_RAD) as i64
 }
 
 /// An angle (rad) as a phase in units, to 2^-34 turns for any angle that a setpoint may have.
@@ -206,10 +210,10 @@ fn strongest_at(rate: f32, bounds: &ReferenceBounds, period: f32) -> i64 {
 /// the whole part of the 2^64-ths of a turn in it.
 pub(super) fn phase(angle: f32) -> i64 {
     /// 2^32 / (2 pi): its whole part, and 2^22 times the rest.
-    const WHOLE: i64 = 683_565_275;
-    const REST: i64 = 2_417_729;
+    const TURNS_PER_RAD_WHOLE: i64 = 683_565_275;
+    const TURNS_PER_RAD_FRACTION: i64 = 2_417_729;
     let fine = (angle * 4_294_967_296.0) as i64;
-    fine.wrapping_mul(WHOLE).wrapping_add((fine >> 22).wrapping_mul(REST)) >> SPARE_BITS
+    fine.wrapping_mul(TURNS_PER_RAD_WHOLE).wrapping_add((fine >> 22).wrapping_mul(TURNS_PER_RAD_FRACTION)) >> SPARE_BITS
 }
 
 /// Where a heading points, in units, to single precision.
@@ -224,7 +228,7 @@ pub(super) fn phase_of(heading: &Heading) -> i64 {
     }
     for _ in 0..3 {
         let here = direction(phase);
-        phase += ((here.x * target.y - here.y * target.x) * PER_RADIAN) as i64;
+        phase += ((here.x * target.y - here.y * target.x) * UNITS_PER_RAD) as i64;
     }
     phase
 }
@@ -237,7 +241,7 @@ fn direction(phase: i64) -> Vector2<f32> {
 
 /// A rate (rad/s) in units a tick; an angle with `period` one.
 pub(super) fn units(rate: f32, period: f32) -> i64 {
-    (rate * period * PER_RADIAN) as i64
+    (rate * period * UNITS_PER_RAD) as i64
 }
 
 #[cfg(test)]

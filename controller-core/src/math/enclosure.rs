@@ -135,27 +135,27 @@ impl Div<f64> for Enclosure {
 }
 
 /// Terms of the exponential's series, and the greatest |x| they are for: the remainder is below |x|^11.
-const TERMS: u32 = 11;
-const SMALL: f64 = 1.0 / 64.0;
+const SERIES_TERMS: u32 = 11;
+const SERIES_ARGUMENT_MAX: f64 = 1.0 / 64.0;
 
 /// How often an argument of the exponential may be halved to be small.
-const HALVINGS: u32 = 1_024;
+const HALVINGS_MAX: u32 = 1_024;
 
 /// How far on either side of a root or a logarithm its confirmation is tried, from near to far.
-const WIDTHS: [f64; 5] = [1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
+const CONFIRMATION_WIDTHS: [f64; 5] = [1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
 
 /// e^x: the series about zero, after x was halved until it is small; then squared as often.
 fn exponential(x: f64) -> Enclosure {
     let (mut small, mut halvings) = (x, 0);
-    while small.abs() > SMALL && halvings < HALVINGS {
+    while small.abs() > SERIES_ARGUMENT_MAX && halvings < HALVINGS_MAX {
         // Exact: a power of two. Arguments that could fall below the normal numbers are small already.
         small *= 0.5;
         halvings += 1;
     }
-    if small.abs() <= SMALL {
+    if small.abs() <= SERIES_ARGUMENT_MAX {
         let point = Enclosure::from(small);
         let one = Enclosure::from(1.0);
-        let series = (1..TERMS).rev().fold(one, |sum, term| one + point * sum / f64::from(term));
+        let series = (1..SERIES_TERMS).rev().fold(one, |sum, term| one + point * sum / f64::from(term));
         // What follows is below |x|^11 / 11! (1 + |x| + …), and |x|^11 is below |x| / 64^10.
         let rest = small.abs() * 1e-18;
         let sum = series + Enclosure { lower: -rest, upper: rest };
@@ -175,7 +175,7 @@ fn logarithm(x: f64) -> Enclosure {
         let inside = exponential(lower).upper <= argument.lower && argument.upper <= exponential(upper).lower;
         inside.then_some(Enclosure { lower, upper })
     };
-    WIDTHS.iter().find_map(confirmed).unwrap_or(Enclosure::UNDEFINED)
+    CONFIRMATION_WIDTHS.iter().find_map(confirmed).unwrap_or(Enclosure::UNDEFINED)
 }
 
 impl Real for Enclosure {
@@ -241,8 +241,8 @@ impl Real for Enclosure {
             (Self::cubic(x, p, q).upper <= 0.0).then_some(x)
         };
         Self {
-            lower: WIDTHS.iter().find_map(below).unwrap_or(turn.lower),
-            upper: WIDTHS.iter().find_map(above).unwrap_or((turn * 2.0).upper),
+            lower: CONFIRMATION_WIDTHS.iter().find_map(below).unwrap_or(turn.lower),
+            upper: CONFIRMATION_WIDTHS.iter().find_map(above).unwrap_or((turn * 2.0).upper),
         }
     }
 }

@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 const RATE_SHARE: f32 = 0.8;
 
 /// The rate per angle near its end, 1/s.
-const SLOPE: f32 = 3.0;
+const HEADING_RATE_GAIN_PER_S: f32 = 3.0;
 
 /// The heading at hand, and how it may turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ impl HeadingGenerator {
             return 0.0;
         }
         let left = if along > 0.0 { across.abs() / length } else { 1.0 };
-        math::lesser(SLOPE * left, math::sqrt(self.strongest * left)).copysign(across)
+        math::lesser(HEADING_RATE_GAIN_PER_S * left, math::sqrt(self.strongest * left)).copysign(across)
     }
 
     fn turn(&mut self, wanted: f32) {

@@ -71,7 +71,7 @@ fn factors_are_those_of_the_list_and_no_others() {
     for percent in [70.0, 100.0, 130.0] {
         assert_eq!(Percent::new(percent).unwrap().percent(), percent);
     }
-    assert_eq!(Percent::new(100.0), Some(Percent::FULL));
+    assert_eq!(Percent::new(100.0), Some(Percent::AS_BUILT));
     for percent in [60.0, 69.9, 75.0, 140.0, f32::NAN, f32::INFINITY] {
         assert_eq!(Percent::new(percent), None);
     }
@@ -81,7 +81,7 @@ fn factors_are_those_of_the_list_and_no_others() {
 #[test]
 fn a_choice_of_factors_holds_where_it_was_judged_to_and_nowhere_else() {
     let seventy = Percent::new(70.0).unwrap();
-    let good = |factors: &Factors| factors.rate == seventy && factors.velocity_across == Percent::FULL;
+    let good = |factors: &Factors| factors.rate == seventy && factors.velocity_across == Percent::AS_BUILT;
     let upright = |factors: &Factors| factors.position_vertical != seventy;
     let judged = JudgedLoops::judge(good, upright);
     let (across, vertical) = judged.bits();
@@ -104,7 +104,7 @@ fn without_a_judgement_only_the_gains_as_built_hold() {
     for rate in Percent::all() {
         for vertical in Percent::all() {
             let holds = JudgedLoops::BUILT.hold(&factors(rate, vertical));
-            assert_eq!(holds, (rate, vertical) == (Percent::FULL, Percent::FULL));
+            assert_eq!(holds, (rate, vertical) == (Percent::AS_BUILT, Percent::AS_BUILT));
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::support::{Random, hummingbird};
 use controller_core::attitude_reference::{DesiredAttitude, Turn};
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::extended::attitude::AttitudeLaw;
-use controller_core::extended::fallback::{Fallback, Slowed, WINDOW};
+use controller_core::extended::fallback::{Fallback, PROGRESS_WINDOW_S, Slowed};
 use controller_core::extended::heading::{HeadingLaw, Seen};
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::extended::position::{Filters, Most, PositionLaw};
@@ -342,7 +342,7 @@ pub(super) fn the_slowed_law_is_that_of_the_proofs() {
 
 /// Flies a window from a distance to another, at a speed: whether the law is slowed at its end.
 fn window(fallback: &mut Fallback, from: f32, to: f32, speed: f32) -> bool {
-    let ticks = WINDOW as usize;
+    let ticks = PROGRESS_WINDOW_S as usize;
     let far = |tick: usize| if to < from { to } else { from + (to - from) * (tick as f32 / ticks as f32) };
     let velocity = Vector3::new(0.0, speed, 0.0);
     let mut slow = false;

@@ -64,7 +64,7 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
     let proofs = Proofs::read("Rounding");
     let [unit, margin_least] = ["unit", "margin_least"].map(|name| proofs.number(name, &[]));
     assert!(unit > 0.5 * f64::from(f32::EPSILON) * (1.0 + f64::from(f32::EPSILON)), "{unit}");
-    assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_LEAST), "{margin_least}");
+    assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_SHARE_MIN), "{margin_least}");
     let tiny = proofs.number("tiny", &[]);
     assert!(tiny > 0.5 * f64::from(f32::from_bits(1)) * (1.0 + f64::from(f32::EPSILON)), "{tiny}");
     the_slack_is_there(proofs.number("slack", &[]));
@@ -187,7 +187,7 @@ pub(super) fn the_margins_size_is_that_of_the_proofs() {
         let (size, parts) = sizes.fold((0.0, false), |a, b| if b.0 > a.0 { b } else { a });
         by_parts += usize::from(parts);
         let p = constants();
-        let least = f64::from(Extended::FLOOR_MARGIN_LEAST) * f64::from(p.scale_greatest) * size;
+        let least = f64::from(Extended::FLOOR_MARGIN_SHARE_MIN) * f64::from(p.scale_greatest) * size;
         let accepted = |share: f64| {
             let with = ExtendedParameters { floor_margin: (share * least) as f32, ..p };
             Extended::new(with, &hummingbird::vehicle()).unwrap().check_rotors(&rotors).is_ok()

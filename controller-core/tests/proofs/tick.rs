@@ -13,7 +13,7 @@ use controller_core::extended::attitude::AttitudeLaw;
 use controller_core::extended::budget::{Row, Spending, TickBudget, TorqueBudget};
 use controller_core::extended::heading::HeadingLaw;
 use controller_core::extended::thrust_range::ThrustRange;
-use controller_core::extended::turning::PUSH_ACROSS;
+use controller_core::extended::turning::PUSH_ACROSS_MAX_M_PER_S2;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::mrp;
@@ -340,7 +340,7 @@ pub(super) fn the_laws_parts_and_their_order_are_those_of_the_proofs() {
         // n* of section 1, along rho.
         let (u, y) = (found.acceleration_command, controller.memory().filters.smoothed);
         let rho = u / u.norm();
-        let across = PUSH_ACROSS / rho.xy().norm();
+        let across = PUSH_ACROSS_MAX_M_PER_S2 / rho.xy().norm();
         let more = (y.z - found.filtered.z) / rho.z.max(p.tilt_max.cos());
         let greatest = budget.ceiling(configuration.vehicle(), configuration.limits());
         let length = (u.norm() + more.clamp(-across, across)).max(0.0);

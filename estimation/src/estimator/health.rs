@@ -5,7 +5,7 @@
 //! [`NIS_MAX`]); a filter whose sensors match its settings has 3.
 
 use super::filter::Filter;
-use super::history::EXTRAPOLATION_MAX;
+use super::history::EXTRAPOLATION_MAX_US;
 use super::settings::Settings;
 use super::verdict::{Fault, Rejected, Taken};
 use controller_core::math;
@@ -13,11 +13,11 @@ use nalgebra::Matrix3;
 
 /// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150
 /// ms late, and their jitter.
-pub const COASTING_AFTER: u64 = 300_000;
+pub const COASTING_AFTER_US: u64 = 300_000;
 
 /// Deviations beyond which an estimate is not good enough to fly on: m, m/s, rad (each the root of a trace). As with
-/// poses, not for longer than [`COASTING_AFTER`]: a few poses restore what a shock has left out.
-const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
+/// poses, not for longer than [`COASTING_AFTER_US`]: a few poses restore what a shock has left out.
+const DEVIATIONS_MAX: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
 /// The mean NIS beyond which poses are noisier than their covariance: by a factor of 1.7, or not white.
 pub const NIS_MEAN_MAX: f32 = 9.0;
@@ -26,7 +26,7 @@ pub const NIS_MEAN_MAX: f32 = 9.0;
 pub const NIS_MAX: f32 = 50.0;
 
 /// One over the poses that a mean runs over.
-const AVERAGING: f32 = 0.02;
+const NIS_AVERAGING_SHARE: f32 = 0.02;
 
 /// A set of faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -125,7 +125,7 @@ impl Statistics {
 
     /// The NIS of a pose, believed or not.
     pub fn weigh(&mut self, (position, attitude): (f32, f32)) {
-        let average = |mean: f32, nis: f32| mean + AVERAGING * (math::between(nis, 0.0, NIS_MAX) - mean);
+        let average = |mean: f32, nis: f32| mean + NIS_AVERAGING_SHARE * (math::between(nis, 0.0, NIS_MAX) - mean);
         self.nis = (average(self.nis.0, position), average(self.nis.1, attitude));
     }
 }
@@ -157,7 +157,7 @@ impl Health {
         now: u64,
     ) -> Self {
         let Statistics { fused_at, certain_at, jumps, last, counts, nis } = *statistics;
-        let stale = imu_age > EXTRAPOLATION_MAX;
+        let stale = imu_age > EXTRAPOLATION_MAX_US;
         let mut health = Self {
             faults: Faults::default().with(Fault::NotStarted, filter.is_none()).with(Fault::ImuStale, stale),
             pose_age: filter.map(|_| now.saturating_sub(fused_at)),
@@ -173,10 +173,10 @@ impl Health {
         let accelerometer = math::sqrt(filter.nominal.accelerometer_bias.norm_squared());
         health.biases = (gyro, accelerometer);
         let parameters = settings.parameters();
-        let uncertain = !is_certain(health.deviations) && now.saturating_sub(certain_at) > COASTING_AFTER;
+        let uncertain = !is_certain(health.deviations) && now.saturating_sub(certain_at) > COASTING_AFTER_US;
         health.faults = health
             .faults
-            .with(Fault::NoPose, now.saturating_sub(fused_at) > COASTING_AFTER)
+            .with(Fault::NoPose, now.saturating_sub(fused_at) > COASTING_AFTER_US)
             .with(Fault::Uncertain, uncertain)
             .with(Fault::GyroBias, !within(gyro, parameters.gyro_bias_max))
             .with(Fault::AccelerometerBias, !within(accelerometer, parameters.accelerometer_bias_max))
@@ -193,7 +193,7 @@ fn deviations(filter: &Filter) -> (f32, f32, f32) {
 }
 
 fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
-    within(position, UNCERTAIN.0) && within(velocity, UNCERTAIN.1) && within(attitude, UNCERTAIN.2)
+    within(position, DEVIATIONS_MAX.0) && within(velocity, DEVIATIONS_MAX.1) && within(attitude, DEVIATIONS_MAX.2)
 }
 
 /// Written so that NaN is a fault.

@@ -12,7 +12,7 @@ use super::candidate::Candidate;
 use super::filter::Filter;
 use super::measurement::PoseMeasurement as Pose;
 use super::verdict::{Rejected, Taken};
-use super::{EXTRAPOLATION_MAX, Estimator, Increment, REBASE_EVERY, TILT_COSINE, rotated};
+use super::{EXTRAPOLATION_MAX_US, Estimator, Increment, REBASE_INTERVAL_MIN_US, TILT_COSINE_MIN, rotated};
 use crate::measurement::Stamped;
 
 impl Estimator {
@@ -23,7 +23,7 @@ impl Estimator {
             Err(Rejected::TooOld)
         } else if pose.time <= end {
             self.take(pose)
-        } else if pose.time - end > EXTRAPOLATION_MAX {
+        } else if pose.time - end > EXTRAPOLATION_MAX_US {
             Err(Rejected::NoImu)
         } else {
             self.waiting.push(*pose).map_or(Err(Rejected::NoImu), |()| Ok(Taken::Waiting))
@@ -111,12 +111,12 @@ impl Estimator {
     /// Whether the sender reports a move of its frame, and can be believed.
     fn is_moved_frame(&mut self, pose: &Stamped<Pose>) -> bool {
         let (resets, since) = *self.frame.get_or_insert((pose.value.resets, 0));
-        resets != pose.value.resets && pose.time.saturating_sub(since) >= REBASE_EVERY
+        resets != pose.value.resets && pose.time.saturating_sub(since) >= REBASE_INTERVAL_MIN_US
     }
 
     fn rebase(&mut self, mut filter: Filter, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
         let moved = pose.value.attitude * filter.nominal.attitude.conjugate();
-        if 1.0 - 2.0 * (moved.i * moved.i + moved.j * moved.j) < TILT_COSINE {
+        if 1.0 - 2.0 * (moved.i * moved.i + moved.j * moved.j) < TILT_COSINE_MIN {
             return Err(Rejected::Gravity);
         }
         filter.rebase(&pose.value, &self.settings);
@@ -185,26 +185,26 @@ impl Estimator {
         let Some(newest) = self.history.newest().filter(|newest| !self.moves(newest)) else { return Ok(()) };
         let force = rotated(&pose.attitude, &newest.delta_velocity);
         let cosine = force.z / controller_core::math::sqrt(force.norm_squared());
-        if cosine < TILT_COSINE { Err(Rejected::Gravity) } else { Ok(()) }
+        if cosine < TILT_COSINE_MIN { Err(Rejected::Gravity) } else { Ok(()) }
     }
 
     /// Whether an increment is of a vehicle that moves, beyond any noise at rest.
     pub(super) fn moves(&self, increment: &Increment) -> bool {
         /// rad/s: a plausible bias, unknown before the first pose, and six times a BMI088's noise over 5 ms.
-        const RATE: f32 = 0.045;
+        const MOVING_RATE_RAD_PER_S: f32 = 0.045;
         /// m/s^2: the same.
-        const ACCELERATION: f32 = 0.5;
-        self.differs(increment, RATE, ACCELERATION)
+        const MOVING_FORCE_M_PER_S2: f32 = 0.5;
+        self.differs(increment, MOVING_RATE_RAD_PER_S, MOVING_FORCE_M_PER_S2)
     }
 
     /// Whether an increment differs from that of perfect rest. In the air a real sensor has its noise; a simulated one
     /// without noise may repeat itself as its poses do.
     pub(super) fn stirs(&self, increment: &Increment) -> bool {
         /// rad/s: less than a BMI088's noise over 5 ms.
-        const RATE: f32 = 0.002;
+        const STIRRING_RATE_RAD_PER_S: f32 = 0.002;
         /// m/s^2: the same.
-        const ACCELERATION: f32 = 0.05;
-        self.differs(increment, RATE, ACCELERATION)
+        const STIRRING_FORCE_M_PER_S2: f32 = 0.05;
+        self.differs(increment, STIRRING_RATE_RAD_PER_S, STIRRING_FORCE_M_PER_S2)
     }
 
     /// Whether an increment is not of rest, by more than a body rate, rad/s, or a specific force, m/s^2.

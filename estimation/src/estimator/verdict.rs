@@ -96,9 +96,9 @@ worded! {
     pub enum Fault {
         /// There is no estimate yet, or the IMU's data broke off.
         NotStarted = "Estimator: not started, no consistent poses",
-        /// No IMU increment for [`super::EXTRAPOLATION_MAX`].
+        /// No IMU increment for [`super::EXTRAPOLATION_MAX_US`].
         ImuStale = "Estimator: no IMU",
-        /// No pose was fused for [`super::COASTING_AFTER`].
+        /// No pose was fused for [`super::COASTING_AFTER_US`].
         NoPose = "Estimator: no believable pose",
         /// The estimate is too uncertain to be flown on.
         Uncertain = "Estimator: too uncertain",

@@ -1,21 +1,21 @@
 //! Invalid samples: what a failed sensor delivers.
 //!
 //! A sensor that works is noisy. A BMI088's gyro jitters by three counts, its accelerometer by as many, so that two
-//! triples in a row are equal once in a thousand times, and [`STUCK_AFTER`] never. A triple at full scale hides a
-//! larger truth. So may a lesser one of the accelerometer that leaps: the sensor's own filter flattens a peak at full
+//! triples in a row are equal once in a thousand times, and [`STUCK_AFTER_SAMPLES`] never. A triple at full scale hides
+//! a larger truth. So may a lesser one of the accelerometer that leaps: the sensor's own filter flattens a peak at full
 //! scale. Vibration differs from that by its slope, not by its size.
 
 use crate::estimator::Clipped;
 use nalgebra::Vector3;
 
 /// Equal triples in a row after which a sensor is stuck: 20 ms at 1 kHz, as long as a silent one is flown.
-pub const STUCK_AFTER: u8 = 20;
+pub const STUCK_AFTER_SAMPLES: u8 = 20;
 
 /// Samples at full scale in a row that are a fault: a shock is over sooner.
-pub const SATURATED_AFTER: u8 = 5;
+pub const SATURATED_AFTER_SAMPLES: u8 = 5;
 
 /// The share of a range that counts as its end.
-const FULL_SCALE: f32 = 0.999;
+const FULL_SCALE_SHARE: f32 = 0.999;
 
 worded! {
     /// What is wrong with the sensor, the worst first.
@@ -34,7 +34,7 @@ worded! {
         AccelerometerSaturated = "IMU: accelerometer at full scale",
         /// A sample not later than the one before it: left out.
         Clock = "IMU: samples out of order",
-        /// More than [`super::BRIDGED_MAX`] without a sample: integration begins anew.
+        /// More than [`super::BRIDGED_MAX_US`] without a sample: integration begins anew.
         Gap = "IMU: gap in the samples",
     }
 }
@@ -66,7 +66,7 @@ pub struct Ranges {
 
 /// Whether a component is at the end of a range.
 fn reaches(triple: &Vector3<f32>, range: f32) -> bool {
-    triple.iter().any(|component| component.abs() >= FULL_SCALE * range)
+    triple.iter().any(|component| component.abs() >= FULL_SCALE_SHARE * range)
 }
 
 /// One of the two sensors.
@@ -86,7 +86,7 @@ impl Seen {
         self.equal = count(self.equal, *triple == self.last);
         self.saturated = count(self.saturated, reaches(triple, range));
         self.last = *triple;
-        (self.equal >= STUCK_AFTER, self.saturated >= SATURATED_AFTER)
+        (self.equal >= STUCK_AFTER_SAMPLES, self.saturated >= SATURATED_AFTER_SAMPLES)
     }
 }
 

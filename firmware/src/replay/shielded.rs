@@ -6,7 +6,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
-use controller_core::shield::network::{INPUTS, Layer, Network, NetworkPolicy, OUTPUTS};
+use controller_core::shield::network::{INPUT_COUNT, Layer, Network, NetworkPolicy, OUTPUT_COUNT};
 use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
 use nalgebra::Vector3;
 use sha2::{Digest, Sha256};
@@ -31,9 +31,9 @@ const fn weights<const COUNT: usize>() -> [f32; COUNT] {
     weights
 }
 
-static FIRST: [f32; INPUTS * MIDDLE] = weights();
+static FIRST: [f32; INPUT_COUNT * MIDDLE] = weights();
 static SECOND: [f32; MIDDLE * MIDDLE] = weights();
-static THIRD: [f32; MIDDLE * OUTPUTS] = weights();
+static THIRD: [f32; MIDDLE * OUTPUT_COUNT] = weights();
 static BIASES: [f32; MIDDLE] = weights();
 static LAYERS: [Layer<'static>; 3] = [
     Layer { weights: &FIRST, biases: &BIASES },

@@ -14,7 +14,7 @@ use crate::vehicle::sensed::Sensed;
 use controller_core::error::ParameterError;
 use controller_core::state::State;
 use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
-use estimation::imu::{Calibration, Conditioner, INCREMENT, ImuParameters};
+use estimation::imu::{Calibration, Conditioner, INCREMENT_US, ImuParameters};
 use flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use scenario::Scenario;
@@ -145,7 +145,7 @@ impl Estimation {
     /// What is known beside the last estimate, while the rotors act with `truth`: the mean over the same time of both.
     pub fn sense(&mut self, truth: &Sensed) -> Sensed {
         self.acted.push_front(truth.wrench);
-        self.acted.truncate((2 * INCREMENT).div_ceil(self.period) as usize);
+        self.acted.truncate((2 * INCREMENT_US).div_ceil(self.period) as usize);
         let wrench = self.acted.iter().sum::<Vector4<f64>>() / self.acted.len() as f64;
         Sensed { specific_force: self.specific_force, wrench }
     }

@@ -45,7 +45,7 @@ fn cost(rotors: &RemainingRotors, wanted: &Wrench, thrusts: &[f32]) -> f64 {
     let yaw = wanted.w.clamp(-rotors.share, rotors.share);
     let wanted = Vector4::new(wanted.x, wanted.y, wanted.z, yaw).map(f64::from);
     let rest = rotors.rotors.iter().zip(thrusts).fold(wanted, |sum, (rotor, thrust)| missing(sum, rotor, *thrust));
-    let ways = COMPLIANCE.map(f64::from);
+    let ways = WRENCH_COMPLIANCE.map(f64::from);
     let beside = rotors.rotors.iter().zip(thrusts).map(|(rotor, thrust)| f64::from(thrust - rotor.preferred).powi(2));
     beside.sum::<f64>() + rest.component_mul(&rest).component_div(&ways).sum()
 }

@@ -8,18 +8,18 @@
 //!
 //! and psi' moves by at most h times the bound of psi''. [`PathJudge::shares_within`] bounds all motions so near to the
 //! one at t. A cell whose bound is above what was found at instants is halved, until the bound exceeds that by no more
-//! than [`TIGHTNESS`].
+//! than [`BOUND_TOLERANCE`].
 
 use super::{Motion, PathJudge, Row, Shares, Spread};
 use crate::math::real::Real;
 use crate::reference::Trajectory;
 
 /// How far, relative, the bound may be above a share that is taken.
-pub const TIGHTNESS: f64 = 2e-3;
+pub const BOUND_TOLERANCE: f64 = 2e-3;
 
 /// The first cells, us, and how often one is halved at most: to 8 us.
-const CELL: u64 = 1 << 17;
-const HALVINGS: u32 = 14;
+const FIRST_CELL_US: u64 = 1 << 17;
+const HALVINGS_MAX: u32 = 14;
 
 /// What a trajectory takes of what is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Taken {
     pub share: f64,
     /// Of which row most is taken.
     pub row: Row,
-    /// When, us: within [`TIGHTNESS`] of the greatest share.
+    /// When, us: within [`BOUND_TOLERANCE`] of the greatest share.
     pub at_us: u64,
 }
 
@@ -39,8 +39,8 @@ impl Taken {
         let mut search = Search { judge, trajectory, attained: Attained::NOTHING, bound: 0.0 };
         let mut from = 0;
         loop {
-            let to = end_us.min(from + CELL);
-            search.refine(from, to, HALVINGS);
+            let to = end_us.min(from + FIRST_CELL_US);
+            search.refine(from, to, HALVINGS_MAX);
             if to == end_us {
                 let Attained { row, at_us, .. } = search.attained;
                 return Self { share: search.bound, row, at_us };
@@ -79,7 +79,7 @@ impl<R: Real> Search<'_, R> {
             self.attained = Attained { share: here.worst(), row: here.row(), at_us: middle };
         }
         let bound = self.judge.shares_within(&motion, &self.spread(&motion, from, to)).worst();
-        if halvings == 0 || to - from < 2 || bound <= self.attained.share * (1.0 + TIGHTNESS) {
+        if halvings == 0 || to - from < 2 || bound <= self.attained.share * (1.0 + BOUND_TOLERANCE) {
             self.bound = self.bound.max(bound);
         } else {
             self.refine(from, middle, halvings - 1);

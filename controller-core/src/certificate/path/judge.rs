@@ -26,13 +26,13 @@
 //! turns about u faster than yaw follows, the body is taken to turn no faster than the frame: y is what yaw then
 //! [brakes](crate::extended::heading) with before thrust.
 
-use super::{Motion, Row, Shares, Spread, TORQUE_KEPT};
+use super::{Motion, Row, Shares, Spread, TORQUE_KEPT_SHARE};
 use crate::certificate::form::ARITHMETIC_ALLOWANCE;
 use crate::configuration::{Configuration, ExtendedLaw};
-use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
 use crate::extended::fallback::Slowed;
 use crate::extended::force::HELD_SHARE;
-use crate::extended::turning::{self, SOFTNESS};
+use crate::extended::turning::{self, END_SOFTNESS_PER_S};
 use crate::math;
 use crate::math::real::Real;
 
@@ -89,11 +89,11 @@ impl<R: Real> PathJudge<R> {
         let slowed = Slowed::<R>::of(p, vehicle.gravity);
         let [jerk, snap] = slowed.derivatives(p);
         let level = slowed.level * R::from(2.0).sqrt();
-        let softness = R::from(SOFTNESS);
+        let softness = R::from(END_SOFTNESS_PER_S);
         // (1 + s / k) behind a filter overshoots where the filter is quicker.
         let overshoot = |bandwidth: f32| (R::from(bandwidth) * slowed.factor * 2.0 / softness - one).greater(one);
         let radius = budget.radius(scale_least).lesser(budget.radius(scale_greatest));
-        let kept = radius * TORQUE_KEPT;
+        let kept = radius * TORQUE_KEPT_SHARE;
         let most = scale_least * top - budget.margin;
         let thrust_max = R::from(limits.thrust_max);
         Self {
@@ -192,7 +192,7 @@ impl<R: Real> PathJudge<R> {
             thrust.into_iter().fold(R::from(0.0), R::greater),
             share(rate, self.turn_rate),
             share(torque, radius),
-            share(self.floor + self.reach * torque, self.mass * least * (1.0 - THRUST_LEFT)),
+            share(self.floor + self.reach * torque, self.mass * least * (1.0 - TORQUE_THRUST_SHARE)),
             share(self.cosine * self.closing + sinking / least, up * self.closing),
         ];
         Shares { each: each.map(|share| share * (1.0 + ARITHMETIC_ALLOWANCE)) }

@@ -13,7 +13,7 @@ pub const ANGLE_CELLS: usize = 24;
 const CELL_COS: f64 = 0.997_858_923_238_603_5;
 const CELL_SIN: f64 = 0.065_403_129_230_143_07;
 /// More than 24 turns by one cell are off by.
-pub const OUTWARDS: f64 = 1e-14;
+pub const CELL_ROUNDING: f64 = 1e-14;
 /// Cells of p between zero and its greatest value, for the split of u'.
 pub const SPLIT_CELLS: usize = 24;
 /// Cells of |psi'|.
@@ -175,14 +175,18 @@ pub struct Direction<R> {
 
 impl<R: Real> Direction<R> {
     /// The cells of [0, pi/2]; the other quadrants mirror it. From end to end the angle is turned on by one cell; what
-    /// rounding does to that is far below [`OUTWARDS`], by which every value is moved to its safe side.
+    /// rounding does to that is far below [`CELL_ROUNDING`], by which every value is moved to its safe side.
     pub fn quarter_turn() -> [Self; ANGLE_CELLS] {
         let (mut cos, mut sin) = (R::from(1.0), R::from(0.0));
         core::array::from_fn(|_| {
-            let cos_greatest = cos + OUTWARDS;
+            let cos_greatest = cos + CELL_ROUNDING;
             (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
             // A cosine below zero must not come out: it is squared.
-            Self { cos_greatest, cos_least: (cos - OUTWARDS).greater(R::from(0.0)), sin_greatest: sin + OUTWARDS }
+            Self {
+                cos_greatest,
+                cos_least: (cos - CELL_ROUNDING).greater(R::from(0.0)),
+                sin_greatest: sin + CELL_ROUNDING,
+            }
         })
     }
 }

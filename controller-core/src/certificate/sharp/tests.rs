@@ -25,7 +25,7 @@ fn every_cell_of_the_quarter_turn_holds_its_cosines_and_sines_by_a_hair() {
             libm::cos(far) - direction.cos_least,
             direction.sin_greatest - libm::sin(far),
         ];
-        assert!(outwards.iter().all(|by| (0.0..2.0 * cells::OUTWARDS).contains(by)), "{i}: {outwards:?}");
+        assert!(outwards.iter().all(|by| (0.0..2.0 * cells::CELL_ROUNDING).contains(by)), "{i}: {outwards:?}");
     }
 }
 

@@ -11,7 +11,7 @@ use super::{Controller, thrust_axis};
 use crate::extended::force::held;
 use crate::extended::memory::Estimates;
 use crate::extended::position::Most;
-use crate::extended::turning::PUSH_ACROSS;
+use crate::extended::turning::PUSH_ACROSS_MAX_M_PER_S2;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
@@ -83,7 +83,8 @@ impl Controller {
     /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
     fn pushed(&self, command: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
         let across = math::sqrt(command.xy().norm_squared());
-        let most = math::lesser(PUSH_ACROSS, greatest * across / math::greater(command.z, f32::MIN_POSITIVE));
+        let most =
+            math::lesser(PUSH_ACROSS_MAX_M_PER_S2, greatest * across / math::greater(command.z, f32::MIN_POSITIVE));
         let speed = most * self.position.lag() / math::greater(across, f32::MIN_POSITIVE);
         Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
@@ -140,12 +141,12 @@ impl Controller {
 
 /// The angle between two vectors, rad, to 0.01: twice the one with the tangent |a x b| / (|a| |b| + a . b).
 fn angle(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
-    const QUARTER: f32 = core::f32::consts::FRAC_PI_2;
+    const QUARTER_TURN_RAD: f32 = core::f32::consts::FRAC_PI_2;
     let across = math::sqrt(a.cross(b).norm_squared());
     let along = math::sqrt(a.norm_squared() * b.norm_squared()) + a.dot(b);
     let tangent = across / math::greater(along, f32::MIN_POSITIVE);
     let half = if tangent > 1.0 {
-        QUARTER - tangent / (tangent * tangent + 0.28)
+        QUARTER_TURN_RAD - tangent / (tangent * tangent + 0.28)
     } else {
         tangent / (1.0 + 0.28 * tangent * tangent)
     };

@@ -4,7 +4,7 @@ use super::{Controller, Rotating, Wanted};
 use crate::attitude::rotate_back;
 use crate::attitude_reference::{DesiredAttitude, Turn};
 use crate::extended::attitude::{Late, Tilt};
-use crate::extended::budget::THRUST_LEFT;
+use crate::extended::budget::TORQUE_THRUST_SHARE;
 use crate::extended::demand::Demand;
 use crate::extended::memory::Memory;
 use crate::extended::position::{Filters, PositionFeedback, PositionLaw};
@@ -16,7 +16,7 @@ use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector2, Vector3, Vector4};
 
 /// The least share of M_theta that a bias leaves.
-const LEVEL_LEAST: f32 = 0.05;
+const LEVEL_SHARE_MIN: f32 = 0.05;
 
 /// Where u points, and how it would turn.
 pub(super) struct Course {
@@ -149,7 +149,7 @@ impl Controller {
         let lean = bias.xy();
         spending.spend(&-lean, 0.0);
         let left = spending.radius() - math::sqrt(lean.norm_squared()) - self.reserve;
-        let potential = self.attitude.potential(tilt, math::lesser(most, math::greater(left, LEVEL_LEAST * most)));
+        let potential = self.attitude.potential(tilt, math::lesser(most, math::greater(left, LEVEL_SHARE_MIN * most)));
         spending.spend(&-potential, self.reserve);
         spending.spend(&self.attitude.gyroscopic(turning, &state.angular_velocity, rate), self.reserve);
         let damping = self.attitude.damping(tilt, projected);
@@ -159,7 +159,7 @@ impl Controller {
         let q = self.turning.turned(&course.turn, &course.up);
         let acceleration = rotate_back(error, &Vector3::new(-q.y, q.x, 0.0));
         let torque = self.attitude.torque(&acceleration);
-        let thrust = (1.0 - THRUST_LEFT as f32) * self.vehicle.mass * course.length;
+        let thrust = (1.0 - TORQUE_THRUST_SHARE as f32) * self.vehicle.mass * course.length;
         let mut share = self.range.share(&spending.spent, &torque, thrust, scale);
         if share < 1.0 {
             cold_path();

@@ -10,7 +10,7 @@ use crate::allocation::MinimumNorm;
 use crate::certificate::extended::ExtendedCertificate;
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::defaults::NOTHING_GIVEN;
-use crate::extended::fallback::{Slowed, WINDOW};
+use crate::extended::fallback::{PROGRESS_WINDOW_S, Slowed};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::{self, Craft};
@@ -349,7 +349,7 @@ fn a_flight_without_progress_goes_on_slowed_and_on_its_own_once_it_is_near_for_a
         ticks += 1;
         assert!(ticks < 100_000);
     }
-    assert!((ticks as f32 * craft.period - 2.0 * WINDOW).abs() < 0.1, "{ticks}");
+    assert!((ticks as f32 * craft.period - 2.0 * PROGRESS_WINDOW_S).abs() < 0.1, "{ticks}");
     // The filters started afresh, and away from the target c stays within M_s.
     let level = Slowed::<f64>::of(&p, craft.vehicle.gravity).level as f32;
     let mut random = Random(82);

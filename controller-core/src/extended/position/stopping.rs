@@ -1,7 +1,7 @@
 //! How a vehicle would come to rest if its reference were at rest: for the prospect that a monitor judges.
 //! `docs/shield.md` derives it.
 
-use super::{Filters, LEVEL_LEAST, Most, PositionLaw, unit_factor};
+use super::{Filters, LEVEL_MIN_M_PER_S2, Most, PositionLaw, unit_factor};
 use crate::math;
 use crate::state::State;
 use nalgebra::Vector3;
@@ -12,14 +12,14 @@ impl PositionLaw {
     /// between two lifts is nowhere below the lesser of theirs.
     #[must_use]
     pub fn stopping_levels(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, greatest: f32, most: &Most) -> Most {
-        let up = math::lesser(math::greater(greatest - self.gravity + force.z, LEVEL_LEAST), most.up);
-        let down = math::lesser(math::greater(self.a_down - force.z, LEVEL_LEAST), most.down);
+        let up = math::lesser(math::greater(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2), most.up);
+        let down = math::lesser(math::greater(self.a_down - force.z, LEVEL_MIN_M_PER_S2), most.down);
         let vertical = z_2.z * self.k_v_vertical;
         let level = if vertical > 0.0 { down } else { up };
         let resting = self.gravity - force.z;
         let lift = resting - vertical * unit_factor(level, vertical * vertical);
         let reach = math::lesser(self.reach(lift, greatest), self.reach(resting, greatest));
-        let left = math::greater(reach - math::sqrt(force.xy().norm_squared()), LEVEL_LEAST);
+        let left = math::greater(reach - math::sqrt(force.xy().norm_squared()), LEVEL_MIN_M_PER_S2);
         Most { up, down, across: math::lesser(left, most.across) }
     }
 

@@ -6,28 +6,28 @@
 //! | here | equation |
 //! |---|---|
 //! | residual e | (m b . (v' + g e3) - T, (J omega' + omega x J omega - tau) / l) |
-//! | slow part e_s | e, averaged over `SLOW_TIME`: wind, drag, a wrong mass or centre of mass, a battery that sags |
-//! | quick part r | e - e_s, averaged over `QUICK_TIME` |
+//! | slow part e_s | e, averaged over `SLOW_TIME_CONSTANT_S`: wind, drag, a wrong mass or centre of mass, a battery that sags |
+//! | quick part r | e - e_s, averaged over `QUICK_TIME_CONSTANT_S` |
 //! | rotor i that lost a share lambda of its thrust f_i | r = -lambda f_i b_i, b_i its column of B in newtons |
 //! | alignment | -r . b_i / (\|r\| \|b_i\|) |
 //! | share | lambda = -r . b_i / (f_i \|b_i\|^2) |
-//! | large enough | \|r\| >= `RESIDUAL_LEAST` F + `RESIDUAL_OF_COMMANDS` A + `RESIDUAL_OF_TURNING` F \|omega_12\|, F a rotor's share of the weight |
-//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING_TIME` |
-//! | evidence | grows by h (lambda / `SHARE_GONE`)^3 in a tick that tells, falls by h in one that contradicts |
+//! | large enough | \|r\| >= `RESIDUAL_SHARE_MIN` F + `RESIDUAL_OF_COMMANDS` A + `RESIDUAL_OF_TURNING` F \|omega_12\|, F a rotor's share of the weight |
+//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING_TIME_CONSTANT_S` |
+//! | evidence | grows by h (lambda / `GONE_SHARE`)^3 in a tick that tells, falls by h in one that contradicts |
 //!
 //! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the
-//! greatest alignment is suspected while r is large enough, the alignment at least `ALIGNMENT_LEAST` and lambda within
-//! `SHARE_RANGE`. It is found once the evidence has grown to `EVIDENCE_TIME` and to the rotors' lag: a dead one at once, one that has
-//! lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise,
-//! or not for so long. A rotor of which nothing is commanded tells nothing either way.
+//! greatest alignment is suspected while r is large enough, the alignment at least `ALIGNMENT_MIN` and lambda within
+//! `LOST_SHARE_RANGE`. It is found once the evidence has grown to `EVIDENCE_MIN_S` and to the rotors' lag: a dead one
+//! at once, one that has lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the
+//! ground pushes otherwise, or not for so long. A rotor of which nothing is commanded tells nothing either way.
 //!
 //! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should
 //! be with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
 //! middle of a flip is found a little later.
 //!
 //! While one is suspected the slow part waits. After a jump of the state, on the ground, or after a command that was
-//! not carried out there is nothing to compare. At first the model is believed as if it had been right for `BELIEVED_TIME`;
-//! no rotor is suspected before `AGE_LEAST`.
+//! not carried out there is nothing to compare. At first the model is believed as if it had been right for
+//! `INITIAL_AGE_S`; no rotor is suspected before `AGE_MIN_S`.
 
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::allocation::remaining::Lost;
@@ -39,35 +39,35 @@ use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
 /// Time constants of the slow and the quick part, and of the greatest command of late, s.
-const SLOW_TIME: f64 = 1.0;
-const QUICK_TIME: f64 = 0.01;
-const FADING_TIME: f64 = 0.3;
+const SLOW_TIME_CONSTANT_S: f64 = 1.0;
+const QUICK_TIME_CONSTANT_S: f64 = 0.01;
+const FADING_TIME_CONSTANT_S: f64 = 0.3;
 
 /// The parts of the least |r| that tells anything.
-const RESIDUAL_LEAST: f32 = 0.3;
+const RESIDUAL_SHARE_MIN: f32 = 0.3;
 const RESIDUAL_OF_COMMANDS: f32 = 0.45;
 const RESIDUAL_OF_TURNING: f32 = 0.06;
 
 /// The least alignment.
-const ALIGNMENT_LEAST: f32 = 0.96;
+const ALIGNMENT_MIN: f32 = 0.96;
 
 /// The shares that a rotor may have lost. More than all of it is something else.
-const SHARE_RANGE: (f32, f32) = (0.25, 1.4);
+const LOST_SHARE_RANGE: (f32, f32) = (0.25, 1.4);
 
 /// The share that counts as a rotor that is gone, and the one beyond which it is taken to have nothing left.
-const SHARE_GONE: f32 = 0.8;
-const SHARE_OF_ALL: f32 = 0.87;
+const GONE_SHARE: f32 = 0.8;
+const NOTHING_LEFT_SHARE: f32 = 0.87;
 
 /// How long a rotor is suspected that is gone, beside the rotors' lag, s.
-const EVIDENCE_TIME: f32 = 0.02;
+const EVIDENCE_MIN_S: f32 = 0.02;
 
 /// The least thrust that tells what a rotor has lost, in its share of the weight.
-const TELLING_THRUST: f32 = 0.3;
+const TELLING_THRUST_SHARE_MIN: f32 = 0.3;
 
 /// For how long the model is taken to have been right before the first interval, s, and until when that counts for more
 /// than what has been seen.
-const BELIEVED_TIME: f32 = 0.3;
-const AGE_LEAST: f32 = 0.45;
+const INITIAL_AGE_S: f32 = 0.3;
+const AGE_MIN_S: f32 = 0.45;
 
 /// A rotor as the detector sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,7 +105,7 @@ pub struct Detector {
 pub struct Suspicion {
     /// e_s and w_s, N; none before the first interval.
     lasting: Option<[Vector4<f32>; 2]>,
-    /// For how long they have been averaged, s, up to `SLOW_TIME`.
+    /// For how long they have been averaged, s, up to `SLOW_TIME_CONSTANT_S`.
     age: f32,
     /// r, N.
     residual: Vector4<f32>,
@@ -120,7 +120,7 @@ impl Suspicion {
     /// Of nobody.
     pub const NONE: Self = Self {
         lasting: None,
-        age: BELIEVED_TIME,
+        age: INITIAL_AGE_S,
         residual: Vector4::new(0.0, 0.0, 0.0, 0.0),
         commands_squared: 0.0,
         rotor: 0,
@@ -169,11 +169,11 @@ impl Detector {
             gravity: vehicle.gravity,
             per_arm,
             share: vehicle.mass * vehicle.gravity / count as f32,
-            slow: averaging(SLOW_TIME),
-            quick: averaging(QUICK_TIME),
-            faded_squared: math::exp(-2.0 * f64::from(period) / FADING_TIME) as f32,
+            slow: averaging(SLOW_TIME_CONSTANT_S),
+            quick: averaging(QUICK_TIME_CONSTANT_S),
+            faded_squared: math::exp(-2.0 * f64::from(period) / FADING_TIME_CONSTANT_S) as f32,
             // Half a period: sums of periods are rounded.
-            enough: EVIDENCE_TIME + lag - 0.5 * period,
+            enough: EVIDENCE_MIN_S + lag - 0.5 * period,
             period,
         }
     }
@@ -194,7 +194,7 @@ impl Detector {
 
         let Some((rotor, lost)) = self.suspected(suspicion, interval) else {
             let mut averaging = self.slow;
-            if suspicion.age < SLOW_TIME as f32 {
+            if suspicion.age < SLOW_TIME_CONSTANT_S as f32 {
                 cold_path();
                 // An average of all that there was, at first.
                 averaging = math::greater(averaging, self.period / (suspicion.age + self.period));
@@ -210,10 +210,10 @@ impl Detector {
         cold_path();
         suspicion.lasting = Some([lasting, steady]);
         let before = if rotor == suspicion.rotor { suspicion.evidence } else { 0.0 };
-        let share = math::lesser(lost / SHARE_GONE, 1.0);
+        let share = math::lesser(lost / GONE_SHARE, 1.0);
         suspicion.evidence = before + self.period * share * share * share;
         suspicion.rotor = rotor;
-        let left = if lost > SHARE_OF_ALL { 0.0 } else { 1.0 - lost };
+        let left = if lost > NOTHING_LEFT_SHARE { 0.0 } else { 1.0 - lost };
         (suspicion.evidence > self.enough).then_some(Lost { rotor, left })
     }
 
@@ -244,14 +244,16 @@ impl Detector {
 
     /// Whether a rotor is commanded so much thrust that a loss would show.
     fn would_tell(&self, rotor: usize, interval: &Interval) -> bool {
-        self.rotors.get(rotor).is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST * self.share)
+        self.rotors
+            .get(rotor)
+            .is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST_SHARE_MIN * self.share)
     }
 
     /// The rotor that r is most aligned with, and the share that it has lost.
     fn suspected(&self, suspicion: &Suspicion, interval: &Interval) -> Option<(usize, f32)> {
         let residual = &suspicion.residual;
-        let (square, large) = (residual.norm_squared(), RESIDUAL_LEAST * self.share);
-        if square <= large * large || suspicion.age <= AGE_LEAST {
+        let (square, large) = (residual.norm_squared(), RESIDUAL_SHARE_MIN * self.share);
+        if square <= large * large || suspicion.age <= AGE_MIN_S {
             return None;
         }
         cold_path();
@@ -270,9 +272,9 @@ impl Detector {
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
-        let lost = greatest * rotor.per_length / math::greater(thrust, TELLING_THRUST * self.share);
-        let aligned = greatest * greatest >= ALIGNMENT_LEAST * ALIGNMENT_LEAST * square;
-        let (least, most) = SHARE_RANGE;
+        let lost = greatest * rotor.per_length / math::greater(thrust, TELLING_THRUST_SHARE_MIN * self.share);
+        let aligned = greatest * greatest >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
+        let (least, most) = LOST_SHARE_RANGE;
         let tells = self.would_tell(index, interval);
         (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
     }

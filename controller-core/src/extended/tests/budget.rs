@@ -3,7 +3,7 @@
 use super::Random;
 use super::std;
 use crate::allocation::{MinimumNorm, Rotors};
-use crate::extended::budget::{Bound, THRUST_LEFT, TickBudget, TorqueBudget};
+use crate::extended::budget::{Bound, TORQUE_THRUST_SHARE, TickBudget, TorqueBudget};
 use crate::extended::tests::example::Craft;
 use crate::extended::thrust_range::ThrustRange;
 use crate::state::Wrench;
@@ -193,7 +193,7 @@ fn the_acceleration_that_is_held_is_the_ticks_own_less_what_a_bias_takes() {
         let scale = random.between(0.8, 1.2);
         let held = budget.held(&craft.vehicle, &craft.limits, f64::from(scale));
         let found = ceiling.at(scale, &Vector3::zeros());
-        assert!((f64::from(found) * (1.0 - THRUST_LEFT) / held - 1.0).abs() < 1e-5, "{found} {held}");
+        assert!((f64::from(found) * (1.0 - TORQUE_THRUST_SHARE) / held - 1.0).abs() < 1e-5, "{found} {held}");
         // With a bias every rotor still has that thrust in its range.
         let bias = random.vector(1.0).component_mul(&(craft.limits.torque_max * 0.2));
         let thrust = ceiling.at(scale, &bias) * craft.vehicle.mass;

@@ -47,7 +47,7 @@ fn a_margin_that_rounding_could_use_up_is_refused_with_the_rotors() {
         law.parameters.check_rotors(&craft.rotors)
     };
     let greatest = craft.rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>();
-    let least = Extended::FLOOR_MARGIN_LEAST * example::parameters().scale_greatest * greatest;
+    let least = Extended::FLOOR_MARGIN_SHARE_MIN * example::parameters().scale_greatest * greatest;
     assert_eq!(with(1.001 * least), Ok(()));
     let ParameterError { field, reason } = with(0.999 * least).unwrap_err();
     assert!(field == "gains.floor_margin" && matches!(reason, Reason::Below(_)), "{reason:?}");

@@ -29,7 +29,7 @@ pub(super) fn force(random: &mut Random, p: &ExtendedParameters) -> Vector3<f32>
 
 #[test]
 fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
-    // What is left to the feedback where a force takes all of the envelope, m/s^2: the law's LEVEL_LEAST.
+    // What is left to the feedback where a force takes all of the envelope, m/s^2: the law's LEVEL_MIN_M_PER_S2.
     let least = 0.3;
     let mut random = Random(61);
     for _ in 0..200 {

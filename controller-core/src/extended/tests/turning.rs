@@ -2,12 +2,12 @@
 
 use super::Random;
 use crate::attitude_reference::DesiredAttitude;
-use crate::extended::budget::THRUST_LEFT;
+use crate::extended::budget::TORQUE_THRUST_SHARE;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::{Filters, PositionLaw};
 use crate::extended::tests::example::{Craft, greatest_accelerations};
-use crate::extended::turning::{PUSH_ACROSS, TurningLimit};
+use crate::extended::turning::{PUSH_ACROSS_MAX_M_PER_S2, TurningLimit};
 use crate::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 
@@ -89,7 +89,7 @@ fn the_thrust_direction_turns_within_its_acceleration_and_rate_and_never_falls_t
         // What is decided at a tick holds for all of it: u and p turn meanwhile.
         assert!(worst.rate < 1.15, "{craft:?}: {worst:?}");
         // Even where rho leaves its cone: what a tick adds to |u| is well within what is left of the thrust.
-        assert!(worst.thrust * (1.0 - THRUST_LEFT as f32) < 1.0, "{craft:?}: {worst:?}");
+        assert!(worst.thrust * (1.0 - TORQUE_THRUST_SHARE as f32) < 1.0, "{craft:?}: {worst:?}");
     }
 }
 
@@ -136,8 +136,8 @@ fn thrust_takes_at_once_what_the_vertical_wants_but_for_what_would_push_across()
         for more in [-30.0_f32, -2.0, 0.5, 3.0, 30.0] {
             let change = limit.length(n, more, &up, greatest) - n;
             let across = change * angle.sin();
-            assert!(across.abs() <= PUSH_ACROSS * 1.0001 && change >= -n && change <= greatest - n);
-            let is_whole = more.abs() * angle.tan() < PUSH_ACROSS && more / angle.cos() > -n;
+            assert!(across.abs() <= PUSH_ACROSS_MAX_M_PER_S2 * 1.0001 && change >= -n && change <= greatest - n);
+            let is_whole = more.abs() * angle.tan() < PUSH_ACROSS_MAX_M_PER_S2 && more / angle.cos() > -n;
             assert!(!is_whole || (change * angle.cos() - more).abs() < 1e-4, "{angle} {more}: {change}");
         }
     }

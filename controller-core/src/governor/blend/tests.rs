@@ -22,7 +22,7 @@ fn the_step_is_smooth_and_no_steeper_than_is_counted_on() {
         let (before, here, after) = (step(tick - 1), step(tick), step(tick + 1));
         for order in 0..4 {
             let slope = (after[order] - before[order]) * ticks as f32 / (2.0 * duration);
-            let size = STEEPEST[order] / duration.powi(order as i32 + 1);
+            let size = STEP_DERIVATIVES_MAX[order] / duration.powi(order as i32 + 1);
             assert!((slope - here[order + 1]).abs() < 1e-3 * size, "{tick}: derivative {}", order + 1);
             steepest[order] = steepest[order].max(here[order + 1].abs() / size);
         }

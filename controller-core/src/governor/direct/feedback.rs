@@ -12,21 +12,21 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// The share of the bounds, less the stream's part, that feedback may command, and the least that is counted on.
-const FEEDBACK: f32 = 0.25;
-const LEAST_LEFT: f32 = 0.01;
+const FEEDBACK_SHARE: f32 = 0.25;
+const REMAINING_SHARE_MIN: f32 = 0.01;
 
 /// The stiffness times the averages' span in the end; per tick at most; and its growth, l' = growth l^2.
-const STIFF: f32 = 9.0;
-const STIFFEST: f32 = 0.2;
-const GROWTH: f32 = 0.12;
+const STIFFNESS_SPANS_MAX: f32 = 9.0;
+const STIFFNESS_PERIODS_MAX: f32 = 0.2;
+const STIFFNESS_GROWTH: f32 = 0.12;
 
 /// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it leaves.
-const TURNING: f32 = 0.8;
+const TURNING_STIFFNESS_SHARE: f32 = 0.8;
 
 impl Direct {
     /// The stiffness a tick later.
     pub(super) fn stiffened(&self, sought: &Sought, stiffness: f32) -> f32 {
-        let grown = stiffness + GROWTH * stiffness * stiffness * self.period;
+        let grown = stiffness + STIFFNESS_GROWTH * stiffness * stiffness * self.period;
         grown.min(self.affordable(sought, self.room(sought)))
     }
 
@@ -54,15 +54,15 @@ impl Direct {
         let bent = turned(&turned(&sought.error.position));
         let twisted = turned(&bent);
         let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
-        FEEDBACK * self.acceleration * math::between(1.0 - used, LEAST_LEFT, 1.0)
+        FEEDBACK_SHARE * self.acceleration * math::between(1.0 - used, REMAINING_SHARE_MIN, 1.0)
     }
 
     /// The stiffness whose answer to the error is within the room.
     pub(super) fn affordable(&self, sought: &Sought, room: f32) -> f32 {
         let Point { position, .. } = &sought.error;
-        let stiff = (STIFF / self.span).min(STIFFEST / self.period);
+        let stiff = (STIFFNESS_SPANS_MAX / self.span).min(STIFFNESS_PERIODS_MAX / self.period);
         let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
-        let turning = (TURNING * sought.point.rate.abs()).min(stiff);
+        let turning = (TURNING_STIFFNESS_SHARE * sought.point.rate.abs()).min(stiff);
         let horizontal = within(math::sqrt(position.xy().norm_squared()), stiff).max(turning);
         within((position.z * self.flatness).abs(), horizontal)
     }

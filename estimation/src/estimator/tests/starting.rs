@@ -2,7 +2,7 @@
 
 use super::motion::{self, Rig, rest, spin, tumble};
 use crate::estimator::candidate::POSES_MIN;
-use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
+use crate::estimator::{COASTING_AFTER_US, Fault, Rejected, Taken};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -117,7 +117,7 @@ fn without_poses_it_coasts_and_reports_it() {
     let health = rig.estimator.health(rig.now);
     assert!(health.faults.contain(Fault::NoPose));
     assert_eq!(health.pose_age, Some(rig.now - began + 20_000));
-    assert!(!rig.estimator.health(began + COASTING_AFTER - 20_000).faults.contain(Fault::NoPose));
+    assert!(!rig.estimator.health(began + COASTING_AFTER_US - 20_000).faults.contain(Fault::NoPose));
     rig.fly(500_000, 20_000);
     rig.check("found again");
     assert!(rig.estimator.health(rig.now).is_good());

@@ -26,7 +26,7 @@ fn a_stuck_sensor_is_one_after_20_ms_and_works_again_at_once() {
         for n in 0..100 {
             let (rate, force) = noisy(n);
             let seen = if gyro { (stuck.0, force) } else { (rate, stuck.1) };
-            let expected = (n >= u32::from(STUCK_AFTER)).then_some(fault);
+            let expected = (n >= u32::from(STUCK_AFTER_SAMPLES)).then_some(fault);
             assert_eq!(watch.see(&seen.0, Some(&seen.1)), expected, "{n}");
         }
         let (rate, force) = noisy(4);
@@ -40,7 +40,7 @@ fn full_scale_is_a_fault_when_it_lasts() {
     for n in 0..20 {
         let (mut rate, mut force) = noisy(n);
         rate.y = -34.9;
-        let expected = (n + 1 >= u32::from(SATURATED_AFTER)).then_some(ImuFault::GyroSaturated);
+        let expected = (n + 1 >= u32::from(SATURATED_AFTER_SAMPLES)).then_some(ImuFault::GyroSaturated);
         assert_eq!(watch.see(&rate, Some(&force)), expected, "{n}");
         (rate.y, force.z) = (0.0, 0.0);
     }
@@ -48,7 +48,7 @@ fn full_scale_is_a_fault_when_it_lasts() {
     for n in 0..20 {
         let (rate, mut force) = noisy(n);
         force.z = 235.0;
-        let expected = (n + 1 >= u32::from(SATURATED_AFTER)).then_some(ImuFault::AccelerometerSaturated);
+        let expected = (n + 1 >= u32::from(SATURATED_AFTER_SAMPLES)).then_some(ImuFault::AccelerometerSaturated);
         assert_eq!(watch.see(&rate, Some(&force)), expected, "{n}");
     }
 }

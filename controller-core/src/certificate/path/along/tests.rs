@@ -1,5 +1,5 @@
 use super::*;
-use crate::certificate::path::FORCE_KEPT;
+use crate::certificate::path::FORCE_KEPT_M_PER_S2;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::Craft;
@@ -12,7 +12,7 @@ use crate::reference::waypoints::{Waypoint, Waypoints};
 fn judge<R: Real>(craft: &Craft) -> PathJudge<R> {
     let parameters = craft.constants(&NOTHING_GIVEN);
     let configuration = craft.configuration(&parameters, ReferenceBounds::REST);
-    PathJudge::new(&configuration, &craft.law(&parameters), FORCE_KEPT)
+    PathJudge::new(&configuration, &craft.law(&parameters), FORCE_KEPT_M_PER_S2)
 }
 
 /// A figure of eight, `width` m wide and half as high, flown in `seconds`, which nods and shakes its head.
@@ -48,7 +48,7 @@ fn covers(judge: &PathJudge, trajectory: &dyn Trajectory, end_us: u64) -> f64 {
         assert!(worst <= share, "{worst} at {instant}: {share}");
     }
     let named = at(at_us);
-    assert!(named.row() == row && named.worst() > share * (1.0 - 1.01 * TIGHTNESS), "{named:?} {share}");
+    assert!(named.row() == row && named.worst() > share * (1.0 - 1.01 * BOUND_TOLERANCE), "{named:?} {share}");
     share
 }
 
@@ -83,8 +83,8 @@ fn a_peak_between_the_instants_looked_at_is_not_missed() {
         heading,
     };
     let trembling = Harmonic::new(parameters).unwrap();
-    let seen = judge.shares(&Motion::from(&trembling.at(CELL / 2))).worst();
-    assert!(covers(&judge, &trembling, 2 * CELL) > 3.0 * seen, "{seen}");
+    let seen = judge.shares(&Motion::from(&trembling.at(FIRST_CELL_US / 2))).worst();
+    assert!(covers(&judge, &trembling, 2 * FIRST_CELL_US) > 3.0 * seen, "{seen}");
 }
 
 #[test]

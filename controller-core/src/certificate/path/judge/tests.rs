@@ -1,5 +1,5 @@
 use super::*;
-use crate::certificate::path::FORCE_KEPT;
+use crate::certificate::path::FORCE_KEPT_M_PER_S2;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::Craft;
 use crate::math::enclosure::Enclosure;
@@ -38,7 +38,7 @@ fn within(random: &mut Random, size: f64) -> Vector3<f64> {
 
 #[test]
 fn a_faster_circle_takes_more_until_it_takes_all() {
-    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT);
+    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT_M_PER_S2);
     let shares: [f64; 40] = core::array::from_fn(|speed| judge.shares(&circle(speed as f64 * 0.5)).worst());
     assert!(shares[0] < 0.7 && shares[39] > 1.0, "{shares:?}");
     assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{shares:?}");
@@ -141,7 +141,7 @@ fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
 
 #[test]
 fn a_reference_that_hangs_in_the_air_by_nothing_takes_all() {
-    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT);
+    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT_M_PER_S2);
     let falling = Motion { acceleration: [0.0, 0.0, -9.0], ..circle(0.0) };
     assert_eq!(judge.shares(&falling).worst(), f64::INFINITY);
     // A_- is 0.63 g.
@@ -158,7 +158,7 @@ fn rounding_decides_nothing() {
     for _ in 0..100 {
         let craft = Craft::random(&mut random);
         let motion = random_motion(&mut random, 1.0);
-        let nearest = judge::<f64>(&craft, FORCE_KEPT).shares(&motion).each;
+        let nearest = judge::<f64>(&craft, FORCE_KEPT_M_PER_S2).shares(&motion).each;
         let Motion { velocity, acceleration, jerk, snap, heading_rate } = motion;
         let enclosed = Motion {
             velocity: velocity.map(Enclosure::from),
@@ -167,7 +167,7 @@ fn rounding_decides_nothing() {
             snap: snap.map(Enclosure::from),
             heading_rate: Enclosure::from(heading_rate),
         };
-        let enclosed = judge::<Enclosure>(&craft, FORCE_KEPT).shares(&enclosed).each;
+        let enclosed = judge::<Enclosure>(&craft, FORCE_KEPT_M_PER_S2).shares(&enclosed).each;
         for (nearest, enclosed) in nearest.into_iter().zip(enclosed) {
             assert!(enclosed.lower() <= nearest && nearest <= enclosed.upper(), "{nearest} {enclosed:?}");
             assert!(nearest.is_infinite() || enclosed.upper() - enclosed.lower() < 1e-9 * nearest, "{enclosed:?}");
