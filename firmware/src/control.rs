@@ -112,7 +112,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let poses: Vec<_, POSES> = waiting(self.shared.poses());
         increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests().take();
-        self.pilot.choose(&self.shared.parameters().flight_settings());
+        self.pilot.use_settings(&self.shared.parameters().flight_settings());
         let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         let has_armed = outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed);
@@ -248,7 +248,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if let Some(streamed) = outcome.streamed {
             self.shared.announce(Event::Streamed(streamed));
         }
-        if let Some(handed) = outcome.handed {
+        if let Some(handed) = outcome.handover {
             self.shared.announce(Event::Handed(handed));
         }
     }

@@ -6,22 +6,22 @@
 //! | beep | the word; then the stop command, for as long as the tone sounds |
 //! | direction | the word; four times as long the stop command; the word to save; the stop command while it is saved |
 //!
-//! A word stands for [`WORD_DURATION`], or the least whole number of ticks that is no shorter. It goes out every
+//! A word stands for [`WORD_DURATION_US`], or the least whole number of ticks that is no shorter. It goes out every
 //! millisecond, so ten times or more: more than the six that such words take to be believed.
 
 use super::exchange::Output;
 use super::motor::{MotorSetting, MotorTest, Setting, Word};
 use super::refusal::Refusal;
-use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX};
+use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX_US};
 
-/// How long a setting takes, us: the tone of a beep, which is the longest.
-const SETTING_DURATION: u64 = 300_000;
+/// How long a setting takes: the tone of a beep, which is the longest.
+const SETTING_DURATION_US: u64 = 300_000;
 
-/// How long a word stands at least, us.
-const WORD_DURATION: u64 = 10_000;
+/// How long a word stands at least.
+const WORD_DURATION_US: u64 = 10_000;
 
 /// When a direction is saved, in durations of a word after its command.
-const SAVED_AFTER: u64 = 5;
+const SAVED_AFTER_WORDS: u64 = 5;
 
 /// What is under way on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,13 +38,13 @@ impl Bench {
     pub fn check(&self, rotors: usize) -> Result<(), Refusal> {
         let (rotor, level, duration) = match *self {
             Self::Turning(MotorTest { rotor, level, duration }) => (rotor, level, duration),
-            Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_DURATION),
+            Self::Setting(MotorSetting { rotor, .. }) => (rotor, MOTOR_TEST_LEVEL_MAX, SETTING_DURATION_US),
         };
         // Written so that NaN is refused.
         match () {
             () if rotor >= rotors => Err(Refusal::NoSuchRotor),
             () if !(level > 0.0 && level <= MOTOR_TEST_LEVEL_MAX) => Err(Refusal::MotorTestLevel),
-            () if !(1..=MOTOR_TEST_MAX).contains(&duration) => Err(Refusal::MotorTestDuration),
+            () if !(1..=MOTOR_TEST_MAX_US).contains(&duration) => Err(Refusal::MotorTestDuration),
             () => Ok(()),
         }
     }
@@ -54,7 +54,7 @@ impl Bench {
         elapsed
             >= match self {
                 Self::Turning(test) => test.duration,
-                Self::Setting(_) => SETTING_DURATION,
+                Self::Setting(_) => SETTING_DURATION_US,
             }
     }
 
@@ -64,12 +64,12 @@ impl Bench {
             Self::Turning(MotorTest { rotor, level, .. }) => return Output::Test { rotor, level },
             Self::Setting(setting) => setting,
         };
-        let word_lasts = WORD_DURATION.div_ceil(period.max(1)) * period;
+        let word_lasts = WORD_DURATION_US.div_ceil(period.max(1)) * period;
         let word = match (setting, elapsed.checked_div(word_lasts)) {
             (Setting::Beep, Some(0)) => Word::Beep,
             (Setting::Normal, Some(0)) => Word::Normal,
             (Setting::Reversed, Some(0)) => Word::Reversed,
-            (Setting::Normal | Setting::Reversed, Some(SAVED_AFTER)) => Word::Save,
+            (Setting::Normal | Setting::Reversed, Some(SAVED_AFTER_WORDS)) => Word::Save,
             _ => return Output::Stop,
         };
         Output::Word { rotor, word }

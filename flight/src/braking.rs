@@ -23,7 +23,7 @@ use nalgebra::{Vector2, Vector3};
 const ACROSS_SHARE: f32 = 0.95;
 
 /// How fast a vertical speed falls, m/s^2 (0.4 g, as a shield's law brakes) and m/s^3.
-pub(super) const VERTICAL: Stop = Stop { acceleration: 4.0, jerk: 40.0 };
+pub(super) const VERTICAL_STOP: Stop = Stop { acceleration: 4.0, jerk: 40.0 };
 
 /// How a speed falls: A, m/s^2, and J, m/s^3.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +97,7 @@ impl Braking {
     pub fn begin(&mut self, velocity: &Vector3<f32>) -> Vector3<f32> {
         (self.from, self.time) = (*velocity, 0.0);
         let (direction, speed) = self.direction();
-        let up = VERTICAL.way(velocity.z.abs()).copysign(velocity.z);
+        let up = VERTICAL_STOP.way(velocity.z.abs()).copysign(velocity.z);
         (direction * self.across.way(speed)).push(up)
     }
 
@@ -116,7 +116,7 @@ impl Braking {
         self.time += period;
         let (direction, speed) = self.direction();
         let [way, left, falls] = self.across.after(self.time, speed);
-        let [up, rises, _] = VERTICAL.after(self.time, self.from.z.abs());
+        let [up, rises, _] = VERTICAL_STOP.after(self.time, self.from.z.abs());
         let sign = 1.0_f32.copysign(self.from.z);
         if left == 0.0 && rises == 0.0 {
             self.end();

@@ -8,9 +8,9 @@
 
 use super::braking::Braking;
 use super::lift_off::LiftOff;
-use super::policy::{Aboard, Handed};
+use super::policy::{Aboard, Handover};
 use super::refusal::Grounded;
-use super::rules::REFUSAL_MAX;
+use super::rules::REFUSAL_MAX_US;
 use super::sinking::Sinking;
 use super::spool::Spool;
 use controller_core::allocation::remaining::Lost;
@@ -26,11 +26,12 @@ use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use nalgebra::Vector3;
 
-/// The speed across at which a vehicle may go down, m/s.
-const AT_REST: f32 = 0.05;
+/// The horizontal speed at which a vehicle may go down.
+const REST_SPEED_MAX_M_PER_S: f32 = 0.05;
 
-/// How near the height of its take-off the reference has to be, m, and how slow, m/s.
-const RISEN: (f32, f32) = (0.01, 0.01);
+/// Where a take-off is over: the reference's distance from the height, and its speed.
+const TAKEN_OFF_DISTANCE_MAX_M: f32 = 0.01;
+const TAKEN_OFF_SPEED_MAX_M_PER_S: f32 = 0.01;
 
 /// Where a chain's governor and mixer lie, 9 KB and 6 KB. Its user makes it, where it stays.
 #[derive(Debug, Clone, PartialEq)]
@@ -177,7 +178,7 @@ impl<'m> Chain<'m> {
     }
 
     /// Whether it makes for a place `height` above the one that it was at, m, to the millimetre.
-    pub fn rises(&self, height: f32) -> bool {
+    pub fn takes_off_to(&self, height: f32) -> bool {
         (self.rising_by - height).abs() < 1e-3
     }
 
@@ -189,15 +190,15 @@ impl<'m> Chain<'m> {
 
     /// Whether the reference has come to rest at the height of the take-off.
     pub fn has_risen(&self) -> bool {
-        let (near, slow) = RISEN;
         let Reference { position, velocity, .. } = &self.reference;
-        (position.z - self.rising_to).abs() < near && velocity.norm_squared() < slow * slow
+        (position.z - self.rising_to).abs() < TAKEN_OFF_DISTANCE_MAX_M
+            && velocity.norm_squared() < TAKEN_OFF_SPEED_MAX_M_PER_S * TAKEN_OFF_SPEED_MAX_M_PER_S
     }
 
     /// Comes to rest across, but no longer than it `may_brake`, then goes down at `speed`, m/s; to be called each tick.
     /// Both at once would brake as slowly as the vertical bounds have it.
-    pub fn come_down(&mut self, speed: f32, may_brake: bool) {
-        if may_brake && self.reference.velocity.xy().norm_squared() > AT_REST * AT_REST {
+    pub fn descend(&mut self, speed: f32, may_brake: bool) {
+        if may_brake && self.reference.velocity.xy().norm_squared() > REST_SPEED_MAX_M_PER_S * REST_SPEED_MAX_M_PER_S {
             return self.governor.stop();
         }
         let motion = Motion::Velocity(Vector3::new(0.0, 0.0, -speed));
@@ -220,11 +221,11 @@ impl<'m> Chain<'m> {
 
     /// Whether the last thrusts have been held for long enough.
     pub fn is_refused(&self) -> bool {
-        self.refused >= REFUSAL_MAX
+        self.refused >= REFUSAL_MAX_US
     }
 
     /// Takes the mean acceleration since the last tick, m/s^2, world, for the tick to come.
-    pub fn feel(&mut self, acceleration: Option<Vector3<f32>>) {
+    pub fn take_acceleration(&mut self, acceleration: Option<Vector3<f32>>) {
         self.law.measured(&Measured { acceleration, wrench: None });
     }
 
@@ -250,21 +251,21 @@ impl<'m> Chain<'m> {
         &mut self,
         policy: &mut impl Aboard,
         state: &State,
-        handed: &mut Option<Handed>,
+        handover: &mut Option<Handover>,
     ) -> Result<Flown, InputError> {
-        self.steps(state, |law, reference| {
+        self.step_with(state, |law, reference| {
             let shielded = policy.fly(law, state)?;
-            (*reference, *handed) = (shielded.reference, shielded.handed);
+            (*reference, *handover) = (shielded.reference, shielded.handover);
             Ok(shielded.command)
         })
     }
 
     fn step(&mut self, state: &State) -> Result<Flown, InputError> {
-        self.steps(state, |law, reference| law.command(state, reference))
+        self.step_with(state, |law, reference| law.command(state, reference))
     }
 
     #[inline(always)] // without a policy there is one caller
-    fn steps(
+    fn step_with(
         &mut self,
         state: &State,
         step: impl FnOnce(&mut Law, &mut Reference) -> Result<Command, InputError>,
@@ -327,7 +328,7 @@ impl<'m> Chain<'m> {
 
     /// Whether the reference rests.
     pub fn rests(&self) -> bool {
-        self.reference.velocity.norm_squared() < AT_REST * AT_REST
+        self.reference.velocity.norm_squared() < REST_SPEED_MAX_M_PER_S * REST_SPEED_MAX_M_PER_S
     }
 
     /// Whether the vehicle still stands where it started.

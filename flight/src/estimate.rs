@@ -4,7 +4,7 @@
 //! have jumped and agree among themselves; in flight it refuses them.
 
 use super::exchange::Inputs;
-use super::rules::COASTING_MAX;
+use super::rules::COASTING_MAX_US;
 use controller_core::state::State;
 use estimation::estimator::{
     COASTING_AFTER_US, EXTRAPOLATION_MAX_US, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
@@ -12,8 +12,8 @@ use estimation::estimator::{
 use estimation::measurement::is_fresh;
 use nalgebra::{Quaternion, Vector3};
 
-/// How long the estimate must have been healthy, and every pose believed, before a vehicle arms, us.
-pub const SETTLED_AFTER: u64 = 1_000_000;
+/// How long the estimate must have been healthy, and every pose believed, before a vehicle arms.
+pub const SETTLED_AFTER_US: u64 = 1_000_000;
 
 /// What a tick flies on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,14 +27,14 @@ pub(super) struct Estimate {
     pub pose: Option<Result<Taken, Rejected>>,
     /// Where the state has jumped since the last tick: the one it would be, had it not.
     pub jumped_from: Option<State>,
-    /// Whether all has been well for [`SETTLED_AFTER`].
+    /// Whether all has been well for [`SETTLED_AFTER_US`].
     pub settled: bool,
 }
 
 impl Estimate {
     /// Whether poses are no longer believed, or the estimate has become too uncertain to be flown.
     pub fn is_lost(&self) -> bool {
-        !self.is_certain_within(COASTING_MAX)
+        !self.is_certain_within(COASTING_MAX_US)
     }
 
     /// Whether poses are believed, and the estimate may be flown again.
@@ -120,7 +120,7 @@ impl<'m> Estimation<'m> {
             health,
             pose,
             jumped_from: last.filter(|_| jumped).map(|(state, then)| carried_on(&state, now.saturating_sub(then))),
-            settled: self.since.is_some_and(|since| now.saturating_sub(since) >= SETTLED_AFTER),
+            settled: self.since.is_some_and(|since| now.saturating_sub(since) >= SETTLED_AFTER_US),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::chain::Flown;
 use super::mission::{MissionItem, MissionStep};
 use super::motor::Word;
-use super::policy::Handed;
+use super::policy::Handover;
 use super::refusal::{Refusal, Stored};
 use super::request::Request;
 use super::rules::{Mode, Transition};
@@ -148,5 +148,5 @@ pub struct Outcome {
     /// Whether a policy is let fly.
     pub flies_policy: bool,
     /// Who flies from now on, in the ticks in which that changes while a policy is let fly.
-    pub handed: Option<Handed>,
+    pub handover: Option<Handover>,
 }

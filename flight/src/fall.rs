@@ -3,7 +3,7 @@
 //! A falling vehicle is still for a moment at most, so one that stays still lies somewhere.
 
 use super::debounce::Debounce;
-use super::watch::{GROUND_DEBOUNCE, is_still};
+use super::detectors::{GROUND_DEBOUNCE_US, is_still};
 use estimation::estimator::EstimatedState;
 
 /// Since it was stopped.
@@ -16,7 +16,7 @@ pub(super) struct Fall {
 impl Fall {
     /// Once a tick; `is_stopped` in the one that stops it in the air. Without a state the last answer stands.
     pub fn tick(&mut self, is_stopped: bool, state: Option<&EstimatedState>, now: u64) {
-        let lies = self.still.holds_for(state.is_some_and(is_still), GROUND_DEBOUNCE, now);
+        let lies = self.still.holds_for(state.is_some_and(is_still), GROUND_DEBOUNCE_US, now);
         // What has hovered until now was still as well.
         self.still = if is_stopped { Debounce::default() } else { self.still };
         self.may_fall = is_stopped || self.may_fall && !lies;

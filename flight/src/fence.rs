@@ -26,7 +26,7 @@ impl Fence {
     }
 
     /// Takes radius and height from other settings, about the same place.
-    pub fn choose(&mut self, settings: &FlightSettings) {
+    pub fn resize(&mut self, settings: &FlightSettings) {
         *self = Self { home: self.home, ..Self::new(settings) };
     }
 

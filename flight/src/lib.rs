@@ -8,7 +8,7 @@
 //! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: the [estimator](estimation::estimator)'s state in a tick, and how long it has been healthy;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
-//! - `watch`: whether it follows, has landed, or lies on its back;
+//! - `detectors`: whether it follows, has landed, or lies on its back;
 //! - `fall`: whether a vehicle whose motors were stopped in the air lies still again;
 //! - `fence`: the limits of position;
 //! - [`MissionItem`]: missions, a source of setpoints inside the pilot;
@@ -41,14 +41,15 @@
 #[path = "../../controller-core/tests/support/hummingbird.rs"]
 mod hummingbird;
 
-/// The time between ticks in tests, us.
+/// The time between ticks in tests.
 #[cfg(test)]
-const PERIOD: u64 = 10_000;
+const PERIOD_US: u64 = 10_000;
 
 mod bench;
 mod braking;
 mod chain;
 mod debounce;
+mod detectors;
 mod estimate;
 mod exchange;
 mod fall;
@@ -71,21 +72,20 @@ mod stream_check;
 mod thrust_check;
 mod tilt;
 mod trust;
-mod watch;
 
 pub use chain::{Flown, Memory};
-pub use estimate::SETTLED_AFTER;
+pub use estimate::SETTLED_AFTER_US;
 pub use estimation::measurement::{
     DISTANCE_MAX_M, ImuSample, Pose, PoseError, QUATERNION_LENGTH_TOLERANCE, STAMP_LEAD_MAX_US, Stamped, Velocity,
 };
 pub use exchange::{Battery, Inputs, Outcome, Output};
-pub use mission::{Leg, MissionItem, MissionRefusal, MissionStep, RADIUS as MISSION_RADIUS};
+pub use mission::{ACCEPTANCE_RADIUS_M as MISSION_RADIUS, Leg, MissionItem, MissionRefusal, MissionStep};
 pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;
-pub use policy::{Aboard, Guarded, Handed, NoPolicy, Shielded};
+pub use policy::{Aboard, Guarded, Handover, NoPolicy, Shielded};
 pub use reason::Reason;
 pub use refusal::{Grounded, Refusal, Stored};
-pub use request::{Request, SETPOINT_AGE_MAX};
+pub use request::{Request, SETPOINT_AGE_MAX_US};
 pub use rules::{Mode, Transition};
 pub use settings::FlightSettings;
 pub use stream_check::Streamed;

@@ -1,18 +1,18 @@
 //! Whether a vehicle that was armed where it stands has left the ground.
 //!
 //! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are
-//! held until the vehicle is [`CLEAR`] above where it was armed or faster than [`MOVING`] in any direction. A vehicle
+//! held until the vehicle is [`LIFT_OFF_HEIGHT_M`] above where it was armed or faster than [`LIFT_OFF_SPEED_M_PER_S`] in any direction. A vehicle
 //! armed in the air falls faster than that within a few ticks if anything is left to be learnt. A later landing is
-//! `watch`'s to notice.
+//! for `detectors` to find.
 
 use controller_core::state::State;
 use nalgebra::Vector3;
 
-/// How far above the place of arming the vehicle is off the ground, m.
-const CLEAR: f32 = 0.05;
+/// How far above the place of arming the vehicle is off the ground.
+const LIFT_OFF_HEIGHT_M: f32 = 0.05;
 
-/// The speed beyond which it does not stand, m/s.
-const MOVING: f32 = 0.2;
+/// The speed beyond which it does not stand.
+const LIFT_OFF_SPEED_M_PER_S: f32 = 0.2;
 
 /// Where a vehicle was armed, until it has left that place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,9 +41,10 @@ impl LiftOff {
 
     /// Whether the vehicle still stands in `state`; once it has left the ground it stands no more.
     pub fn stands(&mut self, state: &State) -> bool {
-        self.standing_at = self
-            .standing_at
-            .filter(|height| state.position.z - height < CLEAR && state.velocity.norm_squared() < MOVING * MOVING);
+        self.standing_at = self.standing_at.filter(|height| {
+            state.position.z - height < LIFT_OFF_HEIGHT_M
+                && state.velocity.norm_squared() < LIFT_OFF_SPEED_M_PER_S * LIFT_OFF_SPEED_M_PER_S
+        });
         self.standing_at.is_some()
     }
 }

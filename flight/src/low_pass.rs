@@ -1,21 +1,19 @@
 //! The vehicle's motion without the vibration of its rotors, by a low-pass.
 //!
 //! Rotors out of balance vibrate a vehicle that stands or lies. A first-order low-pass, y += h / (T + h) (x - y) in
-//! ticks of h with T = [`TIME`], reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25
+//! ticks of h with T = [`TIME_CONSTANT_S`], reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25
 //! Hz. Accelerations vibrate most: theirs is of second order, which passes one sixtieth. A hit at speed would stay in
-//! it for too long: an acceleration counts up to [`COUNTED`] only.
+//! it for too long: an acceleration counts up to [`ACCELERATION_MAX_M_PER_S2`] only.
 
 use controller_core::math;
 use controller_core::state::State;
 use estimation::estimator::EstimatedState;
 use nalgebra::Vector3;
 
-/// The low-pass's time constant, s.
-const TIME: f32 = 0.04;
+const TIME_CONSTANT_S: f32 = 0.04;
 
-/// The greatest acceleration that counts along each axis, m/s^2. One tick of it leaves less in the average than wind
-/// may.
-const COUNTED: f32 = 40.0;
+/// The largest acceleration that counts along each axis. One tick of it leaves less in the average than wind may.
+const ACCELERATION_MAX_M_PER_S2: f32 = 40.0;
 
 /// Averages, and how often the state had jumped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +28,7 @@ struct Average {
 }
 
 /// The average, if there is a state, and the share of each tick's value that it takes in.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct LowPass {
     share: f32,
     average: Option<Average>,
@@ -40,7 +38,7 @@ impl LowPass {
     /// In ticks of `period` us.
     pub fn new(period: u64) -> Self {
         let seconds = period as f32 * 1e-6;
-        Self { share: seconds / (TIME + seconds), average: None }
+        Self { share: seconds / (TIME_CONSTANT_S + seconds), average: None }
     }
 
     /// Whether a state has jumped since the last one.
@@ -60,7 +58,7 @@ impl LowPass {
             |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * self.share);
         let velocity = averaged(state.velocity, last.map(|last| last.velocity));
         let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
-        let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
+        let counted = acceleration.map(|a| math::between(a, -ACCELERATION_MAX_M_PER_S2, ACCELERATION_MAX_M_PER_S2));
         let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
         let smoothed =

@@ -1,11 +1,11 @@
 //! A mission: items that are flown one after the other, each a position setpoint of the governor.
 //!
-//! The list is its keeper's. The pilot says which item it [wants](super::Pilot::mission_item) and is handed that one
+//! The list is its keeper's. The pilot says which item it [needs](super::Pilot::mission_item) and is given that one
 //! alone, so it needs no memory for the list. A mission begins, pauses and ends by the rules that setpoints, a hold and
 //! a landing have: it is one more source of setpoints.
 //!
 //! ```text
-//! wanted item -> checked, to the governor -> its reference within the radius, for the hold time -> next item
+//! item needed -> checked, to the governor -> its reference within the radius, for the hold time -> next item
 //!                                                            none left -> hold there;  a landing -> land
 //! ```
 
@@ -14,17 +14,18 @@ use controller_core::governor::Turn;
 use core::fmt;
 use nalgebra::{Vector2, Vector3};
 
-/// The heights of a take-off, m.
-pub const TAKE_OFF_HEIGHTS: core::ops::RangeInclusive<f32> = 0.5..=50.0;
+/// Of a take-off.
+pub const TAKE_OFF_HEIGHTS_M: core::ops::RangeInclusive<f32> = 0.5..=50.0;
 
-/// The acceptance radius of an item that names none, m.
-pub const RADIUS: f32 = 0.3;
+/// Of an item that names none.
+pub const ACCEPTANCE_RADIUS_M: f32 = 0.3;
 
-/// How near the place of its landing the reference has to be, m, and how slow, m/s, before the vehicle goes down.
-const OVER: (f32, f32) = (0.05, 0.05);
+/// How near the place of its landing, and how slow, the reference has to be before the vehicle goes down.
+const LANDING_PLACE_DISTANCE_MAX_M: f32 = 0.05;
+const LANDING_PLACE_SPEED_MAX_M_PER_S: f32 = 0.05;
 
-/// How near its height a reference that goes straight up has to be, m.
-const RISEN: f32 = 0.1;
+/// How near its height a reference that goes straight up has to be.
+const RISEN_DISTANCE_MAX_M: f32 = 0.1;
 
 /// What an item is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +99,7 @@ impl MissionItem {
         };
         if !is_finite {
             Err(MissionRefusal::Number)
-        } else if self.leg == Leg::TakeOff && !TAKE_OFF_HEIGHTS.contains(&height) {
+        } else if self.leg == Leg::TakeOff && !TAKE_OFF_HEIGHTS_M.contains(&height) {
             Err(MissionRefusal::TakeOffHeight)
         } else if height < 0.0 {
             Err(MissionRefusal::BelowHome)
@@ -130,11 +131,10 @@ impl MissionItem {
 
     /// Whether a reference has come to the target, so far from it, m, and so fast, m/s.
     pub(super) fn is_reached(&self, away: f32, speed: f32, rises: bool) -> bool {
-        let (near, slow) = OVER;
         if rises || self.leg == Leg::TakeOff {
-            away < RISEN
+            away < RISEN_DISTANCE_MAX_M
         } else if self.lands() {
-            away < near && speed < slow
+            away < LANDING_PLACE_DISTANCE_MAX_M && speed < LANDING_PLACE_SPEED_MAX_M_PER_S
         } else {
             away < self.radius
         }

@@ -4,20 +4,20 @@ use super::estimate::Estimate;
 use super::policy::Aboard;
 use super::refusal::Refusal;
 use super::rules::Mode;
-use super::tilt::{heading, up};
+use super::tilt::{heading, tilt_cosine};
 use controller_core::heading::Heading;
 use estimation::estimator::{EstimatedState, Fault};
 use nalgebra::Vector3;
 
-/// The cosine of the greatest tilt that arms, 30 degrees.
-const TILT_COSINE: f32 = 0.866_025_4;
+/// 30 degrees.
+const ARMING_TILT_COSINE: f32 = 0.866_025_4;
 
-/// The acceleration, m/s^2, beyond which the accelerometer and the estimate do not agree on gravity: what 10 degrees
-/// between two ups make of it, 2 g sin 5 degrees. A vehicle at rest has none.
-const GRAVITY_ERROR: f32 = 1.71;
+/// The acceleration beyond which the accelerometer and the estimate do not agree on gravity: 2 g sin 5 degrees, for two
+/// vertical directions 10 degrees apart. A vehicle at rest has none.
+const GRAVITY_ERROR_MAX_M_PER_S2: f32 = 1.71;
 
-/// The speed, m/s, and the body rate, rad/s, beyond which a vehicle does not arm.
-const MOVING: (f32, f32) = (0.2, 0.2);
+const ARMING_SPEED_MAX_M_PER_S: f32 = 0.2;
+const ARMING_RATE_MAX_RAD_PER_S: f32 = 0.2;
 
 /// Where a flight starts.
 pub(super) struct Start {
@@ -94,13 +94,13 @@ pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result
     faults.worst().map_or(Ok(()), |fault| Err(Refusal::Estimator(fault)))?;
     // With an estimate it is the body rate that is missing.
     let EstimatedState { state, acceleration, .. } = estimate.state.ok_or(Refusal::ImuStale)?;
-    let (speed, rate) = MOVING;
+    let (speed, rate) = (ARMING_SPEED_MAX_M_PER_S, ARMING_RATE_MAX_RAD_PER_S);
     // Written so that NaN is refused.
     let still = state.velocity.norm_squared() < speed * speed && state.angular_velocity.norm_squared() < rate * rate;
     require(still, Refusal::Moving)?;
-    require(acceleration.norm_squared() < GRAVITY_ERROR * GRAVITY_ERROR, Refusal::Gravity)?;
+    require(acceleration.norm_squared() < GRAVITY_ERROR_MAX_M_PER_S2 * GRAVITY_ERROR_MAX_M_PER_S2, Refusal::Gravity)?;
     require(estimate.settled, Refusal::PosesUnsettled)?;
-    require(up(&state.attitude) > TILT_COSINE, Refusal::Tilted)?;
+    require(tilt_cosine(&state.attitude) > ARMING_TILT_COSINE, Refusal::Tilted)?;
     require(!ground_station_silent, Refusal::GroundStationSilent)?;
     let heading = heading(&state.attitude).ok_or(Refusal::Tilted)?;
     Ok(Start { position: state.position, heading })

@@ -5,21 +5,21 @@
 
 use super::bench::Bench;
 use super::chain::{Chain, Flown, Memory};
+use super::detectors::{Detected, Detectors};
 use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Output};
 use super::fall::Fall;
 use super::fence::Fence;
 use super::mission::Progress;
-use super::policy::{Aboard, Handed, NoPolicy};
+use super::policy::{Aboard, Handover, NoPolicy};
 use super::reason::Reason;
 use super::refusal::Grounded;
-use super::request::Newest;
-use super::rules::{self, BRAKING_MAX, Conditions, LEVELLING_MAX, Mode, Transition};
+use super::request::NewestSetpoint;
+use super::rules::{self, BRAKING_MAX_US, Conditions, LEVELLING_MAX_US, Mode, Transition};
 use super::settings::FlightSettings;
 use super::stream_check::StreamCheck;
 use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
-use super::watch::{Seen, Watch};
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
 use controller_core::governor::{Following, GovernorLimits};
@@ -37,13 +37,13 @@ pub struct Pilot<'m, P = NoPolicy> {
     /// When the mode was entered, us.
     since: u64,
     estimation: Estimation<'m>,
-    watch: Watch,
+    detectors: Detectors,
     fall: Fall,
     fence: Fence,
     bench: Bench,
     /// The newest setpoint that may be flown, and since when flight by setpoints is requested, us.
-    newest: Newest,
-    wanted_since: Option<u64>,
+    newest: NewestSetpoint,
+    setpoints_requested_since: Option<u64>,
     mission: Progress,
     /// Whether a vehicle without a pose was landing, or was commanded to land: it lands once there is a pose.
     must_still_land: bool,
@@ -105,12 +105,12 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             mode: Mode::Boot,
             since: 0,
             estimation: Estimation::new(estimator),
-            watch: Watch::new(period),
+            detectors: Detectors::new(period),
             fall: Fall::default(),
             fence: Fence::new(&settings),
             bench: Bench::NONE,
-            newest: Newest::default(),
-            wanted_since: None,
+            newest: NewestSetpoint::default(),
+            setpoints_requested_since: None,
             mission: Progress::default(),
             must_still_land: false,
             trust: Trust::default(),
@@ -124,10 +124,10 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// Other settings from now on, while the law drives nothing; an armed vehicle keeps those that it was armed with.
-    pub fn choose(&mut self, settings: &FlightSettings) {
+    pub fn use_settings(&mut self, settings: &FlightSettings) {
         if !self.mode.is_armed() {
             self.settings = settings.within_range();
-            self.fence.choose(&self.settings);
+            self.fence.resize(&self.settings);
         }
     }
 
@@ -150,7 +150,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// Moves the reference along with a jump of the estimate; in flight, whether that was possible.
-    fn follow(&mut self, estimate: &Estimate) -> bool {
+    fn follow_jump(&mut self, estimate: &Estimate) -> bool {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
             (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
                 // A body that is found again has not moved with its frame.
@@ -163,22 +163,23 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         }
     }
 
-    /// What the watch detects: a touchdown, a crash, lost tracking, a low battery.
-    fn observe(&mut self, inputs: &Inputs, estimate: &Estimate) -> Seen {
+    /// What the detectors find: a touchdown, a crash, lost tracking, a low battery.
+    fn detect(&mut self, inputs: &Inputs, estimate: &Estimate) -> Detected {
         if !self.mode.is_armed() {
-            self.watch = Watch::new(self.period);
+            self.detectors = Detectors::new(self.period);
         }
         let chain = self.chain.as_ref().ok();
-        let seen = self.watch.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs);
-        if let (true, Ok(chain)) = (seen.touches, &mut self.chain) {
+        let detected =
+            self.detectors.tick(self.mode, estimate.state.as_ref(), chain, self.settings.tracking_error_max, inputs);
+        if let (true, Ok(chain)) = (detected.touches, &mut self.chain) {
             chain.stop_sinking();
         }
-        seen
+        detected
     }
 
     /// Counts the evidence against the source of poses in this flight.
-    fn judge_poses(&mut self, estimate: &Estimate, seen: &Seen, now: u64) {
-        if seen.lied {
+    fn judge_poses(&mut self, estimate: &Estimate, detected: &Detected, now: u64) {
+        if detected.lied {
             self.trust.give_up();
         }
         if self.mode.flies() {
@@ -217,18 +218,18 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     fn enter(&mut self, transition: &Transition, inputs: &Inputs, estimate: &Estimate, touched: bool) {
         (self.mode, self.since) = (transition.to, inputs.now);
         if transition.from.is_armed() {
-            self.wanted_since = None;
+            self.setpoints_requested_since = None;
             // What was stopped begins anew.
             self.mission = if transition.to.is_armed() { self.mission } else { Progress::default() };
         }
         if transition.to != Mode::Flying {
             self.mission = self.mission.paused();
-            self.take_over(estimate);
+            self.end_policy(estimate);
         }
         self.must_still_land |= transition.from == Mode::Landing;
         self.must_still_land &= transition.to == Mode::Descending;
         if transition.reason == Reason::BatteryLow {
-            self.watch.latch_low();
+            self.detectors.latch_low();
         }
         if transition.reason == Reason::LandingOver {
             self.trust.give_up();
@@ -271,17 +272,17 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// The transition that the rules find, done.
-    fn transit(
+    fn change_mode(
         &mut self,
         conditions: Conditions,
         inputs: &Inputs,
         estimate: &Estimate,
-        seen: &Seen,
+        detected: &Detected,
     ) -> Option<Transition> {
         let transition = rules::transition(self.mode, conditions);
         let was_airborne = self.is_airborne();
         if let Some(transition) = transition {
-            self.enter(&transition, inputs, estimate, seen.touched);
+            self.enter(&transition, inputs, estimate, detected.touched);
         }
         let has_landed = transition.is_some_and(|transition| transition.reason == Reason::Landed);
         let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
@@ -290,32 +291,34 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> Done {
+    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> TickOutput {
         match self.mode {
-            Mode::MotorTest => return Done::without(self.bench.output(now.saturating_sub(self.since), self.period)),
-            Mode::Idling => return Done::without(Output::Idle),
+            Mode::MotorTest => {
+                return TickOutput::without(self.bench.output(now.saturating_sub(self.since), self.period));
+            }
+            Mode::Idling => return TickOutput::without(Output::Idle),
             _ => {}
         }
         // Every mode that flies has both, by the rules.
         let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
-            return Done::without(Output::Stop);
+            return TickOutput::without(Output::Stop);
         };
-        chain.feel(estimate.felt);
-        let mut handed = None;
+        chain.take_acceleration(estimate.felt);
+        let mut handover = None;
         let flown = if self.mode == Mode::Descending {
             // Poses that are given up do not come back.
-            let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX;
+            let descends = touched || self.trust.is_given_up() || now.saturating_sub(self.since) >= LEVELLING_MAX_US;
             chain.fly_level(estimated, descends)
         } else if P::EXISTS && self.flies_policy {
-            chain.fly_policy(&mut self.policy, &estimated.state, &mut handed)
+            chain.fly_policy(&mut self.policy, &estimated.state, &mut handover)
         } else {
             if self.mode == Mode::Landing {
-                chain.come_down(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX);
+                chain.descend(self.settings.landing_speed, now.saturating_sub(self.since) < BRAKING_MAX_US);
             }
             chain.fly(&estimated.state)
         };
         let output = chain.thrusts().map_or(Output::Stop, |thrusts| Output::Thrusts(thrusts.clone()));
-        Done { output, flown: Some(flown), handed }
+        TickOutput { output, flown: Some(flown), handover }
     }
 }
 
@@ -327,16 +330,16 @@ fn hold(chain: &mut Chain, fence: &Fence, estimate: &Estimate) {
 }
 
 /// What a mode did in a tick.
-struct Done {
+struct TickOutput {
     output: Output,
     flown: Option<Result<Flown, InputError>>,
-    handed: Option<Handed>,
+    handover: Option<Handover>,
 }
 
-impl Done {
+impl TickOutput {
     /// Without the law.
     fn without(output: Output) -> Self {
-        Self { output, flown: None, handed: None }
+        Self { output, flown: None, handover: None }
     }
 }
 

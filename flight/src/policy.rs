@@ -15,12 +15,12 @@ use controller_core::state::State;
 use core::fmt;
 use nalgebra::Vector3;
 
-/// How far inside the fence the box is, and how high its floor is above the place of arming, m.
-const INSIDE: f32 = 0.4;
+/// How far inside the fence the box is, and how high its floor is above the place of arming.
+const FENCE_MARGIN_M: f32 = 0.4;
 
 /// Who flies from now on, where a policy was let fly.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Handed {
+pub enum Handover {
     /// The policy.
     ToPolicy,
     /// The law, and why.
@@ -29,7 +29,7 @@ pub enum Handed {
     ToLawForGood(Reason),
 }
 
-impl fmt::Display for Handed {
+impl fmt::Display for Handover {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ToPolicy => f.write_str("Policy flies"),
@@ -47,7 +47,7 @@ pub struct Shielded {
     /// Where the law flies to, or would.
     pub reference: Reference,
     /// Who flies from now on, if that is new.
-    pub handed: Option<Handed>,
+    pub handover: Option<Handover>,
 }
 
 /// What may be aboard.
@@ -154,15 +154,15 @@ impl<P: Policy> Aboard for Guarded<P> {
         let flown = shield.step(law, state, offers.as_ref())?;
         let is_new = self.last != Some(flown.reason);
         self.last = Some(flown.reason);
-        let handed = match flown.reason {
-            None => Handed::ToPolicy,
-            Some(reason) if shield.keeps() => Handed::ToLawForGood(reason),
-            Some(reason) => Handed::ToLaw(reason),
+        let handover = match flown.reason {
+            None => Handover::ToPolicy,
+            Some(reason) if shield.keeps() => Handover::ToLawForGood(reason),
+            Some(reason) => Handover::ToLaw(reason),
         };
         Ok(Shielded {
             command: Command { wrench: flown.wrench, mrp: flown.diagnostics.mrp },
             reference: flown.reference,
-            handed: is_new.then_some(handed),
+            handover: is_new.then_some(handover),
         })
     }
 }
@@ -200,6 +200,6 @@ impl<A: Aboard> Aboard for Option<A> {
 
 /// The corners of the box in a fence about `home`, m: a square in its circle.
 pub(super) fn corners(home: &Vector3<f32>, radius: f32, height: f32) -> [Vector3<f32>; 2] {
-    let half = radius * core::f32::consts::FRAC_1_SQRT_2 - INSIDE;
-    [home + Vector3::new(-half, -half, INSIDE), home + Vector3::new(half, half, height - INSIDE)]
+    let half = radius * core::f32::consts::FRAC_1_SQRT_2 - FENCE_MARGIN_M;
+    [home + Vector3::new(-half, -half, FENCE_MARGIN_M), home + Vector3::new(half, half, height - FENCE_MARGIN_M)]
 }

@@ -4,8 +4,8 @@ use super::motor::{MotorSetting, MotorTest};
 use super::refusal::Refusal;
 use controller_core::governor::{Motion, Setpoint};
 
-/// How old a setpoint may be to be flown, us. One that moves must be renewed as often, or the vehicle holds.
-pub const SETPOINT_AGE_MAX: u64 = 1_000_000;
+/// How old a setpoint may be to be flown. One that moves must be renewed as often, or the vehicle holds.
+pub const SETPOINT_AGE_MAX_US: u64 = 1_000_000;
 
 /// A request to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,9 +39,9 @@ pub enum Request {
 
 /// The newest setpoint that may be flown, and the newest refusal of one, each with its time, us.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Newest(Option<(Setpoint, u64)>, Option<(Refusal, u64)>);
+pub(super) struct NewestSetpoint(Option<(Setpoint, u64)>, Option<(Refusal, u64)>);
 
-impl Newest {
+impl NewestSetpoint {
     /// Keeps one that came at `now`, us.
     pub fn keep(&mut self, setpoint: &Setpoint, now: u64) {
         self.0 = Some((*setpoint, now));
@@ -54,13 +54,16 @@ impl Newest {
 
     /// Why there is no setpoint at `now`, us.
     pub fn refused(&self, now: u64) -> Refusal {
-        let recent = self.1.filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX);
+        let recent = self.1.filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX_US);
         recent.map_or(Refusal::NoSetpoints, |(refusal, _)| refusal)
     }
 
     /// It, if it is fresh at `now`, us.
     pub fn fresh(&self, now: u64) -> Option<&Setpoint> {
-        self.0.as_ref().filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX).map(|(setpoint, _)| setpoint)
+        self.0
+            .as_ref()
+            .filter(|(_, came)| now.saturating_sub(*came) < SETPOINT_AGE_MAX_US)
+            .map(|(setpoint, _)| setpoint)
     }
 
     /// Whether it has ended: it moved and was not renewed. A point is flown to for as long as it takes.

@@ -23,65 +23,65 @@ pub use table::{Row, TABLE};
 use super::reason::Reason;
 use estimation::estimator::EXTRAPOLATION_MAX_US;
 
-/// How long a flight goes on by IMU alone after the last pose that was believed, us. Drift grows with the square of the
+/// How long a flight goes on by IMU alone after the last pose that was believed. Drift grows with the square of the
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
-pub const COASTING_MAX: u64 = 1_000_000;
+pub const COASTING_MAX_US: u64 = 1_000_000;
 
-/// The greatest age of an IMU sample that is flown, us: twenty samples missed, and the delay of its own filters. The
+/// The greatest age of an IMU sample that is flown: twenty samples missed, and the delay of its own filters. The
 /// attitude loop stands no more (docs/sampled-loop.md), and without rates the attitude is unknown.
-pub const IMU_AGE_MAX: u64 = EXTRAPOLATION_MAX_US;
+pub const IMU_AGE_MAX_US: u64 = EXTRAPOLATION_MAX_US;
 
-/// How long a vehicle without a pose only levels, us: poses may come back. Then it goes down.
-pub const LEVELLING_MAX: u64 = 1_000_000;
+/// How long a vehicle without a pose only levels: poses may come back. Then it goes down.
+pub const LEVELLING_MAX_US: u64 = 1_000_000;
 
-/// How long it may go down by the IMU alone, us, levelling included: 20 m at the least speed.
-pub const DESCENDING_MAX: u64 = 30_000_000;
+/// How long it may go down by the IMU alone, levelling included: 20 m at the least speed.
+pub const DESCENDING_MAX_US: u64 = 30_000_000;
 
-/// How long a landing may brake across before it goes down, us.
-pub const BRAKING_MAX: u64 = 5_000_000;
+/// How long a landing may brake across before it goes down.
+pub const BRAKING_MAX_US: u64 = 5_000_000;
 
 /// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
 /// as the fence reaches, and so many seconds besides. Then its poses do not lead to the ground.
-pub const LANDING_PATIENCE: f32 = 2.0;
-/// See [`LANDING_PATIENCE`], s.
-pub const LANDING_REST: f32 = 12.0;
+pub const LANDING_TIMEOUT_FACTOR: f32 = 2.0;
+/// See [`LANDING_TIMEOUT_FACTOR`].
+pub const LANDING_TIMEOUT_EXTRA_S: f32 = 12.0;
 
-/// How long the ground station may be silent, us. It sends heartbeats once a second: two may be lost in a row, and half
+/// How long the ground station may be silent. It sends heartbeats once a second: two may be lost in a row, and half
 /// a second is for their jitter.
-pub const GROUND_STATION_SILENCE_MAX: u64 = 2_500_000;
+pub const GROUND_STATION_TIMEOUT_US: u64 = 2_500_000;
 
-/// How long an armed vehicle may idle on the ground, us, or fly setpoints that do not lift it.
-pub const IDLING_MAX: u64 = 10_000_000;
+/// How long an armed vehicle may idle on the ground, or fly setpoints that do not lift it.
+pub const IDLING_MAX_US: u64 = 10_000_000;
 
-/// How long a request for setpoints is kept while disarmed, us: a client requests them and arms within a second or two.
+/// How long a request for setpoints is kept while disarmed: a client requests them and arms within a second or two.
 /// An operator who arms later may not know of the request.
-pub const SETPOINTS_REQUEST_MAX: u64 = 5_000_000;
+pub const SETPOINTS_REQUEST_MAX_US: u64 = 5_000_000;
 
-/// How long a battery must be low before the vehicle lands, us: it sags under a burst of thrust.
-pub const BATTERY_DEBOUNCE: u64 = 3_000_000;
+/// How long a battery must be low before the vehicle lands: it sags under a burst of thrust.
+pub const BATTERY_DEBOUNCE_US: u64 = 3_000_000;
 
-/// How long the vehicle may be far from its reference, us: a recovery takes seconds, wind that is too strong does not
+/// How long the vehicle may be far from its reference: a recovery takes seconds, wind that is too strong does not
 /// end.
-pub const TRACKING_DEBOUNCE: u64 = 5_000_000;
+pub const TRACKING_DEBOUNCE_US: u64 = 5_000_000;
 
-/// How long the rotors may deliver less than the command, us. In a certified flight they never do.
-pub const SATURATION_DEBOUNCE: u64 = 1_000_000;
+/// How long the rotors may deliver less than the command. In a certified flight they never do.
+pub const SATURATION_DEBOUNCE_US: u64 = 1_000_000;
 
-/// How long a vehicle without a rotor has been on its way at least before a reference at rest has arrived, us.
-pub const ARRIVING_MIN: u64 = 1_000_000;
+/// How long a vehicle without a rotor has been on its way at least before a reference at rest has arrived.
+pub const ARRIVING_MIN_US: u64 = 1_000_000;
 
-/// How long control may be late with every tick, us.
-pub const OVERRUN_DEBOUNCE: u64 = 100_000;
+/// How long control may be late with every tick.
+pub const OVERRUN_DEBOUNCE_US: u64 = 100_000;
 
 /// The greatest level of a motor test, as a part of the command's range: turns a rotor, lifts nothing.
 pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
 
-/// The longest motor test, us.
-pub const MOTOR_TEST_MAX: u64 = 2_000_000;
+/// The longest motor test.
+pub const MOTOR_TEST_MAX_US: u64 = 2_000_000;
 
-/// How long the last thrusts are held without new ones, us, where the law or the allocation refuses its input tick
+/// How long the last thrusts are held without new ones, where the law or the allocation refuses its input tick
 /// after tick. Inputs are checked before the law sees them, so a refusal is a defect; this outlasts a passing one.
-pub const REFUSAL_MAX: u64 = 50_000;
+pub const REFUSAL_MAX_US: u64 = 50_000;
 
 /// A change of mode, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,7 @@ pub struct FlightSettings {
     /// How fast a landing goes down, m/s, in [0.1, 2].
     pub landing_speed: f32,
     /// How long the ground station may be silent before a vehicle that holds lands, s, in [2.5, 600].
-    pub ground_station_patience: f32,
+    pub ground_station_timeout: f32,
     /// The fence: the greatest horizontal distance from where the vehicle was armed, m, in [2, 10000].
     pub fence_radius: f32,
     /// The fence: the greatest height above that place, m, in [2, 10000].
@@ -24,7 +24,7 @@ impl FlightSettings {
     pub const DEFAULT: Self = Self {
         take_off_height: 1.5,
         landing_speed: 0.5,
-        ground_station_patience: 10.0,
+        ground_station_timeout: 10.0,
         fence_radius: 100.0,
         fence_height: 50.0,
         tracking_error_max: 3.0,
@@ -36,7 +36,7 @@ impl FlightSettings {
         let Self {
             take_off_height,
             landing_speed,
-            ground_station_patience,
+            ground_station_timeout,
             fence_radius,
             fence_height,
             tracking_error_max,
@@ -45,7 +45,7 @@ impl FlightSettings {
         Self {
             take_off_height: within(take_off_height, 0.5, 50.0, default.take_off_height),
             landing_speed: within(landing_speed, 0.1, 2.0, default.landing_speed),
-            ground_station_patience: within(ground_station_patience, 2.5, 600.0, default.ground_station_patience),
+            ground_station_timeout: within(ground_station_timeout, 2.5, 600.0, default.ground_station_timeout),
             fence_radius: within(fence_radius, 2.0, 10_000.0, default.fence_radius),
             fence_height: within(fence_height, 2.0, 10_000.0, default.fence_height),
             tracking_error_max: within(tracking_error_max, 0.5, 100.0, default.tracking_error_max),

@@ -3,27 +3,29 @@
 use controller_core::math;
 use estimation::estimator::EstimatedState;
 
-/// The least speed of a descent by the IMU alone, m/s.
-const DESCENT: f32 = 0.6;
+/// Of a descent by the IMU alone.
+const DESCENT_SPEED_MIN_M_PER_S: f32 = 0.6;
 
-/// The error of the vertical speed by the accelerometer alone, m/s in a second: an accelerometer's bias. After poses
-/// that lied, an attitude error of 8 degrees as well.
-const DRIFT: f32 = 0.05;
-const DRIFT_AFTER_LIES: f32 = 0.2;
+/// The growth of the error of the vertical speed by the accelerometer alone: an accelerometer's bias. After poses that
+/// lied, an attitude error of 8 degrees as well.
+const SPEED_DRIFT_M_PER_S2: f32 = 0.05;
+const SPEED_DRIFT_AFTER_LIES_M_PER_S2: f32 = 0.2;
 
-/// The vertical speed by the accelerometer alone, m/s, beyond which a vehicle moves, and what its drift adds to that in
-/// a second: most drift less than [`DRIFT`], and what goes down against the air's drag stays behind what it should.
-const MOVING: (f32, f32) = (0.3, 0.01);
+/// The vertical speed by the accelerometer alone beyond which a vehicle moves, and how fast that limit grows: most
+/// drift less than [`SPEED_DRIFT_M_PER_S2`], and a descent against the air's drag is slower than commanded.
+const MOTION_SPEED_MIN_M_PER_S: f32 = 0.3;
+const MOTION_DRIFT_M_PER_S2: f32 = 0.01;
 
 /// The same after poses that lied, which leave a speed that may be off.
-const MOVING_AFTER_LIES: (f32, f32) = (0.8, 0.05);
+const MOTION_SPEED_MIN_AFTER_LIES_M_PER_S: f32 = 0.8;
+const MOTION_DRIFT_AFTER_LIES_M_PER_S2: f32 = 0.05;
 
-/// How much more slowly than it should a vehicle may sink against the air, m/s.
-const HELD_BACK: f32 = 0.1;
+/// How much more slowly than commanded a vehicle may sink against the air.
+const HELD_BACK_SPEED_MAX_M_PER_S: f32 = 0.1;
 
-/// How far, m, the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no
-/// more is left to be made up for where the draft ends.
-const BEHIND: f32 = 0.3;
+/// How far the vehicle may fall behind its descent: so much of a steady up- or downdraft is made up for, and no more is
+/// left to be made up for where the draft ends.
+const BEHIND_MAX_M: f32 = 0.3;
 
 /// How a vehicle that has lost its pose sinks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -61,9 +63,9 @@ impl Sinking {
     }
 
     /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at
-    /// `wanted`, m/s.
-    pub fn behind(&mut self, wanted: f32, period: f32) -> f32 {
-        self.behind = math::between(self.behind + (self.speed - wanted) * period, -BEHIND, BEHIND);
+    /// `desired`, m/s.
+    pub fn behind(&mut self, desired: f32, period: f32) -> f32 {
+        self.behind = math::between(self.behind + (self.speed - desired) * period, -BEHIND_MAX_M, BEHIND_MAX_M);
         self.behind
     }
 
@@ -74,18 +76,22 @@ impl Sinking {
 
     /// Whether its descent shows as motion, in an updraft as well: if not, no speed tells what sinks from what stands.
     pub fn shows(&self) -> bool {
-        self.descent() > self.moving() + HELD_BACK
+        self.descent() > self.moving() + HELD_BACK_SPEED_MAX_M_PER_S
     }
 
     /// The speed beyond which it moves, m/s.
     fn moving(&self) -> f32 {
-        let (speed, drift) = if self.lied { MOVING_AFTER_LIES } else { MOVING };
-        speed + drift * self.time
+        if self.lied {
+            MOTION_SPEED_MIN_AFTER_LIES_M_PER_S + MOTION_DRIFT_AFTER_LIES_M_PER_S2 * self.time
+        } else {
+            MOTION_SPEED_MIN_M_PER_S + MOTION_DRIFT_M_PER_S2 * self.time
+        }
     }
 
     /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.
     pub fn descent(&self) -> f32 {
-        DESCENT + if self.lied { DRIFT_AFTER_LIES } else { DRIFT } * self.time
+        DESCENT_SPEED_MIN_M_PER_S
+            + if self.lied { SPEED_DRIFT_AFTER_LIES_M_PER_S2 } else { SPEED_DRIFT_M_PER_S2 } * self.time
     }
 }
 

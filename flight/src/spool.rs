@@ -1,12 +1,12 @@
 //! How the rotors are brought up from their idle to the law's thrusts.
 //!
-//! For [`SPOOL_DURATION`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor
+//! For [`SPOOL_DURATION_US`] a rotor is given a growing part of the way from its least thrust to the law's: no rotor
 //! leaves the range in which the law's own commands are. The reference waits at rest.
 
 use controller_core::allocation::Thrusts;
 
-/// The time from the rotors' idle to the law's thrusts, us.
-const SPOOL_DURATION: u64 = 1_000_000;
+/// The time from the rotors' idle to the law's thrusts.
+const SPOOL_DURATION_US: u64 = 1_000_000;
 
 /// How far the rotors have come.
 #[derive(Debug, PartialEq)]
@@ -31,14 +31,14 @@ impl Spool {
 
     /// Whether the rotors give the law's thrusts.
     pub fn is_over(&self) -> bool {
-        self.elapsed >= SPOOL_DURATION
+        self.elapsed >= SPOOL_DURATION_US
     }
 
     /// One tick on: the part of the way to `thrusts`, N, that the rotors have come.
     pub fn advance(&mut self, mut thrusts: Thrusts) -> Thrusts {
-        self.elapsed = self.elapsed.saturating_add(self.period).min(SPOOL_DURATION);
+        self.elapsed = self.elapsed.saturating_add(self.period).min(SPOOL_DURATION_US);
         if !self.is_over() {
-            let part = self.elapsed as f32 / SPOOL_DURATION as f32;
+            let part = self.elapsed as f32 / SPOOL_DURATION_US as f32;
             thrusts.iter_mut().zip(&self.least).for_each(|(thrust, least)| *thrust = least + part * (*thrust - least));
         }
         thrusts

@@ -1,20 +1,20 @@
 //! Whether a stream of setpoints is flown as it is sent, for the operator.
 //!
 //! The governor smooths what does not keep the bounds, and what it has not caught up with. That is said where the
-//! reference has been farther than [`FAR`] from the stream for [`DEBOUNCE`], and again every [`AGAIN`]; and the end of
+//! reference has been farther than [`FOLLOWED_DISTANCE_MAX_M`] from the stream for [`STREAM_DEBOUNCE_US`], and again every [`STREAM_REPORT_INTERVAL_US`]; and the end of
 //! it likewise, once.
 
 use controller_core::governor::Following;
 use core::fmt;
 
-/// The distance of the reference beyond which a stream is not flown as it is sent, m.
-pub const FAR: f32 = 0.05;
+/// The distance of the reference beyond which a stream is not flown as it is sent.
+pub const FOLLOWED_DISTANCE_MAX_M: f32 = 0.05;
 
-/// The time for which that is so, or no longer so, before it is said, us.
-pub const DEBOUNCE: u64 = 2_000_000;
+/// The time for which that is so, or no longer so, before it is said.
+pub const STREAM_DEBOUNCE_US: u64 = 2_000_000;
 
-/// The time between two reports of the same, us.
-pub const AGAIN: u64 = 10_000_000;
+/// The time between two reports of the same.
+pub const STREAM_REPORT_INTERVAL_US: u64 = 10_000_000;
 
 /// How a stream of setpoints is flown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,12 +54,12 @@ impl StreamCheck {
             *self = Self::default();
             return None;
         };
-        let is_far = following.off > FAR;
+        let is_far = following.off > FOLLOWED_DISTANCE_MAX_M;
         let waits = if is_far == self.smoothed {
             self.since = None;
-            !is_far || now.saturating_sub(self.said) < AGAIN
+            !is_far || now.saturating_sub(self.said) < STREAM_REPORT_INTERVAL_US
         } else {
-            now.saturating_sub(*self.since.get_or_insert(now)) < DEBOUNCE
+            now.saturating_sub(*self.since.get_or_insert(now)) < STREAM_DEBOUNCE_US
         };
         if waits {
             return None;

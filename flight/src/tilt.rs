@@ -5,7 +5,7 @@ use controller_core::math;
 use nalgebra::{Quaternion, Vector2};
 
 /// e3 . R e3: the cosine of the tilt.
-pub(super) fn up(q: &Quaternion<f32>) -> f32 {
+pub(super) fn tilt_cosine(q: &Quaternion<f32>) -> f32 {
     1.0 - 2.0 * (q.i * q.i + q.j * q.j)
 }
 

@@ -7,29 +7,29 @@
 //! |---|---|
 //! | poses are refused for their values | for as long as that lasts |
 //! | poses are believed, and turn as the gyro's bias cannot explain | for as long as that lasts |
-//! | the estimate is reset to where the body was found again | [`REFOUND`] more |
-//! | the sender's frame moves | [`MOVED`] more |
-//! | poses that were lost are flown again | [`REGAINED`] more; [`RESUMED`] where a landing resumes |
-//! | poses are believed | [`DOUBT_DECAY`] of that time less |
+//! | the estimate is reset to where the body was found again | [`REFOUND_DOUBT_S`] more |
+//! | the sender's frame moves | [`FRAME_MOVED_DOUBT_S`] more |
+//! | poses that were lost are flown again | [`REGAINED_DOUBT_S`] more; [`RESUMED_DOUBT_S`] where a landing resumes |
+//! | poses are believed | [`DOUBT_DECAY_SHARE`] of that time less |
 //!
-//! At [`DOUBT_MAX`] the source is given up until the vehicle is disarmed.
+//! At [`DOUBT_MAX_S`] the source is given up until the vehicle is disarmed.
 
 use estimation::estimator::{COASTING_AFTER_US, Rejected, Taken};
 
-/// Doubt at which a source is given up, s.
-pub const DOUBT_MAX: f32 = 3.0;
+/// Doubt at which a source is given up.
+pub const DOUBT_MAX_S: f32 = 3.0;
 
-/// What adds to the doubt beside the time of refusals, s.
-const REFOUND: f32 = 0.7;
-const MOVED: f32 = 0.3;
-const REGAINED: f32 = 1.1;
-const RESUMED: f32 = 1.6;
+/// What adds to the doubt beside the time of refusals.
+const REFOUND_DOUBT_S: f32 = 0.7;
+const FRAME_MOVED_DOUBT_S: f32 = 0.3;
+const REGAINED_DOUBT_S: f32 = 1.1;
+const RESUMED_DOUBT_S: f32 = 1.6;
 
 /// The decay of doubt in a second of believed poses, s.
-const DOUBT_DECAY: f32 = 0.03;
+const DOUBT_DECAY_SHARE: f32 = 0.03;
 
-/// The longest time that one pose accounts for, us.
-const POSE_INTERVAL_MAX: u64 = 100_000;
+/// The longest time that one pose accounts for.
+const POSE_INTERVAL_MAX_US: u64 = 100_000;
 
 /// The evidence against a source of poses.
 #[derive(Debug, Default, PartialEq)]
@@ -48,13 +48,13 @@ impl Trust {
     /// turn as the vehicle does not, and are no better than refused.
     pub fn judge(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
-        let seconds = now.saturating_sub(self.judged).min(POSE_INTERVAL_MAX) as f32 * 1e-6;
+        let seconds = now.saturating_sub(self.judged).min(POSE_INTERVAL_MAX_US) as f32 * 1e-6;
         self.judged = now;
         self.doubt(match pose {
             Err(rejected) if rejected.is_lie() => seconds,
-            Ok(Taken::Refound) => REFOUND,
-            Ok(Taken::Rebased) => MOVED,
-            Ok(taken) if taken.is_believed() && plausible => -DOUBT_DECAY * seconds,
+            Ok(Taken::Refound) => REFOUND_DOUBT_S,
+            Ok(Taken::Rebased) => FRAME_MOVED_DOUBT_S,
+            Ok(taken) if taken.is_believed() && plausible => -DOUBT_DECAY_SHARE * seconds,
             Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
         });
@@ -83,13 +83,13 @@ impl Trust {
 
     /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.
     pub fn regain(&mut self, landing: bool) -> bool {
-        self.doubt(if landing { RESUMED } else { REGAINED });
+        self.doubt(if landing { RESUMED_DOUBT_S } else { REGAINED_DOUBT_S });
         !self.is_given_up
     }
 
     fn doubt(&mut self, more: f32) {
         self.doubt = (self.doubt + more).max(0.0);
-        self.is_given_up |= self.doubt >= DOUBT_MAX;
+        self.is_given_up |= self.doubt >= DOUBT_MAX_S;
     }
 
     /// The source is given up.

@@ -1,13 +1,15 @@
 //! What arming needs: every reason for refusing it, brought about from outside, and a vehicle that can be armed
 //! afterwards.
 
-use crate::support::{Flight, Handed, PERIOD, SETTLING, at_rest, at_rest_with, displaced, go_to, pilot, settled};
+use crate::support::{
+    Flight, Handed, PERIOD_US, SETTLING_TICKS, at_rest, at_rest_with, displaced, go_to, pilot, settled,
+};
 use controller_core::prelude::*;
 use estimation::estimator::{Fault, Increment};
 use estimation::imu::ImuFault;
 use flight::{Battery, Mode, MotorTest, Output, Refusal, Request, Stamped, Stored};
 
-const NOW: u64 = 5_000_000;
+const NOW_US: u64 = 5_000_000;
 
 /// A request to arm.
 fn arm(handed: Handed) -> Handed {
@@ -16,14 +18,14 @@ fn arm(handed: Handed) -> Handed {
 
 /// Arming refused in a tick that is handed this after rest, for this; and permitted after rest again.
 fn refuses(handed: Handed, refusal: Refusal) {
-    let mut pilot = settled(NOW - PERIOD);
+    let mut pilot = settled(NOW_US - PERIOD_US);
     let outcome = arm(handed).to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(refusal)));
     assert!(outcome.output == Output::Stop && !outcome.mode.is_armed(), "{outcome:?}");
-    for tick in 1..=SETTLING {
-        at_rest(NOW + tick * PERIOD).to(&mut pilot);
+    for tick in 1..=SETTLING_TICKS {
+        at_rest(NOW_US + tick * PERIOD_US).to(&mut pilot);
     }
-    let later = arm(at_rest(NOW + (SETTLING + 1) * PERIOD)).to(&mut pilot);
+    let later = arm(at_rest(NOW_US + (SETTLING_TICKS + 1) * PERIOD_US)).to(&mut pilot);
     assert_eq!((later.answer, later.mode), (Some(Ok(())), Mode::Idling), "after {refusal:?}");
 }
 
@@ -43,12 +45,12 @@ fn refuses_sensors(lie: impl FnOnce(&mut Flight), refusal: Refusal) {
 
 /// Another body rate at the next tick, rad/s.
 fn with_body_rate(rate: &Vector3<f32>) -> Handed {
-    Handed { body_rate: Some(Stamped { value: *rate, time: NOW }), ..at_rest(NOW) }
+    Handed { body_rate: Some(Stamped { value: *rate, time: NOW_US }), ..at_rest(NOW_US) }
 }
 
 /// Every increment of the next tick changed.
 fn with_imu(change: impl FnMut(&mut Increment)) -> Handed {
-    let mut handed = at_rest(NOW);
+    let mut handed = at_rest(NOW_US);
     handed.increments.iter_mut().for_each(change);
     handed
 }
@@ -61,8 +63,12 @@ fn rolled(degrees: f32) -> Quaternion<f32> {
 
 #[test]
 fn arming_is_refused_without_fresh_measurements() {
-    let silent =
-        |elapsed: u64| Handed { increments: vec![], body_rate: None, poses: vec![], ..at_rest(NOW - PERIOD + elapsed) };
+    let silent = |elapsed: u64| Handed {
+        increments: vec![],
+        body_rate: None,
+        poses: vec![],
+        ..at_rest(NOW_US - PERIOD_US + elapsed)
+    };
     refuses(silent(22_001), Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.imu = false, Refusal::ImuStale);
     refuses_sensors(|flight| flight.present.pose = false, Refusal::Estimator(Fault::NotStarted));
@@ -82,12 +88,12 @@ fn arming_is_refused_with_measurements_that_make_no_sense() {
         refuses(with_imu(|imu| imu.delta_velocity.z = number), Refusal::ImuStale);
         refuses_sensors(|flight| flight.imu = Box::new(move |imu| imu.delta_velocity.x = number), Refusal::ImuStale);
         // Only one of two.
-        let mut once = at_rest(NOW);
+        let mut once = at_rest(NOW_US);
         once.increments[0].delta_angle.x = number;
         refuses(once, not_started);
         refuses(with_body_rate(&Vector3::new(number, 0.0, 0.0)), Refusal::ImuStale);
     }
-    let mut early = at_rest(NOW);
+    let mut early = at_rest(NOW_US);
     early.poses[0].time += 100_000;
     refuses(early, Refusal::PosesUnsettled);
 }
@@ -97,7 +103,7 @@ fn arming_takes_a_whole_second_of_poses_that_are_all_believed() {
     let mut pilot = pilot();
     let mut first = None;
     for tick in 1..400 {
-        let outcome = arm(at_rest(tick * PERIOD)).to(&mut pilot);
+        let outcome = arm(at_rest(tick * PERIOD_US)).to(&mut pilot);
         if outcome.answer == Some(Ok(())) {
             first = first.or(Some(tick));
         } else {
@@ -149,10 +155,10 @@ fn arming_is_refused_at_a_tilt_of_thirty_degrees_and_not_just_below() {
         [(30.1, Err(Refusal::Tilted)), (90.0, Err(Refusal::Tilted)), (180.0, Err(Refusal::Tilted)), (29.9, Ok(()))]
     {
         let mut pilot = pilot();
-        for tick in 1..SETTLING {
-            at_rest_with(&rolled(degrees), tick * PERIOD).to(&mut pilot);
+        for tick in 1..SETTLING_TICKS {
+            at_rest_with(&rolled(degrees), tick * PERIOD_US).to(&mut pilot);
         }
-        let outcome = arm(at_rest_with(&rolled(degrees), SETTLING * PERIOD)).to(&mut pilot);
+        let outcome = arm(at_rest_with(&rolled(degrees), SETTLING_TICKS * PERIOD_US)).to(&mut pilot);
         assert_eq!(outcome.answer, Some(answer), "{degrees} degrees");
     }
 }
@@ -172,7 +178,7 @@ fn arming_is_refused_where_the_accelerometer_says_that_up_is_elsewhere() {
         with_imu(|imu| imu.delta_velocity = Vector3::new(sin, 0.0, cos) * imu.delta_velocity.z)
     };
     refuses(leaning(10.5), Refusal::Gravity);
-    let outcome = arm(leaning(9.5)).to(&mut settled(NOW - PERIOD));
+    let outcome = arm(leaning(9.5)).to(&mut settled(NOW_US - PERIOD_US));
     assert_eq!(outcome.answer, Some(Ok(())));
 }
 
@@ -207,15 +213,15 @@ fn arming_is_refused_with_poses_that_lie_or_do_not_advance() {
 
 #[test]
 fn arming_is_refused_without_a_ground_station_or_against_a_disarm_command() {
-    refuses(Handed { ground_station: None, ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Handed { ground_station: Some(NOW - 2_500_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Handed { ground_station: Some(NOW + 1_000_000), ..at_rest(NOW) }, Refusal::GroundStationSilent);
-    refuses(Handed { disarm: true, ..at_rest(NOW) }, Refusal::DisarmCommanded);
+    refuses(Handed { ground_station: None, ..at_rest(NOW_US) }, Refusal::GroundStationSilent);
+    refuses(Handed { ground_station: Some(NOW_US - 2_500_000), ..at_rest(NOW_US) }, Refusal::GroundStationSilent);
+    refuses(Handed { ground_station: Some(NOW_US + 1_000_000), ..at_rest(NOW_US) }, Refusal::GroundStationSilent);
+    refuses(Handed { disarm: true, ..at_rest(NOW_US) }, Refusal::DisarmCommanded);
 }
 
 #[test]
 fn nothing_turns_while_flash_is_written() {
-    refuses(Handed { is_busy: true, ..at_rest(NOW) }, Refusal::Busy);
+    refuses(Handed { is_busy: true, ..at_rest(NOW_US) }, Refusal::Busy);
     let mut flight = Flight::settled();
     flight.inputs.is_busy = true;
     let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1_000_000 });
@@ -225,19 +231,19 @@ fn nothing_turns_while_flash_is_written() {
 #[test]
 fn what_was_stored_and_is_lost_does_not_arm() {
     for stored in [Stored::SigningKey, Stored::Parameter("FENCE_RADIUS")] {
-        refuses(Handed { lost: Some(stored), ..at_rest(NOW) }, Refusal::Lost(stored));
+        refuses(Handed { lost: Some(stored), ..at_rest(NOW_US) }, Refusal::Lost(stored));
     }
 }
 
 #[test]
 fn a_clock_whose_crystal_does_not_run_does_not_arm() {
-    refuses(Handed { is_clock_doubtful: true, ..at_rest(NOW) }, Refusal::ClockDoubtful);
+    refuses(Handed { is_clock_doubtful: true, ..at_rest(NOW_US) }, Refusal::ClockDoubtful);
 }
 
 #[test]
 fn an_imu_that_has_failed_does_not_arm_and_begins_no_flight() {
     for fault in ImuFault::ALL {
-        refuses(Handed { imu_fault: Some(fault), ..at_rest(NOW) }, Refusal::Imu(fault));
+        refuses(Handed { imu_fault: Some(fault), ..at_rest(NOW_US) }, Refusal::Imu(fault));
         let mut flight = Flight::idling();
         flight.inputs.imu_fault = Some(fault);
         assert_eq!(flight.answer(Request::TakeOff(None)), Err(Refusal::Imu(fault)));
@@ -255,19 +261,19 @@ fn an_imu_that_has_failed_does_not_arm_and_begins_no_flight() {
 
 #[test]
 fn motors_that_are_not_reached_do_not_arm() {
-    refuses(Handed { motors_fail: true, ..at_rest(NOW) }, Refusal::MotorsFail);
+    refuses(Handed { motors_fail: true, ..at_rest(NOW_US) }, Refusal::MotorsFail);
 }
 
 #[test]
 fn a_battery_that_is_low_does_not_arm() {
     for battery in [Battery::Low, Battery::Critical] {
-        refuses(Handed { battery, ..at_rest(NOW) }, Refusal::BatteryLow);
+        refuses(Handed { battery, ..at_rest(NOW_US) }, Refusal::BatteryLow);
     }
 }
 
 #[test]
 fn a_battery_that_is_to_be_watched_and_is_not_measured_does_not_arm_and_is_flown_on() {
-    refuses(Handed { battery: Battery::Missing, ..at_rest(NOW) }, Refusal::BatteryMissing);
+    refuses(Handed { battery: Battery::Missing, ..at_rest(NOW_US) }, Refusal::BatteryMissing);
     let mut flight = Flight::armed();
     for _ in 0..500 {
         flight.inputs.battery = Battery::Missing;

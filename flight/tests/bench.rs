@@ -1,10 +1,10 @@
 //! One motor on the bench: turned slowly, or its controller given a word, while nothing else turns; and what is refused
 //! there.
 
-use crate::support::{Flight, Handed, PERIOD, at_rest, pilot};
+use crate::support::{Flight, Handed, PERIOD_US, at_rest, pilot};
 use flight::{Mode, MotorSetting, MotorTest, Output, Reason, Refusal, Request, Setting, Word};
 
-const NOW: u64 = 5_000_000;
+const NOW_US: u64 = 5_000_000;
 
 #[test]
 fn a_motor_test_turns_one_motor_slowly_and_ends_by_itself_or_by_any_request() {
@@ -71,12 +71,12 @@ fn motor_tests_of_other_rotors_levels_or_durations_are_refused() {
         (MotorTest { duration: 0, ..good }, Refusal::MotorTestDuration),
     ] {
         let mut pilot = pilot();
-        at_rest(NOW - PERIOD).to(&mut pilot);
-        let outcome = Handed { request: Some(Request::MotorTest(test)), ..at_rest(NOW) }.to(&mut pilot);
+        at_rest(NOW_US - PERIOD_US).to(&mut pilot);
+        let outcome = Handed { request: Some(Request::MotorTest(test)), ..at_rest(NOW_US) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.output), (Some(Err(refusal)), Output::Stop));
-        let outcome = Handed { request: Some(Request::MotorTest(good)), ..at_rest(NOW + PERIOD) }.to(&mut pilot);
+        let outcome = Handed { request: Some(Request::MotorTest(good)), ..at_rest(NOW_US + PERIOD_US) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.mode), (Some(Ok(())), Mode::MotorTest));
-        let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW + 2 * PERIOD) }.to(&mut pilot);
+        let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW_US + 2 * PERIOD_US) }.to(&mut pilot);
         assert_eq!((outcome.answer, outcome.mode), (Some(Err(Refusal::MotorTestRunning)), Mode::Checks));
     }
 }

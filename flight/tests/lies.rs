@@ -2,15 +2,15 @@
 //! second, levels for another, and stops, and reports why the poses are not believed. Where the sender reports that its
 //! frame has moved, or where a lost body is found again, it flies on and does not lurch.
 
-use crate::support::{Body, Flight, PERIOD, PoseSource, SPOOLING, displaced, go_to};
+use crate::support::{Body, Flight, PERIOD_US, PoseSource, SPOOLING_TICKS, displaced, go_to};
 use controller_core::prelude::*;
 use estimation::estimator::{Rejected, Taken};
-use flight::rules::COASTING_MAX;
+use flight::rules::COASTING_MAX_US;
 use flight::{Mode, Outcome, Output, Reason, Request, Stamped};
 use nalgebra::UnitQuaternion;
 use std::f64::consts::PI;
 
-const NOWHERE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+const ORIGIN_M: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 
 /// On its way at 2 m/s or more.
 fn under_way() -> Flight {
@@ -34,7 +34,7 @@ fn hovering() -> Flight {
 /// from the truth, m.
 fn ends_as_in_silence(mut flight: Flight, source: PoseSource, late: u64, reasons: &[Rejected]) -> f64 {
     flight.source = source;
-    let silence = COASTING_MAX / PERIOD + 1;
+    let silence = COASTING_MAX_US / PERIOD_US + 1;
     let (ticks, outcome) = flight.until(Reason::PoseLost, silence + late + 1);
     assert!((silence..=silence + late).contains(&ticks), "{reasons:?}: levelled after {ticks} ticks");
     let Some(Err(rejected)) = outcome.pose else { panic!("{reasons:?}: {:?}", outcome.pose) };
@@ -61,7 +61,7 @@ fn lie(make: impl Fn(&Flight) -> PoseSource, late: u64, reasons: &[Rejected]) {
 #[test]
 fn a_frame_sent_again_and_again_stops_as_fast_as_silence() {
     let resent = |flight: &Flight| -> PoseSource {
-        let last = displaced(&flight.body, flight.inputs.now, &NOWHERE, &NOWHERE);
+        let last = displaced(&flight.body, flight.inputs.now, &ORIGIN_M, &ORIGIN_M);
         Box::new(move |_, _| last)
     };
     lie(resent, 1, &[Rejected::Repeated]);
@@ -71,7 +71,7 @@ fn a_frame_sent_again_and_again_stops_as_fast_as_silence() {
 fn a_frozen_stream_stops_as_fast_as_silence() {
     // In motion: a vehicle that hovers without noise would send the same.
     let flight = under_way();
-    let frozen = displaced(&flight.body, flight.inputs.now, &NOWHERE, &NOWHERE).value;
+    let frozen = displaced(&flight.body, flight.inputs.now, &ORIGIN_M, &ORIGIN_M).value;
     ends_as_in_silence(flight, Box::new(move |_, time| Stamped { value: frozen, time }), 2, &[Rejected::Frozen]);
 }
 
@@ -79,7 +79,7 @@ fn a_frozen_stream_stops_as_fast_as_silence() {
 fn jumps_of_5_and_100_metres_are_not_followed() {
     for distance in [5.0, 100.0] {
         let offset = Vector3::new(0.0, distance, 0.0);
-        lie(|_| Box::new(move |body, time| displaced(body, time, &offset, &NOWHERE)), 0, &[Rejected::Jump]);
+        lie(|_| Box::new(move |body, time| displaced(body, time, &offset, &ORIGIN_M)), 0, &[Rejected::Jump]);
     }
 }
 
@@ -90,7 +90,7 @@ fn half_turns_are_not_followed() {
         (Vector3::x(), [Rejected::Gravity, Rejected::Attitude]),
     ];
     for (axis, reasons) in cases {
-        lie(|_| Box::new(move |body, time| displaced(body, time, &NOWHERE, &(axis * PI))), 0, &reasons);
+        lie(|_| Box::new(move |body, time| displaced(body, time, &ORIGIN_M, &(axis * PI))), 0, &reasons);
     }
 }
 
@@ -100,7 +100,7 @@ fn a_drift_of_half_a_metre_a_second_is_not_followed() {
         let start = flight.inputs.now;
         Box::new(move |body: &Body, time| {
             let gone = (time - start) as f64 * 1e-6;
-            displaced(body, time, &(Vector3::x() * (0.5 * gone)), &NOWHERE)
+            displaced(body, time, &(Vector3::x() * (0.5 * gone)), &ORIGIN_M)
         })
     };
     lie(drifting, 5, &[Rejected::Drift]);
@@ -110,7 +110,7 @@ fn a_drift_of_half_a_metre_a_second_is_not_followed() {
 fn poses_whose_sender_has_lost_track_are_none() {
     let untracked = |_: &Flight| -> PoseSource {
         Box::new(|body: &Body, time| {
-            let pose = displaced(body, time, &NOWHERE, &NOWHERE);
+            let pose = displaced(body, time, &ORIGIN_M, &ORIGIN_M);
             Stamped { value: pose.value.quality(-1), ..pose }
         })
     };
@@ -120,9 +120,10 @@ fn poses_whose_sender_has_lost_track_are_none() {
 #[test]
 fn poses_of_another_time_are_none() {
     let future =
-        |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
+        |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &ORIGIN_M, &ORIGIN_M)) };
     lie(future, 0, &[Rejected::Future]);
-    let old = |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time - 500_000, &NOWHERE, &NOWHERE)) };
+    let old =
+        |_: &Flight| -> PoseSource { Box::new(|body, time| displaced(body, time - 500_000, &ORIGIN_M, &ORIGIN_M)) };
     lie(old, 0, &[Rejected::TooOld, Rejected::Repeated]);
 }
 
@@ -142,7 +143,7 @@ fn held_again(source: PoseSource, lied: u64) -> Option<u64> {
 #[test]
 fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only() {
     let astray =
-        || -> PoseSource { Box::new(|body, time| displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE)) };
+        || -> PoseSource { Box::new(|body, time| displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &ORIGIN_M)) };
     let silent = held_again(Flight::new().source, 0);
     assert!(silent.is_some_and(|ticks| ticks < 50), "{silent:?}");
     for lied in [1, 10, 25] {
@@ -154,9 +155,9 @@ fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only(
         assert_eq!(held_again(astray(), lied), None, "{lied}");
     }
     // Nor does a frame that reports a move at the end of it make them true.
-    let end = hovering().inputs.now + 39 * PERIOD;
+    let end = hovering().inputs.now + 39 * PERIOD_US;
     let moved: PoseSource = Box::new(move |body, time| {
-        let pose = displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &NOWHERE);
+        let pose = displaced(body, time, &Vector3::new(3.0, 0.0, 0.0), &ORIGIN_M);
         Stamped { value: pose.value.reset_counter(u8::from(time >= end)), ..pose }
     });
     assert_eq!(held_again(moved, 40), None);
@@ -166,12 +167,12 @@ fn poses_are_believed_after_an_outage_if_those_before_it_lied_for_a_moment_only(
 fn poses_whose_sender_had_lost_track_or_time_are_believed_again() {
     let track = || -> PoseSource {
         Box::new(|body: &Body, time| {
-            let pose = displaced(body, time, &NOWHERE, &NOWHERE);
+            let pose = displaced(body, time, &ORIGIN_M, &ORIGIN_M);
             Stamped { value: pose.value.quality(-1), ..pose }
         })
     };
-    let late = || -> PoseSource { Box::new(|body, time| displaced(body, time - 600_000, &NOWHERE, &NOWHERE)) };
-    let early = || -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &NOWHERE, &NOWHERE)) };
+    let late = || -> PoseSource { Box::new(|body, time| displaced(body, time - 600_000, &ORIGIN_M, &ORIGIN_M)) };
+    let early = || -> PoseSource { Box::new(|body, time| displaced(body, time + 50_000, &ORIGIN_M, &ORIGIN_M)) };
     for (number, source) in [track(), late(), early()].into_iter().enumerate() {
         let held = held_again(source, 300);
         assert!(held.is_some_and(|ticks| ticks < 100), "{number}: {held:?}");
@@ -201,7 +202,7 @@ fn speed(flight: &mut Flight, ticks: u64) -> (f64, Outcome) {
 
 #[test]
 fn a_reported_frame_move_is_flown_through_without_a_lurch() {
-    for (offset, turn) in [(Vector3::new(100.0, -5.0, 2.0), 0.0), (Vector3::new(1.0, 2.0, 0.0), 1.5), (NOWHERE, PI)] {
+    for (offset, turn) in [(Vector3::new(100.0, -5.0, 2.0), 0.0), (Vector3::new(1.0, 2.0, 0.0), 1.5), (ORIGIN_M, PI)] {
         let mut flight = hovering();
         let place = flight.body.position;
         flight.source = moved(offset, turn, 1);
@@ -228,7 +229,7 @@ fn a_frame_that_moves_while_the_rotors_are_brought_up_takes_the_reference_along(
         assert_eq!(flight.tick().answer, Some(Ok(())));
         flight.ticks(20);
         flight.source = moved(Vector3::new(20.0, 0.0, 3.0), 1.0, 1);
-        for _ in 20..SPOOLING - 2 {
+        for _ in 20..SPOOLING_TICKS - 2 {
             let outcome = flight.tick();
             assert!(outcome.mode.flies());
             let flown = outcome.flown.unwrap().unwrap();
@@ -264,16 +265,16 @@ fn a_counter_that_runs_is_flown_no_longer_than_silence() {
         let mut flight = hovering();
         let from = flight.inputs.now;
         flight.source = Box::new(move |body, time| {
-            let frame = (time - from) / PERIOD / every;
-            let pose = displaced(body, time, &Vector3::new(3.0 * frame as f64, 0.0, 0.0), &NOWHERE);
+            let frame = (time - from) / PERIOD_US / every;
+            let pose = displaced(body, time, &Vector3::new(3.0 * frame as f64, 0.0, 0.0), &ORIGIN_M);
             Stamped { value: pose.value.reset_counter(frame as u8), ..pose }
         });
         for tick in 1..=1_000 {
             flight.present.pose = tick % every == 0;
             let mode = flight.tick().mode;
-            let expected = if tick <= COASTING_MAX / PERIOD { Mode::Flying } else { Mode::Descending };
+            let expected = if tick <= COASTING_MAX_US / PERIOD_US { Mode::Flying } else { Mode::Descending };
             assert!(
-                mode == expected || tick.abs_diff(COASTING_MAX / PERIOD) <= every,
+                mode == expected || tick.abs_diff(COASTING_MAX_US / PERIOD_US) <= every,
                 "{every}: {mode:?} in tick {tick}"
             );
         }
@@ -287,7 +288,7 @@ fn a_body_found_where_coasting_may_have_led_is_flown_on_from_without_a_lurch() {
     flight.present.pose = false;
     flight.ticks(40);
     flight.present.pose = true;
-    flight.source = Box::new(|body, time| displaced(body, time, &Vector3::new(0.15, 0.0, 0.0), &NOWHERE));
+    flight.source = Box::new(|body, time| displaced(body, time, &Vector3::new(0.15, 0.0, 0.0), &ORIGIN_M));
     let mut found = 0;
     for _ in 0..300 {
         let outcome = flight.tick();
@@ -304,7 +305,7 @@ fn a_lie_that_ends_in_time_costs_nothing_but_what_was_coasted() {
     for seconds in [0.9, 1.8] {
         let mut flight = under_way();
         let offset = Vector3::new(5.0, 0.0, 0.0);
-        flight.source = Box::new(move |body, time| displaced(body, time, &offset, &NOWHERE));
+        flight.source = Box::new(move |body, time| displaced(body, time, &offset, &ORIGIN_M));
         let ticks = (seconds * 100.0) as u64;
         let mode = flight.ticks(ticks).mode;
         let [lost, found] = if seconds < 1.0 { [Mode::Flying; 2] } else { [Mode::Descending, Mode::Holding] };

@@ -1,12 +1,12 @@
 //! Missions: items in their order, within the same bounds and rules as setpoints.
 
-use crate::support::{Flight, GROUND, PERIOD, go_to};
+use crate::support::{Flight, GROUND_HEIGHT_M, PERIOD_US, go_to};
 use controller_core::governor::Turn;
 use controller_core::prelude::*;
 use flight::{Battery, Leg, MISSION_RADIUS, MissionItem, MissionRefusal, MissionStep, Mode, Reason, Refusal, Request};
 
 /// Ticks within which a few metres are flown.
-const LONG: u64 = 4_000;
+const LONG_FLIGHT_TICKS: u64 = 4_000;
 
 fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
     MissionItem { leg, position: Vector3::new(x, y, z), turn: Turn::Keep, radius: MISSION_RADIUS, hold: 0 }
@@ -51,7 +51,7 @@ fn a_square_is_flown_without_stopping_at_its_corners_and_the_last_is_held() {
     let mut flight = Flight::armed();
     flight.mission = square();
     assert_eq!(flight.answer(Request::FlyMission(None)), Ok(()));
-    let (steps, slowest) = fly(&mut flight, LONG);
+    let (steps, slowest) = fly(&mut flight, LONG_FLIGHT_TICKS);
     let reached = [0, 1, 2, 3].map(MissionStep::Reached);
     assert_eq!(steps, [&reached[..], &[MissionStep::Over]].concat());
     assert!(slowest > 0.1, "{slowest}");
@@ -72,7 +72,7 @@ fn an_item_is_held_for_its_time_from_its_radius_on() {
         let reference = outcome.flown.unwrap().unwrap().reference;
         // The governor moves after the mission has looked.
         if near.is_none() && (reference.position - flight.mission[0].position).norm() < 0.1 {
-            near = Some(now + PERIOD);
+            near = Some(now + PERIOD_US);
         }
         if outcome.mission_step == Some(MissionStep::Reached(0)) {
             assert_eq!(now - near.unwrap(), 7_000_000);
@@ -90,11 +90,11 @@ fn from_the_ground_a_take_off_goes_straight_up_and_a_return_lands_at_home() {
         assert!(flight.body.position.xy().norm() < 0.02);
     }
     assert_eq!(flight.pilot.mode(), Mode::Flying);
-    let (steps, _) = fly(&mut flight, LONG);
+    let (steps, _) = fly(&mut flight, LONG_FLIGHT_TICKS);
     assert_eq!(steps, [MissionStep::Reached(1), MissionStep::Lands(2)]);
     assert_eq!(flight.pilot.mode(), Mode::Landing);
-    flight.until(Reason::Landed, LONG);
-    assert!(distance(&flight, 0.0, 0.0, GROUND) < 0.1);
+    flight.until(Reason::Landed, LONG_FLIGHT_TICKS);
+    assert!(distance(&flight, 0.0, 0.0, GROUND_HEIGHT_M) < 0.1);
     assert_eq!(flight.tick().mission, (0, false));
 }
 
@@ -103,15 +103,15 @@ fn from_the_ground_a_waypoint_is_flown_to_at_its_height() {
     let mut flight = Flight::idling();
     flight.mission = vec![waypoint(3.0, 0.0, 2.5), item(Leg::Land, 3.0, 0.0, 0.0)];
     assert_eq!(flight.answer(Request::FlyMission(None)), Ok(()));
-    for _ in 0..LONG {
+    for _ in 0..LONG_FLIGHT_TICKS {
         flight.tick();
         assert!(flight.body.position.x < 0.05 || flight.body.position.z > 2.2 || flight.pilot.mode() != Mode::Flying);
         if flight.pilot.mode() == Mode::Landing {
             break;
         }
     }
-    flight.until(Reason::Landed, LONG);
-    assert!(distance(&flight, 3.0, 0.0, GROUND) < 0.1);
+    flight.until(Reason::Landed, LONG_FLIGHT_TICKS);
+    assert!(distance(&flight, 3.0, 0.0, GROUND_HEIGHT_M) < 0.1);
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_pause_keeps_the_item_and_going_on_flies_it() {
     let outcome = flight.ticks(500);
     assert_eq!((outcome.mode, outcome.mission), (Mode::Holding, (2, false)));
     assert_eq!(flight.answer(Request::FlyMission(None)), Ok(()));
-    let (steps, _) = fly(&mut flight, LONG);
+    let (steps, _) = fly(&mut flight, LONG_FLIGHT_TICKS);
     assert_eq!(steps, [MissionStep::Reached(2), MissionStep::Reached(3), MissionStep::Over]);
 }
 
@@ -139,7 +139,7 @@ fn an_item_may_be_set_and_one_that_is_not_there_is_refused() {
     assert_eq!(flight.answer(Request::FlyMission(None)), Ok(()));
     flight.ticks(10);
     assert_eq!(flight.answer(Request::SetMissionItem(2)), Ok(()));
-    let (steps, _) = fly(&mut flight, LONG);
+    let (steps, _) = fly(&mut flight, LONG_FLIGHT_TICKS);
     assert_eq!(steps, [MissionStep::Reached(2), MissionStep::Reached(3), MissionStep::Over]);
     flight.mission.clear();
     assert_eq!(flight.answer(Request::FlyMission(None)), none);
@@ -151,9 +151,9 @@ fn an_item_out_of_the_fence_is_refused_at_the_start_and_ends_a_mission_on_its_wa
     flight.mission = vec![waypoint(5_000.0, 0.0, 3.0)];
     let outside = MissionRefusal::OutsideFence;
     assert_eq!(flight.answer(Request::FlyMission(None)), Err(Refusal::Mission(outside)));
-    flight.mission = vec![waypoint(1.0, 0.0, 3.0), waypoint(0.0, 0.0, GROUND as f32 - 0.5)];
+    flight.mission = vec![waypoint(1.0, 0.0, 3.0), waypoint(0.0, 0.0, GROUND_HEIGHT_M as f32 - 0.5)];
     flight.answer(Request::FlyMission(None)).unwrap();
-    let (steps, _) = fly(&mut flight, LONG);
+    let (steps, _) = fly(&mut flight, LONG_FLIGHT_TICKS);
     assert_eq!(steps, [MissionStep::Reached(0), MissionStep::Refused(1, MissionRefusal::BelowHome)]);
     assert_eq!(flight.pilot.mode(), Mode::Holding);
 }
@@ -226,7 +226,7 @@ fn a_way_to_an_item_is_within_the_governor_s_bounds() {
     let mut flight = Flight::armed();
     flight.mission = vec![waypoint(40.0, 0.0, 3.0), waypoint(40.0, 40.0, 30.0)];
     flight.answer(Request::FlyMission(None)).unwrap();
-    for _ in 0..LONG {
+    for _ in 0..LONG_FLIGHT_TICKS {
         let outcome = flight.tick();
         let velocity = outcome.flown.unwrap().unwrap().reference.velocity;
         assert!(velocity.xy().norm() <= 5.01 && velocity.z.abs() <= 2.01, "{velocity}");

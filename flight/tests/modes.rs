@@ -1,9 +1,11 @@
 //! The pilot in closed loop with a rigid body: what each mode does, and how each ends.
 
-use crate::support::{Flight, GROUND, PERIOD, SPOOLING, go_to};
+use crate::support::{Flight, GROUND_HEIGHT_M, PERIOD_US, SPOOLING_TICKS, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::rules::{BATTERY_DEBOUNCE, COASTING_MAX, GROUND_STATION_SILENCE_MAX, LEVELLING_MAX, TRACKING_DEBOUNCE};
+use flight::rules::{
+    BATTERY_DEBOUNCE_US, COASTING_MAX_US, GROUND_STATION_TIMEOUT_US, LEVELLING_MAX_US, TRACKING_DEBOUNCE_US,
+};
 use flight::{Battery, Mode, MotorTest, Output, Reason, Refusal, Request};
 
 /// On its way to a far point, turning.
@@ -35,7 +37,7 @@ fn without_a_pose_it_flies_on_for_a_second_levels_for_another_and_comes_down_by_
     let mut flight = under_way();
     flight.present.pose = false;
     // By IMU alone it goes on as if nothing had happened, for as long as a second exactly.
-    for _ in 0..COASTING_MAX / PERIOD {
+    for _ in 0..COASTING_MAX_US / PERIOD_US {
         let outcome = flight.tick();
         assert_eq!(outcome.mode, Mode::Flying);
         assert!(outcome.flown.unwrap().unwrap().position_error.norm() < 0.1);
@@ -45,7 +47,7 @@ fn without_a_pose_it_flies_on_for_a_second_levels_for_another_and_comes_down_by_
     assert_eq!(entry.mode, Mode::Descending);
     let (yaw, height) = (flight.yaw(), flight.body.position.z);
     flight.ground = height - 3.0;
-    for tick in 1..LEVELLING_MAX / PERIOD {
+    for tick in 1..LEVELLING_MAX_US / PERIOD_US {
         let flown = flight.tick().flown.unwrap().unwrap();
         assert_eq!((flown.reference.velocity, flown.reference.acceleration), (Vector3::zeros(), Vector3::zeros()));
         assert!(tick < 40 || flight.tilt() < 0.07, "tick {tick}: {} rad", flight.tilt());
@@ -131,7 +133,7 @@ fn stopped_in_the_air_it_is_not_reported_on_the_ground_before_it_lies_there() {
 fn what_was_never_in_the_air_or_landed_does_not_fall() {
     let mut flight = Flight::idling();
     flight.inputs.request = Some(Request::TakeOff(None));
-    flight.ticks(SPOOLING / 2);
+    flight.ticks(SPOOLING_TICKS / 2);
     flight.inputs.disarm = true;
     assert!(!flight.tick().may_fall);
     let mut flight = Flight::armed();
@@ -164,7 +166,7 @@ fn without_a_ground_station_it_holds_for_ten_seconds_and_lands() {
     let mut flight = under_way();
     flight.present.ground_station = false;
     let (ticks, _) = flight.until(Reason::GroundStationLost, 300);
-    assert_eq!(ticks, GROUND_STATION_SILENCE_MAX / PERIOD);
+    assert_eq!(ticks, GROUND_STATION_TIMEOUT_US / PERIOD_US);
     flight.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
     assert_eq!(flight.tick().setpoint, None);
     let still = flight.ticks(700).flown.unwrap().unwrap().reference;
@@ -175,7 +177,7 @@ fn without_a_ground_station_it_holds_for_ten_seconds_and_lands() {
     flight.ground = flight.body.position.z - 2.0;
     let (ticks, landing) = flight.until(Reason::GroundStationGone, 60);
     assert_eq!(landing.mode, Mode::Landing);
-    assert_eq!(ticks + 701 + GROUND_STATION_SILENCE_MAX / PERIOD, 1_000);
+    assert_eq!(ticks + 701 + GROUND_STATION_TIMEOUT_US / PERIOD_US, 1_000);
     let (_, landed) = flight.until(Reason::Landed, 900);
     assert_eq!((landed.output, landed.mode), (Output::Stop, Mode::Checks));
     assert_eq!(flight.body.position.z, flight.ground);
@@ -311,7 +313,7 @@ fn a_new_flight_starts_as_the_first_did() {
     flight.inputs.disarm = true;
     flight.tick();
     // Caught in the air and put back: poses leap, the IMU felt nothing of it. On the ground the estimate follows.
-    (flight.body, flight.ground) = (Flight::new().body, GROUND);
+    (flight.body, flight.ground) = (Flight::new().body, GROUND_HEIGHT_M);
     flight.ticks(250);
     let (again, first) = (arm(&mut flight), arm(&mut Flight::settled()));
     assert!((again.reference.position - first.reference.position).norm() < 1e-3, "{again:?}");
@@ -331,7 +333,7 @@ fn a_low_battery_lands_the_next_flight_as_it_did_the_last() {
             flight.inputs.battery = Battery::Low;
             flight.tick().transition.map(|transition| (tick, transition.reason))
         });
-        assert_eq!(landing, Some((BATTERY_DEBOUNCE / PERIOD + 1, Reason::BatteryLow)));
+        assert_eq!(landing, Some((BATTERY_DEBOUNCE_US / PERIOD_US + 1, Reason::BatteryLow)));
         flight.inputs.disarm = true;
         assert_eq!(flight.tick().output, Output::Stop);
         // Down again, with another battery.
@@ -376,7 +378,7 @@ fn a_vehicle_that_does_not_get_off_the_ground_lands_a_while_after_its_reference_
         assert!(heights.len() < 1_000);
     };
     assert_eq!(reason, Reason::TrackingLost);
-    let then = heights.len() - (TRACKING_DEBOUNCE / PERIOD) as usize;
+    let then = heights.len() - (TRACKING_DEBOUNCE_US / PERIOD_US) as usize;
     assert!(heights[then - 2] < 0.5 && heights[then + 1] > 0.5, "{:?}", &heights[then - 2..]);
 }
 

@@ -1,7 +1,7 @@
 //! Numbers that no sensor and no clock should hand over, in every field. They never reach the motors.
 
 use crate::support::outputs::check_output;
-use crate::support::{Handed, PERIOD, SETTLING, at_rest, go_to, rotors, settled};
+use crate::support::{Handed, PERIOD_US, SETTLING_TICKS, at_rest, go_to, rotors, settled};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use estimation::estimator::PoseMeasurement;
@@ -13,15 +13,15 @@ fn no_number_in_any_field_reaches_the_motors_in_any_mode() {
     let rotors = rotors();
     for field in 0..35 {
         for number in numbers {
-            let mut pilot = settled(SETTLING * PERIOD);
+            let mut pilot = settled(SETTLING_TICKS * PERIOD_US);
             let mut flown = 0;
-            for tick in SETTLING + 1..SETTLING + 300 {
-                let now = tick * PERIOD;
+            for tick in SETTLING_TICKS + 1..SETTLING_TICKS + 300 {
+                let now = tick * PERIOD_US;
                 let mut handed = Handed { setpoint: Some(go_to(1.0, 0.0, 0.0)), ..at_rest(now) };
                 handed.request = [(1, Request::Arm), (2, Request::FlySetpoints)]
                     .into_iter()
-                    .find_map(|(at, request)| (tick == SETTLING + at).then_some(request));
-                if (SETTLING + 20..SETTLING + 290).contains(&tick) {
+                    .find_map(|(at, request)| (tick == SETTLING_TICKS + at).then_some(request));
+                if (SETTLING_TICKS + 20..SETTLING_TICKS + 290).contains(&tick) {
                     spoil(&mut handed, field, number);
                 }
                 let outcome = handed.to(&mut pilot);
@@ -40,12 +40,12 @@ fn no_number_in_any_field_reaches_the_motors_in_any_mode() {
 
 #[test]
 fn the_ends_of_the_clock_are_times_like_any_other() {
-    for start in [(SETTLING + 1) * PERIOD, u64::MAX - 100 * PERIOD] {
-        let mut pilot = settled(start - PERIOD);
+    for start in [(SETTLING_TICKS + 1) * PERIOD_US, u64::MAX - 100 * PERIOD_US] {
+        let mut pilot = settled(start - PERIOD_US);
         Handed { request: Some(Request::Arm), ..at_rest(start) }.to(&mut pilot);
-        Handed { request: Some(Request::TakeOff(None)), ..at_rest(start + PERIOD) }.to(&mut pilot);
+        Handed { request: Some(Request::TakeOff(None)), ..at_rest(start + PERIOD_US) }.to(&mut pilot);
         for tick in 2..=100 {
-            let outcome = at_rest(start + tick * PERIOD).to(&mut pilot);
+            let outcome = at_rest(start + tick * PERIOD_US).to(&mut pilot);
             assert!(matches!(outcome.output, Output::Thrusts(_)) && outcome.mode == Mode::TakingOff);
         }
         // A clock that runs back leaves measurements of a time to come, which nothing is flown by.

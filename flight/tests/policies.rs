@@ -1,10 +1,10 @@
 //! A policy aboard: let fly in the air by a request, within the same rules as setpoints, and ended by any of them.
 
-use crate::support::{Flight, GROUND, go_to};
+use crate::support::{Flight, GROUND_HEIGHT_M, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use controller_core::shield::{self, Demand, Observation, Policy};
-use flight::{Aboard, Guarded, Handed, Mode, Outcome, Reason, Refusal, Request};
+use flight::{Aboard, Guarded, Handover, Mode, Outcome, Reason, Refusal, Request};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -50,9 +50,9 @@ fn distance<P>(flight: &Flight<P>, x: f64, y: f64, z: f64) -> f64 {
 }
 
 /// What was said in so many ticks, and the last outcome.
-fn said<P: Aboard>(flight: &mut Flight<P>, ticks: u64) -> (Vec<Handed>, Outcome) {
+fn said<P: Aboard>(flight: &mut Flight<P>, ticks: u64) -> (Vec<Handover>, Outcome) {
     let outcomes: Vec<_> = (0..ticks).map(|_| flight.tick()).collect();
-    let said = outcomes.iter().filter_map(|outcome| outcome.handed).collect();
+    let said = outcomes.iter().filter_map(|outcome| outcome.handover).collect();
     (said, outcomes.last().unwrap().clone())
 }
 
@@ -62,7 +62,10 @@ fn a_policy_flies_to_the_setpoints_place_and_back_to_holding() {
     flight.inputs.setpoint = Some(go_to(2.0, -1.0, 3.0));
     flight.inputs.request = Some(Request::FlyPolicy);
     let outcome = flight.tick();
-    assert_eq!((outcome.answer, outcome.mode, outcome.handed), (Some(Ok(())), Mode::Flying, Some(Handed::ToPolicy)));
+    assert_eq!(
+        (outcome.answer, outcome.mode, outcome.handover),
+        (Some(Ok(())), Mode::Flying, Some(Handover::ToPolicy))
+    );
     assert!(outcome.flies_policy);
     // A point is gone to for as long as it takes; the next one from the next tick on.
     assert_eq!(said(&mut flight, 800).0, []);
@@ -105,10 +108,10 @@ fn the_law_takes_over_says_why_and_gives_the_vehicle_back() {
         flight.ticks(100);
         harm.set(does);
         let (heard, outcome) = said(&mut flight, 100);
-        assert_eq!((heard, outcome.mode), (vec![Handed::ToLaw(reason)], Mode::Flying));
-        assert!(flight.body.position.z > GROUND + 0.4);
+        assert_eq!((heard, outcome.mode), (vec![Handover::ToLaw(reason)], Mode::Flying));
+        assert!(flight.body.position.z > GROUND_HEIGHT_M + 0.4);
         harm.set(Harm::None);
-        assert_eq!(said(&mut flight, 600).0, [Handed::ToPolicy]);
+        assert_eq!(said(&mut flight, 600).0, [Handover::ToPolicy]);
         // In the end the law keeps it, until a person asks again.
         let mut last = None;
         for _ in 0..30 {
@@ -117,9 +120,9 @@ fn the_law_takes_over_says_why_and_gives_the_vehicle_back() {
             harm.set(Harm::None);
             last = said(&mut flight, 2_000).0.last().copied().or(last);
         }
-        assert_eq!(last, Some(Handed::ToLawForGood(reason)));
+        assert_eq!(last, Some(Handover::ToLawForGood(reason)));
         flight.inputs.request = Some(Request::FlyPolicy);
-        assert_eq!(flight.tick().handed, Some(Handed::ToPolicy));
+        assert_eq!(flight.tick().handover, Some(Handover::ToPolicy));
         // Asked for again and again it still waits for its time.
         harm.set(does);
         said(&mut flight, 100);
@@ -128,7 +131,7 @@ fn the_law_takes_over_says_why_and_gives_the_vehicle_back() {
             assert_eq!(flight.answer(Request::FlyPolicy), Ok(()));
             assert_eq!(said(&mut flight, 2).0, []);
         }
-        assert_eq!(said(&mut flight, 600).0, [Handed::ToPolicy]);
+        assert_eq!(said(&mut flight, 600).0, [Handover::ToPolicy]);
     }
 }
 
@@ -198,7 +201,7 @@ fn without_a_policy_or_under_the_papers_law_none_flies() {
 #[test]
 fn every_hand_over_in_words_fits_a_statustext() {
     for reason in shield::Reason::ALL {
-        for handed in [Handed::ToPolicy, Handed::ToLaw(reason), Handed::ToLawForGood(reason)] {
+        for handed in [Handover::ToPolicy, Handover::ToLaw(reason), Handover::ToLawForGood(reason)] {
             assert!(handed.to_string().len() <= flight::reason::TEXT_MAX, "{handed}");
         }
     }

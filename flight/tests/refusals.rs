@@ -2,7 +2,7 @@
 //! `flight_arming.rs`.
 
 use crate::support::{
-    Flight, Handed, PERIOD, at_rest, certified, configuration, estimator, go_to, memory, rotors, settled,
+    Flight, Handed, PERIOD_US, at_rest, certified, configuration, estimator, go_to, memory, rotors, settled,
 };
 use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
@@ -10,15 +10,15 @@ use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
 use controller_core::prelude::*;
 use flight::{Battery, FlightSettings, Grounded, Mode, MotorTest, Output, Pilot, Refusal, Request};
 
-const NOW: u64 = 5_000_000;
+const NOW_US: u64 = 5_000_000;
 
 #[test]
 fn an_armed_vehicle_refuses_requests_and_flies_on() {
-    let mut pilot = settled(NOW - PERIOD);
-    Handed { request: Some(Request::Arm), ..at_rest(NOW) }.to(&mut pilot);
+    let mut pilot = settled(NOW_US - PERIOD_US);
+    Handed { request: Some(Request::Arm), ..at_rest(NOW_US) }.to(&mut pilot);
     let test = Request::MotorTest(MotorTest { rotor: 0, level: 0.1, duration: 1 });
     for (tick, request) in (1..).zip([test, test]) {
-        let outcome = Handed { request: Some(request), ..at_rest(NOW + tick * PERIOD) }.to(&mut pilot);
+        let outcome = Handed { request: Some(request), ..at_rest(NOW_US + tick * PERIOD_US) }.to(&mut pilot);
         assert_eq!(outcome.answer, Some(Err(Refusal::AlreadyArmed)));
         assert_eq!(outcome.output, Output::Idle);
     }
@@ -63,7 +63,7 @@ fn what_cannot_be_done_on_the_ground_is_refused_there() {
     }
     for (height, answer) in [(4.1, Err(Refusal::OutsideFence)), (4.0, Ok(()))] {
         let mut flight = Flight::settled();
-        flight.pilot.choose(&FlightSettings { fence_height: 4.0, ..FlightSettings::DEFAULT });
+        flight.pilot.use_settings(&FlightSettings { fence_height: 4.0, ..FlightSettings::DEFAULT });
         assert_eq!(flight.answer(Request::Arm), Ok(()));
         assert_eq!(flight.answer(Request::TakeOff(Some(height))), answer, "{height} m");
     }
@@ -103,12 +103,12 @@ fn what_cannot_be_done_in_the_air_is_refused_there() {
 /// It never arms, reports why, and tests motors nevertheless.
 fn is_grounded(mut pilot: Pilot, grounded: Grounded) {
     assert_eq!(pilot.grounded(), Some(grounded));
-    at_rest(NOW - PERIOD).to(&mut pilot);
-    let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW) }.to(&mut pilot);
+    at_rest(NOW_US - PERIOD_US).to(&mut pilot);
+    let outcome = Handed { request: Some(Request::Arm), ..at_rest(NOW_US) }.to(&mut pilot);
     assert_eq!(outcome.answer, Some(Err(Refusal::Grounded(grounded))));
     assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Locked));
     let test = Request::MotorTest(MotorTest { rotor: 3, level: 0.1, duration: 1_000_000 });
-    let outcome = Handed { request: Some(test), ..at_rest(NOW) }.to(&mut pilot);
+    let outcome = Handed { request: Some(test), ..at_rest(NOW_US) }.to(&mut pilot);
     assert_eq!(outcome.mode, Mode::MotorTest);
 }
 
@@ -133,8 +133,14 @@ fn a_configuration_that_is_not_certified_never_arms_and_the_failed_inequality_is
     let weak = Limits::new(LimitParameters { thrust_max: 20.0, torque_max }, base.vehicle()).unwrap();
     let weak = Configuration::new(*base.vehicle(), weak, *base.gains().unwrap(), *base.bounds()).unwrap();
     let refused = Certified::new(weak.with_rotors(rotors()).unwrap()).unwrap_err();
-    let pilot =
-        Pilot::new(Err(&refused), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator(), memory());
+    let pilot = Pilot::new(
+        Err(&refused),
+        &GovernorLimits::default(),
+        &FlightSettings::DEFAULT,
+        PERIOD_US,
+        estimator(),
+        memory(),
+    );
     let grounded = Grounded::Inequality("T2 yaw torque");
     assert_eq!(grounded.to_string(), "Not certified: T2 yaw torque");
     is_grounded(pilot, grounded);
@@ -145,24 +151,31 @@ fn a_certified_configuration_that_cannot_be_flown_is_grounded_too() {
     let limits = GovernorLimits::default();
     let rotorless = Certified::new(configuration()).unwrap();
     is_grounded(
-        Pilot::new(Ok(&rotorless), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
+        Pilot::new(Ok(&rotorless), &limits, &FlightSettings::DEFAULT, PERIOD_US, estimator(), memory()),
         Grounded::NoRotors,
     );
     let hover = configuration().with_bounds(ReferenceBounds::REST).unwrap().with_rotors(rotors()).unwrap();
     let hover = Certified::new(hover).unwrap();
     let field = "reference_bounds.horizontal_speed";
     is_grounded(
-        Pilot::new(Ok(&hover), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
+        Pilot::new(Ok(&hover), &limits, &FlightSettings::DEFAULT, PERIOD_US, estimator(), memory()),
         Grounded::Parameter(field),
     );
     let slow = GovernorLimits { horizontal_speed: 0.0, ..limits };
     is_grounded(
-        Pilot::new(Ok(&certified()), &slow, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
+        Pilot::new(Ok(&certified()), &slow, &FlightSettings::DEFAULT, PERIOD_US, estimator(), memory()),
         Grounded::Parameter("governor.horizontal_speed"),
     );
     let error = ParameterError { field: "vehicle.mass", reason: Reason::NotPositive };
     is_grounded(
-        Pilot::new(Err(&Refused::Undefined(error)), &limits, &FlightSettings::DEFAULT, PERIOD, estimator(), memory()),
+        Pilot::new(
+            Err(&Refused::Undefined(error)),
+            &limits,
+            &FlightSettings::DEFAULT,
+            PERIOD_US,
+            estimator(),
+            memory(),
+        ),
         Grounded::Parameter("vehicle.mass"),
     );
 }

@@ -1,10 +1,10 @@
 //! Earlier and present requests: the newest counts, and nothing that was granted is forgotten.
 
-use crate::support::{Flight, PERIOD, go_to};
+use crate::support::{Flight, PERIOD_US, go_to};
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::prelude::*;
-use flight::rules::SETPOINTS_REQUEST_MAX;
-use flight::{Battery, Mode, Outcome, Output, Reason, Refusal, Request, SETPOINT_AGE_MAX};
+use flight::rules::SETPOINTS_REQUEST_MAX_US;
+use flight::{Battery, Mode, Outcome, Output, Reason, Refusal, Request, SETPOINT_AGE_MAX_US};
 
 /// Outside the fence.
 fn far() -> Setpoint {
@@ -88,9 +88,9 @@ fn a_stream_that_ends_in_setpoints_that_are_refused_has_ended_all_the_same() {
         while flight.pilot.mode() == Mode::Flying {
             assert!(matches!(stream(&mut flight, refused, 1).setpoint, None | Some(Err(_))));
             ticks += 1;
-            assert!(ticks <= SETPOINT_AGE_MAX / PERIOD, "{refused:?}");
+            assert!(ticks <= SETPOINT_AGE_MAX_US / PERIOD_US, "{refused:?}");
         }
-        assert_eq!((flight.pilot.mode(), ticks), (Mode::Holding, SETPOINT_AGE_MAX / PERIOD));
+        assert_eq!((flight.pilot.mode(), ticks), (Mode::Holding, SETPOINT_AGE_MAX_US / PERIOD_US));
     }
 }
 
@@ -112,12 +112,12 @@ fn a_setpoint_that_is_refused_begins_no_flight_and_says_why() {
     assert_eq!(stream(&mut flight, go_to(0.0, 0.0, 2.0), 1).mode, Mode::Flying);
     let mut flight = Flight::armed();
     assert_eq!(ask(&mut flight, Request::Hold).mode, Mode::Holding);
-    flight.ticks(SETPOINT_AGE_MAX / PERIOD);
+    flight.ticks(SETPOINT_AGE_MAX_US / PERIOD_US);
     flight.inputs.setpoint = Some(far());
     let outcome = ask(&mut flight, Request::FlySetpoints);
     assert_eq!((outcome.mode, outcome.answer), (Mode::Holding, Some(Err(Refusal::OutsideFence))));
     // What came is known for a second.
-    flight.ticks(SETPOINT_AGE_MAX / PERIOD);
+    flight.ticks(SETPOINT_AGE_MAX_US / PERIOD_US);
     assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Err(Refusal::NoSetpoints)));
 }
 
@@ -141,7 +141,7 @@ fn any_other_request_cancels_setpoints_requested_on_the_ground() {
 #[test]
 fn setpoints_requested_on_the_ground_stay_requested_for_five_seconds() {
     for (waited, mode) in
-        [(SETPOINTS_REQUEST_MAX / PERIOD - 1, Mode::Flying), (SETPOINTS_REQUEST_MAX / PERIOD, Mode::Idling)]
+        [(SETPOINTS_REQUEST_MAX_US / PERIOD_US - 1, Mode::Flying), (SETPOINTS_REQUEST_MAX_US / PERIOD_US, Mode::Idling)]
     {
         let mut flight = Flight::settled();
         assert_eq!(ask(&mut flight, Request::FlySetpoints).answer, Some(Ok(())));
@@ -188,7 +188,7 @@ fn a_landing_granted_without_a_pose_gives_way_to_a_later_request() {
     flight.inputs.disarm = true;
     flight.tick();
     flight.body = Flight::new().body;
-    flight.ground = crate::support::GROUND;
+    flight.ground = crate::support::GROUND_HEIGHT_M;
     flight.ticks(300);
     for request in [Request::Arm, Request::TakeOff(None)] {
         assert_eq!(ask(&mut flight, request).answer, Some(Ok(())));

@@ -1,12 +1,12 @@
 //! Random streams of whatever arrives. What may never happen, never does.
 
 use crate::support::outputs::check_output;
-use crate::support::{Handed, PERIOD, SETTLING, go_to, pilot, pose, resting_imu, rotors};
+use crate::support::{Handed, PERIOD_US, SETTLING_TICKS, go_to, pilot, pose, resting_imu, rotors};
 use controller_core::allocation::Rotors;
 use controller_core::governor::Turn;
 use controller_core::prelude::*;
 use estimation::estimator::{Increment, PoseMeasurement};
-use flight::rules::{COASTING_MAX, DESCENDING_MAX, IDLING_MAX, IMU_AGE_MAX, MOTOR_TEST_MAX};
+use flight::rules::{COASTING_MAX_US, DESCENDING_MAX_US, IDLING_MAX_US, IMU_AGE_MAX_US, MOTOR_TEST_MAX_US};
 use flight::{Leg, MissionItem, Mode, MotorSetting, MotorTest, Outcome, Output, Pilot, Request, Setting, Stamped};
 use proptest::prelude::*;
 
@@ -40,7 +40,7 @@ struct Arrival {
 impl Arrival {
     /// Nothing but the truth.
     const REST: Self = Self {
-        elapsed: PERIOD,
+        elapsed: PERIOD_US,
         imu: Fate::Here,
         pose: Fate::Here,
         ground_station: true,
@@ -52,7 +52,7 @@ impl Arrival {
 }
 
 fn arrival() -> impl Strategy<Value = Arrival> {
-    let elapsed = prop_oneof![30 => Just(PERIOD), 1 => 0..40_000_u64];
+    let elapsed = prop_oneof![30 => Just(PERIOD_US), 1 => 0..40_000_u64];
     let late = (0..150_000_u64).prop_map(Fate::Late);
     let imu =
         prop_oneof![200 => Just(Fate::Here), 20 => Just(Fate::Late(0)), 1 => Just(Fate::Lost), 1 => Just(Fate::Lies)];
@@ -123,7 +123,7 @@ fn stretch() -> impl Strategy<Value = Vec<Arrival>> {
                 _ => {}
             }
         }
-        let rest = std::iter::repeat_n(Arrival::REST, if rested { SETTLING as usize } else { 0 });
+        let rest = std::iter::repeat_n(Arrival::REST, if rested { SETTLING_TICKS as usize } else { 0 });
         let arm = rested.then_some(Arrival { request: Some(Request::Arm), ..Arrival::REST });
         let fly = [Request::TakeOff(None), Request::FlySetpoints][usize::from(kind) % 2];
         let fly = rested.then_some(Arrival { request: Some(fly), position: Some(0.0), ..Arrival::REST });
@@ -199,7 +199,7 @@ impl Judge {
         }
         let mut made = vec![];
         while self.until < self.now {
-            let end = self.now.min(self.until + PERIOD / 2);
+            let end = self.now.min(self.until + PERIOD_US / 2);
             made.push(resting_imu(self.until, end, &level));
             self.until = end;
         }
@@ -245,17 +245,17 @@ impl Judge {
         let now = self.now;
         let age = |time: Option<u64>| time.map_or(u64::MAX, |time| now - time);
         if let Output::Thrusts(_) = outcome.output {
-            assert!(age(self.imu) <= IMU_AGE_MAX);
-            assert!(age(self.pose) <= COASTING_MAX || outcome.mode == Mode::Descending);
+            assert!(age(self.imu) <= IMU_AGE_MAX_US);
+            assert!(age(self.pose) <= COASTING_MAX_US || outcome.mode == Mode::Descending);
             assert!(before.is_armed());
         }
         if let Output::Idle = outcome.output {
             assert!(before == Mode::Idling || arrival.request == Some(Request::Arm));
         }
         for (mode, since, most) in [
-            (Mode::Descending, &mut self.descending_since, DESCENDING_MAX),
-            (Mode::Idling, &mut self.idling_since, IDLING_MAX),
-            (Mode::MotorTest, &mut self.testing_since, MOTOR_TEST_MAX),
+            (Mode::Descending, &mut self.descending_since, DESCENDING_MAX_US),
+            (Mode::Idling, &mut self.idling_since, IDLING_MAX_US),
+            (Mode::MotorTest, &mut self.testing_since, MOTOR_TEST_MAX_US),
         ] {
             *since = (outcome.mode == mode).then(|| since.unwrap_or(now));
             assert!(since.is_none_or(|since| now - since < most), "{mode:?} for too long");

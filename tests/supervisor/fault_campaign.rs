@@ -58,7 +58,7 @@ const FLIGHT_HEIGHT: f32 = 1.5;
 
 /// What an operator has chosen about failures: all of it within reach of a short flight.
 const SETTINGS: FlightSettings = FlightSettings {
-    ground_station_patience: 5.0,
+    ground_station_timeout: 5.0,
     fence_radius: 6.0,
     fence_height: 4.0,
     tracking_error_max: 1.5,

@@ -248,7 +248,7 @@ impl<'m> PilotedVehicle<'m> {
 
     /// Other flight settings, as the firmware's control task hands them on: taken while nothing is armed.
     pub fn choose(&mut self, settings: &FlightSettings) {
-        self.pilot.choose(settings);
+        self.pilot.use_settings(settings);
     }
 
     /// The pilot.

@@ -11,7 +11,7 @@ use heapless::Deque;
 use mavlink::dialects::common::MavCmd;
 
 /// How long a commanding station may be silent, us: as long as the flight rules wait for it.
-pub const SILENCE: u64 = flight::rules::GROUND_STATION_SILENCE_MAX;
+pub const SILENCE: u64 = flight::rules::GROUND_STATION_TIMEOUT_US;
 
 /// Ground stations that are remembered, the last.
 const STATIONS: usize = 4;

@@ -2,7 +2,7 @@
 //!
 //! | item | uses | refused |
 //! |---|---|---|
-//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`MISSION_RADIUS`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
+//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`ACCEPTANCE_RADIUS_M`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
 //! | 22 NAV_TAKEOFF, the first only | 4; altitude. Straight up | |
 //! | 21 NAV_LAND, the last only | 4; place, at the altitude that it has | 2, other than 0: no precision landing |
 //! | 20 NAV_RETURN_TO_LAUNCH, the last only | nothing | |

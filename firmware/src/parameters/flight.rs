@@ -13,7 +13,7 @@ impl<M: RawMutex> Parameters<M> {
         FlightSettings {
             take_off_height: self.get(Name::TakeOffHeight),
             landing_speed: self.get(Name::LandingSpeed),
-            ground_station_patience: self.get(Name::GroundStationPatience),
+            ground_station_timeout: self.get(Name::GroundStationPatience),
             fence_radius: self.get(Name::FenceRadius),
             fence_height: self.get(Name::FenceHeight),
             tracking_error_max: self.get(Name::TrackingErrorMax),

@@ -5,7 +5,7 @@ use controller_core::allocation::remaining::Lost;
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Fault, Rejected, Taken};
-use flight::{Handed, MissionStep, Reason, Refusal, Streamed};
+use flight::{Handover, MissionStep, Reason, Refusal, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -70,7 +70,7 @@ pub enum Event {
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
     /// Who flies, the policy or the law.
-    Handed(Handed),
+    Handed(Handover),
     /// How a mission goes on.
     Mission(MissionStep),
     /// The motors' frames do not go out.
@@ -100,12 +100,12 @@ impl Event {
             Self::Input(_) | Self::MotorsLost | Self::RotorLost(_) | Self::Mission(MissionStep::Refused(..)) => {
                 Severity::Critical
             }
-            Self::Handed(Handed::ToLawForGood(_)) => Severity::Critical,
+            Self::Handed(Handover::ToLawForGood(_)) => Severity::Critical,
             Self::Mission(_)
             | Self::Mode(_)
             | Self::MotorsRegained
             | Self::Pose(Ok(_))
-            | Self::Handed(Handed::ToPolicy)
+            | Self::Handed(Handover::ToPolicy)
             | Self::Streamed(Streamed::AsSent) => Severity::Information,
             Self::Refused(_)
             | Self::Pose(Err(_))

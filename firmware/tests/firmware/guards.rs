@@ -251,7 +251,7 @@ fn every_test_that_the_page_names_for_what_is_received_exists() {
         include_str!("link_missions.rs"),
         include_str!("link_signing.rs"),
         include_str!("../../../flight/tests/modes.rs"),
-        include_str!("../../../flight/src/watch/tests.rs"),
+        include_str!("../../../flight/src/detectors/tests.rs"),
     ];
     let rows = rows("| received |");
     assert!(rows.len() >= 8);

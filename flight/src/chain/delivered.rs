@@ -1,7 +1,7 @@
 //! Delivered against commanded thrust, by the law's estimates.
 
 use super::{Chain, Flown};
-use crate::tilt::up;
+use crate::tilt::tilt_cosine;
 use estimation::estimator::EstimatedState;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -32,6 +32,6 @@ impl Chain<'_> {
 
     /// The vertical acceleration of the commanded thrust and the estimated force, m/s^2.
     pub fn commanded_acceleration(&self, flown: &Flown) -> f32 {
-        flown.wrench.thrust / self.mass * up(&flown.state.attitude) - self.gravity + self.vertical_force()
+        flown.wrench.thrust / self.mass * tilt_cosine(&flown.state.attitude) - self.gravity + self.vertical_force()
     }
 }

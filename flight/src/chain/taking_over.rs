@@ -2,7 +2,7 @@
 //! hold or to land, a failure, a pose that is found again, a jump of the estimate.
 
 use super::{Chain, resting};
-use crate::braking::VERTICAL;
+use crate::braking::VERTICAL_STOP;
 use crate::rules::Mode;
 use crate::tilt::heading;
 use controller_core::error::InputError;
@@ -10,14 +10,14 @@ use controller_core::math;
 use controller_core::state::State;
 use nalgebra::{Vector2, Vector3};
 
-/// How late feedback brakes a vertical speed, s.
-const VERTICAL_BRAKING_LATE: f32 = 0.2;
+/// How late feedback brakes a vertical speed.
+const VERTICAL_BRAKING_DELAY_S: f32 = 0.2;
 
-/// A reference that comes to rest within this by itself, m, is left to do so.
-const NEARLY_AT_REST: f32 = 0.05;
+/// A reference that comes to rest within this by itself, is left to do so.
+const REST_DISTANCE_MAX_M: f32 = 0.05;
 
-/// The speed, m/s, at which a vehicle hardly sinks: less than a landing's.
-const HARDLY_SINKING: f32 = 0.3;
+/// The speed, at which a vehicle hardly sinks: less than a landing's.
+const HARDLY_SINKING_SPEED_M_PER_S: f32 = 0.3;
 
 /// `velocity` with its horizontal part at most `speed` long.
 pub(super) fn slowed(velocity: &Vector3<f32>, speed: f32) -> Vector3<f32> {
@@ -52,7 +52,7 @@ impl Chain<'_> {
 
     #[inline(never)]
     fn is_nearly_at_rest(&self) -> bool {
-        self.braking.is_over() && self.governor.way_to_rest() < NEARLY_AT_REST
+        self.braking.is_over() && self.governor.way_to_rest() < REST_DISTANCE_MAX_M
     }
 
     /// Takes a flight up again where the vehicle is found, and brings it to rest, not below `ground`, m, with the
@@ -100,7 +100,7 @@ impl Chain<'_> {
     /// the ground is.
     pub fn stops_within(&self, height: f32, state: &State) -> bool {
         let down = (-state.velocity.z).max(0.0);
-        down < HARDLY_SINKING || VERTICAL.way(down) + VERTICAL_BRAKING_LATE * down < height
+        down < HARDLY_SINKING_SPEED_M_PER_S || VERTICAL_STOP.way(down) + VERTICAL_BRAKING_DELAY_S * down < height
     }
 
     /// Goes along where the estimate has jumped to `state`, with the vehicle's heading, which may have jumped too. What

@@ -1,6 +1,6 @@
 extern crate std;
 use super::*;
-use crate::PERIOD;
+use crate::PERIOD_US;
 use crate::hummingbird;
 use estimation::estimator::EstimatedState;
 use nalgebra::Quaternion;
@@ -8,7 +8,7 @@ use std::boxed::Box;
 
 pub(super) fn chain() -> Chain<'static> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), PERIOD, memory).unwrap();
+    let mut chain = Chain::new(&hummingbird::certified(), &GovernorLimits::default(), PERIOD_US, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain
 }
@@ -25,10 +25,14 @@ fn a_take_off_has_risen_where_its_reference_rests_at_its_height() {
     let mut still = 0;
     while !chain.has_risen() {
         let Reference { position, velocity, .. } = chain.fly(&at_rest()).unwrap().reference;
-        still += u32::from((position.z - 1.5).abs() < RISEN.0 && velocity.z > RISEN.1);
+        still +=
+            u32::from((position.z - 1.5).abs() < TAKEN_OFF_DISTANCE_MAX_M && velocity.z > TAKEN_OFF_SPEED_MAX_M_PER_S);
     }
     assert!(still > 0, "it never passes the last centimetre faster");
-    assert!((chain.reference().position.z - 1.5).abs() < RISEN.0 && chain.reference().velocity.z <= RISEN.1);
+    assert!(
+        (chain.reference().position.z - 1.5).abs() < TAKEN_OFF_DISTANCE_MAX_M
+            && chain.reference().velocity.z <= TAKEN_OFF_SPEED_MAX_M_PER_S
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 extern crate std;
 use super::*;
-use crate::PERIOD;
+use crate::PERIOD_US;
 use nalgebra::Quaternion;
 use std::vec::Vec;
 
@@ -21,7 +21,7 @@ fn left(smoothed: &mut LowPass, motion: f32, jumps: u32) -> (f32, f32) {
 
 #[test]
 fn a_steady_motion_is_known_to_nine_tenths_after_a_tenth_of_a_second_and_an_acceleration_after_two() {
-    let mut smoothed = LowPass::new(PERIOD);
+    let mut smoothed = LowPass::new(PERIOD_US);
     assert_eq!(left(&mut smoothed, 0.0, 0), (0.0, 0.0));
     let found: Vec<(f32, f32)> = (0..20).map(|_| left(&mut smoothed, 1.0, 0)).collect();
     assert!((0.88..0.9).contains(&found[9].0), "{found:?}");
@@ -40,7 +40,7 @@ fn at_any_rate_a_change_is_known_as_far_after_as_long() {
 
 #[test]
 fn an_eighth_is_left_of_what_swings_at_25_hz_and_a_sixtieth_of_an_acceleration() {
-    let mut smoothed = LowPass::new(PERIOD);
+    let mut smoothed = LowPass::new(PERIOD_US);
     let swings = [0.0, 1.0, 0.0, -1.0].into_iter().cycle().take(400);
     let later = swings.map(|motion| left(&mut smoothed, motion, 0)).skip(200);
     let most = later.fold((0.0_f32, 0.0_f32), |most, one| (most.0.max(one.0), most.1.max(one.1)));
@@ -49,7 +49,7 @@ fn an_eighth_is_left_of_what_swings_at_25_hz_and_a_sixtieth_of_an_acceleration()
 
 #[test]
 fn without_a_state_and_at_a_jump_it_begins_anew() {
-    let mut smoothed = LowPass::new(PERIOD);
+    let mut smoothed = LowPass::new(PERIOD_US);
     assert_eq!((left(&mut smoothed, 3.0, 0), left(&mut smoothed, 1.0, 1)), ((3.0, 3.0), (1.0, 1.0)));
     assert_eq!(smoothed.tick(None), None);
     assert_eq!(left(&mut smoothed, 2.0, 1), (2.0, 2.0));
@@ -57,7 +57,7 @@ fn without_a_state_and_at_a_jump_it_begins_anew() {
 
 #[test]
 fn one_tick_of_a_hit_leaves_less_than_wind_may() {
-    let mut smoothed = LowPass::new(PERIOD);
+    let mut smoothed = LowPass::new(PERIOD_US);
     assert_eq!(left(&mut smoothed, 0.0, 0), (0.0, 0.0));
     let most = [440.0].into_iter().chain([0.0; 50]).map(|motion| left(&mut smoothed, motion, 0).1).fold(0.0, f32::max);
     assert!((1.0..3.5).contains(&most), "{most} m/s^2");

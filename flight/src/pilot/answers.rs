@@ -4,14 +4,14 @@ use super::policies::place;
 use super::{Pilot, hold};
 use crate::bench::Bench;
 use crate::chain::Chain;
+use crate::detectors::Detected;
 use crate::estimate::Estimate;
 use crate::exchange::{Battery, Inputs};
 use crate::permission::{self, Start, require};
 use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
-use crate::rules::{GROUND_STATION_SILENCE_MAX, Mode, SETPOINTS_REQUEST_MAX};
-use crate::watch::Seen;
+use crate::rules::{GROUND_STATION_TIMEOUT_US, Mode, SETPOINTS_REQUEST_MAX_US};
 use controller_core::allocation::geometry::ROTORS_MIN;
 use controller_core::governor::Setpoint;
 
@@ -29,11 +29,11 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
         // A failed accelerometer repeats its last value, which looks like rest.
         inputs.imu_fault.map_or(Ok(()), |fault| Err(Refusal::Imu(fault)))?;
-        permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_SILENCE_MAX))
+        permission::to_arm(estimate, self.is_silent(inputs, GROUND_STATION_TIMEOUT_US))
     }
 
     /// Readies the chain for a flight from here.
-    pub(super) fn begin(&mut self, inputs: &Inputs, estimate: &Estimate) -> Result<(), Refusal> {
+    pub(super) fn prepare_start(&mut self, inputs: &Inputs, estimate: &Estimate) -> Result<(), Refusal> {
         let start = self.may_arm(inputs, estimate)?;
         let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
         chain.start(&start.position, &start.heading).map_err(|error| Refusal::Reference(error.field()))
@@ -41,12 +41,12 @@ impl<'m, P: Aboard> Pilot<'m, P> {
 
     /// Ends a request for flight by setpoints: at any other request but arming, when the motors are stopped, or on the
     /// ground after a timeout.
-    pub(super) fn take_back(&mut self, inputs: &Inputs) {
+    pub(super) fn expire_setpoints_request(&mut self, inputs: &Inputs) {
         let goes_on = matches!(inputs.request, None | Some(Request::Arm | Request::FlySetpoints));
         let stops = inputs.disarm || inputs.killed;
-        let since = self.wanted_since.filter(|_| goes_on && !stops);
-        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_REQUEST_MAX;
-        self.wanted_since = since.filter(|since| self.mode.is_armed() || is_recent(since));
+        let since = self.setpoints_requested_since.filter(|_| goes_on && !stops);
+        let is_recent = |since: &u64| inputs.now.saturating_sub(*since) < SETPOINTS_REQUEST_MAX_US;
+        self.setpoints_requested_since = since.filter(|since| self.mode.is_armed() || is_recent(since));
     }
 
     /// Whether a request is granted. Granting one readies the chain for it.
@@ -55,7 +55,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         request: Request,
         inputs: &Inputs,
         estimate: &Estimate,
-        seen: &Seen,
+        detected: &Detected,
     ) -> Result<(), Refusal> {
         // Requests in the tick of a disarm command came before it.
         require(!inputs.disarm, Refusal::DisarmCommanded)?;
@@ -64,7 +64,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             Request::Arm if self.mode.is_armed() => require(!inputs.killed, Refusal::Killed),
             Request::Arm => {
                 permission::to_turn_motors(self.mode)?;
-                self.begin(inputs, estimate)
+                self.prepare_start(inputs, estimate)
             }
             Request::Disarm => require(!self.is_airborne(), Refusal::InTheAir),
             Request::MotorTest(test) => self.begin_on_the_bench(Bench::Turning(test), inputs),
@@ -75,26 +75,26 @@ impl<'m, P: Aboard> Pilot<'m, P> {
                 if self.mode.is_guided() {
                     self.has_setpoint(inputs.now)?;
                 }
-                self.take_over(estimate);
+                self.end_policy(estimate);
                 self.end_mission(inputs.now);
-                self.wanted_since = Some(inputs.now);
+                self.setpoints_requested_since = Some(inputs.now);
                 Ok(())
             }
-            Request::FlyPolicy => self.let_fly(inputs.now),
+            Request::FlyPolicy => self.start_policy(inputs.now),
             Request::FlyMission(from) => self.start_mission(from, inputs, estimate),
             Request::SetMissionItem(item) => self.set_mission_item(item, inputs),
             Request::Hold => {
-                permission::to_hold(self.mode, self.must_land(seen, estimate) || self.has_lost_a_rotor())?;
-                self.take_over(estimate);
+                permission::to_hold(self.mode, self.must_land(detected, estimate) || self.has_lost_a_rotor())?;
+                self.end_policy(estimate);
                 let chain = self.chain.as_mut().map_err(|grounded| Refusal::Grounded(*grounded))?;
                 hold(chain, &self.fence, estimate);
                 Ok(())
             }
             Request::GoTo(setpoint) => {
-                permission::to_hold(self.mode, self.must_land(seen, estimate))?;
+                permission::to_hold(self.mode, self.must_land(detected, estimate))?;
                 require(self.is_airborne(), Refusal::NotInTheAir)?;
                 self.check(&setpoint)?;
-                self.take_over(estimate);
+                self.end_policy(estimate);
                 self.accept(&setpoint, 0.0)?;
                 // Without a rotor it lands there.
                 self.lands_elsewhere = self.has_lost_a_rotor();
@@ -126,13 +126,13 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         estimate: &Estimate,
     ) -> Result<(), Refusal> {
         let height = height.unwrap_or(self.settings.take_off_height);
-        if self.mode == Mode::TakingOff && self.chain.as_ref().is_ok_and(|chain| chain.rises(height)) {
+        if self.mode == Mode::TakingOff && self.chain.as_ref().is_ok_and(|chain| chain.takes_off_to(height)) {
             return Ok(());
         }
         require((0.5..=50.0).contains(&height), Refusal::TakeOffHeight)?;
         permission::to_take_off(self.mode)?;
         require(height <= self.settings.fence_height, Refusal::OutsideFence)?;
-        self.begin(inputs, estimate)?;
+        self.prepare_start(inputs, estimate)?;
         self.with_chain(|chain| chain.rise(height).map_err(Refusal::Setpoint))
     }
 
@@ -144,8 +144,8 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// Whether something makes the vehicle land, whatever requests come.
-    pub(super) fn must_land(&self, seen: &Seen, estimate: &Estimate) -> bool {
-        let Seen { battery_critical, tracking_lost, saturated, overrun, .. } = *seen;
+    pub(super) fn must_land(&self, detected: &Detected, estimate: &Estimate) -> bool {
+        let Detected { battery_critical, tracking_lost, saturated, overrun, .. } = *detected;
         battery_critical || tracking_lost || saturated || overrun || self.is_outside(estimate)
     }
 
@@ -195,7 +195,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
                 }
             })),
             Mode::Flying => Some(self.accept(&setpoint, inputs.setpoint_late)),
-            Mode::Idling if self.wanted_since.is_some() => {
+            Mode::Idling if self.setpoints_requested_since.is_some() => {
                 let may_begin = self.check(&setpoint).and_then(|()| self.may_arm(inputs, estimate).map(|_| ()));
                 may_begin.err().map(Err)
             }

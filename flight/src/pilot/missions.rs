@@ -35,11 +35,11 @@ impl<P: Aboard> Pilot<'_, P> {
         item.check(&self.fence.home(), &self.settings).map_err(Refusal::Mission)?;
         if self.mode == Mode::Idling {
             require(!item.lands(), Refusal::NotInTheAir)?;
-            self.begin(inputs, estimate)?;
+            self.prepare_start(inputs, estimate)?;
         }
         let rises = matches!(self.mode, Mode::Idling | Mode::TakingOff) && item.leg == Leg::Waypoint;
         // One that is flown goes on as it is.
-        self.take_over(estimate);
+        self.end_policy(estimate);
         if from.is_some() || !self.mission.is_flown {
             self.mission = Progress { is_flown: true, rises, ..self.mission.at(from.unwrap_or(self.mission.next)) };
         }

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 impl<P: Aboard> Pilot<'_, P> {
     /// Lets the policy fly, from here, to the newest setpoint's place.
-    pub(super) fn let_fly(&mut self, now: u64) -> Result<(), Refusal> {
+    pub(super) fn start_policy(&mut self, now: u64) -> Result<(), Refusal> {
         permission::to_fly_policy::<P>(self.mode, self.is_airborne())?;
         if self.flies_policy {
             // A client that repeats its request does not take the vehicle from the law.
@@ -31,7 +31,7 @@ impl<P: Aboard> Pilot<'_, P> {
     }
 
     /// Flies on without the policy, if it flies: the governor starts where the vehicle is.
-    pub(super) fn take_over(&mut self, estimate: &Estimate) {
+    pub(super) fn end_policy(&mut self, estimate: &Estimate) {
         if mem::take(&mut self.flies_policy)
             && let (Ok(chain), Some(estimated)) = (&mut self.chain, &estimate.state)
         {

@@ -1,23 +1,23 @@
 //! What only a defect could cause, caused on purpose: refusals that checked inputs rule out.
 
 extern crate std;
-use super::super::rules::REFUSAL_MAX;
+use super::super::rules::REFUSAL_MAX_US;
 use super::super::{Outcome, Pose, Reason, Request, Stamped, Velocity};
 use super::*;
-use crate::{PERIOD, hummingbird};
+use crate::{PERIOD_US, hummingbird};
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use nalgebra::{Quaternion, Vector3};
 use std::boxed::Box;
 
 /// Ticks of rest before arming.
-const SETTLING: u64 = 160;
+const SETTLING_TICKS: u64 = 160;
 
 /// A tick at rest at the origin.
 fn rest(pilot: &mut Pilot, number: u64, request: Option<Request>) -> (Estimate, Outcome) {
-    let (now, zero) = (number * PERIOD, Vector3::zeros());
-    let delta_velocity = Vector3::new(0.0, 0.0, 9.81 * PERIOD as f32 * 1e-6);
+    let (now, zero) = (number * PERIOD_US, Vector3::zeros());
+    let delta_velocity = Vector3::new(0.0, 0.0, 9.81 * PERIOD_US as f32 * 1e-6);
     let increment =
-        Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, clipped: Clipped::NEITHER };
+        Increment { start: now - PERIOD_US, end: now, delta_angle: zero, delta_velocity, clipped: Clipped::NEITHER };
     let pose = Pose::new(zero, Velocity::World(zero), Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
     let pose = Stamped { value: PoseMeasurement::new(&pose), time: now };
     let body_rate = Some(Stamped { value: zero, time: now });
@@ -37,21 +37,21 @@ fn pilot() -> Pilot<'static> {
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator, memory)
+    Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD_US, estimator, memory)
 }
 
 /// Taking off, with the number of the last tick, and its estimate with an attitude of NaNs.
 fn armed() -> (Pilot<'static>, u64, Estimate) {
     let mut pilot = pilot();
-    for tick in 1..SETTLING {
+    for tick in 1..SETTLING_TICKS {
         rest(&mut pilot, tick, None);
     }
-    let (_, arming) = rest(&mut pilot, SETTLING, Some(Request::Arm));
+    let (_, arming) = rest(&mut pilot, SETTLING_TICKS, Some(Request::Arm));
     assert_eq!((arming.answer, arming.mode), (Some(Ok(())), Mode::Idling));
-    let (mut estimate, rising) = rest(&mut pilot, SETTLING + 1, Some(Request::TakeOff(None)));
+    let (mut estimate, rising) = rest(&mut pilot, SETTLING_TICKS + 1, Some(Request::TakeOff(None)));
     assert_eq!((rising.answer, rising.mode), (Some(Ok(())), Mode::TakingOff));
     estimate.state.as_mut().unwrap().state.attitude = Quaternion::new(f32::NAN, 0.0, 0.0, 0.0);
-    (pilot, SETTLING + 1, estimate)
+    (pilot, SETTLING_TICKS + 1, estimate)
 }
 
 #[test]
@@ -59,14 +59,14 @@ fn settings_are_chosen_on_the_ground_and_kept_in_the_air() {
     let other = FlightSettings { take_off_height: 3.0, fence_radius: 7.0, ..FlightSettings::DEFAULT };
     let mut grounded = pilot();
     grounded.fence.place(&Vector3::new(1.0, 2.0, 3.0));
-    grounded.choose(&other);
+    grounded.use_settings(&other);
     assert_eq!(grounded.settings, other);
     assert!(
         !grounded.fence.contains(&Vector3::new(9.0, 2.0, 3.0)) && grounded.fence.contains(&Vector3::new(7.0, 2.0, 3.0))
     );
     assert_eq!(grounded.fence.home(), Vector3::new(1.0, 2.0, 3.0));
     let (mut flying, ..) = armed();
-    flying.choose(&other);
+    flying.use_settings(&other);
     assert_eq!(flying.settings, FlightSettings::DEFAULT);
     assert!(flying.fence.contains(&Vector3::new(9.0, 2.0, 3.0)));
 }
@@ -75,12 +75,12 @@ fn settings_are_chosen_on_the_ground_and_kept_in_the_air() {
 fn thrusts_that_the_law_refuses_to_renew_are_held_for_five_ticks_and_then_stop() {
     let (mut pilot, last, broken) = armed();
     let thrusts = pilot.chain.as_ref().unwrap().thrusts().cloned().unwrap();
-    for tick in 1..=REFUSAL_MAX / PERIOD {
-        let outcome = pilot.decide(&quiet((last + tick) * PERIOD), &broken);
+    for tick in 1..=REFUSAL_MAX_US / PERIOD_US {
+        let outcome = pilot.decide(&quiet((last + tick) * PERIOD_US), &broken);
         assert!(matches!(outcome.flown, Some(Err(InputError::NotFinite { .. }))), "{outcome:?}");
         assert_eq!(outcome.output, Output::Thrusts(thrusts.clone()));
     }
-    let outcome = pilot.decide(&quiet((last + 6) * PERIOD), &broken);
+    let outcome = pilot.decide(&quiet((last + 6) * PERIOD_US), &broken);
     assert_eq!(outcome.transition.map(|transition| transition.reason), Some(Reason::ThrustsRefused));
     assert_eq!((outcome.output, outcome.mode), (Output::Stop, Mode::Stopped));
 }
@@ -89,11 +89,11 @@ fn thrusts_that_the_law_refuses_to_renew_are_held_for_five_ticks_and_then_stop()
 fn a_refusal_that_passes_is_flown_through() {
     let (mut pilot, last, broken) = armed();
     for tick in 1..5 {
-        pilot.decide(&quiet((last + tick) * PERIOD), &broken);
+        pilot.decide(&quiet((last + tick) * PERIOD_US), &broken);
     }
     let sound = Estimate { state: sound(&broken), ..broken };
     for tick in 5..20 {
-        let outcome = pilot.decide(&quiet((last + tick) * PERIOD), &sound);
+        let outcome = pilot.decide(&quiet((last + tick) * PERIOD_US), &sound);
         assert!(matches!((outcome.mode, outcome.flown), (Mode::TakingOff, Some(Ok(_)))));
     }
 }
@@ -112,7 +112,7 @@ fn a_jump_to_where_the_governor_cannot_start_is_levelled() {
     let mut state = sound(&broken);
     state.as_mut().unwrap().state.position = Vector3::repeat(1e8);
     let jumped_from = sound(&broken).map(|estimated| estimated.state);
-    let outcome = pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state, jumped_from, ..broken });
+    let outcome = pilot.decide(&quiet((last + 1) * PERIOD_US), &Estimate { state, jumped_from, ..broken });
     assert_eq!((outcome.mode, outcome.transition.map(|t| t.reason)), (Mode::Descending, Some(Reason::PoseLost)));
 }
 
@@ -133,15 +133,15 @@ fn a_pilot_and_its_estimator_take_the_memory_their_documentation_says() {
 #[test]
 fn the_fence_of_a_vehicle_that_idles_goes_along_with_its_frame() {
     let mut pilot = pilot();
-    for tick in 1..SETTLING {
+    for tick in 1..SETTLING_TICKS {
         rest(&mut pilot, tick, None);
     }
-    let (estimate, arming) = rest(&mut pilot, SETTLING, Some(Request::Arm));
+    let (estimate, arming) = rest(&mut pilot, SETTLING_TICKS, Some(Request::Arm));
     assert_eq!(arming.mode, Mode::Idling);
     let mut state = estimate.state;
     let jumped_from = state.map(|estimated| estimated.state);
     state.as_mut().unwrap().state.position = Vector3::new(3.0, 4.0, -20.0);
-    pilot.decide(&quiet((SETTLING + 1) * PERIOD), &Estimate { state, jumped_from, ..estimate });
+    pilot.decide(&quiet((SETTLING_TICKS + 1) * PERIOD_US), &Estimate { state, jumped_from, ..estimate });
     assert!((pilot.fence.home() - Vector3::new(3.0, 4.0, -20.0)).norm() < 1e-4, "{}", pilot.fence.home());
 }
 
@@ -153,7 +153,7 @@ fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
     let here = &mut found.as_mut().unwrap().state;
     here.position = Vector3::new(3.0, 4.0, -20.0);
     here.attitude = Quaternion::new(0.8, 0.0, 0.0, 0.6);
-    pilot.decide(&quiet((last + 1) * PERIOD), &Estimate { state: found, jumped_from, ..broken });
+    pilot.decide(&quiet((last + 1) * PERIOD_US), &Estimate { state: found, jumped_from, ..broken });
     assert!((pilot.fence.home() - Vector3::new(3.0, 4.0, -20.0)).norm() < 1e-4, "{}", pilot.fence.home());
     // The reference goes on up on its own; the estimate stands for a vehicle that follows it.
     let mut tick = last + 2;
@@ -164,7 +164,7 @@ fn a_take_off_whose_frame_moves_ends_as_far_up_and_the_fence_goes_along() {
             estimated
         });
         let estimate = Estimate { state, jumped_from: None, ..broken };
-        pilot.decide(&quiet(tick * PERIOD), &estimate);
+        pilot.decide(&quiet(tick * PERIOD_US), &estimate);
         tick += 1;
         assert!(tick < last + 2_000, "still taking off");
     }
@@ -182,7 +182,7 @@ fn a_landing_stays_requested_when_the_pose_is_regained_until_a_hold() {
     let mut tick = last;
     let mut next = |pilot: &mut Pilot, estimate: &Estimate, request| {
         tick += 1;
-        let outcome = pilot.decide(&Inputs { request, ..quiet(tick * PERIOD) }, estimate);
+        let outcome = pilot.decide(&Inputs { request, ..quiet(tick * PERIOD_US) }, estimate);
         outcome.transition.map(|transition| (transition.to, transition.reason))
     };
     assert_eq!(next(&mut pilot, &found, None), None);

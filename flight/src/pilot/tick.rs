@@ -1,13 +1,13 @@
 //! The tick on one page: from what was measured to what the motors do, in the order of the data.
 //!
 //! ```text
-//! increments, poses -> estimate -> seen -------> conditions -> mode -> governor -> law -> allocation -> output
+//! increments, poses -> estimate -> detected ----> conditions -> mode -> governor -> law -> allocation -> output
 //!                        jump -> reference         ^                      ^
 //! request ------------------> answer --------------'                      |
 //! setpoint, or a mission's item ------------------------------------------ '
 //! ```
 
-use super::{Done, Pilot};
+use super::{Pilot, TickOutput};
 use crate::chain::Chain;
 use crate::estimate::Estimate;
 use crate::exchange::{Inputs, Outcome};
@@ -18,7 +18,7 @@ impl<P: Aboard> Pilot<'_, P> {
     /// One tick: what has arrived since the last, in; what the motors do until the next, out.
     pub fn tick(&mut self, inputs: &Inputs) -> Outcome {
         let (armed, airborne, given_up) = (self.mode.is_armed(), self.is_airborne(), self.trust.is_given_up());
-        self.estimation.may_stand(!airborne || self.mode == Mode::Landing && self.watch.has_touched());
+        self.estimation.may_stand(!airborne || self.mode == Mode::Landing && self.detectors.has_touched());
         let estimate = self.estimation.tick(inputs, armed, airborne, given_up);
         self.decide(inputs, &estimate)
     }
@@ -27,24 +27,24 @@ impl<P: Aboard> Pilot<'_, P> {
     pub(super) fn decide(&mut self, inputs: &Inputs, estimate: &Estimate) -> Outcome {
         let now = inputs.now;
         // Estimate.
-        let followed = self.follow(estimate);
-        let seen = self.observe(inputs, estimate);
-        self.judge_poses(estimate, &seen, now);
+        let followed = self.follow_jump(estimate);
+        let detected = self.detect(inputs, estimate);
+        self.judge_poses(estimate, &detected, now);
         // What others want.
         self.keep_setpoint(inputs);
-        self.take_back(inputs);
-        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &seen));
+        self.expire_setpoints_request(inputs);
+        let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &detected));
         let mission = self.fly_mission(inputs, estimate);
         let ready = self.mode.may_arm().then(|| self.may_arm(inputs, estimate).map(|_| ()));
         // The rules.
-        let conditions = self.requested(inputs, estimate, answer, mission);
-        let conditions = self.happened(conditions, inputs, estimate, &seen);
-        let conditions = self.checked(conditions, estimate, followed, ready);
-        let transition = self.transit(conditions, inputs, estimate, &seen);
+        let conditions = self.conditions_from_request(inputs, estimate, answer, mission);
+        let conditions = self.add_flight_conditions(conditions, inputs, estimate, &detected);
+        let conditions = self.add_check_conditions(conditions, estimate, followed, ready);
+        let transition = self.change_mode(conditions, inputs, estimate, &detected);
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
         let had_lost = self.has_lost_a_rotor();
-        let Done { output, flown, handed } = self.output(estimate, seen.touched, now);
+        let TickOutput { output, flown, handover } = self.output(estimate, detected.touched, now);
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
         let streamed = self.stream_check.tick(self.following(), now);
         Outcome {
@@ -58,7 +58,7 @@ impl<P: Aboard> Pilot<'_, P> {
             may_fall: self.fall.may_fall(),
             setpoint,
             setpoints_requested: self.mode == Mode::Flying && !self.mission.is_flown && !self.flies_policy
-                || self.wanted_since.is_some(),
+                || self.setpoints_requested_since.is_some(),
             mission: (self.mission.next, self.flies_mission()),
             mission_step: mission,
             estimated: estimate.state,
@@ -69,7 +69,7 @@ impl<P: Aboard> Pilot<'_, P> {
             lost: if had_lost { None } else { self.chain.as_ref().ok().and_then(Chain::lost) },
             streamed,
             flies_policy: self.flies_policy,
-            handed,
+            handover,
         }
     }
 }

@@ -25,9 +25,9 @@ fn what_stays_behind_its_descent_is_summed_up_to_an_end_either_way() {
     let mut sinking = Sinking::at(-0.2, false);
     let mut behind = |wanted: f32, ticks: u32| (0..ticks).fold(0.0, |_, _| sinking.behind(wanted, 0.01));
     assert!((behind(-0.7, 20) - 0.1).abs() < 1e-6);
-    assert_eq!(behind(-0.7, 1_000), BEHIND);
-    assert!((behind(0.3, 20) - (BEHIND - 0.1)).abs() < 1e-6);
-    assert_eq!(behind(0.3, 1_000), -BEHIND);
+    assert_eq!(behind(-0.7, 1_000), BEHIND_MAX_M);
+    assert!((behind(0.3, 20) - (BEHIND_MAX_M - 0.1)).abs() < 1e-6);
+    assert_eq!(behind(0.3, 1_000), -BEHIND_MAX_M);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 extern crate std;
 use super::*;
-use crate::PERIOD;
+use crate::PERIOD_US;
 use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::Vector3;
@@ -21,7 +21,7 @@ const BOUNDS: ReferenceBounds = ReferenceBounds {
 /// The reports, with their ticks, of a governor that is sent a circle of so many metres at 1.2 rad/s; of none it rests.
 fn reported(radius: impl Fn(u64) -> Option<f32>, ticks: u64) -> Vec<(u64, String)> {
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let period = PERIOD as f32 * 1e-6;
+    let period = PERIOD_US as f32 * 1e-6;
     let governor = Governor::new(&BOUNDS, &GovernorLimits::default(), period, memory).unwrap();
     let mut check = StreamCheck::default();
     let mut reports = Vec::new();
@@ -36,7 +36,7 @@ fn reported(radius: impl Fn(u64) -> Option<f32>, ticks: u64) -> Vec<(u64, String
         };
         governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
         governor.tick();
-        reports.extend(check.tick(governor.following(), tick * PERIOD).map(|said| (tick, said.to_string())));
+        reports.extend(check.tick(governor.following(), tick * PERIOD_US).map(|said| (tick, said.to_string())));
     }
     reports
 }

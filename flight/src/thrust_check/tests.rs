@@ -1,6 +1,6 @@
 extern crate std;
 use super::*;
-use crate::PERIOD;
+use crate::PERIOD_US;
 use crate::chain::{Chain, Memory};
 use crate::hummingbird;
 use controller_core::certificate::certified::Certified;
@@ -14,7 +14,7 @@ use std::vec::Vec;
 /// The ticks at which a share over the ticks is reported.
 fn reported(share: impl Fn(u64) -> Option<f32>, ticks: u64) -> Vec<u64> {
     let mut check = ThrustCheck::default();
-    (0..ticks).filter(|&tick| check.tick(share(tick), tick * PERIOD).is_some()).collect()
+    (0..ticks).filter(|&tick| check.tick(share(tick), tick * PERIOD_US).is_some()).collect()
 }
 
 #[test]
@@ -34,25 +34,25 @@ fn a_share_that_is_right_or_passes_or_is_not_flown_is_not_reported() {
 /// The seconds at which the check reports, and the last share, in 30 s of hover whose rotors deliver `share` of the
 /// commanded thrust, in vertical wind that accelerates the vehicle by `push` of the time, m/s^2.
 fn hover(share: f32, push: impl Fn(f32) -> f32) -> (Vec<u64>, f32) {
-    const GRAVITY: f32 = 9.81;
+    const GRAVITY_M_PER_S2: f32 = 9.81;
     let certified = Certified::new(hummingbird::extended_law()).unwrap();
     let mass = certified.configuration().vehicle().mass;
     let memory = Box::leak(Box::new(Memory::EMPTY));
-    let mut chain = Chain::new(&certified, &GovernorLimits::default(), PERIOD, memory).unwrap();
+    let mut chain = Chain::new(&certified, &GovernorLimits::default(), PERIOD_US, memory).unwrap();
     chain.start(&Vector3::zeros(), &Heading::FORWARD).unwrap();
     chain.rise(1.0).unwrap();
     let (zero, attitude) = (Vector3::zeros(), Quaternion::new(1.0, 0.0, 0.0, 0.0));
     let mut state = State { position: zero, velocity: zero, attitude, angular_velocity: zero };
     let mut check = ThrustCheck::default();
     let mut reports = Vec::new();
-    let period = PERIOD as f32 * 1e-6;
+    let period = PERIOD_US as f32 * 1e-6;
     for tick in 0..3_000_u64 {
         let flown = chain.fly(&state).map(|_| chain.delivered_share());
-        if check.tick(flown.ok(), tick * PERIOD).is_some() {
+        if check.tick(flown.ok(), tick * PERIOD_US).is_some() {
             reports.push(tick / 100);
         }
         let thrust: f32 = chain.thrusts().unwrap().iter().sum();
-        let made = share * thrust / mass + push(tick as f32 * period) - GRAVITY;
+        let made = share * thrust / mass + push(tick as f32 * period) - GRAVITY_M_PER_S2;
         // The ground carries what the rotors do not.
         let acceleration = if state.position.z > 0.0 { made } else { made.max(0.0) };
         state.velocity.z += period * acceleration;

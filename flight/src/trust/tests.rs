@@ -1,11 +1,11 @@
 use super::*;
 
-const TICK: u64 = 10_000;
+const TICK_US: u64 = 10_000;
 
 /// The same verdict on poses for some seconds.
 fn judge(trust: &mut Trust, now: &mut u64, pose: Result<Taken, Rejected>, seconds: f32) {
     for _ in 0..(seconds * 100.0) as u32 {
-        *now += TICK;
+        *now += TICK_US;
         trust.judge(Some(pose), true, *now);
     }
 }
@@ -72,6 +72,6 @@ fn what_is_refused_for_its_time_or_its_quality_is_no_lie() {
 #[test]
 fn poses_that_imply_an_implausible_gyro_bias_are_given_up() {
     let mut trust = Trust::default();
-    (1..=310).for_each(|tick| trust.judge(Some(Ok(Taken::Fused)), false, tick * TICK));
+    (1..=310).for_each(|tick| trust.judge(Some(Ok(Taken::Fused)), false, tick * TICK_US));
     assert!(trust.is_given_up());
 }

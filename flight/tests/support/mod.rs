@@ -28,8 +28,8 @@ pub use hummingbird::{certified, paper_law as configuration, rotors};
 use nalgebra::UnitQuaternion;
 use std::sync::LazyLock;
 
-/// The time between ticks, us.
-pub const PERIOD: u64 = 10_000;
+/// The time between ticks.
+pub const PERIOD_US: u64 = 10_000;
 
 /// Memory for one pilot.
 pub fn memory() -> &'static mut Memory {
@@ -44,7 +44,7 @@ pub fn estimator() -> &'static mut Estimator {
 /// A new pilot; certified once for all, since that takes longer than most flights here.
 pub fn pilot() -> Pilot<'static> {
     static CERTIFIED: LazyLock<Certified> = LazyLock::new(certified);
-    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator(), memory())
+    Pilot::new(Ok(&CERTIFIED), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD_US, estimator(), memory())
 }
 
 /// A pose as sources give it, at rest.
@@ -130,7 +130,7 @@ pub fn resting_imu(start: u64, end: u64, attitude: &Quaternion<f32>) -> Incremen
 
 /// Everything as it should be for a vehicle at rest at the origin with `attitude`, after a period.
 pub fn at_rest_with(attitude: &Quaternion<f32>, now: u64) -> Handed {
-    let halves = [(now - PERIOD, now - PERIOD / 2), (now - PERIOD / 2, now)];
+    let halves = [(now - PERIOD_US, now - PERIOD_US / 2), (now - PERIOD_US / 2, now)];
     Handed {
         now,
         increments: halves.iter().map(|&(start, end)| resting_imu(start, end, attitude)).collect(),
@@ -149,20 +149,20 @@ pub fn at_rest(now: u64) -> Handed {
 /// A pilot that has been at rest for as long as arming needs, up to `now`.
 pub fn settled(now: u64) -> Pilot<'static> {
     let mut pilot = pilot();
-    for tick in (0..SETTLING).rev() {
-        at_rest(now - tick * PERIOD).to(&mut pilot);
+    for tick in (0..SETTLING_TICKS).rev() {
+        at_rest(now - tick * PERIOD_US).to(&mut pilot);
     }
     pilot
 }
 
-/// Where flights start, m.
-pub const GROUND: f64 = 0.9;
+/// Where flights start.
+pub const GROUND_HEIGHT_M: f64 = 0.9;
 
 /// Ticks from idling to the law's thrusts.
-pub const SPOOLING: u64 = 100;
+pub const SPOOLING_TICKS: u64 = 100;
 
 /// Ticks after which a vehicle at rest may be armed: half a second for the estimate to begin, and a second.
-pub const SETTLING: u64 = 160;
+pub const SETTLING_TICKS: u64 = 160;
 
 pub fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
     Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
@@ -214,7 +214,7 @@ pub struct Flight<P = NoPolicy> {
 impl Flight {
     /// A disarmed vehicle at rest, level, on ground that is 0.9 m up, heading along x.
     pub fn new() -> Self {
-        Self::of(pilot(), certified())
+        Self::with_pilot(pilot(), certified())
     }
 
     /// The same after two seconds: as long as the estimate takes to begin and to prove itself.
@@ -238,12 +238,12 @@ impl<P: Aboard> Flight<P> {
     pub fn carrying(policy: P) -> Self {
         let certified = Certified::new(hummingbird::extended_law()).unwrap();
         let (limits, settings) = (GovernorLimits::default(), FlightSettings::DEFAULT);
-        let pilot = Pilot::carrying(Ok(&certified), &limits, &settings, PERIOD, estimator(), memory(), policy);
-        Self::of(pilot, certified)
+        let pilot = Pilot::carrying(Ok(&certified), &limits, &settings, PERIOD_US, estimator(), memory(), policy);
+        Self::with_pilot(pilot, certified)
     }
 
-    fn of(pilot: Pilot<'static, P>, certified: Certified) -> Self {
-        let body = Body::resting(Vector3::new(0.0, 0.0, GROUND), Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    fn with_pilot(pilot: Pilot<'static, P>, certified: Certified) -> Self {
+        let body = Body::resting(Vector3::new(0.0, 0.0, GROUND_HEIGHT_M), Quaternion::new(1.0, 0.0, 0.0, 0.0));
         let inputs = Handed { now: 1_000_000, ..Handed::default() };
         Self {
             pilot,
@@ -253,7 +253,7 @@ impl<P: Aboard> Flight<P> {
             source: Box::new(|body, time| displaced(body, time, &Vector3::zeros(), &Vector3::zeros())),
             imu: Box::new(|_| {}),
             gyro_bias: Vector3::zeros(),
-            ground: GROUND,
+            ground: GROUND_HEIGHT_M,
             weightless: false,
             mission: Vec::new(),
             mixer: Mixer::new(&rotors()),
@@ -279,7 +279,7 @@ impl<P: Aboard> Flight<P> {
         self.inputs.request = Some(Request::FlySetpoints);
         self.inputs.setpoint = Some(go_to(0.0, 0.0, 1.0));
         self.until(Reason::SetpointsCommanded, 1);
-        self.ticks(SPOOLING + 1_000);
+        self.ticks(SPOOLING_TICKS + 1_000);
         self.ground = f64::NEG_INFINITY;
         self
     }
@@ -306,7 +306,7 @@ impl<P: Aboard> Flight<P> {
         let item = self.pilot.mission_item(self.inputs.request.as_ref());
         self.inputs.mission_item = item.and_then(|item| self.mission.get(usize::from(item)).copied());
         let outcome = self.inputs.to(&mut self.pilot);
-        self.inputs = Handed { now: now + PERIOD, ..Handed::default() };
+        self.inputs = Handed { now: now + PERIOD_US, ..Handed::default() };
 
         let wrench = match &outcome.output {
             Output::Thrusts(thrusts) => self.mixer.wrench(thrusts),
@@ -322,8 +322,8 @@ impl<P: Aboard> Flight<P> {
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
             assert!(torque.x <= most.x && torque.y <= most.y && torque.z <= most.z);
         }
-        for start in [now, now + PERIOD / 2] {
-            let increment = self.move_on(&wrench, start, start + PERIOD / 2);
+        for start in [now, now + PERIOD_US / 2] {
+            let increment = self.move_on(&wrench, start, start + PERIOD_US / 2);
             self.increments.push(increment);
         }
         outcome

@@ -4,7 +4,7 @@ use super::flight::Flight;
 use super::station::Station;
 use firmware::hardware::MotorCommand;
 use flight::Mode;
-use flight::rules::COASTING_MAX;
+use flight::rules::COASTING_MAX_US;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, Message};
 use rand::rngs::ChaCha8Rng;
@@ -79,7 +79,7 @@ fn a_frame_that_arrives_in_two_halves_long_apart_is_no_fresh_pose() {
         flight.station.send_bytes(end);
     }
     let lost = flight.station.received("Pose lost").unwrap();
-    assert!(lost - last <= 2 * COASTING_MAX + 20_000, "{}", lost - last);
+    assert!(lost - last <= 2 * COASTING_MAX_US + 20_000, "{}", lost - last);
     assert!(flight.station.received("Landed: disarmed").is_some(), "{:?}", flight.station.texts());
     assert!(!flight.report().mode.is_armed());
 }
@@ -210,7 +210,7 @@ fn whatever_comes_in_no_stale_pose_is_flown() {
         levelled += u32::from(report.mode == Mode::Descending);
         if report.mode.is_guided() {
             assert!(
-                flight.now() - last <= COASTING_MAX + 10_000,
+                flight.now() - last <= COASTING_MAX_US + 10_000,
                 "{:?} on a pose of {} us",
                 report.mode,
                 flight.now() - last

@@ -6,7 +6,7 @@ use super::Receiver;
 use crate::link::frame::Frame;
 use crate::shared::{Event, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use flight::{SETPOINT_AGE_MAX, Stamped};
+use flight::{SETPOINT_AGE_MAX_US, Stamped};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     GPS_INPUT_DATA, MANUAL_CONTROL_DATA, MISSION_WRITE_PARTIAL_LIST_DATA, RC_CHANNELS_OVERRIDE_DATA,
@@ -55,7 +55,7 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// The setpoints that come at `now`, us, and cannot be flown.
     pub(super) fn unflown(&self, now: u64) -> Option<&'static str> {
-        let recent = self.foreign.setpoint.filter(|setpoint| setpoint.age(now) <= SETPOINT_AGE_MAX);
+        let recent = self.foreign.setpoint.filter(|setpoint| setpoint.age(now) <= SETPOINT_AGE_MAX_US);
         recent.map(|setpoint| setpoint.value)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::setpoint_clock::SetpointClock;
 use controller_core::governor::Setpoint;
-use flight::{SETPOINT_AGE_MAX, Stamped};
+use flight::{SETPOINT_AGE_MAX_US, Stamped};
 
 /// Senders that are known at a time.
 const SENDERS: usize = 4;
@@ -45,5 +45,5 @@ impl Senders {
 
 /// Whether a sender's setpoints count at `now`, us.
 pub(super) fn counts(sender: &Stamped<Sender>, now: u64) -> bool {
-    sender.value != NO_SENDER.value && sender.age(now) <= SETPOINT_AGE_MAX
+    sender.value != NO_SENDER.value && sender.age(now) <= SETPOINT_AGE_MAX_US
 }

@@ -1,7 +1,7 @@
 //! Setpoints in, and whose are flown: those of the sender that requested OFFBOARD; before such a request, those of the
 //! first sender.
 //!
-//! A sender counts while its newest setpoint that can be flown is not older than [`SETPOINT_AGE_MAX`]. The sender of an
+//! A sender counts while its newest setpoint that can be flown is not older than [`SETPOINT_AGE_MAX_US`]. The sender of an
 //! OFFBOARD command has its own setpoints flown once control grants it. If it sends none, another component of its
 //! system may send them, as the only sender; otherwise the command is denied.
 
@@ -12,7 +12,7 @@ use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
 use crate::radio::SILENCE as RADIO_SILENCE;
 use controller_core::governor::Setpoint;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use flight::{SETPOINT_AGE_MAX, Stamped};
+use flight::{SETPOINT_AGE_MAX_US, Stamped};
 use mavlink::dialects::common::SET_POSITION_TARGET_LOCAL_NED_DATA;
 
 impl<M: RawMutex> Receiver<'_, M> {
@@ -61,7 +61,8 @@ impl<M: RawMutex> Receiver<'_, M> {
         let sticks = self.shared.sticks().get();
         if sticks.is_some_and(|sticks| sticks.value && sticks.age(now) > RADIO_SILENCE) {
             self.shared.sticks().put(false, now);
-            let is_fresh = |kept: &(Sender, Stamped<Setpoint>)| kept.0 == sender && kept.1.age(now) <= SETPOINT_AGE_MAX;
+            let is_fresh =
+                |kept: &(Sender, Stamped<Setpoint>)| kept.0 == sender && kept.1.age(now) <= SETPOINT_AGE_MAX_US;
             if let Some((_, kept)) = self.setpoints.kept.take().filter(is_fresh) {
                 self.shared.setpoint().put(kept.value, kept.time);
             }

@@ -5,10 +5,10 @@ use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::reference::Reference;
 use std::vec::Vec;
 
-/// The greatest acceleration across, m/s^2, and jerk, m/s^3, of the tests' vehicle's references; and the speed, m/s, of
-/// one that rests.
-const GREATEST: (f32, f32) = (2.4675, 3.876);
-const STILL: f32 = 1e-3;
+/// The limits of the references of the vehicle of the tests, horizontal; and the speed of one that rests.
+const ACCELERATION_MAX_M_PER_S2: f32 = 2.4675;
+const JERK_MAX_M_PER_S3: f32 = 3.876;
+const REST_SPEED_M_PER_S: f32 = 1e-3;
 
 /// A chain that flies, with its rotors brought up.
 fn flying() -> Chain<'static> {
@@ -24,7 +24,7 @@ fn moving(velocity: Vector3<f32>) -> State {
 /// The references from now on, until they rest.
 fn references(chain: &mut Chain, state: &State) -> Vec<Reference> {
     let mut flown = Vec::new();
-    while flown.last().is_none_or(|last: &Reference| last.velocity.norm() > STILL) {
+    while flown.last().is_none_or(|last: &Reference| last.velocity.norm() > REST_SPEED_M_PER_S) {
         flown.push(chain.fly(state).unwrap().reference);
         assert!(flown.len() < 1_000, "{:?}", flown.last());
     }
@@ -50,7 +50,7 @@ fn a_hold_begins_where_and_as_fast_as_the_vehicle_is_and_ends_where_braking_take
     assert!((first.position - state.position).norm() < 0.06, "{}", first.position);
     assert!((first.velocity - state.velocity).norm() < 0.01, "{}", first.velocity);
     // v^2 / (2 a) + v a / (2 J): 5.33 and 1.51 m across from 5 m/s, 0.125 and 0.05 m up from 1 m/s.
-    let (acceleration, jerk) = (0.95 * GREATEST.0, 0.95 * GREATEST.1);
+    let (acceleration, jerk) = (0.95 * ACCELERATION_MAX_M_PER_S2, 0.95 * JERK_MAX_M_PER_S3);
     let time = 5.0 / acceleration + acceleration / jerk;
     let way = Vector3::new(3.0, -4.0, 0.0) * (0.5 * time) + Vector3::z() * 0.175;
     assert!((last.position - state.position - way).norm() < 0.001, "{}", last.position - state.position);
@@ -66,11 +66,14 @@ fn a_reference_that_brakes_stays_within_the_bounds_also_while_the_governor_sets_
     chain.accept(&Setpoint { motion: back, turn: Turn::Keep }, 0.0).unwrap();
     let flown: Vec<_> = (0..300).map(|_| chain.fly(&state).unwrap().reference).collect();
     for Reference { acceleration, jerk, snap, .. } in &flown {
-        assert!(acceleration.xy().norm() < GREATEST.0 && acceleration.z.abs() < 0.1755, "{acceleration}");
-        assert!(jerk.norm() < GREATEST.1 && snap.norm() < 6.089, "{jerk} {snap}");
+        assert!(
+            acceleration.xy().norm() < ACCELERATION_MAX_M_PER_S2 && acceleration.z.abs() < 0.1755,
+            "{acceleration}"
+        );
+        assert!(jerk.norm() < JERK_MAX_M_PER_S3 && snap.norm() < 6.089, "{jerk} {snap}");
     }
     let most = flown.iter().map(|reference| -reference.acceleration.x).fold(0.0, f32::max);
-    assert!(most > 0.94 * GREATEST.0, "{most}");
+    assert!(most > 0.94 * ACCELERATION_MAX_M_PER_S2, "{most}");
 }
 
 #[test]

@@ -2,9 +2,9 @@
 //! missing.
 
 extern crate std;
-use super::look::{HELD_UP_ACCELERATIONS, Look};
+use super::snapshot::{COMMANDED_WITHOUT_IMPACT_MAX_M_PER_S2, Snapshot};
 use super::*;
-use crate::PERIOD;
+use crate::PERIOD_US;
 use crate::chain::Memory;
 use crate::hummingbird;
 use controller_core::certificate::certified::Certified;
@@ -14,8 +14,8 @@ use controller_core::state::State;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::boxed::Box;
 
-/// The greatest distance from the reference that is in order, m.
-const FAR: f32 = 3.0;
+/// The greatest distance from the reference that is in order.
+const TRACKING_ERROR_MAX_M: f32 = 3.0;
 
 /// A chain of the paper's law whose reference rests at the origin.
 fn chain() -> Chain<'static> {
@@ -23,7 +23,7 @@ fn chain() -> Chain<'static> {
 }
 
 fn chain_of(certified: &Certified) -> Chain<'static> {
-    chain_at(certified, PERIOD)
+    chain_at(certified, PERIOD_US)
 }
 
 /// The same in ticks of `period` us.
@@ -53,29 +53,29 @@ fn leaning(degrees: f32) -> EstimatedState {
 }
 
 /// What is seen in the last of so many ticks, of a vehicle that is in this state however it is flown.
-fn seen(mode: Mode, chain: &mut Chain, estimated: &EstimatedState, ticks: u64) -> Seen {
-    let mut watch = Watch::new(PERIOD);
-    let mut seen = Seen::default();
+fn seen(mode: Mode, chain: &mut Chain, estimated: &EstimatedState, ticks: u64) -> Detected {
+    let mut watch = Detectors::new(PERIOD_US);
+    let mut seen = Detected::default();
     for tick in 1..=ticks {
         if mode == Mode::Landing {
-            chain.come_down(0.5, true);
+            chain.descend(0.5, true);
         }
         let _ = if mode == Mode::Descending { chain.fly_level(estimated, true) } else { chain.fly(&estimated.state) };
-        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
-        seen = watch.tick(mode, Some(estimated), Some(chain), FAR, &inputs);
+        let inputs = Inputs { now: tick * PERIOD_US, ..Inputs::default() };
+        seen = watch.tick(mode, Some(estimated), Some(chain), TRACKING_ERROR_MAX_M, &inputs);
     }
     seen
 }
 
 /// Ticks in which something that takes so long, us, is so.
 fn ticks(duration: u64) -> u64 {
-    duration / PERIOD + 2
+    duration / PERIOD_US + 2
 }
 
 #[test]
 fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
     let lost = |mode, estimated: &EstimatedState| {
-        let seen = seen(mode, &mut chain(), estimated, ticks(TRACKING_DEBOUNCE));
+        let seen = seen(mode, &mut chain(), estimated, ticks(TRACKING_DEBOUNCE_US));
         seen.tracking_lost
     };
     let moving = |height: f32| {
@@ -93,42 +93,44 @@ fn tracking_is_lost_far_off_and_by_what_stands_half_a_metre_below() {
 fn at_any_rate_a_detector_takes_as_long() {
     let certified = hummingbird::certified();
     for period in [1_000, 2_000, 4_000, 10_000, 20_000] {
-        let first = |estimated: &EstimatedState, is_seen: fn(&Seen) -> bool| {
-            let (mut chain, mut watch) = (chain_at(&certified, period), Watch::new(period));
+        let first = |estimated: &EstimatedState, is_seen: fn(&Detected) -> bool| {
+            let (mut chain, mut watch) = (chain_at(&certified, period), Detectors::new(period));
             (1..).map(|tick| tick * period).find(|&now| {
                 let _ = chain.fly(&estimated.state);
                 let inputs = Inputs { now, ..Inputs::default() };
-                is_seen(&watch.tick(Mode::Holding, Some(estimated), Some(&chain), FAR, &inputs))
+                is_seen(&watch.tick(Mode::Holding, Some(estimated), Some(&chain), TRACKING_ERROR_MAX_M, &inputs))
             })
         };
         // From the first tick on.
-        assert_eq!(first(&at(3.01), |seen| seen.tracking_lost), Some(period + TRACKING_DEBOUNCE));
-        assert_eq!(first(&leaning(31.0), |seen| seen.crashed), Some(period + GROUND_DEBOUNCE));
+        assert_eq!(first(&at(3.01), |seen| seen.tracking_lost), Some(period + TRACKING_DEBOUNCE_US));
+        assert_eq!(first(&leaning(31.0), |seen| seen.crashed), Some(period + GROUND_DEBOUNCE_US));
     }
 }
 
 #[test]
 fn a_frame_that_moves_just_after_a_crash_is_not_believed_and_without_one_it_is() {
     let thrown = |mode, struck: f32, later: u64| {
-        let (mut chain, mut watch) = (chain(), Watch::new(PERIOD));
+        let (mut chain, mut watch) = (chain(), Detectors::new(PERIOD_US));
         let hit = EstimatedState { acceleration: Vector3::new(0.0, 0.0, struck), ..at(0.0) };
         let moved = EstimatedState { jumps: 1, ..at(0.0) };
         let mut look = |estimated: &EstimatedState, now: u64| {
             let _ = chain.fly(&estimated.state);
-            watch.tick(mode, Some(estimated), Some(&chain), FAR, &Inputs { now, ..Inputs::default() }).tracking_lost
+            watch
+                .tick(mode, Some(estimated), Some(&chain), TRACKING_ERROR_MAX_M, &Inputs { now, ..Inputs::default() })
+                .tracking_lost
         };
-        assert!(!look(&at(0.0), PERIOD) && !look(&hit, 2 * PERIOD));
-        look(&moved, 2 * PERIOD + later)
+        assert!(!look(&at(0.0), PERIOD_US) && !look(&hit, 2 * PERIOD_US));
+        look(&moved, 2 * PERIOD_US + later)
     };
-    assert!(thrown(Mode::Holding, 26.0, STRUCK_DEBOUNCE - 1) && !thrown(Mode::Holding, 26.0, STRUCK_DEBOUNCE));
-    assert!(thrown(Mode::Flying, -70.0, PERIOD) && !thrown(Mode::Holding, 24.0, PERIOD));
-    assert!(!thrown(Mode::Descending, 26.0, PERIOD));
+    assert!(thrown(Mode::Holding, 26.0, STRUCK_MEMORY_US - 1) && !thrown(Mode::Holding, 26.0, STRUCK_MEMORY_US));
+    assert!(thrown(Mode::Flying, -70.0, PERIOD_US) && !thrown(Mode::Holding, 24.0, PERIOD_US));
+    assert!(!thrown(Mode::Descending, 26.0, PERIOD_US));
 }
 
 #[test]
 fn a_vehicle_that_lies_still_has_crashed_and_one_that_turns_has_not() {
     let crashed = |mode, estimated: &EstimatedState| {
-        let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_DEBOUNCE));
+        let seen = seen(mode, &mut chain(), estimated, ticks(GROUND_DEBOUNCE_US));
         seen.crashed
     };
     // Beside where the law wants it, which is level.
@@ -148,9 +150,9 @@ fn a_vehicle_that_the_law_tilts_has_not_crashed() {
     held.state.position.y = 100.0;
     let mut chain = chain_of(&Certified::new(hummingbird::extended_law()).unwrap());
     (0..200).for_each(|_| _ = chain.fly(&held.state));
-    assert!(!seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE)).crashed);
+    assert!(!seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE_US)).crashed);
     held.state.attitude = leaning(81.0).state.attitude;
-    assert!(seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE)).crashed);
+    assert!(seen(Mode::Holding, &mut chain, &held, ticks(GROUND_DEBOUNCE_US)).crashed);
 }
 
 #[test]
@@ -190,9 +192,9 @@ fn by_the_imu_alone_what_should_fall_and_rests_has_landed() {
         let mut estimated = at(0.0);
         let mut chain = descending(&estimated);
         let commanded = chain.commanded_acceleration(chain.flown().unwrap());
-        assert!(commanded < HELD_UP_ACCELERATIONS.1, "{commanded} m/s^2");
+        assert!(commanded < COMMANDED_WITHOUT_IMPACT_MAX_M_PER_S2, "{commanded} m/s^2");
         change(&mut estimated);
-        seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE)).landed
+        seen(Mode::Descending, &mut chain, &estimated, ticks(GROUND_DEBOUNCE_US)).landed
     };
     assert!(landed(|_| ()));
     assert!(landed(|estimated| estimated.acceleration.z = -0.39));
@@ -210,16 +212,16 @@ fn is_landed_after_lies(speed: f32, drag: Option<f32>, jerk: f32, seconds: u64) 
     let mut chain = chain_of(&Certified::new(hummingbird::extended_law()).unwrap());
     (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
     chain.level(Some(speed), true);
-    let (mut watch, mut estimated, mut sinks) = (Watch::new(PERIOD), at(0.0), speed);
-    let period = PERIOD as f32 * 1e-6;
-    (1..=seconds * 1_000_000 / PERIOD).any(|tick| {
+    let (mut watch, mut estimated, mut sinks) = (Detectors::new(PERIOD_US), at(0.0), speed);
+    let period = PERIOD_US as f32 * 1e-6;
+    (1..=seconds * 1_000_000 / PERIOD_US).any(|tick| {
         let flown = chain.fly_level(&estimated, true).unwrap();
         let acceleration = drag.map_or(0.0, |drag| chain.commanded_acceleration(&flown) - drag * sinks);
         sinks += acceleration * period;
         estimated.gained += acceleration * period;
         estimated.acceleration.z = acceleration + if tick == 1 { jerk } else { 0.0 };
-        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
-        watch.tick(Mode::Descending, Some(&estimated), Some(&chain), FAR, &inputs).landed
+        let inputs = Inputs { now: tick * PERIOD_US, ..Inputs::default() };
+        watch.tick(Mode::Descending, Some(&estimated), Some(&chain), TRACKING_ERROR_MAX_M, &inputs).landed
     })
 }
 
@@ -248,11 +250,11 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         let mut chain = chain();
         (0..100).for_each(|_| _ = chain.fly(&at(1.0).state));
         chain.level(Some(0.0), false);
-        let (mut watch, mut now) = (Watch::new(PERIOD), 0);
+        let (mut watch, mut now) = (Detectors::new(PERIOD_US), 0);
         let mut tick = |chain: &mut Chain, estimated: &EstimatedState, mode: Mode, descends: bool| {
-            now += PERIOD;
+            now += PERIOD_US;
             chain.fly_level(estimated, descends).unwrap();
-            watch.tick(mode, Some(estimated), Some(chain), FAR, &Inputs { now, ..Inputs::default() })
+            watch.tick(mode, Some(estimated), Some(chain), TRACKING_ERROR_MAX_M, &Inputs { now, ..Inputs::default() })
         };
         estimated.acceleration.z = jerk;
         tick(&mut chain, &estimated, Mode::Descending, descends);
@@ -262,7 +264,7 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
         for _ in 0..3_000 {
             let seen = tick(&mut chain, &estimated, Mode::Descending, true);
             let commanded = chain.commanded_acceleration(chain.flown().unwrap());
-            if commanded < HELD_UP_ACCELERATIONS.1 {
+            if commanded < COMMANDED_WITHOUT_IMPACT_MAX_M_PER_S2 {
                 return false;
             }
             if seen.landed {
@@ -279,40 +281,42 @@ fn after_a_jerk_it_takes_less_to_have_landed_and_only_while_it_sinks() {
 #[test]
 fn a_jerk_that_was_no_landing_is_forgotten_before_the_poses_are_given_up() {
     let touched = |later: u64| {
-        let (mut chain, mut watch, mut now) = (chain(), Watch::new(PERIOD), 0);
+        let (mut chain, mut watch, mut now) = (chain(), Detectors::new(PERIOD_US), 0);
         let mut tick = |mode: Mode, acceleration: f32| {
-            now += PERIOD;
+            now += PERIOD_US;
             let mut estimated = at(1.0);
             estimated.acceleration.z = acceleration;
-            chain.come_down(0.5, true);
+            chain.descend(0.5, true);
             chain.fly(&estimated.state).unwrap();
-            watch.tick(mode, Some(&estimated), Some(&chain), FAR, &Inputs { now, ..Inputs::default() }).touched
+            watch
+                .tick(mode, Some(&estimated), Some(&chain), TRACKING_ERROR_MAX_M, &Inputs { now, ..Inputs::default() })
+                .touched
         };
         (0..200).for_each(|_| assert!(!tick(Mode::Landing, 0.0)));
         assert!(tick(Mode::Landing, 20.0));
-        (1..later / PERIOD).for_each(|_| _ = tick(Mode::Landing, 0.0));
+        (1..later / PERIOD_US).for_each(|_| _ = tick(Mode::Landing, 0.0));
         tick(Mode::Descending, 0.0)
     };
-    assert!(touched(TOUCHED_DEBOUNCE) && !touched(TOUCHED_DEBOUNCE + PERIOD));
+    assert!(touched(IMPACT_MEMORY_US) && !touched(IMPACT_MEMORY_US + PERIOD_US));
 }
 
 /// What is seen in the last of so many ticks on the ground, at a speed of NaN, after an upward acceleration.
-fn seen_after(jerk: f32, ticks: u64) -> Seen {
+fn seen_after(jerk: f32, ticks: u64) -> Detected {
     let mut chain = descending(&at(0.0));
-    let (mut watch, mut last, mut estimated) = (Watch::new(PERIOD), Seen::default(), at(0.0));
+    let (mut watch, mut last, mut estimated) = (Detectors::new(PERIOD_US), Detected::default(), at(0.0));
     for tick in 1..=ticks {
         estimated.acceleration.z = if tick == 1 { jerk } else { 0.0 };
         estimated.gained = if tick == 1 { 0.0 } else { -0.55 };
         chain.fly_level(&estimated, true).unwrap();
-        let inputs = Inputs { now: tick * PERIOD, ..Inputs::default() };
-        last = watch.tick(Mode::Descending, Some(&estimated), Some(&chain), FAR, &inputs);
+        let inputs = Inputs { now: tick * PERIOD_US, ..Inputs::default() };
+        last = watch.tick(Mode::Descending, Some(&estimated), Some(&chain), TRACKING_ERROR_MAX_M, &inputs);
     }
     last
 }
 
 #[test]
 fn after_a_hit_a_speed_that_is_none_keeps_it_from_nothing() {
-    let long = ticks(GROUND_DEBOUNCE) + 60;
+    let long = ticks(GROUND_DEBOUNCE_US) + 60;
     assert!(!seen_after(1.0, long).landed && seen_after(15.0, long).landed);
     assert!(!seen_after(15.0, long).imu_doubtful);
 }
@@ -328,7 +332,8 @@ fn friction_on_ground_that_was_touched_is_expected_and_more_than_that_is_not() {
     assert!((4.5..6.0).contains(&carried), "{carried} m/s^2");
     let mut is_unexpected = |across: f32, upwards: f32, touched: bool| {
         estimated.acceleration = Vector3::new(0.6 * across, -0.8 * across, upwards);
-        let look = Look { mode: Mode::Descending, state: Some(&estimated), chain: Some(&chain), flown: Some(&flown) };
+        let look =
+            Snapshot { mode: Mode::Descending, state: Some(&estimated), chain: Some(&chain), flown: Some(&flown) };
         look.is_unexpected(touched)
     };
     assert!(!is_unexpected(0.6 * carried, 0.0, true) && !is_unexpected(0.0, 0.0, true));
@@ -339,14 +344,14 @@ fn friction_on_ground_that_was_touched_is_expected_and_more_than_that_is_not() {
 
 #[test]
 fn a_low_battery_is_reported_until_it_is_acted_on() {
-    let mut watch = Watch::new(PERIOD);
-    let look = |watch: &mut Watch, now: u64| {
+    let mut watch = Detectors::new(PERIOD_US);
+    let look = |watch: &mut Detectors, now: u64| {
         let inputs = Inputs { now, battery: Battery::Low, ..Inputs::default() };
-        watch.tick(Mode::Holding, None, None, FAR, &inputs).battery_low
+        watch.tick(Mode::Holding, None, None, TRACKING_ERROR_MAX_M, &inputs).battery_low
     };
-    assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_DEBOUNCE));
-    assert!(look(&mut watch, BATTERY_DEBOUNCE));
+    assert!(!look(&mut watch, 0) && look(&mut watch, BATTERY_DEBOUNCE_US));
+    assert!(look(&mut watch, BATTERY_DEBOUNCE_US));
     watch.latch_low();
-    assert!(!look(&mut watch, BATTERY_DEBOUNCE + PERIOD));
-    assert!(!look(&mut watch, 9 * BATTERY_DEBOUNCE));
+    assert!(!look(&mut watch, BATTERY_DEBOUNCE_US + PERIOD_US));
+    assert!(!look(&mut watch, 9 * BATTERY_DEBOUNCE_US));
 }
