@@ -115,6 +115,7 @@ fn every_link_between_pages_leads_to_a_file() {
 
 #[test]
 fn the_walk_answers_fifteen_questions_with_names_that_are_in_their_files() {
+    assert!(read("README.md").contains("(docs/README.md#newcomers-walk)"), "more than two hops");
     let page = read("docs/README.md");
     let (_, walk) = page.split_once("\n## Newcomer's walk\n").unwrap();
     let (questions, additions) = walk.split_once("\n### How do I add\n").unwrap();
