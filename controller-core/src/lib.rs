@@ -17,7 +17,7 @@
 //! let airframe = Airframe {
 //!     vehicle: &vehicle, limits: &rotors.limits(&vehicle)?, rotors: Some(&rotors), actuators, period: 0.01, drag: 0.0,
 //! };
-//! let certified = Certified::new(Configuration::of_airframe(&airframe)?).expect("its limits hold");
+//! let certified = Certified::new(Configuration::from_airframe(&airframe)?).expect("its limits hold");
 //! let (mut law, mixer) = (Law::new(&certified, 0.01)?, Mixer::new(&rotors));
 //! let hover = Hover::new(Vector3::new(0.0, 0.0, 2.0), Heading::FORWARD)?;
 //!

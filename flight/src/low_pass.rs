@@ -60,7 +60,7 @@ impl LowPass {
             |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * self.share);
         let velocity = averaged(state.velocity, last.map(|last| last.velocity));
         let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
-        let counted = acceleration.map(|a| math::between(a, -COUNTED, COUNTED));
+        let counted = acceleration.map(|a| math::clamp(a, -COUNTED, COUNTED));
         let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
         let smoothed =

@@ -63,7 +63,7 @@ impl Sinking {
     /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at
     /// `wanted`, m/s.
     pub fn behind(&mut self, wanted: f32, period: f32) -> f32 {
-        self.behind = math::between(self.behind + (self.speed - wanted) * period, -BEHIND, BEHIND);
+        self.behind = math::clamp(self.behind + (self.speed - wanted) * period, -BEHIND, BEHIND);
         self.behind
     }
 
