@@ -95,7 +95,7 @@ impl AngularMotion {
 
 /// How the thrust direction turns, axes of the desired frame without heading's turn: rho' and rho'' across rho.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct DirectionMotion {
     /// p, rad/s.
     pub rate: Vector2<f32>,
     /// q, rad/s^2.
@@ -188,19 +188,23 @@ impl DesiredAttitude {
         command_acceleration: &Vector3<f32>,
         heading: &Heading,
     ) -> AngularMotion {
-        let turn = self.turn(command_rate, command_acceleration);
-        self.motion_of(&turn.rate, &turn.acceleration, heading)
+        let turn = self.direction_motion(command_rate, command_acceleration);
+        self.motion_of_direction(&turn.rate, &turn.acceleration, heading)
     }
 
     /// How rho turns where the command moves by u' and u''.
     #[inline(always)]
     #[must_use]
-    pub fn turn(&self, command_rate: &Vector3<f32>, command_acceleration: &Vector3<f32>) -> Turn {
+    pub fn direction_motion(
+        &self,
+        command_rate: &Vector3<f32>,
+        command_acceleration: &Vector3<f32>,
+    ) -> DirectionMotion {
         let rate = self.turned_back(command_rate);
         let acceleration = self.turned_back(command_acceleration);
         let double_magnitude_rate = rate.z + rate.z;
         let p = rate.xy() * self.inverse_magnitude;
-        Turn {
+        DirectionMotion {
             rate: p,
             acceleration: (acceleration.xy() - p * double_magnitude_rate) * self.inverse_magnitude,
             magnitude: self.magnitude,
@@ -219,7 +223,12 @@ impl DesiredAttitude {
     /// omega_d and omega_d' where rho turns by p = `rate` and q = `acceleration`; `heading` as before.
     #[inline(always)]
     #[must_use]
-    pub fn motion_of(&self, rate: &Vector2<f32>, acceleration: &Vector2<f32>, heading: &Heading) -> AngularMotion {
+    pub fn motion_of_direction(
+        &self,
+        rate: &Vector2<f32>,
+        acceleration: &Vector2<f32>,
+        heading: &Heading,
+    ) -> AngularMotion {
         let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
         let (yaw_rate, yaw_acceleration) = (heading.rate(), heading.acceleration());
         let x = -rate.y;

@@ -97,7 +97,7 @@ impl<R: Real> Certificate<R> {
         match self {
             Self::Paper(certificate) => {
                 let demand = &certificate.rotors.get(rotor)?.demand;
-                Some(Interval { least: demand.least, greatest: demand.greatest })
+                Some(Interval { least: demand.min, max: demand.max })
             }
             Self::Extended(certificate) => certificate.bounds.rotors.get(rotor).copied(),
         }

@@ -57,7 +57,7 @@ impl Configuration {
         gains: Gains,
         bounds: ReferenceBounds,
     ) -> Result<Self, ParameterError> {
-        Self::of(vehicle, limits, LawParameters::Paper(PaperLaw { gains, thrust_floor: None }), bounds)
+        Self::build(vehicle, limits, LawParameters::Paper(PaperLaw { gains, thrust_floor: None }), bounds)
     }
 
     /// The extended law for `vehicle`, to fly references within `bounds`.
@@ -70,10 +70,10 @@ impl Configuration {
         law: ExtendedLaw,
         bounds: ReferenceBounds,
     ) -> Result<Self, ParameterError> {
-        Self::of(vehicle, limits, LawParameters::Extended(law), bounds)
+        Self::build(vehicle, limits, LawParameters::Extended(law), bounds)
     }
 
-    fn of(
+    fn build(
         vehicle: Vehicle,
         limits: Limits,
         law: LawParameters,
@@ -99,7 +99,7 @@ impl Configuration {
         let field = "control.thrust_floor";
         let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
         require_positive(floor, field)?;
-        let least = self.least_thrust();
+        let least = self.min_thrust();
         require(floor <= least, field, Reason::Above(least))?;
         Ok(Self { law: LawParameters::Paper(PaperLaw { thrust_floor: Some(floor), ..law }), ..self })
     }
@@ -118,7 +118,7 @@ impl Configuration {
     /// # Errors
     /// As [`Self::new`], and as [`Self::with_thrust_floor`] if there is a floor.
     pub fn with_bounds(&self, bounds: ReferenceBounds) -> Result<Self, ParameterError> {
-        let configuration = Self::of(self.vehicle, self.limits, self.law, bounds)?;
+        let configuration = Self::build(self.vehicle, self.limits, self.law, bounds)?;
         let configuration = Self { rotors: self.rotors.clone(), ..configuration };
         self.thrust_floor().map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
     }
@@ -126,7 +126,7 @@ impl Configuration {
     /// By how much the law itself may command to fall, m/s^2: the reference's vertical acceleration must stay above
     /// this less g.
     #[must_use]
-    pub fn greatest_fall(&self) -> f32 {
+    pub fn max_fall(&self) -> f32 {
         match &self.law {
             LawParameters::Paper(PaperLaw { gains, .. }) => gains.m_p,
             LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.a_down,
@@ -136,8 +136,8 @@ impl Configuration {
     /// m (g - K_a3) less m times what the law may command to fall, N: the greatest floor the thrust projection may
     /// have.
     #[must_use]
-    pub fn least_thrust(&self) -> f32 {
-        self.vehicle.mass * (self.vehicle.gravity - self.greatest_fall() - self.bounds.vertical_acceleration)
+    pub fn min_thrust(&self) -> f32 {
+        self.vehicle.mass * (self.vehicle.gravity - self.max_fall() - self.bounds.vertical_acceleration)
     }
 
     /// Carries the certificate to the rotors.

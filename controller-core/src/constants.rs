@@ -10,27 +10,27 @@ use crate::error::{ParameterError, Reason, require, require_finite};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Least.
-    pub least: f32,
+    pub min: f32,
     /// Greatest.
-    pub greatest: f32,
+    pub max: f32,
 }
 
 impl Range {
     /// A gain or a level: its square stays above zero and, with the largest states, below overflow.
-    pub const POSITIVE: Self = Self { least: 1e-7, greatest: 1e3 };
+    pub const POSITIVE: Self = Self { min: 1e-7, max: 1e3 };
     /// A level that may be zero, which turns its term off.
-    pub const LEVEL: Self = Self { least: 0.0, greatest: 1e3 };
+    pub const LEVEL: Self = Self { min: 0.0, max: 1e3 };
     /// A bandwidth of a filter, 1/s: slower ones add up rounding, faster ones are beyond every tick.
-    pub const BANDWIDTH: Self = Self { least: 0.2, greatest: 100.0 };
+    pub const BANDWIDTH: Self = Self { min: 0.2, max: 100.0 };
     /// The bound of a motion.
-    pub const BOUND: Self = Self { least: 0.0, greatest: f32::MAX };
+    pub const BOUND: Self = Self { min: 0.0, max: f32::MAX };
     /// A share of one, above zero.
-    pub const SHARE: Self = Self { least: 1e-7, greatest: 1.0 };
+    pub const SHARE: Self = Self { min: 1e-7, max: 1.0 };
 
     /// A range of its own.
     #[must_use]
     pub const fn between(least: f32, greatest: f32) -> Self {
-        Self { least, greatest }
+        Self { min: least, max: greatest }
     }
 
     /// Checks one value.
@@ -39,10 +39,10 @@ impl Range {
     /// Names `field`.
     pub fn check(&self, value: f32, field: &'static str) -> Result<(), ParameterError> {
         require_finite(value, field)?;
-        require(self.least <= 0.0 || value > 0.0, field, Reason::NotPositive)?;
-        require(self.least < 0.0 || value >= 0.0, field, Reason::Negative)?;
-        require(value >= self.least, field, Reason::Below(self.least))?;
-        require(value <= self.greatest, field, Reason::Above(self.greatest))
+        require(self.min <= 0.0 || value > 0.0, field, Reason::NotPositive)?;
+        require(self.min < 0.0 || value >= 0.0, field, Reason::Negative)?;
+        require(value >= self.min, field, Reason::Below(self.min))?;
+        require(value <= self.max, field, Reason::Above(self.max))
     }
 }
 

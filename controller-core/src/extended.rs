@@ -9,7 +9,7 @@
 //! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; thrust at once | 1 |
 //! | [`approach`] | as fast towards the target as the vehicle can brake | 1 |
 //! | [`force`] | an estimate of the unmodelled force | 2 |
-//! | [`turning`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
+//! | [`direction_limiter`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
 //! | [`budget`] | a tick's torque about the tilt's axes, spent part by part | 4 |
 //! | [`heading`] | yaw takes what tilt and thrust leave, and brakes a spin before thrust | 5 |
 //! | [`attitude`] | the tilt alone, whatever the heading does; errors projected over the rotors' lag | 6 |
@@ -37,6 +37,7 @@ pub mod budget;
 pub mod controller;
 pub mod defaults;
 pub mod demand;
+pub mod direction_limiter;
 pub mod fallback;
 pub mod force;
 pub mod heading;
@@ -50,7 +51,6 @@ pub mod saturation;
 pub mod thrust_range;
 pub mod thrust_scale;
 pub mod torque_bias;
-pub mod turning;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -78,7 +78,7 @@ impl Heading {
 
     /// Where a vehicle's x axis points, at rest; along world x where that points up or down.
     #[must_use]
-    pub fn of_attitude(attitude: &Quaternion<f32>) -> Self {
+    pub fn from_attitude(attitude: &Quaternion<f32>) -> Self {
         let forwards = forwards(attitude);
         let length = math::sqrt(forwards.norm_squared());
         if length > Self::UNIT_LENGTH_TOLERANCE { Self::near_unit(forwards, 0.0, 0.0) } else { Self::FORWARD }

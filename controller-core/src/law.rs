@@ -1,7 +1,7 @@
 //! The law that flies: the paper's or the extended one, by its configuration.
 
 use crate::allocation::Thrusts;
-use crate::allocation::remaining::Lost;
+use crate::allocation::remaining::LostRotor;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Diagnostics};
 use crate::error::{InputError, ParameterError};
@@ -119,7 +119,7 @@ impl Law {
 
     /// The rotor that the law has found to fail, and flies without; the paper's law looks for none.
     #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         match self {
             Self::Paper(_) => None,
             Self::Extended(law) => law.spinning().map(|spinning| *spinning.lost()),

@@ -34,7 +34,7 @@ pub fn sqrt(x: f32) -> f32 {
 
 /// `x` cut to ± `level`; a NaN stays one. One comparison where nothing is cut, which is nearly always.
 #[must_use]
-pub fn within(x: f32, level: f32) -> f32 {
+pub fn saturate(x: f32, level: f32) -> f32 {
     if x.abs() > level {
         cold_path();
         level.copysign(x)
@@ -45,20 +45,20 @@ pub fn within(x: f32, level: f32) -> f32 {
 
 /// `x` cut to an interval; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
 #[must_use]
-pub fn between(x: f32, least: f32, greatest: f32) -> f32 {
+pub fn clamp(x: f32, least: f32, greatest: f32) -> f32 {
     let x = if x > greatest { greatest } else { x };
     if x < least { least } else { x }
 }
 
 /// The greater of two numbers; the first where they cannot be compared.
 #[must_use]
-pub fn greater(a: f32, b: f32) -> f32 {
+pub fn max(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
 /// The lesser of two numbers; the first where they cannot be compared.
 #[must_use]
-pub fn lesser(a: f32, b: f32) -> f32 {
+pub fn min(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
@@ -66,36 +66,36 @@ pub fn lesser(a: f32, b: f32) -> f32 {
 /// one.
 #[must_use]
 #[cfg_attr(target_os = "none", inline(never))] // a board's image has it in a hundred places: 2 KB
-pub fn greater_f64(a: f64, b: f64) -> f64 {
+pub fn max_f64(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
 /// The lesser of two numbers; NaN if either is NaN.
 #[must_use]
 #[cfg_attr(target_os = "none", inline(never))]
-pub fn lesser_f64(a: f64, b: f64) -> f64 {
+pub fn min_f64(a: f64, b: f64) -> f64 {
     if a <= b || a.is_nan() { a } else { b }
 }
 
 /// The square root of a number that only rounding can have taken below zero.
 #[must_use]
 pub fn sqrt_of_rounded(x: f64) -> f64 {
-    sqrt_f64(greater_f64(x, 0.0))
+    sqrt_f64(max_f64(x, 0.0))
 }
 
 /// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those
 /// in one instruction each, where the conversion of 64 bits is a call.
 #[must_use]
-pub fn single(x: i64) -> f32 {
+pub fn i64_to_f32(x: i64) -> f32 {
     let low = x as i32;
     let high = (x.wrapping_sub(i64::from(low)) >> 32) as i32;
     high as f32 * 4_294_967_296.0 + low as f32
 }
 
 /// The whole part of a number, exactly; beyond 2^61 it saturates, and a NaN gives zero. In two halves,
-/// as [`single`].
+/// as [`i64_to_f32`].
 #[must_use]
-pub fn whole(x: f32) -> i64 {
+pub fn f32_to_i64(x: f32) -> i64 {
     const HALF_RANGE: f32 = 2_147_483_648.0;
     let high = (x * (1.0 / HALF_RANGE)) as i32;
     let low = (x - high as f32 * HALF_RANGE) as i32;

@@ -53,7 +53,7 @@ impl Percent {
     }
 
     /// `gain` times the factor; with [`Self::AS_BUILT`] the same to the bit.
-    fn of(self, gain: f32) -> f32 {
+    fn times(self, gain: f32) -> f32 {
         gain * (self.percent() / 100.0)
     }
 
@@ -104,10 +104,10 @@ impl Factors {
                     require(factor == Percent::AS_BUILT, field, Reason::OtherLaw)?;
                 }
                 let gains = GainParameters {
-                    k_theta: self.attitude.of(gains.k_theta),
-                    k_omega: self.rate.of(gains.k_omega),
-                    k_p: self.position_across.of(gains.k_p),
-                    k_v: self.velocity_across.of(gains.k_v),
+                    k_theta: self.attitude.times(gains.k_theta),
+                    k_omega: self.rate.times(gains.k_omega),
+                    k_p: self.position_across.times(gains.k_p),
+                    k_v: self.velocity_across.times(gains.k_v),
                     ..**gains
                 };
                 Ok(LawParameters::Paper(PaperLaw { gains: Gains::new(gains, vehicle)?, thrust_floor: *thrust_floor }))
@@ -123,7 +123,7 @@ impl Factors {
                     (&mut constants.k_p_vertical, self.position_vertical),
                     (&mut constants.k_v_vertical, self.velocity_vertical),
                 ] {
-                    *gain = factor.of(*gain);
+                    *gain = factor.times(*gain);
                 }
                 let parameters = Extended::new(constants, vehicle)?;
                 Ok(LawParameters::Extended(ExtendedLaw { parameters, actuators: *actuators }))
@@ -150,7 +150,7 @@ pub struct Figures {
 impl Figures {
     /// Those of `configuration`; of its rotors' the first one's.
     #[must_use]
-    pub fn of(configuration: &Configuration) -> Self {
+    pub fn from_configuration(configuration: &Configuration) -> Self {
         let first = configuration.rotors().and_then(|rotors| rotors.first());
         Self {
             mass: configuration.vehicle().mass,
@@ -190,7 +190,7 @@ impl Tuning {
             None => configuration,
         };
         match built.rotors() {
-            Some(rotors) => configuration.with_rotors(self.rotors(rotors, &Figures::of(built))?),
+            Some(rotors) => configuration.with_rotors(self.rotors(rotors, &Figures::from_configuration(built))?),
             None => Ok(configuration),
         }
     }

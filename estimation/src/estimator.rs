@@ -13,14 +13,14 @@
 //! ```
 //!
 //! - `present`: the state for the law, without the rotors' vibration;
-//! - `felt`: the mean acceleration between two ticks, by accelerometer alone;
+//! - `mean_acceleration`: that between two ticks, by accelerometer alone;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;
 //! - [`history`]: the ring; [`settings`]: the sensors' noise;
 //! - `checkpoints`: poses out of order; `stream`: time stamps, quality, frozen streams;
 //! - `candidate`: how an estimate begins, at rest or in motion, and how a lost body is found again;
-//! - `taking`: what becomes of a pose, step by step;
+//! - `pose_fusion`: what becomes of a pose, step by step;
 //! - [`verdict`], [`health`]: the verdict on each pose, and the estimate's health, in words.
 //!
 //! # How a tick uses it
@@ -52,32 +52,32 @@ pub mod verdict;
 
 mod candidate;
 mod checkpoints;
-mod felt;
+mod mean_acceleration;
 mod measurement;
 mod nominal;
+mod pose_fusion;
 mod present;
 mod stream;
-mod taking;
 
 pub use health::{COASTING_AFTER_US, Faults, Health};
 pub use history::{Clipped, EXTRAPOLATION_MAX_US, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
-pub use verdict::{Fault, Rejected, Taken};
+pub use verdict::{Accepted, Fault, Rejected};
 
 use crate::measurement::{STAMP_LEAD_MAX_US, Stamped};
 use candidate::Candidate;
 use checkpoints::Checkpoints;
 use controller_core::state::State;
-use felt::Felt;
 use filter::{Biases, Filter};
 use health::Statistics;
 use heapless::Vec;
 use history::{History, is_measurable};
+use mean_acceleration::MeanAcceleration;
 use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
-use present::Present;
+use present::PresentMotion;
 use stream::Stream;
 
 /// How long after a move of the sender's frame the next one is believed, us: a running counter is no moving frame.
@@ -106,7 +106,7 @@ pub struct EstimatedState {
     pub state: State,
     /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
-    /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
+    /// How often the state has jumped since the start: each [`Accepted::Rebased`], [`Accepted::Refound`] and
     /// [`Estimator::adopt`]. A differentiator of the state begins anew when it changes.
     pub jumps: u32,
     /// What the vertical speed has gained by the accelerometer alone, m/s; only differences count.
@@ -134,7 +134,7 @@ pub struct Estimator {
     gained: f32,
     /// The vertical speed of [`Self::climb`], m/s.
     climb: f32,
-    felt: Felt,
+    felt: MeanAcceleration,
     waiting: Vec<Stamped<Pose>, WAITING_POSES_MAX>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
@@ -158,7 +158,7 @@ impl Estimator {
             grounded: None,
             gained: 0.0,
             climb: 0.0,
-            felt: Felt::NOTHING,
+            felt: MeanAcceleration::NOTHING,
             waiting: Vec::new(),
             frame: None,
             statistics: Statistics::NONE,
@@ -184,7 +184,7 @@ impl Estimator {
             self.checkpoints.forget_before(end);
         }
         self.history.push(increment);
-        self.stream.note(if self.may_stand { self.moves(increment) } else { self.stirs(increment) });
+        self.stream.note(if self.may_stand { self.moves(increment) } else { self.differs_from_rest(increment) });
         if let Some(latest) = &mut self.latest {
             let before = latest.velocity;
             latest.advance(increment, self.settings.parameters().gravity);
@@ -242,7 +242,7 @@ impl Estimator {
     ///
     /// # Errors
     /// The reason for a refusal; the state is as it was.
-    pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Taken, Rejected> {
+    pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Accepted, Rejected> {
         let verdict = self.stream.admit(pose, now).and_then(|()| self.take_in_time(pose));
         self.statistics.record(verdict, pose.time);
         verdict
@@ -256,7 +256,8 @@ impl Estimator {
     pub fn state(&self, now: u64, rate: &Vector3<f32>, under_way: Option<&Increment>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US && is_measurable(rate))?;
-        let Present { force, vibration } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let PresentMotion { force, vibration } =
+            PresentMotion::from_increments(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
             start: last.end,
@@ -279,9 +280,9 @@ impl Estimator {
 
     /// The mean of v', m/s^2, world, since the last call, to be called once a tick: by accelerometer, with the
     /// increment that is `under_way`. None at the first call, and where [`Self::state`] has none.
-    pub fn felt(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
+    pub fn mean_acceleration(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let Some(ahead) = self.velocity_ahead(now, under_way) else {
-            self.felt = Felt::NOTHING;
+            self.felt = MeanAcceleration::NOTHING;
             return None;
         };
         self.felt.mean(now, &ahead)
@@ -291,7 +292,8 @@ impl Estimator {
     fn velocity_ahead(&self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US)?;
-        let Present { force, .. } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let PresentMotion { force, .. } =
+            PresentMotion::from_increments(last, self.history.before_newest(), self.history.slow_force());
         let goes_on = |next: &&Increment| next.start == last.end && next.is_usable(ahead);
         let (pushed, known) =
             under_way.filter(goes_on).map_or((Vector3::zeros(), 0.0), |next| (next.delta_velocity, next.seconds()));
@@ -345,7 +347,7 @@ impl Estimator {
         self.checkpoints.clear();
         self.waiting.clear();
         (self.filter, self.latest, self.candidate) = (None, None, None);
-        self.felt = Felt::NOTHING;
+        self.felt = MeanAcceleration::NOTHING;
         self.statistics = self.statistics.restarted();
     }
 }

@@ -24,7 +24,7 @@
 //! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
 //! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
-//! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
+//! [`faults`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
 //! sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged, for the
 //! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX_US`] without
 //! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
@@ -33,22 +33,22 @@
 //! SI units, body frame (x forward, y left, z up), time in us.
 
 pub mod calibration;
+pub mod faults;
 pub mod integrator;
 pub mod low_pass;
 pub mod six_point;
 pub mod standstill;
-pub mod watch;
 
 pub use calibration::Calibration;
-pub use watch::ImuFault;
+pub use faults::ImuFault;
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};
 use controller_core::error::{ParameterError, require_positive};
+use faults::{FaultMonitor, Ranges};
 use integrator::{Integrator, Sample};
 use low_pass::LowPass;
 use nalgebra::Vector3;
-use watch::{Ranges, Watch};
 
 /// How long an increment lasts, us, where no sample is missing.
 pub const INCREMENT_US: u64 = 5_000;
@@ -122,7 +122,7 @@ pub struct Conditioner {
     period: u64,
     late: u64,
     calibration: Calibration,
-    watch: Watch,
+    watch: FaultMonitor,
     low_pass: LowPass,
     integrator: Integrator,
     newest: Option<Stamped<ImuSample>>,
@@ -147,7 +147,7 @@ impl Conditioner {
             period,
             late: p.late,
             calibration: *calibration,
-            watch: Watch::new(p.ranges()),
+            watch: FaultMonitor::new(p.ranges()),
             low_pass: p.low_pass(period),
             integrator: Integrator::EMPTY,
             newest: None,
@@ -195,7 +195,7 @@ impl Conditioner {
         angular_velocity: &Vector3<f32>,
         specific_force: Option<&Vector3<f32>>,
     ) -> Conditioned {
-        let fault = self.watch.see(angular_velocity, specific_force);
+        let fault = self.watch.check(angular_velocity, specific_force);
         if fault == Some(ImuFault::NotFinite) {
             return Conditioned { increment: None, fault };
         }

@@ -60,7 +60,7 @@ impl Default for FlightSettings {
 }
 
 fn within(value: f32, least: f32, most: f32, default: f32) -> f32 {
-    if value.is_nan() { default } else { math::between(value, least, most) }
+    if value.is_nan() { default } else { math::clamp(value, least, most) }
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 //!
 //! At [`DOUBT_MAX_S`] the source is given up until the vehicle is disarmed.
 
-use estimation::estimator::{COASTING_AFTER_US, Rejected, Taken};
+use estimation::estimator::{Accepted, COASTING_AFTER_US, Rejected};
 
 /// Doubt at which a source is given up.
 pub const DOUBT_MAX_S: f32 = 3.0;
@@ -46,14 +46,14 @@ pub(super) struct Trust {
 impl Trust {
     /// Takes note of what became of a tick's poses, in flight. Where the gyro's bias is not `plausible` with them, they
     /// turn as the vehicle does not, and are no better than refused.
-    pub fn judge(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
+    pub fn judge(&mut self, pose: Option<Result<Accepted, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
         let seconds = now.saturating_sub(self.judged).min(POSE_INTERVAL_MAX_US) as f32 * 1e-6;
         self.judged = now;
         self.doubt(match pose {
             Err(rejected) if rejected.is_lie() => seconds,
-            Ok(Taken::Refound) => REFOUND_DOUBT_S,
-            Ok(Taken::Rebased) => FRAME_MOVED_DOUBT_S,
+            Ok(Accepted::Refound) => REFOUND_DOUBT_S,
+            Ok(Accepted::Rebased) => FRAME_MOVED_DOUBT_S,
             Ok(taken) if taken.is_believed() && plausible => -DOUBT_DECAY_SHARE * seconds,
             Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
@@ -61,7 +61,7 @@ impl Trust {
     }
 
     /// Notes a pose that is refused for its values, or believed.
-    pub fn note(&mut self, pose: Result<Taken, Rejected>, now: u64) {
+    pub fn note(&mut self, pose: Result<Accepted, Rejected>, now: u64) {
         match pose {
             Ok(taken) if taken.is_believed() => self.refused = None,
             Err(rejected) if rejected.is_lie() => {

@@ -4,7 +4,7 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use estimation::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings, Taken};
+use estimation::estimator::{Accepted, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use flight::{Pose, Stamped, Velocity};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use libfuzzer_sys::fuzz_target;
@@ -103,9 +103,9 @@ fuzz_target!(|events: Vec<Event>| {
 });
 
 /// What was fused is where the state at its time is.
-fn near(estimator: &Estimator, taken: Option<Taken>, time: u64, position: &Vector3<f32>) {
+fn near(estimator: &Estimator, taken: Option<Accepted>, time: u64, position: &Vector3<f32>) {
     // Among later poses it is not the last that was fused.
-    if let (Some(Taken::Fused), Some(filter)) = (taken, estimator.filter().filter(|filter| filter.time == time)) {
+    if let (Some(Accepted::Fused), Some(filter)) = (taken, estimator.filter().filter(|filter| filter.time == time)) {
         let away = (filter.nominal.position - position).norm();
         assert!(away < NEAR, "fused {away} m away");
     }

@@ -29,7 +29,7 @@ use crate::vehicle::reality::Surroundings;
 use crate::vehicle::sensed::{Sensed, specific_force};
 use crate::vehicle::sensors::Sensors;
 use controller_core::allocation::Thrusts;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
@@ -229,7 +229,7 @@ impl Flight {
 
     /// The rotor that the law has found to fail; rivals look for none.
     #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         self.controller.lost()
     }
 

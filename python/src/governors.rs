@@ -4,7 +4,7 @@ use crate::refused::{in_flight, refused, refused_field};
 use crate::rows::{array, of_reference, row};
 use crate::scenarios::Scenario;
 use crate::whole::Whole;
-use controller_core::governor::{self, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{self, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 use numpy::{PyArray1, PyArray2};
@@ -104,9 +104,9 @@ impl Governor {
     ) -> PyResult<()> {
         let motion = motion(position, velocity, acceleration)?;
         let turn = match (yaw, yaw_rate) {
-            (None, None) => Turn::Keep,
-            (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
-            (None, Some(rate)) => Turn::Rate(rate),
+            (None, None) => HeadingSetpoint::Keep,
+            (Some(angle), rate) => HeadingSetpoint::Angle { angle, rate: rate.unwrap_or(0.0) },
+            (None, Some(rate)) => HeadingSetpoint::Rate(rate),
         };
         self.governor.accept_late(&Setpoint { motion, turn }, late).map_err(refused)
     }

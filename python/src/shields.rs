@@ -60,7 +60,7 @@ impl One {
 
     fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH], Diagnostics), String> {
         if self.fresh {
-            self.shield.reset(&Heading::of_attitude(&state.attitude));
+            self.shield.reset(&Heading::from_attitude(&state.attitude));
         }
         // There is no shield of another law.
         let law = self.law.extended().ok_or("control.law: must be \"extended\"")?;
@@ -172,7 +172,7 @@ hand_overs=10)")]
 
     /// Counts hand-overs anew: the policy may fly again.
     fn ask_again(&mut self) {
-        self.one.shield.ask_again();
+        self.one.shield.request_again();
     }
 
     /// One control tick.
@@ -321,7 +321,7 @@ hand_overs=10)")]
     #[pyo3(signature = (chosen=None))]
     fn ask_again(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
         for number in numbers(chosen, self.ones.len())? {
-            self.ones[number].shield.ask_again();
+            self.ones[number].shield.request_again();
         }
         Ok(())
     }

@@ -9,8 +9,8 @@ use crate::file::Scenario;
 use crate::judge::judge;
 use crate::path::Place;
 use crate::reference::ReferenceKind;
-use controller_core::certificate::path::along::Taken;
-use controller_core::certificate::path::{PathJudge, Row};
+use controller_core::certificate::path::along::MaxShare;
+use controller_core::certificate::path::{PathJudge, PathRow};
 use controller_core::heading::Heading;
 use controller_core::reference::harmonic::HarmonicParameters;
 use controller_core::reference::{Reference, ReferenceBounds, Trajectory};
@@ -28,7 +28,7 @@ const SAME_FREQUENCY: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Along {
     /// The most that it takes.
-    pub taken: Taken,
+    pub taken: MaxShare,
     /// Where.
     pub at: Place,
     /// Until when it was judged, microseconds.
@@ -56,13 +56,13 @@ impl Along {
         let own = judge(scenario.force_kept)?;
         let end = end_us(scenario);
         let along = |judge: &PathJudge, slower: f64| {
-            Taken::along(
+            MaxShare::along(
                 judge,
                 &Slower { trajectory: &*scenario.trajectory, factor: slower },
                 (end as f64 * slower) as u64,
             )
         };
-        let taken = Taken::along(&own, &*scenario.trajectory, end);
+        let taken = MaxShare::along(&own, &*scenario.trajectory, end);
         let position = scenario.trajectory.at(taken.at_us).position.map(f64::from);
         let at = Place { position, time: taken.at_us as f64 * 1e-6 };
         let remedy = (taken.share >= 1.0).then(|| {
@@ -159,20 +159,20 @@ impl Trajectory for Slower<'_> {
 
 /// What a row is about.
 #[must_use]
-pub fn name(row: Row) -> &'static str {
+pub fn name(row: PathRow) -> &'static str {
     match row {
-        Row::Fall => "its fall",
-        Row::Thrust => "thrust",
-        Row::TurningRate => "the rate of turning",
-        Row::Torque => "torque",
-        Row::Floor => "the thrust that torque needs",
-        Row::Cone => "tilt",
+        PathRow::Fall => "its fall",
+        PathRow::Thrust => "thrust",
+        PathRow::TurningRate => "the rate of turning",
+        PathRow::Torque => "torque",
+        PathRow::Floor => "the thrust that torque needs",
+        PathRow::Cone => "tilt",
     }
 }
 
 impl fmt::Display for Along {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { taken: Taken { share, row, .. }, at, force_kept, remedy, .. } = self;
+        let Self { taken: MaxShare { share, row, .. }, at, force_kept, remedy, .. } = self;
         write!(
             f,
             "reference, {}: takes {:.1} % of what is left beside a force of {force_kept} m/s^2, ",

@@ -227,7 +227,7 @@ mod tests {
                     &mut factors;
                 let each = [attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical];
                 *each.into_iter().nth(gain).unwrap() = percent;
-                let tuning = Tuning { figures: Figures::of(configuration), factors };
+                let tuning = Tuning { figures: Figures::from_configuration(configuration), factors };
                 let certificate = Certificate::new(&tuning.apply(configuration).unwrap()).unwrap();
                 assert!(certificate.holds() && loops.hold(&factors), "{}: {factors:?}", scenario.name);
             }

@@ -94,7 +94,7 @@ impl Numbers {
             let has_speeds = root.value("rotors.speed").is_some();
             let thrust_max = f64::from(one.thrust_max);
             Some(RotorNumbers {
-                arm: f64::from(rotors.longest_arm()),
+                arm: f64::from(rotors.max_arm()),
                 thrust: f64::from(rotors.thrust_together().1),
                 yaw: f64::from(one.drag_coefficient) / f64::from(one.thrust_coefficient),
                 speed: has_speeds.then(|| (thrust_max / f64::from(one.thrust_coefficient)).sqrt()),

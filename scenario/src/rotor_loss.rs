@@ -10,7 +10,7 @@
 pub mod relaxed_hover;
 pub mod turning_loop;
 
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::extended::memory::Estimates;
 use controller_core::extended::rotor_loss::spinning::SpinningLaw;
@@ -40,7 +40,7 @@ impl WithoutARotor {
         let (LawParameters::Extended(law), Some(rotors)) = (configuration.law(), configuration.rotors()) else {
             return None;
         };
-        let lost = Lost { rotor, left: 0.0 };
+        let lost = LostRotor { rotor, left: 0.0 };
         let times = [law.actuators.lag + law.actuators.delay, period];
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
         Some(Self { law: SpinningLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })

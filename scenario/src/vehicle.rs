@@ -14,7 +14,7 @@ use crate::extended::{read_extended, refused};
 use crate::inertia;
 use crate::reality::drag::{self, Drag};
 use crate::section::{FieldError, Section};
-use controller_core::allocation::{Rotors, greatest_torques};
+use controller_core::allocation::{Rotors, max_torques};
 use controller_core::certificate::airframe::flyable;
 use controller_core::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -207,7 +207,7 @@ pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
 
 /// The greatest torque of `rotors` about each axis alone, N m.
 fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
-    let torques = greatest_torques(rotors);
+    let torques = max_torques(rotors);
     if torques.min() > 0.0 {
         return Ok(torques);
     }

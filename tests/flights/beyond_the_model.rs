@@ -5,7 +5,7 @@
 use crate::support::extended::{published, vehicle};
 use controller_core::certificate::certified::Certified;
 use controller_core::extended::memory::Estimates;
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use flight::{FlightSettings, Inputs, Memory, Output, Pilot, Pose, Request, Stamped, Velocity};
 use host_sim::flight::Flight;
@@ -171,7 +171,7 @@ fn commanded_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
         let position = Vector3::new(0.0, 0.0, height);
         let still = Velocity::World(Vector3::zeros());
         let pose = Pose::new(position, still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
-        let setpoint = Setpoint { motion: Motion::Position(Vector3::new(0.0, 0.0, -3.0)), turn: Turn::Keep };
+        let setpoint = Setpoint { motion: Motion::Position(Vector3::new(0.0, 0.0, -3.0)), turn: HeadingSetpoint::Keep };
         let outcome = pilot.tick(&Inputs {
             now,
             increments: &[increment],

@@ -3,7 +3,7 @@
 //! `cargo test -p host-sim trajectory_files -- --nocapture` prints how near.
 
 use crate::support::binary::{self, host_sim, status, stdout};
-use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::reference::Reference;
 use host_sim::flight::Flight;
 use host_sim::reports::reference_rows::SLOWER;
@@ -125,7 +125,7 @@ fn streamed(scenario: &Scenario) -> f32 {
         if tick % 2 == 0 {
             let Reference { position, velocity, acceleration, .. } = at(tick);
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
-            governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+            governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         }
         let off = (governor.tick().position - at(tick + 1).position).norm();
         worst = worst.max(off);

@@ -42,7 +42,7 @@ const EITHER_SIDE: f64 = 1e-5;
 const ANYWAY: [&str; 7] = ["omega_d", "y", "zeta", "bias", "averages", "scale", "x"];
 
 fn reference(rng: &mut ChaCha8Rng, configuration: &Configuration) -> Reference {
-    let room = configuration.vehicle().gravity - configuration.greatest_fall();
+    let room = configuration.vehicle().gravity - configuration.max_fall();
     let (sin, cos) = rng.random_range(-3.2_f32..3.2).sin_cos();
     let turning = [rng.random_range(-3.0..3.0), rng.random_range(-8.0..8.0)];
     let mut acceleration = random::vector(rng, 3.0);
@@ -87,7 +87,7 @@ fn tick(memory: &Memory, hidden: &Hidden, state: &State, reference: &Reference) 
         filters: filters(memory),
         lift: memory.lift.map(|lift| lifting::Lift { memory: vector4(&lift.memory), sign: lift.sign.into() }),
         side: memory.side.map(|side| side.cast()),
-        yaw_room: memory.yaw_room.into(),
+        yaw_room: memory.yaw_torque_left.into(),
         averages: averages(memory),
         fallback: hidden.fallback,
         last: hidden.last,
@@ -131,7 +131,7 @@ fn of_core(memory: &Memory, wrench: &Wrench, shown: &Diagnostics, answer: &Answe
         averages: averages(memory),
         // Its length is the core's own.
         side: side * (answer.side.norm() / side.norm().max(1e-300)),
-        yaw_room: memory.yaw_room.into(),
+        yaw_room: memory.yaw_torque_left.into(),
         ..*answer
     }
 }

@@ -209,7 +209,7 @@ fn the_constants_of_the_extended_law_are_listed_as_declared_each_with_its_defaul
     let (listed, defaults): (Vec<&str>, Vec<&str>) = listed.unzip();
     let declared = ExtendedParameters::TABLE.iter().map(|constant| {
         let (about, range) = (constant.about.trim().trim_end_matches('.'), constant.range);
-        format!("| `{}` | {about} | {} to {}", constant.path, short(range.least), short(range.greatest))
+        format!("| `{}` | {about} | {} to {}", constant.path, short(range.min), short(range.max))
     });
     assert_eq!(listed, declared.collect::<Vec<_>>());
     assert!(defaults.iter().all(|default| !default.is_empty()));

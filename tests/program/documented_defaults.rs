@@ -67,7 +67,7 @@ fn formulas(airframe: &Airframe, given: &dyn Fn(&str) -> Option<f64>) -> Vec<For
     // What the page says in words.
     let budget = TorqueBudget::<f64>::new(floor_margin as f32, limits, rotors);
     let tilt_torque = min(budget.radius(scale_least), budget.radius(scale_greatest));
-    let U = budget.held(vehicle, limits, 1.0);
+    let U = budget.held_acceleration(vehicle, limits, 1.0);
     let [tilt_reach, yaw_reach] = budget.reach.map(|reach| max(reach, 1e-12));
     let least = (1.0 - TORQUE_THRUST_SHARE) * mass * (g - force_up - 1.0);
     let above = max(least - scale_greatest * budget.ends[0] - budget.margin, 0.0);
@@ -151,7 +151,7 @@ fn the_formulas_of_the_page_give_what_the_law_takes_for_every_vehicle() {
         for place in 0..ExtendedParameters::COUNT {
             let mut given = NOTHING_GIVEN;
             let Constant { path, range, .. } = ExtendedParameters::TABLE[place];
-            given[place] = Some((0.97 * defaults.values()[place]).clamp(range.least, range.greatest));
+            given[place] = Some((0.97 * defaults.values()[place]).clamp(range.min, range.max));
             assert_agree(&airframe, &given, &format!("{} with {path} given", scenario.name));
         }
     }
@@ -167,7 +167,7 @@ fn assert_agree(airframe: &Airframe, given: &Given, name: &str) {
     let by_page: BTreeMap<&str, f64> = by_page.iter().map(|Formula(key, _, value)| (*key, *value)).collect();
     for (constant, value) in constants(airframe, given).entries() {
         let wanted = by_page.get(constant.key).unwrap_or_else(|| panic!("{}: no formula", constant.path));
-        let wanted = wanted.clamp(f64::from(constant.range.least), f64::from(constant.range.greatest));
+        let wanted = wanted.clamp(f64::from(constant.range.min), f64::from(constant.range.max));
         let apart = (f64::from(value) - wanted).abs();
         assert!(apart <= ROUNDING * wanted.abs(), "{name}: {} is {value}, by the page {wanted}", constant.path);
     }

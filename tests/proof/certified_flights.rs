@@ -123,8 +123,8 @@ fn fitting_rotors(configuration: &Configuration, rng: &mut ChaCha8Rng) -> Option
     while arm < 10.0 {
         let unlimited = configuration.clone().with_rotors(quad(arm, drag, [0.0, 1e5])).unwrap();
         let demands = Certificate::new(&unlimited).unwrap().paper().unwrap().rotors.clone();
-        let least = demands.iter().map(|report| report.demand.least).fold(f64::INFINITY, f64::min);
-        let greatest = demands.iter().map(|report| report.demand.greatest).fold(0.0, f64::max);
+        let least = demands.iter().map(|report| report.demand.min).fold(f64::INFINITY, f64::min);
+        let greatest = demands.iter().map(|report| report.demand.max).fold(0.0, f64::max);
         if least > 0.0 {
             return Some(quad(arm, drag, [least * (1.0 - MARGIN), greatest * (1.0 + MARGIN)]));
         }
@@ -187,7 +187,7 @@ impl Usage {
     fn watch(&mut self, wrench: &Wrench, certified: &Certified) {
         let PaperCertificate { sharp, rotors, .. } = certified.certificate().paper().unwrap();
         let thrust = f64::from(wrench.thrust);
-        self.thrust = self.thrust.max(thrust / sharp.thrust.greatest).max(sharp.thrust.least / thrust);
+        self.thrust = self.thrust.max(thrust / sharp.thrust.max).max(sharp.thrust.least / thrust);
         self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
 
         // What flies never clips, and so is what the mixer does with all its priorities.
@@ -200,7 +200,7 @@ impl Usage {
         assert_eq!(bits(&allocation.thrusts), bits(&mixed.thrusts));
         for (thrust, report) in allocation.thrusts.iter().zip(rotors) {
             let thrust = f64::from(*thrust);
-            self.rotor = self.rotor.max(thrust / report.demand.greatest).max(report.demand.least / thrust);
+            self.rotor = self.rotor.max(thrust / report.demand.max).max(report.demand.min / thrust);
         }
     }
 

@@ -108,7 +108,7 @@ impl World {
             assert!(*thrust >= rotor.thrust_min && *thrust <= rotor.thrust_max);
         }
         let place = |(f, end): (&f32, &controller_core::certificate::form::Interval)| {
-            2.0 * (f64::from(*f) - end.least) / (end.greatest - end.least) - 1.0
+            2.0 * (f64::from(*f) - end.least) / (end.max - end.least) - 1.0
         };
         ours.thrusts.iter().zip(&self.bounds.rotors).map(place).collect()
     }
@@ -117,7 +117,7 @@ impl World {
     fn judge(&self, wrench: &Wrench, scale: f32) -> Shown {
         let places = self.places(&wrench.scaled(1.0 / scale));
         let shown = Shown {
-            thrust: f64::from(wrench.thrust) / self.bounds.thrust.greatest,
+            thrust: f64::from(wrench.thrust) / self.bounds.thrust.max,
             torque: wrench.torque.cast::<f64>().abs().component_div(&self.bounds.torque).into(),
             rotors: [places.iter().copied().fold(0.0, f64::max), -places.iter().copied().fold(0.0, f64::min)],
         };
@@ -213,7 +213,7 @@ impl World {
         };
         let (acceleration, jerk, snap) = (any(100.0), any(1e3), any(1e4));
         let (position, velocity) = (any(1e3), any(100.0));
-        let fall = self.configuration().greatest_fall() - self.configuration().vehicle().gravity;
+        let fall = self.configuration().max_fall() - self.configuration().vehicle().gravity;
         let acceleration = Vector3::new(acceleration.x, acceleration.y, acceleration.z.max(0.999 * fall));
         let weight = self.configuration().vehicle().mass * self.configuration().vehicle().gravity;
         match rng.random_range(0..10) {

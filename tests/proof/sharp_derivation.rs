@@ -214,10 +214,10 @@ enum Gain {
 /// The derivation's bound on |omega_d'| with the gains up to `used`, at one (tilt, direction of w, split of u', psi').
 fn bound_at(reach: &Reachable, bounds: &ReferenceBounds, used: Gain, at: [f64; 4]) -> f64 {
     let [tilt, direction, split, turning] = at;
-    let tan = tilt * reach.horizontal / reach.vertical_least;
+    let tan = tilt * reach.horizontal / reach.vertical_min;
     let secant = tan.hypot(1.0);
     let (sin, cos) = (tan / secant, 1.0 / secant);
-    let n = reach.vertical_least * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
+    let n = reach.vertical_min * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
 
     let (along, across) = (reach.horizontal_snap * direction.cos(), reach.horizontal_snap * direction.sin());
     let (w, w_perp) = if used >= Gain::ShapeOfTheSnap {

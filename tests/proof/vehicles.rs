@@ -75,8 +75,8 @@ fn flown(scenario: &Scenario) -> Shown {
         shown.saturated += u64::from(tick.clipped);
         shown.height_lost = shown.height_lost.max(start - tick.state.position.z);
         for (thrust, report) in tick.rotor_thrusts.iter().zip(rotors) {
-            let middle = 0.5 * (report.demand.least + report.demand.greatest);
-            let half = 0.5 * (report.demand.greatest - report.demand.least);
+            let middle = 0.5 * (report.demand.min + report.demand.max);
+            let half = 0.5 * (report.demand.max - report.demand.min);
             shown.demand_used = shown.demand_used.max((f64::from(*thrust) - middle).abs() / half);
         }
         let error = (tick.state.position - tick.reference.position.cast::<f64>()).norm();
@@ -226,8 +226,8 @@ fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut 
     let acceleration = ball(form.rates.angular_acceleration * raised, inertia.component_mul(&row));
     let velocity = ball(form.rates.angular_velocity * raised, most_gyroscopic(&inertia, &row));
     let torque = feedback + inertia.component_mul(&acceleration) + velocity.cross(&inertia.component_mul(&velocity));
-    let middle = 0.5 * (form.thrust.least + form.thrust.greatest);
-    let thrust = middle + used * 0.5 * up * (form.thrust.greatest - form.thrust.least);
+    let middle = 0.5 * (form.thrust.least + form.thrust.max);
+    let thrust = middle + used * 0.5 * up * (form.thrust.max - form.thrust.least);
     Wrench { thrust: thrust as f32, torque: torque.cast() }
 }
 
@@ -264,7 +264,7 @@ fn without_any_margin_clipping_takes_no_more_than_rounding() {
         let certificate = Certificate::new(&scenario.configuration).unwrap();
         let mut rotors = scenario.configuration.rotors().unwrap().to_vec();
         for (rotor, report) in rotors.iter_mut().zip(&certificate.paper().unwrap().rotors) {
-            (rotor.thrust_min, rotor.thrust_max) = (report.demand.least as f32, report.demand.greatest as f32);
+            (rotor.thrust_min, rotor.thrust_max) = (report.demand.min as f32, report.demand.max as f32);
         }
         let flown = MinimumNorm::new(&Rotors::new(&rotors).unwrap());
         for _ in 0..100_000 {
@@ -272,7 +272,7 @@ fn without_any_margin_clipping_takes_no_more_than_rounding() {
             let achieved = flown.wrench(&flown.allocate(&wrench).unwrap().thrusts);
             let thrust = f64::from((achieved.thrust - wrench.thrust).abs());
             let torque = f64::from((achieved.torque - wrench.torque).norm());
-            let rounding = TICK_ROUNDING_SHARE * certificate.thrust().greatest;
+            let rounding = TICK_ROUNDING_SHARE * certificate.thrust().max;
             assert!(thrust < rounding && torque < rounding, "{name}: {wrench:?} {achieved:?}");
         }
     }

@@ -21,7 +21,7 @@ mod witness;
 
 use adversary::{Adversary, Trouble};
 use case::{Case, Random};
-use controller_core::governor::{Governor, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::prelude::{Vector2, Vector3};
 use core::f32::consts::PI;
 use witness::{Approach, Tally, Witness};
@@ -72,9 +72,9 @@ fn fly(seed: u64, tally: &mut Tally) {
     } else if ending == 1 && busy > 0 {
         // Silence: what was sent last runs out or is arrived at, unless it is a million metres away.
         let motion = Motion::Velocity(random.vector(2.0));
-        governor.accept(&Setpoint { motion, turn: Turn::Rate(0.5) }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Rate(0.5) }).unwrap();
     } else {
-        let turn = Turn::Angle { angle, rate: 0.0 };
+        let turn = HeadingSetpoint::Angle { angle, rate: 0.0 };
         governor.accept(&Setpoint { motion: Motion::Position(target), turn }).unwrap();
     }
     let mut approach = (busy == 0 && !moves && ending > 1).then(|| Approach {

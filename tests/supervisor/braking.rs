@@ -4,7 +4,7 @@
 //! `cargo test -p host-sim braking -- --nocapture` prints the figures.
 
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request, Transition};
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -95,7 +95,8 @@ fn interrupted(
         let mut given = Inputs {
             ground_station: Some(vehicle.now()),
             request: [(ARM, Request::Arm), (GO, begin)].into_iter().find(|(at, _)| *at == tick).map(|(_, it)| it),
-            setpoint: (setpoint.is_some() && tick.is_multiple_of(10)).then_some(Setpoint { motion, turn: Turn::Keep }),
+            setpoint: (setpoint.is_some() && tick.is_multiple_of(10))
+                .then_some(Setpoint { motion, turn: HeadingSetpoint::Keep }),
             ..Inputs::default()
         };
         if is_due {

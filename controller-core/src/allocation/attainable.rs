@@ -173,7 +173,7 @@ fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
 /// The greatest torque about each body axis, N m, that `rotors` deliver to either side with none about the other two,
 /// at whatever thrust suits it best. Not above zero for some axis where they cannot push without turning the vehicle.
 #[must_use]
-pub fn greatest_torques(rotors: &Rotors) -> Vector3<f32> {
+pub fn max_torques(rotors: &Rotors) -> Vector3<f32> {
     let order: Vec<usize, ROTORS_MAX> = collected(0..rotors.len());
     let all = generators(rotors, order.iter());
     let about = |axis: Vector4<f64>| {
@@ -185,15 +185,12 @@ pub fn greatest_torques(rotors: &Rotors) -> Vector3<f32> {
 }
 
 impl Rotors {
-    /// The limits that the rotors themselves are: all their greatest thrusts together, and [`greatest_torques`].
+    /// The limits that the rotors themselves are: all their greatest thrusts together, and [`max_torques`].
     ///
     /// # Errors
     /// If `vehicle` cannot hover by that, or the rotors cannot push without turning it.
     pub fn limits(&self, vehicle: &Vehicle) -> Result<Limits, ParameterError> {
-        Limits::new(
-            LimitParameters { thrust_max: self.thrust_together().1, torque_max: greatest_torques(self) },
-            vehicle,
-        )
+        Limits::new(LimitParameters { thrust_max: self.thrust_together().1, torque_max: max_torques(self) }, vehicle)
     }
 }
 

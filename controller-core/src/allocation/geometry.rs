@@ -226,9 +226,9 @@ impl Rotors {
 
     /// The greatest distance of a rotor from body z, m.
     #[must_use]
-    pub fn longest_arm(&self) -> f32 {
+    pub fn max_arm(&self) -> f32 {
         let squares = self.rotors.iter().map(|rotor| rotor.position.xy().norm_squared());
-        math::sqrt(squares.fold(f32::MIN_POSITIVE, math::greater))
+        math::sqrt(squares.fold(f32::MIN_POSITIVE, math::max))
     }
 
     /// Checks that all rotors together can lift `weight`, N, and need not.

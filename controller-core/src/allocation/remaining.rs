@@ -46,7 +46,7 @@ const RELEASE_PULL_MIN_N: f32 = 1e-4;
 
 /// What a rotor has left of its commanded thrust, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lost {
+pub struct LostRotor {
     /// Which one, counted from 0.
     pub rotor: usize,
     /// The delivered share of its commanded thrust.
@@ -69,11 +69,11 @@ struct Remaining {
 impl Remaining {
     fn new(column: Vector4<f32>, commanded: [f32; 2], left: f32, share: f32) -> Self {
         let [least, greatest] = commanded.map(|thrust| thrust * left);
-        Self { column, least, greatest, preferred: math::between(share, least, greatest), commanded, left }
+        Self { column, least, greatest, preferred: math::clamp(share, least, greatest), commanded, left }
     }
 
     fn within(&self, thrust: f32) -> f32 {
-        math::between(thrust, self.least, self.greatest)
+        math::clamp(thrust, self.least, self.greatest)
     }
 }
 
@@ -102,14 +102,14 @@ impl RemainingRotors {
     /// The `rotors` of a vehicle of so much `weight`, N, with these `limits`, without what is `lost`, all at a thrust
     /// `scale`: delivered over commanded.
     #[must_use]
-    pub fn new(rotors: &Rotors, limits: &Limits, lost: &Lost, scale: f32, weight: f32) -> Self {
+    pub fn new(rotors: &Rotors, limits: &Limits, lost: &LostRotor, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
-        let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::greater);
-        let arm = rotors.longest_arm();
+        let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::max);
+        let arm = rotors.max_arm();
         let newtons = Vector4::new(1.0, 1.0 / arm, 1.0 / arm, 1.0 / drag);
         let share = weight / rotors.len() as f32;
         let all = rotors.iter().zip(columns()).enumerate().map(|(index, (rotor, column))| {
-            let left = scale * if index == lost.rotor { math::between(lost.left, 0.0, 1.0) } else { 1.0 };
+            let left = scale * if index == lost.rotor { math::clamp(lost.left, 0.0, 1.0) } else { 1.0 };
             Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
         let torque = &limits.torque_max;
@@ -118,7 +118,7 @@ impl RemainingRotors {
     }
 
     /// Changes what the failed rotor has left.
-    pub fn set_left(&mut self, lost: &Lost) {
+    pub fn set_left(&mut self, lost: &LostRotor) {
         if let Some(rotor) = self.rotors.get_mut(lost.rotor) {
             *rotor = Remaining::new(rotor.column, rotor.commanded, self.scale * lost.left, self.share);
         }
@@ -136,7 +136,7 @@ impl RemainingRotors {
         let Wrench { thrust, torque } = wanted;
         let mut wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
         // More would bend the tilt for a yaw that is not to be had.
-        wanted.w = math::within(wanted.w, self.share);
+        wanted.w = math::saturate(wanted.w, self.share);
         let mut places: Vec<Place, ROTORS_MAX> = collected(
             self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.greatest > rotor.least }),
         );
@@ -171,7 +171,7 @@ impl RemainingRotors {
             for ((from, to), limit) in least.iter().zip(wanted).zip(&self.limits) {
                 if to.abs() > *limit {
                     let end = if *to > 0.0 { *limit } else { -limit };
-                    share = math::lesser(share, math::between((end - from) / (to - from), 0.0, 1.0));
+                    share = math::min(share, math::clamp((end - from) / (to - from), 0.0, 1.0));
                 }
             }
         }
@@ -184,7 +184,7 @@ impl RemainingRotors {
     pub fn commands(&self, delivered: &Thrusts) -> Thrusts {
         let command = |(rotor, thrust): (&Remaining, &f32)| {
             let [least, most] = rotor.commanded;
-            if rotor.left > 0.0 { math::between(thrust / rotor.left, least, most) } else { 0.0 }
+            if rotor.left > 0.0 { math::clamp(thrust / rotor.left, least, most) } else { 0.0 }
         };
         collected(self.rotors.iter().zip(delivered).map(command))
     }
@@ -225,7 +225,7 @@ impl RemainingRotors {
             if place.is_free && bound != goal {
                 let reached = (bound - place.thrust) / (goal - place.thrust);
                 if reached < share || first.is_none() {
-                    (share, first) = (math::lesser(reached, share), Some((index, bound)));
+                    (share, first) = (math::min(reached, share), Some((index, bound)));
                 }
             }
         }

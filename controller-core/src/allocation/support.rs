@@ -164,9 +164,9 @@ pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorDemand<R = f64> {
     /// Least commanded thrust.
-    pub least: R,
+    pub min: R,
     /// Greatest commanded thrust.
-    pub greatest: R,
+    pub max: R,
     /// Least thrust it can give.
     pub available_min: f64,
     /// Greatest thrust it can give.
@@ -178,8 +178,8 @@ impl<R: Real> RotorDemand<R> {
     #[must_use]
     pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands<R>) -> Self {
         Self {
-            least: -commands.greatest(&-row),
-            greatest: commands.greatest(row),
+            min: -commands.greatest(&-row),
+            max: commands.greatest(row),
             available_min: f64::from(rotor.thrust_min),
             available_max: f64::from(rotor.thrust_max),
         }
@@ -188,7 +188,7 @@ impl<R: Real> RotorDemand<R> {
     /// Whether the rotor's range covers its demand.
     #[must_use]
     pub fn fits(&self) -> bool {
-        self.least.lower() >= self.available_min && self.greatest.upper() <= self.available_max
+        self.min.lower() >= self.available_min && self.max.upper() <= self.available_max
     }
 }
 

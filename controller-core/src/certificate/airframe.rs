@@ -16,14 +16,14 @@ impl Configuration {
     ///
     /// # Errors
     /// Names the constant that these numbers leave no room for.
-    pub fn of_airframe(airframe: &Airframe) -> Result<Self, ParameterError> {
+    pub fn from_airframe(airframe: &Airframe) -> Result<Self, ParameterError> {
         let parameters = Extended::new(defaults::constants(airframe, &NOTHING_GIVEN), airframe.vehicle)?;
         let law = ExtendedLaw { parameters, actuators: airframe.actuators };
-        of(airframe, law, flyable(airframe, law))
+        configure(airframe, law, flyable(airframe, law))
     }
 }
 
-fn of(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> Result<Configuration, ParameterError> {
+fn configure(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> Result<Configuration, ParameterError> {
     let configuration = Configuration::extended(*airframe.vehicle, *airframe.limits, law, bounds)?;
     match airframe.rotors {
         Some(rotors) => configuration.with_rotors(rotors.clone()),
@@ -48,7 +48,7 @@ pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
             heading_second_derivative: share * most.heading_second_derivative,
             ..most
         };
-        let certificate = of(airframe, law, bounds).and_then(|configuration| Certificate::new(&configuration));
+        let certificate = configure(airframe, law, bounds).and_then(|configuration| Certificate::new(&configuration));
         if certificate.is_ok_and(|certificate| certificate.holds()) {
             return bounds;
         }

@@ -24,9 +24,9 @@ use crate::reference::ReferenceBounds;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reachable<R = f64> {
     /// Least u_z = g - M_p - K_a3; the law is defined while it is positive.
-    pub vertical_least: R,
+    pub vertical_min: R,
     /// Greatest u_z = g + M_p + K_a3.
-    pub vertical_greatest: R,
+    pub vertical_max: R,
     /// Greatest |(u_x, u_y)| = sqrt(2) M_p + K_a12.
     pub horizontal: R,
     /// Greatest |u'|.
@@ -62,8 +62,8 @@ impl<R: Real> Reachable<R> {
         // The Euclidean norms of two and of three axes.
         let [both, all] = [2.0, 3.0].map(|axes| R::from(axes).sqrt());
         Self {
-            vertical_least: gravity - m_p - vertical,
-            vertical_greatest: gravity + m_p + vertical,
+            vertical_min: gravity - m_p - vertical,
+            vertical_max: gravity + m_p + vertical,
             horizontal: both * m_p + horizontal,
             jerk: all * axis_jerk + jerk,
             horizontal_jerk: both * axis_jerk + jerk,
@@ -76,6 +76,6 @@ impl<R: Real> Reachable<R> {
     /// Greatest |u|.
     #[must_use]
     pub fn magnitude(&self) -> R {
-        self.horizontal.hypot(self.vertical_greatest)
+        self.horizontal.hypot(self.vertical_max)
     }
 }

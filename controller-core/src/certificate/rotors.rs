@@ -79,7 +79,7 @@ pub fn reports<R: Real>(
         return Ok(reports);
     };
     let terms = torque_terms(configuration, form)?;
-    let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
+    let commands = Commands::new(form.thrust.least, form.thrust.max, &terms)?;
     let hover = R::from(configuration.vehicle().mass) * R::from(configuration.vehicle().gravity);
     for ((demand, row), (least, greatest)) in demands(rotors, &commands).iter().zip(rotors.pseudo_inverse()).zip(&NAMES)
     {
@@ -87,8 +87,8 @@ pub fn reports<R: Real>(
         let [available_min, available_max] = [demand.available_min, demand.available_max].map(R::from);
         let report = RotorReport {
             demand: *demand,
-            least: Inequality::new(least, "N", share - demand.least, share - available_min).or_equal(),
-            greatest: Inequality::new(greatest, "N", demand.greatest - share, available_max - share).or_equal(),
+            least: Inequality::new(least, "N", share - demand.min, share - available_min).or_equal(),
+            greatest: Inequality::new(greatest, "N", demand.max - share, available_max - share).or_equal(),
         };
         // As many reports as rotors: it fits.
         let _ = reports.push(report);

@@ -119,7 +119,7 @@ fn acceleration_square<R: Real>(
 #[must_use]
 #[inline(never)] // a board's stack is not to hold it beside the other bounds
 pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) -> [R; 2] {
-    let steepest = reach.horizontal / reach.vertical_least;
+    let steepest = reach.horizontal / reach.vertical_min;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
@@ -127,7 +127,7 @@ pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) ->
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
-        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
+        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_min);
         let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
         for tangential in &tangential {
             rate = rate.greater(tilt.velocity(tangential, worst_heading.rate).yawing);
@@ -156,7 +156,7 @@ pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) ->
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
 #[must_use]
 pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, inertia: &Vector3<R>) -> DesiredRates<R> {
-    let steepest = reach.horizontal / reach.vertical_least;
+    let steepest = reach.horizontal / reach.vertical_min;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     // |psi'| is greatest in the first cell, |psi''| in the last, where nothing is left to |psi'|.
@@ -168,7 +168,7 @@ pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, in
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
-        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
+        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_min);
 
         let (mut velocity_square, mut longest) = (zero, zero);
         for direction in &directions {

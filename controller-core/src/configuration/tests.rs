@@ -32,7 +32,7 @@ fn rotors_that_cannot_hover_or_cannot_but_climb_are_refused() {
 
 #[test]
 fn a_floor_is_at_most_the_laws_own_least_thrust() {
-    let least = paper().least_thrust();
+    let least = paper().min_thrust();
     assert_eq!(paper().with_thrust_floor(least).unwrap().thrust_floor(), Some(least));
     let refused = |floor: f32| paper().with_thrust_floor(floor).unwrap_err();
     let field = "control.thrust_floor";

@@ -50,7 +50,7 @@ struct Response {
 }
 
 impl Response {
-    fn of(&self, state: &Vector4<f32>, older: &Vector4<f32>, newer: &Vector4<f32>) -> Vector4<f32> {
+    fn apply(&self, state: &Vector4<f32>, older: &Vector4<f32>, newer: &Vector4<f32>) -> Vector4<f32> {
         state * self.state + older * self.older + newer * self.newer
     }
 }
@@ -157,8 +157,8 @@ impl ActuatorModel {
     /// Lets one period pass; returns the mean wrench over it.
     pub fn advance(&self, state: &mut ActuatorState) -> Vector4<f32> {
         let (newer, older) = (state.command_before(self.whole_delay), state.command_before(self.whole_delay + 1));
-        let mean = self.mean.of(&state.acting, &older, &newer);
-        state.acting = self.end.of(&state.acting, &older, &newer);
+        let mean = self.mean.apply(&state.acting, &older, &newer);
+        state.acting = self.end.apply(&state.acting, &older, &newer);
         mean
     }
 }

@@ -141,7 +141,7 @@ impl AttitudeLaw {
         let across = error.i * error.i + error.j * error.j;
         let b = Vector3::new(2.0 * came_from.x, 2.0 * came_from.y, square - 2.0 * across) / square;
         let sine = b.xy().dot(&side);
-        let cosine = math::sqrt(math::greater(1.0 - sine * sine, 0.0));
+        let cosine = math::sqrt(math::max(1.0 - sine * sine, 0.0));
         // Of theta_s / 2.
         let half = sine / math::sqrt(2.0 * (1.0 + cosine));
         if half <= self.switching {

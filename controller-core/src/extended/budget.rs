@@ -38,7 +38,7 @@ const ROWS_MAX: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
 
 /// The source of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Bound {
+pub enum RowSource {
     /// The limit of roll or pitch.
     Limit,
     /// Two rotors at their ends at once.
@@ -49,9 +49,9 @@ pub enum Bound {
 
 /// |w . tau| <= R(s) = per_scale s - fixed, w of length one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row<R = f64> {
+pub struct BudgetRow<R = f64> {
     /// Its source.
-    pub bound: Bound,
+    pub bound: RowSource,
     /// w.
     pub direction: [R; 2],
     /// The part of R that is proportional to the thrust scale, N m.
@@ -60,9 +60,9 @@ pub struct Row<R = f64> {
     pub fixed: R,
 }
 
-impl<R: Real> Row<R> {
+impl<R: Real> BudgetRow<R> {
     /// R(s), N m.
-    pub fn room(&self, scale: R) -> R {
+    pub fn capacity(&self, scale: R) -> R {
         self.per_scale * scale - self.fixed
     }
 }
@@ -71,7 +71,7 @@ impl<R: Real> Row<R> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorqueBudget<R = f64> {
     /// The rows.
-    pub rows: Vec<Row<R>, ROWS_MAX>,
+    pub rows: Vec<BudgetRow<R>, ROWS_MAX>,
     /// |beta_12| and |beta_3|, the greatest of all rotors, 1/m; none without rotors.
     pub reach: [R; 2],
     /// max f_min / b_T and min f_max / b_T, N; without rotors none and infinitely much.
@@ -98,7 +98,7 @@ impl<R: Real> TorqueBudget<R> {
         let mut push = |bound, [x, y]: [R; 2], per_scale: R, fixed: R| {
             let length = x.hypot(y);
             if length.lower() > 0.0 {
-                let row = Row {
+                let row = BudgetRow {
                     bound,
                     direction: [x / length, y / length],
                     per_scale: per_scale / length,
@@ -108,8 +108,8 @@ impl<R: Real> TorqueBudget<R> {
             }
         };
         let torque_max = limits.torque_max.map(R::from);
-        push(Bound::Limit, [one, zero], zero, -torque_max.x);
-        push(Bound::Limit, [zero, one], zero, -torque_max.y);
+        push(RowSource::Limit, [one, zero], zero, -torque_max.x);
+        push(RowSource::Limit, [zero, one], zero, -torque_max.y);
 
         let shares = shares::<R>(rotors);
         let top = shares.iter().map(|share| share.greatest).fold(R::from(f64::INFINITY), R::lesser);
@@ -117,10 +117,10 @@ impl<R: Real> TorqueBudget<R> {
         for (place, share) in shares.iter().enumerate() {
             for other in shares.iter().skip(place + 1) {
                 let difference = share.torque - other.torque;
-                push(Bound::Rotors, [difference.x, difference.y], top - bottom, margin * 2.0);
+                push(RowSource::Rotors, [difference.x, difference.y], top - bottom, margin * 2.0);
             }
             let fixed = margin * 2.0 - R::from(limits.thrust_max);
-            push(Bound::Floor, [share.torque.x, share.torque.y], -bottom, fixed);
+            push(RowSource::Floor, [share.torque.x, share.torque.y], -bottom, fixed);
         }
         let reach = shares.iter().fold([zero; 2], |[tilt, yaw], share| {
             [tilt.greater(share.torque.x.hypot(share.torque.y)), yaw.greater(share.torque.z.abs())]
@@ -130,14 +130,14 @@ impl<R: Real> TorqueBudget<R> {
 
     /// (1 - mu) U for a thrust scale and no bias, m/s^2.
     #[must_use]
-    pub fn held(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
+    pub fn held_acceleration(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
         let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
         most * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
     }
 
     /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
     pub fn radius(&self, scale: R) -> R {
-        self.rows.iter().map(|row| row.room(scale)).fold(R::from(f64::INFINITY), R::lesser)
+        self.rows.iter().map(|row| row.capacity(scale)).fold(R::from(f64::INFINITY), R::lesser)
     }
 }
 
@@ -172,7 +172,7 @@ impl Ceiling {
     pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
         let [lean, twist] = self.per_bias;
         let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
-        math::lesser(scale * self.per_scale - taken, self.most)
+        math::min(scale * self.per_scale - taken, self.most)
     }
 }
 
@@ -197,7 +197,7 @@ impl TickBudget {
     /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
     #[must_use]
     pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
-        let mut binding: Vec<Row, ROWS_MAX> = Vec::new();
+        let mut binding: Vec<BudgetRow, ROWS_MAX> = Vec::new();
         for (place, row) in budget.rows.iter().enumerate() {
             let others = || binding.iter().chain(budget.rows.iter().skip(place + 1));
             if !implied(row, others, scales.map(f64::from)) {
@@ -205,7 +205,7 @@ impl TickBudget {
                 let _ = binding.push(*row);
             }
         }
-        let single = |row: &Row| {
+        let single = |row: &BudgetRow| {
             let left = 1.0 - UNUSED_ROW_SHARE;
             [row.direction[0], row.direction[1], left * row.per_scale, left * row.fixed].map(|x| x as f32)
         };
@@ -216,7 +216,7 @@ impl TickBudget {
     #[must_use]
     #[inline(always)] // see position.rs
     pub fn radius(&self, scale: f32) -> f32 {
-        self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::lesser)
+        self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::min)
     }
 
     /// A tick's spending at a thrust scale, nothing spent.
@@ -229,7 +229,7 @@ impl TickBudget {
 
 /// Whether two of the `others` imply `row` between the two scales: w is a sum of theirs with weights that are not
 /// negative, and R is at least the sum of theirs with these weights.
-fn implied<'a, I: Iterator<Item = &'a Row>>(row: &Row, others: impl Fn() -> I, scales: [f64; 2]) -> bool {
+fn implied<'a, I: Iterator<Item = &'a BudgetRow>>(row: &BudgetRow, others: impl Fn() -> I, scales: [f64; 2]) -> bool {
     let [x, y] = row.direction;
     others().any(|a| {
         others().any(|b| {
@@ -246,7 +246,7 @@ fn implied<'a, I: Iterator<Item = &'a Row>>(row: &Row, others: impl Fn() -> I, s
                 let of_b = (a.direction[0] * y - a.direction[1] * x) / determinant;
                 [of_a.abs(), of_b.abs()]
             };
-            scales.iter().all(|s| weights[0] * a.room(*s) + weights[1] * b.room(*s) <= row.room(*s))
+            scales.iter().all(|s| weights[0] * a.capacity(*s) + weights[1] * b.capacity(*s) <= row.capacity(*s))
         })
     })
 }
@@ -297,7 +297,7 @@ impl Spending<'_> {
             let (spent, more) = (x * self.spent.x + y * self.spent.y, x * wanted.x + y * wanted.y);
             if (spent + more).abs() > room {
                 let left = if more > 0.0 { room - spent } else { room + spent };
-                share = math::lesser(share, math::greater(left, 0.0) / more.abs());
+                share = math::min(share, math::max(left, 0.0) / more.abs());
             }
         }
         share

@@ -16,16 +16,16 @@ use super::actuators::ActuatorModel;
 use super::attitude::AttitudeLaw;
 use super::budget::{Ceiling, TickBudget};
 use super::demand::Demand;
+use super::direction_limiter::DirectionLimiter;
 use super::force;
-use super::heading::{HeadingLaw, Seen};
+use super::heading::{FrameMotion, HeadingLaw};
 use super::learning::Learning;
 use super::measured::Measured;
-use super::memory::{Averages, Estimates, Last, Memory};
-use super::position::{Filters, Most, PositionLaw};
+use super::memory::{Averages, Estimates, LastTick, Memory};
+use super::position::{FeedbackLimits, Filters, PositionLaw};
 use super::rotor_loss::detector::Detector;
 use super::rotor_loss::spinning::SpinningLaw;
 use super::thrust_range::ThrustRange;
-use super::turning::TurningLimit;
 use crate::allocation::Rotors;
 use crate::attitude::rotate_back;
 use crate::configuration::ExtendedLaw;
@@ -38,15 +38,15 @@ use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// Where ubar comes from.
-enum Wanted<'a> {
+enum FeedbackSource<'a> {
     /// The law, with these levels at most.
-    Feedback(&'a Most),
+    Feedback(&'a FeedbackLimits),
     /// A policy.
     Demand(&'a Demand),
 }
 
 /// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
-struct Rotating {
+struct PastCommands {
     /// The mean wrench since the last tick.
     acted: Vector4<f32>,
     /// The impulse that is still to come, N s and N m s.
@@ -73,13 +73,13 @@ pub struct Controller {
     /// The same, slowed: the fallback's.
     slowed: PositionLaw,
     /// M_s, m/s^2.
-    slow: Most,
+    slow: FeedbackLimits,
     attitude: AttitudeLaw,
     heading: HeadingLaw,
     budget: TickBudget,
     /// J_max alpha_0, N m.
     reserve: f32,
-    turning: TurningLimit,
+    turning: DirectionLimiter,
     /// For the interval since the last tick.
     learning: Learning,
     /// For the next interval, if its length differs.
@@ -123,7 +123,7 @@ impl Controller {
     /// Likewise, for every tick whose velocity is not the vehicle's: what rates tell is learnt on, and what is measured
     /// of the acceleration tells whether a rotor fails.
     pub fn hold_without_velocity(&mut self) {
-        self.memory.blind = self.settling;
+        self.memory.without_velocity = self.settling;
     }
 
     /// What was measured since the last step: for the next one alone, whether that is refused or not. Without it the
@@ -148,7 +148,7 @@ impl Controller {
     /// The estimates; force and torque bias cut to their levels.
     #[must_use]
     pub fn estimates(&self) -> Estimates {
-        let believed = self.learning.believed(&self.memory.averages);
+        let believed = self.learning.estimates(&self.memory.averages);
         self.spinning.as_ref().map_or(believed, |law| Estimates { force: law.force(), ..believed })
     }
 
@@ -166,7 +166,7 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        self.tick(state, reference, &Wanted::Feedback(&Most::ALL))
+        self.tick(state, reference, &FeedbackSource::Feedback(&FeedbackLimits::UNLIMITED))
     }
 
     /// One tick with a demand in place of the position law's feedback. The reference gives the heading, and where the
@@ -181,7 +181,7 @@ impl Controller {
         demand: &Demand,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         demand.check()?;
-        self.shielded_tick(state, reference, &Wanted::Demand(demand))
+        self.shielded_tick(state, reference, &FeedbackSource::Demand(demand))
     }
 
     /// One tick whose feedback has levels of at most `most`. Every theorem on feedback holds for lower levels as well.
@@ -192,9 +192,9 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        most: &Most,
+        most: &FeedbackLimits,
     ) -> Result<(Wrench, Diagnostics), InputError> {
-        self.shielded_tick(state, reference, &Wanted::Feedback(most))
+        self.shielded_tick(state, reference, &FeedbackSource::Feedback(most))
     }
 
     /// Behind a shield: compiled once for both.
@@ -203,7 +203,7 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        wanted: &Wanted,
+        wanted: &FeedbackSource,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         self.tick(state, reference, wanted)
     }
@@ -213,28 +213,28 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        wanted: &Wanted,
+        wanted: &FeedbackSource,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         let measured = core::mem::take(&mut self.measured);
         self.admit(state, reference)?;
         let suspicion = self.memory.suspicion;
         let axis = thrust_axis(&state.attitude);
-        let Rotating { acted, pending, lasting } = self.rotating(measured.wrench.as_ref());
+        let PastCommands { acted, pending, lasting } = self.past_commands(measured.wrench.as_ref());
         if self.has_lost(state, &axis, &measured, &acted) {
             cold_path();
             return Ok(self.spin(state, reference, &axis, &pending));
         }
-        let learnt = self.learning.learnt(&self.memory, state, &axis, &measured, &acted);
-        let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
+        let learnt = self.learning.updated(&self.memory, state, &axis, &measured, &acted);
+        let Estimates { force, torque: bias, scale } = self.learning.estimates(&learnt);
         let greatest = self.ceiling.at(scale, &bias);
         let force = force::held(&force, &self.acceleration_command(reference, &Vector3::zeros()), greatest);
 
         let filters = self.memory.filters;
         let feedback = self.feedback(state, reference, &force, greatest, wanted);
-        let course = self.course(reference, &filters, &feedback, greatest);
-        let errors = self.errors(state, reference, &course, &self.late(scale, &bias, &pending));
-        let tilting = self.tilting(state, &course, &errors, &bias, scale);
-        let motion = course.desired.motion_of(&course.turn.rate, &tilting.turn, &reference.heading);
+        let course = self.direction_command(reference, &filters, &feedback, greatest);
+        let errors = self.attitude_errors(state, reference, &course, &self.late(scale, &bias, &pending));
+        let tilting = self.tilt_torque(state, &course, &errors, &bias, scale);
+        let motion = course.desired.motion_of_direction(&course.turn.rate, &tilting.turn, &reference.heading);
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         if !motion.is_in_range() {
             self.memory.suspicion = suspicion;
@@ -247,20 +247,20 @@ impl Controller {
         self.memory.averages = learnt;
         self.memory.lift = Some(errors.lifted.lift);
         self.memory.side = Some(errors.tilt.side);
-        let counts = matches!(wanted, Wanted::Feedback(_));
+        let counts = matches!(wanted, FeedbackSource::Feedback(_));
         if counts && self.memory.fallback.observe(&feedback.errors.position, &feedback.errors.velocity, self.period) {
             cold_path();
             self.memory.filters = Filters::at(-force);
         }
 
         let velocity = &state.angular_velocity;
-        let seen = Seen { rate: errors.frame, acceleration: rotate_back(&errors.error, &motion.acceleration).z };
+        let seen = FrameMotion { rate: errors.frame, acceleration: rotate_back(&errors.error, &motion.acceleration).z };
         let forward = self.heading.forward(&seen, velocity);
         let [angle, rate] = [2.0 * errors.lifted.quaternion.k, errors.projected_yaw];
-        let yaw = self.heading.torque(angle, rate, forward, velocity, self.memory.yaw_room) - bias.z;
+        let yaw = self.heading.torque(angle, rate, forward, velocity, self.memory.yaw_torque_left) - bias.z;
         let along = self.vehicle.mass * course.length * course.command.dot(&axis) / course.turn.magnitude;
         let yaw = [yaw, self.heading.braking(yaw, rate)];
-        let (wrench, yaw_room) = self.range.admitted(along, &tilting.torque, yaw, scale);
+        let (wrench, yaw_room) = self.range.limited(along, &tilting.torque, yaw, scale);
 
         if let Some(changed) = self.changed {
             cold_path();
@@ -268,11 +268,11 @@ impl Controller {
             self.changed = None;
         }
         let memory = &mut self.memory;
-        memory.yaw_room = yaw_room;
-        memory.lasting = lasting;
+        memory.yaw_torque_left = yaw_room;
+        memory.wrench_offset = lasting;
         memory.held = memory.held.saturating_sub(1);
-        memory.blind = memory.blind.saturating_sub(1);
-        memory.last = Some(Last {
+        memory.without_velocity = memory.without_velocity.saturating_sub(1);
+        memory.last = Some(LastTick {
             velocity: state.velocity,
             thrust_axis: axis,
             angular_velocity: *velocity,
@@ -332,11 +332,11 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
 }
 
 mod building;
-mod prospect;
+mod forecast;
 mod sections;
 mod without_a_rotor;
 
-pub use prospect::Prospect;
+pub use forecast::StoppingForecast;
 
 #[cfg(test)]
 mod tests;

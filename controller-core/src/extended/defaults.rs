@@ -30,7 +30,7 @@ use super::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
 use super::fallback::Slowed;
 use super::parameters::ExtendedParameters;
 use crate::allocation::Rotors;
-use crate::math::{self, greater_f64, lesser_f64};
+use crate::math::{self, max_f64, min_f64};
 use crate::reference::ReferenceBounds;
 use crate::vehicle::{Limits, Vehicle};
 
@@ -98,10 +98,10 @@ impl Speeds {
         let late = f64::from(airframe.actuators.lag) + f64::from(airframe.actuators.delay);
         let left = 0.5 * f64::from(airframe.period) + 0.12 * late + UNKNOWN_DELAY_S;
         let radius = 2.0 * math::sqrt_f64(inertia / mass);
-        let by_size = math::sqrt_f64(lesser_f64(SMALL_RADIUS_M / radius, 1.0));
+        let by_size = math::sqrt_f64(min_f64(SMALL_RADIUS_M / radius, 1.0));
         let by_torque = math::sqrt_f64(2.0 * strength.tilt / inertia);
-        let tilt = lesser_f64(by_size * DELAY_PHASE_RAD / left, by_torque);
-        let heading = lesser_f64(0.3 * tilt, 2.4 * math::sqrt_f64(strength.yaw_acceleration));
+        let tilt = min_f64(by_size * DELAY_PHASE_RAD / left, by_torque);
+        let heading = min_f64(0.3 * tilt, 2.4 * math::sqrt_f64(strength.yaw_acceleration));
         Self { inertia, late, tilt, heading }
     }
 }
@@ -133,8 +133,8 @@ impl Strength {
         let scale = [or("scale_least", usual[0]), or("scale_greatest", usual[1])];
         let floor_margin = or("floor_margin", 1e-3 * mass * gravity);
         let budget = TorqueBudget::<f64>::new(floor_margin as f32, limits, rotors);
-        let tilt = lesser_f64(budget.radius(scale[0]), budget.radius(scale[1]));
-        let [tilt_reach, yaw_reach] = budget.reach.map(|reach| greater_f64(reach, 1e-12));
+        let tilt = min_f64(budget.radius(scale[0]), budget.radius(scale[1]));
+        let [tilt_reach, yaw_reach] = budget.reach.map(|reach| max_f64(reach, 1e-12));
         let [bottom, top] = budget.ends;
         let [yaw_limit, thrust_max] = [limits.torque_max.z, limits.thrust_max].map(f64::from);
 
@@ -142,14 +142,14 @@ impl Strength {
         let a_down = or("a_down", FALL_SHARE * gravity);
         let force_up = or("force_up", 0.36 * a_down);
         let least = (1.0 - TORQUE_THRUST_SHARE) * mass * (gravity - force_up - REFERENCE_FALL_M_PER_S2);
-        let above = greater_f64(least - scale[1] * bottom - budget.margin, 0.0);
-        let below = greater_f64(scale[0] * lesser_f64(top, thrust_max) - 1.1 * mass * gravity, 0.0);
-        let yaw = lesser_f64(yaw_limit, 0.8 * lesser_f64(above, below) / yaw_reach);
-        let yaw_acceleration = or("yaw_acceleration", lesser_f64(0.5 * yaw / j_3, 20.0));
+        let above = max_f64(least - scale[1] * bottom - budget.margin, 0.0);
+        let below = max_f64(scale[0] * min_f64(top, thrust_max) - 1.1 * mass * gravity, 0.0);
+        let yaw = min_f64(yaw_limit, 0.8 * min_f64(above, below) / yaw_reach);
+        let yaw_acceleration = or("yaw_acceleration", min_f64(0.5 * yaw / j_3, 20.0));
 
-        let j_max = greater_f64(f64::from(vehicle.inertia.x), f64::from(vehicle.inertia.y));
-        let lifted = 0.9 * greater_f64(above - yaw_reach * j_3 * yaw_acceleration, 0.0) / (tilt_reach * j_max);
-        let turn_reserve = or("turn_reserve", lesser_f64(0.13 * tilt / j_max, lifted));
+        let j_max = max_f64(f64::from(vehicle.inertia.x), f64::from(vehicle.inertia.y));
+        let lifted = 0.9 * max_f64(above - yaw_reach * j_3 * yaw_acceleration, 0.0) / (tilt_reach * j_max);
+        let turn_reserve = or("turn_reserve", min_f64(0.13 * tilt / j_max, lifted));
         Self {
             floor_margin,
             scale,
@@ -177,16 +177,16 @@ struct Envelope {
 impl Envelope {
     fn of(airframe: &Airframe, given: &Given, strength: &Strength) -> Self {
         let gravity = f64::from(airframe.vehicle.gravity);
-        let held = |scale: f64| strength.budget.held(airframe.vehicle, airframe.limits, scale);
+        let held = |scale: f64| strength.budget.held_acceleration(airframe.vehicle, airframe.limits, scale);
         let greatest = held(1.0);
         // The least lift within the cone at the greatest |u|.
-        let cosine = lesser_f64(1.05 * (gravity - strength.a_down) / greatest, 1.0);
+        let cosine = min_f64(1.05 * (gravity - strength.a_down) / greatest, 1.0);
         let steepest = math::sqrt_of_rounded(1.0 - cosine * cosine) / cosine;
-        let tangent = lesser_f64(lesser_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
+        let tangent = min_f64(min_f64(steepest, math::tan(75.0 * core::f64::consts::PI / 180.0)), 10.0);
         let widest = math::sqrt_of_rounded(greatest * greatest - 0.49 * gravity * gravity);
-        let a_across = chosen(given, "a_across", lesser_f64(greater_f64(widest, 0.5), gravity * tangent));
+        let a_across = chosen(given, "a_across", min_f64(max_f64(widest, 0.5), gravity * tangent));
         let force_across = chosen(given, "force_across", 0.98 * a_across);
-        let force_down = greater_f64(0.95 * (greatest - gravity), 0.0);
+        let force_down = max_f64(0.95 * (greatest - gravity), 0.0);
         Self { a_across, tangent, force_across, force_down }
     }
 }
@@ -204,7 +204,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let k_f = chosen(given, "k_f", 1.12 * w_a);
     let k_v = chosen(given, "k_v_across", 0.54 * w_a);
     let k_p = 0.55 * k_v * k_v;
-    let stiffer = lesser_f64(1.4, 0.42 / (k_v * greater_f64(speeds.late, 1e-3)));
+    let stiffer = min_f64(1.4, 0.42 / (k_v * max_f64(speeds.late, 1e-3)));
     let follow = 1.5 * w_a;
     let yaw_acceleration = strength.yaw_acceleration;
     let [delta, alpha] = PATH_LIFTING;
@@ -233,16 +233,16 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
         delta,
         alpha,
         yaw_acceleration: single(yaw_acceleration),
-        yaw_rate: single(lesser_f64(0.4 * w_a, 3.2 * math::sqrt_f64(yaw_acceleration))),
+        yaw_rate: single(min_f64(0.4 * w_a, 3.2 * math::sqrt_f64(yaw_acceleration))),
         c_1: single(w_y * w_y),
         c_2: single(1.5 * w_y),
         floor_margin: single(strength.floor_margin),
         force_across: single(envelope.force_across),
-        force_heading: single(lesser_f64(envelope.force_across, 2.5)),
+        force_heading: single(min_f64(envelope.force_across, 2.5)),
         force_up: single(strength.force_up),
         force_down: single(envelope.force_down),
         force_bandwidth_across: single(follow),
-        force_bandwidth_vertical: single(lesser_f64(1.33, 0.95 * stiffer) * follow),
+        force_bandwidth_vertical: single(min_f64(1.33, 0.95 * stiffer) * follow),
         drag_across: airframe.drag,
         torque_tilt: single(0.4 * strength.tilt),
         torque_yaw: 0.5 * airframe.limits.torque_max.z,
@@ -253,7 +253,7 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     };
     let mut values = formulas.values();
     for ((value, given), constant) in values.iter_mut().zip(given).zip(&ExtendedParameters::TABLE) {
-        *value = given.unwrap_or(value.clamp(constant.range.least, constant.range.greatest));
+        *value = given.unwrap_or(value.clamp(constant.range.min, constant.range.max));
     }
     ExtendedParameters::from_values(values)
 }
@@ -263,30 +263,30 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
 pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
     let p = parameters;
     let budget = TorqueBudget::<f64>::new(p.floor_margin, airframe.limits, airframe.rotors);
-    let weakest = budget.held(airframe.vehicle, airframe.limits, f64::from(p.scale_least));
+    let weakest = budget.held_acceleration(airframe.vehicle, airframe.limits, f64::from(p.scale_least));
     let [gravity, across, down, up, rate, reserve] =
         [airframe.vehicle.gravity, p.a_across, p.a_down, p.force_up, p.turn_rate, p.turn_reserve].map(f64::from);
     let held_beyond = weakest - gravity;
-    let horizontal = lesser_f64(lesser_f64(3.0, 0.2 * across), math::sqrt_of_rounded(0.1 * gravity * held_beyond));
-    let vertical = lesser_f64(lesser_f64(1.0, 0.15 * lesser_f64(down, across)), 0.2 * held_beyond);
+    let horizontal = min_f64(min_f64(3.0, 0.2 * across), math::sqrt_of_rounded(0.1 * gravity * held_beyond));
+    let vertical = min_f64(min_f64(1.0, 0.15 * min_f64(down, across)), 0.2 * held_beyond);
     // The rest of Omega and alpha_0 beside the slowed law, at the least |u|.
-    let slowed = Slowed::<f64>::of(p, airframe.vehicle.gravity);
+    let slowed = Slowed::<f64>::new(p, airframe.vehicle.gravity);
     let [slow_jerk, slow_snap] = slowed.derivatives(p);
     let least = gravity - up - vertical - slowed.level;
     // A frame that is tilted turns about its thrust axis as well, by a part of how u turns: yaw has to follow.
     let yaw = f64::from(p.yaw_acceleration);
     let slope = (f64::from(p.force_heading) + horizontal) / (gravity - up);
-    let turned = 0.6 * lesser_f64(rate, math::sqrt_f64(reserve));
-    let jerk = lesser_f64(lesser_f64(8.0, turned * least - slow_jerk), least * math::sqrt_f64(0.2 * yaw / slope));
-    let snap = lesser_f64(0.8 * ((reserve - turned * turned) * least - slow_snap), 0.4 * yaw * least / slope);
+    let turned = 0.6 * min_f64(rate, math::sqrt_f64(reserve));
+    let jerk = min_f64(min_f64(8.0, turned * least - slow_jerk), least * math::sqrt_f64(0.2 * yaw / slope));
+    let snap = min_f64(0.8 * ((reserve - turned * turned) * least - slow_snap), 0.4 * yaw * least / slope);
     let tilt = math::hypot(1.0, slope);
-    let single = |value: f64| greater_f64(value, 0.0) as f32;
+    let single = |value: f64| max_f64(value, 0.0) as f32;
     ReferenceBounds {
         horizontal_speed: 5.0,
         horizontal_acceleration: single(horizontal),
         vertical_acceleration: single(vertical),
         jerk: single(jerk),
-        snap: single(lesser_f64(snap, 40.0)),
+        snap: single(min_f64(snap, 40.0)),
         heading_rate: single(0.3 * f64::from(p.yaw_rate) / tilt),
         heading_second_derivative: single(0.3 * f64::from(p.yaw_acceleration) / tilt),
     }

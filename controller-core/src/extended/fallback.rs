@@ -1,9 +1,9 @@
 //! The fallback: a flight that makes no progress goes on with the same law, slowed down until nothing limits it.
 //! Section 13 of `docs/extended-law.md`.
 //!
-//! While nothing is limited V_0 falls and the vehicle arrives. That the limiter of [`super::turning`] falls silent is
-//! not proven for bandwidths as high as the law's own. With all bandwidths times sigma, k_p times sigma^2 and feedback
-//! of at most M_s, the frame never needs more than a part of the reserve ([`Slowed`]): V_0 decides alone.
+//! While nothing is limited V_0 falls and the vehicle arrives. That the limiter of [`super::direction_limiter`] falls
+//! silent is not proven for bandwidths as high as the law's own. With all bandwidths times sigma, k_p times sigma^2 and
+//! feedback of at most M_s, the frame never needs more than a part of the reserve ([`Slowed`]): V_0 decides alone.
 //!
 //! Progress is looked at in windows of [`PROGRESS_WINDOW_S`]. The vehicle is near where sqrt(|p~|^2 + (1 s |v~|)^2) is
 //! below [`NEAR_DISTANCE_M`]. Progress is a window whose greatest |v~| is less than ever since the vehicle was near, or
@@ -73,7 +73,7 @@ impl<R: Real> Slowed<R> {
     /// much slower that this takes `TURN_SHARE` of what turns rho at the least |u|, g - D_z+ - M_s less the
     /// reference's.
     #[must_use]
-    pub fn of(parameters: &ExtendedParameters, gravity: f32) -> Self {
+    pub fn new(parameters: &ExtendedParameters, gravity: f32) -> Self {
         let p = parameters;
         let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
         let level = R::from(SLOW_LEVEL_M_PER_S2);
@@ -100,7 +100,7 @@ const SLOW_SPEED_M_PER_S: f32 = 2.0;
 /// The constants of the slowed law.
 #[must_use]
 pub fn slowed(parameters: &ExtendedParameters, gravity: f32) -> ExtendedParameters {
-    let by = Slowed::<f64>::of(parameters, gravity).factor as f32;
+    let by = Slowed::<f64>::new(parameters, gravity).factor as f32;
     let p = parameters;
     ExtendedParameters {
         k_p_across: by * by * p.k_p_across,
@@ -110,9 +110,9 @@ pub fn slowed(parameters: &ExtendedParameters, gravity: f32) -> ExtendedParamete
         k_f: by * p.k_f,
         k_s: by * p.k_s,
         k_d: by * p.k_d,
-        v_across: math::lesser(p.v_across, SLOW_SPEED_M_PER_S),
-        v_up: math::lesser(p.v_up, SLOW_SPEED_M_PER_S),
-        v_down: math::lesser(p.v_down, SLOW_SPEED_M_PER_S),
+        v_across: math::min(p.v_across, SLOW_SPEED_M_PER_S),
+        v_up: math::min(p.v_up, SLOW_SPEED_M_PER_S),
+        v_down: math::min(p.v_down, SLOW_SPEED_M_PER_S),
         ..*p
     }
 }
@@ -170,17 +170,17 @@ impl Fallback {
         if self.slow {
             cold_path();
             if near && self.elapsed >= self.stay() {
-                *self = self.another([f32::MAX; 2]);
+                *self = self.next_window([f32::MAX; 2]);
             }
             return false;
         }
         if jumped {
             cold_path();
-            *self = self.another([f32::MAX; 2]);
+            *self = self.next_window([f32::MAX; 2]);
         }
         self.near |= near;
         for (greatest, error) in self.greatest.iter_mut().zip(errors) {
-            *greatest = math::greater(*greatest, error);
+            *greatest = math::max(*greatest, error);
         }
         if self.elapsed < micros(PROGRESS_WINDOW_S) {
             return false;
@@ -189,13 +189,13 @@ impl Fallback {
         let [farthest, fastest] = self.greatest;
         let [distance, speed] = self.best;
         let is_less =
-            |now: f32, best: f32| best > NEAR_DISTANCE_M && now < best - math::lesser(0.1 * best, PROGRESS_STEP_MAX);
+            |now: f32, best: f32| best > NEAR_DISTANCE_M && now < best - math::min(0.1 * best, PROGRESS_STEP_MAX);
         *self = if self.near {
-            self.another([f32::MAX; 2])
+            self.next_window([f32::MAX; 2])
         } else if is_less(fastest, speed) {
-            self.another([farthest, fastest])
+            self.next_window([farthest, fastest])
         } else if is_less(farthest, distance) {
-            self.another([farthest, speed])
+            self.next_window([farthest, speed])
         } else {
             Self { slow: true, times: self.times.saturating_add(1), now: self.now, ..Self::FRESH }
         };
@@ -203,7 +203,7 @@ impl Fallback {
     }
 
     /// The next window of the law's own bandwidths.
-    fn another(&self, best: [f32; 2]) -> Self {
+    fn next_window(&self, best: [f32; 2]) -> Self {
         Self { times: self.times, now: self.now, best, ..Self::FRESH }
     }
 

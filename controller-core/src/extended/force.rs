@@ -3,10 +3,10 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | [`ForceObserver::made`] | v' + g e3 + kappa v: the acceleration by thrust and unknown force |
-//! | [`ForceObserver::differed`] | v' = (v_k - v_(k-1)) / h, where it is not measured |
-//! | [`ForceObserver::averaged`] | zeta += (1 - e^(-L h)) (a - zeta), a being what is made beside the thrust, s bbar F / m |
-//! | [`ForceObserver::believed`] | d: zeta cut to D_h across (radially), to D_z+ upwards and D_z- downwards |
+//! | [`ForceObserver::driven_acceleration`] | v' + g e3 + kappa v: the acceleration by thrust and unknown force |
+//! | [`ForceObserver::mean_acceleration`] | v' = (v_k - v_(k-1)) / h, where it is not measured |
+//! | [`ForceObserver::filtered`] | zeta += (1 - e^(-L h)) (a - zeta), a being what is made beside the thrust, s bbar F / m |
+//! | [`ForceObserver::estimate`] | d: zeta cut to D_h across (radially), to D_z+ upwards and D_z- downwards |
 //!
 //! d enters the position law and passes its filters, so that no derivative of it is needed.
 
@@ -52,7 +52,7 @@ impl ForceObserver {
 
     /// The mean acceleration over an interval by its difference of `velocities`, m/s, at start and end.
     #[must_use]
-    pub fn differed(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
+    pub fn mean_acceleration(&self, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
         let [start, end] = velocities;
         (end - start) * self.per_period
     }
@@ -60,7 +60,7 @@ impl ForceObserver {
     /// The mean `acceleration` over an interval without gravity and known drag, m/s^2, world frame. `velocities`, m/s,
     /// belong to the interval's start and end.
     #[must_use]
-    pub fn made(&self, acceleration: Vector3<f32>, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
+    pub fn driven_acceleration(&self, acceleration: Vector3<f32>, velocities: [&Vector3<f32>; 2]) -> Vector3<f32> {
         let [start, end] = velocities;
         let mut made = acceleration;
         made.x += self.half_drag * (start.x + end.x);
@@ -71,7 +71,7 @@ impl ForceObserver {
 
     /// Averages the `rest` of the observed acceleration, without the thrust's part, into zeta.
     #[must_use]
-    pub fn averaged(&self, average: &Vector3<f32>, rest: &Vector3<f32>) -> Vector3<f32> {
+    pub fn filtered(&self, average: &Vector3<f32>, rest: &Vector3<f32>) -> Vector3<f32> {
         Vector3::new(
             average.x + self.averaging_across * (rest.x - average.x),
             average.y + self.averaging_across * (rest.y - average.y),
@@ -81,10 +81,10 @@ impl ForceObserver {
 
     /// d, m/s^2, world frame.
     #[must_use]
-    pub fn believed(&self, average: &Vector3<f32>) -> Vector3<f32> {
+    pub fn estimate(&self, average: &Vector3<f32>) -> Vector3<f32> {
         let square = average.x * average.x + average.y * average.y;
         let share = if square > self.across * self.across { self.across / math::sqrt(square) } else { 1.0 };
-        Vector3::new(average.x * share, average.y * share, math::between(average.z, -self.down, self.up))
+        Vector3::new(average.x * share, average.y * share, math::clamp(average.z, -self.down, self.up))
     }
 }
 
@@ -101,10 +101,10 @@ pub fn held(force: &Vector3<f32>, rest: &Vector3<f32>, greatest: f32) -> Vector3
         return *force;
     }
     cold_path();
-    let lift = math::lesser(lift, most);
-    let left = math::sqrt(math::greater(most * most - lift * lift, 0.0)) - math::sqrt(across);
+    let lift = math::min(lift, most);
+    let left = math::sqrt(math::max(most * most - lift * lift, 0.0)) - math::sqrt(across);
     let length = math::sqrt(wind);
     // Without a wind there is nothing to cut, whatever the reference takes.
-    let share = if length > left { math::greater(left, 0.0) / math::greater(length, f32::MIN_POSITIVE) } else { 1.0 };
+    let share = if length > left { math::max(left, 0.0) / math::max(length, f32::MIN_POSITIVE) } else { 1.0 };
     Vector3::new(force.x * share, force.y * share, rest.z - lift)
 }

@@ -56,7 +56,7 @@ pub struct HeadingLaw {
 
 /// How the desired frame moves, seen from the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct FrameMotion {
     /// f, rad/s.
     pub rate: Vector3<f32>,
     /// (R~^T omega_d')_3, rad/s^2.
@@ -84,8 +84,8 @@ impl HeadingLaw {
     /// The acceleration fed forward, rad/s^2, for omega.
     #[must_use]
     #[inline(always)] // see position.rs
-    pub fn forward(&self, seen: &Seen, velocity: &Vector3<f32>) -> f32 {
-        let Seen { rate, acceleration } = seen;
+    pub fn forward(&self, seen: &FrameMotion, velocity: &Vector3<f32>) -> f32 {
+        let FrameMotion { rate, acceleration } = seen;
         acceleration - (velocity.x * rate.y - velocity.y * rate.x)
     }
 
@@ -94,7 +94,7 @@ impl HeadingLaw {
     #[must_use]
     #[inline(always)]
     pub fn torque(&self, angle: f32, rate_error: f32, forward: f32, velocity: &Vector3<f32>, room: f32) -> f32 {
-        let braked = math::greater(BRAKED_SHARE * room, self.acceleration * self.inertia);
+        let braked = math::max(BRAKED_SHARE * room, self.acceleration * self.inertia);
         let braking = self.braking * self.inertia / braked;
         let slowed = math::sqrt(1.0 + angle.abs() * braking + angle * angle * self.cruising);
         let wanted = forward - self.damping * (rate_error + self.approach * angle / slowed);
@@ -106,7 +106,7 @@ impl HeadingLaw {
     #[must_use]
     #[inline(always)]
     pub fn braking(&self, torque: f32, rate_error: f32) -> f32 {
-        let spin = math::between(rate_error.abs() * self.per_spin - 1.0, 0.0, 1.0);
-        if torque * rate_error < 0.0 { math::within(torque, spin * self.inertia * self.acceleration) } else { 0.0 }
+        let spin = math::clamp(rate_error.abs() * self.per_spin - 1.0, 0.0, 1.0);
+        if torque * rate_error < 0.0 { math::saturate(torque, spin * self.inertia * self.acceleration) } else { 0.0 }
     }
 }

@@ -48,7 +48,7 @@ impl Learning {
     /// `acted` the mean wrench as commanded, N and N m.
     #[must_use]
     #[inline(always)] // likewise: see position.rs
-    pub fn learnt(
+    pub fn updated(
         &self,
         memory: &Memory,
         state: &State,
@@ -61,15 +61,15 @@ impl Learning {
             return *averages;
         };
         let rates = [&last.angular_velocity, &state.angular_velocity];
-        if memory.blind > 0 {
+        if memory.without_velocity > 0 {
             cold_path();
             let acted = Vector3::new(acted.y, acted.z, acted.w) * averages.scale.scale;
-            let torque = self.torque.averaged(&averages.torque, &self.torque.observed(rates, &acted));
+            let torque = self.torque.filtered(&averages.torque, &self.torque.observed(rates, &acted));
             return Averages { torque, ..*averages };
         }
         let velocities = [&last.velocity, &state.velocity];
-        let differed = self.force.differed(velocities);
-        let made = self.force.made(differed, velocities);
+        let differed = self.force.mean_acceleration(velocities);
+        let made = self.force.driven_acceleration(differed, velocities);
         let turned = (state.angular_velocity - last.angular_velocity).norm_squared();
         let moves = made.norm_squared() < ACCELERATION_MAX_M_PER_S2 * ACCELERATION_MAX_M_PER_S2;
         if !(moves & (turned < RATE_CHANGE_MAX_RAD_PER_S * RATE_CHANGE_MAX_RAD_PER_S)) {
@@ -78,20 +78,20 @@ impl Learning {
         let felt = measured.usable_acceleration();
         let felt = felt.map(|felt| self.sensors.acceleration(felt, &differed, &averages.offset));
         let (made, offset) = felt.map_or((made, averages.offset), |[acceleration, offset]| {
-            (self.force.made(acceleration, velocities), offset)
+            (self.force.driven_acceleration(acceleration, velocities), offset)
         });
         let commanded = (last.thrust_axis + axis) * (0.5 * self.per_mass * acted.x);
-        let scale = self.scale.learnt(&averages.scale, &made, &commanded);
-        let force = self.force.averaged(&averages.force, &(made - commanded * scale.scale));
+        let scale = self.scale.updated(&averages.scale, &made, &commanded);
+        let force = self.force.filtered(&averages.force, &(made - commanded * scale.scale));
         let torque = Vector3::new(acted.y, acted.z, acted.w) * scale.scale;
         let torque = self.torque.observed(rates, &torque);
-        Averages { force, scale, torque: self.torque.averaged(&averages.torque, &torque), offset }
+        Averages { force, scale, torque: self.torque.filtered(&averages.torque, &torque), offset }
     }
 
     /// The averages cut to their levels.
     #[must_use]
-    pub fn believed(&self, averages: &Averages) -> Estimates {
+    pub fn estimates(&self, averages: &Averages) -> Estimates {
         let Averages { force, torque, scale, .. } = averages;
-        Estimates { force: self.force.believed(force), torque: self.torque.estimate(torque), scale: scale.scale }
+        Estimates { force: self.force.estimate(force), torque: self.torque.estimate(torque), scale: scale.scale }
     }
 }

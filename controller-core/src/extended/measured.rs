@@ -4,8 +4,8 @@
 //! |---|---|
 //! | [`Measured::acceleration`] | A, the mean of R f - g e3, f an accelerometer's specific force |
 //! | [`Sensors::acceleration`] | v' = A - B; B += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) (A - B - (v_k - v_(k-1)) / h) |
-//! | [`Sensors::beside`] | e = W - W_c - E: how the rotors turned beside the model of their commands |
-//! | [`Sensors::beside`] | E += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) e |
+//! | [`Sensors::quick_difference`] | e = W - W_c - E: how the rotors turned beside the model of their commands |
+//! | [`Sensors::quick_difference`] | E += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) e |
 //!
 //! W is the mean wrench by the rotors' speeds, W_c the model's. Sensors say what is quick, states and commands what
 //! lasts: a bias or a tilt that nobody knows of moves no vehicle, and rotors that turn too slowly for good show in the
@@ -59,7 +59,7 @@ impl Sensors {
     #[must_use]
     pub fn new(vehicle: &Vehicle, limits: &Limits, period: f32) -> Self {
         let thrust = THRUSTS_MAX * limits.thrust_max;
-        let radius = 2.0 * math::sqrt(math::greater(vehicle.inertia.x, vehicle.inertia.y) / vehicle.mass);
+        let radius = 2.0 * math::sqrt(math::max(vehicle.inertia.x, vehicle.inertia.y) / vehicle.mass);
         let per_torque = 1.0 / (thrust * radius);
         Self {
             averaging: -math::exp_m1(-OFFSET_BANDWIDTH_PER_S * f64::from(period)) as f32,
@@ -83,7 +83,7 @@ impl Sensors {
     /// e, and E with it, for a wrench that was `measured` while the model has `acted` and E was `lasting`, N and N m.
     /// The first interval starts E. None for a wrench out of range.
     #[must_use]
-    pub fn beside(
+    pub fn quick_difference(
         &self,
         measured: &Wrench,
         acted: &Vector4<f32>,

@@ -149,9 +149,9 @@ impl Extended {
         let all = rotors.iter().zip(rotors.pseudo_inverse());
         let sizes = all.map(|(rotor, row)| {
             let parts = (row.y.abs() * roll + row.z.abs() * pitch) / row.x;
-            math::greater_f64(f64::from(rotor.thrust_max) / row.x, 0.5 * parts)
+            math::max_f64(f64::from(rotor.thrust_max) / row.x, 0.5 * parts)
         });
-        let greatest = sizes.fold(0.0, math::greater_f64);
+        let greatest = sizes.fold(0.0, math::max_f64);
         let least = Self::FLOOR_MARGIN_SHARE_MIN * self.scale_greatest * greatest as f32;
         require(self.floor_margin >= least, "gains.floor_margin", Reason::Below(least))
     }

@@ -17,12 +17,12 @@
 //! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`super::saturation`]: radial across |
 //! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical gets the part that the force does not use |
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across gets the part that the vertical does not use |
-//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
+//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::direction_limiter`] may change the drive |
 //!
 //! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide
 //! as that allows. Where d leaves less than the least level, 0.3 m/s^2, the least level holds and ubar may be outside;
-//! [`super::turning`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only that s is
-//! monotone, has a slope of at most one and the sign of its argument.
+//! [`super::direction_limiter`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only
+//! that s is monotone, has a slope of at most one and the sign of its argument.
 
 use super::approach::Approach;
 use super::parameters::ExtendedParameters;
@@ -64,7 +64,7 @@ const FILTER_REACH: f32 = 2.0;
 
 /// The errors that the feedback sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Errors {
+pub struct PositionErrors {
     /// p~, m.
     pub position: Vector3<f32>,
     /// v~, m/s.
@@ -79,7 +79,7 @@ pub struct Errors {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionFeedback {
     /// What it answers.
-    pub errors: Errors,
+    pub errors: PositionErrors,
     /// ubar, m/s^2.
     pub feedback: Vector3<f32>,
     /// c', m/s^3.
@@ -92,7 +92,7 @@ pub struct PositionFeedback {
 
 /// The greatest levels of feedback, whatever the envelope leaves, m/s^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Most {
+pub struct FeedbackLimits {
     /// Upwards.
     pub up: f32,
     /// Downwards.
@@ -101,9 +101,9 @@ pub struct Most {
     pub across: f32,
 }
 
-impl Most {
+impl FeedbackLimits {
     /// What the envelope leaves.
-    pub const ALL: Self = Self::each(f32::MAX);
+    pub const UNLIMITED: Self = Self::each(f32::MAX);
 
     /// The same every way.
     #[must_use]
@@ -196,7 +196,7 @@ impl PositionLaw {
         filters: &Filters,
         force: &Vector3<f32>,
         greatest: f32,
-        most: &Most,
+        most: &FeedbackLimits,
     ) -> PositionFeedback {
         let errors = self.errors(state, reference, filters, force);
         self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, greatest, most))
@@ -205,7 +205,7 @@ impl PositionLaw {
     /// The same with a demand in place of feedback: `wanted`, m/s^2, cut to the envelope.
     #[must_use]
     #[inline(always)] // likewise
-    pub fn demanded(
+    pub fn feedback_on_demand(
         &self,
         state: &State,
         reference: &Reference,
@@ -220,7 +220,13 @@ impl PositionLaw {
     /// p~, v~, z_1 and z_2.
     #[must_use]
     #[inline(always)]
-    pub fn errors(&self, state: &State, reference: &Reference, filters: &Filters, force: &Vector3<f32>) -> Errors {
+    pub fn errors(
+        &self,
+        state: &State,
+        reference: &Reference,
+        filters: &Filters,
+        force: &Vector3<f32>,
+    ) -> PositionErrors {
         let Filters { command: c, intermediate: x, smoothed: y } = filters;
         let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
         let [of_command, of_intermediate, of_smoothed] = self.lags;
@@ -230,12 +236,12 @@ impl PositionLaw {
         let mut z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
         z_1.z = p.z + v.z * of_smoothed;
         z_2.z = v.z + y_d.z * of_smoothed;
-        Errors { position: p, velocity: v, z_1, z_2 }
+        PositionErrors { position: p, velocity: v, z_1, z_2 }
     }
 
     /// Passes ubar, `feedback`, on to the filters.
     #[inline(always)]
-    fn passed_on(&self, errors: &Errors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
+    fn passed_on(&self, errors: &PositionErrors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
         let Filters { intermediate: x, smoothed: y, .. } = filters;
         let smoothed = y + (feedback - y) * self.smoothing;
         PositionFeedback {
@@ -250,14 +256,14 @@ impl PositionLaw {
     /// How far ubar may reach across, m/s^2, where `lift` is g + ubar_z.
     #[inline(always)]
     fn reach(&self, lift: f32, greatest: f32) -> f32 {
-        let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
-        math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left))
+        let thrust_left = math::sqrt(math::max(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
+        math::min(self.a_across, math::min(lift * self.tangent, thrust_left))
     }
 
     /// A demand cut to the envelope: the vertical first, then what it leaves across.
     fn within(&self, wanted: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
-        let vertical = math::greater(math::lesser(wanted.z, greatest - self.gravity), -self.a_down);
-        let reach = math::greater(self.reach(self.gravity + vertical, greatest), 0.0);
+        let vertical = math::max(math::min(wanted.z, greatest - self.gravity), -self.a_down);
+        let reach = math::max(self.reach(self.gravity + vertical, greatest), 0.0);
         let length = math::sqrt(wanted.xy().norm_squared());
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, vertical)
@@ -277,12 +283,12 @@ impl PositionLaw {
         [z_1, z_2]: [&Vector3<f32>; 2],
         force: &Vector3<f32>,
         greatest: f32,
-        most: &Most,
+        most: &FeedbackLimits,
     ) -> Vector3<f32> {
         let [braking_across, braking_vertical] = self.braking;
-        let up = math::greater(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
-        let down = math::greater(self.a_down - force.z, LEVEL_MIN_M_PER_S2);
-        let (up, down) = (math::lesser(up, most.up), math::lesser(down, most.down));
+        let up = math::max(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
+        let down = math::max(self.a_down - force.z, LEVEL_MIN_M_PER_S2);
+        let (up, down) = (math::min(up, most.up), math::min(down, most.down));
         // Above the reference the vehicle descends, and what pushes up brakes it.
         let (approach, braking) = if z_1.z > 0.0 { (&self.approach_down, up) } else { (&self.approach_up, down) };
         let closing = z_1.z * approach.factor(z_1.z * z_1.z, braking_vertical * braking);
@@ -292,8 +298,8 @@ impl PositionLaw {
 
         let reach = self.reach(self.gravity + vertical, greatest);
         let (across, wind) = (z_1.xy(), force.xy());
-        let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_MIN_M_PER_S2);
-        let level = math::lesser(level, most.across);
+        let level = math::max(reach - math::sqrt(wind.norm_squared()), LEVEL_MIN_M_PER_S2);
+        let level = math::min(level, most.across);
         let closing = across * self.approach_across.factor(across.norm_squared(), braking_across * level);
         let wanted = (z_2.xy() + closing) * self.k_v_across;
         let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;
@@ -311,14 +317,14 @@ impl PositionLaw {
         let near = intermediate.amax() <= farthest;
         if !near {
             cold_path();
-            intermediate = intermediate.map(|x| math::within(x, farthest));
+            intermediate = intermediate.map(|x| math::saturate(x, farthest));
             drive = (intermediate - x) / self.period;
         }
         let mut command = c + ((x - c) * self.towards + drive * self.ramp);
         if command.z < -self.a_down {
             cold_path();
             command.z = -self.a_down;
-            intermediate.z = math::greater(intermediate.z, -self.a_down);
+            intermediate.z = math::max(intermediate.z, -self.a_down);
         }
         Filters { command, intermediate, smoothed: *smoothed }
     }

@@ -9,6 +9,7 @@ mod attitude;
 mod budget;
 mod constants;
 mod defaults;
+mod direction_limiter;
 mod estimates;
 pub(crate) mod example;
 mod fallback;
@@ -17,7 +18,6 @@ mod late;
 mod position;
 mod saturation;
 mod thrust_range;
-mod turning;
 
 /// Xorshift, for tests that repeat to the bit.
 pub(crate) struct Random(pub u64);

@@ -63,20 +63,20 @@ impl ThrustRange {
     /// about the tilt's axes that the budget allows and the thrust scale s; and how much of tau_3 either way there is.
     #[must_use]
     #[inline(always)] // see position.rs
-    pub fn admitted(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
+    pub fn limited(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
         let (mut least, mut most) = (self.margin, self.thrust_max);
         for part in &self.rotors {
             let tilted = part.per_torque.xy().dot(tilt);
-            least = math::greater(least, scale * part.least + (self.margin - tilted));
+            least = math::max(least, scale * part.least + (self.margin - tilted));
             // Of the rotor's greatest, what tilting takes, or tilting and braking together if that is more.
-            let taken = math::greater(tilted, tilted + part.per_torque.z * braking);
-            most = math::lesser(most, scale * part.greatest - (taken + self.margin));
+            let taken = math::max(tilted, tilted + part.per_torque.z * braking);
+            most = math::min(most, scale * part.greatest - (taken + self.margin));
         }
         // A thrust or a yaw torque that is no number becomes the least one.
-        let thrust = math::lesser(math::greater(least, most), math::greater(least, thrust));
+        let thrust = math::min(math::max(least, most), math::max(least, thrust));
         let [least, most] = self.yaw(thrust, tilt, scale);
-        let torque = Vector3::new(tilt.x, tilt.y, math::lesser(most, math::greater(least, yaw)));
-        (Wrench { thrust, torque }, math::lesser(most, -least))
+        let torque = Vector3::new(tilt.x, tilt.y, math::min(most, math::max(least, yaw)));
+        (Wrench { thrust, torque }, math::min(most, -least))
     }
 
     /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is
@@ -89,10 +89,10 @@ impl ThrustRange {
         let (mut floor, mut whole) = (self.margin, self.margin);
         for part in &self.rotors {
             let least = least(part);
-            floor = math::greater(floor, least);
-            whole = math::greater(whole, least + raised(part));
+            floor = math::max(floor, least);
+            whole = math::max(whole, least + raised(part));
         }
-        let most = math::greater(thrust, floor);
+        let most = math::max(thrust, floor);
         if whole <= most {
             return 1.0;
         }
@@ -101,7 +101,7 @@ impl ThrustRange {
         for part in &self.rotors {
             let (least, raised) = (least(part), raised(part));
             if least + raised > most {
-                share = math::lesser(share, (most - least) / raised);
+                share = math::min(share, (most - least) / raised);
             }
         }
         share
@@ -121,10 +121,10 @@ impl ThrustRange {
             let [a, b] = [scale * part.least + self.margin - share, scale * part.greatest - self.margin - share]
                 .map(|left| left / per_torque);
             let (low, high) = if per_torque > 0.0 { (a, b) } else { (b, a) };
-            least = math::greater(least, low);
-            most = math::lesser(most, high);
+            least = math::max(least, low);
+            most = math::min(most, high);
         }
-        [math::lesser(least, 0.0), math::greater(most, 0.0)]
+        [math::min(least, 0.0), math::max(most, 0.0)]
     }
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
@@ -132,7 +132,7 @@ impl ThrustRange {
     #[inline(always)]
     pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
-        least.fold(self.margin, math::greater)
+        least.fold(self.margin, math::max)
     }
 
     /// C(tau), N, likewise; at most T_max.
@@ -141,6 +141,6 @@ impl ThrustRange {
     pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let greatest =
             self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));
-        greatest.fold(self.thrust_max, math::lesser)
+        greatest.fold(self.thrust_max, math::min)
     }
 }

@@ -69,7 +69,7 @@ impl ThrustScale {
     /// The estimate after an interval in which `made` was observed and `commanded` acted, both m/s^2, world frame.
     #[must_use]
     #[inline(always)] // see position.rs
-    pub fn learnt(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
+    pub fn updated(&self, estimate: &ScaleEstimate, made: &Vector3<f32>, commanded: &Vector3<f32>) -> ScaleEstimate {
         let scale = estimate.scale;
         let Some([slow_made, slow_commanded]) = estimate.slow else {
             return ScaleEstimate { slow: Some([*made, *commanded]), scale };
@@ -81,7 +81,7 @@ impl ThrustScale {
         let step = self.gain * (made.dot(&commanded) - scale * square) / (square + self.least_square);
         ScaleEstimate {
             slow: Some([slow_made + made * self.slow, slow_commanded + commanded * self.slow]),
-            scale: math::between(scale + step, self.least, self.greatest),
+            scale: math::clamp(scale + step, self.least, self.greatest),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! | here | equation |
 //! |---|---|
 //! | [`TorqueBias::observed`] | J (omega_k - omega_(k-1)) / h + omega x J omega - tau, with omega and tau the means over the interval |
-//! | [`TorqueBias::averaged`] | the same averaged with the bandwidth L_tau |
+//! | [`TorqueBias::filtered`] | the same averaged with the bandwidth L_tau |
 //! | [`TorqueBias::estimate`] | each component cut to its level |
 //!
 //! The estimate is subtracted from the torque; nothing else depends on it, so that no derivative of it is needed.
@@ -57,13 +57,13 @@ impl TorqueBias {
 
     /// Takes the [observed](Self::observed) torque into the `average`, N m.
     #[must_use]
-    pub fn averaged(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
+    pub fn filtered(&self, average: &Vector3<f32>, observed: &Vector3<f32>) -> Vector3<f32> {
         average + (observed - average).component_mul(&self.averaging)
     }
 
     /// The average cut to its levels, N m.
     #[must_use]
     pub fn estimate(&self, average: &Vector3<f32>) -> Vector3<f32> {
-        average.zip_map(&self.level, math::within)
+        average.zip_map(&self.level, math::saturate)
     }
 }

@@ -15,8 +15,8 @@
 //!
 //! over powers of T_b. The head is steered, so p is kept as what it is ahead of the head by.
 
-use super::envelope::{Envelope, Moving};
-use super::stream::{Point, Sought};
+use super::envelope::{Envelope, HeadMotion};
+use super::stream::{Point, StreamTarget};
 use crate::math;
 use nalgebra::Vector3;
 
@@ -35,7 +35,7 @@ const DURATION_FACTOR: f32 = 1.15;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Watched {
     pub ticks: u32,
-    /// f to f''', SI units, and the first two with the vertical as [`super::direct`] counts it.
+    /// f to f''', SI units, and the first two with the vertical as [`super::stream_follower`] counts it.
     most: [f32; 4],
     flat: [f32; 2],
     /// The share of the bounds.
@@ -55,13 +55,13 @@ impl Watched {
     pub fn with(&self, error: &Point, flat: [f32; 2], used: f32) -> Self {
         let Point { position, velocity, acceleration, jerk, .. } = error;
         let [f, f1, f2, f3] = self.most;
-        let length = |most: f32, y: &Vector3<f32>| math::greater(most, math::sqrt(y.norm_squared()));
+        let length = |most: f32, y: &Vector3<f32>| math::max(most, math::sqrt(y.norm_squared()));
         let most = [length(f, position), length(f1, velocity), length(f2, acceleration), length(f3, jerk)];
         let ([across, along], [now, moving]) = (self.flat, flat);
         Self {
             most,
-            flat: [math::greater(across, now), math::greater(along, moving)],
-            used: math::greater(self.used, used),
+            flat: [math::max(across, now), math::max(along, moving)],
+            used: math::max(self.used, used),
             ..self.later()
         }
     }
@@ -79,7 +79,7 @@ impl Watched {
             let jerk = along_x((3.0 * b1 * f2 + (3.0 * b2 * f1 + b3 * f * x) * x) * x);
             let snap = along_x((4.0 * b1 * f3 + (6.0 * b2 * f2 + (4.0 * b3 * f1 + b4 * f * x) * x) * x) * x);
             let speed = math::sqrt(envelope.share_of_speed(&speed));
-            math::greater(envelope.used([&acceleration, &jerk, &snap]), speed) <= left
+            math::max(envelope.used([&acceleration, &jerk, &snap]), speed) <= left
         };
         let mut duration = span;
         while !fits(duration) {
@@ -98,7 +98,7 @@ impl Watched {
             elapsed: 0.0,
             duration,
             ahead: zero,
-            moving: Moving { velocity: zero, acceleration: zero, difference: zero },
+            moving: HeadMotion { velocity: zero, acceleration: zero, difference: zero },
         })
     }
 }
@@ -111,18 +111,18 @@ pub(super) struct Blend {
     duration: f32,
     /// What p is ahead of the head by, m, and how that moves.
     ahead: Vector3<f32>,
-    moving: Moving,
+    moving: HeadMotion,
 }
 
 impl Blend {
     /// beta to beta''''.
     fn step(&self) -> [f32; 5] {
         let x = 1.0 / self.duration;
-        let u = math::between(self.elapsed * x, 0.0, 1.0);
+        let u = math::clamp(self.elapsed * x, 0.0, 1.0);
         let (q, r) = (u * (1.0 - u), 1.0 - 2.0 * u);
         let rate = x * x;
         // From the nearer end: the sum rounds less there.
-        let w = math::lesser(u, 1.0 - u);
+        let w = math::min(u, 1.0 - u);
         let square = w * w;
         let risen = square * square * w * (126.0 + w * (-420.0 + w * (540.0 + w * (-315.0 + w * 70.0))));
         [
@@ -135,10 +135,10 @@ impl Blend {
     }
 
     /// T, with the `head` at hand and the averages' `snap`, m/s^2 per tick squared.
-    pub fn target(&self, head: &Moving, sought: &Sought, snap: &Vector3<f32>, period: f32) -> Sought {
+    pub fn target(&self, head: &HeadMotion, sought: &StreamTarget, snap: &Vector3<f32>, period: f32) -> StreamTarget {
         let [b, b1, b2, b3, b4] = self.step();
-        let (per_tick, Sought { point, error }) = (1.0 / period, sought);
-        let Moving { velocity, acceleration, difference } = &self.moving;
+        let (per_tick, StreamTarget { point, error }) = (1.0 / period, sought);
+        let HeadMotion { velocity, acceleration, difference } = &self.moving;
         let jerk = difference * per_tick;
         let snap = snap * (per_tick * per_tick);
         let f = error.position - self.ahead;
@@ -161,7 +161,7 @@ impl Blend {
             snap: snap + f4 * b + f3 * (4.0 * b1) + f2 * (6.0 * b2) + f1 * (4.0 * b3) + f * b4,
             rate: point.rate * b,
         };
-        Sought { point, error }
+        StreamTarget { point, error }
     }
 
     /// A tick later, in which p's snap was greater than the head's by `snap`, m/s^2 per tick squared.
@@ -172,7 +172,7 @@ impl Blend {
         Self {
             elapsed: self.elapsed + period,
             ahead: self.ahead + (self.moving.velocity + velocity) * (0.5 * period),
-            moving: Moving { velocity, acceleration, difference },
+            moving: HeadMotion { velocity, acceleration, difference },
             ..*self
         }
     }

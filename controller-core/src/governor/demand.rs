@@ -14,7 +14,7 @@ const MEMORY_S: f32 = 10.0;
 
 /// What a stream asked, and how far off it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Demand {
+pub(super) struct StreamDemand {
     /// The greatest f^24 of the present and of the last while, and how long the present one has lasted, s.
     present: f32,
     last: f32,
@@ -25,13 +25,13 @@ pub(super) struct Demand {
 
 /// How a stream is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Following {
+pub struct FollowingReport {
     /// How far the reference is from the stream, m.
     pub off: f32,
     demand: f32,
 }
 
-impl Demand {
+impl StreamDemand {
     /// No stream.
     pub const NONE: Self = Self { present: 0.0, last: 0.0, lasted: 0.0, off: 0.0 };
 
@@ -41,29 +41,29 @@ impl Demand {
         let cubed = |x: f32| x * x * x;
         let squared = |x: f32| x * x;
         let most = squared(SLOWDOWN_MAX);
-        let v = math::lesser(speed, most);
-        let a = math::lesser(acceleration, squared(most));
-        let j = math::lesser(jerk, cubed(most));
-        let s = math::lesser(snap, squared(squared(most)));
+        let v = math::min(speed, most);
+        let a = math::min(acceleration, squared(most));
+        let j = math::min(jerk, cubed(most));
+        let s = math::min(snap, squared(squared(most)));
         let greatest = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
             .into_iter()
-            .fold(0.0, math::greater);
+            .fold(0.0, math::max);
         let (present, last, lasted) = if self.lasted > MEMORY_S {
             (greatest, self.present, 0.0)
         } else {
-            (math::greater(self.present, greatest), self.last, self.lasted + period)
+            (math::max(self.present, greatest), self.last, self.lasted + period)
         };
         Self { present, last, lasted, off }
     }
 
     /// What there is to say of it, if there is a stream.
-    pub fn following(&self) -> Option<Following> {
-        let demand = math::greater(self.present, self.last);
-        (demand > 0.0).then_some(Following { off: self.off, demand })
+    pub fn following(&self) -> Option<FollowingReport> {
+        let demand = math::max(self.present, self.last);
+        (demand > 0.0).then_some(FollowingReport { off: self.off, demand })
     }
 }
 
-impl Following {
+impl FollowingReport {
     /// How many times slower the stream of the last seconds would have to be to keep the bounds; one or less where it
     /// keeps them.
     #[must_use]

@@ -48,7 +48,7 @@ impl Cylinder {
     /// The square of the share that `y` takes of it.
     fn share(&self, y: &Vector3<f32>) -> f32 {
         let share = |square: f32, bound: f32| square / (bound * bound);
-        math::greater(share(y.xy().norm_squared(), self.horizontal), share(y.z * y.z, self.vertical))
+        math::max(share(y.xy().norm_squared(), self.horizontal), share(y.z * y.z, self.vertical))
     }
 
     /// The same with other measures.
@@ -68,13 +68,13 @@ pub(super) struct Bounds {
 
 /// The head at hand: m/s, m/s^2, m/s^2 per tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moving {
+pub(super) struct HeadMotion {
     pub velocity: Vector3<f32>,
     pub acceleration: Vector3<f32>,
     pub difference: Vector3<f32>,
 }
 
-impl Moving {
+impl HeadMotion {
     /// A tick later.
     fn after(&self, snap: &Vector3<f32>, period: f32) -> Self {
         let difference = self.difference + snap;
@@ -100,14 +100,14 @@ pub(super) struct Envelope {
 
 /// A way out: a snap for some ticks, then braking, then a to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WayOut {
+pub(super) struct Retreat {
     snap: Vector3<f32>,
     ticks: u32,
     /// Whether braking has ended.
     braked: bool,
 }
 
-impl WayOut {
+impl Retreat {
     /// Braking at once.
     const STRAIGHT: Self = Self { snap: Vector3::new(0.0, 0.0, 0.0), ticks: 0, braked: false };
 }
@@ -145,7 +145,7 @@ impl Envelope {
 
     /// The greatest share of a bound that acceleration, jerk and snap take, SI units.
     pub fn used(&self, derivatives: [&Vector3<f32>; 3]) -> f32 {
-        math::sqrt(self.shares(derivatives).into_iter().fold(0.0, math::greater))
+        math::sqrt(self.shares(derivatives).into_iter().fold(0.0, math::max))
     }
 
     /// The squares of the shares of the bounds that acceleration, jerk and snap take, SI units.
@@ -180,10 +180,10 @@ impl Envelope {
     }
 
     /// A way out, if one is known.
-    pub fn way_out(&self, head: &Moving) -> Option<WayOut> {
-        let Moving { velocity: v, acceleration: a, difference: d } = head;
+    pub fn retreat(&self, head: &HeadMotion) -> Option<Retreat> {
+        let HeadMotion { velocity: v, acceleration: a, difference: d } = head;
         if let Some(reach) = self.braked(a, d) {
-            return self.is_slow(v, &[a, &reach], &reach).then_some(WayOut::STRAIGHT);
+            return self.is_slow(v, &[a, &reach], &reach).then_some(Retreat::STRAIGHT);
         }
         let inwards = -Vector3::new(a.x, a.y, 0.0);
         let snap = unit(&(unit(&inwards) * TURN_INWARDS_WEIGHT - unit(d) * TURN_BACK_WEIGHT))
@@ -194,7 +194,7 @@ impl Envelope {
         let inside =
             d.norm_squared() <= self.jerk * self.jerk && self.acceleration.holds(a) && self.acceleration.holds(&middle);
         let reach = self.braked(&turned, &(d + snap * n)).filter(|_| inside)?;
-        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(WayOut {
+        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(Retreat {
             snap,
             ticks: n as u32,
             braked: false,
@@ -202,11 +202,11 @@ impl Envelope {
     }
 
     /// The snap nearest to `wanted` that leaves a way out, and that way; with the way `out` in hand.
-    pub fn step(&self, head: &Moving, wanted: &Vector3<f32>, out: &WayOut) -> (Vector3<f32>, WayOut) {
+    pub fn step(&self, head: &HeadMotion, wanted: &Vector3<f32>, out: &Retreat) -> (Vector3<f32>, Retreat) {
         let mut snap = self.limited(wanted);
         let (fallback, after) = self.follow(head, out);
         for _ in 0..HALVINGS_MAX {
-            if let Some(way) = self.way_out(&head.after(&snap, self.period)) {
+            if let Some(way) = self.retreat(&head.after(&snap, self.period)) {
                 return (snap, way);
             }
             snap = (snap + fallback) * 0.5;
@@ -215,10 +215,10 @@ impl Envelope {
     }
 
     /// A tick of a way out, and what is left of it. It ends at rest from acceleration, and stays there.
-    pub fn follow(&self, head: &Moving, out: &WayOut) -> (Vector3<f32>, WayOut) {
-        let Moving { acceleration: a, difference: d, .. } = head;
+    pub fn follow(&self, head: &HeadMotion, out: &Retreat) -> (Vector3<f32>, Retreat) {
+        let HeadMotion { acceleration: a, difference: d, .. } = head;
         if out.ticks > 0 {
-            return (out.snap, WayOut { ticks: out.ticks - 1, ..*out });
+            return (out.snap, Retreat { ticks: out.ticks - 1, ..*out });
         }
         let braked = out.braked || *d == Vector3::zeros();
         let step = BRAKING_SHARE * self.snap;
@@ -229,7 +229,7 @@ impl Envelope {
             let fastest = (step * approach_speed(distance)).min(BRAKING_SHARE * self.jerk);
             a * (-fastest / (distance * step)) - d
         };
-        (self.limited(&snap), WayOut { braked, ..*out })
+        (self.limited(&snap), Retreat { braked, ..*out })
     }
 
     /// A snap brought down to Q along its own direction.

@@ -40,7 +40,12 @@ impl Lead {
     pub const NONE: Self = Self { delay: 0.0, variance: 0.0, acceleration: 0.0 };
 
     /// How far ahead of where a point was `age` seconds ago the command must be (m), and how fast it must move (m/s).
-    pub fn of(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>, age: f32) -> (Vector3<f32>, Vector3<f32>) {
+    pub fn ahead_and_velocity(
+        &self,
+        velocity: &Vector3<f32>,
+        acceleration: &Vector3<f32>,
+        age: f32,
+    ) -> (Vector3<f32>, Vector3<f32>) {
         let lead = self.delay + age;
         let spread = 0.5 * (lead * lead - self.variance);
         let (v, a) = (velocity.xy(), acceleration.xy());

@@ -45,12 +45,12 @@ impl Cylinder {
 
 /// `y` as single precision has it.
 fn single(y: &Vector3<i64>) -> Vector3<f32> {
-    y.map(math::single)
+    y.map(math::i64_to_f32)
 }
 
 /// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
 fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
-    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::f32_to_i64) }
 }
 
 /// The law, in length units and ticks.

@@ -37,7 +37,7 @@ pub enum Motion {
 
 /// Which way to point. World frame, counter-clockwise from x seen from above.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Turn {
+pub enum HeadingSetpoint {
     /// As commanded before: an angle on the way is still turned to, a rate still runs out.
     Keep,
     /// Turn to an angle, the shorter way round; any real number of radians is an angle.
@@ -57,7 +57,7 @@ pub struct Setpoint {
     /// Position, velocity, or both with feed-forward.
     pub motion: Motion,
     /// Heading.
-    pub turn: Turn,
+    pub turn: HeadingSetpoint,
 }
 
 /// A setpoint taken apart.
@@ -93,9 +93,9 @@ impl Setpoint {
             Motion::Mixed { position, velocity } => (position, velocity, still),
         };
         let turn = match self.turn {
-            Turn::Keep => None,
-            Turn::Angle { angle, rate } => Some((Some(angle), rate)),
-            Turn::Rate(rate) => Some((None, rate)),
+            HeadingSetpoint::Keep => None,
+            HeadingSetpoint::Angle { angle, rate } => Some((Some(angle), rate)),
+            HeadingSetpoint::Rate(rate) => Some((None, rate)),
         };
         let (angle, rate) = turn.unwrap_or_default();
         check_vectors(&[

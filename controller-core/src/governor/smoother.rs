@@ -16,7 +16,7 @@
 use super::limits::LAST_AVERAGE_MAX_TICKS;
 use super::steady::{Outcome, Steady};
 use super::windows::Windows;
-use crate::math::{single, whole};
+use crate::math::{f32_to_i64, i64_to_f32};
 use nalgebra::Vector3;
 
 /// Position and derivatives at a knot of the spline: of one axis, or of all three.
@@ -94,20 +94,20 @@ impl Axis {
         *first += *second;
         self.part += *first - 2 * *second + *third;
         // Whole units go over to the place. How many need not be exact: what is left goes over in the next ticks.
-        let units = whole(single(self.part) * scales.per_product);
+        let units = f32_to_i64(i64_to_f32(self.part) * scales.per_product);
         self.place += units;
         self.part -= units * scales.product;
     }
 
     fn knot(&self, scales: &Scales) -> Derivatives<f32> {
-        let [first, second, third, fourth] = self.difference.map(single);
+        let [first, second, third, fourth] = self.difference.map(i64_to_f32);
         let here = second - third;
         // The central third difference.
         let around = third - 0.5 * fourth;
-        let part = (single(self.part) + 0.25 * here + fourth / 120.0) * scales.per_product;
+        let part = (i64_to_f32(self.part) + 0.25 * here + fourth / 120.0) * scales.per_product;
         let Derivatives { position, velocity, acceleration, jerk, snap } = &scales.knot;
         Derivatives {
-            position: single(self.place) * position + part * position,
+            position: i64_to_f32(self.place) * position + part * position,
             velocity: (first - second - 0.5 * here + around / 12.0) * velocity,
             acceleration: (here + fourth / 6.0) * acceleration,
             jerk: around * jerk,
@@ -184,7 +184,7 @@ impl Smoother {
     /// ticks.
     pub fn steady(&self, windows: &Windows) -> [Steady; 3] {
         self.axes.map(|Axis { difference: [first, second, ..], place, part, .. }| {
-            Steady::of(&Outcome { place, part, first, second }, windows)
+            Steady::from_outcome(&Outcome { place, part, first, second }, windows)
         })
     }
 

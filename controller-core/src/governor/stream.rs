@@ -52,7 +52,7 @@ pub(super) struct Point {
 
 /// A stream's point, and what it is ahead of the head by; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sought {
+pub(super) struct StreamTarget {
     pub point: Point,
     pub error: Point,
 }
@@ -80,7 +80,7 @@ impl Stream {
         // What jerk and snap were other than expected.
         let missing = (acceleration - expected.acceleration) / time;
         let is_known = self.change != Vector3::zeros();
-        let bent = if is_known { missing / math::greater(time, SNAP_SETTLING_S) } else { Vector3::zeros() };
+        let bent = if is_known { missing / math::max(time, SNAP_SETTLING_S) } else { Vector3::zeros() };
         let jerk = expected.jerk + missing + bent * (0.5 * time);
         // Turned as far as turning explains the jerk.
         let turn = math::sin_cos_turns(swing(expected.rate * time));

@@ -28,7 +28,7 @@ impl Enclosure {
     /// From the least to the greatest of some, moved outwards by one number.
     fn around(ends: [f64; 4]) -> Self {
         let [first, rest @ ..] = ends;
-        Self::outwards(rest.into_iter().fold(first, math::lesser_f64), rest.into_iter().fold(first, math::greater_f64))
+        Self::outwards(rest.into_iter().fold(first, math::min_f64), rest.into_iter().fold(first, math::max_f64))
     }
 
     /// Itself, if it has both ends.
@@ -40,7 +40,7 @@ impl Enclosure {
     fn square(self) -> Self {
         let magnitude = self.abs();
         let Self { lower, upper } = magnitude * magnitude;
-        Self { lower: math::greater_f64(lower, 0.0), upper }
+        Self { lower: math::max_f64(lower, 0.0), upper }
     }
 
     /// x (x^2 - p) - q at a point.
@@ -188,11 +188,11 @@ impl Real for Enclosure {
     }
 
     fn greater(self, other: Self) -> Self {
-        Self { lower: math::greater_f64(self.lower, other.lower), upper: math::greater_f64(self.upper, other.upper) }
+        Self { lower: math::max_f64(self.lower, other.lower), upper: math::max_f64(self.upper, other.upper) }
     }
 
     fn lesser(self, other: Self) -> Self {
-        Self { lower: math::lesser_f64(self.lower, other.lower), upper: math::lesser_f64(self.upper, other.upper) }
+        Self { lower: math::min_f64(self.lower, other.lower), upper: math::min_f64(self.upper, other.upper) }
     }
 
     fn abs(self) -> Self {
@@ -201,13 +201,13 @@ impl Real for Enclosure {
         } else if self.upper <= 0.0 {
             -self
         } else {
-            Self { lower: math::greater_f64(self.lower, 0.0), upper: math::greater_f64(-self.lower, self.upper) }
+            Self { lower: math::max_f64(self.lower, 0.0), upper: math::max_f64(-self.lower, self.upper) }
         }
     }
 
     fn sqrt(self) -> Self {
         let Self { lower, upper } = Self::outwards(math::sqrt_f64(self.lower), math::sqrt_f64(self.upper));
-        Self { lower: math::greater_f64(lower, 0.0), upper }.whole()
+        Self { lower: math::max_f64(lower, 0.0), upper }.whole()
     }
 
     fn sqrt_of_rounded(self) -> Self {

@@ -80,11 +80,11 @@ impl Real for f64 {
     }
 
     fn greater(self, other: Self) -> Self {
-        math::greater_f64(self, other)
+        math::max_f64(self, other)
     }
 
     fn lesser(self, other: Self) -> Self {
-        math::lesser_f64(self, other)
+        math::min_f64(self, other)
     }
 
     fn abs(self) -> Self {

@@ -7,12 +7,12 @@
 //! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT_MAX_RAD`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
 //! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT_MAX_RAD M_theta / J), or about z faster than [`YAW_RATE_SHARE_MAX`] W_max | | M_theta stops such a turn within [`TILT_MAX_RAD`]; 1.15 Omega is the frame's own |
 //! | [`Reason::Speed`] | faster than `speed` | 10 m/s | chosen; a shield's settings change it |
-//! | [`Reason::Stop`] | a place of the [`Prospect`] is outside the box | | the law would not stop inside any more |
+//! | [`Reason::Stop`] | a place of the [`StoppingForecast`] is outside the box | | the law would not stop inside any more |
 //! | [`Reason::Estimate`] | force or thrust scale at a level, held, or the force more than thrust holds, for longer than [`DOUBT_MAX_S`] | 1 s | the levels for stopping count on them |
 
 use super::Settings;
 use super::reason::Reason;
-use crate::extended::controller::Prospect;
+use crate::extended::controller::StoppingForecast;
 use crate::extended::parameters::ExtendedParameters;
 use crate::math;
 use crate::state::State;
@@ -45,7 +45,7 @@ impl Monitor {
     /// For a vehicle under the extended law.
     #[must_use]
     pub fn new(settings: &Settings, parameters: &ExtendedParameters, vehicle: &Vehicle) -> Self {
-        let inertia = math::greater(vehicle.inertia.x, vehicle.inertia.y);
+        let inertia = math::max(vehicle.inertia.x, vehicle.inertia.y);
         let rate =
             FRAME_RATE_SHARE_MAX * parameters.turn_rate + math::sqrt(2.0 * TILT_MAX_RAD * parameters.m_tilt / inertia);
         Self {
@@ -57,14 +57,14 @@ impl Monitor {
     }
 
     /// Other settings from now on.
-    pub fn confine(&mut self, settings: &Settings) {
+    pub fn set_settings(&mut self, settings: &Settings) {
         self.settings = *settings;
         self.speed = settings.speed * settings.speed;
     }
 
     /// What speaks against the policy; `doubtful`, for how long an estimate was in doubt, s.
     #[must_use]
-    pub fn against(&self, state: &State, prospect: &Prospect, doubtful: f32) -> Option<Reason> {
+    pub fn violation(&self, state: &State, prospect: &StoppingForecast, doubtful: f32) -> Option<Reason> {
         // Comparisons as they are: one with a NaN is against.
         let w = &state.angular_velocity;
         let fine = [

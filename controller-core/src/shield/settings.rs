@@ -71,13 +71,13 @@ impl Settings {
     #[must_use]
     pub fn patience(&self, hand_overs: u32) -> f32 {
         let doubled = (1_u32 << hand_overs.saturating_sub(1).min(16)) as f32;
-        math::lesser(self.patience * doubled, self.patience_greatest)
+        math::min(self.patience * doubled, self.patience_greatest)
     }
 
     /// The place nearest to `place` in the box, less a quarter of a metre.
     #[must_use]
     pub fn refuge(&self, place: &Vector3<f32>) -> Vector3<f32> {
-        let axis = |place: f32, low: f32, high: f32| math::between(place, low + REFUGE_INSET_M, high - REFUGE_INSET_M);
+        let axis = |place: f32, low: f32, high: f32| math::clamp(place, low + REFUGE_INSET_M, high - REFUGE_INSET_M);
         let (low, high) = (&self.low, &self.high);
         Vector3::new(axis(place.x, low.x, high.x), axis(place.y, low.y, high.y), axis(place.z, low.z, high.z))
     }

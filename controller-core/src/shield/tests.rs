@@ -122,7 +122,7 @@ fn the_policy_waits_twice_as_long_after_each_hand_over_and_in_the_end_for_a_pers
     let said = reasons(&mut shield, &mut law, 500, |tick| Some(if tick == 0 { NONSENSE } else { HOVER }));
     assert!(said.iter().all(|reason| *reason == Some(Reason::Demand)));
     assert_eq!(shield.hand_overs(), 5);
-    shield.ask_again();
+    shield.request_again();
     let said = reasons(&mut shield, &mut law, 1, |_| Some(HOVER));
     assert_eq!((said[0], shield.hand_overs()), (None, 0));
 }

@@ -67,7 +67,7 @@ impl Candidate {
     ) -> Result<(), Rejected> {
         self.filter.advance(time, history, settings);
         self.misses = self.misses.saturating_add(1);
-        let tested = self.filter.test(pose, settings)?;
+        let tested = self.filter.weigh(pose, settings)?;
         tested.gate()?;
         self.filter.fuse(pose, &tested)?;
         self.poses = self.poses.saturating_add(1);

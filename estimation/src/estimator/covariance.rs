@@ -31,7 +31,7 @@
 //! kinematics for the error-state Kalman filter*, 2017, chapters 5 to 7 (global angular error).
 
 use super::history::Clipped;
-use super::nominal::Motion;
+use super::nominal::IncrementEffect;
 use super::settings::EstimatorParameters;
 use controller_core::math;
 use nalgebra::{Matrix3, Vector3};
@@ -108,7 +108,7 @@ impl Covariance {
     }
 
     /// The block of a measured part alone.
-    pub(super) fn of(&self, part: Part) -> &Matrix3<f32> {
+    pub(super) fn block(&self, part: Part) -> &Matrix3<f32> {
         match part {
             Part::Position => &self.pp,
             Part::Velocity => &self.vv,
@@ -126,7 +126,7 @@ impl Covariance {
     }
 
     /// Carries P through what the nominal state went through.
-    pub(super) fn advance(&mut self, motion: &Motion, noise: &EstimatorParameters) {
+    pub(super) fn advance(&mut self, motion: &IncrementEffect, noise: &EstimatorParameters) {
         let h = motion.seconds;
         let turned_bias = motion.rotation * (-0.5 * h);
         self.shear_position(0.5 * h);

@@ -73,13 +73,13 @@ impl Biases {
 
 /// A pose, weighed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tested {
+pub(super) struct WeighedPose {
     position: Innovation,
     attitude: Innovation,
     velocity: Option<Innovation>,
 }
 
-impl Tested {
+impl WeighedPose {
     /// NIS of position and attitude.
     pub fn nis(&self) -> (f32, f32) {
         (self.position.nis, self.attitude.nis)
@@ -143,7 +143,7 @@ impl Filter {
     ///
     /// # Errors
     /// Where it is too far from the state to be an error of estimation, or a covariance is invalid.
-    pub(super) fn test(&self, pose: &PoseMeasurement, settings: &Settings) -> Result<Tested, Rejected> {
+    pub(super) fn weigh(&self, pose: &PoseMeasurement, settings: &Settings) -> Result<WeighedPose, Rejected> {
         let parameters = settings.parameters();
         let (position, attitude) = settings.deviations(pose.deviations);
         let (apart, turned) = self.residuals(pose);
@@ -158,7 +158,7 @@ impl Filter {
             Matrix3::from_diagonal_element(deviation * deviation) + late * late.transpose()
         };
         let weigh = |part: Part, residual: &Vector3<f32>, noise: Matrix3<f32>| {
-            let weight = inverse(&(self.covariance.of(part) + noise)).ok_or(Rejected::NotFinite)?;
+            let weight = inverse(&(self.covariance.block(part) + noise)).ok_or(Rejected::NotFinite)?;
             Ok(Innovation { noise, nis: residual.dot(&(weight * residual)) })
         };
         let velocity = match pose.velocity {
@@ -168,7 +168,7 @@ impl Filter {
             }
             _ => None,
         };
-        Ok(Tested {
+        Ok(WeighedPose {
             position: weigh(Part::Position, &apart, noise(position, &self.nominal.velocity))?,
             attitude: weigh(Part::Attitude, &turned, noise(attitude, &self.turn_rate))?,
             velocity,
@@ -179,7 +179,7 @@ impl Filter {
     ///
     /// # Errors
     /// Where a covariance is invalid; the filter is then of no use.
-    pub(super) fn fuse(&mut self, pose: &PoseMeasurement, tested: &Tested) -> Result<(), Rejected> {
+    pub(super) fn fuse(&mut self, pose: &PoseMeasurement, tested: &WeighedPose) -> Result<(), Rejected> {
         let (apart, _) = self.residuals(pose);
         self.take(Part::Position, &apart, &tested.position.noise)?;
         let (_, turned) = self.residuals(pose);
@@ -212,7 +212,7 @@ impl Filter {
     }
 
     fn take(&mut self, part: Part, residual: &Vector3<f32>, noise: &Matrix3<f32>) -> Result<(), Rejected> {
-        let weight = inverse(&(self.covariance.of(part) + noise)).ok_or(Rejected::NotFinite)?;
+        let weight = inverse(&(self.covariance.block(part) + noise)).ok_or(Rejected::NotFinite)?;
         let Correction { position, velocity, attitude, gyro_bias, accelerometer_bias } =
             self.covariance.fuse(part, residual, noise, &weight);
         let nominal = &mut self.nominal;

@@ -7,7 +7,7 @@
 use super::filter::Filter;
 use super::history::EXTRAPOLATION_MAX_US;
 use super::settings::Settings;
-use super::verdict::{Fault, Rejected, Taken};
+use super::verdict::{Accepted, Fault, Rejected};
 use controller_core::math;
 use nalgebra::Matrix3;
 
@@ -60,7 +60,7 @@ pub struct Health {
     /// The age of the last pose that was fused, us; none before the first.
     pub pose_age: Option<u64>,
     /// The verdict on the last pose that did not have to wait.
-    pub last: Option<Result<Taken, Rejected>>,
+    pub last: Option<Result<Accepted, Rejected>>,
     /// Poses that were believed, and not.
     pub counts: (u32, u32),
     /// How often the state has jumped.
@@ -81,7 +81,7 @@ pub(super) struct Statistics {
     /// When the estimate last was certain, us.
     pub certain_at: u64,
     pub jumps: u32,
-    last: Option<Result<Taken, Rejected>>,
+    last: Option<Result<Accepted, Rejected>>,
     counts: (u32, u32),
     nis: (f32, f32),
 }
@@ -95,8 +95,8 @@ impl Statistics {
     }
 
     /// Takes the verdict on a pose that was true at `time`, us.
-    pub fn record(&mut self, verdict: Result<Taken, Rejected>, time: u64) {
-        if verdict == Ok(Taken::Waiting) {
+    pub fn record(&mut self, verdict: Result<Accepted, Rejected>, time: u64) {
+        if verdict == Ok(Accepted::Waiting) {
             return;
         }
         self.last = Some(verdict);
@@ -112,7 +112,7 @@ impl Statistics {
     }
 
     /// Takes the uncertainty of `filter` after a pose.
-    pub fn look(&mut self, filter: &Filter) {
+    pub fn record_certainty(&mut self, filter: &Filter) {
         if is_certain(deviations(filter)) {
             self.certain_at = filter.time;
         }
@@ -124,8 +124,8 @@ impl Statistics {
     }
 
     /// The NIS of a pose, believed or not.
-    pub fn weigh(&mut self, (position, attitude): (f32, f32)) {
-        let average = |mean: f32, nis: f32| mean + NIS_AVERAGING_SHARE * (math::between(nis, 0.0, NIS_MAX) - mean);
+    pub fn record_nis(&mut self, (position, attitude): (f32, f32)) {
+        let average = |mean: f32, nis: f32| mean + NIS_AVERAGING_SHARE * (math::clamp(nis, 0.0, NIS_MAX) - mean);
         self.nis = (average(self.nis.0, position), average(self.nis.1, attitude));
     }
 }

@@ -131,7 +131,7 @@ impl Settings {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {
             let least = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
-            controller_core::math::between(value, least, DEVIATION_MAX)
+            controller_core::math::clamp(value, least, DEVIATION_MAX)
         };
         let (position, attitude) = given.unwrap_or(usual);
         (floor(position, usual.0), floor(attitude, usual.1))

@@ -2,7 +2,7 @@
 
 worded! {
     /// What a pose was taken for.
-    pub enum Taken {
+    pub enum Accepted {
         /// Fused.
         Fused = "Poses: believed",
         /// Kept until the IMU's increments reach its time; then [`super::Health::last`] has the verdict.
@@ -54,7 +54,7 @@ worded! {
     }
 }
 
-impl Taken {
+impl Accepted {
     /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves
     /// the frame, which agrees with nothing yet.
     #[must_use]

@@ -10,7 +10,7 @@
 //! means of opposite faces. Only lengths count, so the faces need not be level: 10 degrees off are as good as none.
 //! Calibration time, on the ground; a few thousand instructions.
 
-use super::standstill::Rest;
+use super::standstill::StandstillMeans;
 use core::fmt;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -61,7 +61,7 @@ impl SixPoint {
     ///
     /// # Errors
     /// If no axis points up or down, or this one did before.
-    pub fn add(&mut self, rest: &Rest, gravity: f32) -> Result<(), SixPointError> {
+    pub fn add(&mut self, rest: &StandstillMeans, gravity: f32) -> Result<(), SixPointError> {
         let force = &rest.specific_force;
         let least = FACE_COSINE_MIN as f32 * gravity;
         let wanted = [force.x, force.y, force.z, -force.x, -force.y, -force.z];

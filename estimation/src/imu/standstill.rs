@@ -29,7 +29,7 @@ const RATE_BIAS_MAX_RAD_PER_S: f32 = 0.035;
 
 /// The means of a sensor at standstill, before calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+pub struct StandstillMeans {
     /// The mean rate, rad/s.
     pub angular_velocity: Vector3<f32>,
     /// The mean specific force, m/s^2.
@@ -71,7 +71,7 @@ struct Sums {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Standstill {
     count: u16,
-    first: Option<Rest>,
+    first: Option<StandstillMeans>,
     /// The sums at half time.
     half: Sums,
     all: Sums,
@@ -80,8 +80,8 @@ pub struct Standstill {
 impl Standstill {
     /// Takes a sample as the sensor gives it, rad/s and m/s^2; after [`STANDSTILL_SAMPLES`] of them, returns their
     /// means, and begins anew.
-    pub fn take(&mut self, rate: &Vector3<f32>, force: &Vector3<f32>) -> Option<Result<Rest, Moved>> {
-        let first = *self.first.get_or_insert(Rest { angular_velocity: *rate, specific_force: *force });
+    pub fn take(&mut self, rate: &Vector3<f32>, force: &Vector3<f32>) -> Option<Result<StandstillMeans, Moved>> {
+        let first = *self.first.get_or_insert(StandstillMeans { angular_velocity: *rate, specific_force: *force });
         let (rate, force) = (rate - first.angular_velocity, force - first.specific_force);
         self.all.rate += rate;
         self.all.force += force;
@@ -99,7 +99,7 @@ impl Standstill {
         Some(judged)
     }
 
-    fn judge(&self, first: &Rest) -> Result<Rest, Moved> {
+    fn judge(&self, first: &StandstillMeans) -> Result<StandstillMeans, Moved> {
         let share = 1.0 / f32::from(STANDSTILL_SAMPLES);
         let (rate, force) = (self.all.rate * share, self.all.force * share);
         let variance = |squares: &Vector3<f32>, mean: &Vector3<f32>| squares * share - mean.component_mul(mean);
@@ -120,7 +120,7 @@ impl Standstill {
         if angular_velocity.iter().any(|component| component.abs() > RATE_BIAS_MAX_RAD_PER_S) {
             return Err(Moved::TooFast);
         }
-        Ok(Rest { angular_velocity, specific_force: first.specific_force + force })
+        Ok(StandstillMeans { angular_velocity, specific_force: first.specific_force + force })
     }
 }
 

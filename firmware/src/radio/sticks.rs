@@ -3,7 +3,7 @@
 //! Near their centre is a dead zone; beyond it the setpoint grows from zero in proportion.
 
 use crate::link::setpoint::Here;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::state::State;
 use nalgebra::Vector3;
 
@@ -64,7 +64,7 @@ impl Sticks {
         let velocity = Vector3::new(live(self.forward), -live(self.right), 0.0) * ACROSS;
         let velocity = Here::of(state)?.turned(&velocity) + Vector3::z() * (live(self.up) * VERTICAL);
         // To the right is clockwise from above.
-        Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(-live(self.yaw) * TURNING) })
+        Some(Setpoint { motion: Motion::Velocity(velocity), turn: HeadingSetpoint::Rate(-live(self.yaw) * TURNING) })
     }
 }
 

@@ -111,7 +111,7 @@ fn extended(certificate: &ExtendedCertificate) -> String {
         + &format!(
             "thrust in [{}, {}] N, torques {}, {}, {} N m\n",
             short(thrust.least),
-            short(thrust.greatest),
+            short(thrust.max),
             short(torque.x),
             short(torque.y),
             short(torque.z)
@@ -196,7 +196,7 @@ fn bounds(name: &str, form: &Form) -> String {
         short(form.rates.angular_velocity),
         short(form.rates.angular_acceleration),
         short(form.thrust.least),
-        short(form.thrust.greatest),
+        short(form.thrust.max),
         short(form.torque.x),
         short(form.torque.y),
         short(form.torque.z)

@@ -101,7 +101,7 @@ impl LawServer {
     /// As [`Law::new`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
-        let (fall, gravity) = (f64::from(configuration.greatest_fall()), f64::from(configuration.vehicle().gravity));
+        let (fall, gravity) = (f64::from(configuration.max_fall()), f64::from(configuration.vehicle().gravity));
         Ok(Self {
             law: flight::law(scenario)?,
             // A step of single precision above the limit, so that rounding never turns a refused number into a served

@@ -3,7 +3,7 @@
 use crate::rivals::pilot::RivalPilot;
 use crate::vehicle::actuators::Asked;
 use crate::vehicle::sensed::Sensed;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::extended::measured::Measured;
@@ -80,7 +80,7 @@ impl Controller {
 
     /// The rotor that our law has found to fail.
     #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         match self {
             Self::Ours(law) => law.lost(),
             Self::Rival(_) => None,

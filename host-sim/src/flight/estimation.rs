@@ -127,7 +127,7 @@ impl Estimation {
         let Some(estimated) = estimated else {
             return Err(NoEstimate(self.estimator.health(self.clock).faults.worst()));
         };
-        self.felt = self.estimator.felt(self.clock, under_way.as_ref());
+        self.felt = self.estimator.mean_acceleration(self.clock, under_way.as_ref());
         let jumped = estimated.jumps != self.jumps;
         self.jumps = estimated.jumps;
         let force = estimated.acceleration + Vector3::z() * self.gravity;

@@ -5,7 +5,7 @@ use super::truth::{Moment, Truth};
 use controller_core::state::State;
 use estimation::estimator::covariance::Covariance;
 use estimation::estimator::filter::Filter;
-use estimation::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
+use estimation::estimator::{Accepted, Estimator, EstimatorParameters, Rejected, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use flight::Stamped;
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
@@ -39,7 +39,7 @@ pub struct Shown {
     /// Poses taken and refused.
     pub counts: (u32, u32),
     /// What became of the last pose.
-    pub last: Option<Result<Taken, Rejected>>,
+    pub last: Option<Result<Accepted, Rejected>>,
 }
 
 /// Flies `truth`, with poses of moments that `meddle` may have changed.

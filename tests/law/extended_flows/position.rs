@@ -10,7 +10,7 @@ use crate::support::random::{self, ChaCha8Rng};
 use controller_core::certificate::Certificate;
 use controller_core::extended::fallback::{Slowed, slowed};
 use controller_core::extended::parameters::ExtendedParameters;
-use controller_core::extended::position::{Filters, Most, PositionFeedback, PositionLaw};
+use controller_core::extended::position::{FeedbackLimits, Filters, PositionFeedback, PositionLaw};
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::state::State;
@@ -52,7 +52,7 @@ struct Loop {
     believed: Vector3<f32>,
     /// U, m/s^2.
     greatest: f32,
-    most: Most,
+    most: FeedbackLimits,
 }
 
 impl Loop {
@@ -60,15 +60,15 @@ impl Loop {
         let configuration = random_configuration(rng);
         let formulas = law(&configuration).parameters;
         let p = random_parameters(rng, &formulas, configuration.vehicle());
-        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::of(*p, Most::ALL, rng) }
+        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::of(*p, FeedbackLimits::UNLIMITED, rng) }
     }
 
     fn slowed(p: &ExtendedParameters, rng: &mut ChaCha8Rng) -> Self {
-        let level = Slowed::<f64>::of(p, GRAVITY).level as f32;
-        Self::of(slowed(p, GRAVITY), Most::each(level), rng)
+        let level = Slowed::<f64>::new(p, GRAVITY).level as f32;
+        Self::of(slowed(p, GRAVITY), FeedbackLimits::each(level), rng)
     }
 
-    fn of(p: ExtendedParameters, most: Most, rng: &mut ChaCha8Rng) -> Self {
+    fn of(p: ExtendedParameters, most: FeedbackLimits, rng: &mut ChaCha8Rng) -> Self {
         let mut believed = random::vector(rng, 0.7 * p.force_across);
         believed.z = rng.random_range(-p.force_down..=p.force_up);
         // Thrust for the force and for turning against it.
@@ -279,7 +279,7 @@ fn v_0_never_rises_on_flights_under_a_constant_force_and_they_arrive() {
     let mut flown = 0;
     while flown < 20 {
         let configuration = random_configuration(&mut rng);
-        let flying = Loop::of(*law(&configuration).parameters, Most::ALL, &mut rng);
+        let flying = Loop::of(*law(&configuration).parameters, FeedbackLimits::UNLIMITED, &mut rng);
         // With little more than the force takes, swinging in takes minutes.
         if flying.level_across() < 2.0 {
             continue;

@@ -1,6 +1,6 @@
 //! Where in a flight it fails, and what an operator says to get there.
 
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Inputs, Mode, MotorTest, Request};
 use nalgebra::Vector3;
 
@@ -132,6 +132,6 @@ impl Phase {
         } else {
             Motion::Position(Vector3::new(0.0, 0.0, sight.asked))
         };
-        Setpoint { motion, turn: Turn::Keep }
+        Setpoint { motion, turn: HeadingSetpoint::Keep }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{FlightSettings, Inputs, Leg, MissionItem, Mode, Output, Reason, Request};
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -59,7 +59,7 @@ impl Event {
             _ if tick == GO_TICK => Some(Request::TakeOff(Some(height))),
             Self::GoTo | Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS => {
                 let motion = Motion::Position(Vector3::new(1.5, -1.5, 0.5 * height + 0.5));
-                Some(Request::GoTo(Setpoint { motion, turn: Turn::Keep }))
+                Some(Request::GoTo(Setpoint { motion, turn: HeadingSetpoint::Keep }))
             }
             Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS + GOING_TICKS => Some(Request::Hold),
             Self::Land if mode == Mode::Holding && lasts == HOLD_TICKS => Some(Request::Land),
@@ -86,7 +86,7 @@ fn mission_item(number: u8, height: f32) -> Option<MissionItem> {
         2 => (Leg::Land, Vector3::new(-0.5, 0.0, 0.0)),
         _ => return None,
     };
-    Some(MissionItem { leg, position, turn: Turn::Keep, radius: 0.3, hold: 0 })
+    Some(MissionItem { leg, position, turn: HeadingSetpoint::Keep, radius: 0.3, hold: 0 })
 }
 
 /// Where in a flight the source begins to lie.
@@ -242,5 +242,5 @@ fn setpoint(mode: Mode, lasts: u64, height: f32) -> Setpoint {
     } else {
         Motion::Position(Vector3::new(0.0, 0.0, height))
     };
-    Setpoint { motion, turn: Turn::Keep }
+    Setpoint { motion, turn: HeadingSetpoint::Keep }
 }

@@ -1,6 +1,6 @@
 //! What happens in one mission, and when.
 
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
@@ -127,7 +127,7 @@ impl Script {
                 Motion::Velocity(Vector3::new(-sine, cosine, 0.0) * 0.5)
             }
         };
-        Setpoint { motion, turn: Turn::Keep }
+        Setpoint { motion, turn: HeadingSetpoint::Keep }
     }
 
     /// When what led to this began, ticks.

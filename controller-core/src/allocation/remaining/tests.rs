@@ -29,7 +29,7 @@ fn loose() -> Limits {
 }
 
 fn without(rotor: usize, left: f32) -> RemainingRotors {
-    RemainingRotors::new(&quad(), &loose(), &Lost { rotor, left }, 1.0, WEIGHT)
+    RemainingRotors::new(&quad(), &loose(), &LostRotor { rotor, left }, 1.0, WEIGHT)
 }
 
 fn asked(random: &mut Random) -> Wrench {
@@ -110,10 +110,10 @@ fn roll_and_pitch_give_way_last_and_yaw_first() {
 fn limits_of_thrust_and_torque_hold_for_what_is_delivered_and_for_what_would_be_of_whole_rotors() {
     let mut random = Random(3);
     let limits = limits(8.0, [0.2, 0.3, 0.05]);
-    let whole = RemainingRotors::new(&quad(), &limits, &Lost { rotor: 0, left: 1.0 }, 1.0, WEIGHT);
+    let whole = RemainingRotors::new(&quad(), &limits, &LostRotor { rotor: 0, left: 1.0 }, 1.0, WEIGHT);
     let mut bound = 0;
     for number in 0..5_000 {
-        let lost = Lost { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
+        let lost = LostRotor { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
         let rotors = RemainingRotors::new(&quad(), &limits, &lost, 0.9, WEIGHT);
         let thrusts = rotors.allocate(&asked(&mut random));
         for wrench in [rotors.wrench(&thrusts), whole.wrench(&rotors.commands(&thrusts)).scaled(0.9)] {

@@ -69,7 +69,7 @@ fn references_that_turn_the_thrust_too_fast_or_too_suddenly_fail_their_rows() {
     assert!(failing(&p, jerky).contains(&"A1 turning rate for the reference"));
     let [_, _, rate, acceleration, _] = feasible_rows(&p, example::REFERENCES);
     // All there is of |u'|: the reference's with its drag, and the slowed law's across and along the vertical.
-    let slow = Slowed::<f64>::of(&p, 9.81);
+    let slow = Slowed::<f64>::new(&p, 9.81);
     let (level, [k_f, k_s]) = (2.0_f64.sqrt() * slow.level, [p.k_f, p.k_s].map(|k| slow.factor * f64::from(k)));
     let least = 9.81 - 0.1755 - f64::from(p.force_up) - slow.level;
     let expected = (3.876 + 0.47 * 2.4675 + 2.0 * k_f * level) / least;
@@ -176,7 +176,7 @@ fn the_bounds_of_torques_are_the_rows_own() {
                 let along = budget
                     .rows
                     .iter()
-                    .map(|row| row.room(scale) / (row.direction[0] * cos + row.direction[1] * sin).abs());
+                    .map(|row| row.capacity(scale) / (row.direction[0] * cos + row.direction[1] * sin).abs());
                 let most = along.fold(f64::INFINITY, f64::min);
                 greatest = [greatest[0].max(most * cos), greatest[1].max(most * sin)];
             }

@@ -8,8 +8,8 @@
 //!
 //! near the target: d the force that is kept free, in any direction, and e the feedback of [`Slowed`]. So u is in a
 //! ball about w and its derivatives are in balls about w', w''; where the motion is known to within a [`Spread`] only,
-//! the balls are as much larger. With n, p, q, r as in [`crate::extended::turning`], at their worst in these balls, and
-//! tau = J_max |q| + the gyroscopic torque + a share of rho(s) that is kept for torque bias and feedback:
+//! the balls are as much larger. With n, p, q, r as in [`crate::extended::direction_limiter`], at their worst in these
+//! balls, and tau = J_max |q| + the gyroscopic torque + a share of rho(s) that is kept for torque bias and feedback:
 //!
 //! | row | taken < left |
 //! |---|---|
@@ -26,13 +26,13 @@
 //! turns about u faster than yaw follows, the body is taken to turn no faster than the frame: y is what yaw then
 //! [brakes](crate::extended::heading) with before thrust.
 
-use super::{Motion, Row, Shares, Spread, TORQUE_KEPT_SHARE};
+use super::{PathMotion, PathRow, RowShares, Spread, TORQUE_KEPT_SHARE};
 use crate::certificate::form::ARITHMETIC_ALLOWANCE;
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
+use crate::extended::direction_limiter::{self, END_SOFTNESS_PER_S};
 use crate::extended::fallback::Slowed;
 use crate::extended::force::HELD_SHARE;
-use crate::extended::turning::{self, END_SOFTNESS_PER_S};
 use crate::math;
 use crate::math::real::Real;
 
@@ -86,7 +86,7 @@ impl<R: Real> PathJudge<R> {
         let ([tilt_reach, yaw_reach], [bottom, top]) = (budget.reach, budget.ends);
         let (one, mass) = (R::from(1.0), R::from(vehicle.mass));
 
-        let slowed = Slowed::<R>::of(p, vehicle.gravity);
+        let slowed = Slowed::<R>::new(p, vehicle.gravity);
         let [jerk, snap] = slowed.derivatives(p);
         let level = slowed.level * R::from(2.0).sqrt();
         let softness = R::from(END_SOFTNESS_PER_S);
@@ -106,7 +106,7 @@ impl<R: Real> PathJudge<R> {
             swelling: level * overshoot(p.k_f) * overshoot(p.k_d),
             softness,
             turn_rate: R::from(p.turn_rate),
-            closing: turning::closing(budget.radius(one) / j_1.greater(j_2)),
+            closing: direction_limiter::closing(budget.radius(one) / j_1.greater(j_2)),
             cosine: R::from(1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))),
             inertia: [j_1.greater(j_2), j_3 + (j_1 - j_2).abs()],
             torque: [kept, radius],
@@ -120,13 +120,13 @@ impl<R: Real> PathJudge<R> {
 
     /// What a motion takes at an instant.
     #[must_use]
-    pub fn shares(&self, motion: &Motion<R>) -> Shares<R> {
+    pub fn shares(&self, motion: &PathMotion<R>) -> RowShares<R> {
         self.shares_within(motion, &Spread::none())
     }
 
     /// What motions take that are no farther than `spread` from `motion`, each at most.
     #[must_use]
-    pub fn shares_within(&self, motion: &Motion<R>, spread: &Spread<R>) -> Shares<R> {
+    pub fn shares_within(&self, motion: &PathMotion<R>, spread: &Spread<R>) -> RowShares<R> {
         let one = R::from(1.0);
         // w, w', w'', and how far u and its derivatives are from them.
         let mut w = self.with_drag(&motion.acceleration, &motion.velocity);
@@ -145,7 +145,7 @@ impl<R: Real> PathJudge<R> {
         let length = norm(&w);
         let (least, most) = (length - around, length + around);
         if least.lower() <= 0.0 {
-            return Shares { each: [R::from(f64::INFINITY); Row::ALL.len()] };
+            return RowShares { each: [R::from(f64::INFINITY); PathRow::ALL.len()] };
         }
         let direction = w.map(|x| x / length);
         // Of the greatest angle between w and u.
@@ -195,7 +195,7 @@ impl<R: Real> PathJudge<R> {
             share(self.floor + self.reach * torque, self.mass * least * (1.0 - TORQUE_THRUST_SHARE)),
             share(self.cosine * self.closing + sinking / least, up * self.closing),
         ];
-        Shares { each: each.map(|share| share * (1.0 + ARITHMETIC_ALLOWANCE)) }
+        RowShares { each: each.map(|share| share * (1.0 + ARITHMETIC_ALLOWANCE)) }
     }
 
     /// A derivative of the reference with the drag of the one below.

@@ -83,8 +83,8 @@ pub struct Tilt<R> {
     pub tan: R,
     pub sin: R,
     /// Least sine and greatest cosine, at the upright end.
-    pub sin_least: R,
-    pub cos_greatest: R,
+    pub sin_min: R,
+    pub cos_max: R,
     /// Greatest 1 / cos, at the tilted end.
     pub secant: R,
     /// Least n.
@@ -98,8 +98,8 @@ impl<R: Real> Tilt<R> {
         Self {
             tan: tilted_end,
             sin: tilted_end / secant,
-            sin_least: upright_end / secant_least,
-            cos_greatest: one / secant_least,
+            sin_min: upright_end / secant_least,
+            cos_max: one / secant_least,
             secant,
             magnitude: vertical_least * secant_least,
         }
@@ -111,11 +111,11 @@ impl<R: Real> Tilt<R> {
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
     pub fn tangential(&self, horizontal: R, vertical: R, direction: &Direction<R>) -> Tangential<R> {
         let climbing = self.sin * vertical;
-        let flattened = self.sin_least * horizontal * direction.cos_least;
+        let flattened = self.sin_min * horizontal * direction.cos_min;
         let square = horizontal * horizontal + climbing * climbing - flattened * flattened
-            + self.cos_greatest * 2.0 * horizontal * direction.cos_greatest * climbing;
+            + self.cos_max * 2.0 * horizontal * direction.cos_max * climbing;
         let length = square.sqrt_of_rounded() / self.magnitude;
-        Tangential { length, mixed: (length + horizontal * direction.sin_greatest / self.magnitude) * 0.5 }
+        Tangential { length, mixed: (length + horizontal * direction.sin_max / self.magnitude) * 0.5 }
     }
 
     /// L u'' for a direction of u''.
@@ -168,9 +168,9 @@ fn greatest_product<R: Real>(total: R, least: R, most: R) -> R {
 /// One cell of a horizontal vector's angle to the slope.
 #[derive(Clone, Copy)]
 pub struct Direction<R> {
-    pub cos_greatest: R,
-    pub cos_least: R,
-    pub sin_greatest: R,
+    pub cos_max: R,
+    pub cos_min: R,
+    pub sin_max: R,
 }
 
 impl<R: Real> Direction<R> {
@@ -183,9 +183,9 @@ impl<R: Real> Direction<R> {
             (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
             // A cosine below zero must not come out: it is squared.
             Self {
-                cos_greatest,
-                cos_least: (cos - CELL_ROUNDING).greater(R::from(0.0)),
-                sin_greatest: sin + CELL_ROUNDING,
+                cos_max: cos_greatest,
+                cos_min: (cos - CELL_ROUNDING).greater(R::from(0.0)),
+                sin_max: sin + CELL_ROUNDING,
             }
         })
     }

@@ -1,8 +1,8 @@
 //! The parts of a tick, by the sections of `docs/extended-law.md`.
 
-use super::{Controller, Rotating, Wanted};
+use super::{Controller, FeedbackSource, PastCommands};
 use crate::attitude::rotate_back;
-use crate::attitude_reference::{DesiredAttitude, Turn};
+use crate::attitude_reference::{DesiredAttitude, DirectionMotion};
 use crate::extended::attitude::{Late, Tilt};
 use crate::extended::budget::TORQUE_THRUST_SHARE;
 use crate::extended::demand::Demand;
@@ -19,13 +19,13 @@ use nalgebra::{Quaternion, Vector2, Vector3, Vector4};
 const LEVEL_SHARE_MIN: f32 = 0.05;
 
 /// Where u points, and how it would turn.
-pub(super) struct Course {
+pub(super) struct DirectionCommand {
     /// u, m/s^2.
     pub command: Vector3<f32>,
     /// n*, m/s^2: the length that the thrust takes.
     pub length: f32,
     pub desired: DesiredAttitude,
-    pub turn: Turn,
+    pub turn: DirectionMotion,
     /// e3 in the axes of the desired frame.
     pub up: Vector3<f32>,
     /// c_z, c_z' and c_z'' as wanted, m/s^2, m/s^3, m/s^4.
@@ -33,7 +33,7 @@ pub(super) struct Course {
 }
 
 /// The attitude's errors. Angular velocities in rad/s, body frame.
-pub(super) struct Errors {
+pub(super) struct AttitudeErrors {
     /// R~ along R_d^T R, of any length.
     pub error: Quaternion<f32>,
     /// r, which turns rho, and f, which turns the desired frame.
@@ -49,7 +49,7 @@ pub(super) struct Errors {
 }
 
 /// The torque about the tilt's axes, N m, with its feedback.
-pub(super) struct Tilting {
+pub(super) struct TiltTorque {
     pub torque: Vector2<f32>,
     /// P and lambda D.
     pub potential: Vector2<f32>,
@@ -75,53 +75,59 @@ impl Controller {
         reference: &Reference,
         force: &Vector3<f32>,
         greatest: f32,
-        wanted: &Wanted,
+        wanted: &FeedbackSource,
     ) -> PositionFeedback {
         let (law, filters) = (self.position_law(), &self.memory.filters);
         match wanted {
-            Wanted::Feedback(most) => {
+            FeedbackSource::Feedback(most) => {
                 let most = if self.memory.fallback.is_slow() { &self.slow } else { *most };
                 law.feedback(state, reference, filters, force, greatest, most)
             }
-            Wanted::Demand(demand) => {
-                let wanted = self.wanted(state, demand, force);
-                law.demanded(state, reference, filters, force, greatest, &wanted)
+            FeedbackSource::Demand(demand) => {
+                let demanded_feedback = self.wanted(state, demand, force);
+                law.feedback_on_demand(state, reference, filters, force, greatest, &demanded_feedback)
             }
         }
     }
 
     /// Section 3: where u points, and how it would turn.
     #[inline(always)]
-    pub(super) fn course(
+    pub(super) fn direction_command(
         &self,
         reference: &Reference,
         filters: &Filters,
         feedback: &PositionFeedback,
         greatest: f32,
-    ) -> Course {
+    ) -> DirectionCommand {
         let command = self.acceleration_command(reference, &filters.command);
         let wanted = (feedback.drive - feedback.rate) * self.position_law().k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
         let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
         let desired = DesiredAttitude::new(&command, &reference.heading);
-        let turn = desired.turn(&jerk, &snap);
+        let turn = desired.direction_motion(&jerk, &snap);
         let vertical = [filters.command.z, feedback.rate.z, wanted.z];
         let up = desired.up();
         let length = self.turning.length(turn.magnitude, feedback.smoothed.z - filters.command.z, &up, greatest);
-        Course { command, length, up, desired, turn, vertical }
+        DirectionCommand { command, length, up, desired, turn, vertical }
     }
 
     /// Sections 5 and 6: the attitude's errors, projected over what is late.
     #[inline(always)]
-    pub(super) fn errors(&self, state: &State, reference: &Reference, course: &Course, late: &Late) -> Errors {
-        let Course { desired, turn, .. } = course;
+    pub(super) fn attitude_errors(
+        &self,
+        state: &State,
+        reference: &Reference,
+        course: &DirectionCommand,
+        late: &Late,
+    ) -> AttitudeErrors {
+        let DirectionCommand { desired, turn, .. } = course;
         let error = desired.error(&state.attitude);
         let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
         let turning = rotate_back(&error, &Vector3::new(-turn.rate.y, turn.rate.x, 0.0));
         let frame = rotate_back(&error, &Vector3::new(-turn.rate.y, turn.rate.x, yaw_rate));
         let (quaternion, projected) = self.attitude.projected(&error, &(state.angular_velocity - frame), late);
         let alpha = self.law.parameters.alpha;
-        Errors {
+        AttitudeErrors {
             error,
             turning,
             frame,
@@ -135,28 +141,28 @@ impl Controller {
 
     /// Sections 3, 4 and 6: the torque about the tilt's axes, part by part.
     #[inline(always)]
-    pub(super) fn tilting(
+    pub(super) fn tilt_torque(
         &self,
         state: &State,
-        course: &Course,
-        errors: &Errors,
+        course: &DirectionCommand,
+        errors: &AttitudeErrors,
         bias: &Vector3<f32>,
         scale: f32,
-    ) -> Tilting {
-        let Errors { error, turning, rate, projected, tilt, .. } = errors;
+    ) -> TiltTorque {
+        let AttitudeErrors { error, turning, rate, projected, tilt, .. } = errors;
         let most = self.law.parameters.m_tilt;
         let mut spending = self.budget.spending(scale);
         let lean = bias.xy();
         spending.spend(&-lean, 0.0);
         let left = spending.radius() - math::sqrt(lean.norm_squared()) - self.reserve;
-        let potential = self.attitude.potential(tilt, math::lesser(most, math::greater(left, LEVEL_SHARE_MIN * most)));
+        let potential = self.attitude.potential(tilt, math::min(most, math::max(left, LEVEL_SHARE_MIN * most)));
         spending.spend(&-potential, self.reserve);
         spending.spend(&self.attitude.gyroscopic(turning, &state.angular_velocity, rate), self.reserve);
         let damping = self.attitude.damping(tilt, projected);
         let damping = damping * spending.spend(&-damping, self.reserve);
         spending.spend(&self.attitude.precession(&state.angular_velocity, rate), self.reserve);
 
-        let q = self.turning.turned(&course.turn, &course.up);
+        let q = self.turning.limited(&course.turn, &course.up);
         let acceleration = rotate_back(error, &Vector3::new(-q.y, q.x, 0.0));
         let torque = self.attitude.torque(&acceleration);
         let thrust = (1.0 - TORQUE_THRUST_SHARE as f32) * self.vehicle.mass * course.length;
@@ -164,11 +170,11 @@ impl Controller {
         if share < 1.0 {
             cold_path();
             let always = self.law.parameters.turn_reserve / math::sqrt(q.norm_squared());
-            share = math::greater(share, math::lesser(always, 1.0));
+            share = math::max(share, math::min(always, 1.0));
         }
         share *= spending.spend(&(torque * share), 0.0);
         let (turn, acceleration) = if share < 1.0 { (q * share, acceleration * share) } else { (q, acceleration) };
-        Tilting { torque: spending.spent, potential, damping, turn, acceleration }
+        TiltTorque { torque: spending.spent, potential, damping, turn, acceleration }
     }
 
     /// Section 3: the drive for the turn as it is.
@@ -176,8 +182,8 @@ impl Controller {
     pub(super) fn drive(
         &self,
         feedback: &PositionFeedback,
-        course: &Course,
-        tilting: &Tilting,
+        course: &DirectionCommand,
+        tilting: &TiltTorque,
         greatest: f32,
     ) -> Vector3<f32> {
         match self.turning.change(&course.turn, &tilting.turn, &course.up, greatest, course.vertical) {
@@ -204,15 +210,16 @@ impl Controller {
 
     /// What the rotors have done since the last tick: by the model, corrected by what was `measured` of it.
     #[inline(always)]
-    pub(super) fn rotating(&self, measured: Option<&Wrench>) -> Rotating {
-        let Memory { acted, lasting, held, blind, ref actuators, .. } = self.memory;
+    pub(super) fn past_commands(&self, measured: Option<&Wrench>) -> PastCommands {
+        let Memory { acted, wrench_offset: lasting, held, without_velocity: blind, ref actuators, .. } = self.memory;
         let pending = self.actuators.pending(actuators);
         let sensors = &self.learning.sensors;
-        let Some([beside, slower]) = measured.and_then(|wrench| sensors.beside(wrench, &acted, lasting.as_ref()))
+        let Some([beside, slower]) =
+            measured.and_then(|wrench| sensors.quick_difference(wrench, &acted, lasting.as_ref()))
         else {
-            return Rotating { acted, pending, lasting };
+            return PastCommands { acted, pending, lasting };
         };
-        Rotating {
+        PastCommands {
             acted: acted + beside,
             pending: pending + beside * self.law.actuators.lag,
             // What was not delivered does not last.

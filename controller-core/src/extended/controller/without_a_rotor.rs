@@ -3,9 +3,9 @@
 use super::Controller;
 use crate::controller::Diagnostics;
 use crate::extended::measured::Measured;
-use crate::extended::memory::{Last, Memory};
+use crate::extended::memory::{LastTick, Memory};
 use crate::extended::rotor_loss::detector::Interval;
-use crate::extended::rotor_loss::spinning::{Spinning, SpinningLaw};
+use crate::extended::rotor_loss::spinning::{SpinningLaw, SpinningStep};
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use core::hint::cold_path;
@@ -23,8 +23,8 @@ impl Controller {
     ) -> bool {
         let memory = &self.memory;
         let last = memory.last.as_ref().filter(|_| memory.held == 0);
-        let known = last.map(|last| self.learning.force.differed([&last.velocity, &state.velocity]));
-        let known = known.filter(|_| memory.blind == 0);
+        let known = last.map(|last| self.learning.force.mean_acceleration([&last.velocity, &state.velocity]));
+        let known = known.filter(|_| memory.without_velocity == 0);
         let (Some(last), Some(acceleration)) = (last, measured.usable_acceleration().copied().or(known)) else {
             self.memory.suspicion.forget();
             return self.spinning.is_some();
@@ -64,7 +64,7 @@ impl Controller {
         let (Some(law), Some(rotors)) = (&mut self.spinning, &self.rotors) else {
             return (Wrench { thrust: 0.0, torque: Vector3::zeros() }, Diagnostics::NONE);
         };
-        let Spinning { command, mrp } = law.step(state, reference, pending, self.period);
+        let SpinningStep { command, mrp } = law.step(state, reference, pending, self.period);
         let Wrench { thrust, torque } = *law.delivered();
         let asked: Vector4<f32> =
             rotors.effectiveness().iter().zip(law.commands()).map(|(column, f)| column.map(|x| x as f32) * *f).sum();
@@ -72,7 +72,7 @@ impl Controller {
         let Memory { actuators, acted, last, .. } = &mut self.memory;
         actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z));
         *acted = self.actuators.advance(actuators);
-        *last = Some(Last {
+        *last = Some(LastTick {
             velocity: state.velocity,
             thrust_axis: *axis,
             angular_velocity: state.angular_velocity,

@@ -30,7 +30,7 @@
 //! `INITIAL_AGE_S`; no rotor is suspected before `AGE_MIN_S`.
 
 use crate::allocation::geometry::ROTORS_MAX;
-use crate::allocation::remaining::Lost;
+use crate::allocation::remaining::LostRotor;
 use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::Vehicle;
@@ -152,7 +152,7 @@ impl Detector {
     #[must_use]
     pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f32, period: f32) -> Self {
         let columns = || rotors.into_iter().flat_map(Rotors::effectiveness).map(|column| column.map(|x| x as f32));
-        let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.longest_arm());
+        let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.max_arm());
         let scale = Vector4::new(1.0, per_arm, per_arm, per_arm);
         let rows = rotors.into_iter().flat_map(Rotors::pseudo_inverse).map(|row| row.map(|x| x as f32));
         let signatures = columns().zip(rows).map(|(column, row)| {
@@ -180,7 +180,7 @@ impl Detector {
 
     /// Takes an interval in; the rotor that is found.
     #[inline(never)] // a step behind a shield calls the same
-    pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<Lost> {
+    pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<LostRotor> {
         let (residual, acted) = (self.residual(interval), self.newtons(&interval.acted));
         // Inputs in range can overflow together.
         if !(residual.norm_squared() + acted.norm_squared()).is_finite() {
@@ -190,18 +190,18 @@ impl Detector {
         let [lasting, steady] = suspicion.lasting.unwrap_or([Vector4::zeros(), acted]);
         suspicion.residual += (residual - lasting - suspicion.residual) * self.quick;
         let faded = suspicion.commands_squared * self.faded_squared;
-        suspicion.commands_squared = math::greater(faded, (acted - steady).norm_squared());
+        suspicion.commands_squared = math::max(faded, (acted - steady).norm_squared());
 
         let Some((rotor, lost)) = self.suspected(suspicion, interval) else {
             let mut averaging = self.slow;
             if suspicion.age < SLOW_TIME_CONSTANT_S as f32 {
                 cold_path();
                 // An average of all that there was, at first.
-                averaging = math::greater(averaging, self.period / (suspicion.age + self.period));
+                averaging = math::max(averaging, self.period / (suspicion.age + self.period));
                 suspicion.age += self.period;
             }
-            if suspicion.evidence > 0.0 && self.would_tell(suspicion.rotor, interval) {
-                suspicion.evidence = math::greater(suspicion.evidence - self.period, 0.0);
+            if suspicion.evidence > 0.0 && self.is_observable(suspicion.rotor, interval) {
+                suspicion.evidence = math::max(suspicion.evidence - self.period, 0.0);
             }
             let average = [lasting + (residual - lasting) * averaging, steady + (acted - steady) * averaging];
             suspicion.lasting = Some(average);
@@ -210,11 +210,11 @@ impl Detector {
         cold_path();
         suspicion.lasting = Some([lasting, steady]);
         let before = if rotor == suspicion.rotor { suspicion.evidence } else { 0.0 };
-        let share = math::lesser(lost / GONE_SHARE, 1.0);
+        let share = math::min(lost / GONE_SHARE, 1.0);
         suspicion.evidence = before + self.period * share * share * share;
         suspicion.rotor = rotor;
         let left = if lost > NOTHING_LEFT_SHARE { 0.0 } else { 1.0 - lost };
-        (suspicion.evidence > self.enough).then_some(Lost { rotor, left })
+        (suspicion.evidence > self.enough).then_some(LostRotor { rotor, left })
     }
 
     /// A wrench in newtons.
@@ -229,7 +229,7 @@ impl Detector {
     pub fn missing(&self, rotor: usize, interval: &Interval) -> [f32; 2] {
         let Some(Signature { column, row, .. }) = self.rotors.get(rotor) else { return [0.0; 2] };
         let along = self.residual(interval).yz().dot(&column.yz());
-        [row.dot(&interval.acted), -along / math::greater(column.yz().norm_squared(), f32::MIN_POSITIVE)]
+        [row.dot(&interval.acted), -along / math::max(column.yz().norm_squared(), f32::MIN_POSITIVE)]
     }
 
     /// e, N.
@@ -243,7 +243,7 @@ impl Detector {
     }
 
     /// Whether a rotor is commanded so much thrust that a loss would show.
-    fn would_tell(&self, rotor: usize, interval: &Interval) -> bool {
+    fn is_observable(&self, rotor: usize, interval: &Interval) -> bool {
         self.rotors
             .get(rotor)
             .is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST_SHARE_MIN * self.share)
@@ -272,10 +272,10 @@ impl Detector {
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
-        let lost = greatest * rotor.per_length / math::greater(thrust, TELLING_THRUST_SHARE_MIN * self.share);
+        let lost = greatest * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share);
         let aligned = greatest * greatest >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
         let (least, most) = LOST_SHARE_RANGE;
-        let tells = self.would_tell(index, interval);
+        let tells = self.is_observable(index, interval);
         (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
     }
 }

@@ -35,7 +35,7 @@ use super::super::approach::Approach;
 use super::super::memory::Estimates;
 use crate::allocation::Rotors;
 use crate::allocation::minimum_norm::Thrusts;
-use crate::allocation::remaining::{Lost, RemainingRotors};
+use crate::allocation::remaining::{LostRotor, RemainingRotors};
 use crate::attitude::rotate_back;
 use crate::math;
 use crate::reference::Reference;
@@ -100,7 +100,7 @@ const STEPS_AHEAD: usize = 3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpinningLaw {
     /// What is lost.
-    lost: Lost,
+    lost: LostRotor,
     rotors: RemainingRotors,
     /// a and n.
     away: Vector3<f32>,
@@ -139,7 +139,7 @@ struct Memory {
 
 /// A tick's outcome, beside the commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spinning {
+pub struct SpinningStep {
     /// u, m/s^2.
     pub command: Vector3<f32>,
     /// The tilt's error as modified Rodrigues parameters, body frame.
@@ -154,7 +154,7 @@ impl SpinningLaw {
         vehicle: &Vehicle,
         limits: &Limits,
         rotors: &Rotors,
-        lost: &Lost,
+        lost: &LostRotor,
         [late, period]: [f32; 2],
         estimates: &Estimates,
     ) -> Self {
@@ -162,11 +162,11 @@ impl SpinningLaw {
         let weight = vehicle.mass * vehicle.gravity;
         let remaining = RemainingRotors::new(rotors, limits, lost, *scale, weight);
         let place = rotors.get(lost.rotor).map_or_else(Vector3::zeros, |rotor| rotor.position);
-        let arm = math::greater(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
+        let arm = math::max(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
         let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
         let unit = arm * weight / rotors.len() as f32;
         let axis = axis(vehicle, &remaining, &away, unit);
-        let bandwidth = math::lesser(BANDWIDTH_MAX_PER_S, BANDWIDTH_DELAY_MAX / (late + period));
+        let bandwidth = math::min(BANDWIDTH_MAX_PER_S, BANDWIDTH_DELAY_MAX / (late + period));
         Self {
             lost: *lost,
             rotors: remaining,
@@ -180,7 +180,7 @@ impl SpinningLaw {
             late: late + 0.5 * period,
             unit,
             memory: Memory {
-                force: force.map(|x| math::within(x, FORCE_MAX_M_PER_S2)),
+                force: force.map(|x| math::saturate(x, FORCE_MAX_M_PER_S2)),
                 last: None,
                 lacking: 0.0,
                 taken: 0.0,
@@ -202,10 +202,10 @@ impl SpinningLaw {
             return;
         }
         let tells = *taken > REFINING_S * TELLING_THRUST_SHARE_MIN * self.rotors.share();
-        let share = math::between(*missed / math::greater(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
+        let share = math::clamp(*missed / math::max(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
         (*taken, *missed, *watched) = (0.0, 0.0, 0.0);
         if tells && share.abs() > MISSING_SHARE_MIN {
-            let left = math::lesser(self.lost.left * (1.0 - share), 1.0);
+            let left = math::min(self.lost.left * (1.0 - share), 1.0);
             self.lost.left = if left > LEFT_SHARE_MIN { left } else { 0.0 };
             self.rotors.set_left(&self.lost);
             self.axis = axis(&self.vehicle, &self.rotors, &self.away, self.unit);
@@ -214,7 +214,7 @@ impl SpinningLaw {
 
     /// What is lost.
     #[must_use]
-    pub fn lost(&self) -> &Lost {
+    pub fn lost(&self) -> &LostRotor {
         &self.lost
     }
 
@@ -238,7 +238,7 @@ impl SpinningLaw {
 
     /// One tick: `pending` is the impulse that past commands will still deliver, N s and N m s.
     #[must_use]
-    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> Spinning {
+    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> SpinningStep {
         self.learn(&state.velocity, period);
         let command = self.command(state, reference);
         let (attitude, velocity) = self.ahead(state, pending);
@@ -259,7 +259,7 @@ impl SpinningLaw {
         let is_short = self.memory.beginning < SPIN_UP_MAX_S;
         let begins = is_short && self.memory.lacking > SPIN_UP_MISSING_TORQUE_SHARE_MIN && upwards > SPIN_UP_COSINE_MIN;
         let least = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
-        let wanted = Wrench { thrust: math::greater(along, least), torque };
+        let wanted = Wrench { thrust: math::max(along, least), torque };
 
         let thrusts = self.rotors.allocate(&wanted);
         let delivered = self.rotors.wrench(&thrusts);
@@ -270,7 +270,7 @@ impl SpinningLaw {
         self.memory.last = Some((state.velocity, falling));
         self.commands = self.rotors.commands(&thrusts);
         self.delivered = delivered;
-        Spinning { command, mrp: error * (-0.5 / (1.0 + half)) }
+        SpinningStep { command, mrp: error * (-0.5 / (1.0 + half)) }
     }
 
     /// d.
@@ -279,7 +279,7 @@ impl SpinningLaw {
         let averaging = -math::exp_m1(-FORCE_BANDWIDTH_PER_S * f64::from(period)) as f32;
         let beside = (velocity - before) / period - falling;
         let force = &mut self.memory.force;
-        *force += (beside.map(|x| math::within(x, FORCE_MAX_M_PER_S2)) - *force) * averaging;
+        *force += (beside.map(|x| math::saturate(x, FORCE_MAX_M_PER_S2)) - *force) * averaging;
     }
 
     /// u.
@@ -295,7 +295,7 @@ impl SpinningLaw {
         let lift =
             rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION_M_PER_S2)) * k_v_vertical;
         let (least, most) = LIFT_RANGE_G;
-        let lift = math::between(lift, least * gravity, most * gravity);
+        let lift = math::clamp(lift, least * gravity, most * gravity);
         let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT_MAX);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
@@ -330,8 +330,8 @@ impl SpinningLaw {
 
     /// e, and cos(theta / 2), for eta. Exactly half a turn away there is no nearest way, and no error.
     fn error(&self, eta: &Vector3<f32>) -> (Vector3<f32>, f32) {
-        let half = math::sqrt(math::greater(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
-        (self.axis.cross(eta) / math::greater(half, 1e-3), half)
+        let half = math::sqrt(math::max(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
+        (self.axis.cross(eta) / math::max(half, 1e-3), half)
     }
 }
 
@@ -353,12 +353,12 @@ fn towards(state: &State, reference: &Reference) -> f32 {
     if state.angular_velocity.z.abs() > HEADING_RATE_MAX_RAD_PER_S {
         return 0.0;
     }
-    let forward = crate::heading::Heading::of_attitude(&state.attitude).direction();
+    let forward = crate::heading::Heading::from_attitude(&state.attitude).direction();
     let heading = reference.heading.direction();
     let sine = forward.x * heading.y - forward.y * heading.x;
     let behind = forward.dot(&heading) < 0.0;
     let (of_one, most) = HEADING_GAIN_AND_RATE;
-    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::within(of_one * sine, most) };
+    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::saturate(of_one * sine, most) };
     turn + reference.heading.rate()
 }
 

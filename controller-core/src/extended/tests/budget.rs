@@ -3,7 +3,7 @@
 use super::Random;
 use super::std;
 use crate::allocation::{MinimumNorm, Rotors};
-use crate::extended::budget::{Bound, TORQUE_THRUST_SHARE, TickBudget, TorqueBudget};
+use crate::extended::budget::{RowSource, TORQUE_THRUST_SHARE, TickBudget, TorqueBudget};
 use crate::extended::tests::example::Craft;
 use crate::extended::thrust_range::ThrustRange;
 use crate::state::Wrench;
@@ -30,7 +30,7 @@ fn limited(random: &mut Random) -> Craft {
 fn longest(budget: &TorqueBudget, direction: &Vector2<f64>, scale: f64) -> f64 {
     let along = budget.rows.iter().map(|row| {
         let [x, y] = row.direction;
-        row.room(scale) / (x * direction.x + y * direction.y).abs()
+        row.capacity(scale) / (x * direction.x + y * direction.y).abs()
     });
     along.fold(f64::INFINITY, f64::min)
 }
@@ -42,7 +42,7 @@ fn unit(random: &mut Random) -> Vector2<f32> {
 
 /// Whether a rotor would leave its range with the wrench that [`ThrustRange`] admits.
 fn clips(rotors: &Rotors, range: &ThrustRange, asked: [f32; 3], tilt: &Vector2<f32>, scale: f32) -> bool {
-    let (Wrench { thrust, torque }, _) = range.admitted(asked[0], tilt, [asked[1], asked[2]], scale);
+    let (Wrench { thrust, torque }, _) = range.limited(asked[0], tilt, [asked[1], asked[2]], scale);
     assert_eq!(torque.xy(), *tilt);
     MinimumNorm::new(rotors).allocate(&Wrench { thrust: thrust / scale, torque: torque / scale }).unwrap().clipped
 }
@@ -87,8 +87,8 @@ fn no_row_of_rotors_is_narrower_than_they_need() {
         let craft = Craft::random(&mut random);
         let budget = rows(&craft, 0.0);
         let range = ThrustRange::new(Some(&craft.rotors), 0.0, f32::MAX, f32::MAX);
-        for row in budget.rows.iter().filter(|row| row.bound == Bound::Rotors) {
-            let [x, y] = row.direction.map(|part| (1.01 * row.room(1.0) * part) as f32);
+        for row in budget.rows.iter().filter(|row| row.bound == RowSource::Rotors) {
+            let [x, y] = row.direction.map(|part| (1.01 * row.capacity(1.0) * part) as f32);
             let fails = |torque: Vector3<f32>| range.least(&torque, 1.0) > range.greatest(&torque, 1.0);
             assert!(fails(Vector3::new(x, y, 0.0)) || fails(Vector3::new(-x, -y, 0.0)), "{craft:?} {row:?}");
         }
@@ -141,7 +141,7 @@ fn each_part_is_spent_up_to_what_it_has_to_keep_and_the_next_one_beside_it() {
             let holds = |torque: Vector2<f32>| {
                 budget.rows.iter().all(|row| {
                     let along = row.direction[0] * f64::from(torque.x) + row.direction[1] * f64::from(torque.y);
-                    along.abs() <= row.room(f64::from(scale)) - f64::from(kept)
+                    along.abs() <= row.capacity(f64::from(scale)) - f64::from(kept)
                 })
             };
             assert!(holds(spending.spent), "{before} {wanted} {kept}");
@@ -150,7 +150,7 @@ fn each_part_is_spent_up_to_what_it_has_to_keep_and_the_next_one_beside_it() {
                     row.direction[0] * f64::from(torque.x) + row.direction[1] * f64::from(torque.y)
                 };
                 let (spent, more) = (along(before), along(wanted));
-                let room = row.room(f64::from(scale)) * 0.999 - f64::from(kept) - spent * more.signum();
+                let room = row.capacity(f64::from(scale)) * 0.999 - f64::from(kept) - spent * more.signum();
                 room.max(0.0) / more.abs()
             });
             let greatest = greatest.fold(1.0, f64::min);
@@ -191,7 +191,7 @@ fn the_acceleration_that_is_held_is_the_ticks_own_less_what_a_bias_takes() {
         let budget = rows(&craft, 1e-3);
         let ceiling = budget.ceiling(&craft.vehicle, &craft.limits);
         let scale = random.between(0.8, 1.2);
-        let held = budget.held(&craft.vehicle, &craft.limits, f64::from(scale));
+        let held = budget.held_acceleration(&craft.vehicle, &craft.limits, f64::from(scale));
         let found = ceiling.at(scale, &Vector3::zeros());
         assert!((f64::from(found) * (1.0 - TORQUE_THRUST_SHARE) / held - 1.0).abs() < 1e-5, "{found} {held}");
         // With a bias every rotor still has that thrust in its range.

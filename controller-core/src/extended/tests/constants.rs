@@ -22,7 +22,7 @@ fn refused(key: &str, value: f32) -> ParameterError {
 fn every_constant_is_refused_by_its_name_on_either_side_of_its_range() {
     for constant in ExtendedParameters::TABLE {
         let beyond = |reason| ParameterError { field: constant.path, reason };
-        let (least, greatest) = (constant.range.least, constant.range.greatest);
+        let (least, greatest) = (constant.range.min, constant.range.max);
         let below = if least > 0.0 { Reason::Below(least) } else { Reason::Negative };
         assert_eq!(refused(constant.key, least.next_down()), beyond(below));
         assert_eq!(refused(constant.key, greatest.next_up()), beyond(Reason::Above(greatest)));

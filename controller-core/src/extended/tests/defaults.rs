@@ -71,7 +71,7 @@ fn what_is_given_is_kept_to_the_bit_and_the_rest_follows() {
     let craft = Craft::example();
     let built = craft.constants(&NOTHING_GIVEN).values();
     for (at, (constant, value)) in ExtendedParameters::TABLE.iter().zip(built).enumerate() {
-        let chosen = (0.9 * value).clamp(constant.range.least, constant.range.greatest);
+        let chosen = (0.9 * value).clamp(constant.range.min, constant.range.max);
         let parameters = craft.constants(&given(constant.key, chosen));
         assert_eq!(parameters.values()[at].to_bits(), chosen.to_bits(), "{}", constant.path);
     }

@@ -4,12 +4,12 @@ use super::Random;
 use super::position::{at, force};
 use crate::attitude_reference::DesiredAttitude;
 use crate::extended::defaults::NOTHING_GIVEN;
+use crate::extended::direction_limiter::DirectionLimiter;
 use crate::extended::fallback::{
     FIRST_STAY_S, Fallback, NEAR_DISTANCE_M, PROGRESS_STEP_MAX, PROGRESS_WINDOW_S, Slowed, slowed,
 };
-use crate::extended::position::{Filters, Most, PositionLaw};
+use crate::extended::position::{FeedbackLimits, Filters, PositionLaw};
 use crate::extended::tests::example::{Craft, greatest_accelerations};
-use crate::extended::turning::TurningLimit;
 use crate::heading::Heading;
 use crate::reference::Trajectory;
 use crate::reference::hover::Hover;
@@ -136,8 +136,8 @@ fn the_slowed_law_is_never_limited() {
         let (gravity, h) = (craft.vehicle.gravity, craft.period);
         let law = slowed(&p, gravity);
         let position = PositionLaw::new(&law, gravity, h).unwrap();
-        let limit = TurningLimit::new(&p, p.turn_reserve, h);
-        let level = Slowed::<f64>::of(&p, gravity).level as f32;
+        let limit = DirectionLimiter::new(&p, p.turn_reserve, h);
+        let level = Slowed::<f64>::new(&p, gravity).level as f32;
         let [greatest, _] = greatest_accelerations(&craft, &p);
         // One that thrust, envelope and cone hold with M_s beside it.
         let mut d = force(&mut random, &p);
@@ -155,12 +155,12 @@ fn the_slowed_law_is_never_limited() {
             if random.below(20) == 0 {
                 state = at(random.vector(1e3), random.vector(1e3));
             }
-            let feedback = position.feedback(&state, &origin, &filter, &d, greatest, &Most::each(level));
+            let feedback = position.feedback(&state, &origin, &filter, &d, greatest, &FeedbackLimits::each(level));
             let wanted = (feedback.drive - feedback.rate) * position.k_f();
             let c = filter.command;
             let desired = DesiredAttitude::new(&Vector3::new(c.x, c.y, c.z + gravity), &Heading::FORWARD);
-            let (turn, up) = (desired.turn(&feedback.rate, &wanted), desired.up());
-            let q = limit.turned(&turn, &up);
+            let (turn, up) = (desired.direction_motion(&feedback.rate, &wanted), desired.up());
+            let q = limit.limited(&turn, &up);
             assert_eq!(q, turn.acceleration, "{craft:?} {d} tick {tick}");
             let change = limit.change(&turn, &q, &up, greatest, [c.z, feedback.rate.z, wanted.z]);
             assert_eq!(change, None, "{craft:?} {d} tick {tick}");
@@ -173,7 +173,7 @@ fn the_slowed_law_is_never_limited() {
 fn the_slowed_law_keeps_the_form_of_the_law() {
     let craft = Craft::example();
     let p = craft.constants(&NOTHING_GIVEN);
-    let (by, slow) = (Slowed::<f64>::of(&p, 9.81).factor as f32, slowed(&p, 9.81));
+    let (by, slow) = (Slowed::<f64>::new(&p, 9.81).factor as f32, slowed(&p, 9.81));
     assert!(by < 0.5, "{by}");
     for (found, own, power) in [
         (slow.k_f, p.k_f, 1),

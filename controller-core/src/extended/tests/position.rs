@@ -3,7 +3,7 @@
 use super::Random;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::parameters::ExtendedParameters;
-use crate::extended::position::{Filters, Most, PositionFeedback, PositionLaw};
+use crate::extended::position::{FeedbackLimits, Filters, PositionFeedback, PositionLaw};
 use crate::extended::tests::example::{self, Craft, greatest_accelerations};
 use crate::heading::Heading;
 use crate::reference::hover::Hover;
@@ -45,7 +45,7 @@ fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
             let filter = Filters { command, intermediate, smoothed };
             let d = force(&mut random, &p);
             let greatest = random.between(weakest, strongest);
-            let ubar = law.feedback(&state, &origin(), &filter, &d, greatest, &Most::ALL).feedback;
+            let ubar = law.feedback(&state, &origin(), &filter, &d, greatest, &FeedbackLimits::UNLIMITED).feedback;
             let allowance = 1e-5 * greatest;
             let (lift, across, wind) = (gravity + ubar.z, ubar.xy().norm(), d.xy().norm() + least);
             assert!(ubar.z >= -p.a_down - allowance, "{ubar}");
@@ -122,7 +122,7 @@ fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&Pos
     let mut state = start;
     let mut filter = Filters::at(-force);
     for _ in 0..ticks {
-        let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, &Most::ALL);
+        let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, &FeedbackLimits::UNLIMITED);
         see(&feedback);
         let next = law.advance(&filter, &feedback.smoothed, &feedback.drive, f32::MAX);
         // c moves nearly straight within a tick. Along the vertical y acts at once.

@@ -47,7 +47,7 @@ fn thrust_is_the_nearest_that_tilting_leaves_and_yaw_the_nearest_that_both_leave
         let (tilt, scale) = (random.vector(0.4).xy(), random.between(0.8, 1.3));
         let [asked, yaw] = [60.0 * random.signed(), random.signed()];
         let braking = if random.below(2) == 0 { 0.0 } else { 0.1 * yaw };
-        let (wrench, room) = range.admitted(asked, &tilt, [yaw, braking], scale);
+        let (wrench, room) = range.limited(asked, &tilt, [yaw, braking], scale);
         let alone = Vector3::new(tilt.x, tilt.y, 0.0);
         let most = range.greatest(&alone, scale).min(range.greatest(&Vector3::new(tilt.x, tilt.y, braking), scale));
         let expected = asked.min(most).max(range.least(&alone, scale));
@@ -104,7 +104,7 @@ fn a_vehicle_without_rotors_has_a_constant_range() {
     let range = ThrustRange::new(None, 0.05, 40.0, 0.2);
     let torque = Vector2::new(0.3, -0.2);
     for (thrust, expected) in [(-1.0, 0.05), (9.0, 9.0), (50.0, 40.0)] {
-        let (wrench, room) = range.admitted(thrust, &torque, [-0.3, 0.0], 1.1);
+        let (wrench, room) = range.limited(thrust, &torque, [-0.3, 0.0], 1.1);
         assert_eq!((wrench.thrust, wrench.torque.z, room), (expected, -0.2, 0.2));
     }
 }

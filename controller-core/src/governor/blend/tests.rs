@@ -1,7 +1,7 @@
 use super::*;
 use crate::governor::envelope::{Bounds, Cylinder};
 
-const REST: Moving = Moving {
+const REST: HeadMotion = HeadMotion {
     velocity: Vector3::new(0.0, 0.0, 0.0),
     acceleration: Vector3::new(0.0, 0.0, 0.0),
     difference: Vector3::new(0.0, 0.0, 0.0),
@@ -41,9 +41,9 @@ fn a_blend_begins_on_the_averages_and_ends_on_the_stream() {
         snap: all(0.0),
         rate: 0.7,
     };
-    let sought = Sought { point: Point { snap: all(2.0), ..error }, error };
+    let sought = StreamTarget { point: Point { snap: all(2.0), ..error }, error };
     let snap = all(1e-4);
-    let Sought { point, error } = at(0.0, 5.0).target(&REST, &sought, &snap, 0.01);
+    let StreamTarget { point, error } = at(0.0, 5.0).target(&REST, &sought, &snap, 0.01);
     assert_eq!([error.position, error.velocity, error.acceleration, error.jerk], [Vector3::zeros(); 4]);
     assert!((point.snap - all(1.0)).norm() < 1e-6 && point.rate == 0.0);
     let target = at(5.0, 5.0).target(&REST, &sought, &snap, 0.01);

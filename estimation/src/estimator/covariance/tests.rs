@@ -154,7 +154,7 @@ fn a_measurement_leaves_what_the_textbook_says() {
         let noise = Matrix3::new(4e-4, 1e-4, 0.0, 1e-4, 3e-4, 5e-5, 0.0, 5e-5, 2e-4_f32);
         let residual = Vector3::new(0.01_f32, -0.02, 0.03);
         let mut covariance = Covariance::from_full(&before);
-        let weight = inverse(&(covariance.of(part) + noise)).unwrap();
+        let weight = inverse(&(covariance.block(part) + noise)).unwrap();
         let correction = covariance.fuse(part, &residual, &noise, &weight);
         // P - P H' S^-1 H P, in double precision.
         let columns = before.fixed_columns::<3>(at).into_owned();
@@ -185,7 +185,7 @@ fn it_stays_symmetric_and_positive_through_an_hour_of_poses() {
         covariance.advance(&motion, &EstimatorParameters::BMI088);
         for (part, deviation) in [(Part::Position, 1e-4), (Part::Attitude, 5e-4)] {
             let noise = noise(deviation);
-            let weight = inverse(&(covariance.of(part) + noise)).unwrap();
+            let weight = inverse(&(covariance.block(part) + noise)).unwrap();
             covariance.fuse(part, &Vector3::zeros(), &noise, &weight);
         }
         if n % 1_000 == 0 || n < 100 {

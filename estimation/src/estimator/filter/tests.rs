@@ -14,7 +14,7 @@ fn however_uncertain_an_attitude_half_a_radian_is_no_error_of_estimation() {
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
     let mut filter = Filter::start(0, &pose(0.0, 0.0), &Biases::unknown(&settings), &settings);
     filter.covariance.tt = Matrix3::from_diagonal_element(1.0);
-    let gate = |turn: f32| filter.test(&pose(turn, 0.0), &settings).and_then(|tested| tested.gate());
+    let gate = |turn: f32| filter.weigh(&pose(turn, 0.0), &settings).and_then(|tested| tested.gate());
     assert_eq!(gate(0.51), Ok(()));
     assert_eq!(gate(0.53), Err(Rejected::Attitude));
     assert_eq!(gate(-0.53), Err(Rejected::Attitude));

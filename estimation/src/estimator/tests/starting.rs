@@ -2,7 +2,7 @@
 
 use super::motion::{self, Rig, rest, spin, tumble};
 use crate::estimator::candidate::POSES_MIN;
-use crate::estimator::{COASTING_AFTER_US, Fault, Rejected, Taken};
+use crate::estimator::{Accepted, COASTING_AFTER_US, Fault, Rejected};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -13,11 +13,11 @@ fn it_begins_at_rest_and_in_a_tumble_from_poses_alone() {
         rig.fly(400_000, 20_000);
         assert_eq!(rig.state(), None);
         assert_eq!(rig.estimator.health(rig.now).faults.worst(), Some(Fault::NotStarted));
-        assert_eq!(rig.estimator.health(rig.now).last, Some(Ok(Taken::Aligning)));
+        assert_eq!(rig.estimator.health(rig.now).last, Some(Ok(Accepted::Aligning)));
         rig.fly(1_600_000, 20_000);
         rig.check("after 2 s");
         let health = rig.estimator.health(rig.now);
-        assert!(health.is_good() && health.last == Some(Ok(Taken::Fused)), "{health:?}");
+        assert!(health.is_good() && health.last == Some(Ok(Accepted::Fused)), "{health:?}");
         assert_eq!(health.counts.1, 0);
     }
 }

@@ -5,7 +5,7 @@ use xorshift::Random;
 mod xorshift;
 
 /// A standstill of noisy samples around what is given for each.
-fn stand(mut at: impl FnMut(f32) -> (Vector3<f32>, Vector3<f32>)) -> Result<Rest, Moved> {
+fn stand(mut at: impl FnMut(f32) -> (Vector3<f32>, Vector3<f32>)) -> Result<StandstillMeans, Moved> {
     let (mut standstill, mut random) = (Standstill::default(), Random::new(7));
     // The sum of four even numbers is nearly normal, with a deviation of 1.15.
     let mut noise =

@@ -7,7 +7,7 @@
 
 use crate::output::table::short;
 use controller_core::certificate::Certificate;
-use controller_core::certificate::path::{Motion, PathJudge};
+use controller_core::certificate::path::{PathJudge, PathMotion};
 use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
@@ -45,9 +45,9 @@ pub fn circle(scenario: &Scenario) -> Option<Circle> {
 }
 
 /// A circle's motion where it goes along y.
-fn turning(speed: f64) -> Motion {
+fn turning(speed: f64) -> PathMotion {
     let turn = speed / CIRCLE_RADIUS;
-    Motion {
+    PathMotion {
         velocity: [0.0, speed, 0.0],
         acceleration: [-speed * turn, 0.0, 0.0],
         jerk: [0.0, -speed * turn.powi(2), 0.0],
@@ -111,10 +111,11 @@ pub fn lines(scenario: &Scenario) -> String {
 
 /// What certifies without turning.
 fn straight(judge: &PathJudge, force_kept: f32) -> String {
-    let rest = Motion { velocity: [0.0; 3], acceleration: [0.0; 3], jerk: [0.0; 3], snap: [0.0; 3], heading_rate: 0.0 };
+    let rest =
+        PathMotion { velocity: [0.0; 3], acceleration: [0.0; 3], jerk: [0.0; 3], snap: [0.0; 3], heading_rate: 0.0 };
     let across = |size: f64| [size, 0.0, 0.0];
-    let accelerated = |size: f64| judge.shares(&Motion { acceleration: across(size), ..rest }).worst() < 1.0;
-    let jerked = |size: f64| judge.shares(&Motion { jerk: across(size), ..rest }).worst() < 1.0;
+    let accelerated = |size: f64| judge.shares(&PathMotion { acceleration: across(size), ..rest }).worst() < 1.0;
+    let jerked = |size: f64| judge.shares(&PathMotion { jerk: across(size), ..rest }).worst() < 1.0;
     let found = [greatest(MOST[1], accelerated), greatest(MOST[2], jerked)].map(|found| found.unwrap_or(0.0));
     let [acceleration, jerk] = found.map(short);
     format!("a known path beside a force of {force_kept} m/s^2: {acceleration} m/s^2 across, from hover {jerk} m/s^3\n")

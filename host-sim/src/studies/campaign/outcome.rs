@@ -175,8 +175,8 @@ impl Shares {
     fn take(&mut self, tick: &Brief, certificate: &Certificate) -> bool {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
         let raised = 1.0 + ROUNDING;
-        let mut within = (proven.least / raised..=proven.greatest * raised).contains(&thrust);
-        self.thrust = self.thrust.max(thrust / proven.greatest);
+        let mut within = (proven.least / raised..=proven.max * raised).contains(&thrust);
+        self.thrust = self.thrust.max(thrust / proven.max);
         let bounds = certificate.torque();
         for (greatest, (torque, proven)) in self.torque.iter_mut().zip(tick.wrench.torque.iter().zip(bounds.iter())) {
             let torque = f64::from(torque.abs());
@@ -189,8 +189,8 @@ impl Shares {
                 within = false;
                 continue;
             };
-            *greatest = greatest.max(commanded / proven.greatest);
-            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&commanded);
+            *greatest = greatest.max(commanded / proven.max);
+            within &= (proven.least - ROUNDING..=proven.max * raised).contains(&commanded);
         }
         within
     }

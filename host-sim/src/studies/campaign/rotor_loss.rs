@@ -11,7 +11,7 @@
 //! *tracks* if it ends within [`PLACE_HELD`](scenario::rotor_loss::PLACE_HELD) of its reference.
 
 use crate::flight::Brief;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::allocation::{Rotor, Rotors};
 use scenario::Scenario;
 use scenario::reality::failure::Failure;
@@ -52,7 +52,7 @@ impl RotorLoss {
     }
 
     /// Takes a tick in, after which the law has found a rotor to be `lost`.
-    pub fn observe(&mut self, tick: &Brief, lost: Option<Lost>) {
+    pub fn observe(&mut self, tick: &Brief, lost: Option<LostRotor>) {
         let time = tick.time_us as f64 * 1e-6;
         self.found = self.found.or_else(|| lost.map(|lost| (lost.rotor, time)));
         if self.failure.is_none_or(|failure| time < failure.time) {

@@ -55,7 +55,7 @@ impl Space {
         let configuration = &self.scenario.configuration;
         match configuration.law() {
             LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
-                let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.least_thrust());
+                let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.min_thrust());
                 let searched = gains.entries().filter(|(gain, _)| gain.searched).map(|(_, value)| value);
                 searched.chain([floor]).map(|value| f64::from(value).ln()).collect()
             }
@@ -112,7 +112,7 @@ impl Space {
         match self.floor {
             None => Some(configuration),
             Some(greatest) => {
-                let floor = floor.min(greatest) * configuration.least_thrust();
+                let floor = floor.min(greatest) * configuration.min_thrust();
                 configuration.with_thrust_floor(floor).ok()
             }
         }

@@ -131,7 +131,7 @@ fn the_projection_lowers_the_floor_below_its_greatest_value_by_the_margin() {
     let mut point = judge.start();
     point[9] = 0.0;
     let configuration = judge.scenario(&point).unwrap().configuration;
-    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.least_thrust());
+    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.min_thrust());
     assert!((floor / greatest - 0.95).abs() < 1e-6, "{floor} of {greatest}");
 }
 

@@ -14,13 +14,13 @@ use super::sloped::Sloped;
 use crate::judge::judge;
 use crate::trajectory::stretch;
 use crate::trajectory::vehicle::Vehicle;
-use controller_core::certificate::path::along::Taken;
-use controller_core::certificate::path::{self, PathJudge, Row};
+use controller_core::certificate::path::along::MaxShare;
+use controller_core::certificate::path::{self, PathJudge, PathRow};
 use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use controller_core::reference::knot::Knot;
 
-const JUDGED: usize = Row::ALL.len();
+const JUDGED: usize = PathRow::ALL.len();
 /// Rows of a motion.
 pub const ROWS: usize = JUDGED + ReferenceBounds::COUNT + 1;
 /// What the rows depend on: velocity, acceleration, jerk and snap along x, y and z, and the heading's first two
@@ -94,7 +94,7 @@ impl Limits {
         let (judged, others) = rows.split_at_mut(JUDGED);
         if let Some(judge) = judge {
             judged.copy_from_slice(
-                &judge.shares(&path::Motion { velocity, acceleration, jerk, snap, heading_rate }).each,
+                &judge.shares(&path::PathMotion { velocity, acceleration, jerk, snap, heading_rate }).each,
             );
         }
         let square = |parts: &[Sloped<N>]| parts.iter().fold(Sloped::from(0.0), |sum, part| sum + *part * *part);
@@ -121,7 +121,7 @@ impl Limits {
         let Ok(Some(path)) = stretch::path(knots) else { return false };
         let end = knots.last().map_or(0, |last| last.time_us);
         let is_bounded = stretch::taken(knots).is_ok_and(|taken| stretch::stretch(&taken, &self.bounds) <= USED);
-        let fits = |judge: &PathJudge| Taken::along(judge, &path, end).share < 1.0;
+        let fits = |judge: &PathJudge| MaxShare::along(judge, &path, end).share < 1.0;
         is_bounded && self.judges.as_ref().is_none_or(|(judge, ..)| fits(judge))
     }
 }

@@ -41,8 +41,8 @@ fn through(random: &mut Random, seconds: f32) -> Waypoints {
 
 /// No instant takes more than is said, one takes nearly as much, and it is the one that is named.
 fn covers(judge: &PathJudge, trajectory: &dyn Trajectory, end_us: u64) -> f64 {
-    let Taken { share, row, at_us } = Taken::along(judge, trajectory, end_us);
-    let at = |time: u64| judge.shares(&Motion::from(&trajectory.at(time)));
+    let MaxShare { share, row, at_us } = MaxShare::along(judge, trajectory, end_us);
+    let at = |time: u64| judge.shares(&PathMotion::from(&trajectory.at(time)));
     for instant in 0..=5_000 {
         let worst = at(end_us / 5_000 * instant).worst();
         assert!(worst <= share, "{worst} at {instant}: {share}");
@@ -83,7 +83,7 @@ fn a_peak_between_the_instants_looked_at_is_not_missed() {
         heading,
     };
     let trembling = Harmonic::new(parameters).unwrap();
-    let seen = judge.shares(&Motion::from(&trembling.at(FIRST_CELL_US / 2))).worst();
+    let seen = judge.shares(&PathMotion::from(&trembling.at(FIRST_CELL_US / 2))).worst();
     assert!(covers(&judge, &trembling, 2 * FIRST_CELL_US) > 3.0 * seen, "{seen}");
 }
 
@@ -92,8 +92,8 @@ fn rounding_decides_nothing_along_a_path() {
     let craft = Craft::example();
     for seconds in [3.0, 5.0, 8.0] {
         let eight = eight(6.0, seconds);
-        let nearest = Taken::along(&judge::<f64>(&craft), &eight, 8_000_000).share;
-        let enclosed = Taken::along(&judge::<Enclosure>(&craft), &eight, 8_000_000).share;
+        let nearest = MaxShare::along(&judge::<f64>(&craft), &eight, 8_000_000).share;
+        let enclosed = MaxShare::along(&judge::<Enclosure>(&craft), &eight, 8_000_000).share;
         assert!(enclosed >= nearest && enclosed < nearest * (1.0 + 1e-9), "{nearest} {enclosed}");
     }
 }
@@ -101,6 +101,6 @@ fn rounding_decides_nothing_along_a_path() {
 #[test]
 fn at_rest_a_vehicle_takes_what_hovering_takes() {
     let judge = judge::<f64>(&Craft::example());
-    let hover = Taken::along(&judge, &Hover::ORIGIN, 3_600_000_000);
-    assert_eq!(hover.share, judge.shares(&Motion::from(&Hover::ORIGIN.at(0))).worst());
+    let hover = MaxShare::along(&judge, &Hover::ORIGIN, 3_600_000_000);
+    assert_eq!(hover.share, judge.shares(&PathMotion::from(&Hover::ORIGIN.at(0))).worst());
 }

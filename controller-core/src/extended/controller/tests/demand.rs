@@ -52,7 +52,7 @@ fn a_demand_is_cut_to_the_envelope_the_vertical_first() {
     for _ in 0..40 {
         let craft = Craft::random(&mut random);
         let p = craft.constants(&NOTHING_GIVEN);
-        let mut law = of(&craft, &p);
+        let mut law = build(&craft, &p);
         let gravity = craft.vehicle.gravity;
         for _ in 0..50 {
             let (_, diagnostics) = law.step_on_demand(&resting(Vector3::zeros()), &hover(), &any(&mut random)).unwrap();
@@ -140,10 +140,11 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
         let craft = Craft::random(&mut random);
         let p = craft.constants(&NOTHING_GIVEN);
         let law = PositionLaw::new(&p, craft.vehicle.gravity, h).unwrap();
-        let greatest = of(&craft, &p).ceiling.at(1.0, &Vector3::zeros());
+        let greatest = build(&craft, &p).ceiling.at(1.0, &Vector3::zeros());
         let force =
             Vector3::new(random.signed(), random.signed(), random.signed()) * (0.2 * p.force_down.min(p.force_up));
-        let levels = Most { up: f32::MAX, down: 0.4 * craft.vehicle.gravity, across: 0.8 * craft.vehicle.gravity };
+        let levels =
+            FeedbackLimits { up: f32::MAX, down: 0.4 * craft.vehicle.gravity, across: 0.8 * craft.vehicle.gravity };
         let mut filters =
             Filters { command: random.vector(4.0), intermediate: random.vector(4.0), smoothed: random.vector(4.0) };
         let mut state = State { velocity: random.vector(4.0), ..resting(random.vector(2.0)) };

@@ -122,8 +122,8 @@ fn the_advice_is_accepted_by_a_vehicles_file_alone() {
 
 #[test]
 fn the_advice_on_paths_flights_and_loops_is_accepted() {
-    use controller_core::certificate::path::Row;
-    let rows = [Row::Fall, Row::Thrust, Row::TurningRate, Row::Torque, Row::Floor, Row::Cone];
+    use controller_core::certificate::path::PathRow;
+    let rows = [PathRow::Fall, PathRow::Thrust, PathRow::TurningRate, PathRow::Torque, PathRow::Floor, PathRow::Cone];
     let lack = |axis| of_loop(&Lack { axis, missed: 0.1, what: Shortfall::Unstable { spectral_radius: 1.1 } });
     let loops = [Axis::Roll, Axis::Yaw, Axis::LateralX, Axis::Vertical].map(lack);
     let texts = rows.map(|row| of_path(row).to_owned()).into_iter().chain(loops).chain([OF_FLIGHT.to_owned()]);

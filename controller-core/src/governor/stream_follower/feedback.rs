@@ -6,8 +6,8 @@
 //! rest in the middle of a circle, shrinks without changing direction, and needs next to no acceleration of its own. l
 //! begins at what the error allows, and grows as it shrinks.
 
-use super::Direct;
-use crate::governor::stream::{Point, Sought, quarter};
+use super::StreamFollower;
+use crate::governor::stream::{Point, StreamTarget, quarter};
 use crate::math;
 use nalgebra::Vector3;
 
@@ -23,42 +23,42 @@ const STIFFNESS_GROWTH: f32 = 0.12;
 /// The stiffness, over the rate of a turning stream, at which an error that turns with it needs no more than it leaves.
 const TURNING_STIFFNESS_SHARE: f32 = 0.8;
 
-impl Direct {
+impl StreamFollower {
     /// The stiffness a tick later.
-    pub(super) fn stiffened(&self, sought: &Sought, stiffness: f32) -> f32 {
+    pub(super) fn next_stiffness(&self, sought: &StreamTarget, stiffness: f32) -> f32 {
         let grown = stiffness + STIFFNESS_GROWTH * stiffness * stiffness * self.period;
-        grown.min(self.affordable(sought, self.room(sought)))
+        grown.min(self.stiffness_within(sought, self.feedback_capacity(sought)))
     }
 
     /// A length with which lengths along the vertical count as much as the accelerations that undo them.
-    pub(super) fn flat(&self, y: &Vector3<f32>) -> f32 {
+    pub(super) fn weighted_length(&self, y: &Vector3<f32>) -> f32 {
         let vertical = y.z * self.flatness;
         math::sqrt(y.x * y.x + y.y * y.y + vertical * vertical)
     }
 
     /// How the error moves beside turning with the stream.
-    pub(super) fn drift(sought: &Sought) -> Vector3<f32> {
+    pub(super) fn drift(sought: &StreamTarget) -> Vector3<f32> {
         sought.error.velocity - quarter(&sought.error.position) * sought.point.rate
     }
 
     /// How far off a stream is, with how far it goes off in a span, m.
-    pub(super) fn off(&self, sought: &Sought) -> f32 {
-        self.flat(&sought.error.position) + self.span * self.flat(&Self::drift(sought))
+    pub(super) fn distance(&self, sought: &StreamTarget) -> f32 {
+        self.weighted_length(&sought.error.position) + self.span * self.weighted_length(&Self::drift(sought))
     }
 
     /// The acceleration that feedback may command, m/s^2: a share of the rest beside a head whose error turns with the
     /// stream.
-    pub(super) fn room(&self, sought: &Sought) -> f32 {
+    pub(super) fn feedback_capacity(&self, sought: &StreamTarget) -> f32 {
         let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
         let turned = |y: &Vector3<f32>| quarter(y) * *rate;
         let bent = turned(&turned(&sought.error.position));
         let twisted = turned(&bent);
         let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
-        FEEDBACK_SHARE * self.acceleration * math::between(1.0 - used, REMAINING_SHARE_MIN, 1.0)
+        FEEDBACK_SHARE * self.acceleration * math::clamp(1.0 - used, REMAINING_SHARE_MIN, 1.0)
     }
 
     /// The stiffness whose answer to the error is within the room.
-    pub(super) fn affordable(&self, sought: &Sought, room: f32) -> f32 {
+    pub(super) fn stiffness_within(&self, sought: &StreamTarget, room: f32) -> f32 {
         let Point { position, .. } = &sought.error;
         let stiff = (STIFFNESS_SPANS_MAX / self.span).min(STIFFNESS_PERIODS_MAX / self.period);
         let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
@@ -68,15 +68,15 @@ impl Direct {
     }
 
     /// Whether what the error does beside turning with the stream is answered within the room.
-    pub(super) fn is_near(&self, sought: &Sought, stiffness: f32, room: f32) -> bool {
+    pub(super) fn is_near(&self, sought: &StreamTarget, stiffness: f32, room: f32) -> bool {
         let Point { velocity, acceleration, .. } = &sought.error;
         let drift = Self::drift(sought);
         let bend = acceleration - (quarter(velocity) + quarter(&drift)) * sought.point.rate;
-        2.0 * stiffness * self.flat(&drift) <= room && self.flat(&bend) <= room
+        2.0 * stiffness * self.weighted_length(&drift) <= room && self.weighted_length(&bend) <= room
     }
 
     /// The stream's snap and the feedback, m/s^2 per tick squared.
-    pub(super) fn wanted(&self, sought: &Sought, stiffness: f32) -> Vector3<f32> {
+    pub(super) fn commanded_snap(&self, sought: &StreamTarget, stiffness: f32) -> Vector3<f32> {
         let Point { position, velocity, acceleration, jerk, .. } = &sought.error;
         let rate = sought.point.rate;
         // m y.

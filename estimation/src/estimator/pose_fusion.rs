@@ -11,13 +11,13 @@
 use super::candidate::Candidate;
 use super::filter::Filter;
 use super::measurement::PoseMeasurement as Pose;
-use super::verdict::{Rejected, Taken};
+use super::verdict::{Accepted, Rejected};
 use super::{EXTRAPOLATION_MAX_US, Estimator, Increment, REBASE_INTERVAL_MIN_US, TILT_COSINE_MIN, rotated};
 use crate::measurement::Stamped;
 
 impl Estimator {
     /// Takes a pose if the IMU has got that far, or keeps it.
-    pub(super) fn take_in_time(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
+    pub(super) fn take_in_time(&mut self, pose: &Stamped<Pose>) -> Result<Accepted, Rejected> {
         let (start, end) = self.history.span().ok_or(Rejected::NoImu)?;
         if pose.time < start {
             Err(Rejected::TooOld)
@@ -26,7 +26,7 @@ impl Estimator {
         } else if pose.time - end > EXTRAPOLATION_MAX_US {
             Err(Rejected::NoImu)
         } else {
-            self.waiting.push(*pose).map_or(Err(Rejected::NoImu), |()| Ok(Taken::Waiting))
+            self.waiting.push(*pose).map_or(Err(Rejected::NoImu), |()| Ok(Accepted::Waiting))
         }
     }
 
@@ -43,7 +43,7 @@ impl Estimator {
         }
     }
 
-    fn take(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
+    fn take(&mut self, pose: &Stamped<Pose>) -> Result<Accepted, Rejected> {
         let Some(filter) = self.filter else {
             return self.seek(pose, None);
         };
@@ -54,13 +54,13 @@ impl Estimator {
             Err(_) => {}
         }
         if let Some(filter) = &self.filter {
-            self.statistics.look(filter);
+            self.statistics.record_certainty(filter);
         }
         verdict
     }
 
     /// A pose later than the horizon.
-    fn fuse_next(&mut self, before: &Filter, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
+    fn fuse_next(&mut self, before: &Filter, pose: &Stamped<Pose>) -> Result<Accepted, Rejected> {
         let mut filter = *before;
         filter.advance(pose.time, &self.history, &self.settings);
         self.filter = Some(filter);
@@ -72,7 +72,7 @@ impl Estimator {
                 self.checkpoints.push(before, pose);
                 self.filter = Some(filter);
                 self.candidate = None;
-                Ok(Taken::Fused)
+                Ok(Accepted::Fused)
             }
             Err(Rejected::NotFinite) => Err(Rejected::NotFinite),
             Err(why) => self.seek(pose, Some(why)),
@@ -80,7 +80,7 @@ impl Estimator {
     }
 
     /// A pose that belongs before the horizon: the poses after its time are taken back, and fused again after it.
-    fn fuse_late(&mut self, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
+    fn fuse_late(&mut self, pose: &Stamped<Pose>) -> Result<Accepted, Rejected> {
         let (mut filter, later) = self.checkpoints.rewind(pose.time).ok_or(Rejected::TooOld)?;
         let mut verdict = Err(Rejected::TooOld);
         for (number, next) in core::iter::once(pose).chain(later.iter().rev()).enumerate() {
@@ -91,7 +91,7 @@ impl Estimator {
                 self.checkpoints.push(&before, next);
             }
             if number == 0 || fused == Err(Rejected::NotFinite) {
-                verdict = fused.map(|()| Taken::Fused);
+                verdict = fused.map(|()| Accepted::Fused);
             }
         }
         self.filter = Some(filter);
@@ -102,8 +102,8 @@ impl Estimator {
 
     /// Weighs a pose, and takes it into account if it is within its gates.
     fn fuse(&mut self, filter: &mut Filter, pose: &Stamped<Pose>) -> Result<(), Rejected> {
-        let tested = filter.test(&pose.value, &self.settings)?;
-        self.statistics.weigh(tested.nis());
+        let tested = filter.weigh(&pose.value, &self.settings)?;
+        self.statistics.record_nis(tested.nis());
         tested.gate()?;
         filter.fuse(&pose.value, &tested)
     }
@@ -114,7 +114,7 @@ impl Estimator {
         resets != pose.value.resets && pose.time.saturating_sub(since) >= REBASE_INTERVAL_MIN_US
     }
 
-    fn rebase(&mut self, mut filter: Filter, pose: &Stamped<Pose>) -> Result<Taken, Rejected> {
+    fn rebase(&mut self, mut filter: Filter, pose: &Stamped<Pose>) -> Result<Accepted, Rejected> {
         let moved = pose.value.attitude * filter.nominal.attitude.conjugate();
         if 1.0 - 2.0 * (moved.i * moved.i + moved.j * moved.j) < TILT_COSINE_MIN {
             return Err(Rejected::Gravity);
@@ -123,13 +123,13 @@ impl Estimator {
         self.follow(&filter);
         self.frame = Some((pose.value.resets, pose.time));
         self.statistics.jumps += 1;
-        Ok(Taken::Rebased)
+        Ok(Accepted::Rebased)
     }
 
     /// Tries a pose on the candidate: without a filter, or where the filter does not believe the pose for the reason
     /// given.
-    fn seek(&mut self, pose: &Stamped<Pose>, why: Option<Rejected>) -> Result<Taken, Rejected> {
-        let unproven = why.map_or(Ok(Taken::Aligning), Err);
+    fn seek(&mut self, pose: &Stamped<Pose>, why: Option<Rejected>) -> Result<Accepted, Rejected> {
+        let unproven = why.map_or(Ok(Accepted::Aligning), Err);
         self.check_up(&pose.value)?;
         let biases = self.filter.as_ref().map_or(self.biases, Filter::biases);
         let fresh = Candidate::new(pose.time, &pose.value, &biases, &self.settings);
@@ -153,8 +153,8 @@ impl Estimator {
         if let Some(filter) = &self.filter {
             candidate.compare(filter, pose.time.saturating_sub(self.statistics.fused_at))?;
         }
-        let taken = if self.filter.is_some() { Taken::Refound } else { Taken::Started };
-        self.statistics.jumps += u32::from(taken == Taken::Refound);
+        let taken = if self.filter.is_some() { Accepted::Refound } else { Accepted::Started };
+        self.statistics.jumps += u32::from(taken == Accepted::Refound);
         self.frame = Some((pose.value.resets, self.frame.map_or(0, |(_, since)| since)));
         self.follow(&found);
         Ok(taken)
@@ -194,21 +194,21 @@ impl Estimator {
         const MOVING_RATE_RAD_PER_S: f32 = 0.045;
         /// m/s^2: the same.
         const MOVING_FORCE_M_PER_S2: f32 = 0.5;
-        self.differs(increment, MOVING_RATE_RAD_PER_S, MOVING_FORCE_M_PER_S2)
+        self.exceeds_rest_by(increment, MOVING_RATE_RAD_PER_S, MOVING_FORCE_M_PER_S2)
     }
 
     /// Whether an increment differs from that of perfect rest. In the air a real sensor has its noise; a simulated one
     /// without noise may repeat itself as its poses do.
-    pub(super) fn stirs(&self, increment: &Increment) -> bool {
+    pub(super) fn differs_from_rest(&self, increment: &Increment) -> bool {
         /// rad/s: less than a BMI088's noise over 5 ms.
         const STIRRING_RATE_RAD_PER_S: f32 = 0.002;
         /// m/s^2: the same.
         const STIRRING_FORCE_M_PER_S2: f32 = 0.05;
-        self.differs(increment, STIRRING_RATE_RAD_PER_S, STIRRING_FORCE_M_PER_S2)
+        self.exceeds_rest_by(increment, STIRRING_RATE_RAD_PER_S, STIRRING_FORCE_M_PER_S2)
     }
 
     /// Whether an increment is not of rest, by more than a body rate, rad/s, or a specific force, m/s^2.
-    fn differs(&self, increment: &Increment, most_rate: f32, most_force: f32) -> bool {
+    fn exceeds_rest_by(&self, increment: &Increment, most_rate: f32, most_force: f32) -> bool {
         let biases = self.filter.as_ref().map_or(self.biases, Filter::biases);
         let per_second = 1.0 / increment.seconds();
         let rate = increment.delta_angle * per_second - biases.gyro;

@@ -71,17 +71,17 @@ fn reaches(triple: &Vector3<f32>, range: f32) -> bool {
 
 /// One of the two sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Seen {
+struct SampleHistory {
     last: Vector3<f32>,
     equal: u8,
     saturated: u8,
 }
 
-impl Seen {
+impl SampleHistory {
     const NOTHING: Self = Self { last: Vector3::new(0.0, 0.0, 0.0), equal: 0, saturated: 0 };
 
     /// Whether it is stuck, and whether at full scale, with this triple.
-    fn see(&mut self, triple: &Vector3<f32>, range: f32) -> (bool, bool) {
+    fn observe(&mut self, triple: &Vector3<f32>, range: f32) -> (bool, bool) {
         let count = |count: u8, more: bool| if more { count.saturating_add(1) } else { 0 };
         self.equal = count(self.equal, *triple == self.last);
         self.saturated = count(self.saturated, reaches(triple, range));
@@ -92,18 +92,18 @@ impl Seen {
 
 /// The history of both sensors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Watch {
+pub struct FaultMonitor {
     ranges: Ranges,
-    gyro: Seen,
-    accelerometer: Seen,
+    gyro: SampleHistory,
+    accelerometer: SampleHistory,
     leapt: bool,
 }
 
-impl Watch {
+impl FaultMonitor {
     /// Nothing seen yet.
     #[must_use]
     pub fn new(ranges: Ranges) -> Self {
-        Self { ranges, gyro: Seen::NOTHING, accelerometer: Seen::NOTHING, leapt: false }
+        Self { ranges, gyro: SampleHistory::NOTHING, accelerometer: SampleHistory::NOTHING, leapt: false }
     }
 
     /// Which sensor was at full scale in the last sample that it gave; the accelerometer maybe before its own filter.
@@ -113,16 +113,16 @@ impl Watch {
     }
 
     /// The sensors' worst fault after one more sample, before calibration.
-    pub fn see(&mut self, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) -> Option<ImuFault> {
+    pub fn check(&mut self, rate: &Vector3<f32>, force: Option<&Vector3<f32>>) -> Option<ImuFault> {
         let finite = rate.iter().chain(force.into_iter().flatten()).all(|component| component.is_finite());
         if !finite {
             return Some(ImuFault::NotFinite);
         }
-        let (gyro_stuck, gyro_saturated) = self.gyro.see(rate, self.ranges.gyro);
+        let (gyro_stuck, gyro_saturated) = self.gyro.observe(rate, self.ranges.gyro);
         let last = self.accelerometer.last;
         self.leapt = force.map_or(self.leapt, |force| reaches(&(force - last), self.ranges.leap));
         let (stuck, saturated) =
-            force.map_or((false, false), |force| self.accelerometer.see(force, self.ranges.accelerometer));
+            force.map_or((false, false), |force| self.accelerometer.observe(force, self.ranges.accelerometer));
         [
             (gyro_stuck, ImuFault::GyroStuck),
             (gyro_saturated, ImuFault::GyroSaturated),

@@ -3,7 +3,7 @@
 extern crate std;
 use super::*;
 use crate::governor::tests::{PERIOD, Random, TYPICAL, go_to, governor, run};
-use crate::governor::{Motion, Setpoint, Turn};
+use crate::governor::{HeadingSetpoint, Motion, Setpoint};
 use crate::heading::Heading;
 use nalgebra::Vector3;
 
@@ -32,7 +32,10 @@ fn eight(rate: f64, size: f64, across: Vector3<f64>) -> impl Fn(f64) -> [Vector3
 /// As setpoints have it.
 fn sent(at: At<'_>, time: f64) -> Setpoint {
     let [position, velocity, acceleration] = at(time).map(|vector| vector.map(|component| component as f32));
-    Setpoint { motion: Motion::PositionVelocityAcceleration { position, velocity, acceleration }, turn: Turn::Keep }
+    Setpoint {
+        motion: Motion::PositionVelocityAcceleration { position, velocity, acceleration },
+        turn: HeadingSetpoint::Keep,
+    }
 }
 
 /// Sends it every so many ticks for `duration`, s; how far off it is at worst after `settled`, s.
@@ -100,13 +103,13 @@ fn a_circle_that_ceases_or_gives_way_to_another_setpoint_ends_exactly_where_it_s
     let direct = || {
         let governor = governor();
         follow(governor, &at, 5, 0.0, 20.0);
-        assert!(!governor.direct.is_averaged());
+        assert!(!governor.follower.is_averaged());
         governor
     };
     let [last, ..] = at(1_995.0 * f64::from(PERIOD));
     let governor = direct();
     assert_eq!(run(governor).1.position, last.map(|component| component as f32));
-    assert!(governor.direct.is_averaged());
+    assert!(governor.follower.is_averaged());
     let governor = direct();
     governor.accept(&go_to(-2.0, 3.0, 1.5)).unwrap();
     assert_eq!(run(governor).1.position, Vector3::new(-2.0, 3.0, 1.5));

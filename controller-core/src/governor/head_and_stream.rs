@@ -4,17 +4,17 @@
 //! integers; its velocity and place follow from the knot's by the time between, (N_3 + 1)/2 ticks, with an acceleration
 //! that changes evenly. They make a turn at w smaller by 1 - w^2 sigma^2/2, so the head is commanded that much more.
 
-use super::envelope::{Bounds, Cylinder, Envelope, Moving};
+use super::envelope::{Bounds, Cylinder, Envelope, HeadMotion};
 use super::smoother::Knot;
-use super::stream::{Point, Sought};
+use super::stream::{Point, StreamTarget};
 use super::windows::Windows;
 use super::{Governor, GovernorLimits};
-use crate::math::single;
+use crate::math::i64_to_f32;
 use crate::reference::ReferenceBounds;
 
 impl Governor {
     /// Prepares the following of streams.
-    pub(super) fn design_direct(
+    pub(super) fn design_follower(
         &mut self,
         windows: &Windows,
         bounds: &ReferenceBounds,
@@ -39,24 +39,30 @@ impl Governor {
         // Between the knot and the head acceleration may leave its chord by half of what jerk makes of that time.
         let blur = 0.25 * bounds.jerk * self.ahead * self.ahead;
         let envelope = Envelope::new(&bounds, blur, period);
-        self.direct.design(envelope, [horizontal, vertical], windows.span() as u32, windows.lengths[2] as u32, period);
+        self.follower.design(
+            envelope,
+            [horizontal, vertical],
+            windows.span() as u32,
+            windows.lengths[2] as u32,
+            period,
+        );
     }
 
     /// The head at hand: its acceleration is known, its velocity follows from the knot's.
-    pub(super) fn moving(&self) -> Moving {
+    pub(super) fn head_motion(&self) -> HeadMotion {
         let scale = 1.0 / self.per_snap;
         let head = self.smoother.head();
-        let acceleration = head.map(|head| single(head.acceleration) * scale);
-        Moving {
+        let acceleration = head.map(|head| i64_to_f32(head.acceleration) * scale);
+        HeadMotion {
             velocity: self.knot.velocity + (self.knot.acceleration + acceleration) * (0.5 * self.ahead),
             acceleration,
-            difference: head.map(|head| single(head.jerk) * scale),
+            difference: head.map(|head| i64_to_f32(head.jerk) * scale),
         }
     }
 
     /// The stream that is followed, if there is one, where the head is in time, and by how much that is ahead of the
     /// `head`.
-    pub(super) fn sought(&self, head: &Moving) -> Option<Sought> {
+    pub(super) fn stream_target(&self, head: &HeadMotion) -> Option<StreamTarget> {
         if !self.goal.is_point() || self.goal_age > self.timeout {
             return None;
         }
@@ -65,7 +71,7 @@ impl Governor {
         let point = self.goal.stream.ahead(age + ahead);
         let Knot { velocity, acceleration, .. } = &self.knot;
         // The knot's control point is beside it; the head has gone on from there.
-        let away = (self.goal.position - self.smoother.place()).map(|units| single(units) / self.windows.per_metre);
+        let away = (self.goal.position - self.smoother.place()).map(|units| i64_to_f32(units) / self.windows.per_metre);
         let gone = velocity * ahead
             + (acceleration * 2.0 + head.acceleration) * (ahead * ahead / 6.0)
             + acceleration * (0.25 * t * t);
@@ -79,7 +85,7 @@ impl Governor {
             jerk: point.jerk * gain - head.difference / t - point.snap * (0.5 * t),
             ..point
         };
-        Some(Sought { point: Point { snap: point.snap * gain, ..point }, error })
+        Some(StreamTarget { point: Point { snap: point.snap * gain, ..point }, error })
     }
 }
 

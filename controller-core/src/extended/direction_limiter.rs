@@ -5,15 +5,15 @@
 //!
 //! | here | equation |
 //! |---|---|
-//! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::Turn::rate`] |
+//! | p = (u'_1, u'_2) / n | rho', [`crate::attitude_reference::DirectionMotion::rate`] |
 //! | q = ((u''_1, u''_2) - 2 r p) / n | rho'', without its radial part |
-//! | \|q\| <= alpha, the greatest torque over J_max | [`TurningLimit::turned`] |
+//! | \|q\| <= alpha, the greatest torque over J_max | [`DirectionLimiter::limited`] |
 //! | (p + h q) . z >= -sqrt(alpha / 2) (rho_z - cos gamma) | rho stays in its cone; z is e3 without its part along rho |
 //! | \|p + h q\| <= Omega | |
 //! | J R~^T omega_rho', omega_rho' = (-q_2, q_1, 0) | spent last: the tick shortens q to what its [budget](super::budget) has left |
-//! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | [`TurningLimit::change`]: c_z stays above -A_- |
+//! | c_z'' >= -2 k c_z' - k^2 (c_z + A_-) | [`DirectionLimiter::change`]: c_z stays above -A_- |
 //! | n'' <= -2 k r - k^2 (n - U) | \|u\| stays below U, which goes first |
-//! | n* = n + (y_z - c_z) / rho_z, at most U; the change is at most 5 m/s^2 across | [`TurningLimit::length`]: the thrust is m n* rho . b |
+//! | n* = n + (y_z - c_z) / rho_z, at most U; the change is at most 5 m/s^2 across | [`DirectionLimiter::length`]: the thrust is m n* rho . b |
 //!
 //! q is shortened; thrust itself is free, for rotors lag by milliseconds only: so the last three rows are along rho.
 //! With n* the vertical gets what it wants, whatever the direction of u lags behind; n itself has come through the
@@ -22,7 +22,7 @@
 //! drive + (change of u'') / k_f.
 
 use super::parameters::ExtendedParameters;
-use crate::attitude_reference::Turn;
+use crate::attitude_reference::DirectionMotion;
 use crate::math;
 use crate::math::real::Real;
 use core::hint::cold_path;
@@ -36,7 +36,7 @@ pub const PUSH_ACROSS_MAX_M_PER_S2: f32 = 5.0;
 
 /// The limiter's constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TurningLimit {
+pub struct DirectionLimiter {
     period: f32,
     rate: f32,
     acceleration: f32,
@@ -48,7 +48,7 @@ pub struct TurningLimit {
     a_down: f32,
 }
 
-impl TurningLimit {
+impl DirectionLimiter {
     /// For an alpha of `acceleration`, rad/s^2, and steps of `period`, s.
     #[must_use]
     pub fn new(parameters: &ExtendedParameters, acceleration: f32, period: f32) -> Self {
@@ -59,7 +59,7 @@ impl TurningLimit {
             acceleration,
             cosine: (1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))) as f32,
             closing: closing(f64::from(acceleration)) as f32,
-            softness: math::lesser(END_SOFTNESS_PER_S, 0.5 / period),
+            softness: math::min(END_SOFTNESS_PER_S, 0.5 / period),
             a_down: p.a_down,
         }
     }
@@ -69,15 +69,15 @@ impl TurningLimit {
     #[inline(always)] // see position.rs
     pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
         let most = PUSH_ACROSS_MAX_M_PER_S2 / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
-        let length = magnitude + math::within(more / math::greater(up.z, self.cosine), most);
-        math::lesser(math::greater(length, 0.0), greatest)
+        let length = magnitude + math::saturate(more / math::max(up.z, self.cosine), most);
+        math::min(math::max(length, 0.0), greatest)
     }
 
     /// q for a wanted `turn`, rad/s^2; `up` is e3 in the axes of the desired frame.
     #[must_use]
     #[inline(always)] // see position.rs
-    pub fn turned(&self, turn: &Turn, up: &Vector3<f32>) -> Vector2<f32> {
-        let Turn { rate, acceleration, .. } = turn;
+    pub fn limited(&self, turn: &DirectionMotion, up: &Vector3<f32>) -> Vector2<f32> {
+        let DirectionMotion { rate, acceleration, .. } = turn;
         let q = self.kept_in_cone(shortened(*acceleration, self.acceleration), rate, up);
         let next = rate + q * self.period;
         if next.norm_squared() > self.rate * self.rate {
@@ -94,13 +94,13 @@ impl TurningLimit {
     #[inline(always)]
     pub fn change(
         &self,
-        turn: &Turn,
+        turn: &DirectionMotion,
         acceleration: &Vector2<f32>,
         up: &Vector3<f32>,
         greatest: f32,
         vertical: [f32; 3],
     ) -> Option<Vector3<f32>> {
-        let Turn { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = turn;
+        let DirectionMotion { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = turn;
         let [c, c_rate, c_wanted] = vertical;
         // In nearly every tick nothing is shortened.
         let turned = acceleration != wanted;
@@ -135,10 +135,10 @@ impl TurningLimit {
         }
         cold_path();
         // Beyond the cone's edge by rounding alone: z is as long as the sine of the cone's angle.
-        let length = math::sqrt(math::greater(z.norm_squared(), 1e-6));
+        let length = math::sqrt(math::max(z.norm_squared(), 1e-6));
         let (z, most) = (z / length, self.acceleration);
-        let along = math::within((least / length - rate.dot(&z)) / self.period, most);
-        let left = math::sqrt(math::greater(most * most - along * along, 0.0));
+        let along = math::saturate((least / length - rate.dot(&z)) / self.period, most);
+        let left = math::sqrt(math::max(most * most - along * along, 0.0));
         shortened(shortened(q - z * q.dot(&z), left) + z * along, most)
     }
 }

@@ -17,7 +17,7 @@ use super::limits::GovernorLimits;
 use super::windows::{ROUNDING_MARGIN, ticks};
 use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
-use crate::math::{self, single, whole};
+use crate::math::{self, f32_to_i64, i64_to_f32};
 use crate::reference::ReferenceBounds;
 use nalgebra::Vector2;
 
@@ -36,20 +36,20 @@ const RATE_SHARE: f32 = 0.857;
 
 /// What the heading is to do: be at a phase (units) that moves, or, without one, keep turning.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TurnGoal {
+pub(super) struct HeadingGoal {
     pub phase: Option<i64>,
     /// Units a tick.
     pub rate: i64,
 }
 
-impl TurnGoal {
+impl HeadingGoal {
     /// Come to rest.
     pub const STOP: Self = Self { phase: None, rate: 0 };
 }
 
 /// Command, average and spline of the heading.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Turning {
+pub(super) struct HeadingGovernor {
     history: [i64; TURN_HISTORY_TICKS],
     newest: usize,
     length: usize,
@@ -74,7 +74,7 @@ pub(super) struct Turning {
     per_length: f32,
 }
 
-impl Turning {
+impl HeadingGovernor {
     /// Not designed yet, at rest along world x.
     pub const NONE: Self = Self {
         history: [0; TURN_HISTORY_TICKS],
@@ -130,12 +130,12 @@ impl Turning {
     }
 
     /// Advances by one tick towards `goal`.
-    pub fn tick(&mut self, goal: &TurnGoal) {
+    pub fn tick(&mut self, goal: &HeadingGoal) {
         self.push(self.command(goal));
     }
 
     /// The commanded acceleration towards `goal`, units per tick squared.
-    fn command(&self, goal: &TurnGoal) -> i64 {
+    fn command(&self, goal: &HeadingGoal) -> i64 {
         // Far from 64 bits: a rate is below 2^58 for every setpoint, and half a turn is 2^43.
         let wanted = goal.rate + goal.phase.map_or(0, |phase| self.approach(phase));
         // Not `clamp`, which may panic.
@@ -146,12 +146,12 @@ impl Turning {
     /// The greatest rate towards `phase`, the shorter way round, from which braking ends on it.
     fn approach(&self, phase: i64) -> i64 {
         let error = phase.wrapping_sub(self.commanded).wrapping_shl(SPARE_BITS) >> SPARE_BITS;
-        let strongest = BRAKING_SHARE * single(self.strongest);
-        let distance = single(error) / strongest;
+        let strongest = BRAKING_SHARE * i64_to_f32(self.strongest);
+        let distance = i64_to_f32(error) / strongest;
         if distance.abs() <= 1.0 {
             return error;
         }
-        whole(strongest * approach_speed(distance.abs()).copysign(distance))
+        f32_to_i64(strongest * approach_speed(distance.abs()).copysign(distance))
     }
 
     fn push(&mut self, acceleration: i64) {
@@ -168,13 +168,13 @@ impl Turning {
         self.rate += acceleration;
         self.commanded = self.commanded.wrapping_add(self.rate);
         self.part += self.first - self.second;
-        let units = whole(single(self.part) * self.per_length);
+        let units = f32_to_i64(i64_to_f32(self.part) * self.per_length);
         self.place = self.place.wrapping_add(units);
         self.part -= units * self.length as i64;
     }
 
     /// Whether nothing turns and `goal` is at rest too.
-    pub fn at_rest(&self, goal: &TurnGoal) -> bool {
+    pub fn at_rest(&self, goal: &HeadingGoal) -> bool {
         let behind = self.commanded.wrapping_sub(self.place).wrapping_mul(self.length as i64) - self.part;
         let still = self.rate == 0 && behind == 0 && self.first == 0 && self.second == 0 && self.third == 0;
         still && self.command(goal) == 0
@@ -188,10 +188,11 @@ impl Turning {
     /// The heading `back` seconds before the knot at hand, at most the time between two:
     /// D0 - s (D1 - s/2 (D2 - s/3 D3)), and its derivatives, with s in knots.
     pub fn heading(&self, back: f32) -> Heading {
-        let (second, third, s) = (single(self.second), single(self.third), back * self.per_period);
-        let first = single(2 * self.first - self.second) * 0.5;
+        let (second, third, s) = (i64_to_f32(self.second), i64_to_f32(self.third), back * self.per_period);
+        let first = i64_to_f32(2 * self.first - self.second) * 0.5;
         let earlier = s * (first - 0.5 * s * (second - s / 3.0 * third));
-        let phase = self.place.wrapping_add(whole((single(self.part) + second / 6.0 - earlier) * self.per_length));
+        let phase =
+            self.place.wrapping_add(f32_to_i64((i64_to_f32(self.part) + second / 6.0 - earlier) * self.per_length));
         let rate = (first - s * (second - 0.5 * s * third)) * self.unit;
         Heading::from_phase((phase as u64) << SPARE_BITS, rate, (second - s * third) * self.unit * self.per_period)
     }
@@ -219,7 +220,7 @@ pub(super) fn phase(angle: f32) -> i64 {
 /// Where a heading points, in units, to single precision.
 ///
 /// From the middle of its quadrant, each step takes delta to delta - sin delta: 0.79, 0.078, 8e-5 rad, nothing.
-pub(super) fn phase_of(heading: &Heading) -> i64 {
+pub(super) fn nearest_phase(heading: &Heading) -> i64 {
     let target = heading.direction();
     let eighths = if target.x >= 0.0 { 1 } else { 3 };
     let mut phase = eighths << (TURN_BITS - 3);

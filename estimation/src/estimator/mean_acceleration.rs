@@ -14,14 +14,14 @@ use nalgebra::Vector3;
 
 /// What was felt since the last tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Felt {
+pub(super) struct MeanAcceleration {
     /// Of the increments, m/s, world.
     sum: Vector3<f32>,
     /// When the last tick was, us, and A then, m/s.
     last: Option<(u64, Vector3<f32>)>,
 }
 
-impl Felt {
+impl MeanAcceleration {
     /// Nothing, and no tick yet.
     pub const NOTHING: Self = Self { sum: Vector3::new(0.0, 0.0, 0.0), last: None };
 

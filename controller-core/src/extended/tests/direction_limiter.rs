@@ -4,10 +4,10 @@ use super::Random;
 use crate::attitude_reference::DesiredAttitude;
 use crate::extended::budget::TORQUE_THRUST_SHARE;
 use crate::extended::defaults::NOTHING_GIVEN;
+use crate::extended::direction_limiter::{DirectionLimiter, PUSH_ACROSS_MAX_M_PER_S2};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::position::{Filters, PositionLaw};
 use crate::extended::tests::example::{Craft, greatest_accelerations};
-use crate::extended::turning::{PUSH_ACROSS_MAX_M_PER_S2, TurningLimit};
 use crate::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 
@@ -29,7 +29,7 @@ struct Worst {
 fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random) -> Worst {
     let (gravity, h) = (craft.vehicle.gravity, craft.period);
     let position = PositionLaw::new(p, gravity, h).unwrap();
-    let limit = TurningLimit::new(p, alpha, h);
+    let limit = DirectionLimiter::new(p, alpha, h);
     let [greatest, _] = greatest_accelerations(craft, p);
     let (held, smoothing) = ((1.0 - (-p.k_s * h).exp()) / h, 1.0 - (-p.k_d * h).exp());
     let mut filter = Filters::at(Vector3::zeros());
@@ -53,8 +53,8 @@ fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random
         let wanted = (drive - rate) * p.k_f;
         let command = Vector3::new(c.x, c.y, c.z + gravity);
         let desired = DesiredAttitude::new(&command, &Heading::FORWARD);
-        let (turn, up) = (desired.turn(&rate, &wanted), desired.up());
-        let q = limit.turned(&turn, &up);
+        let (turn, up) = (desired.direction_motion(&rate, &wanted), desired.up());
+        let q = limit.limited(&turn, &up);
         assert!(q.norm() <= alpha * (1.0 + 1e-5), "{craft:?} {tick}");
         // The tick's budget: never less than the reserve.
         let share = (torque.max(p.turn_reserve) / q.norm()).min(1.0);
@@ -67,7 +67,7 @@ fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random
 
         // What was added to u'' is what the drive makes of it, and the turn is the shortened one.
         let change = change.map_or(Vector3::zeros(), |change| desired.turned(&change));
-        let made = desired.turn(&rate, &(wanted + change)).acceleration;
+        let made = desired.direction_motion(&rate, &(wanted + change)).acceleration;
         // Where the cone is not held, |u| may be beyond what single precision resolves.
         let resolved = command.norm() < 2.0 * greatest;
         let rounding = 1e-4 * (1.0 + turn.acceleration.norm());
@@ -113,7 +113,7 @@ fn a_wanted_turn_is_kept_in_its_direction_and_cut_to_alpha_and_to_its_rate() {
     let p = ExtendedParameters { turn_rate: 2.0, ..Craft::example().constants(&NOTHING_GIVEN) };
     let upright = DesiredAttitude::new(&Vector3::new(0.0, 0.0, 9.81), &Heading::FORWARD);
     let turned = |alpha: f32, rate: Vector3<f32>, wanted: Vector3<f32>| {
-        TurningLimit::new(&p, alpha, 0.01).turned(&upright.turn(&rate, &wanted), &upright.up())
+        DirectionLimiter::new(&p, alpha, 0.01).limited(&upright.direction_motion(&rate, &wanted), &upright.up())
     };
     let still = Vector3::zeros();
     let found = turned(12.0, still, Vector3::new(0.0, 2_000.0, 0.0));
@@ -129,7 +129,7 @@ fn a_wanted_turn_is_kept_in_its_direction_and_cut_to_alpha_and_to_its_rate() {
 #[test]
 fn thrust_takes_at_once_what_the_vertical_wants_but_for_what_would_push_across() {
     let craft = Craft::example();
-    let limit = TurningLimit::new(&craft.constants(&NOTHING_GIVEN), 100.0, craft.period);
+    let limit = DirectionLimiter::new(&craft.constants(&NOTHING_GIVEN), 100.0, craft.period);
     let (n, greatest) = (12.0, 60.0);
     for angle in [0.0_f32, 0.2, 0.6, 1.0] {
         let up = Vector3::new(angle.sin(), 0.0, angle.cos());

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn between_ticks_everything_is_felt_once_whatever_was_ahead_at_the_first() {
-    let mut felt = Felt::NOTHING;
+    let mut felt = MeanAcceleration::NOTHING;
     felt.add(&Vector3::x());
     assert_eq!(felt.mean(10_000, &Vector3::new(0.0, 0.02, 0.0)), None);
     // 0.02 of the first increment's 0.05 was ahead then; of the third, 0.01 is now.
@@ -19,7 +19,7 @@ fn between_ticks_everything_is_felt_once_whatever_was_ahead_at_the_first() {
 
 #[test]
 fn without_time_between_there_is_no_mean() {
-    let mut felt = Felt::NOTHING;
+    let mut felt = MeanAcceleration::NOTHING;
     for now in [10_000, 10_000, 9_000] {
         assert_eq!(felt.mean(now, &Vector3::zeros()), None);
     }

@@ -22,9 +22,9 @@
 //! How the head is steered onto a point is in `feedback`.
 
 use super::blend::{Blend, Watched};
-use super::demand::{Demand, Following};
-use super::envelope::{Envelope, Moving, WayOut};
-use super::stream::{Point, Sought};
+use super::demand::{FollowingReport, StreamDemand};
+use super::envelope::{Envelope, HeadMotion, Retreat};
+use super::stream::{Point, StreamTarget};
 use crate::math;
 use nalgebra::Vector3;
 
@@ -72,11 +72,11 @@ enum Stage {
     /// With the ticks for which a stream has been near, and how it has moved.
     Averaged { near: u32, watched: Watched },
     /// As direct, with what is followed.
-    Blending { stiffness: f32, out: WayOut, blend: Blend },
+    Blending { stiffness: f32, out: Retreat, blend: Blend },
     /// With the way out in hand, and how far off the stream is lost, m.
-    Direct { stiffness: f32, out: WayOut, far: f32 },
+    Direct { stiffness: f32, out: Retreat, far: f32 },
     /// The way out, with the ticks since it has ended.
-    Levelling { out: WayOut, still: u32 },
+    Levelling { out: Retreat, still: u32 },
 }
 
 impl Stage {
@@ -86,7 +86,7 @@ impl Stage {
 
 /// What drives the head in a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Drive {
+pub(super) enum HeadDrive {
     /// The averages.
     Averages,
     /// The averages, from now on: started from the steady motion at hand.
@@ -97,7 +97,7 @@ pub(super) enum Drive {
 
 /// The stages, and what they go by.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Direct {
+pub(super) struct StreamFollower {
     envelope: Envelope,
     period: f32,
     /// The averages' span, s.
@@ -110,13 +110,13 @@ pub(super) struct Direct {
     /// The greatest rate of turning, rad/s.
     fastest: f32,
     stage: Stage,
-    demand: Demand,
+    demand: StreamDemand,
     /// Ticks for which no stream is followed, and how many there will be the next time.
     barred: u32,
     next: u32,
 }
 
-impl Direct {
+impl StreamFollower {
     /// Not designed yet.
     pub const NONE: Self = Self {
         envelope: Envelope::NONE,
@@ -127,7 +127,7 @@ impl Direct {
         flatness: 0.0,
         fastest: 0.0,
         stage: Stage::AVERAGED,
-        demand: Demand::NONE,
+        demand: StreamDemand::NONE,
         barred: 0,
         next: 0,
     };
@@ -153,7 +153,7 @@ impl Direct {
     /// Starts anew, averaged.
     pub fn start(&mut self) {
         self.stage = Stage::AVERAGED;
-        self.demand = Demand::NONE;
+        self.demand = StreamDemand::NONE;
         self.barred = 0;
         self.next = self.ticks(RETRY_SPANS);
     }
@@ -173,25 +173,31 @@ impl Direct {
     }
 
     /// How a stream is followed, if there is one that moves.
-    pub fn following(&self) -> Option<Following> {
+    pub fn following(&self) -> Option<FollowingReport> {
         self.demand.following()
     }
 
     /// Advances by a tick: with the head, with what a fresh stream is ahead of it by, and with the `snap` that the
     /// averages have for it, in units of `unit` m/s^2 per tick squared.
-    pub fn tick(&mut self, head: &Moving, sought: Option<&Sought>, averaged: &Vector3<i32>, unit: f32) -> Drive {
+    pub fn tick(
+        &mut self,
+        head: &HeadMotion,
+        sought: Option<&StreamTarget>,
+        averaged: &Vector3<i32>,
+        unit: f32,
+    ) -> HeadDrive {
         self.barred = self.barred.saturating_sub(1);
         if sought.is_none() {
-            self.demand = Demand::NONE;
+            self.demand = StreamDemand::NONE;
         }
         if let (Stage::Averaged { near, .. }, true) = (self.stage, sought.is_some_and(|sought| rests(head, sought))) {
             self.rest(near);
-            return Drive::Averages;
+            return HeadDrive::Averages;
         }
         let sought = sought.filter(|sought| self.judge(sought));
         if sought.is_none() && self.is_averaged() {
             self.stage = Stage::AVERAGED;
-            return Drive::Averages;
+            return HeadDrive::Averages;
         }
         match (self.stage, sought) {
             (Stage::Averaged { near, watched }, Some(sought)) if self.barred == 0 => {
@@ -200,18 +206,18 @@ impl Direct {
             }
             (Stage::Averaged { .. }, _) => {
                 self.stage = Stage::AVERAGED;
-                Drive::Averages
+                HeadDrive::Averages
             }
             (Stage::Blending { stiffness, out, blend }, Some(sought)) => {
                 let snap = averaged.map(|units| units as f32 * unit);
                 let target = blend.target(head, sought, &snap, self.period);
-                if self.off(&target) <= self.astray() {
+                if self.distance(&target) <= self.lost_distance() {
                     self.blend(head, &target, &snap, stiffness, &out, &blend)
                 } else {
                     self.give_up(head, &out)
                 }
             }
-            (Stage::Direct { stiffness, out, far }, Some(sought)) if self.off(sought) <= far => {
+            (Stage::Direct { stiffness, out, far }, Some(sought)) if self.distance(sought) <= far => {
                 self.follow(head, sought, stiffness, &out, far)
             }
             (Stage::Blending { out, .. } | Stage::Direct { out, .. }, _) => self.give_up(head, &out),
@@ -222,33 +228,33 @@ impl Direct {
     /// At rest at a point that rests: near it, whatever was lost before.
     fn rest(&mut self, near: u32) {
         self.stage = Stage::Averaged { near: near.saturating_add(1), watched: Watched::NONE };
-        self.demand = Demand::NONE;
+        self.demand = StreamDemand::NONE;
         self.next = self.ticks(RETRY_SPANS);
     }
 
     fn averaged(
         &mut self,
-        head: &Moving,
-        sought: &Sought,
+        head: &HeadMotion,
+        sought: &StreamTarget,
         snap: &Vector3<f32>,
         agreed: u32,
         watched: &Watched,
-    ) -> Drive {
-        let room = self.room(sought);
+    ) -> HeadDrive {
+        let room = self.feedback_capacity(sought);
         let slack = JOINING_STIFFNESS_SPANS_MAX / self.span;
-        let stiffness = self.affordable(sought, room).min(slack);
+        let stiffness = self.stiffness_within(sought, room).min(slack);
         let near = stiffness >= JOINING_STIFFNESS_SHARE_MIN * slack && self.is_near(sought, slack, room);
-        let out = self.envelope.way_out(head).filter(|_| near);
+        let out = self.envelope.retreat(head).filter(|_| near);
         match out {
             Some(out) if agreed >= self.ticks(NEAR_SPANS_MIN) => {
                 // From rest nothing is to be caught up with.
                 let [_, slow, _] = REST_TOLERANCES;
                 let (stiffness, far) = if head.velocity.norm_squared() < 4.0 * slow * slow {
-                    (self.affordable(sought, room), self.astray())
+                    (self.stiffness_within(sought, room), self.lost_distance())
                 } else {
                     (
                         stiffness,
-                        LOST_DISTANCE_FACTOR * self.off(sought)
+                        LOST_DISTANCE_FACTOR * self.distance(sought)
                             + LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span,
                     )
                 };
@@ -262,27 +268,34 @@ impl Direct {
     }
 
     /// Goes on with the averages, or begins to blend where a stream has been watched for long enough.
-    fn watch(&mut self, head: &Moving, sought: &Sought, snap: &Vector3<f32>, near: u32, watched: &Watched) -> Drive {
-        let Sought { point: Point { velocity, acceleration, jerk, snap: bend, .. }, error } = sought;
-        let used = math::greater(
+    fn watch(
+        &mut self,
+        head: &HeadMotion,
+        sought: &StreamTarget,
+        snap: &Vector3<f32>,
+        near: u32,
+        watched: &Watched,
+    ) -> HeadDrive {
+        let StreamTarget { point: Point { velocity, acceleration, jerk, snap: bend, .. }, error } = sought;
+        let used = math::max(
             self.envelope.used([acceleration, jerk, bend]),
             math::sqrt(self.envelope.share_of_speed(velocity)),
         );
-        let flat = [self.flat(&error.position), self.flat(&error.velocity)];
+        let flat = [self.weighted_length(&error.position), self.weighted_length(&error.velocity)];
         let is_settled = watched.ticks >= self.ticks(SETTLING_SPANS);
         let watched = if is_settled { watched.with(error, flat, used) } else { watched.later() };
         if near > 0 || watched.ticks < self.ticks(SETTLING_SPANS + WATCHING_SPANS) {
             self.stage = Stage::Averaged { near, watched };
-            return Drive::Averages;
+            return HeadDrive::Averages;
         }
-        match (watched.blend(&self.envelope, self.span), self.envelope.way_out(head)) {
+        match (watched.blend(&self.envelope, self.span), self.envelope.retreat(head)) {
             (Some(blend), Some(out)) => {
                 let target = blend.target(head, sought, snap, self.period);
                 self.blend(head, &target, snap, JOINING_STIFFNESS_SPANS_MAX / self.span, &out, &blend)
             }
             _ => {
                 self.stage = Stage::AVERAGED;
-                Drive::Averages
+                HeadDrive::Averages
             }
         }
     }
@@ -290,64 +303,71 @@ impl Direct {
     /// Follows the `target` of a blend.
     fn blend(
         &mut self,
-        head: &Moving,
-        target: &Sought,
+        head: &HeadMotion,
+        target: &StreamTarget,
         averaged: &Vector3<f32>,
         stiffness: f32,
-        out: &WayOut,
+        out: &Retreat,
         blend: &Blend,
-    ) -> Drive {
-        let (snap, out) = self.envelope.step(head, &self.wanted(target, stiffness), out);
-        let stiffness = self.stiffened(target, stiffness);
+    ) -> HeadDrive {
+        let (snap, out) = self.envelope.step(head, &self.commanded_snap(target, stiffness), out);
+        let stiffness = self.next_stiffness(target, stiffness);
         let blend = blend.after(&(averaged - snap), self.period);
         self.stage = if blend.is_over() {
-            Stage::Direct { stiffness, out, far: self.astray() }
+            Stage::Direct { stiffness, out, far: self.lost_distance() }
         } else {
             Stage::Blending { stiffness, out, blend }
         };
-        Drive::Snap(snap)
+        HeadDrive::Snap(snap)
     }
 
-    fn follow(&mut self, head: &Moving, sought: &Sought, stiffness: f32, out: &WayOut, far: f32) -> Drive {
-        let (snap, out) = self.envelope.step(head, &self.wanted(sought, stiffness), out);
-        self.stage = Stage::Direct { stiffness: self.stiffened(sought, stiffness), out, far };
-        Drive::Snap(snap)
+    fn follow(
+        &mut self,
+        head: &HeadMotion,
+        sought: &StreamTarget,
+        stiffness: f32,
+        out: &Retreat,
+        far: f32,
+    ) -> HeadDrive {
+        let (snap, out) = self.envelope.step(head, &self.commanded_snap(sought, stiffness), out);
+        self.stage = Stage::Direct { stiffness: self.next_stiffness(sought, stiffness), out, far };
+        HeadDrive::Snap(snap)
     }
 
     /// Gives up a stream that is lost, and leaves the next alone for longer each time.
-    fn give_up(&mut self, head: &Moving, out: &WayOut) -> Drive {
+    fn give_up(&mut self, head: &HeadMotion, out: &Retreat) -> HeadDrive {
         self.barred = self.next;
         self.next = (2 * self.next).min(self.ticks(RETRY_SPANS_MAX));
         self.level(head, out, 0)
     }
 
-    fn level(&mut self, head: &Moving, out: &WayOut, still: u32) -> Drive {
+    fn level(&mut self, head: &HeadMotion, out: &Retreat, still: u32) -> HeadDrive {
         if still > self.last {
             self.stage = Stage::AVERAGED;
-            return Drive::Restarted;
+            return HeadDrive::Restarted;
         }
         let (snap, out) = self.envelope.follow(head, out);
         let moves = [head.acceleration, head.difference, snap].iter().any(|vector| *vector != Vector3::zeros());
         self.stage = Stage::Levelling { out, still: if moves { 0 } else { still + 1 } };
-        Drive::Snap(snap)
+        HeadDrive::Snap(snap)
     }
 
     /// How far off a stream that was blended onto is lost, m.
-    fn astray(&self) -> f32 {
+    fn lost_distance(&self) -> f32 {
         BLEND_LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span
     }
 
     /// Takes down what a stream asks; whether it moves, not round too fast, keeps the bounds, and leaves a way out.
-    fn judge(&mut self, Sought { point, error }: &Sought) -> bool {
+    fn judge(&mut self, StreamTarget { point, error }: &StreamTarget) -> bool {
         let Point { velocity, acceleration, jerk, snap, rate, .. } = point;
         let (moves, bends) = (*velocity != Vector3::zeros(), *acceleration != Vector3::zeros());
         if !moves && !bends {
-            self.demand = Demand::NONE;
+            self.demand = StreamDemand::NONE;
             return false;
         }
         let shares = self.envelope.shares([acceleration, jerk, snap]);
         let turning = rate / self.fastest;
-        let speed = math::greater(self.envelope.share_of_speed(velocity), turning * turning);
+        let speed = math::max(self.envelope.share_of_speed(velocity), turning * turning);
         let off = math::sqrt(error.position.norm_squared());
         self.demand = self.demand.with(speed, shares, off, self.period);
         if !moves || !bends || rate.abs() > self.fastest {
@@ -359,17 +379,17 @@ impl Direct {
             return of_acceleration <= 1.0
                 && of_jerk.max(of_snap) <= DERIVATIVE_TOLERANCE_SHARE * DERIVATIVE_TOLERANCE_SHARE;
         }
-        let on = Moving {
+        let on = HeadMotion {
             velocity: *velocity,
             acceleration: acceleration / FEASIBLE_SHARE,
             difference: jerk * (self.period / RETREATING_SHARE),
         };
-        shares.iter().all(|share| *share <= FEASIBLE_SHARE * FEASIBLE_SHARE) && self.envelope.way_out(&on).is_some()
+        shares.iter().all(|share| *share <= FEASIBLE_SHARE * FEASIBLE_SHARE) && self.envelope.retreat(&on).is_some()
     }
 }
 
 /// Whether the head and the point both rest, at one place.
-fn rests(head: &Moving, Sought { point, error }: &Sought) -> bool {
+fn rests(head: &HeadMotion, StreamTarget { point, error }: &StreamTarget) -> bool {
     let [near, slow, steady] = REST_TOLERANCES;
     let within = |vector: &Vector3<f32>, most: f32| vector.norm_squared() < most * most;
     within(&error.position, near)

@@ -8,10 +8,10 @@
 //! time for which z_2 goes on as it is.
 
 use super::{Controller, thrust_axis};
+use crate::extended::direction_limiter::PUSH_ACROSS_MAX_M_PER_S2;
 use crate::extended::force::held;
 use crate::extended::memory::Estimates;
-use crate::extended::position::Most;
-use crate::extended::turning::PUSH_ACROSS_MAX_M_PER_S2;
+use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
@@ -23,7 +23,7 @@ const FEEDBACK_SHARE: f32 = 0.5;
 
 /// What is ahead of a vehicle. World frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prospect {
+pub struct StoppingForecast {
     /// z_1, m, for a reference at rest at the origin.
     pub z_1: Vector3<f32>,
     /// z_2, m/s, for a reference at rest.
@@ -40,7 +40,7 @@ pub struct Prospect {
 impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
     #[must_use]
-    pub fn prospect(&self, state: &State, most: &Most) -> Prospect {
+    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
         let greatest = self.ceiling.at(scale, &torque);
@@ -55,13 +55,13 @@ impl Controller {
         let reaction = self.reaction(&z_2, &command, &force, greatest, most);
         let went_on = z_1 + z_2 * reaction;
         let sped_up = acceleration * reaction;
-        let pushed = self.pushed(&command, greatest);
+        let push_velocity = self.pushed(&command, greatest);
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
             let levels = self.position.stopping_levels(&speed, &force, greatest, most);
             at + self.position.stopping_way(&speed, &levels)
         };
         let [first, second] = self.position.stages(state, filters, &force);
-        Prospect {
+        StoppingForecast {
             z_1,
             z_2,
             places: [
@@ -69,11 +69,11 @@ impl Controller {
                 first,
                 second,
                 stop(went_on, z_2),
-                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + pushed),
+                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + push_velocity),
             ],
             alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
             doubtful: self.memory.held > 0
-                || self.memory.blind > 0
+                || self.memory.without_velocity > 0
                 || self.spinning.is_some()
                 || self.is_at_a_level()
                 || !self.is_held(&force, greatest),
@@ -83,9 +83,8 @@ impl Controller {
     /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
     fn pushed(&self, command: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
         let across = math::sqrt(command.xy().norm_squared());
-        let most =
-            math::lesser(PUSH_ACROSS_MAX_M_PER_S2, greatest * across / math::greater(command.z, f32::MIN_POSITIVE));
-        let speed = most * self.position.lag() / math::greater(across, f32::MIN_POSITIVE);
+        let most = math::min(PUSH_ACROSS_MAX_M_PER_S2, greatest * across / math::max(command.z, f32::MIN_POSITIVE));
+        let speed = most * self.position.lag() / math::max(across, f32::MIN_POSITIVE);
         Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
 
@@ -96,15 +95,15 @@ impl Controller {
         command: &Vector3<f32>,
         force: &Vector3<f32>,
         greatest: f32,
-        most: &Most,
+        most: &FeedbackLimits,
     ) -> f32 {
         let mut stopping = self.position.stopping(z_2, force, greatest, most);
         stopping.z += self.vehicle.gravity;
         let angle = angle(command, &stopping);
         let parameters = &self.law.parameters;
         let left = (1.0 - FEEDBACK_SHARE) * self.budget.radius(self.thrust_scale());
-        let inertia = math::greater(self.vehicle.inertia.x, self.vehicle.inertia.y);
-        let acceleration = math::greater(left / inertia, parameters.turn_reserve);
+        let inertia = math::max(self.vehicle.inertia.x, self.vehicle.inertia.y);
+        let acceleration = math::max(left / inertia, parameters.turn_reserve);
         let rate = parameters.turn_rate;
         // First it comes to rest, then it turns from rest to rest.
         let moving = self.position.rate(&self.memory.filters);
@@ -117,7 +116,7 @@ impl Controller {
             2.0 * math::sqrt(angle / acceleration)
         };
         let turning = stops + turning;
-        math::greater(turning - self.position.lag(), 0.0) + self.late + self.period
+        math::max(turning - self.position.lag(), 0.0) + self.late + self.period
     }
 
     /// Whether the thrust holds all of the force.
@@ -144,7 +143,7 @@ fn angle(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
     const QUARTER_TURN_RAD: f32 = core::f32::consts::FRAC_PI_2;
     let across = math::sqrt(a.cross(b).norm_squared());
     let along = math::sqrt(a.norm_squared() * b.norm_squared()) + a.dot(b);
-    let tangent = across / math::greater(along, f32::MIN_POSITIVE);
+    let tangent = across / math::max(along, f32::MIN_POSITIVE);
     let half = if tangent > 1.0 {
         QUARTER_TURN_RAD - tangent / (tangent * tangent + 0.28)
     } else {
