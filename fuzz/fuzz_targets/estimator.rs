@@ -11,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 use nalgebra::{Quaternion, Vector3};
 
 /// How far from a pose the state may be right after taking it, m.
-const NEAR: f32 = 1.0;
+const POSE_DISTANCE_MAX_M: f32 = 1.0;
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -107,6 +107,6 @@ fn near(estimator: &Estimator, taken: Option<Accepted>, time: u64, position: &Ve
     // Among later poses it is not the last that was fused.
     if let (Some(Accepted::Fused), Some(filter)) = (taken, estimator.filter().filter(|filter| filter.time == time)) {
         let away = (filter.nominal.position - position).norm();
-        assert!(away < NEAR, "fused {away} m away");
+        assert!(away < POSE_DISTANCE_MAX_M, "fused {away} m away");
     }
 }

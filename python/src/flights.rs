@@ -1,9 +1,9 @@
 //! Whole flights: the columns of log.csv, and what was claimed against what was flown.
 
 use crate::certificates::reasons;
-use crate::refused::{failed, refused};
+use crate::errors::{failed, refused};
+use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
-use crate::waiting::interruptible;
 use controller_core::error::ParameterError;
 use host_sim::flight::claims::{self, claims};
 use host_sim::flight::flown::Flown;
@@ -108,7 +108,7 @@ enum Stopped {
 
 /// Flies `scenario` to its end, or to where it is interrupted.
 fn flown(scenario: &scenario::Scenario, interrupt: &Interrupt) -> Result<Flight, Stopped> {
-    let verdict = Verdict::of(scenario).map_err(Stopped::Scenario)?;
+    let verdict = Verdict::judge(scenario).map_err(Stopped::Scenario)?;
     let mut flight = flight::Flight::new(scenario).map_err(Stopped::Scenario)?;
     let configuration = &scenario.configuration;
     let rotors = configuration.rotors().map_or(0, |rotors| rotors.len());

@@ -1,7 +1,7 @@
 //! A small network as a policy: the bits that boards fly.
 
-use crate::refused::{refused, refused_field};
-use crate::rows::{STATE, array, measured, rows};
+use crate::errors::{refused, refused_field};
+use crate::rows::{STATE_COLUMNS, array, measured, rows};
 use controller_core::heading::Heading;
 use controller_core::shield::network::{self, INPUT_COUNT, OUTPUT_COUNT};
 use controller_core::shield::{Demand, Observation};
@@ -49,7 +49,7 @@ impl Network {
         outputs: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = length(states, "states")?;
-        let states = rows::<STATE>(states, count, "states")?;
+        let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let goals = rows::<3>(goals, count, "goals")?;
         let headings = directions(headings, count)?;
         let last = rows::<OUTPUT_COUNT>(outputs, count, "outputs")?;

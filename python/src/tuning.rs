@@ -1,10 +1,10 @@
 //! The search for gains.
 
-use crate::cores::alone;
-use crate::refused::{failed, refused, refused_field};
+use crate::errors::{failed, refused, refused_field};
+use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
-use crate::waiting::interruptible;
-use crate::whole::Whole;
+use crate::threads::alone;
+use crate::whole_number::Whole;
 use host_sim::studies::tune::effort::Effort;
 use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
 use host_sim::studies::tune::trials::Shown;
@@ -83,7 +83,7 @@ impl Tuned {
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(60), population=Whole::of(24), seed=Whole::of(1), margin=0.0, gain_margin=1.75,
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::new(60), population=Whole::new(24), seed=Whole::new(1), margin=0.0, gain_margin=1.75,
     delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0, projection=true),
     text_signature = "(scenario, *, name=None, generations=60, population=24, seed=1, margin=0.0, gain_margin=1.75, delay_margin=0.003, \
 position_error=0.02, mrp_error=0.01, recovery=20.0, projection=True)")]
@@ -107,7 +107,7 @@ pub fn tune(
     for (field, value) in positive {
         check(value > 0.0 && value.is_finite(), field, "must be greater than zero and finite", value)?;
     }
-    let least = LoopMargin::LEAST;
+    let least = LoopMargin::FLYABLE_MIN;
     let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
     check((LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&recovery), "recovery", &allowed, recovery)?;
     check((0.0..1.0).contains(&margin), "margin", "must be from 0 to below 1", margin)?;
@@ -133,7 +133,7 @@ pub fn tune(
         failed(format!("{}: no gains meet the requirements; the closest fail in: {what}", scenario.read.name))
     })?;
     let text = output::rewritten(&scenario.text, &tuned).map_err(refused)?;
-    let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
+    let scenario = Py::new(py, Scenario::from_text(text, scenario.file.clone())?)?;
     Ok(Tuned {
         scenario,
         shown: tuned.verdict.shown,

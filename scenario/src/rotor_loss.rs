@@ -20,10 +20,10 @@ use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// How near its place a vehicle without a rotor must stay not to count as lost, m.
-pub const PLACE_HELD: f64 = 3.0;
+pub const PLACE_HELD_DISTANCE_M: f64 = 3.0;
 
 /// The greatest speed of its soft landing, m/s.
-pub const SOFT_LANDING: f64 = 1.0;
+pub const SOFT_LANDING_SPEED_M_PER_S: f64 = 1.0;
 
 /// The law of a vehicle without one of its rotors, before its first tick.
 #[derive(Debug, Clone)]

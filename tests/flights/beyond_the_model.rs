@@ -64,7 +64,7 @@ fn torque_offsets(scenario: &Scenario) -> [(&'static str, Course); 2] {
     let rotors = scenario.configuration.rotors().unwrap();
     let arm = rotors.iter().map(|rotor| rotor.position.xy().norm()).fold(0.0, f32::max);
     let off = OFF_CENTRE.min(OFF_CENTRE_OF_ARM * f64::from(arm));
-    let truth = Truth::of_model(scenario.configuration.vehicle());
+    let truth = Truth::model(scenario.configuration.vehicle());
     let mut weak = vec![1.0; rotors.len()];
     weak[0] = 0.7;
     let flown = |truth| {

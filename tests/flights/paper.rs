@@ -24,7 +24,7 @@ fn the_papers_experiment_meets_every_published_figure() {
     }
     assert_eq!(flown.clipped, 0);
     assert!(flown.filter <= 2.0);
-    let claims = claims(&scenario, &Verdict::of(&scenario).unwrap(), &flown);
+    let claims = claims(&scenario, &Verdict::judge(&scenario).unwrap(), &flown);
     assert!(all_hold(&claims), "{}", table(&claims));
 }
 
@@ -67,7 +67,7 @@ fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
     let all = [collection("scenarios"), collection("vehicles")].concat();
     for scenario in &all {
         let flown = flown(scenario);
-        let claims = claims(scenario, &Verdict::of(scenario).unwrap(), &flown);
+        let claims = claims(scenario, &Verdict::judge(scenario).unwrap(), &flown);
         println!("{}: there after {:?} s", scenario.name, flown.position_reached());
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
         let thrust = Certificate::new(&scenario.configuration).unwrap().thrust();

@@ -59,7 +59,7 @@ impl Subject {
     }
 
     fn truth(&self) -> Truth {
-        Truth::of_model(self.scenario.configuration.vehicle())
+        Truth::model(self.scenario.configuration.vehicle())
     }
 
     /// The file's own circle in other circumstances: RMS over the last half of 40 s, m.

@@ -27,7 +27,7 @@ fn circle(acceleration: Vector3<f64>, thrust_scale: f64) -> Scenario {
     scenario.reality.drag = None;
     scenario.configuration = with_constants(&scenario.configuration, |p| p.drag_across = 0.0);
     scenario.reality.disturbance = Some(Disturbance { acceleration, torque: Vector3::zeros(), start: 0.0 });
-    let truth = Truth::of_model(scenario.configuration.vehicle());
+    let truth = Truth::model(scenario.configuration.vehicle());
     scenario.reality.truth = Some(Truth { thrust_scale, ..truth });
     scenario
 }

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
 use scenario::trajectory::{Route, Way};
 use scenario::verdict::Verdict;
-use scenario::{Scenario, whole};
+use scenario::{Scenario, self_contained};
 use std::fs;
 use std::path::Path;
 
@@ -51,7 +51,7 @@ fn far() -> Scenario {
 
 /// How far from its points, at their times, and from its reference the vehicle flies at worst, m.
 fn flown(scenario: &Scenario) -> (f64, f64) {
-    assert_eq!(Verdict::of(scenario).unwrap().refusal(), None, "{}", scenario.name);
+    assert_eq!(Verdict::judge(scenario).unwrap().refusal(), None, "{}", scenario.name);
     let ReferenceKind::Route(Route { points, .. }) = &scenario.reference else { panic!("no route") };
     let mut flight = Flight::new(scenario).unwrap();
     let (mut off, mut path, mut next) = (0.0_f64, Vec::new(), points.iter().peekable());
@@ -98,7 +98,7 @@ fn a_campaign_and_a_report_keep_the_rows_of_a_file() {
     let output = host_sim(&directory, &campaign);
     assert!(status(&output) < 2, "{}", stdout(&output));
     // Without the file beside it, the campaign goes on from what it kept.
-    let text = whole::read(&directory.join("eight.toml")).unwrap();
+    let text = self_contained::read(&directory.join("eight.toml")).unwrap();
     fs::remove_file(directory.join("eight.csv")).unwrap();
     let kept = fs::read_to_string(directory.join("flown/scenario.toml")).unwrap();
     assert_eq!(kept, text);

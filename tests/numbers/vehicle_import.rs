@@ -70,7 +70,7 @@ fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down
         assert!(stdout(&output).starts_with(decision), "{name}: {}", stdout(&output) + &stderr(&output));
 
         let read = Scenario::load(&directory.join("mine.toml")).unwrap();
-        let verdict = scenario::verdict::Verdict::of(&read).unwrap();
+        let verdict = scenario::verdict::Verdict::judge(&read).unwrap();
         let flown = if weak { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
         let course = host_sim::flight::course::Course::over(&flown, flight, 0.1).unwrap();

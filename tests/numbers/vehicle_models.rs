@@ -42,7 +42,7 @@ fn outcome(name: &str) -> String {
     let certified = if lag_alone { "certified, given a lag" } else { "certified" };
     match Scenario::parse(&whole(lag_alone).unwrap().text, "f") {
         Err(error) => format!("refused: {}", error.what),
-        Ok(scenario) => match Verdict::of(&scenario).unwrap().refusal() {
+        Ok(scenario) => match Verdict::judge(&scenario).unwrap().refusal() {
             Some(refusal) => format!("not certified: {refusal}"),
             None => certified.to_owned(),
         },

@@ -222,7 +222,7 @@ fn the_front_pages_scenario_is_enough_to_fly() {
     let (file, _) = file.split_once("```").unwrap();
     assert!(file.lines().count() <= 12);
     let scenario = Scenario::parse(file, "README.md").unwrap();
-    assert!(Verdict::of(&scenario).unwrap().refusal().is_none());
+    assert!(Verdict::judge(&scenario).unwrap().refusal().is_none());
 }
 
 #[test]

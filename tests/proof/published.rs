@@ -67,7 +67,7 @@ fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_con
         let text = read(name);
         assert!(!["[gains]", "[estimates]", "[reference_bounds]"].iter().any(|section| text.contains(section)));
         let scenario = Scenario::parse(&text, name).unwrap();
-        let verdict = Verdict::of(&scenario).unwrap();
+        let verdict = Verdict::judge(&scenario).unwrap();
         assert!(verdict.refusal().is_none(), "{name}: refused");
         let tightest = verdict.certificate().tightest().unwrap();
 

@@ -15,7 +15,7 @@ use std::error::Error;
 use verification::campaign::fly_all;
 
 /// Hz.
-const RATES: [f64; 12] = [10.0, 12.5, 20.0, 25.0, 40.0, 50.0, 100.0, 125.0, 200.0, 250.0, 500.0, 1000.0];
+const CONTROL_RATES_HZ: [f64; 12] = [10.0, 12.5, 20.0, 25.0, 40.0, 50.0, 100.0, 125.0, 200.0, 250.0, 500.0, 1000.0];
 
 /// `text` at `rate`, Hz.
 fn at(rate: f64, text: &str) -> Result<Scenario, Box<dyn Error>> {
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (count, mut wrong): (u64, usize) = (count.parse()?, 0);
     for file in files {
         let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
-        for rate in RATES {
+        for rate in CONTROL_RATES_HZ {
             let scenario = match at(rate, &text) {
                 Ok(scenario) => longest(&scenario),
                 Err(refusal) => {
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     continue;
                 }
             };
-            let verdict = Verdict::of(&scenario)?;
+            let verdict = Verdict::judge(&scenario)?;
             if let Some(refusal) = verdict.refusal() {
                 println!("{} at {rate} Hz: not certified: {refusal}", scenario.name);
                 continue;

@@ -130,4 +130,4 @@ fn about_x(angle: f64) -> Quaternion<f64> {
 
 /// Gains of [quaternion feedback](host_sim::rivals::quaternion_feedback) that push as hard at half a turn as Table I,
 /// and damp as well.
-pub const LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];
+pub const GAINS_LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];

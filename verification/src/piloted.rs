@@ -32,7 +32,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 /// The motors' idle command, part of a full one: the firmware's default.
-const IDLE: f32 = 0.03;
+const IDLE_COMMAND: f32 = 0.03;
 
 /// Where a pilot's estimator, governor and mixer lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -201,7 +201,7 @@ impl<'m> PilotedVehicle<'m> {
             ..*given
         };
         let outcome = self.pilot.tick(&inputs);
-        let command = self.outputs.command(&outcome.output, 1.0, IDLE);
+        let command = self.outputs.command(&outcome.output, 1.0, IDLE_COMMAND);
         self.waiting.push_back((self.now + self.delay, command));
         Ok((outcome, command))
     }

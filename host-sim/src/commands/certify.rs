@@ -35,7 +35,7 @@ const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torqu
 /// # Errors
 /// If a number of the scenario is beyond what the certificate or the loops can work with.
 pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
-    let verdict = Verdict::of(scenario)?;
+    let verdict = Verdict::judge(scenario)?;
     let certificate = verdict.certificate();
     let mut text = head(scenario, &verdict);
     text += "\n";
@@ -60,7 +60,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
 /// # Errors
 /// As [`certify`].
 pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
-    Ok(head(scenario, &Verdict::of(scenario)?))
+    Ok(head(scenario, &Verdict::judge(scenario)?))
 }
 
 /// The failing inequalities, loop and flight; without any, the tightest inequality.
@@ -128,7 +128,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let decision = verdict.refusal().map_or("CERTIFIED".to_owned(), |refusal| format!("NOT certified: {refusal}"));
     let commands =
         if certificate.holds() { "within every limit, whatever the vehicle does" } else { "NOT within every limit" };
-    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let LoopMargin { gain, delay } = LoopMargin::FLYABLE_MIN;
     let stable = match verdict.lacking().map(|lack| lack.what) {
         None => {
             format!("stable about hover, with {gain} times the gain, 1 / {gain} of it or {} ms more delay", 1e3 * delay)
@@ -222,7 +222,7 @@ fn loops(scenario: &Scenario, verdict: &Verdict) -> Result<String, ParameterErro
         let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
             [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
         });
-        let verdict = match LoopMargin::LEAST.lacking(report).map(|lack| lack.what) {
+        let verdict = match LoopMargin::FLYABLE_MIN.lacking(report).map(|lack| lack.what) {
             None => "stable",
             Some(Shortfall::Unstable { .. }) => "UNSTABLE",
             Some(_) => "TOO LITTLE MARGIN",

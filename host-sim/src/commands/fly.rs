@@ -98,7 +98,7 @@ pub fn fly(
     mcap: bool,
     interrupt: &Interrupt,
 ) -> Result<Outcome, FlyError> {
-    let verdict = Verdict::of(scenario)?;
+    let verdict = Verdict::judge(scenario)?;
     let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
     let mut flight = flier.flight(scenario)?;
     let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
-//! [`LoopMargin::LEAST`]; under the extended law, that a model of it arrives from [far away, fast and upside
+//! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside
 //! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
 //! duration and stayed near it ([`crate::flight::flown`] says how near); and that once there it never strayed further than the
 //! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
@@ -128,7 +128,7 @@ fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
 
 /// Whether the sampled loops are stable, with margins.
 fn loops(verdict: &Verdict) -> Claim {
-    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let LoopMargin { gain, delay } = LoopMargin::FLYABLE_MIN;
     let margins = verdict.loops().iter().filter_map(|report| report.margins);
     let least = margins.fold((f64::INFINITY, f64::INFINITY), |(gain, delay), margins| {
         (margins.gain_up.min(gain), margins.delay.min(delay))

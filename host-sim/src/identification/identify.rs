@@ -42,7 +42,7 @@ use flight_log::{FlightLog, Source};
 use model::Model;
 use quantities::Quantities;
 use scenario::Scenario;
-use scenario::reality::estimator::IMU_RATE;
+use scenario::reality::estimator::IMU_RATE_HZ;
 
 /// The vehicle's numbers from `log` and `bench`; `scenario` is its model.
 ///
@@ -60,7 +60,7 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
 /// IMU, besides the [`low_passes`].
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
-        Source::Estimator => 1.0 / IMU_RATE,
+        Source::Estimator => 1.0 / IMU_RATE_HZ,
         Source::Sensors => scenario.input_delay(),
         // PX4's are brought to the time at which they were true.
         Source::Truth | Source::Px4 => 0.0,

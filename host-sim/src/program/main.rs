@@ -61,6 +61,9 @@ fn main() -> ExitCode {
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
+            Some(Command::Schema) => {
+                print_text(&format!("{:#}\n", scenario::schema::schema())).map(|()| ExitCode::SUCCESS)
+            }
             Some(Command::Completions(arguments)) => {
                 print(|| io::stdout().write_all(&completions(&arguments, Arguments::command())))
                     .map(|()| ExitCode::SUCCESS)
@@ -149,7 +152,7 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
     let mut file = WholeFile::create(path).map_err(unwritable)?;
     let rows = reference_rows::write(&scenario, rate, arguments.slower()?, &mut file).map_err(unwritable)?;
     file.finish().map_err(unwritable)?;
-    let refusal = Verdict::of(&scenario).map_err(|error| error.to_string())?.refusal();
+    let refusal = Verdict::judge(&scenario).map_err(|error| error.to_string())?.refusal();
     print_text(&format!("{}: {rows} rows in {name}\n", scenario.name))?;
     if let Some(refusal) = &refusal {
         complain(format_args!("{}: not certified for this reference: {refusal}", scenario.name));

@@ -64,7 +64,7 @@ fn coloured(text: &str) -> String {
 /// A scenario's text, read once: a pipe cannot be read twice.
 pub fn text_of(file: Option<&Path>) -> Result<String, String> {
     let read = |file: &Path| {
-        scenario::whole::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+        scenario::self_contained::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
     };
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }

@@ -22,7 +22,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use scenario::body::BodyState;
-use scenario::reality::estimator::{Estimator, IMU_RATE};
+use scenario::reality::estimator::{Estimator, IMU_RATE_HZ};
 use std::collections::VecDeque;
 
 /// Between two samples, us.
@@ -50,10 +50,10 @@ struct OwnFilter {
 
 /// With zeros at half the rate, where the bilinear transform puts a Butterworth filter's.
 fn butterworth(bandwidth: f64) -> LowPass {
-    LowPass::new(bandwidth, 0.5 * IMU_RATE, IMU_RATE)
+    LowPass::new(bandwidth, 0.5 * IMU_RATE_HZ, IMU_RATE_HZ)
 }
 
-/// The gyro's own filter, sampled at [`IMU_RATE`].
+/// The gyro's own filter, sampled at [`IMU_RATE_HZ`].
 #[must_use]
 pub fn gyro_filter() -> LowPass {
     butterworth(GYRO_BANDWIDTH)
@@ -135,10 +135,10 @@ impl Instruments {
         self.clock += SAMPLE;
         let real = EstimatorParameters::BMI088;
         let scale = |density: f32| self.what.imu_noise * f64::from(density);
-        let (each, walk) = (IMU_RATE.sqrt(), 1.0 / IMU_RATE.sqrt());
+        let (each, walk) = (IMU_RATE_HZ.sqrt(), 1.0 / IMU_RATE_HZ.sqrt());
         self.gyro_bias += noise(&mut self.random, scale(real.gyro_walk) * walk);
         self.accelerometer_bias += noise(&mut self.random, scale(real.accelerometer_walk) * walk);
-        let acceleration = (state.velocity - self.velocity) * IMU_RATE;
+        let acceleration = (state.velocity - self.velocity) * IMU_RATE_HZ;
         self.velocity = state.velocity;
         let attitude = UnitQuaternion::new_normalize(state.attitude);
         let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * self.gravity));

@@ -95,7 +95,7 @@ impl RealVehicle {
     pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
         let (reality, step) = (&scenario.reality, scenario.timing.step());
         let model = configuration.vehicle();
-        let truth = reality.truth.clone().unwrap_or_else(|| Truth::of_model(model));
+        let truth = reality.truth.clone().unwrap_or_else(|| Truth::model(model));
         let propulsion = Propulsion::new(configuration, truth.lag.unwrap_or(scenario.rotor_lag), reality, step);
         let gravity = f64::from(model.gravity);
         let (ground, start) = match reality.ground {

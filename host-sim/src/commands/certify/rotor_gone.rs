@@ -16,7 +16,7 @@ use scenario::Scenario;
 use scenario::reality::Reality;
 use scenario::reality::failure::Failure;
 use scenario::rotor_loss::relaxed_hover::{NoHover, RelaxedHover};
-use scenario::rotor_loss::{PLACE_HELD, SOFT_LANDING, WithoutARotor, turning_loop};
+use scenario::rotor_loss::{PLACE_HELD_DISTANCE_M, SOFT_LANDING_SPEED_M_PER_S, WithoutARotor, turning_loop};
 use scenario::sampled_loop::Timing;
 
 /// When the rotor goes, and for how long the vehicle is watched then, s; and how long if it turns ever faster.
@@ -24,7 +24,7 @@ const FAILURE_TIME: f64 = 1.0;
 const WATCHED_TIME: f64 = 10.0;
 const LONGEST_WATCHED: f64 = 30.0;
 
-/// A vehicle that moves faster after that, m/s, is lost, as one is that is farther from its place than [`PLACE_HELD`].
+/// A vehicle that moves faster after that, m/s, is lost, as one is that is farther from its place than [`PLACE_HELD_DISTANCE_M`].
 const GREATEST_SPEED: f64 = 1.0;
 
 /// Up to here a vehicle keeps its heading, rad/s.
@@ -209,15 +209,15 @@ fn flown(scenario: &Scenario, certified: &Certified, rotor: usize) -> Result<(Fl
         let fallen = -last.position.z;
         if fallen > flown.height_lost {
             flown.height_lost = fallen;
-            if -last.velocity.z > SOFT_LANDING {
+            if -last.velocity.z > SOFT_LANDING_SPEED_M_PER_S {
                 flown.lands_from = fallen;
             }
         }
         flown.farthest = flown.farthest.max(last.position.xy().norm());
-        left = left.or((last.position.norm() > PLACE_HELD).then_some(time));
+        left = left.or((last.position.norm() > PLACE_HELD_DISTANCE_M).then_some(time));
     }
     flown.turning = last.angular_velocity;
-    let is_there = last.position.norm() < PLACE_HELD && last.velocity.norm() < GREATEST_SPEED;
+    let is_there = last.position.norm() < PLACE_HELD_DISTANCE_M && last.velocity.norm() < GREATEST_SPEED;
     flown.lost = if is_there { None } else { left.or(Some(WATCHED_TIME - period)) };
     Ok((flown, flight))
 }
@@ -225,8 +225,9 @@ fn flown(scenario: &Scenario, certified: &Certified, rotor: usize) -> Result<(Fl
 /// How long after the failure a flight that was watched is lost, s, if it is within [`LONGEST_WATCHED`].
 fn lost_after(flight: &mut Flight, period: f64) -> Option<f64> {
     let ticks = ((LONGEST_WATCHED - WATCHED_TIME) / period) as u64;
-    let is_lost =
-        |flight: &mut Flight| flight.brief_tick().map_or(true, |tick| tick.state.position.norm() > PLACE_HELD);
+    let is_lost = |flight: &mut Flight| {
+        flight.brief_tick().map_or(true, |tick| tick.state.position.norm() > PLACE_HELD_DISTANCE_M)
+    };
     (0..ticks).find(|_| is_lost(flight)).map(|tick| WATCHED_TIME + tick as f64 * period)
 }
 

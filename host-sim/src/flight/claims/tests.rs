@@ -4,7 +4,7 @@ use super::*;
 use crate::flight::Flight;
 
 fn judged(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
-    claims(scenario, &Verdict::of(scenario).unwrap(), flown)
+    claims(scenario, &Verdict::judge(scenario).unwrap(), flown)
 }
 
 fn flown(scenario: &Scenario) -> Flown {

@@ -8,7 +8,7 @@ use host_sim::rivals::kind::Kind;
 use host_sim::studies::campaign::fly::{Orders, Source};
 use host_sim::studies::campaign::step;
 use scenario::Scenario;
-use scenario::campaign::MOST_FLIGHTS;
+use scenario::campaign::FLIGHTS_MAX;
 use std::path::{Path, PathBuf};
 
 /// The arguments of `campaign`.
@@ -102,7 +102,7 @@ impl CampaignArguments {
     /// Names the file or the argument that is refused.
     pub fn source(&self) -> Result<Source, String> {
         let read = |file: &Path| {
-            scenario::whole::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+            scenario::self_contained::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
         };
         let (mut text, mut name) = (read(&self.file)?, self.file.display().to_string());
         if let Some(draws) = &self.draws {
@@ -132,8 +132,8 @@ impl CampaignArguments {
     /// Names the argument that is refused.
     pub fn orders(&self, scenario: &Scenario) -> Result<Orders, String> {
         let flights = self.flights.unwrap_or(scenario.campaign.flights);
-        if !(1.0..=MOST_FLIGHTS).contains(&(flights as f64)) {
-            return Err(format!("--flights: must be from 1 to {MOST_FLIGHTS}, found {flights}"));
+        if !(1.0..=FLIGHTS_MAX).contains(&(flights as f64)) {
+            return Err(format!("--flights: must be from 1 to {FLIGHTS_MAX}, found {flights}"));
         }
         let seed = self.seed.unwrap_or(scenario.campaign.seed);
         Ok(Orders { flights, seed, shard: self.shard.unwrap_or((1, 1)) })

@@ -89,7 +89,7 @@ impl TuneArguments {
     /// # Errors
     /// Names the argument that asks for something impossible, or for less than what may fly.
     pub fn requirements(&self) -> Result<Requirements, String> {
-        let least = LoopMargin::LEAST;
+        let least = LoopMargin::FLYABLE_MIN;
         let positive = [("--position-error", self.position_error), ("--mrp-error", self.mrp_error)];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             return Err(format!("{name}: must be greater than zero and finite, found {value}"));

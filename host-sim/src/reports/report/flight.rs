@@ -178,7 +178,7 @@ fn loops(verdict: &Verdict) -> Table {
         let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
             [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
         });
-        let holds = LoopMargin::LEAST.lacking(report).is_none();
+        let holds = LoopMargin::FLYABLE_MIN.lacking(report).is_none();
         let mut row = vec![Cell::text(report.axis.name()), Cell::number(format!("{:.4}", report.spectral_radius))];
         row.extend(margins.map(Cell::Number));
         row.push(Cell::Verdict(Some(holds)));

@@ -28,7 +28,7 @@ fn the_thrust_axis_goes_the_shortest_way_whatever_the_heading() {
 fn a_wrong_mass_weak_rotors_and_an_off_centre_mass_leave_no_offset() {
     let file = Scenario::parse(HUMMINGBIRD, "hummingbird.toml").unwrap();
     let (_, gains, _) = Set::of(&file, BUILT_IN, "gains.toml", &[Kind::Indi]).unwrap().rivals.remove(0);
-    let model = Truth::of_model(file.configuration.vehicle());
+    let model = Truth::model(file.configuration.vehicle());
     for truth in [
         Truth { mass: 0.7, ..model.clone() },
         Truth { thrust_scale: 0.7, ..model.clone() },

@@ -154,7 +154,7 @@ fn err(scenario: &mut Scenario, ranges: &ModelRanges, drawn: &mut Drawn) {
         return;
     }
     let truth = scenario.reality.truth.clone();
-    let truth = truth.unwrap_or_else(|| Truth::of_model(scenario.configuration.vehicle()));
+    let truth = truth.unwrap_or_else(|| Truth::model(scenario.configuration.vehicle()));
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let own = |rotor: usize| truth.rotor_scales.get(rotor).copied().unwrap_or(1.0);
     let rotor_scales = scales.iter().take(rotors).enumerate().map(|(rotor, scale)| own(rotor) * scale).collect();

@@ -78,7 +78,7 @@ impl Source {
     }
 
     fn verdict(&self) -> Result<Verdict, CampaignError> {
-        Verdict::of(&self.scenario).map_err(|error| self.error(error))
+        Verdict::judge(&self.scenario).map_err(|error| self.error(error))
     }
 }
 

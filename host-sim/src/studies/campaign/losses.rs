@@ -4,7 +4,7 @@ use super::columns::{counts, floats, whole_numbers};
 use super::quantile;
 use crate::output::table::short;
 use arrow_array::RecordBatch;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use std::fmt;
 
 /// How many false alarms are listed.
@@ -19,7 +19,7 @@ pub struct Losses {
     pub found: u64,
     /// Of these, those in which it found none.
     pub missed: u64,
-    /// Of these, those that end within [`PLACE_HELD`] of their reference.
+    /// Of these, those that end within [`PLACE_HELD_DISTANCE_M`] of their reference.
     pub held: u64,
     /// Flights in which the law found a rotor that had not failed, each with that rotor, from 1.
     pub false_alarms: Vec<(u64, u64)>,
@@ -57,7 +57,7 @@ impl Losses {
                 (_, Some(rotor)) => losses.false_alarms.push((numbers[flight], rotor)),
             }
             if failed[flight].is_some() {
-                losses.held += u64::from(ends[flight] <= PLACE_HELD);
+                losses.held += u64::from(ends[flight] <= PLACE_HELD_DISTANCE_M);
                 lost.push(depths[flight]);
                 away.push(distances[flight]);
             }
@@ -80,7 +80,7 @@ impl fmt::Display for Losses {
             let wrong = failed - found - missed;
             writeln!(
                 f,
-                "a rotor failed in {failed} flights, {held} of which end within {PLACE_HELD} m of their reference; the \
+                "a rotor failed in {failed} flights, {held} of which end within {PLACE_HELD_DISTANCE_M} m of their reference; the \
                  law found it in {found}, another one or too early in {wrong}, none in {missed}"
             )?;
             let figures =

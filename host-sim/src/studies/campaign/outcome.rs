@@ -25,7 +25,7 @@ use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
 use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 
 /// How near its reference a vehicle must stay to have settled, m.
 pub const NEAR: f64 = 0.2;
@@ -151,10 +151,10 @@ impl Outcome {
     }
 
     /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
-    /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD`] of its reference.
+    /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD_DISTANCE_M`] of its reference.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD } else { self.in_time }
+        if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD_DISTANCE_M } else { self.in_time }
     }
 
     /// Whether it tracks, and no command went beyond its bound.

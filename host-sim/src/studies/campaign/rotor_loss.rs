@@ -8,7 +8,7 @@
 //! | distance | greatest distance from the reference, from then on |
 //!
 //! A vehicle that turns has no heading to hold. So a flight in which a rotor failed is held to its place alone: it
-//! *tracks* if it ends within [`PLACE_HELD`](scenario::rotor_loss::PLACE_HELD) of its reference.
+//! *tracks* if it ends within [`PLACE_HELD_DISTANCE_M`](scenario::rotor_loss::PLACE_HELD_DISTANCE_M) of its reference.
 
 use crate::flight::Brief;
 use controller_core::allocation::remaining::LostRotor;

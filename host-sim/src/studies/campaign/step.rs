@@ -7,7 +7,7 @@
 //! shows that no verdict changes with half of it.
 
 use scenario::Scenario;
-use scenario::body::GREATEST_TURN_PER_STEP;
+use scenario::body::ROTATION_PER_STEP_MAX_RAD;
 
 /// The longest step, s.
 pub const LONGEST: f64 = 5e-3;
@@ -23,7 +23,7 @@ pub fn longest(scenario: &Scenario) -> Scenario {
         let changed = divided(scenario, steps)?;
         let (ranges, step) = (&scenario.campaign.ranges, changed.timing.step());
         let turns = step * ranges.rate.max(ranges.yaw_rate).max(scenario.initial.angular_velocity.norm());
-        (step <= LONGEST * (1.0 + WHOLE) && turns <= GREATEST_TURN_PER_STEP).then_some(changed)
+        (step <= LONGEST * (1.0 + WHOLE) && turns <= ROTATION_PER_STEP_MAX_RAD).then_some(changed)
     });
     fitting.unwrap_or_else(|| scenario.clone())
 }

@@ -12,7 +12,7 @@ use crate::output::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use scenario::Scenario;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use scenario::verdict::Verdict;
 use std::fmt;
 
@@ -90,7 +90,7 @@ impl Summary {
         let (losses, ends) = (Losses::of(flown), floats(flown, "final_error"));
         let failed = whole_numbers(flown, "failed_rotor");
         let tracks = |flight: &usize| match failed[*flight] {
-            Some(_) => ends[*flight] <= PLACE_HELD,
+            Some(_) => ends[*flight] <= PLACE_HELD_DISTANCE_M,
             None => in_time(Some(slowest[*flight]), duration),
         };
         let tracking = (0..numbers.len()).filter(tracks).count();

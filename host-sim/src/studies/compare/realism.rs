@@ -98,7 +98,7 @@ fn really(file: &Scenario, different: &Different) -> Scenario {
     let mass = f64::from(vehicle.mass);
     let reality = &mut real.reality;
     (reality.disturbance, reality.failure, reality.sensors, reality.estimator) = (None, None, None, None);
-    let model = Truth::of_model(vehicle);
+    let model = Truth::model(vehicle);
     reality.truth = Some(Truth {
         mass: mass * (1.0 + different.mass),
         rotor_inertia: different.flywheels * flywheel(file),

@@ -26,7 +26,7 @@ use scenario::Scenario;
 use scenario::reality::failure::Failure;
 use scenario::reality::ground::Ground;
 use scenario::reality::wind::Wind;
-use scenario::rotor_loss::{PLACE_HELD, SOFT_LANDING};
+use scenario::rotor_loss::{PLACE_HELD_DISTANCE_M, SOFT_LANDING_SPEED_M_PER_S};
 use scenario::trajectory::stretch;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -70,7 +70,7 @@ impl Landing {
     /// Whether it lands well.
     #[must_use]
     pub fn is_soft(&self) -> bool {
-        self.speed < SOFT_LANDING && self.away < PLACE_HELD && self.height_lost < HEIGHT_LOST
+        self.speed < SOFT_LANDING_SPEED_M_PER_S && self.away < PLACE_HELD_DISTANCE_M && self.height_lost < HEIGHT_LOST
     }
 }
 

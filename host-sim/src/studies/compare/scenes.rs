@@ -64,7 +64,7 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
         Ok::<_, ParameterError>(windy)
     };
     let really = |mut scenario: Scenario, mass: f64, thrust: f64| {
-        let truth = Truth::of_model(file.configuration.vehicle());
+        let truth = Truth::model(file.configuration.vehicle());
         scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale: thrust, ..truth });
         scenario
     };

@@ -13,7 +13,7 @@ pub const LEAST_RECOVERY: f64 = 2.0;
 pub struct Requirements {
     /// Least relative margin of every inequality.
     pub margin: f64,
-    /// Least margin of every sampled loop; not below [`LoopMargin::LEAST`].
+    /// Least margin of every sampled loop; not below [`LoopMargin::FLYABLE_MIN`].
     pub loops: LoopMargin,
     /// Greatest position error of the file's own flight in its last quarter, m.
     pub position_error: f64,

@@ -14,7 +14,7 @@ use scenario::stability::LoopMargin;
 
 const EASY: Requirements = Requirements {
     margin: 0.0,
-    loops: LoopMargin::LEAST,
+    loops: LoopMargin::FLYABLE_MIN,
     position_error: 0.01,
     mrp_error: 1e-3,
     recovery: 40.0,
@@ -58,11 +58,11 @@ fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
     let refusals = [
         (Requirements { margin: 0.5, ..EASY }, "certificate: "),
         (
-            Requirements { loops: LoopMargin { gain: 20.0, ..LoopMargin::LEAST }, ..EASY },
+            Requirements { loops: LoopMargin { gain: 20.0, ..LoopMargin::FLYABLE_MIN }, ..EASY },
             "sampled loop roll: unstable at 4.48",
         ),
         (
-            Requirements { loops: LoopMargin { delay: 0.1, ..LoopMargin::LEAST }, ..EASY },
+            Requirements { loops: LoopMargin { delay: 0.1, ..LoopMargin::FLYABLE_MIN }, ..EASY },
             "sampled loop roll: unstable with 7.5 ms",
         ),
         (Requirements { recovery: 3.0, ..EASY }, "recovery: "),
@@ -89,7 +89,7 @@ fn the_position_feedback_needs_the_gain_margin_too() {
     let steep = PAPER.replace("k_p = 9.0", "k_p = 900.0").replace("k_v = 6.0", "k_v = 120.0");
     let steep = Scenario::parse(&steep, "f").unwrap();
     let failed = |gain| {
-        let loops = LoopMargin { gain, ..LoopMargin::LEAST };
+        let loops = LoopMargin { gain, ..LoopMargin::FLYABLE_MIN };
         verdict(&steep, Requirements { loops, ..EASY }).failed.unwrap_or_default()
     };
     assert!(!failed(1.5).contains("k_p and k_v"), "{}", failed(1.5));

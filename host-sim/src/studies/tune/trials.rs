@@ -227,7 +227,7 @@ pub fn show(
     let beyond = if *model == MODELS[0] {
         let storm = windy(STORM, STORM_TIME)?;
         let far = stepped(Vector3::new(-6.0, -6.0, -5.3))?;
-        let truth = Truth::of_model(scenario.configuration.vehicle());
+        let truth = Truth::model(scenario.configuration.vehicle());
         let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
             scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
             settled(&scenario)
@@ -300,7 +300,7 @@ fn really(scenario: &Scenario, model: &Model) -> Scenario {
     let mut real = scenario.clone();
     let vehicle = scenario.configuration.vehicle();
     if *model != MODELS[0] {
-        let own = Truth::of_model(vehicle);
+        let own = Truth::model(vehicle);
         real.reality.truth = Some(Truth {
             mass: own.mass * model.mass,
             centre_of_mass: off_centre(scenario, model),

@@ -22,7 +22,7 @@ fn every_published_vehicle_recovers_flies_a_circle_and_holds_every_claim() {
         let plain = Scenario::parse(&text, &file).unwrap();
         assert_eq!(scenario.configuration, plain.configuration, "{file}: certify's verdict is about this flight too");
         let added = added.unwrap_or_else(|| panic!("{file}: nothing to look at"));
-        let verdict = Verdict::of(&scenario).unwrap();
+        let verdict = Verdict::judge(&scenario).unwrap();
         let flight = Flight::certified(&scenario, verdict.certified().unwrap()).unwrap();
         let flown = Flown::over(&scenario, flight).unwrap();
         let claims = claims::claims(&scenario, &verdict, &flown);

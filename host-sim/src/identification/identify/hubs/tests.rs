@@ -16,7 +16,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let (vehicle, rotors) = (scenario.configuration.vehicle(), scenario.configuration.rotors().unwrap());
     let (mass, k): (f64, f64) = (vehicle.mass.into(), rotors.iter().next().unwrap().thrust_coefficient.into());
     let drag = Drag { rotor_across: 1.19e-4, rotor_along: 2.32e-4, translational_lift: 3.39e-3, ..Drag::default() };
-    let truth = Truth::of_model(vehicle);
+    let truth = Truth::model(vehicle);
     let (still_air, windy) = (Air::new(Some(rotors), &truth, &Drag::default()), Air::new(Some(rotors), &truth, &drag));
     // Pressed down by the air, as in wind: more than a hover takes.
     let speed = (mass * 12.0 / (4.0 * k)).sqrt();

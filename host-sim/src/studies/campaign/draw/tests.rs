@@ -55,7 +55,7 @@ fn a_range_that_changes_leaves_the_other_draws_as_they_are() {
 fn draws_fill_their_ranges_and_stay_within_them() {
     let scenario = hummingbird(EVERYTHING);
     let ranges = scenario.campaign.ranges;
-    let model = Truth::of_model(scenario.configuration.vehicle());
+    let model = Truth::model(scenario.configuration.vehicle());
     // Each quantity over its range.
     let mut greatest = [0.0_f64; 12];
     for number in 0..2000 {

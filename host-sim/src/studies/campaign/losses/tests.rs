@@ -16,7 +16,7 @@ type Flown = (Option<usize>, Option<(usize, f64)>, f64, f64);
 fn losses(flights: &[Flown]) -> Losses {
     let text = include_str!("../../../../../vehicles/hummingbird.toml").replace("duration = 40.0", "duration = 1.0");
     let scenario = Scenario::parse(&text, "f").unwrap();
-    let verdict = Verdict::of(&scenario).unwrap();
+    let verdict = Verdict::judge(&scenario).unwrap();
     let outcome = Outcome::of(&scenario, Flight::new(&scenario).unwrap(), verdict.certificate());
     let row = |(number, (failed, found, height_lost, final_error)): (u64, &Flown)| {
         let failure = failed.map(|rotor| Failure { rotor, time: 10.0, thrust_left: 0.0 });

@@ -3,7 +3,7 @@
 use super::super::outcome::Outcome;
 use super::*;
 use crate::flight::Flight;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use scenario::verdict::Verdict;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
@@ -13,7 +13,7 @@ fn scenario(sections: &str) -> Scenario {
 }
 
 fn flown(scenario: &Scenario) -> Outcome {
-    let verdict = Verdict::of(scenario).unwrap();
+    let verdict = Verdict::judge(scenario).unwrap();
     Outcome::of(scenario, Flight::new(scenario).unwrap(), verdict.certificate())
 }
 
@@ -56,7 +56,9 @@ fn a_false_alarm_is_a_rotor_that_had_not_failed() {
 #[test]
 fn a_flight_without_a_rotor_tracks_if_it_ends_near_its_place() {
     let outcome = flown(&scenario("[failure]\nrotor = 3\ntime = 2.0\n"));
-    for (final_error, expected) in [(PLACE_HELD, "holds"), (PLACE_HELD + 0.01, "away"), (f64::INFINITY, "away")] {
+    for (final_error, expected) in
+        [(PLACE_HELD_DISTANCE_M, "holds"), (PLACE_HELD_DISTANCE_M + 0.01, "away"), (f64::INFINITY, "away")]
+    {
         assert_eq!(Outcome { final_error, ..outcome }.verdict(true), expected, "{final_error}");
     }
     assert_eq!(Outcome { beyond: 1, ..outcome }.verdict(true), "beyond");

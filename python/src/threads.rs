@@ -3,7 +3,7 @@
 //! Not rayon's own: a process that was forked, as multiprocessing does, has none of its parent's threads, and would
 //! wait for them for ever.
 
-use crate::refused::failed;
+use crate::errors::failed;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,6 +1,6 @@
-//! What hours of missions showed, and whether the last was as good as the first.
+//! The results of hours of missions, and whether the last was as good as the first.
 
-use super::script::{HEIGHTS, SPEEDS};
+use super::script::{LANDING_SPEEDS_M_PER_S, TAKE_OFF_HEIGHTS_M};
 use flight::Reason;
 use nalgebra::Vector3;
 
@@ -11,18 +11,18 @@ pub struct Hour {
     pub hover: f64,
     /// RMS of the estimate's error meanwhile, m.
     pub estimate: f64,
-    /// Ticks from a cause to its consequence, means over the hour, in the order of [`TIMED`].
-    pub delays: [f64; TIMED.len()],
+    /// Ticks from a cause to its consequence, means over the hour, in the order of [`TIMED_REASONS`].
+    pub delays: [f64; TIMED_REASONS.len()],
 }
 
 /// Consequences that are timed: of the take-off command, of the last heartbeat, setpoint and pose, of a battery that is
 /// low.
-pub const TIMED: [Reason; 5] =
+pub const TIMED_REASONS: [Reason; 5] =
     [Reason::TakenOff, Reason::GroundStationLost, Reason::SetpointsLost, Reason::PoseLost, Reason::BatteryLow];
 
 /// The effect of parameters changed before a mission, over all missions with the same choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Obeyed {
+pub struct ParameterEffect {
     /// The choice: m, or m/s.
     pub chosen: f32,
     /// The least and the greatest of what came of it: m above the ground in hover, or m/s downwards while landing.
@@ -32,8 +32,8 @@ pub struct Obeyed {
     pub took: (u64, u64),
 }
 
-impl Obeyed {
-    pub(super) fn nothing(chosen: f32) -> Self {
+impl ParameterEffect {
+    pub(super) fn new(chosen: f32) -> Self {
         Self { chosen, found: (f64::INFINITY, f64::NEG_INFINITY), took: (u64::MAX, 0) }
     }
 
@@ -58,11 +58,11 @@ pub struct Hours {
     /// Hour by hour.
     pub hours: Vec<Hour>,
     /// The shortest and longest of each of the delays, ticks.
-    pub extremes: [(u64, u64); TIMED.len()],
+    pub extremes: [(u64, u64); TIMED_REASONS.len()],
     /// The result of each chosen take-off height and landing speed.
-    pub heights: [Obeyed; HEIGHTS.len()],
+    pub heights: [ParameterEffect; TAKE_OFF_HEIGHTS_M.len()],
     /// See [`Self::heights`].
-    pub speeds: [Obeyed; SPEEDS.len()],
+    pub speeds: [ParameterEffect; LANDING_SPEEDS_M_PER_S.len()],
     /// Missions flown.
     pub missions: u64,
     /// How often the frame of the poses has moved.
@@ -77,24 +77,24 @@ pub struct Hours {
 
 /// How much the last hour may differ from the first, relative: means over 300 s of noise that takes about half a second
 /// to forget.
-const ALIKE: f64 = 0.15;
+const HOUR_DIFFERENCE_MAX: f64 = 0.15;
 
 /// How far apart two delays of one kind may be, ticks.
-const SPREAD: u64 = 1;
+const DELAY_SPREAD_MAX_TICKS: u64 = 1;
 
 /// How far from the height that was chosen a hover may be, m, and how far from the speed, m/s: gusts and the estimate's
 /// noise, and a landing that begins out of a climb or with the ground's cushion.
-const HEIGHT_OFF: f64 = 0.02;
-const SPEED_OFF: f64 = 0.1;
+const HEIGHT_TOLERANCE_M: f64 = 0.02;
+const SPEED_TOLERANCE_M_PER_S: f64 = 0.1;
 
 impl Hours {
     /// Before anything was flown.
-    pub(super) fn nothing() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             hours: Vec::new(),
-            extremes: [(u64::MAX, 0); TIMED.len()],
-            heights: HEIGHTS.map(Obeyed::nothing),
-            speeds: SPEEDS.map(Obeyed::nothing),
+            extremes: [(u64::MAX, 0); TIMED_REASONS.len()],
+            heights: TAKE_OFF_HEIGHTS_M.map(ParameterEffect::new),
+            speeds: LANDING_SPEEDS_M_PER_S.map(ParameterEffect::new),
             missions: 0,
             moves: 0,
             refusals: 0,
@@ -109,15 +109,19 @@ impl Hours {
     /// Says what was not.
     pub fn check(&self) -> Result<(), String> {
         // How long a take-off takes depends on its height: they are compared by it.
-        let delays = TIMED.iter().zip(self.extremes).filter(|(reason, _)| **reason != Reason::TakenOff);
+        let delays = TIMED_REASONS.iter().zip(self.extremes).filter(|(reason, _)| **reason != Reason::TakenOff);
         let rises = self.heights.iter().map(|height| (&Reason::TakenOff, height.took));
         for (reason, (least, most)) in delays.chain(rises) {
-            if most.checked_sub(least).is_none_or(|apart| apart > SPREAD) {
-                return Err(format!("{reason:?}: after {least} to {most} ticks, not more than {SPREAD} apart"));
+            if most.checked_sub(least).is_none_or(|apart| apart > DELAY_SPREAD_MAX_TICKS) {
+                return Err(format!(
+                    "{reason:?}: after {least} to {most} ticks, not more than {DELAY_SPREAD_MAX_TICKS} apart"
+                ));
             }
         }
-        for (what, obeyed, off) in [("height", &self.heights, HEIGHT_OFF), ("speed", &self.speeds, SPEED_OFF)] {
-            for Obeyed { chosen, found: (least, most), .. } in obeyed {
+        for (what, obeyed, off) in
+            [("height", &self.heights, HEIGHT_TOLERANCE_M), ("speed", &self.speeds, SPEED_TOLERANCE_M_PER_S)]
+        {
+            for ParameterEffect { chosen, found: (least, most), .. } in obeyed {
                 let chosen = f64::from(*chosen);
                 if !(chosen - off..=chosen + off).contains(least) || !(chosen - off..=chosen + off).contains(most) {
                     return Err(format!("{what}: {chosen} chosen, {least:.3} to {most:.3} found"));
@@ -128,7 +132,7 @@ impl Hours {
             return Err("no hour was flown".to_owned());
         };
         for (what, first, last) in [("hover", first.hover, last.hover), ("estimate", first.estimate, last.estimate)] {
-            let is_alike = (1.0 - ALIKE..=1.0 + ALIKE).contains(&(last / first));
+            let is_alike = (1.0 - HOUR_DIFFERENCE_MAX..=1.0 + HOUR_DIFFERENCE_MAX).contains(&(last / first));
             if !is_alike {
                 return Err(format!("{what}: RMS {first} m in the first hour, {last} m in the last"));
             }

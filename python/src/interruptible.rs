@@ -10,7 +10,7 @@ use std::thread;
 use std::time::Duration;
 
 /// Between two looks for signals.
-const PATIENCE: Duration = Duration::from_millis(50);
+const SIGNAL_POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// What `work` gives; it ends early once its interrupt says so.
 ///
@@ -27,7 +27,7 @@ pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> T
                 let _ = sender.send(());
                 done
             });
-            while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(PATIENCE) {
+            while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(SIGNAL_POLL_INTERVAL) {
                 if let Err(raised) = Python::attach(|py| py.check_signals()) {
                     interrupt.ask();
                     let _ = worker.join();

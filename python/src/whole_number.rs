@@ -1,6 +1,6 @@
 //! Whole numbers as arguments: Python's are of any size, and what is beyond a machine's is refused by name too.
 
-use crate::refused::refused_field;
+use crate::errors::refused_field;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use std::fmt;
@@ -11,7 +11,7 @@ pub struct Whole(Result<u64, String>);
 
 impl Whole {
     /// What an argument is where it is left out.
-    pub const fn of(value: u64) -> Self {
+    pub const fn new(value: u64) -> Self {
         Self(Ok(value))
     }
 
