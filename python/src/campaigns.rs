@@ -5,7 +5,7 @@ use crate::refused::{failed, refused, refused_field, unwritable};
 use crate::scenarios::Scenario;
 use crate::waiting::interruptible;
 use crate::whole::Whole;
-use host_sim::rivals::choice::OURS;
+use host_sim::rivals::choice::OUR_LAW;
 use host_sim::rivals::gains as of_rivals;
 use host_sim::studies::campaign::CampaignError;
 use host_sim::studies::campaign::fly::{self, Orders, Source};
@@ -99,7 +99,7 @@ impl Campaign {
 ///     ValueError: names the argument, or says that the directory holds another campaign.
 ///     OSError: it cannot be written.
 #[pyfunction]
-#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::of(1), Whole::of(1)), plant_step=None, law=OURS, gains=None))]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::of(1), Whole::of(1)), plant_step=None, law=OUR_LAW, gains=None))]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn campaign(
     py: Python<'_>,

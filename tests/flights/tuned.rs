@@ -10,8 +10,8 @@ use scenario::Scenario;
 use scenario::body::attitude_from_euler;
 use std::path::Path;
 
-/// How long a recovery is watched, s.
-const RECOVERY: f64 = 40.0;
+/// How long a recovery is watched.
+const RECOVERY_S: f64 = 40.0;
 
 fn tuned() -> Scenario {
     Scenario::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/paper-tuned.toml")).unwrap()
@@ -23,7 +23,7 @@ fn flown(scenario: &Scenario) -> Flown {
 
 /// A recovery from roll -179 degrees and the given yaw, degrees.
 fn recovered(scenario: &Scenario, yaw: f64) -> Flown {
-    let mut scenario = recovery(scenario, RECOVERY).unwrap();
+    let mut scenario = recovery(scenario, RECOVERY_S).unwrap();
     scenario.initial.attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, yaw.to_radians());
     flown(&scenario)
 }

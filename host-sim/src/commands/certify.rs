@@ -28,7 +28,7 @@ use scenario::stability::{LoopMargin, Shortfall};
 use scenario::verdict::Verdict;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
-const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
+const PUBLISHED_BOUNDS: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
 
 /// The report on `scenario`, and whether it is certified.
 ///
@@ -86,7 +86,7 @@ fn papers(scenario: &Scenario, certificate: &PaperCertificate) -> Result<String,
     text += &bounds("as printed", &certificate.printed);
     text += &bounds("sharp", &certificate.sharp);
     if scenario.is_papers() {
-        text += PUBLISHED;
+        text += PUBLISHED_BOUNDS;
         text += "\n";
     }
     if !certificate.rotors.is_empty() {

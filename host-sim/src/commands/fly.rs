@@ -26,11 +26,11 @@ use std::path::{Path, PathBuf};
 
 /// Ticks between two looks at the clock.
 const TICKS_PER_SHOW: u64 = 5000;
-/// The recording's name.
-const RECORDING: &str = "flight.mcap";
+const RECORDING_FILE: &str = "flight.mcap";
 
-/// The files written after the flight; whether they can be written is checked before.
-const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
+/// Whether they can be written is checked before the flight.
+const WRITTEN_AFTER_FLIGHT: [&str; 6] =
+    ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
 
 /// Why a flight left no report.
 #[derive(Debug)]
@@ -102,7 +102,7 @@ pub fn fly(
     let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
     let mut flight = flier.flight(scenario)?;
     let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
-    for path in TEXTS.map(|name| directory.join(name)) {
+    for path in WRITTEN_AFTER_FLIGHT.map(|name| directory.join(name)) {
         WholeFile::try_name(&path).map_err(failed(&path))?;
     }
     let mut log = Output::create(directory, "log.csv")?;
@@ -139,7 +139,7 @@ pub fn fly(
     interrupted(interrupt)?;
     outputs.into_iter().try_for_each(|Output { file, path }| file.finish().map_err(failed(&path)))?;
     if !mcap {
-        forget(&directory.join(RECORDING))?;
+        forget(&directory.join(RECORDING_FILE))?;
     }
     Ok(outcome)
 }
@@ -227,8 +227,8 @@ struct Recorder {
 
 impl Recorder {
     fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
-        let Output { file, path } = Output::create(directory, RECORDING)?;
-        let recording = Recording::begin(file, scenario, text, flight::TOPICS).map_err(failed(&path))?;
+        let Output { file, path } = Output::create(directory, RECORDING_FILE)?;
+        let recording = Recording::begin(file, scenario, text, flight::FLIGHT_TOPICS).map_err(failed(&path))?;
         Ok(Self { recording, path })
     }
 

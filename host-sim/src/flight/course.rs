@@ -54,10 +54,10 @@ struct LastHalf {
     activity: Activity,
 }
 
-/// The time within which a rotor's command changes, us: the same for laws of every rate.
-const CHANGING: u64 = 10_000;
+/// The time within which a rotor's command changes: the same for laws of every rate.
+const COMMAND_CHANGE_PERIOD_US: u64 = 10_000;
 
-/// How much rotors' commands change within `CHANGING`.
+/// How much rotors' commands change within `COMMAND_CHANGE_PERIOD_US`.
 #[derive(Debug, Clone)]
 pub struct Activity {
     /// Commands that are younger, N, and how many that may be.
@@ -72,7 +72,12 @@ impl Activity {
     /// Of commands that are `period_us` apart.
     #[must_use]
     pub fn new(period_us: u64) -> Self {
-        Self { past: VecDeque::new(), ticks: (CHANGING / period_us).max(1) as usize, squares: 0.0, changes: 0 }
+        Self {
+            past: VecDeque::new(),
+            ticks: (COMMAND_CHANGE_PERIOD_US / period_us).max(1) as usize,
+            squares: 0.0,
+            changes: 0,
+        }
     }
 
     /// Takes a tick's commands, N.

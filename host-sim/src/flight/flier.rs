@@ -4,7 +4,7 @@
 //! certified once for all flights, as on boards; an uncertified one flies as its scenario has it.
 
 use crate::flight::Flight;
-use crate::rivals::choice::{LawChoice, OURS};
+use crate::rivals::choice::{LawChoice, OUR_LAW};
 use crate::rivals::kind::Kind;
 use crate::rivals::rival::Rival;
 use controller_core::certificate::certified::Certified;
@@ -35,7 +35,7 @@ impl Flier {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Ours(_) => OURS,
+            Self::Ours(_) => OUR_LAW,
             Self::Rival(kind, _) => kind.name(),
         }
     }

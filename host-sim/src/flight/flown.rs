@@ -65,8 +65,8 @@ pub struct Flown {
 /// Whether yaw is certified to follow the heading of `reference`: it is within `bounds`.
 #[must_use]
 pub fn heading_is_followed(reference: &Reference, bounds: &ReferenceBounds) -> bool {
-    const ALLOWANCE: f32 = 1e-3;
-    bounds.contain(reference, ALLOWANCE)
+    const HEADING_BOUNDS_TOLERANCE: f32 = 1e-3;
+    bounds.contain(reference, HEADING_BOUNDS_TOLERANCE)
 }
 
 /// The part of an attitude's error, modified Rodrigues parameters, that is certified to vanish.

@@ -4,8 +4,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::time::{Duration, Instant};
 
-/// How long something may take before a bar shows its progress.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Work that takes longer shows a bar.
+const BAR_AFTER: Duration = Duration::from_secs(1);
 /// Between two lines at least, and until the first.
 const LINES_APART: Duration = Duration::from_secs(10);
 /// Silence that is broken by a line even where little has been done.
@@ -47,7 +47,7 @@ impl Progress {
             self.say(done);
         } else if let Some(bar) = &self.bar {
             bar.set_position(done);
-        } else if self.started.elapsed() >= PATIENCE {
+        } else if self.started.elapsed() >= BAR_AFTER {
             self.bar = Some(start(self.total, done, self.name()));
         }
     }

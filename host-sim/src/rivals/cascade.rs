@@ -48,10 +48,10 @@ pub const NAMES: [&str; 18] = [
     "cut_off",
 ];
 /// Where a search starts: PX4's defaults, in accelerations.
-pub const START: [f64; 18] =
+pub const START_GAINS: [f64; 18] =
     [0.95, 1.0, 1.8, 0.4, 0.2, 4.0, 2.0, 0.01, 12.0, 3.0, 6.5, 0.4, 18.0, 6.0, 0.05, 4.0, 1.0, 100.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 18] = [
+pub const GAIN_PACES: [Pace; 18] = [
     Pace::Position(1),
     Pace::Position(1),
     Pace::Position(1),

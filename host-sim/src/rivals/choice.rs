@@ -3,7 +3,7 @@
 use super::kind::Kind;
 
 /// Our law's name beside others.
-pub const OURS: &str = "ours";
+pub const OUR_LAW: &str = "ours";
 
 /// Which law.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ impl LawChoice {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Ours => OURS,
+            Self::Ours => OUR_LAW,
             Self::Rival(kind, _) => kind.name(),
         }
     }

@@ -12,7 +12,7 @@ use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::{Commanded, Rival, Seen, Wanted};
 use nalgebra::Quaternion;
 
-pub use super::quaternion_feedback::{NAMES, PACES, START};
+pub use super::quaternion_feedback::{GAIN_PACES, NAMES, START_GAINS};
 
 /// The law and the quaternion it was at.
 #[derive(Debug, Clone)]

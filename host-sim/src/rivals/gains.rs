@@ -26,7 +26,7 @@
 use super::kind::Kind;
 use super::pilot::model;
 use crate::output::table::short;
-use crate::rivals::choice::{LawChoice, OURS};
+use crate::rivals::choice::{LawChoice, OUR_LAW};
 use scenario::Scenario;
 use scenario::number::{self, Number};
 use std::fmt::Write;
@@ -63,7 +63,7 @@ impl std::fmt::Display for GainsError {
 impl std::error::Error for GainsError {}
 
 /// The key of a table that says at which rate its gains were found.
-const PERIOD: &str = "period";
+const PERIOD_KEY: &str = "period";
 
 impl Set {
     /// The gains of `kinds` in `text`, called `file` in messages, that were found for the vehicle of `scenario`.
@@ -76,7 +76,7 @@ impl Set {
             text.parse().map_err(|error: toml_edit::TomlError| failed(error.message().replace('\n', " ")))?;
         let own = vehicle(scenario);
         let is_own = |item: &Item, rate: bool| {
-            own.iter().all(|(key, values)| *key == PERIOD && !rate || is_said(item.get(key), key, values))
+            own.iter().all(|(key, values)| *key == PERIOD_KEY && !rate || is_said(item.get(key), key, values))
         };
         let of_rate = document.iter().filter(|(_, item)| is_own(item, true));
         let of_others = document.iter().filter(|(_, item)| is_own(item, false) && !is_own(item, true));
@@ -115,8 +115,9 @@ impl Set {
             }
             let gains = kind.gains().iter().map(|key| number(key)).collect::<Result<Vec<f64>, _>>()?;
             if !is_own(item, true) {
-                let period = item.get(PERIOD).and_then(Item::as_float).filter(|period| *period > 0.0);
-                let period = period.ok_or_else(|| failed(format!("{of}: its {PERIOD} must be greater than zero")))?;
+                let period = item.get(PERIOD_KEY).and_then(Item::as_float).filter(|period| *period > 0.0);
+                let period =
+                    period.ok_or_else(|| failed(format!("{of}: its {PERIOD_KEY} must be greater than zero")))?;
                 set.from_other_rates.push((kind, 1.0 / period));
             }
             if kind.build(scenario, &gains).is_none() {
@@ -200,9 +201,9 @@ impl Set {
 /// The argument that is refused, `law` or `gains`, and why.
 pub fn chosen(name: &str, scenario: &Scenario, file: Option<&Path>) -> Result<LawChoice, (&'static str, String)> {
     let Some(kind) = Kind::named(name) else {
-        let names: Vec<&str> = std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)).collect();
+        let names: Vec<&str> = std::iter::once(OUR_LAW).chain(Kind::ALL.map(Kind::name)).collect();
         return match file {
-            _ if name != OURS => Err(("law", format!("must be one of {}, found {name:?}", names.join(", ")))),
+            _ if name != OUR_LAW => Err(("law", format!("must be one of {}, found {name:?}", names.join(", ")))),
             Some(_) => Err(("gains", "our law's gains are the scenario's: choose another law".to_owned())),
             None => Ok(LawChoice::Ours),
         };

@@ -40,9 +40,9 @@ pub const NAMES: [&str; 10] = [
     "cut_off_force",
 ];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
+pub const START_GAINS: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 10] = {
+pub const GAIN_PACES: [Pace; 10] = {
     let [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
     [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, Pace::Attitude(1), Pace::Attitude(1)]
 };

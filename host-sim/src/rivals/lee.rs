@@ -27,9 +27,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub const NAMES: [&str; 8] =
     ["k_x_across", "k_v_across", "k_x_vertical", "k_v_vertical", "k_r_tilt", "k_w_tilt", "k_r_yaw", "k_w_yaw"];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
+pub const START_GAINS: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
+pub const GAIN_PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
 
 /// The law.
 #[derive(Debug, Clone)]

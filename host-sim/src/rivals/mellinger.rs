@@ -26,9 +26,9 @@ use nalgebra::Vector3;
 pub const NAMES: [&str; 8] =
     ["k_p_across", "k_v_across", "k_p_vertical", "k_v_vertical", "k_r_tilt", "k_w_tilt", "k_r_yaw", "k_w_yaw"];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
+pub const START_GAINS: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
 /// The speed that each of them scales with.
-pub const PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
+pub const GAIN_PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
 
 /// The law.
 #[derive(Debug, Clone)]

@@ -11,7 +11,7 @@
 use super::quaternion_feedback::QuaternionFeedback;
 use super::rival::{Commanded, Rival, Seen, Wanted};
 
-pub use super::quaternion_feedback::{NAMES, PACES, START};
+pub use super::quaternion_feedback::{GAIN_PACES, NAMES, START_GAINS};
 
 /// The law; it remembers nothing.
 #[derive(Debug, Clone)]

@@ -33,9 +33,9 @@ use nalgebra::{Quaternion, Vector3};
 pub const NAMES: [&str; 10] =
     ["k_v", "k_p", "k_i", "m_v", "m_p_share", "m_i_share", "k_theta", "m_theta", "k_omega", "m_omega"];
 /// Where a search starts, on a vehicle like the Hummingbird with rotors that lag. Table I's attitude gains bear no lag.
-pub const START: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
+pub const START_GAINS: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
 /// The speed that each of them scales with.
-pub const PACES: [Pace; 10] = [
+pub const GAIN_PACES: [Pace; 10] = [
     Pace::Position(1),
     Pace::Position(2),
     Pace::Position(3),
@@ -49,8 +49,8 @@ pub const PACES: [Pace; 10] = [
 ];
 
 /// The paper's hysteresis and memory.
-const DELTA: f32 = 0.02;
-const ALPHA: f32 = 0.25;
+const PAPER_DELTA: f32 = 0.02;
+const PAPER_ALPHA: f32 = 0.25;
 /// The integral's greatest value, in multiples of what saturates it.
 const INTEGRAL_SPAN: f64 = 2.0;
 
@@ -145,7 +145,7 @@ impl Rival for Nested {
         let single = |v: &Vector3<f64>| v.map(|x| x as f32);
         let error = frame.attitude.inverse() * seen.attitude;
         let error = Quaternion::from(error.coords.map(|x| x as f32));
-        let lifted = lift(self.lift.as_ref(), &error, switching_scalar(DELTA), ALPHA);
+        let lifted = lift(self.lift.as_ref(), &error, switching_scalar(PAPER_DELTA), PAPER_ALPHA);
         self.lift = Some(lifted.lift);
         let torque = self
             .attitude

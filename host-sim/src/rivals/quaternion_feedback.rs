@@ -19,9 +19,9 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 /// The gains' names.
 pub const NAMES: [&str; 7] = ["k_p", "k_v", "level", "k_q_tilt", "k_w_tilt", "k_q_yaw", "k_w_yaw"];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 7] = [5.0, 3.8, 5.0, 150.0, 20.0, 8.0, 5.0];
+pub const START_GAINS: [f64; 7] = [5.0, 3.8, 5.0, 150.0, 20.0, 8.0, 5.0];
 /// The speed that each of them scales with.
-pub const PACES: [Pace; 7] = {
+pub const GAIN_PACES: [Pace; 7] = {
     let [k_p, k_v, _, _, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
     [k_p, k_v, Pace::Kept, q_t, w_t, q_y, w_y]
 };

@@ -101,7 +101,7 @@ fn a_search_on_slower_rotors_starts_at_better_gains_than_start() {
     file.rotor_lag = 0.05;
     let uninterrupted = Interrupt::default();
     for kind in [Kind::Cascade, Kind::Indi, Kind::Nested] {
-        let own = RivalJudge::new(&file, kind, &kind.start(&file).at(Speed::OWN));
+        let own = RivalJudge::new(&file, kind, &kind.start(&file).at(Speed::UNSCALED));
         let best = RivalJudge::at_best_start(&file, kind, &uninterrupted);
         let [own, best] = [own, best].map(|judge| judge.judge(&judge.start()).cost);
         println!("{}: {own} at START, {best} where the search starts", kind.name());

@@ -120,8 +120,8 @@ pub struct Clients<'a> {
     pub show: &'a mut dyn FnMut(&str),
 }
 
-/// Time between lines of status, by the desk's clock.
-const STATUS: Duration = Duration::from_secs(1);
+/// By the desk's clock.
+const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
 /// a signal comes.
@@ -182,7 +182,7 @@ pub fn serve(
         port.answer(&answer).map_err(HilError::Port)?;
         if let Some(Clients { relay, show }) = &mut clients {
             relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
-            if shown.elapsed() >= STATUS {
+            if shown.elapsed() >= STATUS_PERIOD {
                 shown = Instant::now();
                 let [x, y, z]: [f64; 3] = moved.state.position.into();
                 show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
@@ -206,12 +206,12 @@ struct Log {
 }
 
 impl Log {
-    const HEADER: &'static str =
+    const SESSION_HEADER: &'static str =
         "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4,controller_us";
 
     fn create(path: &Path) -> io::Result<Self> {
         let mut file = WholeFile::alone(path)?;
-        writeln!(file, "{}", Self::HEADER)?;
+        writeln!(file, "{}", Self::SESSION_HEADER)?;
         Ok(Self { file })
     }
 

@@ -3,7 +3,7 @@
 //! Each datagram is parsed by itself. What it leaves unfinished is dropped, and so is whatever is no frame: nothing
 //! that one client sends can swallow a frame of another's.
 //!
-//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
+//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `CLIENT_TIMEOUT`.
 //! Nothing from outside this machine gets in.
 
 use firmware::link::frame::Parser;
@@ -13,13 +13,13 @@ use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 /// How long after its last datagram a client still gets frames.
-const REMEMBERED: Duration = Duration::from_secs(10);
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The most clients beside the two addresses.
-const CLIENTS: usize = 8;
+/// Beside the two addresses.
+const CLIENTS_MAX: usize = 8;
 
-/// The most datagrams that are taken at once: a flood must not stop time.
-const DATAGRAMS: usize = 64;
+/// A flood must not stop time.
+const DATAGRAMS_AT_ONCE_MAX: usize = 64;
 
 /// The ports, all on 127.0.0.1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl Port {
     /// Hands over the frames that have come, one by one.
     pub fn receive(&mut self, mut take: impl FnMut(&[u8])) {
         let mut datagram = [0; 65_536];
-        for _ in 0..DATAGRAMS {
+        for _ in 0..DATAGRAMS_AT_ONCE_MAX {
             match self.socket.recv_from(&mut datagram) {
                 Ok((length, from)) => {
                     self.remember(from);
@@ -97,7 +97,7 @@ impl Port {
 
     /// Sends one frame to every address. What does not go out is lost, as on any radio.
     pub fn send(&mut self, frame: &[u8]) {
-        self.clients.retain(|(_, last)| last.elapsed() < REMEMBERED);
+        self.clients.retain(|(_, last)| last.elapsed() < CLIENT_TIMEOUT);
         let others = self.clients.iter().map(|(address, _)| *address);
         for address in self.fixed.into_iter().chain(others) {
             let _ = self.socket.send_to(frame, address);
@@ -108,7 +108,7 @@ impl Port {
         let now = Instant::now();
         if let Some((_, last)) = self.clients.iter_mut().find(|(address, _)| *address == from) {
             *last = now;
-        } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS {
+        } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS_MAX {
             self.clients.push((from, now));
         }
     }

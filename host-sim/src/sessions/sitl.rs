@@ -66,10 +66,10 @@ use voice::Voice;
 use world::{PoseSource, World};
 
 /// Records that the flight recorder holds: a minute.
-const RECORDED: usize = 6_000;
+const RECORDER_CAPACITY: usize = 6_000;
 
-/// Time between lines of status, by the desk's clock.
-const STATUS: Duration = Duration::from_secs(1);
+/// By the desk's clock.
+const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// The firmware and its world on one thread.
 pub struct Sitl {
@@ -170,7 +170,7 @@ impl Sitl {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
         let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
-        let memory = Box::leak(vec![[0; SLOT]; RECORDED].into_boxed_slice());
+        let memory = Box::leak(vec![[0; SLOT]; RECORDER_CAPACITY].into_boxed_slice());
         shared.recorder.attach(Ring::recover(memory), self.name);
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);
@@ -321,8 +321,8 @@ pub fn run(
             record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
         }
         record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
-        if shown.elapsed() >= STATUS {
-            shown += STATUS;
+        if shown.elapsed() >= STATUS_PERIOD {
+            shown += STATUS_PERIOD;
             show(&sitl.status());
         }
     };

@@ -25,8 +25,8 @@ use scenario::body::BodyState;
 use scenario::reality::estimator::{Estimator, IMU_RATE};
 use std::collections::VecDeque;
 
-/// Between two samples, us.
-pub const SAMPLE: u64 = 1_000;
+/// Of the instruments.
+pub const SAMPLE_PERIOD_US: u64 = 1_000;
 
 /// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them, Hz.
 const GYRO_BANDWIDTH: f64 = 116.0;
@@ -132,7 +132,7 @@ impl Instruments {
 
     /// The same where the IMU feels something else than the body does: `feels` of it.
     pub fn sample_of(&mut self, state: &BodyState, time: u64, feels: impl FnOnce(Felt) -> Felt) -> ImuSample {
-        self.clock += SAMPLE;
+        self.clock += SAMPLE_PERIOD_US;
         let real = EstimatorParameters::BMI088;
         let scale = |density: f32| self.what.imu_noise * f64::from(density);
         let (each, walk) = (IMU_RATE.sqrt(), 1.0 / IMU_RATE.sqrt());
@@ -147,7 +147,7 @@ impl Instruments {
         let force = felt.specific_force
             + self.accelerometer_bias
             + noise(&mut self.random, scale(real.accelerometer_noise) * each);
-        if (self.clock / SAMPLE).is_multiple_of(self.what.pose_every) {
+        if (self.clock / SAMPLE_PERIOD_US).is_multiple_of(self.what.pose_every) {
             self.look(state, &attitude, time);
         }
         let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
@@ -175,13 +175,14 @@ impl Instruments {
         let nothing = Velocity::World(Vector3::zeros());
         // A vehicle that is too far away for a pose has none.
         if let Ok(value) = Pose::new(single(&position), nothing, Quaternion::from(attitude)) {
-            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE, Stamped { value, time }));
+            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE_PERIOD_US, Stamped { value, time }));
         }
     }
 
     /// Whether poses are out, a delay before they would arrive.
     fn is_out(&self) -> bool {
-        let arrival = (self.clock + self.what.pose_delay * SAMPLE) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
+        let arrival =
+            (self.clock + self.what.pose_delay * SAMPLE_PERIOD_US) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
         self.what.outage.is_some_and(|outage| (outage.start..outage.start + outage.duration).contains(&arrival))
     }
 }

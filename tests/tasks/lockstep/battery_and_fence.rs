@@ -6,17 +6,16 @@ use firmware::parameters::table::Name;
 use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
-/// A battery's voltages, V: full, low and critical.
-const FULL: f32 = 12.6;
-const LOW: f32 = 10.8;
-const CRITICAL: f32 = 10.2;
+const FULL_V: f32 = 12.6;
+const LOW_V: f32 = 10.8;
+const CRITICAL_V: f32 = 10.2;
 
 /// A flight with a battery that is measured, and limits that the ground station has set.
 fn with_a_battery() -> Flight {
     let mut flight = Flight::boot();
-    flight.world.voltage(FULL);
-    flight.station.set("BAT_LOW", LOW);
-    flight.station.set("BAT_CRIT", CRITICAL);
+    flight.world.voltage(FULL_V);
+    flight.station.set("BAT_LOW", LOW_V);
+    flight.station.set("BAT_CRIT", CRITICAL_V);
     flight.pass(2.0);
     flight
 }
@@ -26,12 +25,12 @@ fn a_battery_that_stays_low_makes_it_land_once_and_a_critical_one_for_good() {
     let mut flight = with_a_battery();
     flight.go_up();
     // A burst of thrust makes it sag for a while.
-    flight.world.voltage(LOW - 0.1);
+    flight.world.voltage(LOW_V - 0.1);
     flight.pass(2.0);
-    flight.world.voltage(FULL);
+    flight.world.voltage(FULL_V);
     flight.pass(5.0);
     assert_eq!(flight.report().mode, Mode::Flying);
-    flight.world.voltage(LOW - 0.1);
+    flight.world.voltage(LOW_V - 0.1);
     let since = flight.now();
     let landing = flight.until("Battery low: landing", 5.0);
     assert!((3_000_000..=3_300_000).contains(&(landing - since)), "{}", landing - since);
@@ -43,7 +42,7 @@ fn a_battery_that_stays_low_makes_it_land_once_and_a_critical_one_for_good() {
     flight.station.fly_setpoints();
     flight.pass(5.0);
     assert_eq!(flight.report().mode, Mode::Flying);
-    flight.world.voltage(CRITICAL - 0.1);
+    flight.world.voltage(CRITICAL_V - 0.1);
     flight.until("Battery critical: landing", 5.0);
     flight.station.hold();
     flight.until("Refused: what made it land is still so", 0.1);
@@ -53,11 +52,11 @@ fn a_battery_that_stays_low_makes_it_land_once_and_a_critical_one_for_good() {
 #[test]
 fn a_low_battery_does_not_take_off() {
     let mut flight = with_a_battery();
-    flight.world.voltage(LOW - 0.1);
+    flight.world.voltage(LOW_V - 0.1);
     flight.pass(0.5);
     let (result, texts) = flight.ask_to_arm();
     assert_eq!((result, texts), (Some(MavResult::MAV_RESULT_DENIED), vec!["Refused: the battery is low".to_owned()]));
-    flight.world.voltage(FULL);
+    flight.world.voltage(FULL_V);
     flight.pass(0.5);
     assert_eq!(flight.ask_to_arm().0, Some(MavResult::MAV_RESULT_ACCEPTED));
 }

@@ -5,12 +5,11 @@ use firmware::hardware::{MOTORS, MotorCommand};
 use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
-/// A tick, us.
-const TICK: u64 = 10_000;
+const TICK_US: u64 = 10_000;
 
-/// The longest test, us, and the greatest level.
-const LONGEST: u64 = 2_000_000;
-const GREATEST: f32 = 0.15;
+/// The longest test, and the greatest level.
+const TEST_MAX_US: u64 = 2_000_000;
+const LEVEL_MAX: f32 = 0.15;
 
 fn ready() -> Flight {
     let mut flight = Flight::boot();
@@ -25,15 +24,15 @@ fn each_motor_turns_alone_at_the_greatest_level_for_the_longest_time_and_stops()
         let begin = flight.now();
         flight.station.test_motor(motor as u8 + 1, 15.0, 2.0);
         flight.pass(0.011);
-        let one = MotorCommand::One { motor, level: GREATEST };
+        let one = MotorCommand::One { motor, level: LEVEL_MAX };
         while flight.world.command() != MotorCommand::Stop {
             assert_eq!(flight.world.command(), one);
             assert_eq!(flight.report().mode, Mode::MotorTest);
-            assert!(flight.now() - begin < 2 * LONGEST, "it does not end");
+            assert!(flight.now() - begin < 2 * TEST_MAX_US, "it does not end");
             flight.pass(0.001);
         }
         let took = flight.now() - begin;
-        assert!(took.abs_diff(LONGEST) <= 2 * TICK, "{took} us");
+        assert!(took.abs_diff(TEST_MAX_US) <= 2 * TICK_US, "{took} us");
         flight.pass(0.1);
         let texts: Vec<_> = flight.station.texts().into_iter().map(|(_, text)| text).collect();
         assert_eq!(texts, ["Motor test begins", "Motor test over"]);

@@ -6,8 +6,7 @@ use firmware::hardware::MotorCommand;
 use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
-/// A tick, us.
-const TICK: u64 = 10_000;
+const TICK_US: u64 = 10_000;
 
 /// How old a sample may be, us.
 const IMU_AGE_MAX: u64 = 22_000;
@@ -17,18 +16,18 @@ fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_reported_onc
     for health in [Health::Faults, Health::Hangs] {
         for mut flight in [grounded_flight(), Flight::in_the_air()] {
             let fed = flight.world.fed();
-            assert!(flight.now() - fed < TICK);
+            assert!(flight.now() - fed < TICK_US);
             flight.world.outputs(health);
             let since = flight.now();
             flight.pass(0.3);
             assert_eq!(flight.world.fed(), fed, "fed by ticks that wrote nothing");
             assert_eq!(count(&flight, "motors: a frame did not go out"), 1);
-            assert!(flight.station.received("motors: a frame").unwrap() - since < 3 * TICK);
+            assert!(flight.station.received("motors: a frame").unwrap() - since < 3 * TICK_US);
             // Ticks go on meanwhile: motors that come back get the command that holds then.
             assert_eq!(flight.report().timing.missed, 0);
             flight.world.outputs(Health::Works);
             flight.pass(0.1);
-            assert!(flight.now() - flight.world.fed() <= TICK);
+            assert!(flight.now() - flight.world.fed() <= TICK_US);
             assert_eq!(count(&flight, "motors: frames go out again"), 1);
         }
     }
@@ -65,7 +64,7 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
         flight.world.sensor(health);
         let last = flight.now();
         while flight.world.command() != MotorCommand::Stop {
-            assert!(flight.now() - last <= IMU_AGE_MAX + TICK, "still turning after {} us", flight.now() - last);
+            assert!(flight.now() - last <= IMU_AGE_MAX + TICK_US, "still turning after {} us", flight.now() - last);
             flight.pass(0.001);
         }
         assert!(flight.now() - last > IMU_AGE_MAX - 1_000, "stopped by a sample {} us old", flight.now() - last);

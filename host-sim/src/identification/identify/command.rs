@@ -111,7 +111,7 @@ fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, R
     } else {
         match String::from_utf8(bytes) {
             Ok(text) => FlightLog::from_csv(&text),
-            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::COLUMNS)),
+            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::READABLE_LOGS)),
         }
     };
     log.map_err(|what| in_file(path, &what))

@@ -24,8 +24,8 @@ use super::impulses::Impulse;
 use controller_core::allocation::Rotors;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-/// Rotors that carry less hardly turn, m/s^2: nothing is learnt of them.
-const IDLE: f64 = 1.0;
+/// Rotors that carry less hardly spin: the flight says nothing about them.
+const IDLE_THRUST_M_PER_S2: f64 = 1.0;
 
 /// Where the hubs are.
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +75,7 @@ impl Hubs {
     /// the air makes `air`, m/s^2.
     #[must_use]
     pub fn unlike(&self, impulse: &Impulse, carried: f64, air: &Vector3<f64>) -> Vector3<f64> {
-        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE));
+        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE_THRUST_M_PER_S2));
         tilting * (self.along * air.z) - Vector3::z() * (self.across * tilting.dot(air))
     }
 }

@@ -28,36 +28,35 @@ use super::low_passes::LowPasses;
 use controller_core::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
 
-/// How many unknowns there are.
-pub const UNKNOWNS: usize = 20;
+pub(crate) const UNKNOWN_COUNT: usize = 20;
 
 /// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z,
 /// rad/s^2; kappa_z, kappa_d; lambda, 1/m.
-pub const STRENGTH: usize = 0;
+pub const STRENGTH_INDEX: usize = 0;
 /// About x; y and z follow.
-pub const TURNING: usize = 1;
+pub const INERTIA_STRENGTH_INDEX: usize = 1;
 /// The whole delay, with that of the measured rates.
 pub const WHOLE_DELAY: usize = 4;
 /// The squared lag.
 pub const SQUARED_LAG: usize = 5;
 /// Along x; y follows.
-pub const CENTRE: usize = 6;
+pub const CENTRE_INDEX: usize = 6;
 /// Along x; y and z follow.
-pub const DRAG: usize = 8;
-const WIND: usize = 11;
-const DAMPING: usize = 13;
-const YAWING: usize = 16;
+pub const DRAG_INDEX: usize = 8;
+const WIND_INDEX: usize = 11;
+const DAMPING_INDEX: usize = 13;
+const YAW_TORQUE_INDEX: usize = 16;
 /// kappa_z; kappa_d and lambda follow.
-const HUBS: usize = 17;
+const HUB_FORCE_INDEX: usize = 17;
 
 /// All unknowns.
-pub type Unknowns = SVector<f64, UNKNOWNS>;
+pub type Unknowns = SVector<f64, UNKNOWN_COUNT>;
 
 /// Velocity along the world's axes, body rates.
-pub const CHANNELS: usize = 6;
+pub const CHANNEL_COUNT: usize = 6;
 
 /// Six series.
-pub type Channels = [Vec<f64>; CHANNELS];
+pub type Channels = [Vec<f64>; CHANNEL_COUNT];
 
 /// At the start of a log the rotors' speeds are unknown, s.
 const UNKNOWN_START: f64 = 0.5;
@@ -126,8 +125,8 @@ impl<'a> Model<'a> {
     #[must_use]
     pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Felt]) -> Channels {
         let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
-        let damping = three(unknowns, DAMPING);
-        let yawing = Vector3::new(0.0, 0.0, unknowns[YAWING]);
+        let damping = three(unknowns, DAMPING_INDEX);
+        let yawing = Vector3::new(0.0, 0.0, unknowns[YAW_TORQUE_INDEX]);
         let of_one = turning.map(|turning| 1.0 / turning);
         let coupling = Vector3::new(of_one.y - of_one.z, of_one.z - of_one.x, of_one.x - of_one.y);
         let period = self.log.period;
@@ -204,12 +203,16 @@ impl<'a> Model<'a> {
 
     fn numbers(&self, unknowns: &Unknowns) -> Numbers {
         Numbers {
-            strength: unknowns[STRENGTH].exp() / self.mass,
-            turning: three(unknowns, TURNING).map(f64::exp).component_div(&self.inertia),
-            drag: three(unknowns, DRAG),
-            centre: Vector3::new(unknowns[CENTRE], unknowns[CENTRE + 1], 0.0),
-            wind: Vector3::new(unknowns[WIND], unknowns[WIND + 1], 0.0),
-            hubs: Hubs { along: unknowns[HUBS], across: unknowns[HUBS + 1], lift: unknowns[HUBS + 2] },
+            strength: unknowns[STRENGTH_INDEX].exp() / self.mass,
+            turning: three(unknowns, INERTIA_STRENGTH_INDEX).map(f64::exp).component_div(&self.inertia),
+            drag: three(unknowns, DRAG_INDEX),
+            centre: Vector3::new(unknowns[CENTRE_INDEX], unknowns[CENTRE_INDEX + 1], 0.0),
+            wind: Vector3::new(unknowns[WIND_INDEX], unknowns[WIND_INDEX + 1], 0.0),
+            hubs: Hubs {
+                along: unknowns[HUB_FORCE_INDEX],
+                across: unknowns[HUB_FORCE_INDEX + 1],
+                lift: unknowns[HUB_FORCE_INDEX + 2],
+            },
         }
     }
 }

@@ -14,13 +14,13 @@
 use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
 use super::fit::Fit;
-use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
+use super::model::{CENTRE_INDEX, DRAG_INDEX, SQUARED_LAG, STRENGTH_INDEX, WHOLE_DELAY};
 use super::student;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
 
-/// Relative uncertainty of the file's mass where no bench gives it: as good as exact.
-const TAKEN: f64 = 1e-6;
+/// Of the file's mass where no bench gives it: as good as exact.
+const FILE_MASS_UNCERTAINTY_SHARE: f64 = 1e-6;
 
 /// One number of a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,12 +103,12 @@ impl Quantities {
             let known = direct(1 + axis);
             Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]), coverage)
         };
-        let strength = direct(STRENGTH);
+        let strength = direct(STRENGTH_INDEX);
         let whole = direct(WHOLE_DELAY);
         let whole_delay = Quantity::new(whole.value - late, whole.uncertainty, coverage);
         let lag = lag(&direct(SQUARED_LAG), &whole, coverage);
         let drag = |axis: usize| {
-            let of_mass = direct(DRAG + axis);
+            let of_mass = direct(DRAG_INDEX + axis);
             let relative = mass.uncertainty / mass.value * of_mass.value;
             Quantity::new(mass.value * of_mass.value, mass.value * of_mass.uncertainty.hypot(relative), coverage)
         };
@@ -121,7 +121,7 @@ impl Quantities {
             whole_delay,
             lag,
             delay: delay(&lag, &whole_delay, coverage),
-            centre_of_mass: [direct(CENTRE), direct(CENTRE + 1)],
+            centre_of_mass: [direct(CENTRE_INDEX), direct(CENTRE_INDEX + 1)],
             drag: [0, 1, 2].map(drag),
             mass_is_measured: bench.mass.is_some() || bench.thrust_scale.is_some(),
             coverage,
@@ -151,14 +151,14 @@ fn spanned(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
 
 /// Flight and bench combined, and in words how they contradict each other, if they do.
 fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Option<String>)> {
-    const SHARES: [[f64; 5]; 4] = [
+    const LOGARITHM_SHARES: [[f64; 5]; 4] = [
         [-1.0, 1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, -1.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, -1.0, 0.0],
         [0.0, 1.0, 0.0, 0.0, -1.0],
     ];
     let flown = SMatrix::<f64, 4, 4>::from_fn(|i, j| fit.covariance[(i, j)]).try_inverse()?;
-    let shares = SMatrix::<f64, 4, 5>::from_fn(|i, j| SHARES[i][j]);
+    let shares = SMatrix::<f64, 4, 5>::from_fn(|i, j| LOGARITHM_SHARES[i][j]);
     let values = SVector::<f64, 4>::from_fn(|i, _| fit.unknowns[i]);
     let mut information = shares.transpose() * flown * shares;
     let mut pull = shares.transpose() * flown * values;
@@ -171,7 +171,7 @@ fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Opt
     let covariance = information.try_inverse()?;
     let known = Known { values: covariance * pull, covariance };
     let left = values - shares * known.values;
-    let freedom = (SHARES.len() + entries.len()).saturating_sub(known.values.len());
+    let freedom = (LOGARITHM_SHARES.len() + entries.len()).saturating_sub(known.values.len());
     let contradiction = contradiction(&entries, &known, left.dot(&(flown * left)), freedom, fit.blocks);
     Some((known, contradiction))
 }
@@ -189,7 +189,7 @@ fn entries(bench: &Bench, vehicle: &Vehicle) -> Vec<Entry> {
     let mut entries = Vec::new();
     match (bench.mass, bench.thrust_scale) {
         (Some(weighed), _) => entries.push(entry("weighing", of_mass, (weighed.value / mass).ln(), weighed.relative())),
-        (None, None) => entries.push(entry("the file's vehicle.mass", of_mass, 0.0, TAKEN)),
+        (None, None) => entries.push(entry("the file's vehicle.mass", of_mass, 0.0, FILE_MASS_UNCERTAINTY_SHARE)),
         (None, Some(_)) => {}
     }
     if let Some(scale) = bench.thrust_scale {

@@ -1,7 +1,7 @@
 //! Quantiles of Student's t, for uncertainties that are known from a few parts of a flight only.
 
 /// The least and the greatest number of parts.
-pub const PARTS: [usize; 2] = [4, 16];
+pub const PART_COUNT_RANGE: [usize; 2] = [4, 16];
 
 /// By parts, of one degree of freedom less than there are: the quantiles at 1 - 0.05 / (2 x 16) and at 99.95 %.
 const QUANTILES: [[f64; 2]; 13] = [
@@ -21,7 +21,7 @@ const QUANTILES: [[f64; 2]; 13] = [
 ];
 
 fn quantiles(parts: usize) -> [f64; 2] {
-    let [least, most] = PARTS;
+    let [least, most] = PART_COUNT_RANGE;
     QUANTILES[parts.clamp(least, most) - least]
 }
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use host_sim::rivals::choice::{LawChoice, OURS};
+use host_sim::rivals::choice::{LawChoice, OUR_LAW};
 use host_sim::rivals::gains;
 use host_sim::rivals::kind::Kind;
 use host_sim::studies::campaign::fly::{Orders, Source};
@@ -35,7 +35,7 @@ pub struct CampaignArguments {
     #[arg(long, requires = "replay")]
     pub large_log: bool,
     /// Which law flies: ours, or another one to compare it with
-    #[arg(long, value_name = "NAME", default_value = OURS, value_parser = law_names())]
+    #[arg(long, value_name = "NAME", default_value = OUR_LAW, value_parser = law_names())]
     law: String,
     /// File with that law's gains, as `compare` writes it [default: those built in for the vehicles of docs/rivals.md]
     #[arg(long, value_name = "FILE")]
@@ -85,7 +85,7 @@ another law: its status is 1 if a flight does not track.";
 
 /// The values of --law.
 fn law_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)))
+    PossibleValuesParser::new(std::iter::once(OUR_LAW).chain(Kind::ALL.map(Kind::name)))
 }
 
 /// `I/N`.

@@ -19,8 +19,7 @@ use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 
-/// The meaning of "certified".
-const CERTIFIED: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
+const CERTIFIED_MEANING: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
                          stay within the limits, and small motions are stable with margin.";
 
 /// A flight that is over.
@@ -69,7 +68,7 @@ pub fn page(flight: &Flight, recorder: Recorder) -> (Page, [(&'static str, Strin
         (
             "Certificate",
             vec![
-                Block::Text(format!("Configuration {}.{CERTIFIED}", flight.certification)),
+                Block::Text(format!("Configuration {}.{CERTIFIED_MEANING}", flight.certification)),
                 Block::Table(inequalities(verdict)),
                 Block::Table(loops(verdict)),
             ],

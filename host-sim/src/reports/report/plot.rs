@@ -8,7 +8,7 @@ use crate::output::table::short;
 use serde_json::{Value, json};
 
 /// The style sheet, which has the colours' values.
-pub const STYLE: &str = include_str!("../../../report/page.css");
+pub const STYLE_SHEET: &str = include_str!("../../../report/page.css");
 
 /// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies, and those of axes and
 /// grounds.
@@ -44,12 +44,13 @@ pub enum Color {
 
 impl Color {
     /// For curves side by side: x (roll), y (pitch), z (yaw) are the first three.
-    pub const CYCLE: [Self; 6] = [Self::Blue, Self::Vermilion, Self::Green, Self::Orange, Self::Purple, Self::Sky];
+    pub const COLOR_CYCLE: [Self; 6] =
+        [Self::Blue, Self::Vermilion, Self::Green, Self::Orange, Self::Purple, Self::Sky];
 
     /// The colour of the curve at this place.
     #[must_use]
     pub fn of(place: usize) -> Self {
-        Self::CYCLE[place % Self::CYCLE.len()]
+        Self::COLOR_CYCLE[place % Self::COLOR_CYCLE.len()]
     }
 
     /// What the style sheet calls it.
@@ -75,7 +76,7 @@ impl Color {
     /// Its value in the light scheme: `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> &'static str {
-        let value = STYLE.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
+        let value = STYLE_SHEET.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
         value.unwrap_or("#000000")
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::output::whole_file::WholeFile;
 use crate::reports::recording::Recording;
-use crate::reports::recording::session::{Moment, TOPICS};
+use crate::reports::recording::session::{Moment, SESSION_TOPICS};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ impl Record {
     /// # Errors
     /// In words, if it cannot be written.
     pub fn create(path: &Path, scenario: &Scenario, text: &str) -> Result<Self, String> {
-        let begin = || Recording::begin(WholeFile::alone(path)?, scenario, text, TOPICS);
+        let begin = || Recording::begin(WholeFile::alone(path)?, scenario, text, SESSION_TOPICS);
         let recording = begin().map_err(failed(path))?;
         let period = scenario.timing.period_us;
         Ok(Self { recording, path: path.to_owned(), period, due: period / 2 })

@@ -15,7 +15,7 @@ use super::faults::{Faults, Part};
 use super::line::Line;
 use crate::sessions::answer::{Answer, MeasuredPose};
 use crate::sessions::messages::Encoder;
-use crate::vehicle::instruments::{Instruments, SAMPLE};
+use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use crate::vehicle::plant::Diverged;
 use crate::vehicle::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
@@ -92,7 +92,7 @@ impl World {
         faults: Faults,
         line: Line,
     ) -> Result<Self, String> {
-        let ratio = SAMPLE as f64 * 1e-6 / scenario.timing.step();
+        let ratio = SAMPLE_PERIOD_US as f64 * 1e-6 / scenario.timing.step();
         let steps = ratio.round();
         if (ratio - steps).abs() > 1e-6 || steps < 1.0 {
             return Err("plant.step: must be 1 ms over a whole number: the IMU samples at 1 kHz".to_owned());
@@ -127,7 +127,7 @@ impl World {
     pub async fn run(self) {
         let clock = &self.0.clock;
         loop {
-            clock.until(clock.now() + SAMPLE).await;
+            clock.until(clock.now() + SAMPLE_PERIOD_US).await;
             self.catch_up();
         }
     }
@@ -176,7 +176,7 @@ impl World {
     fn catch_up(&self) {
         let now = self.0.clock.now();
         let mut body = self.0.body.borrow_mut();
-        while body.now + SAMPLE <= now {
+        while body.now + SAMPLE_PERIOD_US <= now {
             body.advance(&self.0.faults);
         }
     }
@@ -212,7 +212,7 @@ impl Body {
                 self.diverged = Some(diverged);
             }
         }
-        self.now += SAMPLE;
+        self.now += SAMPLE_PERIOD_US;
         self.sample = self.instruments.sample(self.vehicle.state(), self.now);
         while let Some(Stamped { value: pose, time }) = self.instruments.arrived() {
             if self.source == PoseSource::Link || faults.has(Part::Pose, self.now) {
@@ -246,7 +246,7 @@ fn standing(scenario: &Scenario) -> Scenario {
 impl Imu for World {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let clock = &self.0.clock;
-        let time = (clock.now() / SAMPLE + 1) * SAMPLE;
+        let time = (clock.now() / SAMPLE_PERIOD_US + 1) * SAMPLE_PERIOD_US;
         clock.until(time).await;
         self.catch_up();
         if self.failed(Part::Gyro) {

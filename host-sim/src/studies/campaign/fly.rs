@@ -4,10 +4,10 @@
 //! nothing. Chunks that are already there are not flown again.
 
 use super::CampaignError;
-use super::manifest::{CHUNK, Manifest};
+use super::manifest::{CHUNK_FLIGHTS, Manifest};
 use super::report;
 use super::rows::{Row, batch};
-use super::store::{REPORT, SUMMARY, Store};
+use super::store::{REPORT_FILE, SUMMARY_FILE, Store};
 use super::summary::Summary;
 use super::throw::throw;
 use crate::flight::flier::Flier;
@@ -122,12 +122,12 @@ pub fn grounded(scenario: &Scenario) -> Option<&'static str> {
 
 /// What is wrong where shards are left without flights: of those nothing could be said.
 fn idle(orders: &Orders) -> Option<String> {
-    let (chunks, parts) = (orders.flights.div_ceil(CHUNK), orders.shard.1);
+    let (chunks, parts) = (orders.flights.div_ceil(CHUNK_FLIGHTS), orders.shard.1);
     let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     (parts > chunks).then(|| {
         let (flights, found) = (many(orders.flights, "flight"), many(chunks, "chunk"));
         format!(
-            "shard: {flights} in chunks of {CHUNK} are {found}, so there can be at most {}, found {parts}",
+            "shard: {flights} in chunks of {CHUNK_FLIGHTS} are {found}, so there can be at most {}, found {parts}",
             many(chunks, "shard")
         )
     })
@@ -180,8 +180,8 @@ fn finish(source: &Source, verdict: &Verdict, store: &Store, flown: &[RecordBatc
     let Source { scenario, text, .. } = source;
     let summary = Summary::of(scenario, verdict, store.manifest(), flown);
     store.finish(flown)?;
-    store.write(SUMMARY, &summary.to_string())?;
-    store.write(REPORT, &report::page(&summary, text, store.manifest(), flown).html())?;
+    store.write(SUMMARY_FILE, &summary.to_string())?;
+    store.write(REPORT_FILE, &report::page(&summary, text, store.manifest(), flown).html())?;
     Ok(summary)
 }
 

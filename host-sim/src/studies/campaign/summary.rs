@@ -4,9 +4,9 @@ use super::columns::{counts, floats, whole_numbers};
 use super::draw::timing;
 use super::losses::Losses;
 use super::manifest::Manifest;
-use super::outcome::{NEAR, NEAR_HEADING, in_time};
+use super::outcome::{NEAR_HEADING, SETTLED_DISTANCE_M, in_time};
 use super::quantile;
-use super::rows::{HOLDS, share_of_rotor};
+use super::rows::{HOLDS_COLUMN, share_of_rotor};
 use crate::flight::flown::NEAR_MRP;
 use crate::output::table::{aligned, short};
 use arrow_array::RecordBatch;
@@ -16,8 +16,7 @@ use scenario::rotor_loss::PLACE_HELD;
 use scenario::verdict::Verdict;
 use std::fmt;
 
-/// How many of the worst are listed.
-const LISTED: usize = 5;
+const WORST_LISTED: usize = 5;
 
 /// A campaign's summary.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +66,7 @@ impl Summary {
         let mut figures = vec![
             figure("height lost", "m", "height_lost"),
             figure("rise above start and reference", "m", "rise"),
-            figure(&format!("within {NEAR} m for good after"), "s", "settled"),
+            figure(&format!("within {SETTLED_DISTANCE_M} m for good after"), "s", "settled"),
             figure("attitude", "s", "attitude"),
             figure("heading", "s", "heading"),
             figure("error at the end", "m", "final_error"),
@@ -102,9 +101,9 @@ impl Summary {
         let failing: Vec<String> = numbers
             .iter()
             .zip(&verdicts)
-            .filter(|(_, verdict)| **verdict != HOLDS)
+            .filter(|(_, verdict)| **verdict != HOLDS_COLUMN)
             .map(|(number, verdict)| format!("{number} ({verdict})"))
-            .take(4 * LISTED)
+            .take(4 * WORST_LISTED)
             .collect();
         let mut worst = vec![
             listed("slowest", &slowest, "s"),
@@ -144,7 +143,7 @@ impl Summary {
             losses,
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
-                && verdicts.iter().all(|verdict| *verdict == HOLDS),
+                && verdicts.iter().all(|verdict| *verdict == HOLDS_COLUMN),
             refusal,
             quantiles: table(&numbers, &figures),
             worst,
@@ -214,7 +213,7 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
     let space = if unit.is_empty() { "" } else { " " };
     let listed: Vec<String> = places
         .iter()
-        .take(LISTED)
+        .take(WORST_LISTED)
         .map(|(number, value)| match value.is_finite() {
             true => format!("{number} ({}{space}{unit})", short(*value)),
             false => format!("{number} (never)"),

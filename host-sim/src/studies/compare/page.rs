@@ -1,9 +1,9 @@
 //! The page of a comparison: every law's figures, row by row, with a star where ours loses; the scenes' courses over
 //! time; the spread of the random flights; and the gains.
 
-use super::rows::{LIMIT, Row, cell};
+use super::rows::{LIMIT_COLUMN, Row, cell};
 use super::scenes::Scene;
-use super::shown::{Shown, THINNED, Thrown};
+use super::shown::{PICTURE_PERIOD_US, Shown, Thrown};
 use crate::output::table::short;
 use crate::reports::report::distribution::Distribution;
 use crate::reports::report::document;
@@ -11,7 +11,7 @@ use crate::reports::report::page::{Block, Page, Section};
 use crate::reports::report::plot::{Color, Curve, Line, Plot};
 use crate::reports::report::prose::{Cell, Fact, Table};
 use crate::reports::report::track::Track;
-use crate::rivals::choice::OURS;
+use crate::rivals::choice::OUR_LAW;
 use crate::rivals::gains::Set;
 use crate::rivals::kind::Kind;
 use crate::studies::campaign::outcome::Outcome;
@@ -19,7 +19,7 @@ use scenario::Scenario;
 
 /// Ours, then the rivals in their order. Curves whose colours look alike to people who confuse red and green are drawn
 /// with different patterns: green, purple and grey; vermilion and orange; blue and sky.
-pub const LOOKS: [(Color, Line); 8] = [
+pub const CURVE_LOOKS: [(Color, Line); 8] = [
     (Color::Ink, Line::Solid),
     (Color::Blue, Line::Solid),
     (Color::Vermilion, Line::Dashed),
@@ -29,8 +29,8 @@ pub const LOOKS: [(Color, Line); 8] = [
     (Color::Sky, Line::Dashed),
     (Color::Grey, Line::Dashed),
 ];
-/// Scenes that begin upside down: how far each law falls is shown, too.
-const FALLS: [&str; 2] = ["upside down", "heavy"];
+/// How far each law falls is shown, too.
+const UPSIDE_DOWN_SCENES: [&str; 2] = ["upside down", "heavy"];
 
 /// A finished comparison.
 pub struct Compared<'a> {
@@ -64,8 +64,11 @@ pub fn page(compared: &Compared) -> Page {
         compared.scenes.iter().map(|scene| (scene.name, scene.task)).chain([("random", "the random flights below")]);
     let tables = named.map(|(scene, task)| table(compared, scene, task));
     let sections = [
-        ("Table", std::iter::once(Block::Text(STARS.into())).chain(tables.map(Block::Table)).collect()),
-        ("Scenes", vec![Block::Table(scenes(compared)), Block::Text(CURVES.into()), Block::Plots(plots(compared))]),
+        ("Table", std::iter::once(Block::Text(STARS_NOTE.into())).chain(tables.map(Block::Table)).collect()),
+        (
+            "Scenes",
+            vec![Block::Table(scenes(compared)), Block::Text(CURVES_NOTE.into()), Block::Plots(plots(compared))],
+        ),
         ("Random flights", vec![Block::Text(random(compared)), Block::Distributions(distributions(compared))]),
         (
             "Laws",
@@ -117,11 +120,12 @@ pub fn page(compared: &Compared) -> Page {
     }
 }
 
-const STARS: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
+const STARS_NOTE: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
                      come to its reference for good, or that could not be flown to its end. The limit is an estimate of what \
                      rotors and inertia leave possible, whatever the law.";
-const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
-const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
+const CURVES_NOTE: &str =
+    "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
+const LAWS_NOTE: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
                     stands above its gains, less is better. Continuous and memoryless differ in their choice of \
                      quaternion alone.";
 
@@ -138,7 +142,7 @@ fn scenes(compared: &Compared) -> Table {
 /// The rows of one scene.
 fn table(compared: &Compared, scene: &str, task: &str) -> Table {
     let laws = compared.names.iter().copied();
-    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(laws).chain([LIMIT]).collect();
+    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(laws).chain([LIMIT_COLUMN]).collect();
     let mut table = Table::new(format!("{}: {task}", titled(scene)), &head);
     table.rows.extend(compared.rows.iter().filter(|row| row.scene == scene).map(|row| {
         let head = [format!("{}, {}", row.figure, row.unit), if row.lost() { "★" } else { "" }.to_owned()];
@@ -155,10 +159,10 @@ fn tracks(compared: &Compared) -> Vec<Track> {
     let of_scene = |(name, shown): &(&'static str, Vec<Option<Shown>>)| {
         let laws = compared.names.iter().zip(shown).filter_map(|(law, shown)| Some((law, shown.as_ref()?)));
         let columns = laws.flat_map(|(law, shown)| {
-            let height = FALLS.contains(name).then(|| (format!("{law}_height"), single(&shown.height)));
+            let height = UPSIDE_DOWN_SCENES.contains(name).then(|| (format!("{law}_height"), single(&shown.height)));
             std::iter::once((format!("{law}_error"), single(&shown.error))).chain(height)
         });
-        let step = THINNED as f64 * 1e-6;
+        let step = PICTURE_PERIOD_US as f64 * 1e-6;
         Track { name: (*name).to_owned(), start: 0.0, step, columns: columns.collect() }
     };
     compared.shown.iter().map(of_scene).collect()
@@ -166,7 +170,7 @@ fn tracks(compared: &Compared) -> Vec<Track> {
 
 /// The curve of the law at this place, its column named after it. Ours is broad.
 pub fn curve(place: usize, law: &str) -> Curve {
-    let (color, line) = LOOKS[place % LOOKS.len()];
+    let (color, line) = CURVE_LOOKS[place % CURVE_LOOKS.len()];
     Curve { line, broad: place == 0, ..Curve::new(law, law, color) }
 }
 
@@ -183,7 +187,7 @@ fn plots(compared: &Compared) -> Vec<Plot> {
         };
         let title = titled(scene);
         plots.push(Plot::new(&format!("{title}: error"), "m", curves("error")).logarithmic());
-        if FALLS.contains(scene) {
+        if UPSIDE_DOWN_SCENES.contains(scene) {
             plots.push(Plot::new(&format!("{title}: height"), "m", curves("height")));
         }
     }
@@ -211,7 +215,7 @@ fn distributions(compared: &Compared) -> Vec<Distribution> {
             ((*law).to_owned(), outcomes.map(get).collect())
         };
         let groups: Vec<(String, Vec<f64>)> = compared.names.iter().zip(compared.thrown).map(group).collect();
-        let looks = LOOKS.iter().copied().cycle().take(groups.len()).collect();
+        let looks = CURVE_LOOKS.iter().copied().cycle().take(groups.len()).collect();
         Distribution { title: title.to_owned(), unit: unit.to_owned(), logarithmic, bound, groups, looks }
     };
     vec![
@@ -230,13 +234,16 @@ fn laws(compared: &Compared) -> Table {
         None => "the extended law, certified",
     };
     let rivals = compared.set.rivals.iter().map(|(kind, ..)| (kind.name(), kind.about()));
-    let rows = std::iter::once((OURS, own)).chain(rivals);
+    let rows = std::iter::once((OUR_LAW, own)).chain(rivals);
     table.rows.extend(rows.map(|(law, about)| vec![Cell::text(law), Cell::text(about)]));
     table
 }
 
 fn about_laws(compared: &Compared) -> String {
-    compared.set.left_out().map_or_else(|| LAWS.to_owned(), |left_out| format!("{LAWS} {}.", titled(&left_out)))
+    compared
+        .set
+        .left_out()
+        .map_or_else(|| LAWS_NOTE.to_owned(), |left_out| format!("{LAWS_NOTE} {}.", titled(&left_out)))
 }
 
 /// A table for each rival.

@@ -1,6 +1,6 @@
 //! The pictures of a comparison: curves of all laws over each other, ours on top.
 //!
-//! Colours and patterns are those of the page's [`super::page::LOOKS`]; ours is black and broad.
+//! Colours and patterns are those of the page's [`super::page::CURVE_LOOKS`]; ours is black and broad.
 
 use super::page::curve;
 use super::shown::{Shown, Thrown};
@@ -9,8 +9,8 @@ use crate::reports::report::plot::Plot;
 use crate::reports::report::track::Track;
 use crate::rivals::kind::Kind;
 
-/// Width and height of a plot, pixels.
-const SIZE: (f64, f64) = (700.0, 450.0);
+/// Width and height.
+const PLOT_SIZE_PIXELS: (f64, f64) = (700.0, 450.0);
 
 /// One of the quantities shown, over time.
 type Get = fn(&Shown) -> &Vec<(f64, f64)>;
@@ -85,5 +85,5 @@ pub fn random(names: &[&str], thrown: &[Option<Thrown>], all: Scenes) -> String 
 }
 
 fn drawn(panels: &[(Plot, Track); 4], about: &str) -> String {
-    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), SIZE, about)
+    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), PLOT_SIZE_PIXELS, about)
 }

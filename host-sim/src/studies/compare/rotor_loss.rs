@@ -182,7 +182,7 @@ pub fn show(flier: &Flier, scene: &Scene) -> Option<Landing> {
 #[must_use]
 pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<Row> {
     type Get = fn(&Landing) -> f64;
-    const FIGURES: [(&str, &str, Get); 4] = [
+    const LOSS_FIGURES: [(&str, &str, Get); 4] = [
         ("height lost", "m", |landing| landing.height_lost),
         ("farthest away across", "m", |landing| landing.farthest),
         ("lands away from its place", "m", |landing| landing.away),
@@ -191,7 +191,7 @@ pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<Row> {
     let of_scene = |(scene, landings): &(&'static str, Vec<Option<Landing>>)| {
         let values = |get: Get| landings.iter().map(|one| one.as_ref().map_or(f64::INFINITY, get)).collect();
         let row = |(figure, unit, get)| Row { scene, figure, unit, values: values(get), grain: 0.01, limit: None };
-        FIGURES.map(row)
+        LOSS_FIGURES.map(row)
     };
     scenes.iter().flat_map(of_scene).collect()
 }

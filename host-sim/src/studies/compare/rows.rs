@@ -1,15 +1,15 @@
 //! The rows of a comparison: one figure of every law each, and where ours is not the best.
 
-use super::limit::{ARRIVED, Limit};
+use super::limit::{ARRIVAL_FIGURE, Limit};
 use super::shown::{Shown, Thrown};
 use crate::output::table::{aligned, short};
 use std::fmt::Write;
 
 /// The name of the column of the vehicle's own limit.
-pub const LIMIT: &str = "limit";
+pub const LIMIT_COLUMN: &str = "limit";
 
 /// The share by which another law must be better for ours to lose a row.
-const CLOSE: f64 = 0.01;
+const CLEARLY_BETTER_SHARE: f64 = 0.01;
 
 /// One figure of every law.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ impl Row {
     pub fn lost(&self) -> bool {
         let Some((ours, rivals)) = self.values.split_first() else { return false };
         let best = rivals.iter().copied().fold(f64::INFINITY, f64::min);
-        best < ours * (1.0 - CLOSE) && ours - best > self.grain
+        best < ours * (1.0 - CLEARLY_BETTER_SHARE) && ours - best > self.grain
     }
 }
 
@@ -43,16 +43,16 @@ impl Row {
 type Get = fn(&Shown) -> f64;
 
 /// Figures of scenes: scene, figure, unit, its function, and the least difference that matters.
-const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
+const SCENE_FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("own", "position error, last half, RMS", "mm", |s| 1e3 * s.rms, 0.1),
     ("own", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("step", ARRIVED, "s", settled, 0.02),
+    ("step", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("step", "ticks clipped", "%", clipped, 0.0),
-    ("far step", ARRIVED, "s", settled, 0.02),
+    ("far step", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("far step", "height lost", "m", |s| s.height_lost, 0.01),
     ("far step", "ticks clipped", "%", clipped, 0.0),
     ("upside down", "height lost", "m", |s| s.height_lost, 0.01),
-    ("upside down", ARRIVED, "s", settled, 0.02),
+    ("upside down", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("upside down", "ticks clipped", "%", clipped, 0.0),
     ("gust", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("gust", "offset left", "m", |s| s.end_error, 0.001),
@@ -62,10 +62,10 @@ const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("storm", "ticks clipped", "%", clipped, 0.0),
     ("noise", "position error, RMS", "mm", |s| 1e3 * s.rms, 0.1),
     ("noise", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("weak rotors", ARRIVED, "s", settled, 0.02),
+    ("weak rotors", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("weak rotors", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("heavy", "height lost", "m", |s| s.height_lost, 0.01),
-    ("heavy", ARRIVED, "s", settled, 0.02),
+    ("heavy", ARRIVAL_FIGURE, "s", settled, 0.02),
 ];
 
 fn settled(shown: &Shown) -> f64 {
@@ -93,7 +93,7 @@ pub fn all(
         let values = shown.iter().map(|shown| shown.as_ref().map_or(f64::INFINITY, get)).collect();
         Some(Row { scene: name, figure, unit, values, grain, limit: limit.of(name, figure) })
     };
-    let figures = FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
+    let figures = SCENE_FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
     let mut rows: Vec<Row> = figures.filter_map(of_scene).collect();
     let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&Thrown) -> f64| {
         let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
@@ -125,7 +125,7 @@ fn significant(value: f64) -> f64 {
 /// A table for a terminal; rows that ours loses begin with a star.
 #[must_use]
 pub fn table(names: &[&str], rows: &[Row]) -> String {
-    let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT);
+    let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT_COLUMN);
     let head = ["", "scene", "figure", "unit"].iter().chain(names).chain(limit);
     let mut cells = vec![head.map(|&name| name.to_owned()).collect()];
     let mut before = "";
@@ -143,7 +143,7 @@ pub fn table(names: &[&str], rows: &[Row]) -> String {
 /// The same as CSV, in full; `inf` means never.
 #[must_use]
 pub fn csv(names: &[&str], rows: &[Row]) -> String {
-    let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT}\n", names.join(","));
+    let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT_COLUMN}\n", names.join(","));
     for row in rows {
         let _ = write!(text, "{},\"{}\",{}", row.scene, row.figure, row.unit);
         for value in &row.values {

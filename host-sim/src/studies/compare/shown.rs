@@ -12,10 +12,10 @@ use controller_core::certificate::Certificate;
 use rayon::prelude::*;
 use scenario::Scenario;
 
-/// The distance from its reference within which a vehicle counts as arrived, m: as in the trials of a search.
-const NEAR: f64 = 0.1;
-/// Between two points of a picture, us; the same for laws of every rate.
-pub const THINNED: u64 = 20_000;
+/// As in the trials of a search.
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
+/// Between two points of a picture; the same for laws of every rate.
+pub const PICTURE_PERIOD_US: u64 = 20_000;
 
 /// One law in one scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ pub struct Shown {
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
 pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
-    course(flier, scene, NEAR)
+    course(flier, scene, ARRIVAL_DISTANCE_M)
 }
 
 /// Likewise; it has arrived within `near`, m.
@@ -78,7 +78,7 @@ fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Shown, Fli
         if error > near {
             shown.settled = Some(time + scenario.timing.period());
         }
-        while shown.error.len() as u64 * THINNED <= tick.time_us {
+        while shown.error.len() as u64 * PICTURE_PERIOD_US <= tick.time_us {
             shown.error.push((time, error));
             shown.height.push((time, rise));
         }

@@ -11,7 +11,7 @@
 
 use super::requirements::Requirements;
 use super::space::{Point, Space};
-use super::trials::{FIGURES, MODELS, Shown, show};
+use super::trials::{COST_MODELS, MODEL_FIGURES, Shown, show};
 use crate::flight::Flight;
 use crate::flight::claims::reached;
 use crate::flight::flown::Flown;
@@ -24,8 +24,8 @@ use scenario::stability::{Lack, Shortfall};
 
 /// The share of its time in which a recovery must end.
 const RECOVERED_BY: f64 = 0.75;
-/// The greatest offset after a gust under a law that estimates, m.
-const OFFSET: f64 = 0.01;
+/// After a gust, under a law that estimates.
+const OFFSET_MAX_M: f64 = 0.01;
 
 /// The verdict on a candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Verdict {
     /// The trials' figures on the file's own model.
     pub shown: Shown,
     /// The mean of [`Shown::values`] over all models.
-    pub mean: [f64; FIGURES.len()],
+    pub mean: [f64; MODEL_FIGURES.len()],
     /// The mean of [`Shown::cost`] over all models.
     pub cost: f64,
     /// The inequality with the least margin.
@@ -65,8 +65,8 @@ impl Verdict {
         Self {
             violation: f64::INFINITY,
             failed,
-            shown: NOTHING,
-            mean: NOTHING.values(),
+            shown: NO_TRIALS,
+            mean: NO_TRIALS.values(),
             cost: f64::INFINITY,
             tightest: None,
         }
@@ -97,7 +97,7 @@ pub trait Judging: Sync {
 }
 
 /// The figures without any trial.
-const NOTHING: Shown = Shown {
+const NO_TRIALS: Shown = Shown {
     height_lost: f64::INFINITY,
     recovered: f64::INFINITY,
     turned: f64::INFINITY,
@@ -202,7 +202,7 @@ impl Judge {
     ) -> Result<(), (u8, f64, String)> {
         let recovery = self.requirements.recovery;
         let mut shown = Vec::new();
-        for model in &MODELS {
+        for model in &COST_MODELS {
             let lost = (1, 1e3, format!("a trial was not flown to its end: {model}"));
             let start = |real: &Scenario| Flight::certified(real, certified).ok();
             shown.push(show(scenario, start, model, recovery).ok_or(lost)?);
@@ -213,8 +213,8 @@ impl Judge {
             return Err((1, restless, "recovery: not near in time, or a clipped command".to_owned()));
         }
         let estimates = scenario.configuration.paper().is_none();
-        if estimates && verdict.shown.offset > OFFSET {
-            return Err((1, verdict.shown.offset / OFFSET - 1.0, "gust: an offset is left".to_owned()));
+        if estimates && verdict.shown.offset > OFFSET_MAX_M {
+            return Err((1, verdict.shown.offset / OFFSET_MAX_M - 1.0, "gust: an offset is left".to_owned()));
         }
         Ok(())
     }

@@ -16,16 +16,17 @@ use crate::studies::tune::candidate::{Judging, Verdict};
 use crate::studies::tune::effort::Effort;
 use crate::studies::tune::evolution::Evolution;
 use crate::studies::tune::space::Point;
-use crate::studies::tune::trials::{MODELS, show};
+use crate::studies::tune::trials::{COST_MODELS, show};
 use rayon::prelude::*;
 use scenario::Scenario;
 use std::time::{Duration, Instant};
 
 /// The rivals that have a search of their own.
-const SEARCHED: [Kind; 6] = [Kind::Lee, Kind::Cascade, Kind::Mellinger, Kind::Indi, Kind::Nested, Kind::Memoryless];
+const SEARCHED_RIVALS: [Kind; 6] =
+    [Kind::Lee, Kind::Cascade, Kind::Mellinger, Kind::Indi, Kind::Nested, Kind::Memoryless];
 
-/// How long a recovery may take, s: as in `host-sim tune`.
-const RECOVERY: f64 = 20.0;
+/// As in `host-sim tune`.
+const RECOVERY_MAX_S: f64 = 20.0;
 
 /// Judges gains of one rival on one vehicle.
 pub struct RivalJudge<'a> {
@@ -53,7 +54,7 @@ impl<'a> RivalJudge<'a> {
         let best = |speeds: Vec<Speed>| {
             let all: Vec<_> = speeds.into_par_iter().map(judged).collect();
             let better = |a: (Speed, [f64; 2]), b: (Speed, [f64; 2])| if b.1 < a.1 { b } else { a };
-            all.into_iter().reduce(better).map_or(Speed::OWN, |(speed, _)| speed)
+            all.into_iter().reduce(better).map_or(Speed::UNSCALED, |(speed, _)| speed)
         };
         let speed = best(best(start.attitudes()).positions());
         Self { scenario, kind, start: start.at(speed) }
@@ -68,10 +69,10 @@ impl<'a> RivalJudge<'a> {
     fn run(&self, point: &Point, verdict: &mut Verdict) -> Result<(), (u8, f64, String)> {
         let gains = Self::gains(point);
         let mut shown = Vec::new();
-        for (flown, model) in MODELS.iter().enumerate() {
+        for (flown, model) in COST_MODELS.iter().enumerate() {
             let start = |real: &Scenario| Some(Flight::of_rival(real, self.kind.build(self.scenario, &gains)?));
-            let lost = ((MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model}"));
-            shown.push(show(self.scenario, start, model, RECOVERY).ok_or(lost)?);
+            let lost = ((COST_MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model}"));
+            shown.push(show(self.scenario, start, model, RECOVERY_MAX_S).ok_or(lost)?);
         }
         verdict.take(&shown);
         Ok(())
@@ -147,10 +148,10 @@ pub fn expected(scenario: &Scenario, kinds: &[Kind], effort: &Effort) -> Duratio
     let searched = searched(kinds);
     let Some(&kind) = searched.first() else { return Duration::ZERO };
     let start = kind.start(scenario);
-    let judge = RivalJudge::new(scenario, kind, &start.at(Speed::OWN));
+    let judge = RivalJudge::new(scenario, kind, &start.at(Speed::UNSCALED));
     judge.judge(&judge.start());
     let one = began.elapsed();
-    let starts = start.attitudes().len() + Speed::OWN.positions().len();
+    let starts = start.attitudes().len() + Speed::UNSCALED.positions().len();
     let of_each = starts + (1 + effort.generations as usize) * effort.population;
     one.mul_f64((searched.len() * of_each) as f64 / threads as f64)
 }
@@ -158,7 +159,7 @@ pub fn expected(scenario: &Scenario, kinds: &[Kind], effort: &Effort) -> Duratio
 /// Those of `kinds` that have a search of their own, and the one whose gains the continuous law takes.
 fn searched(kinds: &[Kind]) -> Vec<Kind> {
     let wanted = |kind: &Kind| kinds.contains(kind) || *kind == Kind::Memoryless && kinds.contains(&Kind::Continuous);
-    SEARCHED.into_iter().filter(wanted).collect()
+    SEARCHED_RIVALS.into_iter().filter(wanted).collect()
 }
 
 /// The steps of each rival's search: starts, the first population, and the generations.

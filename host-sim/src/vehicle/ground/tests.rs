@@ -4,14 +4,14 @@ use std::sync::LazyLock;
 
 mod sliding;
 
-const STEP: f64 = 1e-3;
+const STEP_S: f64 = 1e-3;
 
 fn on_the_ground() -> (Ground, Plant, f64) {
     let scenario = Scenario::paper().unwrap();
     let (vehicle, limits) = (scenario.configuration.vehicle(), scenario.configuration.limits());
-    let (ground, state) = Ground::under(vehicle, 0.1, &scenario.initial, STEP);
+    let (ground, state) = Ground::under(vehicle, 0.1, &scenario.initial, STEP_S);
     let weight = ground.weight.newtons();
-    (ground, Plant::new(vehicle, limits, STEP, state), weight)
+    (ground, Plant::new(vehicle, limits, STEP_S, state), weight)
 }
 
 fn energy(plant: &Plant, weight: f64) -> f64 {
@@ -66,7 +66,7 @@ fn a_fall_ends_without_a_bounce_upright_and_within_a_step_of_the_ground() {
     assert!(speed > 1.0 && tilt > 1e-4, "{speed} {tilt}");
     assert!((up(plant.state()) - Vector3::z()).norm() < 1e-12);
     assert_eq!(plant.state().velocity, Vector3::zeros());
-    assert!((0.0..=speed * STEP).contains(&(0.1 - plant.state().position.z)), "{:?}", plant.state());
+    assert!((0.0..=speed * STEP_S).contains(&(0.1 - plant.state().position.z)), "{:?}", plant.state());
 }
 
 #[test]
@@ -129,11 +129,11 @@ fn one_that_leans_falls_back_onto_its_feet_as_fast_as_its_weight_makes_it_and_a_
             let last = *plant.state();
             assert_eq!(ground.act(&mut plant, 0.0, &Vector3::zeros()), None);
             let rate = plant.state().angular_velocity.norm();
-            (turned, fastest) = (turned + rate * STEP, fastest.max(rate));
+            (turned, fastest) = (turned + rate * STEP_S, fastest.max(rate));
             let now = energy(&plant, weight);
             assert!(ground.stands() && now <= before + 1e-9, "{before} {now}");
             // Where the foot slides back, friction takes its force times the way.
-            let carried = weight + weight / 9.81 * (plant.state().velocity.z - last.velocity.z) / STEP;
+            let carried = weight + weight / 9.81 * (plant.state().velocity.z - last.velocity.z) / STEP_S;
             let slid = foot(plant.state()).zip(foot(&last)).map_or(0.0, |(foot, last)| (foot - last).xy().norm());
             rubbed += FRICTION_COEFFICIENT * carried * slid;
             // Until the last step, in which the feet take what it has.

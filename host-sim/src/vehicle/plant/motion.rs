@@ -8,7 +8,7 @@ use super::body::Body;
 use super::lanes::{Lanes, Vectors};
 use pulp::Simd;
 
-const THIRD: f64 = 1.0 / 3.0;
+const ONE_THIRD: f64 = 1.0 / 3.0;
 
 /// Where the bodies are and how they move.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +86,7 @@ impl<S: Simd> Motion<S> {
         let half_step_3 = torque + gyroscopic.times(products(r_3));
         let r_4 = r + (half_step_3 + half_step_3);
         let half_step_4 = torque + gyroscopic.times(products(r_4));
-        let r_next = ((r_2 + r_3) + (r_3 + r_4) - r + half_step_4) * THIRD;
+        let r_next = ((r_2 + r_3) + (r_3 + r_4) - r + half_step_4) * ONE_THIRD;
 
         let q_2 = turned(q, q, r);
         let q_3 = turned(q, q_2, r_2);
@@ -94,7 +94,7 @@ impl<S: Simd> Motion<S> {
         let sum = (q_2 + q_3) + (q_3 + q_4) - q;
         // One Newton step towards unit length; taken from the length before the step, so that nothing waits for it.
         let to_unit = Lanes::all(unit, 1.5) - norm_squared(q) * 0.5;
-        let q_next = turned(sum, q_4, r_4) * (to_unit * THIRD);
+        let q_next = turned(sum, q_4, r_4) * (to_unit * ONE_THIRD);
 
         // The weights of v' = a are 1, 2, 2, 1 sixths; those of p, whose stages are v + h a / 2 and so on, 1, 1, 1, 0.
         let middle = lean(q_2) + lean(q_3);

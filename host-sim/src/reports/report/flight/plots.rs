@@ -8,7 +8,7 @@ use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
 /// What the vehicle has, which may be far from what is ever commanded.
-const LIMIT: &str = "vehicle's limit";
+const LIMIT_LABEL: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
 #[must_use]
@@ -60,12 +60,12 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     if scenario.is_papers() {
         thrust.extend([PUBLISHED_THRUST.0, PUBLISHED_THRUST.1].map(|value| ink(value, "published")));
     }
-    thrust.push(ink(f64::from(limits.thrust_max), LIMIT));
+    thrust.push(ink(f64::from(limits.thrust_max), LIMIT_LABEL));
     let mut torque = both(certificate.torque().into(), "proven");
     if scenario.is_papers() {
         torque.extend(both(PUBLISHED_TORQUE, "published"));
     }
-    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT));
+    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT_LABEL));
     let mut plots = vec![
         Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).from_zero().within(thrust),
         Plot::new("Torques", "N m", axes(["tau_x", "tau_y", "tau_z"])).within(torque),
@@ -163,7 +163,7 @@ fn desired(columns: [&str; 3]) -> Vec<Curve> {
 }
 
 fn ink(value: f64, label: &str) -> Bound {
-    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT }
+    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT_LABEL }
 }
 
 fn interval(Interval { least, greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
@@ -173,7 +173,7 @@ fn interval(Interval { least, greatest }: Interval, label: &str, color: Color) -
 /// A level on each side of zero for each axis; equal levels are one.
 fn both(levels: [f64; 3], label: &str) -> Vec<Bound> {
     let sides = |level: f64, named: String, color| {
-        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT })
+        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT_LABEL })
     };
     if levels.iter().all(|level| *level == levels[0]) {
         return sides(levels[0], format!("each, {label}"), Color::Ink).into();

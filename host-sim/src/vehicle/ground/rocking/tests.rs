@@ -1,7 +1,7 @@
 use super::*;
 use scenario::body::attitude_from_euler;
 
-const WEIGHT: Weight = Weight { mass: 0.5, inertia: Vector3::new(4e-3, 3e-3, 7e-3), gravity: 9.81 };
+const VEHICLE_WEIGHT: Weight = Weight { mass: 0.5, inertia: Vector3::new(4e-3, 3e-3, 7e-3), gravity: 9.81 };
 
 /// Leaning by `roll`, rad, which grows by `rate`, rad/s.
 fn rolled(roll: f64, rate: f64) -> BodyState {
@@ -27,9 +27,9 @@ fn the_origin_rises_as_fast_as_the_lean_lifts_it() {
 fn a_foot_slides_under_what_turns_fast_about_it_and_lets_go_of_what_turns_faster() {
     let on_foot = |rate: f64| {
         let state = rolled(0.2, 0.0);
-        let mut rocking = Rocking::begin(&state, Lean::of(&state).unwrap(), &WEIGHT);
+        let mut rocking = Rocking::begin(&state, Lean::of(&state).unwrap(), &VEHICLE_WEIGHT);
         rocking.lean.rate = rate;
-        (rocking.advance(&WEIGHT, &Vector3::zeros(), &Vector3::zeros(), 1e-3), rocking.sliding.norm())
+        (rocking.advance(&VEHICLE_WEIGHT, &Vector3::zeros(), &Vector3::zeros(), 1e-3), rocking.sliding.norm())
     };
     // Turning freely at theta', the foot rises by r_z theta'^2 against g.
     let free = (9.81 / (0.1 * (0.2_f64.cos() + 0.2_f64.sin()))).sqrt();
