@@ -23,8 +23,8 @@ const CAMPAIGN_STEP_DEVIATION_MAX_M: f64 = 1e-6;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::paper()?;
-    let campaigns = step::longest(&scenario);
-    let moved = distance(&campaigns, &step::of(&scenario, 5e-4)?)?;
+    let campaigns = step::with_longest_step(&scenario);
+    let moved = distance(&campaigns, &step::with_step(&scenario, 5e-4)?)?;
 
     // A limit that is not reached is printed and stops no build: the machine may be busy.
     let best = measured(&scenario, "a file's plant step of 1 ms", REQUIRED_RATE)?;

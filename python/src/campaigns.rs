@@ -8,7 +8,7 @@ use crate::whole::Whole;
 use host_sim::rivals::choice::OUR_LAW;
 use host_sim::rivals::gains as of_rivals;
 use host_sim::studies::campaign::CampaignError;
-use host_sim::studies::campaign::fly::{self, Orders, Source};
+use host_sim::studies::campaign::fly::{self, CampaignSource, Orders};
 use host_sim::studies::campaign::step;
 use host_sim::studies::campaign::summary;
 use pyo3::prelude::*;
@@ -122,13 +122,15 @@ pub fn campaign(
         refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1))
     })?;
     let stepped = match plant_step {
-        None => step::longest(&scenario.read),
-        Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
+        None => step::with_longest_step(&scenario.read),
+        Some(wanted) => {
+            step::with_step(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?
+        }
     };
     let law = of_rivals::chosen(law, &stepped, gains.as_deref());
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
-    let source = Source::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
+    let source = CampaignSource::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
     let flown = interruptible(py, |interrupt| alone(|| fly::campaign(&source, &law, &orders, &directory, interrupt)))?;
     Ok(Campaign { summary: flown?.map_err(raised)? })
 }

@@ -14,7 +14,7 @@ use crate::scenarios::Scenario;
 use crate::whole::Whole;
 use controller_core::state::Wrench;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::plant::body::Body;
 use host_sim::vehicle::plant::rows::Rows;
 use host_sim::vehicle::sensors::Sensors;
@@ -59,7 +59,7 @@ impl Row {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(&Asked::Wrench(*asked), steps);
+        let held = self.vehicle.hold(&ActuatorDemand::Wrench(*asked), steps);
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 

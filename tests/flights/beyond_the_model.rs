@@ -25,7 +25,7 @@ const FAILS_AT: f64 = 5.0;
 fn hovering(name: &str, seconds: f64, change: impl FnOnce(&mut Scenario)) -> Course {
     let mut scenario = hover(&vehicle(name), Vector3::zeros(), seconds).unwrap();
     change(&mut scenario);
-    Course::over(&scenario, Flight::new(&scenario).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
+    Course::fly(&scenario, Flight::new(&scenario).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
 }
 
 /// Rotor 1 left with `share` of its thrust.
@@ -69,7 +69,7 @@ fn torque_offsets(scenario: &Scenario) -> [(&'static str, Course); 2] {
     let flown = |truth| {
         let mut hovering = hover(scenario, Vector3::zeros(), 60.0).unwrap();
         hovering.reality.truth = Some(truth);
-        Course::over(&hovering, Flight::new(&hovering).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
+        Course::fly(&hovering, Flight::new(&hovering).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
     };
     [
         ("one rotor at 70 %", flown(Truth { rotor_scales: weak, ..truth.clone() })),

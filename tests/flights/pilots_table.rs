@@ -39,7 +39,7 @@ impl Subject {
 
     fn fly(&self, scenario: &Scenario) -> Course {
         let flight = Flight::certified(scenario, &self.certified).unwrap();
-        let course = Course::over(scenario, flight, ARRIVAL_DISTANCE_M).unwrap();
+        let course = Course::fly(scenario, flight, ARRIVAL_DISTANCE_M).unwrap();
         assert_eq!(course.clipped, 0, "{}: a rotor was commanded beyond its limits", scenario.name);
         course
     }

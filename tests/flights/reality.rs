@@ -37,7 +37,7 @@ fn hovering_as(file: &str, duration: f64, initial: &str, sections: &str) -> Scen
 }
 
 fn course(scenario: &Scenario) -> Course {
-    let course = Course::over(scenario, Flight::new(scenario).unwrap(), SETTLED_DISTANCE_M).unwrap();
+    let course = Course::fly(scenario, Flight::new(scenario).unwrap(), SETTLED_DISTANCE_M).unwrap();
     println!(
         "excursion {:8.4} m, end {:8.4} m, RMS {:8.5} m, rotors {:6.4} N per tick, clipped {}",
         course.excursion, course.end_error, course.rms, course.activity, course.clipped
@@ -212,7 +212,7 @@ fn a_campaign_of_disturbed_flights_takes_moments() {
         case
     };
     let flown =
-        fly_all(&certified, 200, circumstances, |scenario, flight| Course::over(scenario, flight, SETTLED_DISTANCE_M))
+        fly_all(&certified, 200, circumstances, |scenario, flight| Course::fly(scenario, flight, SETTLED_DISTANCE_M))
             .unwrap();
     let seconds = started.elapsed().as_secs_f64();
     println!("200 flights of 20 s in {seconds:.2} s: {:.0} simulated seconds per second", 4000.0 / seconds);
@@ -238,7 +238,7 @@ fn a_campaign_is_its_flights_one_by_one_in_order() {
         }
         case
     };
-    let course = |scenario: &Scenario, flight| Course::over(scenario, flight, 0.1).unwrap();
+    let course = |scenario: &Scenario, flight| Course::fly(scenario, flight, 0.1).unwrap();
     let all = fly_all(&certified, 12, circumstances, course).unwrap();
     let one_by_one: Vec<Course> = (0..12)
         .map(|number| course(&circumstances(number), Flight::certified(&circumstances(number), &certified).unwrap()))

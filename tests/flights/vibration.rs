@@ -18,7 +18,7 @@ use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
 use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
-use host_sim::vehicle::instruments::{Felt, SAMPLE_PERIOD_US};
+use host_sim::vehicle::instruments::{SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
@@ -124,11 +124,11 @@ impl Meddler for Unbalanced {
         }
     }
 
-    fn feel(&mut self, felt: Felt, _: u64) -> Felt {
+    fn feel(&mut self, felt: TrueMotion, _: u64) -> TrueMotion {
         let (force, rate, samples) = self.squares;
         self.squares = (force + self.force.norm_squared(), rate + self.rate.norm_squared(), samples + 1.0);
         let turned = UnitQuaternion::from_scaled_axis(-self.angle);
-        Felt {
+        TrueMotion {
             angular_velocity: turned * felt.angular_velocity + self.rate,
             specific_force: turned * (felt.specific_force + self.force),
         }

@@ -73,7 +73,7 @@ fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down
         let verdict = scenario::verdict::Verdict::of(&read).unwrap();
         let flown = if weak { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
-        let course = host_sim::flight::course::Course::over(&flown, flight, 0.1).unwrap();
+        let course = host_sim::flight::course::Course::fly(&flown, flight, 0.1).unwrap();
         let settled = course.settled.unwrap_or(f64::INFINITY);
         assert!(settled < 8.0 && course.clipped == 0, "{name}: {settled} s, {} clipped", course.clipped);
     }
@@ -337,7 +337,7 @@ fn formats_are_told_apart_by_their_content_and_the_wrong_one_is_refused() {
         ("4001_gz_x500", Format::Px4),
     ] {
         let text = fs::read_to_string(source(name)).unwrap();
-        assert_eq!(Format::of(&text), Ok(format));
+        assert_eq!(Format::detect(&text), Ok(format));
         for (_, other) in Format::ALL.into_iter().filter(|(_, other)| *other != format) {
             assert!(read(&text, &source(name), Some(other)).is_err(), "{name} as {other:?}");
         }

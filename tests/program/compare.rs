@@ -6,7 +6,7 @@ use crate::support::binary::{files, host_sim, status, stderr, stdout, with};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, UInt64Type};
 use host_sim::rivals::gains::{BUILT_IN, Set};
-use host_sim::rivals::kind::Kind;
+use host_sim::rivals::kind::RivalKind;
 use scenario::Scenario;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -327,9 +327,9 @@ fn a_rotor_that_fails_has_scenes_of_its_own_and_needs_rotors() {
 fn every_rival_has_gains_for_every_vehicle_that_is_compared() {
     for file in ["vehicles/hummingbird.toml", "vehicles/study.toml", "scenarios/paper-extended.toml"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
-        let set = Set::of(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
-        let kinds: Vec<Kind> = set.rivals.iter().map(|(kind, ..)| *kind).collect();
-        assert_eq!(kinds, Kind::ALL, "{file}");
+        let set = Set::parse(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml", &RivalKind::ALL).unwrap();
+        let kinds: Vec<RivalKind> = set.rivals.iter().map(|(kind, ..)| *kind).collect();
+        assert_eq!(kinds, RivalKind::ALL, "{file}");
         assert!(
             set.rivals.iter().all(|(kind, gains, cost)| gains.len() == kind.gains().len() && *cost > 0.0),
             "{file}"
@@ -384,7 +384,7 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
     assert_eq!((indi_status, tracking), (0, 6), "{indi_text}");
     let manifest = fs::read_to_string(directory.join("indi/campaign.json")).unwrap();
     let vehicle = Scenario::load(&directory.join("h.toml")).unwrap();
-    let k_q_tilt = Set::built_in(&vehicle, &[Kind::Indi]).unwrap().rivals[0].1[4];
+    let k_q_tilt = Set::built_in(&vehicle, &[RivalKind::Indi]).unwrap().rivals[0].1[4];
     let said = format!("\"k_q_tilt\": {k_q_tilt}");
     assert!(manifest.contains("\"law\": \"indi\"") && manifest.contains(&said), "{manifest}");
     let manifest = fs::read_to_string(directory.join("ours/campaign.json")).unwrap();

@@ -73,7 +73,7 @@ fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_con
         let upside_down = recovery(&scenario, 15.0).unwrap();
         let flight = Flight::certified(&upside_down, verdict.certified().unwrap()).unwrap();
         let Course { height_lost, settled, clipped, .. } =
-            Course::over(&upside_down, flight, ARRIVAL_DISTANCE_M).unwrap();
+            Course::fly(&upside_down, flight, ARRIVAL_DISTANCE_M).unwrap();
         let settled = settled.unwrap_or(f64::INFINITY);
         let lift = thrust_to_weight(&scenario);
         println!(
@@ -111,7 +111,7 @@ fn half_a_turn_of_heading_takes_four_seconds_at_most_where_yaws_torque_allows_th
         let mut turning = hover(&scenario, Vector3::zeros(), 30.0).unwrap();
         turning.initial.attitude = attitude_from_euler(0.0, 0.0, 179.0_f64.to_radians());
         let Course { turned, excursion, clipped, .. } =
-            Course::over(&turning, Flight::new(&turning).unwrap(), ARRIVAL_DISTANCE_M).unwrap();
+            Course::fly(&turning, Flight::new(&turning).unwrap(), ARRIVAL_DISTANCE_M).unwrap();
         let turned = turned.unwrap_or(f64::INFINITY);
         println!("| `{}` | {turned:.2} | {least:.2} |", scenario.name);
         let (latest, allowed) = HALF_A_TURN;

@@ -10,7 +10,7 @@ use controller_core::shield::{Demand, Reason, Settings, Shield};
 use controller_core::state::State;
 use host_sim::flight;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::sensors::Sensors;
 use nalgebra::{Quaternion, Vector3};
 use rand::RngExt;
@@ -201,7 +201,7 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
             law.step_on_demand(&state, &level, &last).unwrap().0
         };
         let (clipped, _) = vehicle
-            .hold(&Asked::Wrench(wrench.scaled(1.0 / law.thrust_scale())), scenario.timing.steps_per_tick)
+            .hold(&ActuatorDemand::Wrench(wrench.scaled(1.0 / law.thrust_scale())), scenario.timing.steps_per_tick)
             .unwrap();
         assert!(!clipped, "{kind:?} {tick}: {wrench:?} is beyond the rotors or the limits");
         let body = vehicle.state();
@@ -290,7 +290,7 @@ fn a_calm_policy_flies_without_a_hand_over() {
                 let flown = shield.step(law, &state, Some(&demand)).unwrap();
                 assert_eq!(flown.reason, None, "{name} {tick} {state:?}");
                 let wrench = flown.wrench.scaled(1.0 / law.thrust_scale());
-                vehicle.hold(&Asked::Wrench(wrench), scenario.timing.steps_per_tick).unwrap();
+                vehicle.hold(&ActuatorDemand::Wrench(wrench), scenario.timing.steps_per_tick).unwrap();
             }
         }
     }

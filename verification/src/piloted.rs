@@ -22,7 +22,7 @@ use estimation::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
 use firmware::hardware::{MOTORS, MotorCommand};
 use firmware::outputs::Outputs;
 use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, Pilot, Pose, Stamped};
-use host_sim::vehicle::instruments::{Felt, Instruments, SAMPLE_PERIOD_US};
+use host_sim::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -56,7 +56,7 @@ pub trait Meddler {
     fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
 
     /// The IMU's input at `time`, us, from the body's motion.
-    fn feel(&mut self, felt: Felt, _time: u64) -> Felt {
+    fn feel(&mut self, felt: TrueMotion, _time: u64) -> TrueMotion {
         felt
     }
 

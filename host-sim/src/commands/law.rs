@@ -78,11 +78,11 @@ pub struct LawServer {
 }
 
 /// The numbers of one line, in order.
-struct Numbers<'a> {
+struct InputLine<'a> {
     values: &'a [f64],
 }
 
-impl Numbers<'_> {
+impl InputLine<'_> {
     fn next(&mut self) -> f64 {
         let (first, rest) = self.values.split_first().unwrap_or((&0.0, &[]));
         self.values = rest;
@@ -155,7 +155,7 @@ impl LawServer {
     /// One line of text; the controller's memory is then unchanged.
     pub fn answer(&mut self, line: &str) -> Result<Wrench, String> {
         let values = parse(line)?;
-        let mut numbers = Numbers { values: &values };
+        let mut numbers = InputLine { values: &values };
         let time = numbers.next();
         let at_time = |problem: String| format!("t = {time}: {problem}");
 

@@ -104,7 +104,7 @@ impl Course {
     ///
     /// # Errors
     /// If it cannot be flown to its end.
-    pub fn over(scenario: &Scenario, flight: Flight, near: f64) -> Result<Self, FlightError> {
+    pub fn fly(scenario: &Scenario, flight: Flight, near: f64) -> Result<Self, FlightError> {
         Self::until_settled(scenario, flight, near, f64::INFINITY)
     }
 
@@ -112,7 +112,7 @@ impl Course {
     /// where nothing acts on it.
     ///
     /// # Errors
-    /// As [`Self::over`].
+    /// As [`Self::fly`].
     pub fn until_settled(scenario: &Scenario, mut flight: Flight, near: f64, rest: f64) -> Result<Self, FlightError> {
         let ticks = scenario.timing.ticks;
         let start = scenario.initial.position.z;

@@ -138,7 +138,7 @@ impl Estimation {
 
     /// v' from the last estimate but one to the last, m/s^2, world, by accelerometer.
     #[must_use]
-    pub fn felt(&self) -> Option<Vector3<f32>> {
+    pub fn sensed_force(&self) -> Option<Vector3<f32>> {
         self.felt
     }
 

@@ -3,7 +3,7 @@
 use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::commands::certify::summary;
-use host_sim::output::progress::spoken;
+use host_sim::output::progress::in_words;
 use host_sim::output::table::{percent, short};
 use host_sim::output::whole_file::WholeFile;
 use host_sim::rivals::gains::Set;
@@ -36,7 +36,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         Ok(tuned) => tuned,
         Err(closest) => {
             let what = closest.failed.clone().unwrap_or_default();
-            let lost = short(closest.shown.height_lost);
+            let lost = short(closest.figures.height_lost);
             let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
             complain(format_args!(
                 "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
@@ -110,7 +110,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
                     "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
                      hard as `tune` searches ours, which may take {}",
                     scenario.name,
-                    spoken(rivals::expected(&theirs, &kinds, &effort).as_secs_f64())
+                    in_words(rivals::expected(&theirs, &kinds, &effort).as_secs_f64())
                 ));
             }
             match rivals::tune(&theirs, &kinds, effort, &interrupt) {

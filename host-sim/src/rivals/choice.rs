@@ -1,6 +1,6 @@
 //! Which law flies: ours, or a rival with its gains. It can be written and read.
 
-use super::kind::Kind;
+use super::kind::RivalKind;
 
 /// Our law's name beside others.
 pub const OUR_LAW: &str = "ours";
@@ -11,7 +11,7 @@ pub enum LawChoice {
     /// The scenario's own.
     Ours,
     /// Another one with its gains, each in the place of its name.
-    Rival(Kind, Vec<f64>),
+    Rival(RivalKind, Vec<f64>),
 }
 
 impl LawChoice {

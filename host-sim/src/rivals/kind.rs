@@ -18,7 +18,7 @@ const START_INERTIA: f64 = 3.665e-3;
 
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum RivalKind {
     /// [`lee`].
     Lee,
     /// [`cascade`].
@@ -35,7 +35,7 @@ pub enum Kind {
     Memoryless,
 }
 
-impl Kind {
+impl RivalKind {
     /// All of them.
     pub const ALL: [Self; 7] =
         [Self::Lee, Self::Cascade, Self::Mellinger, Self::Indi, Self::Nested, Self::Continuous, Self::Memoryless];

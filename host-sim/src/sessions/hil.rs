@@ -20,8 +20,8 @@ pub mod vehicle;
 use crate::output::progress::Progress;
 use crate::output::whole_file::WholeFile;
 use crate::sessions::pace::Pace as Speed;
-use pace::Pace;
-use port::{Port, PortError};
+use pace::HilPace;
+use port::{PortError, SimulatorPort};
 use relay::Relay;
 use scenario::Scenario;
 use scenario::number::Number;
@@ -34,7 +34,7 @@ use vehicle::HilVehicle;
 
 /// How a session is run.
 #[derive(Debug, Clone, Default)]
-pub struct Session {
+pub struct HilSession {
     /// Vehicle time after which it ends, s; none: when the other side goes.
     pub duration: Option<f64>,
     /// Vehicle time from which poses are withheld, s.
@@ -68,9 +68,9 @@ impl fmt::Display for HilError {
 
 /// A session's summary.
 #[derive(Debug, Clone)]
-pub struct Summary {
+pub struct HilSummary {
     /// How regular the commands were.
-    pub pace: Pace,
+    pub pace: HilPace,
     /// Where the vehicle ended, m.
     pub position: [f64; 3],
     /// Each touchdown: vehicle time, s, speed, m/s, and tilt, rad.
@@ -92,7 +92,7 @@ pub enum End {
     Interrupted(u8),
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for HilSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.position;
         writeln!(f, "{}, in {:.1} s", self.pace, self.took.as_secs_f64())?;
@@ -130,11 +130,11 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 /// [`HilError`].
 pub fn serve(
     scenario: &Scenario,
-    port: &mut Port,
-    session: &Session,
+    port: &mut SimulatorPort,
+    session: &HilSession,
     log: Option<&Path>,
     mut clients: Option<Clients<'_>>,
-) -> Result<Summary, HilError> {
+) -> Result<HilSummary, HilError> {
     let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
     let mut senses = Senses::new(scenario);
     let unwritable = |error| HilError::Log(log.unwrap_or(Path::new("")).to_owned(), error);
@@ -143,7 +143,7 @@ pub fn serve(
     let ticks = |seconds: f64| (seconds / period).round() as u64;
     let (end, pose_end) = (session.duration.map(ticks), session.pose_until.map(ticks));
     let mut progress = end.map(|end| Progress::new("flying", end));
-    let mut pace = Pace::new(scenario.timing.period_us);
+    let mut pace = HilPace::new(scenario.timing.period_us);
     let mut touchdowns = Vec::new();
     let mut started = None;
     let mut speed = None;
@@ -197,7 +197,7 @@ pub fn serve(
     }
     let position = vehicle.state().position;
     let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());
-    Ok(Summary { pace, position: position.into(), touchdowns, took, end })
+    Ok(HilSummary { pace, position: position.into(), touchdowns, took, end })
 }
 
 /// A row for each command: the state one period after it, the commands, the thrust at the end, the command's own time.

@@ -56,14 +56,14 @@ impl fmt::Display for PortTaken {
 
 /// The socket and the clients' addresses.
 #[derive(Debug)]
-pub struct Port {
+pub struct ClientPort {
     socket: UdpSocket,
     fixed: [SocketAddr; 2],
     /// The others, and when each last sent.
     clients: Vec<(SocketAddr, Instant)>,
 }
 
-impl Port {
+impl ClientPort {
     /// Opens the local port.
     ///
     /// # Errors
@@ -142,7 +142,7 @@ mod tests {
     }
 
     /// What has arrived at the port.
-    fn taken(port: &mut Port) -> Vec<Vec<u8>> {
+    fn taken(port: &mut ClientPort) -> Vec<Vec<u8>> {
         std::thread::sleep(Duration::from_millis(50));
         let mut frames = Vec::new();
         port.receive(|frame| frames.push(frame.to_vec()));
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn fragments_and_noise_swallow_no_frame_of_another_client_nor_of_the_same() {
         let ((good, _), (bad, _)) = (client(), client());
-        let mut port = Port::open(&Ports { local: 0, ..Ports::default() }).unwrap();
+        let mut port = ClientPort::open(&Ports { local: 0, ..Ports::default() }).unwrap();
         let address = port.socket.local_addr().unwrap();
         let frames: Vec<Vec<u8>> = (0..20).map(heartbeat).collect();
         let longest = [0xFD, 0xFF, 0, 0, 0, 255, 190, 0, 0, 0];
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn both_addresses_receive_everything_and_each_sender_is_answered() {
         let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
-        let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
+        let mut port = ClientPort::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
         port.send(b"one");
         assert_eq!((received(&offboard), received(&ground)), (b"one".to_vec(), b"one".to_vec()));
         let here = heartbeat(0);
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn a_port_that_is_taken_is_named_with_a_way_out() {
         let (_taken, local) = client();
-        let refused = Port::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
+        let refused = ClientPort::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
         assert!(
             refused.starts_with(&format!("--local-port {local}: ")) && refused.contains("choose another"),
             "{refused}"

@@ -61,8 +61,8 @@ impl Tuned {
     pub fn table(&self) -> String {
         let own = |verdict: &Verdict| {
             let beyond =
-                verdict.shown.beyond.map_or([f64::INFINITY; OWN_MODEL_FIGURES.len()], |beyond| beyond.values());
-            [&verdict.shown.values()[..], &beyond].concat()
+                verdict.figures.beyond.map_or([f64::INFINITY; OWN_MODEL_FIGURES.len()], |beyond| beyond.values());
+            [&verdict.figures.values()[..], &beyond].concat()
         };
         let number = |value: f64| if value.is_finite() { short((1e4 * value).round() / 1e4) } else { "-".to_owned() };
         let pairs = [own(&self.before), own(&self.verdict), self.before.mean.to_vec(), self.verdict.mean.to_vec()];

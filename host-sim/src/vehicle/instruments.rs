@@ -34,7 +34,7 @@ const ACCELEROMETER_BANDWIDTH: f64 = 145.0;
 
 /// An IMU's input, before filters and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Felt {
+pub struct TrueMotion {
     /// rad/s, body.
     pub angular_velocity: Vector3<f64>,
     /// m/s^2, body.
@@ -131,7 +131,12 @@ impl Instruments {
     }
 
     /// The same where the IMU feels something else than the body does: `feels` of it.
-    pub fn sample_of(&mut self, state: &BodyState, time: u64, feels: impl FnOnce(Felt) -> Felt) -> ImuSample {
+    pub fn sample_of(
+        &mut self,
+        state: &BodyState,
+        time: u64,
+        feels: impl FnOnce(TrueMotion) -> TrueMotion,
+    ) -> ImuSample {
         self.clock += SAMPLE_PERIOD_US;
         let real = EstimatorParameters::BMI088;
         let scale = |density: f32| self.what.imu_noise * f64::from(density);
@@ -142,20 +147,21 @@ impl Instruments {
         self.velocity = state.velocity;
         let attitude = UnitQuaternion::new_normalize(state.attitude);
         let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * self.gravity));
-        let felt = feels(Felt { angular_velocity: state.angular_velocity, specific_force: force });
+        let felt = feels(TrueMotion { angular_velocity: state.angular_velocity, specific_force: force });
         let rate = felt.angular_velocity + self.gyro_bias + noise(&mut self.random, scale(real.gyro_noise) * each);
         let force = felt.specific_force
             + self.accelerometer_bias
             + noise(&mut self.random, scale(real.accelerometer_noise) * each);
         if (self.clock / SAMPLE_PERIOD_US).is_multiple_of(self.what.pose_every) {
-            self.look(state, &attitude, time);
+            self.measure_pose(state, &attitude, time);
         }
         let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
-        let (mut rate, mut force) = (shown(&single(&rate), gyro_range), shown(&single(&force), accelerometer_range));
+        let (mut rate, mut force) =
+            (clipped(&single(&rate), gyro_range), clipped(&single(&force), accelerometer_range));
         if let Some([gyro, accelerometer]) = &mut self.filters {
             (rate, force) = (gyro.take(&rate), accelerometer.take(&force));
         }
-        ImuSample { angular_velocity: shown(&rate, gyro_range), specific_force: shown(&force, accelerometer_range) }
+        ImuSample { angular_velocity: clipped(&rate, gyro_range), specific_force: clipped(&force, accelerometer_range) }
     }
 
     /// The next pose that has arrived by the last sample, with the time at which it was true. Its velocity is zero: the
@@ -165,7 +171,7 @@ impl Instruments {
     }
 
     /// The pose source takes a picture.
-    fn look(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
+    fn measure_pose(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
         let position = state.position + noise(&mut self.random, self.what.position_noise);
         let turned = UnitQuaternion::from_scaled_axis(noise(&mut self.random, self.what.attitude_noise));
         let attitude = (turned * attitude).into_inner().coords.map(|value| value as f32);
@@ -188,7 +194,7 @@ impl Instruments {
 }
 
 /// The output of a sensor with this `range`.
-fn shown(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
+fn clipped(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
     truth.map(|component| component.clamp(-range, range))
 }
 

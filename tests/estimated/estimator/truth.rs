@@ -4,7 +4,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::law::Law;
 use host_sim::studies::tune::trials::recovery;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
@@ -87,7 +87,7 @@ impl Truth {
             let commanded = wrench.scaled(1.0 / law.thrust_scale());
             let mut clipped = false;
             for _ in 0..10 {
-                clipped |= vehicle.hold(&Asked::Wrench(commanded), 1).unwrap().0;
+                clipped |= vehicle.hold(&ActuatorDemand::Wrench(commanded), 1).unwrap().0;
                 states.push(*vehicle.state());
             }
             if clipped {

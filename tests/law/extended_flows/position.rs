@@ -60,15 +60,15 @@ impl Loop {
         let configuration = random_configuration(rng);
         let formulas = law(&configuration).parameters;
         let p = random_parameters(rng, &formulas, configuration.vehicle());
-        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::of(*p, Most::ALL, rng) }
+        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::draw(*p, Most::ALL, rng) }
     }
 
     fn slowed(p: &ExtendedParameters, rng: &mut ChaCha8Rng) -> Self {
         let level = Slowed::<f64>::of(p, GRAVITY_M_PER_S2).level as f32;
-        Self::of(slowed(p, GRAVITY_M_PER_S2), Most::each(level), rng)
+        Self::draw(slowed(p, GRAVITY_M_PER_S2), Most::each(level), rng)
     }
 
-    fn of(p: ExtendedParameters, most: Most, rng: &mut ChaCha8Rng) -> Self {
+    fn draw(p: ExtendedParameters, most: Most, rng: &mut ChaCha8Rng) -> Self {
         let mut believed = random::vector(rng, 0.7 * p.force_across);
         believed.z = rng.random_range(-p.force_down..=p.force_up);
         // Thrust for the force and for turning against it.
@@ -282,7 +282,7 @@ fn v_0_never_rises_on_flights_under_a_constant_force_and_they_arrive() {
     let mut flown = 0;
     while flown < 20 {
         let configuration = random_configuration(&mut rng);
-        let flying = Loop::of(*law(&configuration).parameters, Most::ALL, &mut rng);
+        let flying = Loop::draw(*law(&configuration).parameters, Most::ALL, &mut rng);
         // With little more than the force takes, swinging in takes minutes.
         if flying.level_across() < 2.0 {
             continue;

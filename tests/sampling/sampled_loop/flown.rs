@@ -12,7 +12,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::flight;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use nalgebra::{Quaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
@@ -103,7 +103,8 @@ impl Bench {
                 let motion = *component - rest;
                 *component = rest + gain as f32 * motion;
                 // A rotor saturates when the motion has grown a thousand times.
-                let (clipped, _) = body.hold(&Asked::Wrench(commanded), scenario.timing.steps_per_tick).unwrap();
+                let (clipped, _) =
+                    body.hold(&ActuatorDemand::Wrench(commanded), scenario.timing.steps_per_tick).unwrap();
                 if clipped { f32::INFINITY } else { peak.max(motion.abs()) }
             })
         };

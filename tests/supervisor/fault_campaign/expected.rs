@@ -23,7 +23,7 @@ pub enum Severity {
 
 impl Severity {
     /// What a mode amounts to.
-    pub fn of(mode: Mode) -> Self {
+    pub fn from_mode(mode: Mode) -> Self {
         match mode {
             Mode::MotorTest | Mode::Idling | Mode::TakingOff | Mode::Flying => Self::CarryOn,
             Mode::Holding => Self::Hold,

@@ -252,7 +252,7 @@ impl Flight<'_> {
         if self.sight.tick > last + OPERATOR_TIMEOUT_TICKS {
             most = most.max(Severity::Land);
         }
-        let does = Severity::of(self.sight.mode);
+        let does = Severity::from_mode(self.sight.mode);
         if self.flown.taken.last().is_some_and(|last| last.reason == Reason::PoseRegained) && self.sight.lasts == 0 {
             // One transition a tick: what else there is to be done is done in the next.
             return;

@@ -153,7 +153,7 @@ fn shown_constants_stand_for_what_the_file_says_and_leaves_out() {
         for section in ["gains", "estimates", "reference_bounds"] {
             document.remove(section);
         }
-        let pasted = format!("{document}\n{}", shown::constants(&scenario));
+        let pasted = format!("{document}\n{}", constants::constants(&scenario));
         let read = Scenario::parse(&pasted, "f").unwrap_or_else(|error| panic!("{error}\n{pasted}"));
         assert!(read.flies_like(&scenario), "{pasted}");
     }

@@ -6,12 +6,12 @@
 //! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
 //! all numbers, with tight intervals around the wrong values.
 
-use super::student;
+use super::student_t;
 use crate::output::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
 /// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by a
-/// normal distribution. By Student's t it is more ([`student`]): the flight's uncertainty is known from a few parts of
+/// normal distribution. By Student's t it is more ([`student_t`]): the flight's uncertainty is known from a few parts of
 /// it.
 const NORMAL_QUANTILE: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
@@ -88,7 +88,7 @@ fn greatest(freedom: usize, parts: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
     freedom as f64
         * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3)
-        * (student::consistent(parts) / NORMAL_QUANTILE).powi(2)
+        * (student_t::consistent(parts) / NORMAL_QUANTILE).powi(2)
 }
 
 #[cfg(test)]

@@ -22,11 +22,11 @@
 //! updates leaves artefacts from tick to tick.
 
 use super::model::{
-    CHANNEL_COUNT, Channels, DRAG_INDEX, Model, SQUARED_LAG, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns, WHOLE_DELAY,
-    prior,
+    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns,
+    WHOLE_DELAY, prior,
 };
 use super::noise::{Noise, Whitening};
-use super::student::PART_COUNT_RANGE;
+use super::student_t::PART_COUNT_RANGE;
 use nalgebra::SMatrix;
 use std::array::from_fn;
 
@@ -73,13 +73,13 @@ pub struct Fit {
 ///
 /// # Errors
 /// If the search does not settle: the log is of another vehicle, or has too little information.
-pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String> {
+pub fn fit(model: &IdentifiedModel, reference: &IdentifiedModel, period: f64) -> Result<Fit, String> {
     let (mut unknowns, wide) = prior();
     let [least, most] = PART_COUNT_RANGE;
     let count = ((model.seconds() / JACKKNIFE_BLOCK_S).round() as usize).clamp(least, most);
     unknowns[STRENGTH_INDEX] = model.balance();
     let (start, mut noise) = (unknowns, [Noise::START; CHANNEL_COUNT]);
-    let mut felt = Vec::new();
+    let mut sensed_motions = Vec::new();
     let (mut share, mut last, mut is_near) = (1.0, Unknowns::zeros(), false);
     let look = (VELOCITY_PERIOD_S / period).round().max(1.0) as usize;
     let every: [usize; CHANNEL_COUNT] = from_fn(|channel| if channel < 3 { look } else { 1 });
@@ -92,7 +92,7 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
     };
     for step in 0..STEPS_MAX {
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.left(&unknowns, &impulses, &felt));
+        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
         if step < NOISE_STEPS || (step < MORE_NOISE_STEPS && !is_near) {
             noise = from_fn(|channel| Noise::START.fitted(&left[channel], periods[channel]));
         }
@@ -110,8 +110,8 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
                     let mut moved = unknowns;
                     moved[unknown] += by;
                     let late = [WHOLE_DELAY, SQUARED_LAG].contains(&unknown).then(|| model.impulses(&moved));
-                    let flown = seen(model.left(&moved, late.as_ref().unwrap_or(&impulses), &felt));
-                    (flown, seen(reference.left(&moved, &hovering, &[])))
+                    let flown = seen(model.residuals(&moved, late.as_ref().unwrap_or(&impulses), &sensed_motions));
+                    (flown, seen(reference.residuals(&moved, &hovering, &[])))
                 };
                 let (ahead, behind) = (moved(width), moved(-width));
                 let slope = |ahead: &Channels, behind: &Channels| {
@@ -147,12 +147,12 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
         let widest = moved.component_div(&wide).amax();
         unknowns += moved * f64::min(share, STEP_MAX_SHARE / widest);
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.left(&unknowns, &impulses, &felt));
+        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
         let gusts = from_fn(|axis| {
             let wander = filters[axis].wander(&left[axis]);
             wander.into_iter().flat_map(|b| std::iter::repeat_n(b, look)).collect()
         });
-        felt = model.felt(&unknowns, &impulses, &gusts);
+        sensed_motions = model.sensed_motions(&unknowns, &impulses, &gusts);
     }
     Err("is of no vehicle like the scenario's: the search for its numbers does not settle".to_owned())
 }

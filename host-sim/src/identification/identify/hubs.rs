@@ -39,7 +39,7 @@ pub struct Layout {
 impl Layout {
     /// Of a vehicle's rotors.
     #[must_use]
-    pub fn of(rotors: &Rotors) -> Self {
+    pub fn of_rotors(rotors: &Rotors) -> Self {
         let lever = |position: &Vector3<f32>| Vector2::new(-f64::from(position.y), f64::from(position.x));
         let levers = rotors.iter().map(|rotor| lever(&rotor.position)).map(|lever| lever * lever.transpose());
         Self { count: rotors.len() as f64, levers: levers.sum() }
@@ -66,7 +66,7 @@ impl Hubs {
 
     /// lambda's part of a c/m, N m/kg, at an airspeed in m/s and a rate about z in rad/s.
     #[must_use]
-    pub fn turned(&self, layout: &Layout, airspeed: &Vector3<f64>, yaw_rate: f64) -> Vector3<f64> {
+    pub fn torque(&self, layout: &Layout, airspeed: &Vector3<f64>, yaw_rate: f64) -> Vector3<f64> {
         let across = layout.levers * airspeed.xy() * (-2.0 * self.lift * yaw_rate);
         Vector3::new(across.x, across.y, 0.0)
     }

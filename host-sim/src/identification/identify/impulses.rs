@@ -76,7 +76,7 @@ impl Commands {
             speeds: speeds.collect::<Result<_, String>>()?,
             columns: columns.map(|(rotor, column)| column * f64::from(rotor.thrust_coefficient)).collect(),
             period: log.period,
-            low_passes: LowPasses::of(log),
+            low_passes: LowPasses::of_log(log),
         })
     }
 

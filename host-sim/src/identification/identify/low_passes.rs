@@ -37,7 +37,7 @@ pub struct LowPasses {
 impl LowPasses {
     /// Those of a log, if its body rates came from an IMU.
     #[must_use]
-    pub fn of(log: &FlightLog) -> Option<Self> {
+    pub fn of_log(log: &FlightLog) -> Option<Self> {
         let imu = ImuParameters::BMI088;
         let samples = (log.period * f64::from(imu.rate)).round().max(1.0) as usize;
         let period = (log.period * 1e6).round() as u64;

@@ -63,7 +63,7 @@ const UNKNOWN_START: f64 = 0.5;
 
 /// A log and the model that is fitted to it.
 #[derive(Debug, Clone)]
-pub struct Model<'a> {
+pub struct IdentifiedModel<'a> {
     log: &'a FlightLog,
     commands: Commands,
     /// m_0, kg; J_0, kg m^2; g, m/s^2.
@@ -85,7 +85,7 @@ pub fn prior() -> (Unknowns, Unknowns) {
     (start.into(), wide.into())
 }
 
-impl<'a> Model<'a> {
+impl<'a> IdentifiedModel<'a> {
     /// # Errors
     /// If the file has no rotors, or its allocation refuses a wrench of the log.
     pub fn new(log: &'a FlightLog, configuration: &Configuration) -> Result<Self, String> {
@@ -98,7 +98,7 @@ impl<'a> Model<'a> {
             mass: vehicle.mass.into(),
             inertia: vehicle.inertia.map(f64::from),
             gravity: vehicle.gravity.into(),
-            layout: Layout::of(rotors),
+            layout: Layout::of_rotors(rotors),
             first: (UNKNOWN_START / log.period).round() as usize,
         })
     }
@@ -121,9 +121,9 @@ impl<'a> Model<'a> {
         self.commands.low_passes.as_ref()
     }
 
-    /// The residuals of each channel: measured less integrated. `felt` is as [`Self::felt`] has it.
+    /// The residuals of each channel: measured less integrated. `sensed_motions` is as [`Self::sensed_motions`] has it.
     #[must_use]
-    pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Felt]) -> Channels {
+    pub fn residuals(&self, unknowns: &Unknowns, impulses: &[Impulse], sensed_motions: &[SensedMotion]) -> Channels {
         let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
         let damping = three(unknowns, DAMPING_INDEX);
         let yawing = Vector3::new(0.0, 0.0, unknowns[YAW_TORQUE_INDEX]);
@@ -147,11 +147,12 @@ impl<'a> Model<'a> {
             let carried = strength * impulse.thrust;
             velocity += up * (carried + hubs.lifted(&self.layout, &airspeed) * period)
                 + (dragged - Vector3::z() * self.gravity) * period;
-            let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::hover(self.gravity * period));
+            let sensed =
+                sensed_motions.get(sample).copied().unwrap_or_else(|| SensedMotion::hover(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
-            let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
-                + hubs.unlike(impulse, carried / period, &(felt.air / period));
-            let torque = impulse.torque + at_hubs - centre.cross(&(felt.whole / strength));
+            let at_hubs = hubs.torque(&self.layout, &airspeed, omega.z) * (period / strength)
+                + hubs.unlike(impulse, carried / period, &(sensed.air / period));
+            let torque = impulse.torque + at_hubs - centre.cross(&(sensed.whole / strength));
             let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
             rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));
             rates += (yawing - damping.component_mul(&omega)) * period;
@@ -162,7 +163,12 @@ impl<'a> Model<'a> {
     /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's
     /// axes.
     #[must_use]
-    pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Felt> {
+    pub fn sensed_motions(
+        &self,
+        unknowns: &Unknowns,
+        impulses: &[Impulse],
+        gusts: &[Vec<f64>; 3],
+    ) -> Vec<SensedMotion> {
         let Numbers { strength, drag, wind, hubs, .. } = self.numbers(unknowns);
         let feel = |(sample, (pair, impulse)): (usize, (&[Moment], &Impulse))| {
             let gust = Vector3::from_fn(|axis, _| gusts[axis].get(sample).copied().unwrap_or(0.0));
@@ -170,7 +176,7 @@ impl<'a> Model<'a> {
             let airspeed = airspeed(pair, &wind);
             let air = (gust - drag.component_mul(&airspeed)) * self.log.period;
             let carried = strength * impulse.thrust + hubs.lifted(&self.layout, &airspeed) * self.log.period;
-            Felt { whole: Vector3::z() * carried + air, air }
+            SensedMotion { whole: Vector3::z() * carried + air, air }
         };
         self.steps(impulses).enumerate().map(feel).collect()
     }
@@ -239,14 +245,14 @@ fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
 
 /// The specific force at the centre of mass over a sample, m/s, body.
 #[derive(Debug, Clone, Copy)]
-pub struct Felt {
+pub struct SensedMotion {
     /// R' (v_c' + g e3).
     whole: Vector3<f64>,
     /// A, of it what the air does.
     air: Vector3<f64>,
 }
 
-impl Felt {
+impl SensedMotion {
     /// A hover in still air.
     fn hover(weight: f64) -> Self {
         Self { whole: Vector3::z() * weight, air: Vector3::zeros() }

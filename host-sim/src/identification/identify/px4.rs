@@ -65,17 +65,18 @@ pub fn read(log: &Ulog, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog
     let places = places(log, rotors)?;
     let motors = motors(log, rotors.len())?;
     let rates = rates(log)?;
-    let attitude = turned(Track::of(log, "vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"], 0.1)?);
-    let velocity = turned(Track::of(log, "vehicle_local_position", &["vx", "vy", "vz"], 0.2)?);
+    let attitude = to_our_axes(Track::read_topic(log, "vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"], 0.1)?);
+    let velocity = to_our_axes(Track::read_topic(log, "vehicle_local_position", &["vx", "vy", "vz"], 0.2)?);
     let reference = reference(log)?;
-    let landed = Track::of(log, "vehicle_land_detected", &["landed"], f64::INFINITY).ok();
+    let landed = Track::read_topic(log, "vehicle_land_detected", &["landed"], f64::INFINITY).ok();
     let (start, end) = (motors.times[0], motors.times[motors.times.len() - 1]);
     let linear = curve.unwrap_or(0.0);
     let moments: Vec<Option<Moment>> = (0..((end - start) / CLOCK_PERIOD_S) as usize)
         .map(|tick| {
             let time = start + tick as f64 * CLOCK_PERIOD_S;
             let levels = motors.mean(time, time + CLOCK_PERIOD_S)?;
-            let flies = landed.as_ref().is_none_or(|landed| landed.held(time).is_some_and(|landed| landed[0] == 0.0));
+            let flies =
+                landed.as_ref().is_none_or(|landed| landed.held_at(time).is_some_and(|landed| landed[0] == 0.0));
             if !flies || levels.iter().any(|level| !level.is_finite() || *level <= 0.0) {
                 return None;
             }
@@ -126,7 +127,7 @@ fn motors(log: &Ulog, count: usize) -> Result<Track, String> {
     let names = |of: &str| -> Vec<String> { (0..count).map(|index| format!("{of}[{index}]")).collect() };
     let track = |topic: &str, names: &[String]| {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Track::of(log, topic, &names, 1.25 * CLOCK_PERIOD_S)
+        Track::read_topic(log, topic, &names, 1.25 * CLOCK_PERIOD_S)
     };
     if log.topic("actuator_motors").is_some() {
         return track("actuator_motors", &names("control"));
@@ -141,28 +142,28 @@ fn motors(log: &Ulog, count: usize) -> Result<Track, String> {
 /// Body rates, rad/s, at the times at which they were true.
 fn rates(log: &Ulog) -> Result<Track, String> {
     let gyro = ["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]", "gyro_integral_dt"];
-    if let Ok(mut raw) = Track::of(log, "sensor_combined", &gyro, 1.25 * CLOCK_PERIOD_S) {
+    if let Ok(mut raw) = Track::read_topic(log, "sensor_combined", &gyro, 1.25 * CLOCK_PERIOD_S) {
         for (time, row) in raw.times.iter_mut().zip(&mut raw.rows) {
             *time -= 0.5e-6 * row.pop().unwrap_or(0.0);
         }
-        return Ok(turned(raw));
+        return Ok(to_our_axes(raw));
     }
     let mut filtered =
-        Track::of(log, "vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"], 1.25 * CLOCK_PERIOD_S)
+        Track::read_topic(log, "vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"], 1.25 * CLOCK_PERIOD_S)
             .map_err(|what| format!("sensor_combined, or {what}"))?;
     let cutoff = log.parameters.get("IMU_GYRO_CUTOFF").copied().unwrap_or(GYRO_CUTOFF_HZ);
     // Of a low-pass of second order, at low frequencies.
     let late = if cutoff > 0.0 { SQRT_2 / (2.0 * PI * cutoff) } else { 0.0 };
     filtered.times.iter_mut().for_each(|time| *time -= late);
-    Ok(turned(filtered))
+    Ok(to_our_axes(filtered))
 }
 
 /// The velocity that was asked for before any feedback, m/s; where only positions were, from one to the next.
 fn reference(log: &Ulog) -> Result<Track, String> {
     let asked = |topic: &str, position: [&str; 3], velocity: [&str; 3]| -> Result<Track, String> {
         // Five a second are logged as a rule.
-        let positions = Track::of(log, topic, &position, 0.3)?;
-        let mut velocities = Track::of(log, topic, &velocity, 0.3)?;
+        let positions = Track::read_topic(log, topic, &position, 0.3)?;
+        let mut velocities = Track::read_topic(log, topic, &velocity, 0.3)?;
         let finite = |row: &[f64]| row.iter().all(|number| number.is_finite());
         for index in 0..velocities.rows.len() {
             if finite(&velocities.rows[index]) {
@@ -173,7 +174,7 @@ fn reference(log: &Ulog) -> Result<Track, String> {
             let pairs = positions.rows[after].iter().zip(&positions.rows[before]);
             velocities.rows[index] = pairs.map(|(after, before)| (after - before) / step).collect();
         }
-        Ok(turned(velocities))
+        Ok(to_our_axes(velocities))
     };
     let named = |name: &str| [0, 1, 2].map(|axis| format!("{name}[{axis}]"));
     let (position, velocity) = (named("position"), named("velocity"));
@@ -183,7 +184,7 @@ fn reference(log: &Ulog) -> Result<Track, String> {
 }
 
 /// The last two of the numbers with their signs changed.
-fn turned(mut track: Track) -> Track {
+fn to_our_axes(mut track: Track) -> Track {
     for row in &mut track.rows {
         row.iter_mut().rev().take(2).for_each(|number| *number = -*number);
     }
@@ -200,7 +201,7 @@ struct Track {
 
 impl Track {
     /// Columns of a topic whose usual step is `slowest` or less, s.
-    fn of(log: &Ulog, topic: &str, names: &[&str], slowest: f64) -> Result<Self, String> {
+    fn read_topic(log: &Ulog, topic: &str, names: &[&str], slowest: f64) -> Result<Self, String> {
         let series = log.topic(topic).ok_or(format!("{topic}: is missing: {PROFILE_ADVICE}"))?;
         let missing = || format!("{topic}: has no {}: the log is of another PX4", names.join(", "));
         let rows = series.columns(names).ok_or_else(missing)?;
@@ -243,7 +244,7 @@ impl Track {
     }
 
     /// The last record's numbers.
-    fn held(&self, time: f64) -> Option<&[f64]> {
+    fn held_at(&self, time: f64) -> Option<&[f64]> {
         Some(&self.rows[self.before(time)?])
     }
 

@@ -4,7 +4,7 @@
 //! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
 //! ([`super::agreement`]). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
-//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student`]). The report states
+//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student_t`]). The report states
 //! sixteen quantities at once, and all true values together are to be in their intervals in 95 of 100 flights.
 //! Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from a few
 //! parts of a flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less
@@ -15,7 +15,7 @@ use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
 use super::fit::Fit;
 use super::model::{CENTRE_INDEX, DRAG_INDEX, SQUARED_LAG, STRENGTH_INDEX, WHOLE_DELAY};
-use super::student;
+use super::student_t;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
 
@@ -91,7 +91,7 @@ impl Quantities {
     /// If the two cannot be combined; finite numbers can.
     pub fn combined(fit: &Fit, bench: &Bench, vehicle: &Vehicle, late: f64) -> Result<Self, String> {
         let (unknowns, covariance) = (&fit.unknowns, &fit.covariance);
-        let coverage = student::coverage(fit.blocks);
+        let coverage = student_t::coverage(fit.blocks);
         let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt(), coverage);
         let (Known { values, covariance: spread }, contradiction) =
             logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
@@ -136,16 +136,16 @@ impl Quantities {
 fn lag(squared: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
     let interval = squared.interval.map(root);
-    spanned(root(squared.value).min(whole.value).max(interval[0]), interval, coverage)
+    from_interval(root(squared.value).min(whole.value).max(interval[0]), interval, coverage)
 }
 
 /// The rest of the whole.
 fn delay(lag: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let [least, greatest] = [whole.interval[0] - lag.interval[1], whole.interval[1] - lag.interval[0]];
-    spanned((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)], coverage)
+    from_interval((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)], coverage)
 }
 
-fn spanned(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
+fn from_interval(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
     Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * coverage), interval }
 }
 

@@ -36,7 +36,7 @@ pub enum Number {
 impl Number {
     /// The number of this name; none for a message of another format.
     #[must_use]
-    pub fn of(kind: &str) -> Option<Self> {
+    pub fn from_name(kind: &str) -> Option<Self> {
         Some(match kind {
             "uint64_t" => Self::Unsigned(8),
             "uint32_t" => Self::Unsigned(4),
@@ -144,7 +144,7 @@ impl Formats {
             for index in 0..count.unwrap_or(1) {
                 let place = count.map_or_else(String::new, |_| format!("[{index}]"));
                 let whole = format!("{prefix}{called}{place}");
-                match Number::of(kind) {
+                match Number::from_name(kind) {
                     Some(number) => {
                         if !called.starts_with("_padding") {
                             fields.push(Field { name: whole, at, number });

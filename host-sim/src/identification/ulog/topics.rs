@@ -100,7 +100,7 @@ impl Record<'_> {
     }
 
     /// The numbers of a field.
-    fn of(&self, name: &str) -> &[f64] {
+    fn field(&self, name: &str) -> &[f64] {
         let (mut at, mut length) = (0, 0);
         for (field, count) in TICK_FIELDS {
             if field == name {
@@ -113,8 +113,8 @@ impl Record<'_> {
     }
 
     /// A vector in PX4's axes, or a quaternion between them.
-    fn turned(&self, name: &str) -> Vec<f64> {
-        let numbers = self.of(name);
+    fn in_px4_axes(&self, name: &str) -> Vec<f64> {
+        let numbers = self.field(name);
         let kept = numbers.len() - 2;
         numbers.iter().enumerate().map(|(at, number)| if at < kept { *number } else { -number }).collect()
     }
@@ -124,13 +124,13 @@ impl Record<'_> {
         let time = self.time();
         let sampled = time.to_le_bytes();
         let [position, velocity, attitude, rates] =
-            ["position", "velocity", "attitude", "angular_velocity"].map(|name| self.turned(name));
-        let [to, at] = ["reference_position", "reference_velocity"].map(|name| self.turned(name));
-        let mut motors = self.of("motors").to_vec();
+            ["position", "velocity", "attitude", "angular_velocity"].map(|name| self.in_px4_axes(name));
+        let [to, at] = ["reference_position", "reference_velocity"].map(|name| self.in_px4_axes(name));
+        let mut motors = self.field("motors").to_vec();
         motors.resize(12, f64::NAN);
         let known = [&position, &velocity].map(|vector| u8::from(vector.iter().all(|number| number.is_finite())));
-        let mode = Mode::ALL.get(self.of("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
-        let airborne = self.of("airborne")[0] != 0.0;
+        let mode = Mode::ALL.get(self.field("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
+        let airborne = self.field("airborne")[0] != 0.0;
         let setpoint = floats(&[&to[..], &at].concat());
         let bodies = [
             [&sampled[..], &floats(&attitude)].concat(),
@@ -140,7 +140,7 @@ impl Record<'_> {
             setpoint.clone(),
             setpoint,
             [&sampled[..], &floats(&motors)].concat(),
-            floats(&[self.of("voltage")[0], -1.0, -1.0]),
+            floats(&[self.field("voltage")[0], -1.0, -1.0]),
             vec![nav_state(mode), if mode.is_armed() { ARMED_STATE } else { DISARMED_STATE }],
             vec![u8::from(!airborne)],
         ];

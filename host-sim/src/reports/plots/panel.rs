@@ -5,7 +5,7 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, Inks, Point, Shape, Side};
-use crate::reports::report::plot::{Bound, Color, Curve, Line, Plot};
+use crate::reports::report::plot::{Bound, Color, Curve, LinePattern, Plot};
 use crate::reports::report::track::Track;
 
 /// Where in a drawing a panel stands.
@@ -62,7 +62,7 @@ pub fn draw(drawing: &mut Drawing, area: Area, plot: &Plot, tracks: &[Track]) {
     chart.draw_axes(drawing, &plot.unit);
     for bound in plot.bounds.iter().filter(|bound| chart.shows(bound)) {
         let (points, color) = (chart.across(chart.y(bound.value)), bound.color);
-        drawing.shapes.push(Shape::Stroke { points, color, width: 1.0, line: Line::Dashed });
+        drawing.shapes.push(Shape::Stroke { points, color, width: 1.0, line: LinePattern::Dashed });
     }
     for curve in &plot.curves {
         if let Some(track) = of(curve) {
@@ -76,7 +76,7 @@ pub fn draw(drawing: &mut Drawing, area: Area, plot: &Plot, tracks: &[Track]) {
 const fn width(curve: &Curve) -> f64 {
     match (curve.broad, curve.line) {
         (true, _) => 4.0,
-        (false, Line::Solid) => 1.8,
+        (false, LinePattern::Solid) => 1.8,
         (false, _) => 1.4,
     }
 }

@@ -16,7 +16,7 @@ const INFORMATION_LEVEL: u8 = 2;
 
 /// One moment of a session.
 #[derive(Debug, Clone)]
-pub struct Moment {
+pub struct SessionMoment {
     /// The vehicle's time, us.
     pub now: u64,
     /// Where it really is.
@@ -34,8 +34,8 @@ impl<W: Write> Recording<W> {
     ///
     /// # Errors
     /// As the writer's.
-    pub fn moment(&mut self, moment: &Moment) -> io::Result<()> {
-        let Moment { now, truth, rotors, report, voltage } = moment;
+    pub fn moment(&mut self, moment: &SessionMoment) -> io::Result<()> {
+        let SessionMoment { now, truth, rotors, report, voltage } = moment;
         let now = *now;
         self.truth(now, truth)?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;
@@ -72,7 +72,7 @@ impl<W: Write> Recording<W> {
     ///
     /// # Errors
     /// As the writer's.
-    pub fn said(&mut self, time: u64, text: &str) -> io::Result<()> {
+    pub fn write_text(&mut self, time: u64, text: &str) -> io::Result<()> {
         let log = json!({
             "timestamp": stamp(time),
             "level": INFORMATION_LEVEL,

@@ -1,10 +1,10 @@
 //! How a quantity is spread over many flights: a histogram, the share of flights up to each value, a table of
 //! quantiles.
 //!
-//! A page holds no flight's value by itself but [`HISTOGRAM_BARS`] counts and [`QUANTILE_STEPS`] + 1 evenly spaced quantiles for each
+//! A page holds no flight's value by itself but `HISTOGRAM_BARS` counts and [`QUANTILE_STEPS`] + 1 evenly spaced quantiles for each
 //! group, the least and the greatest among them, whether a hundred flights were flown or a million.
 
-use super::plot::{Color, Line};
+use super::plot::{Color, LinePattern};
 use super::prose::{Cell, Table};
 use super::track::encoded;
 use crate::output::table::{percent, short};
@@ -29,7 +29,7 @@ pub struct Distribution {
     /// flight that never came so far; it is counted and not drawn.
     pub groups: Vec<(String, Vec<f64>)>,
     /// The colour of each group, and how its line is drawn; beyond the last come the colours of [`Color::COLOR_CYCLE`].
-    pub looks: Vec<(Color, Line)>,
+    pub looks: Vec<(Color, LinePattern)>,
 }
 
 impl Distribution {
@@ -40,7 +40,7 @@ impl Distribution {
         let axis = self.axis(&sorted);
         let groups = self.groups.iter().zip(&sorted).enumerate().map(|(place, ((label, values), sorted))| {
             let quantiles: Vec<f32> = (0..=QUANTILE_STEPS).map(|step| quantile(sorted, step) as f32).collect();
-            let (color, line) = self.looks.get(place).copied().unwrap_or((Color::of(place), Line::Solid));
+            let (color, line) = self.looks.get(place).copied().unwrap_or((Color::at_place(place), LinePattern::Solid));
             json!({ "label": label, "color": color.name(), "line": line.name(), "count": values.len(), "finite": sorted.len(),
                 "quantiles": if sorted.is_empty() { String::new() } else { encoded(&quantiles) },
                 "bins": self.counts(sorted, axis) })
@@ -132,7 +132,7 @@ mod tests {
             logarithmic: false,
             bound: Some(0.9),
             groups,
-            looks: vec![(Color::Sky, Line::Dotted)],
+            looks: vec![(Color::Sky, LinePattern::Dotted)],
         }
     }
 

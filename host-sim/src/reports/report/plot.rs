@@ -49,7 +49,7 @@ impl Color {
 
     /// The colour of the curve at this place.
     #[must_use]
-    pub fn of(place: usize) -> Self {
+    pub fn at_place(place: usize) -> Self {
         Self::COLOR_CYCLE[place % Self::COLOR_CYCLE.len()]
     }
 
@@ -83,7 +83,7 @@ impl Color {
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum LinePattern {
     /// Without gaps.
     Solid,
     /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them
@@ -93,7 +93,7 @@ pub enum Line {
     Dotted,
 }
 
-impl Line {
+impl LinePattern {
     /// What the style sheet calls it.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -117,7 +117,7 @@ pub struct Curve {
     /// Its colour.
     pub color: Color,
     /// How it is drawn.
-    pub line: Line,
+    pub line: LinePattern,
     /// Whether it is drawn so broad that its rim shows beneath a curve that covers it.
     pub broad: bool,
 }
@@ -126,13 +126,13 @@ impl Curve {
     /// A full line from the page's first track.
     #[must_use]
     pub fn new(column: impl Into<String>, label: impl Into<String>, color: Color) -> Self {
-        Self { track: 0, column: column.into(), label: label.into(), color, line: Line::Solid, broad: false }
+        Self { track: 0, column: column.into(), label: label.into(), color, line: LinePattern::Solid, broad: false }
     }
 
     /// The same, dashed.
     #[must_use]
     pub fn dashed(self) -> Self {
-        Self { line: Line::Dashed, ..self }
+        Self { line: LinePattern::Dashed, ..self }
     }
 
     /// The same, broad.

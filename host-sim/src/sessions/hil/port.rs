@@ -58,7 +58,7 @@ impl fmt::Display for PortError {
 }
 
 /// A connected flight controller.
-pub struct Port {
+pub struct SimulatorPort {
     reader: BufReader<TcpStream>,
     parser: Parser,
     writer: TcpStream,
@@ -68,17 +68,17 @@ pub struct Port {
     bytes: Vec<u8>,
 }
 
-impl Port {
+impl SimulatorPort {
     /// Finds the other side; `patience` bounds this and every later wait.
     ///
     /// # Errors
     /// [`PortError`] if the other side does not come in time or the address cannot be used.
     pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
         let stream = connected(address, patience, interrupt)?;
-        Self::over(stream, patience, interrupt.clone()).map_err(PortError::Broken)
+        Self::new(stream, patience, interrupt.clone()).map_err(PortError::Broken)
     }
 
-    fn over(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
+    fn new(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(POLL_PERIOD.min(patience)))?;

@@ -10,7 +10,7 @@
 
 use super::port::{Address, PortError, connected};
 use crate::output::interrupt::Interrupt;
-use crate::sessions::ports::{Port, Ports};
+use crate::sessions::ports::{ClientPort, Ports};
 use firmware::link::frame::{Frame, Parser};
 use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavState, STATUSTEXT_DATA};
@@ -66,7 +66,7 @@ impl Relay {
     /// # Errors
     /// [`RelayError`].
     pub fn open(address: &str, ports: &Ports, patience: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
-        let clients = Port::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
+        let clients = ClientPort::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
         let address = Address::Connect(address.to_owned());
         let line = connected(&address, patience, interrupt).map_err(RelayError::Line)?;
         let ready = || {
@@ -115,7 +115,7 @@ fn locked(received: &Mutex<Received>) -> MutexGuard<'_, Received> {
 }
 
 /// Hands on what comes, either way, until it is over or the line has ended.
-fn serve(mut line: TcpStream, mut clients: Port, received: &Mutex<Received>, over: &AtomicBool) {
+fn serve(mut line: TcpStream, mut clients: ClientPort, received: &Mutex<Received>, over: &AtomicBool) {
     let mut parser = Parser::new();
     let mut chunk = [0; 4096];
     while !over.load(Ordering::Relaxed) {

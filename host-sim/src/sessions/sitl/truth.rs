@@ -39,7 +39,7 @@ impl Truth {
     }
 
     /// Sends a line of the vehicle at `now`, us, if one is due; by the desk's clock that is `desk_time`, s.
-    pub fn look(&mut self, now: u64, desk_time: f64, state: &BodyState) {
+    pub fn write_when_due(&mut self, now: u64, desk_time: f64, state: &BodyState) {
         if now < self.due {
             return;
         }

@@ -4,7 +4,7 @@
 use super::CampaignError;
 use super::batches::sha256;
 use crate::rivals::choice::{LawChoice, OUR_LAW};
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 use scenario::Scenario;
 use serde_json::{Value, json};
 use std::ops::Range;
@@ -126,7 +126,7 @@ impl Manifest {
     ///
     /// # Errors
     /// If its manifest cannot be read or is malformed.
-    pub fn of(directory: &Path) -> Result<Option<Self>, CampaignError> {
+    pub fn read_in(directory: &Path) -> Result<Option<Self>, CampaignError> {
         let path = directory.join(MANIFEST_FILE);
         let text = match scenario::text::read(&path) {
             Ok(text) => text,
@@ -183,7 +183,7 @@ fn law(manifest: &Value) -> Option<LawChoice> {
     if name == OUR_LAW {
         return Some(LawChoice::Ours);
     }
-    let (kind, gains) = (Kind::named(name)?, manifest.get("gains")?);
+    let (kind, gains) = (RivalKind::named(name)?, manifest.get("gains")?);
     let values = kind.gains().iter().map(|gain| gains.get(gain)?.as_f64()).collect::<Option<Vec<f64>>>()?;
     Some(LawChoice::Rival(kind, values))
 }

@@ -19,7 +19,7 @@
 
 use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
 use crate::flight::claims::REACHED_BY;
-use crate::flight::flown::{NEAR_MRP, claimed_error, heading_is_followed};
+use crate::flight::extremes::{NEAR_MRP, claimed_error, heading_is_followed};
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
@@ -86,7 +86,7 @@ impl Outcome {
     /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to
     /// its end, the height lost and the final error are infinite.
     #[must_use]
-    pub fn of(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
+    pub fn judge(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
         let start = scenario.initial.position.z;
         let mut outcome = Self {
             height_lost: 0.0,
@@ -100,7 +100,7 @@ impl Outcome {
             beyond: 0,
             shares: Shares::default(),
             fallback: 0,
-            rotor: RotorLoss::of(scenario),
+            rotor: RotorLoss::before_flight(scenario),
             ticks: 0,
         };
         let rotors = scenario.configuration.rotors();

@@ -38,7 +38,7 @@ pub struct RotorLoss {
 impl RotorLoss {
     /// Of a flight of `scenario`, before its first tick.
     #[must_use]
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn before_flight(scenario: &Scenario) -> Self {
         let end = scenario.timing.duration();
         let failure = scenario.reality.failure.filter(|failure| failure.time < end);
         Self { failure, found: None, height_lost: 0.0, distance: 0.0, height: f64::INFINITY }

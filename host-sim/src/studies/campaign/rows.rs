@@ -39,7 +39,7 @@ use std::sync::Arc;
 
 /// One flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct FlightRow {
     /// Its number.
     pub number: u64,
     /// Whether it was to hover at the origin.
@@ -55,7 +55,7 @@ pub struct Row {
 /// The law's key in the metadata.
 const LAW_KEY: &str = "law";
 
-impl Row {
+impl FlightRow {
     /// Flight `number`, in the circumstances of `thrown`.
     #[must_use]
     pub fn new(number: u64, thrown: &Scenario, outcome: Outcome) -> Self {
@@ -138,11 +138,12 @@ pub fn share_of_rotor(rotor: usize) -> String {
 ///
 /// # Errors
 /// As Arrow's: none for rows of that vehicle.
-pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowError> {
-    let numbers =
-        |value: &dyn Fn(&Row) -> f64| -> ArrayRef { Arc::new(Float64Array::from_iter_values(rows.iter().map(value))) };
+pub fn batch(rows: &[FlightRow], manifest: &Manifest) -> Result<RecordBatch, ArrowError> {
+    let numbers = |value: &dyn Fn(&FlightRow) -> f64| -> ArrayRef {
+        Arc::new(Float64Array::from_iter_values(rows.iter().map(value)))
+    };
     let counts =
-        |value: fn(&Row) -> u64| -> ArrayRef { Arc::new(UInt64Array::from_iter_values(rows.iter().map(value))) };
+        |value: fn(&FlightRow) -> u64| -> ArrayRef { Arc::new(UInt64Array::from_iter_values(rows.iter().map(value))) };
     let mut columns = vec![counts(|row| row.number)];
     columns.push(Arc::new(BooleanArray::from_iter(rows.iter().map(|row| Some(row.hover)))));
     columns.extend((0..START_COLUMNS.len()).map(|index| numbers(&|row| start(&row.start)[index])));
@@ -186,7 +187,7 @@ const LOSS_OF: [fn(&RotorLoss) -> Option<f64>; 5] = [
     |loss| loss.failure.map(|_| loss.distance),
 ];
 
-fn optional(rows: &[Row], value: impl Fn(&Row) -> Option<f64>) -> ArrayRef {
+fn optional(rows: &[FlightRow], value: impl Fn(&FlightRow) -> Option<f64>) -> ArrayRef {
     let mut column = Float64Builder::with_capacity(rows.len());
     for row in rows {
         column.append_option(value(row));

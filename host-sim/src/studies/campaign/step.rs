@@ -17,7 +17,7 @@ const WHOLE_TOLERANCE: f64 = 1e-6;
 /// `scenario` with the longest plant step that fits: the control period, the delay of commands and, with an estimator,
 /// the IMU's millisecond are whole numbers of it. A file's own step stays where it is longer.
 #[must_use]
-pub fn longest(scenario: &Scenario) -> Scenario {
+pub fn with_longest_step(scenario: &Scenario) -> Scenario {
     let own = scenario.timing.steps_per_tick;
     let fitting = (1..own).find_map(|steps| {
         let changed = divided(scenario, steps)?;
@@ -32,7 +32,7 @@ pub fn longest(scenario: &Scenario) -> Scenario {
 ///
 /// # Errors
 /// Says what does not fit.
-pub fn of(scenario: &Scenario, step: f64) -> Result<Scenario, String> {
+pub fn with_step(scenario: &Scenario, step: f64) -> Result<Scenario, String> {
     let period = scenario.timing.period();
     let steps = period / step;
     let whole = steps.round();

@@ -58,7 +58,7 @@ impl Store {
     /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
         let lock = DirectoryLock::take(directory).map_err(unwritable(directory))?;
-        let found = Manifest::of(directory)?;
+        let found = Manifest::read_in(directory)?;
         if let Some(difference) = found.as_ref().and_then(|found| found.difference(manifest)) {
             return Err(CampaignError::Input(format!(
                 "{}: holds another campaign: not the same {difference}; choose another --out, or remove that directory",
@@ -90,7 +90,7 @@ impl Store {
     /// # Errors
     /// If the campaign is missing or incomplete.
     pub fn complete(directory: &Path) -> Result<(Self, Vec<RecordBatch>), CampaignError> {
-        let manifest = Manifest::of(directory)?.ok_or_else(|| {
+        let manifest = Manifest::read_in(directory)?.ok_or_else(|| {
             CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST_FILE}", directory.display()))
         })?;
         let store = Self { directory: directory.to_owned(), manifest, _lock: None };

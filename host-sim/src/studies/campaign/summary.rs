@@ -7,7 +7,7 @@ use super::manifest::Manifest;
 use super::outcome::{NEAR_HEADING, SETTLED_DISTANCE_M, in_time};
 use super::quantile;
 use super::rows::{HOLDS_COLUMN, share_of_rotor};
-use crate::flight::flown::NEAR_MRP;
+use crate::flight::extremes::NEAR_MRP;
 use crate::output::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
@@ -58,7 +58,7 @@ struct Figure {
 impl Summary {
     /// Of what was `flown` of `scenario`, whose verdict is `verdict`.
     #[must_use]
-    pub fn of(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
+    pub fn summarize(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let verdicts = verdicts(flown);
         let figure =
@@ -86,7 +86,7 @@ impl Summary {
         let slowest: Vec<f64> = (0..numbers.len())
             .map(|flight| reached.iter().filter_map(|times| times.get(flight)).copied().fold(0.0, f64::max))
             .collect();
-        let (losses, ends) = (Losses::of(flown), floats(flown, "final_error"));
+        let (losses, ends) = (Losses::count(flown), floats(flown, "final_error"));
         let failed = whole_numbers(flown, "failed_rotor");
         let tracks = |flight: &usize| match failed[*flight] {
             Some(_) => ends[*flight] <= PLACE_HELD,
@@ -194,7 +194,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
         let greatest = parts[3].and_then(|greatest| values.iter().position(|value| *value == greatest));
         let flight = greatest.and_then(|place| numbers.get(place)).map_or(String::new(), u64::to_string);
         let mut cells = vec![what.clone(), (*unit).to_owned()];
-        cells.extend(parts.map(|value| value.map_or(String::new(), seen)));
+        cells.extend(parts.map(|value| value.map_or(String::new(), written_figure)));
         cells.push(flight);
         cells
     };
@@ -202,7 +202,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
 }
 
 /// A figure, or "none".
-fn seen(value: f64) -> String {
+fn written_figure(value: f64) -> String {
     if value.is_finite() { short(value) } else { "never".to_owned() }
 }
 

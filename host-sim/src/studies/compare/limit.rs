@@ -183,13 +183,13 @@ impl Limit {
         let tilts = (1..=TILT_COUNT).map(|part| steepest * f64::from(part) / f64::from(TILT_COUNT));
         let turns: Vec<[f64; 3]> =
             tilts.map(|tilt| [gravity * tilt.tan(), quicker(tilt).1.time, quicker(2.0 * tilt).1.time]).collect();
-        let step = |way: f64| turns.iter().map(|turns| stepped(way, turns)).fold(f64::INFINITY, f64::min);
+        let step = |way: f64| turns.iter().map(|turns| step_time(way, turns)).fold(f64::INFINITY, f64::min);
         Self { height_lost, recovered, steps: STEP_DISTANCES_M.map(step) }
     }
 
     /// In the row of `figure` of `scene`; none where nothing is worked out.
     #[must_use]
-    pub fn of(&self, scene: &str, figure: &str) -> Option<f64> {
+    pub fn in_row(&self, scene: &str, figure: &str) -> Option<f64> {
         match (scene, figure) {
             ("upside down", "height lost") => Some(self.height_lost),
             ("upside down", ARRIVAL_FIGURE) => Some(self.recovered),
@@ -212,7 +212,7 @@ fn climb(way: f64, up: f64, gravity: f64) -> f64 {
 }
 
 /// The time of a step by `way`, m, s, with the acceleration a, m/s^2, and the times of the two turns, s.
-fn stepped(way: f64, [acceleration, first, second]: &[f64; 3]) -> f64 {
+fn step_time(way: f64, [acceleration, first, second]: &[f64; 3]) -> f64 {
     // v^2 / a + v t = d + r.
     let half = 0.5 * second * acceleration;
     let speed = (half * half + acceleration * (way + ARRIVAL_DISTANCE_M)).sqrt() - half;

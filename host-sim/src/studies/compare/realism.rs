@@ -17,10 +17,10 @@
 //!
 //! A flight is lost if it ends early or more than `LOST_DISTANCE_M` from its reference.
 
-use super::rows::Row;
+use super::rows::FigureRow;
+use super::scene_figures::{SceneFigures, fly_scene_within};
 use super::scenes::{DEFAULT_DRAG_PER_S, Scene};
-use super::shown::{Shown, course};
-use crate::flight::flier::Flier;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::studies::tune::trials::{hover, recovery};
 use controller_core::error::ParameterError;
 use nalgebra::Vector3;
@@ -175,21 +175,24 @@ fn more(own: &Drag, part: f64, file: &Scenario) -> Drag {
     }
 }
 
-/// The rows of each law's figures in each of the `scenes`, in the fliers' order.
+/// The rows of each law's figures in each of the `scenes`, in the laws' order.
 #[must_use]
-pub fn rows(scenes: &[(&'static str, Vec<Option<Shown>>)]) -> Vec<Row> {
-    type Get = fn(Option<&Shown>) -> f64;
+pub fn rows(scenes: &[(&'static str, Vec<Option<SceneFigures>>)]) -> Vec<FigureRow> {
+    type Get = fn(Option<&SceneFigures>) -> f64;
     const REALISM_FIGURES: [(&str, &str, f64, Get); 4] = [
-        ("lost", "flights", 0.0, |shown| f64::from(u8::from(!shown.is_some_and(is_held)))),
-        ("height lost", "m", 0.01, |shown| shown.map_or(f64::INFINITY, |shown| shown.height_lost)),
-        ("within 0.5 m for good after", "s", 0.02, |shown| {
-            shown.and_then(|shown| shown.settled).unwrap_or(f64::INFINITY)
+        ("lost", "flights", 0.0, |figures| f64::from(u8::from(!figures.is_some_and(is_held)))),
+        ("height lost", "m", 0.01, |figures| figures.map_or(f64::INFINITY, |figures| figures.height_lost)),
+        ("within 0.5 m for good after", "s", 0.02, |figures| {
+            figures.and_then(|figures| figures.settled).unwrap_or(f64::INFINITY)
         }),
-        ("position error, last half, RMS", "mm", 0.1, |shown| shown.map_or(f64::INFINITY, |shown| 1e3 * shown.rms)),
+        ("position error, last half, RMS", "mm", 0.1, |figures| {
+            figures.map_or(f64::INFINITY, |figures| 1e3 * figures.rms)
+        }),
     ];
-    let of_scene = |(scene, shown): &(&'static str, Vec<Option<Shown>>)| {
-        let values = |get: Get| shown.iter().map(|shown| get(shown.as_ref())).collect();
-        let row = |(figure, unit, grain, get)| Row { scene, figure, unit, values: values(get), grain, limit: None };
+    let of_scene = |(scene, figures): &(&'static str, Vec<Option<SceneFigures>>)| {
+        let values = |get: Get| figures.iter().map(|figures| get(figures.as_ref())).collect();
+        let row =
+            |(figure, unit, grain, get)| FigureRow { scene, figure, unit, values: values(get), grain, limit: None };
         REALISM_FIGURES.map(row)
     };
     scenes.iter().flat_map(of_scene).collect()
@@ -197,14 +200,14 @@ pub fn rows(scenes: &[(&'static str, Vec<Option<Shown>>)]) -> Vec<Row> {
 
 /// Whether a flight that did not end early is not lost.
 #[must_use]
-pub fn is_held(shown: &Shown) -> bool {
-    shown.end_error <= LOST_DISTANCE_M
+pub fn is_held(figures: &SceneFigures) -> bool {
+    figures.end_error <= LOST_DISTANCE_M
 }
 
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
-pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
-    course(flier, scene, ARRIVAL_DISTANCE_M)
+pub fn fly_realism_scene(law: &LawOnVehicle, scene: &Scene) -> Option<SceneFigures> {
+    fly_scene_within(law, scene, ARRIVAL_DISTANCE_M)
 }
 
 #[cfg(test)]

@@ -35,8 +35,8 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     let said = |text: &str| {
         let head = format!(
             "{TUNED_LINE} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
-            short(tuned.verdict.shown.height_lost),
-            short(tuned.verdict.shown.gust),
+            short(tuned.verdict.figures.height_lost),
+            short(tuned.verdict.figures.gust),
             100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
         );
         // A file that was tuned before loses its older line.

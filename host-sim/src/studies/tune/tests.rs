@@ -37,9 +37,9 @@ fn verdict(scenario: &Scenario, requirements: Requirements) -> Verdict {
 fn table_one_meets_easy_requirements_and_loses_23_metres() {
     let verdict = verdict(&paper(), EASY_REQUIREMENTS);
     assert!(verdict.accepted(), "{verdict:?}");
-    assert!((verdict.shown.height_lost - 23.3).abs() < 0.1, "{:?}", verdict.shown);
+    assert!((verdict.figures.height_lost - 23.3).abs() < 0.1, "{:?}", verdict.figures);
     // 2.5 m/s^2 of wind are more than M_p: it is carried away.
-    assert!(verdict.shown.gust > 5.0 && verdict.shown.gust == verdict.shown.offset, "{:?}", verdict.shown);
+    assert!(verdict.figures.gust > 5.0 && verdict.figures.gust == verdict.figures.offset, "{:?}", verdict.figures);
 }
 
 #[test]
@@ -309,7 +309,7 @@ fn the_table_says_what_each_figure_was_and_is() {
     let [scenario, ..] = extended();
     let before = verdict(&scenario, Requirements::default());
     let mut after = before.clone();
-    (after.shown.height_lost, after.mean[0], after.cost) = (0.5, 0.6, 3.0);
+    (after.figures.height_lost, after.mean[0], after.cost) = (0.5, 0.6, 3.0);
     let text = Tuned { before, verdict: after, scenario, judged: 2 }.table();
     let line =
         |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{name}: {text}"));

@@ -11,7 +11,7 @@
 //! | weak rotors | 1 m step with rotors that deliver 60 % | time until within 0.1 m for good, s |
 //! | heavy | the recovery with 1.6 times the mass | height lost, m; time until within 0.1 m for good, s |
 //!
-//! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`COST_MODELS`]: the vehicle as the file
+//! The cost is their weighted sum, [`TrialFigures::cost`], averaged over the models of [`COST_MODELS`]: the vehicle as the file
 //! says, and as it may really be. The last four go beyond a law's promise; they are flown on the file's own model
 //! only.
 
@@ -95,7 +95,7 @@ pub const COST_MODELS: [Model; 4] = [
 
 /// The trials' figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct TrialFigures {
     /// Height lost in the recovery, m.
     pub height_lost: f64,
     /// Until the recovery is within 0.1 m for good, s.
@@ -114,14 +114,14 @@ pub struct Shown {
     /// Position under noise, m, rms.
     pub noise: f64,
     /// The figures beyond a law's promise, on the file's own model; `None` for another model.
-    pub beyond: Option<Beyond>,
+    pub beyond: Option<HarderTrialFigures>,
     /// Commands that a limit cut, in all trials.
     pub clipped: u64,
 }
 
 /// The figures of the trials beyond a law's promise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beyond {
+pub struct HarderTrialFigures {
     /// Deepest excursion in the storm, m.
     pub storm: f64,
     /// Until the far step is within 0.1 m for good, s.
@@ -137,7 +137,7 @@ pub struct Beyond {
 /// A figure: its name, its unit, the value with which a pilot begins to be content, and its weight.
 pub type Figure = (&'static str, &'static str, f64, f64);
 
-/// The figures that every model shows, as [`Shown::values`].
+/// The figures that every model shows, as [`TrialFigures::values`].
 pub const MODEL_FIGURES: [Figure; 7] = [
     ("upside down: height lost", "m", 3.0, 1.0),
     ("upside down: back for good after", "s", 5.0, 1.0),
@@ -148,7 +148,7 @@ pub const MODEL_FIGURES: [Figure; 7] = [
     ("noise: rotor command's change in 10 ms", "of hovering", 0.05, 0.5),
 ];
 
-/// The figures of the file's own model alone, as [`Beyond::values`].
+/// The figures of the file's own model alone, as [`HarderTrialFigures::values`].
 pub const OWN_MODEL_FIGURES: [Figure; 5] = [
     ("storm of 12 m/s: excursion", "m", 2.0, 0.5),
     ("step of 10 m: there after", "s", 5.0, 1.0),
@@ -167,7 +167,7 @@ fn weighted(figures: &[Figure], values: &[f64]) -> f64 {
     parts.map(|((_, _, content, weight), value)| weight * (value / content).min(FIGURE_COST_MAX)).sum()
 }
 
-impl Beyond {
+impl HarderTrialFigures {
     /// The values of [`OWN_MODEL_FIGURES`].
     #[must_use]
     pub fn values(&self) -> [f64; 5] {
@@ -175,7 +175,7 @@ impl Beyond {
     }
 }
 
-impl Shown {
+impl TrialFigures {
     /// The values of [`MODEL_FIGURES`].
     #[must_use]
     pub const fn values(&self) -> [f64; 7] {
@@ -193,13 +193,13 @@ impl Shown {
 /// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a
 /// flight of the judged law in given circumstances. `None` if one of the flights ends early.
 #[must_use]
-pub fn show(
+pub fn fly_trials(
     scenario: &Scenario,
     start: impl Fn(&Scenario) -> Option<Flight>,
     model: &Model,
     recovery: f64,
-) -> Option<Shown> {
-    let course = |scenario: &Scenario| Course::over(scenario, start(scenario)?, ARRIVAL_DISTANCE_M).ok();
+) -> Option<TrialFigures> {
+    let course = |scenario: &Scenario| Course::fly(scenario, start(scenario)?, ARRIVAL_DISTANCE_M).ok();
     let settled =
         |scenario: &Scenario| Course::until_settled(scenario, start(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok();
     let real = really(scenario, model);
@@ -234,7 +234,7 @@ pub fn show(
         let weak = other(hovering(near, STEP_TIME)?, 1.0, WEAK_THRUST_SCALE)?;
         let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
         clipped += [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum::<u64>();
-        Some(Beyond {
+        Some(HarderTrialFigures {
             storm: storm.excursion,
             far: far.settled.unwrap_or(STEP_TIME),
             weak: weak.settled.unwrap_or(STEP_TIME),
@@ -245,7 +245,7 @@ pub fn show(
         None
     };
 
-    Some(Shown {
+    Some(TrialFigures {
         height_lost: recovered.height_lost,
         recovered: recovered.settled.unwrap_or(recovery),
         turned: recovered.turned.unwrap_or(recovery),

@@ -32,8 +32,8 @@ fn wrench(thrust: f32, x: f32, y: f32, z: f32) -> Wrench {
     Wrench { thrust, torque: Vector3::new(x, y, z) }
 }
 
-fn asked(thrust: f32, x: f32, y: f32, z: f32) -> Asked {
-    Asked::Wrench(wrench(thrust, x, y, z))
+fn asked(thrust: f32, x: f32, y: f32, z: f32) -> ActuatorDemand {
+    ActuatorDemand::Wrench(wrench(thrust, x, y, z))
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn without_rotors_and_delay_the_plant_is_the_plant_bit_for_bit() {
     for k in 0..200_u8 {
         let x = f32::from(k);
         let wrench = wrench(25.0 * (0.3 * x).sin(), 0.02 * x.cos(), 1.5 * (0.7 * x).sin(), 0.01);
-        let (clipped, thrusts) = actuators.hold(&mut through, &Asked::Wrench(wrench), 10).unwrap();
+        let (clipped, thrusts) = actuators.hold(&mut through, &ActuatorDemand::Wrench(wrench), 10).unwrap();
         assert_eq!(clipped, direct.hold(&wrench, 10).unwrap());
         assert!(thrusts.is_empty());
         assert_eq!(through.state(), direct.state());
@@ -57,7 +57,7 @@ fn a_delay_takes_effect_at_its_step_and_not_one_sooner() {
         let (mut direct, mut through) = (plant(STEP_S), plant(STEP_S));
         let mut actuators = Actuators::new(None, delay, HOVER_N);
         for (tick, command) in commands.iter().chain(&commands).enumerate() {
-            actuators.hold(&mut through, &Asked::Wrench(*command), 10).unwrap();
+            actuators.hold(&mut through, &ActuatorDemand::Wrench(*command), 10).unwrap();
             for step in 10 * tick as u64..10 * (tick as u64 + 1) {
                 // The wrench of tick k acts from step 10 k + delay on; before the first one, hovering thrust.
                 let acting = step
@@ -120,8 +120,9 @@ fn rotors_start_at_the_speeds_that_hover() {
 
 #[test]
 fn what_the_rotors_lack_is_flagged() {
-    let cut =
-        |wrench: &Wrench| rotors(LAG_S, 0, STEP_S).hold(&mut plant(STEP_S), &Asked::Wrench(*wrench), 10).unwrap().0;
+    let cut = |wrench: &Wrench| {
+        rotors(LAG_S, 0, STEP_S).hold(&mut plant(STEP_S), &ActuatorDemand::Wrench(*wrench), 10).unwrap().0
+    };
     // Two rotors at nothing carry all yaw the hovering thrust has: k_m / k_eta T = 24.4 mm of 4.9 N.
     assert!(!cut(&wrench(HOVER_N, 0.0, 0.0, 0.119)) && cut(&wrench(HOVER_N, 0.0, 0.0, 0.121)));
     assert!(cut(&wrench(60.0, 0.0, 0.0, 0.0)) && cut(&wrench(-1.0, 0.0, 0.0, 0.0)));

@@ -97,7 +97,7 @@ pub struct Lean {
 
 impl Lean {
     /// None of one that is upright, or leans too far to stand on a foot.
-    pub fn of(state: &BodyState) -> Option<Self> {
+    pub fn measure(state: &BodyState) -> Option<Self> {
         let up = up(state);
         let toward = Vector3::new(up.x, up.y, 0.0).try_normalize(1e-9)?;
         let axis = UnitVector3::new_normalize(Vector3::z().cross(&toward));

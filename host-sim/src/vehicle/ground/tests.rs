@@ -110,7 +110,7 @@ fn without_thrust_no_energy_appears() {
 fn leaning(roll: f64, pitch: f64) -> (Ground, Plant, f64) {
     let (mut ground, mut plant, weight) = on_the_ground();
     let state = BodyState { attitude: attitude_from_euler(roll, pitch, 0.7), ..*plant.state() };
-    let (rise, _) = Lean::of(&state).unwrap().rise();
+    let (rise, _) = Lean::measure(&state).unwrap().rise();
     let touching = BodyState { position: state.position + Vector3::z() * (0.999 * rise), ..state };
     let (state, touchdown) = ground.touch(&touching).unwrap();
     assert!((touchdown.tilt - (roll.cos() * pitch.cos()).acos()).abs() < 1e-9);
@@ -123,7 +123,7 @@ fn one_that_leans_falls_back_onto_its_feet_as_fast_as_its_weight_makes_it_and_a_
     for (roll, pitch) in [(0.02, 0.0), (0.2, 0.0), (-0.1, 0.25), (0.0, -0.45)] {
         let (mut ground, mut plant, weight) = leaning(roll, pitch);
         let (began, start, mut turned, mut fastest) = (energy(&plant, weight), tilt(plant.state()), 0.0, 0.0_f64);
-        let foot = |state: &BodyState| Lean::of(state).map(|lean| state.position - lean.arm());
+        let foot = |state: &BodyState| Lean::measure(state).map(|lean| state.position - lean.arm());
         let (mut before, mut rubbed) = (began, 0.0);
         while tilt(plant.state()) > 1e-9 {
             let last = *plant.state();

@@ -21,8 +21,10 @@ fn filtered(feels: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     let mut shown = [Vec::new(), Vec::new()];
     for n in 1..=3_000_u64 {
         let both = Vector3::x() * feels(n as f64 * 1e-3);
-        let sample = instruments
-            .sample_of(&STILL_BODY, n * SAMPLE_PERIOD_US, |_| Felt { angular_velocity: both, specific_force: both });
+        let sample = instruments.sample_of(&STILL_BODY, n * SAMPLE_PERIOD_US, |_| TrueMotion {
+            angular_velocity: both,
+            specific_force: both,
+        });
         if n > 2_000 {
             shown[0].push(sample.angular_velocity.x.into());
             shown[1].push(sample.specific_force.x.into());

@@ -72,11 +72,14 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
         Plot::new("Commands cut by the limits", "", vec![Curve::new("clipped", "1: cut", Color::Blue)]),
     ];
     if let Some(rotors) = scenario.configuration.rotors() {
-        let curve =
-            |rotor: usize| Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::of(rotor));
+        let curve = |rotor: usize| {
+            Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::at_place(rotor))
+        };
         let proven = (0..rotors.len()).filter_map(|rotor| Some((rotor, certificate.rotor(rotor)?)));
         let mut bounds: Vec<Bound> = proven
-            .flat_map(|(rotor, proven)| interval(proven, &format!("rotor {}, proven", rotor + 1), Color::of(rotor)))
+            .flat_map(|(rotor, proven)| {
+                interval(proven, &format!("rotor {}, proven", rotor + 1), Color::at_place(rotor))
+            })
             .collect();
         let given =
             rotors.iter().map(|rotor| Interval { least: rotor.thrust_min.into(), greatest: rotor.thrust_max.into() });
@@ -99,7 +102,7 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
         columns
             .into_iter()
             .enumerate()
-            .map(|(place, (column, label))| Curve::new(column, label, Color::of(place)))
+            .map(|(place, (column, label))| Curve::new(column, label, Color::at_place(place)))
             .collect()
     };
     let mut filters: Vec<Curve> =
@@ -148,7 +151,7 @@ fn surroundings() -> Vec<Plot> {
 /// Curves of a vector's components.
 fn axes(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis))).collect()
 }
 
 /// Curves that stay visible beneath their reference once the two agree.
@@ -159,7 +162,7 @@ fn flown(columns: [&str; 3]) -> Vec<Curve> {
 /// What was asked of them.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis)).dashed()).collect()
 }
 
 fn ink(value: f64, label: &str) -> Bound {
@@ -179,5 +182,5 @@ fn both(levels: [f64; 3], label: &str) -> Vec<Bound> {
         return sides(levels[0], format!("each, {label}"), Color::Ink).into();
     }
     let named = levels.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::of(axis))).collect()
+    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::at_place(axis))).collect()
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::sessions::hil::{End, HilError, Session, serve};
+use crate::sessions::hil::{End, HilError, HilSession, serve};
 use crate::sessions::messages::decode;
 use firmware::frames;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
@@ -16,10 +16,10 @@ const FUTILE_WAIT: Duration = Duration::from_millis(300);
 const HANG_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A port and the flight controller's end of its connection.
-fn connected(patience: Duration) -> (Port, TcpStream) {
+fn connected(patience: Duration) -> (SimulatorPort, TcpStream) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Connect(listener.local_addr().unwrap().to_string());
-    let port = Port::open(&address, patience, &Interrupt::default()).unwrap();
+    let port = SimulatorPort::open(&address, patience, &Interrupt::default()).unwrap();
     let board = listener.accept().unwrap().0;
     board.set_read_timeout(Some(HANG_TIMEOUT)).unwrap();
     (port, board)
@@ -79,7 +79,8 @@ fn no_connection_is_waited_for_without_end() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     for address in [Address::Connect(free.clone()), Address::Listen(free)] {
         let started = Instant::now();
-        let Err(PortError::NoConnection(who, waited, _)) = Port::open(&address, FUTILE_WAIT, &Interrupt::default())
+        let Err(PortError::NoConnection(who, waited, _)) =
+            SimulatorPort::open(&address, FUTILE_WAIT, &Interrupt::default())
         else {
             panic!("connected")
         };
@@ -98,7 +99,7 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
     assert!(waiting.len() < 1000);
     let address = Address::Connect(address.to_string());
     let started = Instant::now();
-    let Err(PortError::NoConnection(..)) = Port::open(&address, FUTILE_WAIT, &Interrupt::default()) else {
+    let Err(PortError::NoConnection(..)) = SimulatorPort::open(&address, FUTILE_WAIT, &Interrupt::default()) else {
         panic!("found")
     };
     let interrupt = Interrupt::default();
@@ -107,7 +108,7 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
         std::thread::sleep(FUTILE_WAIT);
         asking.ask();
     });
-    assert!(matches!(Port::open(&address, 4 * HANG_TIMEOUT, &interrupt), Err(PortError::Interrupted(_))));
+    assert!(matches!(SimulatorPort::open(&address, 4 * HANG_TIMEOUT, &interrupt), Err(PortError::Interrupted(_))));
     user.join().unwrap();
     assert!(started.elapsed() < HANG_TIMEOUT, "{:?}", started.elapsed());
 }
@@ -116,7 +117,7 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
 fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
     let (mut port, mut board) = connected(HANG_TIMEOUT);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let session = Session { duration: Some(0.03), pose_until: Some(0.02), speed: None };
+    let session = HilSession { duration: Some(0.03), pose_until: Some(0.02), speed: None };
     let board = std::thread::spawn(move || {
         for tick in 0..3 {
             let time = 5_000 + 10_000 * tick;
@@ -162,7 +163,7 @@ fn received_in_a_noisy_session() -> Vec<u8> {
         }
         bytes
     });
-    let session = Session { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed: None };
+    let session = HilSession { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed: None };
     serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap()
 }
@@ -198,7 +199,7 @@ fn a_session_is_held_to_a_speed_of_this_desks_time() {
                 while received::<HIL_SENSOR_DATA>(&mut board).is_none() {}
             }
         });
-        let session = Session { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed };
+        let session = HilSession { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed };
         let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
         board.join().unwrap();
         assert_eq!(summary.pace.ticks(), TICK_COUNT);
@@ -214,7 +215,7 @@ fn a_command_that_is_no_number_ends_the_session_in_words() {
     let (mut port, mut board) = connected(HANG_TIMEOUT);
     board.write_all(&command(5_000, f32::NAN)).unwrap();
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None, None) else {
+    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &HilSession::default(), None, None) else {
         panic!("flown")
     };
     assert!(what.contains("0 to 1"), "{what}");

@@ -2,7 +2,7 @@
 
 use super::super::batches;
 use super::super::manifest::{CHUNK_FLIGHTS, MANIFEST_FILE};
-use super::super::step::longest;
+use super::super::step::with_longest_step;
 use super::super::store::{REPORT_FILE, RESULT_FILE, SCENARIO_FILE};
 use super::*;
 use crate::output::whole_file::WholeFile;
@@ -23,11 +23,11 @@ fn directory(test: &str) -> PathBuf {
     path
 }
 
-fn source(text: String) -> Source {
-    Source::new(longest(&Scenario::parse(&text, "f").unwrap()), text, "f".to_owned()).unwrap()
+fn source(text: String) -> CampaignSource {
+    CampaignSource::new(with_longest_step(&Scenario::parse(&text, "f").unwrap()), text, "f".to_owned()).unwrap()
 }
 
-fn fly(source: &Source, orders: &Orders, directory: &Path) -> Result<Summary, CampaignError> {
+fn fly(source: &CampaignSource, orders: &Orders, directory: &Path) -> Result<Summary, CampaignError> {
     campaign(source, &LawChoice::Ours, orders, directory, &Interrupt::default())
 }
 
@@ -111,7 +111,7 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     assert!((0..arrow).step_by(13).all(|end| part(&sealed[..end]).is_none()));
     let there = fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap();
     let (verdict, none) = (source.verdict().unwrap(), Interrupt::default());
-    let ours = Flier::new(&LawChoice::Ours, &source.scenario, verdict.certified()).unwrap();
+    let ours = LawOnVehicle::new(&LawChoice::Ours, &source.scenario, verdict.certified()).unwrap();
     assert_eq!(Chunks::new(&source, &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
     // One writes into a directory at a time.
     drop(store);
@@ -158,7 +158,7 @@ fn what_cannot_be_written_in_the_end_is_found_before_anything_is_flown() {
 #[test]
 fn a_scenario_that_nothing_is_thrown_from_is_named_by_its_file() {
     let (text, out) = (format!("{HUMMINGBIRD}\n[ground]\nheight = 0.0\n"), directory("grounded"));
-    let grounded = Source::new(Scenario::parse(&text, "f").unwrap(), text, "mine.toml".to_owned());
+    let grounded = CampaignSource::new(Scenario::parse(&text, "f").unwrap(), text, "mine.toml".to_owned());
     let flown = grounded.and_then(|source| fly(&source, &orders(1, 1), &out));
     let error = flown.unwrap_err().to_string();
     assert!(error.starts_with("mine.toml: ground: a campaign throws"), "{error}");

@@ -56,9 +56,9 @@ fn a_short_step_is_over_before_it_brakes_and_a_long_one_stops_within_reach() {
     let coasted = 0.1 + speed / 10.0 + (0.9 - pushed) / speed;
     let braked = 0.1 + speed / 10.0 + 0.2 + (speed - 2.0) / 10.0;
     let expected = if 0.9 <= pushed + 0.2 * speed { coasted } else { braked };
-    assert!((stepped(1.0, &[10.0, 0.1, 0.2]) - expected).abs() < 1e-12);
+    assert!((step_time(1.0, &[10.0, 0.1, 0.2]) - expected).abs() < 1e-12);
     // Without turns: 4 + 4 s for 160 m at 10 m/s^2, but for the last metre of the way.
-    let whole = stepped(159.9, &[10.0, 0.0, 0.0]);
+    let whole = step_time(159.9, &[10.0, 0.0, 0.0]);
     assert!((whole - (8.0 - 0.2)).abs() < 1e-9, "{whole}");
 }
 

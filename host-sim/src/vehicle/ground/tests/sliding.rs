@@ -65,7 +65,7 @@ fn what_slides_without_a_push_stops_by_friction_and_stays() {
 fn skidding(roll: f64, velocity: Vector3<f64>) -> (Ground, Plant, f64) {
     let (mut ground, mut plant, weight) = on_the_ground();
     let state = BodyState { attitude: attitude_from_euler(roll, 0.0, 0.0), velocity, ..*plant.state() };
-    let rise = Lean::of(&state).map_or(0.0, |lean| lean.rise().0);
+    let rise = Lean::measure(&state).map_or(0.0, |lean| lean.rise().0);
     let (state, _) = ground.touch(&BodyState { position: state.position + Vector3::z() * rise, ..state }).unwrap();
     plant.place(state);
     (ground, plant, weight)

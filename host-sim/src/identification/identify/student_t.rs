@@ -20,7 +20,7 @@ const QUANTILES: [[f64; 2]; 13] = [
     [3.515, 4.073],
 ];
 
-fn quantiles(parts: usize) -> [f64; 2] {
+fn quantile_pair(parts: usize) -> [f64; 2] {
     let [least, most] = PART_COUNT_RANGE;
     QUANTILES[parts.clamp(least, most) - least]
 }
@@ -28,11 +28,11 @@ fn quantiles(parts: usize) -> [f64; 2] {
 /// Within so many standard uncertainties a number is in all but 0.05 / 16 of all flights: sixteen at once in 95 of 100.
 #[must_use]
 pub fn coverage(parts: usize) -> f64 {
-    quantiles(parts)[0]
+    quantile_pair(parts)[0]
 }
 
 /// Within so many in 999 of 1,000.
 #[must_use]
 pub fn consistent(parts: usize) -> f64 {
-    quantiles(parts)[1]
+    quantile_pair(parts)[1]
 }

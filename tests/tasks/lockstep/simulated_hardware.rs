@@ -1,11 +1,11 @@
 //! The vehicle as the firmware's peripherals meet it: rotors that lag, a body that falls, sensors and motors.
 
-use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::configuration::Configuration;
 use controller_core::state::State;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use host_sim::sessions::sitl::clock::SimClock;
 use host_sim::vehicle::plant::Plant;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -19,9 +19,9 @@ pub const STEP_US: u64 = 1_000;
 /// The file that the firmware embeds; what the firmware does not know of it is the rotors' lag.
 const EMBEDDED: &str = include_str!("../../../vehicles/study.toml");
 
-/// Everything outside the processor; clones are the same world.
+/// Everything outside the processor; clones are the same.
 #[derive(Clone)]
-pub struct World(Rc<Inner>);
+pub struct SimulatedHardware(Rc<Inner>);
 
 struct Inner {
     clock: SimClock,
@@ -73,7 +73,7 @@ impl Health {
     }
 }
 
-impl World {
+impl SimulatedHardware {
     /// A vehicle standing on level ground at the origin, heading along world x.
     pub fn new(clock: &SimClock, configuration: &Configuration) -> Self {
         let rotors = configuration.rotors().unwrap().clone();
@@ -195,7 +195,7 @@ impl Body {
 }
 
 /// The board's IMU: a sample at each step, with enough noise that it does not count as stuck.
-pub struct SimImu(pub World);
+pub struct SimImu(pub SimulatedHardware);
 
 impl Imu for SimImu {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
@@ -219,7 +219,7 @@ impl Imu for SimImu {
 }
 
 /// The board's motor outputs.
-pub struct SimMotors(pub World);
+pub struct SimMotors(pub SimulatedHardware);
 
 impl Motors for SimMotors {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
@@ -230,7 +230,7 @@ impl Motors for SimMotors {
 }
 
 /// The board's watchdog.
-pub struct SimWatchdog(pub World);
+pub struct SimWatchdog(pub SimulatedHardware);
 
 impl Watchdog for SimWatchdog {
     fn feed(&mut self) {
@@ -239,7 +239,7 @@ impl Watchdog for SimWatchdog {
 }
 
 /// The board's battery.
-pub struct SimBattery(pub World);
+pub struct SimBattery(pub SimulatedHardware);
 
 impl Battery for SimBattery {
     async fn voltage(&mut self) -> Option<f32> {
