@@ -5,10 +5,10 @@ use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
 use crate::threads::alone;
 use crate::whole_number::Whole;
-use host_sim::rivals::choice::OURS;
+use host_sim::rivals::choice::OUR_LAW;
 use host_sim::rivals::gains as of_rivals;
 use host_sim::studies::campaign::CampaignError;
-use host_sim::studies::campaign::fly::{self, Orders, Source};
+use host_sim::studies::campaign::fly::{self, CampaignSource, Orders};
 use host_sim::studies::campaign::step;
 use host_sim::studies::campaign::summary;
 use pyo3::prelude::*;
@@ -99,7 +99,7 @@ impl Campaign {
 ///     ValueError: names the argument, or says that the directory holds another campaign.
 ///     OSError: it cannot be written.
 #[pyfunction]
-#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::new(1), Whole::new(1)), plant_step=None, law=OURS, gains=None))]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::new(1), Whole::new(1)), plant_step=None, law=OUR_LAW, gains=None))]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn campaign(
     py: Python<'_>,
@@ -122,15 +122,15 @@ pub fn campaign(
         refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1))
     })?;
     let stepped = match plant_step {
-        None => step::longest(&scenario.read),
+        None => step::with_longest_step(&scenario.read),
         Some(requested) => {
-            step::of(&scenario.read, requested).map_err(|problem| refused_field("plant_step", problem))?
+            step::with_step(&scenario.read, requested).map_err(|problem| refused_field("plant_step", problem))?
         }
     };
     let law = of_rivals::chosen(law, &stepped, gains.as_deref());
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
-    let source = Source::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
+    let source = CampaignSource::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
     let flown = interruptible(py, |interrupt| alone(|| fly::campaign(&source, &law, &orders, &directory, interrupt)))?;
     Ok(Campaign { summary: flown?.map_err(raised)? })
 }

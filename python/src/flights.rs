@@ -6,7 +6,7 @@ use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
 use controller_core::error::ParameterError;
 use host_sim::flight::claims::{self, claims};
-use host_sim::flight::flown::Flown;
+use host_sim::flight::extremes::FlightExtremes;
 use host_sim::flight::{self, FlightError};
 use host_sim::output::interrupt::Interrupt;
 use host_sim::reports::log;
@@ -115,7 +115,7 @@ fn flown(scenario: &scenario::Scenario, interrupt: &Interrupt) -> Result<Flight,
     let header = log::header(rotors, configuration.paper().is_none()) + &log::reality_header(&scenario.reality);
     let names: Vec<String> = header.split(',').map(str::to_owned).collect();
     let mut columns = vec![Vec::new(); names.len()];
-    let (mut row, mut seen) = (Vec::new(), Flown::new(scenario));
+    let (mut row, mut seen) = (Vec::new(), FlightExtremes::new(scenario));
     for _ in 0..scenario.timing.ticks {
         if interrupt.signal().is_some() {
             break;

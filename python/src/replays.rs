@@ -171,7 +171,11 @@ fn page(scenario: &Scenario, track: Track) -> Page {
         hover_thrust: f64::from(vehicle.mass * vehicle.gravity),
     };
     let curves = |names: &[&str]| {
-        names.iter().enumerate().map(|(place, name)| Curve::new(*name, *name, Color::of(place))).collect::<Vec<_>>()
+        names
+            .iter()
+            .enumerate()
+            .map(|(place, name)| Curve::new(*name, *name, Color::at_place(place)))
+            .collect::<Vec<_>>()
     };
     let goal = curves(&["pdx", "pdy", "pdz"]).into_iter().map(Curve::dashed).collect();
     let mut plots = vec![

@@ -7,7 +7,7 @@ use crate::threads::alone;
 use crate::whole_number::Whole;
 use host_sim::studies::tune::effort::Effort;
 use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
-use host_sim::studies::tune::trials::Shown;
+use host_sim::studies::tune::trials::TrialFigures;
 use host_sim::studies::tune::{output, tune as search};
 use pyo3::prelude::*;
 use scenario::check_name;
@@ -19,7 +19,7 @@ pub struct Tuned {
     /// The scenario with these gains.
     #[pyo3(get)]
     scenario: Py<Scenario>,
-    shown: Shown,
+    shown: TrialFigures,
     /// What the search made small.
     #[pyo3(get)]
     cost: f64,
@@ -136,7 +136,7 @@ pub fn tune(
     let scenario = Py::new(py, Scenario::from_text(text, scenario.file.clone())?)?;
     Ok(Tuned {
         scenario,
-        shown: tuned.verdict.shown,
+        shown: tuned.verdict.figures,
         cost: tuned.verdict.cost,
         cost_before: tuned.before.cost,
         judged: tuned.judged,

@@ -14,7 +14,7 @@ use crate::threads::shared;
 use crate::whole_number::Whole;
 use controller_core::state::Wrench;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::plant::body::Body;
 use host_sim::vehicle::plant::rows::Rows;
 use host_sim::vehicle::sensors::Sensors;
@@ -60,7 +60,7 @@ impl Row {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(&Asked::Wrench(*wrench), steps);
+        let held = self.vehicle.hold(&ActuatorDemand::Wrench(*wrench), steps);
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 

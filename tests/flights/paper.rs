@@ -3,13 +3,13 @@
 use controller_core::certificate::Certificate;
 use host_sim::flight::Flight;
 use host_sim::flight::claims::{all_hold, claims, table};
-use host_sim::flight::flown::Flown;
+use host_sim::flight::extremes::FlightExtremes;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::path::Path;
 
-fn flown(scenario: &Scenario) -> Flown {
-    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
+fn flown(scenario: &Scenario) -> FlightExtremes {
+    FlightExtremes::gather(scenario, Flight::new(scenario).unwrap()).unwrap()
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::support::binary::{self, host_sim, status, stdout};
 use controller_core::governor::{Governor, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::reference::Reference;
 use host_sim::flight::Flight;
-use host_sim::reports::reference_rows::SLOWER;
+use host_sim::reports::reference_rows::FOLLOWED_WITHIN_2_CM_FACTOR;
 use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
 use scenario::trajectory::{Route, Way};
@@ -112,16 +112,16 @@ fn streamed(scenario: &Scenario) -> f32 {
     let governor = Governor::new(bounds, &GovernorLimits::default(), period, memory).unwrap();
     // Two seconds at rest, then as `host-sim reference` writes it.
     let at = |tick: u64| {
-        let time = (tick * 10_000).saturating_sub(2_000_000) as f64 / SLOWER;
+        let time = (tick * 10_000).saturating_sub(2_000_000) as f64 / FOLLOWED_WITHIN_2_CM_FACTOR;
         let Reference { velocity, acceleration, .. } = scenario.trajectory.at(time as u64);
-        let slower = SLOWER as f32;
+        let slower = FOLLOWED_WITHIN_2_CM_FACTOR as f32;
         let (velocity, acceleration) = (velocity / slower, acceleration / (slower * slower));
         Reference { velocity, acceleration, ..scenario.trajectory.at(time as u64) }
     };
     let first = at(0);
     governor.start(&first.position, &Vector3::zeros(), &first.heading).unwrap();
     let mut worst = 0.0_f32;
-    for tick in 0..(scenario.timing.ticks as f64 * SLOWER) as u64 + 200 {
+    for tick in 0..(scenario.timing.ticks as f64 * FOLLOWED_WITHIN_2_CM_FACTOR) as u64 + 200 {
         if tick % 2 == 0 {
             let Reference { position, velocity, acceleration, .. } = at(tick);
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };

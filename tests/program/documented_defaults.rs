@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// How far single precision may be off, as a share.
-const ROUNDING: f64 = 2e-5;
+/// How far single precision may be off.
+const ROUNDING_SHARE: f64 = 2e-5;
 
 /// What a formula is called, how it is written, and what it comes to.
 struct Formula(&'static str, &'static str, f64);
@@ -169,7 +169,7 @@ fn assert_agree(airframe: &Airframe, given: &Given, name: &str) {
         let wanted = by_page.get(constant.key).unwrap_or_else(|| panic!("{}: no formula", constant.path));
         let wanted = wanted.clamp(f64::from(constant.range.min), f64::from(constant.range.max));
         let apart = (f64::from(value) - wanted).abs();
-        assert!(apart <= ROUNDING * wanted.abs(), "{name}: {} is {value}, by the page {wanted}", constant.path);
+        assert!(apart <= ROUNDING_SHARE * wanted.abs(), "{name}: {} is {value}, by the page {wanted}", constant.path);
     }
 }
 

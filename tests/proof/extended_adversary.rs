@@ -35,8 +35,8 @@ use std::path::Path;
 const TICKS_APART: [f32; 2] = [0.25e-3, 0.1];
 
 /// Ticks of a flight, and how many of its states are searched for worse ones.
-const TICKS: u32 = 200;
-const SEARCHED: f64 = 0.02;
+const FLIGHT_TICKS: u32 = 200;
+const SEARCHED_SHARE: f64 = 0.02;
 
 /// Steps of a search.
 const FINEST_STEP: f64 = 1e-2;
@@ -265,7 +265,7 @@ impl World {
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         // Jumping back and forth between a few states drives the filters to their ends.
         let states = [(); 3].map(|()| anywhere(rng));
-        for _ in 0..TICKS {
+        for _ in 0..FLIGHT_TICKS {
             if rng.random_bool(varies) {
                 let length = random::log_uniform(rng, shortest, longest);
                 // Not all: a delay has at most three of them.
@@ -287,7 +287,7 @@ impl World {
                 controller.measured(&self.measured(rng));
             }
             let state = body.state();
-            if rng.random_bool(SEARCHED) {
+            if rng.random_bool(SEARCHED_SHARE) {
                 self.search(&controller, &state, &wanted, rng, &mut shown);
             }
             let Some(wrench) = self.step(&mut controller, &state, &wanted, &mut shown) else {

@@ -20,8 +20,8 @@ use scenario::body::attitude_from_euler;
 
 const VEHICLES: [&str; 2] = ["hummingbird-paper-law", "study-paper-law"];
 
-/// What every inequality must have to spare.
-const MARGIN: f64 = 0.05;
+/// Of every inequality.
+const MARGIN_MIN: f64 = 0.05;
 
 /// Greatest position error on the circle, m.
 const CIRCLE_ERROR: f64 = 0.01;
@@ -30,8 +30,8 @@ const CIRCLE_ERROR: f64 = 0.01;
 /// some sixteen roundings of single precision, half an EPSILON of gravity each, m/s^2.
 const ROUNDED_ACCELERATION: f64 = 16.0 * 0.5 * f32::EPSILON as f64 * 9.81;
 
-/// How long a recovery from upside down is watched, s: the slowest is back after a minute.
-const RECOVERY: f64 = 120.0;
+/// How long a recovery from upside down is watched: the slowest is back after a minute.
+const RECOVERY_S: f64 = 120.0;
 
 /// The greatest errors in one stretch of five seconds.
 #[derive(Debug, Clone, Copy, Default)]
@@ -118,7 +118,7 @@ fn both_are_certified_down_to_the_rotors_with_five_per_cent_to_spare() {
         let certificate = Certificate::new(&vehicle(name).configuration).unwrap();
         let tightest = certificate.tightest().unwrap();
         println!("{name}: tightest {tightest}, margin {:.2} %", 100.0 * tightest.margin());
-        assert!(certificate.holds() && tightest.margin() >= MARGIN, "{name}: {tightest}");
+        assert!(certificate.holds() && tightest.margin() >= MARGIN_MIN, "{name}: {tightest}");
         assert_eq!(certificate.paper().unwrap().rotors.len(), 4);
     }
 }
@@ -169,7 +169,7 @@ fn they_fly_a_circle_of_one_metre_without_a_saturated_rotor() {
 #[test]
 fn they_recover_from_upside_down_and_then_hold_still() {
     for name in VEHICLES {
-        let mut scenario = recovery(&vehicle(name), RECOVERY).unwrap();
+        let mut scenario = recovery(&vehicle(name), RECOVERY_S).unwrap();
         let attitudes = [[-179.0, 0.0, 100.0], [-179.0, 0.0, 0.0], [0.0, 178.0, 0.0], [-180.0, 0.0, 0.0]];
         for angles in attitudes.map(|angles| angles.map(f64::to_radians)) {
             let [roll, pitch, yaw] = angles;

@@ -26,9 +26,9 @@ use controller_core::prelude::{Vector2, Vector3};
 use core::f32::consts::PI;
 use witness::{Approach, Tally, Witness};
 
-const STREAMS: u64 = 25_000;
-/// No arrival from rest takes longer, s; the slowest bounds drawn need most of it.
-const PATIENCE: f32 = 150.0;
+const STREAM_COUNT: u64 = 25_000;
+/// No arrival from rest takes longer; the slowest bounds drawn need most of it.
+const ARRIVAL_TIMEOUT_S: f32 = 150.0;
 
 fn fly(seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed);
@@ -86,7 +86,7 @@ fn fly(seed: u64, tally: &mut Tally) {
             3.0_f64.sqrt() / 65_536.0 * f64::from((horizontal / vertical).max(vertical / horizontal))
         },
     });
-    let patience = PATIENCE + 2.0 * case.returning(&start.velocity);
+    let patience = ARRIVAL_TIMEOUT_S + 2.0 * case.returning(&start.velocity);
     let mut time = 0.0;
     while !governor.at_rest() {
         let reference = governor.tick();
@@ -112,7 +112,7 @@ fn fly(seed: u64, tally: &mut Tally) {
 
 #[test]
 fn streams_never_leave_the_bounds_and_all_arrive() {
-    let streams = std::env::var("GOVERNOR_STREAMS").map_or(STREAMS, |number| number.parse().expect("a number"));
+    let streams = std::env::var("GOVERNOR_STREAMS").map_or(STREAM_COUNT, |number| number.parse().expect("a number"));
     let threads = std::thread::available_parallelism().map_or(2, usize::from).min(8) as u64;
     let tally = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)

@@ -9,7 +9,7 @@ use controller_core::certificate::certified::Certified;
 use host_sim::flight::Flight;
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::quantile;
-use host_sim::studies::campaign::step::longest;
+use host_sim::studies::campaign::step::with_longest_step;
 use scenario::Scenario;
 use scenario::campaign::Ranges;
 use std::error::Error;
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for file in files {
         let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
         let scenario = Scenario::parse(&(text + SENSORS), file).map_err(|error| error.to_string())?;
-        let scenario = longest(&scenario);
+        let scenario = with_longest_step(&scenario);
         let certified = Certified::new(scenario.configuration.clone())
             .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
         let ranges = Ranges {

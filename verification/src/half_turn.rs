@@ -14,7 +14,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::flight::controller::Controller;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::sensed::Sensed;
 use nalgebra::{Quaternion, Vector3};
 use rand::SeedableRng;
@@ -111,7 +111,7 @@ impl Trial {
             before = torque;
             course.roll.push((time, roll));
             course.torque.push((time, torque));
-            vehicle.hold(&Asked::Wrench(wrench), start.timing.steps_per_tick).ok()?;
+            vehicle.hold(&ActuatorDemand::Wrench(wrench), start.timing.steps_per_tick).ok()?;
             // Less than half a turn in a tick, so the nearer way is the way it went.
             let turn = (state.attitude.conjugate() * vehicle.state().attitude).normalize();
             let angle = 2.0 * turn.i.atan2(turn.w);

@@ -3,15 +3,15 @@
 //! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
 //! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them
 //! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What
-//! becomes of it without a rotor (`rotor_gone`) decides nothing. What may be flown comes last ([`may_fly`]).
+//! becomes of it without a rotor (`rotor_failure`) decides nothing. What may be flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;
+pub mod constants;
 pub mod may_fly;
 mod pilot;
 pub mod rigorous;
-mod rotor_gone;
-pub mod shown;
+mod rotor_failure;
 
 use crate::output::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
@@ -28,7 +28,7 @@ use scenario::stability::{LoopMargin, Shortfall};
 use scenario::verdict::Verdict;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
-const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
+const PUBLISHED_BOUNDS: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
 
 /// The report on `scenario`, and whether it is certified.
 ///
@@ -48,7 +48,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     if let LawParameters::Extended(law) = scenario.configuration.law() {
         text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
     }
-    let gone = rotor_gone::lines(scenario, verdict.certified())?;
+    let gone = rotor_failure::lines(scenario, verdict.certified())?;
     if !gone.is_empty() {
         text += &format!("\n{gone}");
     }
@@ -86,7 +86,7 @@ fn papers(scenario: &Scenario, certificate: &PaperCertificate) -> Result<String,
     text += &bounds("as printed", &certificate.printed);
     text += &bounds("sharp", &certificate.sharp);
     if scenario.is_papers() {
-        text += PUBLISHED;
+        text += PUBLISHED_BOUNDS;
         text += "\n";
     }
     if !certificate.rotors.is_empty() {

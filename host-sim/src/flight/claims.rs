@@ -10,11 +10,11 @@
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
 //! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside
 //! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
-//! duration and stayed near it ([`crate::flight::flown`] says how near); and that once there it never strayed further than the
+//! duration and stayed near it ([`crate::flight::extremes`] says how near); and that once there it never strayed further than the
 //! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
 //! errors of its last quarter are reported without a verdict.
 
-use crate::flight::flown::{Flown, NEAR_MRP, NEAR_POSITION};
+use crate::flight::extremes::{FlightExtremes, NEAR_MRP, NEAR_POSITION};
 use crate::output::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
@@ -49,7 +49,7 @@ pub struct Claim {
 
 /// The claims about a flight of `scenario`, with its `verdict` and the figures `flown`.
 #[must_use]
-pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
+pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let published = scenario.is_papers();
     let duration = scenario.timing.duration();
     let steady = format!("steady state, last {} s", short(duration / 4.0));
@@ -94,7 +94,7 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
 /// The claims about a flight of `scenario` under another law: that it reached its position. Our law's bounds stand
 /// beside its figures, without a verdict.
 #[must_use]
-pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
+pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let duration = scenario.timing.duration();
     let own = near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration);
     let reported = claims(scenario, verdict, flown).into_iter().skip(3).map(|claim| Claim { holds: None, ..claim });
@@ -113,7 +113,7 @@ fn commands(verdict: &Verdict) -> Claim {
 }
 
 /// How far the flight strayed from its reference on the way. One that was never there fails by arriving too late.
-fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
+fn tracking(scenario: &Scenario, flown: &FlightExtremes) -> Claim {
     let tolerance = scenario.tolerance;
     Claim {
         claim: "farthest from the reference, once there".to_owned(),
@@ -158,7 +158,7 @@ fn large_motions(flights: &Result<Farthest, NotArrived>) -> Claim {
 
 /// Whether a flight reached its reference, position and attitude, in time and for good.
 #[must_use]
-pub fn reached(scenario: &Scenario, flown: &Flown) -> bool {
+pub fn reached(scenario: &Scenario, flown: &FlightExtremes) -> bool {
     let latest = REACHED_BY * scenario.timing.duration();
     [flown.position_reached(), flown.attitude_reached()].iter().all(|since| since.is_some_and(|since| since <= latest))
 }
@@ -174,7 +174,7 @@ fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
 }
 
 /// The certificate's bounds. They hold for every configuration, whether or not they fit the limits.
-fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
+fn bounds(certificate: &Certificate, flown: &FlightExtremes) -> Vec<Claim> {
     let interval = |Interval { least, max: greatest }: Interval| (least, greatest);
     let printed = certificate.paper().map(|paper| paper.printed.thrust);
     let printed = printed.map(|thrust| within("thrust, Theorem 1".to_owned(), flown.thrust, interval(thrust)));

@@ -11,8 +11,8 @@ use arguments::{
 };
 use clap::{CommandFactory, Parser};
 use host_sim::commands::certify::rigorous::{self, Rigorous};
-use host_sim::commands::certify::{certify, may_fly, shown};
-use host_sim::commands::fly::show::{Show, show};
+use host_sim::commands::certify::{certify, constants, may_fly};
+use host_sim::commands::fly::default_task::{FlownFile, with_default_task};
 use host_sim::commands::fly::{FlyError, fly, watched};
 use host_sim::commands::law::LawServer;
 use host_sim::flight::claims;
@@ -22,7 +22,7 @@ use host_sim::reports::log::bytes_per_row;
 use host_sim::reports::plots::replay::gif;
 use host_sim::reports::reference_rows;
 use host_sim::rivals::choice::LawChoice;
-use host_sim::sessions::hil::port::Port;
+use host_sim::sessions::hil::port::SimulatorPort;
 use host_sim::sessions::hil::relay::Relay;
 use host_sim::sessions::hil::{self, Clients, End, HilError};
 use host_sim::sessions::sitl::{self, SitlError};
@@ -95,7 +95,7 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
     let text = text_of(file)?;
     let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
-    let Show { scenario, text, added } = show(text, &name).map_err(|error| error.to_string())?;
+    let FlownFile { scenario, text, added } = with_default_task(text, &name).map_err(|error| error.to_string())?;
     let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
     permit(&scenario, &named, "duration", large_log)?;
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
@@ -163,7 +163,7 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
 fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
     let file = arguments.file.as_deref();
     let name = file.map_or_else(String::new, |file| file.display().to_string());
-    let scenario = show(text_of(file)?, &name).map_err(|error| error.to_string())?.scenario;
+    let scenario = with_default_task(text_of(file)?, &name).map_err(|error| error.to_string())?.scenario;
     let stretch = arguments.stretch(scenario.timing.duration())?;
     let path = &arguments.gif;
     if arguments.file.as_ref().is_some_and(|file| same_file(path, file)) {
@@ -258,7 +258,8 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
         let alone = WholeFile::alone(log).map(drop);
         alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
     }
-    let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
+    let mut port =
+        SimulatorPort::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut show = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {
         None => None,
@@ -328,7 +329,7 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
     text += &format!("\n{may_fly}");
     if show {
         // Sections to paste are never folded.
-        let constants = shown::constants(&scenario);
+        let constants = constants::constants(&scenario);
         let may_fly: String = may_fly.lines().map(|line| format!("# {line}\n")).collect();
         print(|| io::stdout().write_all(format!("{constants}\n{may_fly}").as_bytes()))?;
     } else {

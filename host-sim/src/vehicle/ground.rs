@@ -119,7 +119,7 @@ impl Ground {
 
     /// Where a vehicle that moved freely to `state` ends if it touches the ground there.
     pub fn touch(&mut self, state: &BodyState) -> Option<(BodyState, Touchdown)> {
-        let (lean, climbing) = (Lean::of(state), state.velocity.z);
+        let (lean, climbing) = (Lean::measure(state), state.velocity.z);
         let (rise, rising) = lean.as_ref().map_or((0.0, 0.0), Lean::rise);
         // What is no number touches nothing.
         let touches = state.position.z <= self.height + rise && climbing <= 0.0 && climbing <= rising;

@@ -25,8 +25,8 @@ use scenario::body::BodyState;
 use scenario::reality::estimator::{Estimator, IMU_RATE_HZ};
 use std::collections::VecDeque;
 
-/// Between two samples, us.
-pub const SAMPLE: u64 = 1_000;
+/// Of the instruments.
+pub const SAMPLE_PERIOD_US: u64 = 1_000;
 
 /// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them, Hz.
 const GYRO_BANDWIDTH: f64 = 116.0;
@@ -34,7 +34,7 @@ const ACCELEROMETER_BANDWIDTH: f64 = 145.0;
 
 /// An IMU's input, before filters and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Felt {
+pub struct TrueMotion {
     /// rad/s, body.
     pub angular_velocity: Vector3<f64>,
     /// m/s^2, body.
@@ -131,8 +131,13 @@ impl Instruments {
     }
 
     /// The same where the IMU feels something else than the body does: `feels` of it.
-    pub fn sample_of(&mut self, state: &BodyState, time: u64, feels: impl FnOnce(Felt) -> Felt) -> ImuSample {
-        self.clock += SAMPLE;
+    pub fn sample_of(
+        &mut self,
+        state: &BodyState,
+        time: u64,
+        feels: impl FnOnce(TrueMotion) -> TrueMotion,
+    ) -> ImuSample {
+        self.clock += SAMPLE_PERIOD_US;
         let real = EstimatorParameters::BMI088;
         let scale = |density: f32| self.what.imu_noise * f64::from(density);
         let (each, walk) = (IMU_RATE_HZ.sqrt(), 1.0 / IMU_RATE_HZ.sqrt());
@@ -142,20 +147,21 @@ impl Instruments {
         self.velocity = state.velocity;
         let attitude = UnitQuaternion::new_normalize(state.attitude);
         let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * self.gravity));
-        let felt = feels(Felt { angular_velocity: state.angular_velocity, specific_force: force });
+        let felt = feels(TrueMotion { angular_velocity: state.angular_velocity, specific_force: force });
         let rate = felt.angular_velocity + self.gyro_bias + noise(&mut self.random, scale(real.gyro_noise) * each);
         let force = felt.specific_force
             + self.accelerometer_bias
             + noise(&mut self.random, scale(real.accelerometer_noise) * each);
-        if (self.clock / SAMPLE).is_multiple_of(self.what.pose_every) {
-            self.look(state, &attitude, time);
+        if (self.clock / SAMPLE_PERIOD_US).is_multiple_of(self.what.pose_every) {
+            self.measure_pose(state, &attitude, time);
         }
         let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
-        let (mut rate, mut force) = (shown(&single(&rate), gyro_range), shown(&single(&force), accelerometer_range));
+        let (mut rate, mut force) =
+            (clipped(&single(&rate), gyro_range), clipped(&single(&force), accelerometer_range));
         if let Some([gyro, accelerometer]) = &mut self.filters {
             (rate, force) = (gyro.take(&rate), accelerometer.take(&force));
         }
-        ImuSample { angular_velocity: shown(&rate, gyro_range), specific_force: shown(&force, accelerometer_range) }
+        ImuSample { angular_velocity: clipped(&rate, gyro_range), specific_force: clipped(&force, accelerometer_range) }
     }
 
     /// The next pose that has arrived by the last sample, with the time at which it was true. Its velocity is zero: the
@@ -165,7 +171,7 @@ impl Instruments {
     }
 
     /// The pose source takes a picture.
-    fn look(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
+    fn measure_pose(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
         let position = state.position + noise(&mut self.random, self.what.position_noise);
         let turned = UnitQuaternion::from_scaled_axis(noise(&mut self.random, self.what.attitude_noise));
         let attitude = (turned * attitude).into_inner().coords.map(|value| value as f32);
@@ -175,19 +181,20 @@ impl Instruments {
         let nothing = Velocity::World(Vector3::zeros());
         // A vehicle that is too far away for a pose has none.
         if let Ok(value) = Pose::new(single(&position), nothing, Quaternion::from(attitude)) {
-            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE, Stamped { value, time }));
+            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE_PERIOD_US, Stamped { value, time }));
         }
     }
 
     /// Whether poses are out, a delay before they would arrive.
     fn is_out(&self) -> bool {
-        let arrival = (self.clock + self.what.pose_delay * SAMPLE) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
+        let arrival =
+            (self.clock + self.what.pose_delay * SAMPLE_PERIOD_US) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
         self.what.outage.is_some_and(|outage| (outage.start..outage.start + outage.duration).contains(&arrival))
     }
 }
 
 /// The output of a sensor with this `range`.
-fn shown(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
+fn clipped(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
     truth.map(|component| component.clamp(-range, range))
 }
 

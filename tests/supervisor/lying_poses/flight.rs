@@ -10,12 +10,12 @@ use rand::rngs::ChaCha8Rng;
 use scenario::Scenario;
 use verification::piloted::{PilotedVehicle, Place};
 
-/// The box that it may not leave: a radius and a height, m, about where it was armed.
-pub const BOX: f32 = 3.0;
+/// The box that it may not leave: a radius and a height about where it was armed.
+pub const BOX_M: f32 = 3.0;
 
 /// What an operator has chosen.
-const SETTINGS: FlightSettings =
-    FlightSettings { fence_radius: BOX, fence_height: BOX, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
+const FLIGHT_SETTINGS: FlightSettings =
+    FlightSettings { fence_radius: BOX_M, fence_height: BOX_M, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
 
 /// When the operator arms, and commands something, in ticks.
 const ARM_TICK: u64 = 250;
@@ -148,7 +148,7 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
     let mut scenario = scenario.clone();
     let sensors = scenario.reality.estimator.get_or_insert_default();
     sensors.seed = case.seed;
-    let mut vehicle = PilotedVehicle::new(&scenario, Ok(certified), &SETTINGS, &mut place, 0).unwrap();
+    let mut vehicle = PilotedVehicle::new(&scenario, Ok(certified), &FLIGHT_SETTINGS, &mut place, 0).unwrap();
     let mut liar = Liar::new(&case.lies, ChaCha8Rng::seed_from_u64(case.seed));
     let mut flown = Flown {
         case: case.clone(),
@@ -206,7 +206,7 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         let goes_down = matches!(mode, Mode::Landing | Mode::Descending);
         if !goes_down && mode.flies() {
             down = None;
-            let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX);
+            let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX_M);
             flown.out = flown.out.max(out);
             if mode == Mode::Holding && lasts >= 50 {
                 flown.off = flown.off.max((state.position - Vector3::z() * f64::from(case.height)).norm());

@@ -58,7 +58,7 @@ fn global(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>> {
         let (mut settled, mut slowest) = (0, 0.0_f64);
         for number in 0..START_COUNT {
             let thrown = circumstances(paper, &ranges, 0, number);
-            let course = Course::over(&thrown, Flight::new(&thrown)?, 0.2)?;
+            let course = Course::fly(&thrown, Flight::new(&thrown)?, 0.2)?;
             settled += u64::from(course.settled.is_some());
             slowest = course.settled.map_or(slowest, |settled| slowest.max(settled));
         }

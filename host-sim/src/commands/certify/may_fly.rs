@@ -17,9 +17,9 @@ use scenario::judge::judge;
 /// The circle's, m.
 pub const CIRCLE_RADIUS: f64 = 3.0;
 
-/// The greatest speed, m/s, acceleration, m/s^2, and jerk, m/s^3, that are looked for, and how finely.
-const MOST: [f64; 3] = [100.0, 1_000.0, 10_000.0];
-const HALVINGS: u32 = 40;
+/// The greatest speed (m/s), acceleration (m/s^2) and jerk (m/s^3) that are searched.
+const SEARCH_MAX: [f64; 3] = [100.0, 1_000.0, 10_000.0];
+const HALVINGS_MAX: u32 = 40;
 
 /// The fastest circle: its speed, m/s, and the row of which it takes most, if rows limit it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ pub fn circle(scenario: &Scenario) -> Option<Circle> {
         None => holds(configuration, &bounds(speed)),
     };
     let sound = holds(configuration, &ReferenceBounds::REST);
-    let speed = greatest(MOST[0], certifies).filter(|_| sound)?;
+    let speed = greatest(SEARCH_MAX[0], certifies).filter(|_| sound)?;
     Some(Circle { speed, limit: judge.map(|judge| name(judge.shares(&turning(speed)).row())) })
 }
 
@@ -77,7 +77,7 @@ fn holds(configuration: &Configuration, bounds: &ReferenceBounds) -> bool {
 /// The greatest number that certifies, up to `most`; none if not even zero does.
 fn greatest(most: f64, certifies: impl Fn(f64) -> bool) -> Option<f64> {
     let (mut holds, mut fails) = (0.0, most);
-    for _ in 0..HALVINGS {
+    for _ in 0..HALVINGS_MAX {
         let middle = 0.5 * (holds + fails);
         if certifies(middle) { holds = middle } else { fails = middle }
     }
@@ -116,7 +116,8 @@ fn straight(judge: &PathJudge, force_kept: f32) -> String {
     let across = |size: f64| [size, 0.0, 0.0];
     let accelerated = |size: f64| judge.shares(&PathMotion { acceleration: across(size), ..rest }).worst() < 1.0;
     let jerked = |size: f64| judge.shares(&PathMotion { jerk: across(size), ..rest }).worst() < 1.0;
-    let found = [greatest(MOST[1], accelerated), greatest(MOST[2], jerked)].map(|found| found.unwrap_or(0.0));
+    let found =
+        [greatest(SEARCH_MAX[1], accelerated), greatest(SEARCH_MAX[2], jerked)].map(|found| found.unwrap_or(0.0));
     let [acceleration, jerk] = found.map(short);
     format!("a known path beside a force of {force_kept} m/s^2: {acceleration} m/s^2 across, from hover {jerk} m/s^3\n")
 }

@@ -81,8 +81,8 @@ pub fn run(task: &Task) -> Result<String, Refused> {
         "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
     };
     if let Some((name, path, mut file)) = out {
-        let text =
-            rewritten(&task.original, &name, &Values::of(&identified), scenario.timing.step()).map_err(of_file)?;
+        let text = rewritten(&task.original, &name, &Values::estimates(&identified), scenario.timing.step())
+            .map_err(of_file)?;
         let written = file.write_all(text.as_bytes()).and_then(|()| file.finish());
         written.map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
         report += &format!("written to {}\n", path.display());
@@ -111,7 +111,7 @@ fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, R
     } else {
         match String::from_utf8(bytes) {
             Ok(text) => FlightLog::from_csv(&text),
-            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::COLUMNS)),
+            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::READABLE_LOGS)),
         }
     };
     log.map_err(|what| in_file(path, &what))

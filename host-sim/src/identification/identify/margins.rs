@@ -59,7 +59,7 @@ pub fn report(original: &str, name: &str, quantities: &Quantities) -> Result<(St
         let text = rewritten(original, "identified", values, step)?;
         margins(&Scenario::parse(&text, "identified").map_err(|error| error.to_string())?)
     };
-    let (file, values) = (margins(&model)?, Values::of(quantities));
+    let (file, values) = (margins(&model)?, Values::estimates(quantities));
     let identified = of(&values)?;
     let mut worst: Vec<f64> = identified.iter().map(|margin| margin.value).collect();
     for (quantity, set) in ends(quantities) {

@@ -25,9 +25,11 @@ pub fn objection(existing: &str, new: &str) -> Option<String> {
     let mut changes: Vec<String> = Vec::new();
     for path in existing.keys().chain(new.keys().filter(|path| !existing.contains_key(*path))) {
         let become_what = match (existing.get(path), new.get(path)) {
-            (Some(old), Some(new)) if old != new => format!("{path} = {} would become {}", shown(old), shown(new)),
-            (Some(old), None) => format!("{path} = {} would go", shown(old)),
-            (None, Some(new)) => format!("{path} = {} would come", shown(new)),
+            (Some(old), Some(new)) if old != new => {
+                format!("{path} = {} would become {}", quoted_value(old), quoted_value(new))
+            }
+            (Some(old), None) => format!("{path} = {} would go", quoted_value(old)),
+            (None, Some(new)) => format!("{path} = {} would come", quoted_value(new)),
             _ => continue,
         };
         changes.push(become_what);
@@ -55,7 +57,7 @@ fn flatten(path: &str, item: &Item, values: &mut BTreeMap<String, String>) {
     }
 }
 
-fn shown(value: &str) -> String {
+fn quoted_value(value: &str) -> String {
     if value.chars().count() <= SHOWN_MAX {
         return value.to_owned();
     }

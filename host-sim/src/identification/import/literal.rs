@@ -7,8 +7,7 @@ use super::value::Value;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// How deep brackets may lie in each other.
-const DEEPEST: usize = 64;
+const BRACKET_DEPTH_MAX: usize = 64;
 /// How many values names may stand for, all together: lists of lists by name would grow without end.
 const MOST_REPEATED: usize = 10_000;
 
@@ -169,8 +168,8 @@ impl<'a> Reader<'a> {
 
     /// What `read` reads, unless it lies too deep.
     fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, String>) -> Result<T, String> {
-        if self.depth >= DEEPEST {
-            return self.refused(&format!("lies in more than {DEEPEST} brackets"));
+        if self.depth >= BRACKET_DEPTH_MAX {
+            return self.refused(&format!("lies in more than {BRACKET_DEPTH_MAX} brackets"));
         }
         self.depth += 1;
         let read = read(self);

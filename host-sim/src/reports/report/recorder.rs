@@ -44,7 +44,7 @@ struct Column {
 }
 
 /// A track that grows.
-pub struct Recorder {
+pub struct ReportRecorder {
     columns: Vec<Column>,
     /// Ticks that two rows stand for; one tick is one row if this is 1.
     stretch: u64,
@@ -53,7 +53,7 @@ pub struct Recorder {
     yaw: (f64, f64),
 }
 
-impl Recorder {
+impl ReportRecorder {
     /// For a flight of so many ticks, `period` s apart.
     #[must_use]
     pub fn new(ticks: u64, period: f64, columns: Vec<(String, Kept, Read)>) -> Self {

@@ -40,16 +40,15 @@ use std::sync::Arc;
 
 /// The drag over mass of a vehicle without `[drag]`, 1/s.
 pub const DRAG_PER_MASS: f64 = 0.5;
-/// Turbulence is that of this height, m.
-const ALTITUDE: f64 = 10.0;
+const TURBULENCE_ALTITUDE_M: f64 = 10.0;
 /// The least airspeed that turbulence drifts past with, m/s.
 const LEAST_AIRSPEED: f64 = 1.0;
 /// How velocity is made of noisy poses: bandwidth, rad/s, and the accelerometer's noise, m/s^2, as for the trials of a
 /// search.
-const VELOCITY: VelocitySource =
+const VELOCITY_SOURCE: VelocitySource =
     VelocitySource::Observer { bandwidth: 8.0, noise: 0.05, bias: Vector3::new(0.0, 0.0, 0.0) };
 /// Durations are decimal fractions: how far their quotient by the period may be below a whole number, relative.
-const WHOLE: f64 = 1e-9;
+const WHOLE_TOLERANCE: f64 = 1e-9;
 
 /// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it
 /// is: what is certified for the scenario is certified for all of its flights.
@@ -88,7 +87,7 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
 #[must_use]
 pub fn timing(scenario: &Scenario, ranges: &Ranges) -> Timing {
     let period = scenario.timing.period();
-    Timing { ticks: (ranges.duration / period * (1.0 + WHOLE)) as u64, ..scenario.timing }
+    Timing { ticks: (ranges.duration / period * (1.0 + WHOLE_TOLERANCE)) as u64, ..scenario.timing }
 }
 
 /// How the air moves, with this steady wind before it is laid level, m/s.
@@ -104,8 +103,12 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
     scenario.reality.drag.get_or_insert(drag);
     let level = |wind: Vector3<f64>| Vector3::new(wind.x, wind.y, 0.0);
     let steady = level(steady);
-    let turbulence =
-        Turbulence { wind_at_20_feet: strength, altitude: ALTITUDE, airspeed: steady.norm().max(LEAST_AIRSPEED), seed };
+    let turbulence = Turbulence {
+        wind_at_20_feet: strength,
+        altitude: TURBULENCE_ALTITUDE_M,
+        airspeed: steady.norm().max(LEAST_AIRSPEED),
+        seed,
+    };
     scenario.reality.wind = Some(Wind {
         steady,
         gust: (ranges.gust > 0.0).then(|| Gust { shape: Shape::Step, start, velocity: level(gust) }),
@@ -131,7 +134,7 @@ fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
                 gyro_bias: Vector3::zeros(),
                 position_noise: position * ranges.position,
                 attitude_noise: attitude * ranges.attitude,
-                velocity: VELOCITY,
+                velocity: VELOCITY_SOURCE,
                 pose_every: 1,
                 dropout: 0.0,
                 delay_ticks: (delay * ranges.delay / scenario.timing.period()).round() as u64,

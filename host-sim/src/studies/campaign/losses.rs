@@ -30,7 +30,7 @@ pub struct Losses {
 impl Losses {
     /// Counts the failing rotors of all flights in `flown`.
     #[must_use]
-    pub fn of(flown: &[RecordBatch]) -> Self {
+    pub fn count(flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let [failed, found] = ["failed_rotor", "found_rotor"].map(|column| whole_numbers(flown, column));
         let [failures, findings, depths, distances, ends] =
@@ -75,7 +75,8 @@ impl Losses {
 impl fmt::Display for Losses {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { failed, found, missed, held, false_alarms, figures: [delays, depths, distances] } = self;
-        let parts = |values: &[f64]| [0.5, 0.99, 1.0].map(|part| quantile(values, part).map_or(String::new(), seen));
+        let parts =
+            |values: &[f64]| [0.5, 0.99, 1.0].map(|part| quantile(values, part).map_or(String::new(), written_figure));
         if *failed > 0 {
             let wrong = failed - found - missed;
             writeln!(
@@ -99,7 +100,7 @@ impl fmt::Display for Losses {
 }
 
 /// A figure; infinite of a flight that could not be flown to its end.
-fn seen(value: f64) -> String {
+fn written_figure(value: f64) -> String {
     if value.is_finite() { short(value) } else { "infinite".to_owned() }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
-//! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
+//! | settled | since when it has been within [`SETTLED_DISTANCE_M`] of its reference, off the ground, for good |
 //! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good ([`claimed_error`]) |
 //! | heading | since when its heading has been within [`NEAR_HEADING`] of the reference's for good |
 //! | in time | whether all three were within the first [`REACHED_BY`] of the flight, as a flight by itself claims |
@@ -17,9 +17,9 @@
 //! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
 //! [`super::rotor_loss`].
 
-use super::rotor_loss::{ROUNDING, RotorLoss, is_within_ranges};
+use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
 use crate::flight::claims::REACHED_BY;
-use crate::flight::flown::{NEAR_MRP, claimed_error, heading_is_followed};
+use crate::flight::extremes::{NEAR_MRP, claimed_error, heading_is_followed};
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
@@ -27,8 +27,8 @@ use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
 use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 
-/// How near its reference a vehicle must stay to have settled, m.
-pub const NEAR: f64 = 0.2;
+/// A vehicle that stays nearer to its reference has settled.
+pub const SETTLED_DISTANCE_M: f64 = 0.2;
 /// How near its heading, rad.
 pub const NEAR_HEADING: f64 = 0.2;
 
@@ -86,7 +86,7 @@ impl Outcome {
     /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to
     /// its end, the height lost and the final error are infinite.
     #[must_use]
-    pub fn of(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
+    pub fn judge(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
         let start = scenario.initial.position.z;
         let mut outcome = Self {
             height_lost: 0.0,
@@ -100,7 +100,7 @@ impl Outcome {
             beyond: 0,
             shares: Shares::default(),
             fallback: 0,
-            rotor: RotorLoss::of(scenario),
+            rotor: RotorLoss::before_flight(scenario),
             ticks: 0,
         };
         let rotors = scenario.configuration.rotors();
@@ -138,7 +138,7 @@ impl Outcome {
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
         let next = Some((tick.time_us + period_us) as f64 / 1e6);
-        if self.final_error > NEAR || tick.standing {
+        if self.final_error > SETTLED_DISTANCE_M || tick.standing {
             self.settled = next;
         }
         if claimed_error(&tick.mrp, &tick.reference, bounds) > NEAR_MRP {
@@ -174,7 +174,7 @@ impl Shares {
     /// Takes a tick's commands into account; returns whether they are within their bounds.
     fn take(&mut self, tick: &Brief, certificate: &Certificate) -> bool {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
-        let raised = 1.0 + ROUNDING;
+        let raised = 1.0 + BOUND_TOLERANCE;
         let mut within = (proven.least / raised..=proven.max * raised).contains(&thrust);
         self.thrust = self.thrust.max(thrust / proven.max);
         let bounds = certificate.torque();
@@ -190,7 +190,7 @@ impl Shares {
                 continue;
             };
             *greatest = greatest.max(commanded / proven.max);
-            within &= (proven.least - ROUNDING..=proven.max * raised).contains(&commanded);
+            within &= (proven.least - BOUND_TOLERANCE..=proven.max * raised).contains(&commanded);
         }
         within
     }

@@ -16,9 +16,9 @@ use controller_core::allocation::{Rotor, Rotors};
 use scenario::Scenario;
 use scenario::reality::failure::Failure;
 
-/// Room for the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
+/// For the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
 /// stand still, N.
-pub(super) const ROUNDING: f64 = 1e-6;
+pub(super) const BOUND_TOLERANCE: f64 = 1e-6;
 
 /// A flight's failing rotor, and the one that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct RotorLoss {
 impl RotorLoss {
     /// Of a flight of `scenario`, before its first tick.
     #[must_use]
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn before_flight(scenario: &Scenario) -> Self {
         let end = scenario.timing.duration();
         let failure = scenario.reality.failure.filter(|failure| failure.time < end);
         Self { failure, found: None, height_lost: 0.0, distance: 0.0, height: f64::INFINITY }
@@ -79,7 +79,7 @@ impl RotorLoss {
 #[must_use]
 pub fn is_within_ranges(tick: &Brief, rotors: Option<&Rotors>, lost: usize) -> bool {
     let mut ranges = rotors.into_iter().flat_map(|rotors| rotors.iter());
-    let raised = 1.0 + ROUNDING as f32;
+    let raised = 1.0 + BOUND_TOLERANCE as f32;
     tick.rotor_thrusts.iter().enumerate().all(|(number, thrust)| {
         let within = |rotor: &Rotor| (rotor.thrust_min / raised..=rotor.thrust_max * raised).contains(thrust);
         ranges.next().is_some_and(|rotor| within(rotor) || number == lost && *thrust == 0.0)

@@ -13,9 +13,9 @@
 //! the failure. A flight ends where it first touches the ground; one that does not, or that comes to no number, never
 //! lands. Drag is as in [`super::scenes`].
 
-use super::rows::Row;
+use super::rows::FigureRow;
 use super::scenes::{Scene, in_still_air};
-use crate::flight::flier::Flier;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::studies::tune::trials::{hover, recovery};
 use controller_core::error::ParameterError;
 use controller_core::reference::knot::Knot;
@@ -154,10 +154,10 @@ fn moved(time: f64) -> f64 {
 
 /// Flies `scene`; none if it comes to no number.
 #[must_use]
-pub fn show(flier: &Flier, scene: &Scene) -> Option<Landing> {
+pub fn fly_loss_scene(law: &LawOnVehicle, scene: &Scene) -> Option<Landing> {
     let scenario = &scene.scenario;
     let failure = scenario.reality.failure?;
-    let mut flight = flier.flight(scenario).ok()?;
+    let mut flight = law.flight(scenario).ok()?;
     let mut landing = Landing { height_lost: 0.0, farthest: 0.0, away: f64::INFINITY, speed: f64::INFINITY };
     for _ in 0..scenario.timing.ticks {
         let tick = flight.brief_tick().ok()?;
@@ -178,11 +178,11 @@ pub fn show(flier: &Flier, scene: &Scene) -> Option<Landing> {
     Some(landing)
 }
 
-/// The rows of each law's figures in each of the `scenes`, in the fliers' order.
+/// The rows of each law's figures in each of the `scenes`, in the laws' order.
 #[must_use]
-pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<Row> {
+pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<FigureRow> {
     type Get = fn(&Landing) -> f64;
-    const FIGURES: [(&str, &str, Get); 4] = [
+    const LOSS_FIGURES: [(&str, &str, Get); 4] = [
         ("height lost", "m", |landing| landing.height_lost),
         ("farthest away across", "m", |landing| landing.farthest),
         ("lands away from its place", "m", |landing| landing.away),
@@ -190,8 +190,9 @@ pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<Row> {
     ];
     let of_scene = |(scene, landings): &(&'static str, Vec<Option<Landing>>)| {
         let values = |get: Get| landings.iter().map(|one| one.as_ref().map_or(f64::INFINITY, get)).collect();
-        let row = |(figure, unit, get)| Row { scene, figure, unit, values: values(get), grain: 0.01, limit: None };
-        FIGURES.map(row)
+        let row =
+            |(figure, unit, get)| FigureRow { scene, figure, unit, values: values(get), grain: 0.01, limit: None };
+        LOSS_FIGURES.map(row)
     };
     scenes.iter().flat_map(of_scene).collect()
 }

@@ -22,8 +22,8 @@ use scenario::reality::drag::Drag;
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 
-/// Drag of a vehicle whose file gives none, 1/s.
-pub const DRAG: f64 = 0.5;
+/// Of a vehicle whose file gives none.
+pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
 /// When a wind begins, s.
 const WIND_AT: f64 = 1.0;
 
@@ -46,7 +46,7 @@ pub fn in_still_air(file: &Scenario) -> Scenario {
     let reality = &mut still_air.reality;
     (reality.wind, reality.disturbance, reality.failure, reality.sensors, reality.estimator) =
         (None, None, None, None, None);
-    reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() });
+    reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() });
     still_air
 }
 

@@ -1,7 +1,7 @@
 //! A vehicle that leans on one foot and falls back onto all of them.
 //!
 //! The vehicle turns in the vertical plane it leans in, about a foot that stays where it is or slides. With w =
-//! [`SPREAD`] the distance of the feet from its axis and h = [`LENGTH`] that of its origin above them, leaning by theta
+//! [`FEET_RADIUS_M`] the distance of the feet from its axis and h = [`LEG_LENGTH_M`] that of its origin above them, leaning by theta
 //! towards d (horizontal; z is up, and a = z x d is the axis),
 //!
 //! ```text
@@ -34,11 +34,11 @@ use super::friction::{FRICTION_COEFFICIENT, across, slowed};
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use scenario::body::BodyState;
 
-/// Of the feet from the vehicle's axis, m.
-const SPREAD: f64 = 0.1;
+/// Of the feet from the vehicle's axis.
+const FEET_RADIUS_M: f64 = 0.1;
 
-/// Of the legs, m: of the origin above the feet.
-const LENGTH: f64 = 0.1;
+/// Of the origin above the feet.
+const LEG_LENGTH_M: f64 = 0.1;
 
 /// How far a vehicle may lean and still fall back onto its feet, rad: 30 degrees.
 pub const TILT_MAX: f64 = 0.52;
@@ -97,7 +97,7 @@ pub struct Lean {
 
 impl Lean {
     /// None of one that is upright, or leans too far to stand on a foot.
-    pub fn of(state: &BodyState) -> Option<Self> {
+    pub fn measure(state: &BodyState) -> Option<Self> {
         let up = up(state);
         let toward = Vector3::new(up.x, up.y, 0.0).try_normalize(1e-9)?;
         let axis = UnitVector3::new_normalize(Vector3::z().cross(&toward));
@@ -109,13 +109,14 @@ impl Lean {
     /// How much higher than upright the origin is, m, with a foot on the ground; and how fast that rises, m/s.
     pub fn rise(&self) -> (f64, f64) {
         let (sin, cos) = self.angle.sin_cos();
-        (SPREAD * sin - LENGTH * (1.0 - cos), (SPREAD * cos - LENGTH * sin) * self.rate)
+        (FEET_RADIUS_M * sin - LEG_LENGTH_M * (1.0 - cos), (FEET_RADIUS_M * cos - LEG_LENGTH_M * sin) * self.rate)
     }
 
     /// r, from the foot to the origin, m.
     pub fn arm(&self) -> Vector3<f64> {
         let (sin, cos) = self.angle.sin_cos();
-        self.toward * (LENGTH * sin - SPREAD * cos) + Vector3::z() * (LENGTH * cos + SPREAD * sin)
+        self.toward * (LEG_LENGTH_M * sin - FEET_RADIUS_M * cos)
+            + Vector3::z() * (LEG_LENGTH_M * cos + FEET_RADIUS_M * sin)
     }
 }
 
@@ -151,7 +152,7 @@ impl Rocking {
         let upright = UnitQuaternion::from_axis_angle(&lean.axis, -lean.angle) * attitude;
         let axis = upright.inverse() * lean.axis.into_inner();
         let own = axis.component_mul(&axis).dot(&weight.inertia);
-        let inertia = own + weight.mass * (SPREAD * SPREAD + LENGTH * LENGTH);
+        let inertia = own + weight.mass * (FEET_RADIUS_M * FEET_RADIUS_M + LEG_LENGTH_M * LEG_LENGTH_M);
         let (foot, sliding) = (state.position - lean.arm(), state.velocity);
         Self { foot, sliding, upright, inertia, lean: Lean { rate: 0.0, ..lean } }
     }

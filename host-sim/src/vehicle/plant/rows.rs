@@ -7,7 +7,7 @@
 
 use super::body::Body;
 use super::lanes::{Lanes, Vectors};
-use super::motion::Moving;
+use super::motion::BodyMotion;
 use nalgebra::{Quaternion, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use scenario::body::BodyState;
@@ -103,7 +103,7 @@ fn advance<S: Simd>(
     for register in 0..commands[0].len() {
         let number = |row: usize| Lanes::new(unit, states[row][register]);
         let commanded = |row: usize| Lanes::new(unit, commands[row][register]);
-        let moving = Moving {
+        let moving = BodyMotion {
             position: Vectors([number(0), number(1), number(2)]),
             velocity: Vectors([number(3), number(4), number(5)]),
             attitude: Vectors([number(6), number(7), number(8), number(9)]),

@@ -8,7 +8,7 @@ use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
 /// What the vehicle has, which may be far from what is ever commanded.
-const LIMIT: &str = "vehicle's limit";
+const LIMIT_LABEL: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
 #[must_use]
@@ -60,23 +60,26 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     if scenario.is_papers() {
         thrust.extend([PUBLISHED_THRUST.0, PUBLISHED_THRUST.1].map(|value| ink(value, "published")));
     }
-    thrust.push(ink(f64::from(limits.thrust_max), LIMIT));
+    thrust.push(ink(f64::from(limits.thrust_max), LIMIT_LABEL));
     let mut torque = both(certificate.torque().into(), "proven");
     if scenario.is_papers() {
         torque.extend(both(PUBLISHED_TORQUE, "published"));
     }
-    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT));
+    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT_LABEL));
     let mut plots = vec![
         Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).from_zero().within(thrust),
         Plot::new("Torques", "N m", axes(["tau_x", "tau_y", "tau_z"])).within(torque),
         Plot::new("Commands cut by the limits", "", vec![Curve::new("clipped", "1: cut", Color::Blue)]),
     ];
     if let Some(rotors) = scenario.configuration.rotors() {
-        let curve =
-            |rotor: usize| Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::of(rotor));
+        let curve = |rotor: usize| {
+            Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::at_place(rotor))
+        };
         let proven = (0..rotors.len()).filter_map(|rotor| Some((rotor, certificate.rotor(rotor)?)));
         let mut bounds: Vec<Bound> = proven
-            .flat_map(|(rotor, proven)| interval(proven, &format!("rotor {}, proven", rotor + 1), Color::of(rotor)))
+            .flat_map(|(rotor, proven)| {
+                interval(proven, &format!("rotor {}, proven", rotor + 1), Color::at_place(rotor))
+            })
             .collect();
         let given =
             rotors.iter().map(|rotor| Interval { least: rotor.thrust_min.into(), max: rotor.thrust_max.into() });
@@ -99,7 +102,7 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
         columns
             .into_iter()
             .enumerate()
-            .map(|(place, (column, label))| Curve::new(column, label, Color::of(place)))
+            .map(|(place, (column, label))| Curve::new(column, label, Color::at_place(place)))
             .collect()
     };
     let mut filters: Vec<Curve> =
@@ -148,7 +151,7 @@ fn surroundings() -> Vec<Plot> {
 /// Curves of a vector's components.
 fn axes(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis))).collect()
 }
 
 /// Curves that stay visible beneath their reference once the two agree.
@@ -159,11 +162,11 @@ fn flown(columns: [&str; 3]) -> Vec<Curve> {
 /// What was asked of them.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis)).dashed()).collect()
 }
 
 fn ink(value: f64, label: &str) -> Bound {
-    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT }
+    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT_LABEL }
 }
 
 fn interval(Interval { least, max: greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
@@ -173,11 +176,11 @@ fn interval(Interval { least, max: greatest }: Interval, label: &str, color: Col
 /// A level on each side of zero for each axis; equal levels are one.
 fn both(levels: [f64; 3], label: &str) -> Vec<Bound> {
     let sides = |level: f64, named: String, color| {
-        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT })
+        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT_LABEL })
     };
     if levels.iter().all(|level| *level == levels[0]) {
         return sides(levels[0], format!("each, {label}"), Color::Ink).into();
     }
     let named = levels.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::of(axis))).collect()
+    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::at_place(axis))).collect()
 }

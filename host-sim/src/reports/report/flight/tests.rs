@@ -10,7 +10,7 @@ fn flown(text: &str) -> (Page, String) {
     let scenario = Scenario::parse(text, "test").unwrap();
     let verdict = Verdict::judge(&scenario).unwrap();
     let mut flight = ClosedLoop::new(&scenario).unwrap();
-    let (mut seen, mut recorder, mut rows) = (Flown::new(&scenario), recorder(&scenario), Vec::new());
+    let (mut seen, mut recorder, mut rows) = (FlightExtremes::new(&scenario), recorder(&scenario), Vec::new());
     for _ in 0..scenario.timing.ticks {
         let tick = flight.tick().unwrap();
         log::write_row(&mut rows, &tick).unwrap();

@@ -16,7 +16,7 @@ fn peak(at_us: u64) -> (String, Kept, Read) {
 /// The record of so many ticks of 10 ms.
 fn recorded(ticks: u64, columns: Vec<(String, Kept, Read)>) -> Track {
     let mut tick = Flight::new(&Scenario::paper().unwrap()).unwrap().tick().unwrap();
-    let mut recorder = Recorder::new(ticks, 0.01, columns);
+    let mut recorder = ReportRecorder::new(ticks, 0.01, columns);
     for number in 0..ticks {
         tick.time_us = number * 10_000;
         recorder.observe(&tick);
@@ -64,7 +64,7 @@ fn yaw_has_no_jumps_of_a_turn_and_ends_beside_the_desired_one() {
     let yaw: (String, Kept, Read) = ("yaw".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.yaw));
     let asked: (String, Kept, Read) =
         ("yaw_d".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.desired_yaw));
-    let mut recorder = Recorder::new(scenario.timing.ticks, 0.01, vec![yaw, asked]);
+    let mut recorder = ReportRecorder::new(scenario.timing.ticks, 0.01, vec![yaw, asked]);
     for _ in 0..scenario.timing.ticks {
         recorder.observe(&flight.tick().unwrap());
     }

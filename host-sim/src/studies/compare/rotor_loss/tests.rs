@@ -3,7 +3,7 @@
 use super::*;
 use crate::rivals::choice::LawChoice;
 use crate::rivals::gains::Set;
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 use crate::studies::compare::certified;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
@@ -37,10 +37,10 @@ fn each_reference_goes_on_after_the_failure_and_then_down_where_it_stopped() {
 fn ours_lands_softly_where_a_rival_that_holds_its_heading_falls() {
     let file = hummingbird();
     let certified = certified(&file).unwrap();
-    let rival = Set::built_in(&file, &[Kind::Indi]).unwrap().laws().next().unwrap();
+    let rival = Set::built_in(&file, &[RivalKind::Indi]).unwrap().laws().next().unwrap();
     let landed = |law: &LawChoice, name: &str| {
-        let flier = Flier::new(law, &file, Some(&certified)).unwrap();
-        show(&flier, all(&file).unwrap().iter().find(|scene| scene.name == name).unwrap())
+        let law = LawOnVehicle::new(law, &file, Some(&certified)).unwrap();
+        fly_loss_scene(&law, all(&file).unwrap().iter().find(|scene| scene.name == name).unwrap())
     };
     for name in ["hover, 0 %", "circle, 0 %", "upside down, 0 %"] {
         let ours = landed(&LawChoice::Ours, name).unwrap();

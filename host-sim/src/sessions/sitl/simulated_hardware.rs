@@ -11,11 +11,11 @@
 //! world moves when it is read: to that moment, a millisecond at a time, so no reader sees it too early or too late.
 
 use super::clock::SimClock;
-use super::faults::{Faults, Part};
-use super::line::Line;
+use super::faults::{Faults, FaultyPart};
+use super::memory_line::MemoryLine;
 use crate::sessions::answer::{Answer, MeasuredPose};
 use crate::sessions::messages::Encoder;
-use crate::vehicle::instruments::{Instruments, SAMPLE};
+use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use crate::vehicle::plant::Diverged;
 use crate::vehicle::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
@@ -39,16 +39,16 @@ const CAMERA_AHEAD: u64 = 1_000_000_000;
 /// Where the vehicle's poses come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PoseSource {
-    /// The world's own camera.
+    /// The simulated camera.
     #[default]
     Camera,
-    /// A client: the world has no camera.
+    /// A client: there is no simulated camera.
     Link,
 }
 
-/// The world of one vehicle; clones are the same world.
+/// The hardware of one vehicle, and all around it; clones are the same.
 #[derive(Clone)]
-pub struct World(Rc<Inner>);
+pub struct SimulatedHardware(Rc<Inner>);
 
 struct Inner {
     clock: SimClock,
@@ -67,7 +67,7 @@ struct Body {
     /// From a motor command to its effect, us.
     delay: u64,
     curves: Vec<ThrustCurve>,
-    /// Where the world is, us.
+    /// The time up to which all is simulated, us.
     now: u64,
     /// Thrusts on their way, N, with the times at which they act, us.
     waiting: VecDeque<(u64, [f32; MOTORS])>,
@@ -76,11 +76,11 @@ struct Body {
     sample: ImuSample,
     encoder: Encoder,
     /// The way poses take.
-    line: Line,
+    line: MemoryLine,
     diverged: Option<Diverged>,
 }
 
-impl World {
+impl SimulatedHardware {
     /// The scenario's, with the poses of its camera, if it has one, on `line`.
     ///
     /// # Errors
@@ -90,9 +90,9 @@ impl World {
         source: PoseSource,
         clock: &SimClock,
         faults: Faults,
-        line: Line,
+        line: MemoryLine,
     ) -> Result<Self, String> {
-        let ratio = SAMPLE as f64 * 1e-6 / scenario.timing.step();
+        let ratio = SAMPLE_PERIOD_US as f64 * 1e-6 / scenario.timing.step();
         let steps = ratio.round();
         if (ratio - steps).abs() > 1e-6 || steps < 1.0 {
             return Err("plant.step: must be 1 ms over a whole number: the IMU samples at 1 kHz".to_owned());
@@ -127,7 +127,7 @@ impl World {
     pub async fn run(self) {
         let clock = &self.0.clock;
         loop {
-            clock.until(clock.now() + SAMPLE).await;
+            clock.until(clock.now() + SAMPLE_PERIOD_US).await;
             self.catch_up();
         }
     }
@@ -176,7 +176,7 @@ impl World {
     fn catch_up(&self) {
         let now = self.0.clock.now();
         let mut body = self.0.body.borrow_mut();
-        while body.now + SAMPLE <= now {
+        while body.now + SAMPLE_PERIOD_US <= now {
             body.advance(&self.0.faults);
         }
     }
@@ -193,7 +193,7 @@ impl World {
         body.waiting.push_back((due, thrusts));
     }
 
-    fn failed(&self, part: Part) -> bool {
+    fn failed(&self, part: FaultyPart) -> bool {
         self.0.faults.has(part, self.0.clock.now())
     }
 }
@@ -212,10 +212,10 @@ impl Body {
                 self.diverged = Some(diverged);
             }
         }
-        self.now += SAMPLE;
+        self.now += SAMPLE_PERIOD_US;
         self.sample = self.instruments.sample(self.vehicle.state(), self.now);
         while let Some(Stamped { value: pose, time }) = self.instruments.arrived() {
-            if self.source == PoseSource::Link || faults.has(Part::Pose, self.now) {
+            if self.source == PoseSource::Link || faults.has(FaultyPart::Pose, self.now) {
                 continue;
             }
             let (position, attitude) = (pose.position(), pose.attitude());
@@ -243,17 +243,17 @@ fn standing(scenario: &Scenario) -> Scenario {
     standing
 }
 
-impl Imu for World {
+impl Imu for SimulatedHardware {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let clock = &self.0.clock;
-        let time = (clock.now() / SAMPLE + 1) * SAMPLE;
+        let time = (clock.now() / SAMPLE_PERIOD_US + 1) * SAMPLE_PERIOD_US;
         clock.until(time).await;
         self.catch_up();
-        if self.failed(Part::Gyro) {
+        if self.failed(FaultyPart::Gyro) {
             return Err(Fault);
         }
         let ImuSample { angular_velocity, specific_force } = self.0.body.borrow().sample;
-        let specific_force = Some(specific_force).filter(|_| !self.failed(Part::Accelerometer));
+        let specific_force = Some(specific_force).filter(|_| !self.failed(FaultyPart::Accelerometer));
         Ok(RawImu { time, angular_velocity, specific_force })
     }
 
@@ -266,9 +266,9 @@ impl Imu for World {
     }
 }
 
-impl Motors for World {
+impl Motors for SimulatedHardware {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
-        if self.failed(Part::Motors) {
+        if self.failed(FaultyPart::Motors) {
             return Err(Fault);
         }
         self.command(command);
@@ -277,11 +277,11 @@ impl Motors for World {
 }
 
 /// None: its time stands still while control computes.
-impl Watchdog for World {
+impl Watchdog for SimulatedHardware {
     fn feed(&mut self) {}
 }
 
-impl Battery for World {
+impl Battery for SimulatedHardware {
     async fn voltage(&mut self) -> Option<f32> {
         let battery = self.0.body.borrow().vehicle.surroundings().battery;
         self.0.faults.voltage(self.0.clock.now()).or(battery.map(|(voltage, _)| voltage as f32))
@@ -289,6 +289,6 @@ impl Battery for World {
 }
 
 /// Invisible.
-impl Light for World {
+impl Light for SimulatedHardware {
     fn set(&mut self, _: bool) {}
 }

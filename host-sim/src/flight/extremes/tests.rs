@@ -2,9 +2,9 @@
 
 use super::*;
 
-fn flown(scenario: &Scenario, ticks: u64) -> Flown {
+fn flown(scenario: &Scenario, ticks: u64) -> FlightExtremes {
     let mut flight = Flight::new(scenario).unwrap();
-    let mut flown = Flown::new(scenario);
+    let mut flown = FlightExtremes::new(scenario);
     for _ in 0..ticks {
         flown.observe(&flight.tick().unwrap());
     }
@@ -25,7 +25,7 @@ fn steady_state_is_the_last_quarter() {
 fn a_vehicle_that_leaves_its_reference_has_not_reached_it() {
     let paper = Scenario::paper().unwrap();
     let mut flight = Flight::new(&paper).unwrap();
-    let mut flown = Flown::new(&paper);
+    let mut flown = FlightExtremes::new(&paper);
     assert_eq!((flown.position_reached(), flown.attitude_reached()), (None, None));
     for _ in 0..paper.timing.ticks {
         flown.observe(&flight.tick().unwrap());

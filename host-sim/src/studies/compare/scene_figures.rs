@@ -2,24 +2,24 @@
 
 use super::scenes::Scene;
 use crate::flight::course::Activity;
-use crate::flight::flier::Flier;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::flight::{Flight, FlightError};
 use crate::output::interrupt::Interrupt;
 use crate::studies::campaign::outcome::Outcome;
 use crate::studies::campaign::quantile;
-use crate::studies::campaign::throw;
+use crate::studies::campaign::random_flight;
 use controller_core::certificate::Certificate;
 use rayon::prelude::*;
 use scenario::Scenario;
 
-/// The distance from its reference within which a vehicle counts as arrived, m: as in the trials of a search.
-const NEAR: f64 = 0.1;
-/// Between two points of a picture, us; the same for laws of every rate.
-pub const THINNED: u64 = 20_000;
+/// As in the trials of a search.
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
+/// Between two points of a picture; the same for laws of every rate.
+pub const PICTURE_PERIOD_US: u64 = 20_000;
 
 /// One law in one scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shown {
+pub struct SceneFigures {
     /// Start minus lowest height, m.
     pub height_lost: f64,
     /// The time from which it stays near, s; `None` if it was away at the end.
@@ -42,19 +42,19 @@ pub struct Shown {
 
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
-pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
-    course(flier, scene, NEAR)
+pub fn fly_scene(law: &LawOnVehicle, scene: &Scene) -> Option<SceneFigures> {
+    fly_scene_within(law, scene, ARRIVAL_DISTANCE_M)
 }
 
 /// Likewise; it has arrived within `near`, m.
 #[must_use]
-pub fn course(flier: &Flier, scene: &Scene, near: f64) -> Option<Shown> {
-    over(&scene.scenario, flier.flight(&scene.scenario).ok()?, near).ok()
+pub fn fly_scene_within(law: &LawOnVehicle, scene: &Scene, near: f64) -> Option<SceneFigures> {
+    gather(&scene.scenario, law.flight(&scene.scenario).ok()?, near).ok()
 }
 
-fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Shown, FlightError> {
+fn gather(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<SceneFigures, FlightError> {
     let ticks = scenario.timing.ticks;
-    let mut shown = Shown {
+    let mut figures = SceneFigures {
         height_lost: 0.0,
         settled: Some(0.0),
         excursion: 0.0,
@@ -71,31 +71,31 @@ fn over(scenario: &Scenario, mut flight: Flight, near: f64) -> Result<Shown, Fli
         let (position, time) = (&tick.state.position, tick.time_us as f64 * 1e-6);
         let rise = position.z - scenario.initial.position.z;
         let error = (position - tick.reference.position.map(f64::from)).norm();
-        shown.height_lost = shown.height_lost.max(-rise);
-        shown.excursion = shown.excursion.max(error);
-        shown.end_error = error;
-        shown.clipped += f64::from(u8::from(tick.clipped)) / ticks as f64;
+        figures.height_lost = figures.height_lost.max(-rise);
+        figures.excursion = figures.excursion.max(error);
+        figures.end_error = error;
+        figures.clipped += f64::from(u8::from(tick.clipped)) / ticks as f64;
         if error > near {
-            shown.settled = Some(time + scenario.timing.period());
+            figures.settled = Some(time + scenario.timing.period());
         }
-        while shown.error.len() as u64 * THINNED <= tick.time_us {
-            shown.error.push((time, error));
-            shown.height.push((time, rise));
+        while figures.error.len() as u64 * PICTURE_PERIOD_US <= tick.time_us {
+            figures.error.push((time, error));
+            figures.height.push((time, rise));
         }
         if 2 * number >= ticks {
             squares += error * error;
             activity.observe(&tick.rotor_thrusts);
         }
     }
-    shown.settled = shown.settled.filter(|_| shown.end_error <= near);
-    shown.rms = (squares / (ticks - ticks / 2) as f64).sqrt();
-    shown.activity = activity.rms();
-    Ok(shown)
+    figures.settled = figures.settled.filter(|_| figures.end_error <= near);
+    figures.rms = (squares / (ticks - ticks / 2) as f64).sqrt();
+    figures.activity = activity.rms();
+    Ok(figures)
 }
 
 /// One law in all random flights.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Thrown {
+pub struct RandomFlights {
     /// The figures of each flight, by its number.
     pub outcomes: Vec<Outcome>,
 }
@@ -103,21 +103,21 @@ pub struct Thrown {
 /// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with its plant step: the flights of
 /// `campaign --law`. `None` after an interrupt.
 #[must_use]
-pub fn throw_all(
-    flier: &Flier,
+pub fn fly_random_flights(
+    law: &LawOnVehicle,
     scenario: &Scenario,
     certificate: &Certificate,
     count: u64,
     interrupt: &Interrupt,
-) -> Option<Thrown> {
+) -> Option<RandomFlights> {
     let fly = |number| {
-        let row = throw::throw(flier, scenario, certificate, scenario.campaign.seed, number).ok()?;
+        let row = random_flight::fly(law, scenario, certificate, scenario.campaign.seed, number).ok()?;
         interrupt.signal().is_none().then_some(row.outcome)
     };
-    Some(Thrown { outcomes: (0..count).into_par_iter().map(fly).collect::<Option<_>>()? })
+    Some(RandomFlights { outcomes: (0..count).into_par_iter().map(fly).collect::<Option<_>>()? })
 }
 
-impl Thrown {
+impl RandomFlights {
     /// Share of the flights for which `holds` is true.
     #[must_use]
     pub fn share(&self, holds: impl Fn(&Outcome) -> bool) -> f64 {

@@ -10,7 +10,7 @@ use std::task::{Poll, Waker};
 
 /// One direction of a line; clones are the same line.
 #[derive(Clone, Default)]
-pub struct Line(Rc<RefCell<Inner>>);
+pub struct MemoryLine(Rc<RefCell<Inner>>);
 
 #[derive(Default)]
 struct Inner {
@@ -18,7 +18,7 @@ struct Inner {
     reader: Option<Waker>,
 }
 
-impl Line {
+impl MemoryLine {
     /// Puts bytes in.
     pub fn push(&self, bytes: &[u8]) {
         let mut inner = self.0.borrow_mut();
@@ -34,11 +34,11 @@ impl Line {
     }
 }
 
-impl ErrorType for Line {
+impl ErrorType for MemoryLine {
     type Error = Infallible;
 }
 
-impl Read for Line {
+impl Read for MemoryLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, Infallible> {
         poll_fn(|context| {
             let mut inner = self.0.borrow_mut();
@@ -56,7 +56,7 @@ impl Read for Line {
     }
 }
 
-impl Write for Line {
+impl Write for MemoryLine {
     async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         self.push(bytes);
         Ok(bytes.len())

@@ -1,7 +1,7 @@
 use super::*;
 use crate::flight::Flight;
 use crate::flight::claims;
-use crate::flight::flown::Flown;
+use crate::flight::extremes::FlightExtremes;
 use scenario::verdict::Verdict;
 use std::path::Path;
 
@@ -18,13 +18,13 @@ fn every_published_vehicle_recovers_flies_a_circle_and_holds_every_claim() {
     let files = published();
     assert!(files.len() >= 13);
     for (file, text) in files {
-        let Show { scenario, text: _, added } = show(text.clone(), &file).unwrap();
+        let FlownFile { scenario, text: _, added } = with_default_task(text.clone(), &file).unwrap();
         let plain = Scenario::parse(&text, &file).unwrap();
         assert_eq!(scenario.configuration, plain.configuration, "{file}: certify's verdict is about this flight too");
         let added = added.unwrap_or_else(|| panic!("{file}: nothing to look at"));
         let verdict = Verdict::judge(&scenario).unwrap();
         let flight = Flight::certified(&scenario, verdict.certified().unwrap()).unwrap();
-        let flown = Flown::over(&scenario, flight).unwrap();
+        let flown = FlightExtremes::gather(&scenario, flight).unwrap();
         let claims = claims::claims(&scenario, &verdict, &flown);
         println!(
             "{file}: {added}; {} s, falls {:.2} m, there at {:?} s, strays {:?}",
@@ -48,7 +48,7 @@ fn a_file_with_a_start_a_reference_or_the_papers_law_is_flown_as_it_is() {
         format!("{vehicle}\n[initial]\nposition = [0.0, 0.0, 2.0]\n"),
         format!("{vehicle}\n[reference]\nkind = \"hover\"\nposition = [0.0, 0.0, 2.0]\n"),
     ] {
-        let shown = show(text.clone(), "a test").unwrap();
+        let shown = with_default_task(text.clone(), "a test").unwrap();
         assert_eq!((shown.text, shown.added), (text, None));
     }
 }
@@ -59,9 +59,11 @@ fn what_the_file_says_of_time_and_air_stays() {
     let text = format!(
         "\u{feff}duration = 33.0\n{vehicle}\n[battery]\nfull_voltage = 12.6\nempty_voltage = 10.5\nresistance = 0.03\ncapacity = 2.2\n"
     );
-    let Show { scenario, added, .. } = show(text, "a test").unwrap();
+    let FlownFile { scenario, added, .. } = with_default_task(text, "a test").unwrap();
     assert_eq!(scenario.timing.duration(), 33.0);
     assert!(scenario.reality.wind.is_none() && scenario.reality.disturbance.is_none());
     assert!(!added.unwrap().contains("gust"));
-    assert!(show("name = 3".to_owned(), "mine.toml").err().unwrap().to_string().starts_with("mine.toml: "));
+    assert!(
+        with_default_task("name = 3".to_owned(), "mine.toml").err().unwrap().to_string().starts_with("mine.toml: ")
+    );
 }

@@ -34,7 +34,7 @@ const CALM_AFTER_GUST: f64 = 5.0;
 const FLIGHT_MAX: f64 = 60.0;
 
 /// A flight, and the text of the file that would describe it.
-pub struct Show {
+pub struct FlownFile {
     /// The flight.
     pub scenario: Scenario,
     /// The file's text, with what was added.
@@ -47,13 +47,13 @@ pub struct Show {
 ///
 /// # Errors
 /// [`ScenarioError`], as of the file itself.
-pub fn show(text: String, file: &str) -> Result<Show, ScenarioError> {
+pub fn with_default_task(text: String, file: &str) -> Result<FlownFile, ScenarioError> {
     let scenario = Scenario::parse(&text, file)?;
     let shown = with_task(&text, &scenario).and_then(|(text, added)| {
         let scenario = Scenario::parse(&text, file).ok()?;
-        Some(Show { scenario, text, added: Some(added) })
+        Some(FlownFile { scenario, text, added: Some(added) })
     });
-    Ok(shown.unwrap_or(Show { scenario, text, added: None }))
+    Ok(shown.unwrap_or(FlownFile { scenario, text, added: None }))
 }
 
 /// The text with a task, and what that is; none for a file that has one.

@@ -28,7 +28,7 @@ const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// The extremes of a flight, gathered tick by tick.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flown {
+pub struct FlightExtremes {
     steady_from_us: u64,
     /// Until when the vehicle was, or may have been, away from its reference in position and in attitude, us.
     away_until_us: (u64, u64),
@@ -65,8 +65,8 @@ pub struct Flown {
 /// Whether yaw is certified to follow the heading of `reference`: it is within `bounds`.
 #[must_use]
 pub fn heading_is_followed(reference: &Reference, bounds: &ReferenceBounds) -> bool {
-    const ALLOWANCE: f32 = 1e-3;
-    bounds.contain(reference, ALLOWANCE)
+    const HEADING_BOUNDS_TOLERANCE: f32 = 1e-3;
+    bounds.contain(reference, HEADING_BOUNDS_TOLERANCE)
 }
 
 /// The part of an attitude's error, modified Rodrigues parameters, that is certified to vanish.
@@ -75,7 +75,7 @@ pub fn claimed_error(mrp: &Vector3<f32>, reference: &Reference, bounds: &Referen
     f64::from(if heading_is_followed(reference, bounds) { mrp.norm() } else { mrp.xy().norm() })
 }
 
-impl Flown {
+impl FlightExtremes {
     /// Nothing seen yet of a flight of `scenario`.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
@@ -163,7 +163,7 @@ impl Flown {
     ///
     /// # Errors
     /// If it cannot be flown to its end.
-    pub fn over(scenario: &Scenario, mut flight: Flight) -> Result<Self, FlightError> {
+    pub fn gather(scenario: &Scenario, mut flight: Flight) -> Result<Self, FlightError> {
         let mut flown = Self::new(scenario);
         for _ in 0..scenario.timing.ticks {
             flown.observe(&flight.tick()?);

@@ -1,11 +1,11 @@
 //! The law that flies: ours, or a rival with its gains.
 //!
-//! A [`LawChoice`] names a law; a [`Flier`] is that law on one vehicle, ready for any number of flights. Our law is
+//! A [`LawChoice`] names a law; a [`LawOnVehicle`] is that law on one vehicle, ready for any number of flights. Our law is
 //! certified once for all flights, as on boards; an uncertified one flies as its scenario has it.
 
 use crate::flight::Flight;
-use crate::rivals::choice::{LawChoice, OURS};
-use crate::rivals::kind::Kind;
+use crate::rivals::choice::{LawChoice, OUR_LAW};
+use crate::rivals::kind::RivalKind;
 use crate::rivals::rival::Rival;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
@@ -13,14 +13,14 @@ use scenario::Scenario;
 
 /// A law on a vehicle.
 #[derive(Debug)]
-pub enum Flier {
+pub enum LawOnVehicle {
     /// The scenario's own, with what certifies it, if anything does.
     Ours(Option<Box<Certified>>),
     /// Another one, at the start of a flight.
-    Rival(Kind, Box<dyn Rival>),
+    Rival(RivalKind, Box<dyn Rival>),
 }
 
-impl Flier {
+impl LawOnVehicle {
     /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what
     /// certifies ours. None if the rival is undefined for its gains.
     #[must_use]
@@ -35,7 +35,7 @@ impl Flier {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Ours(_) => OURS,
+            Self::Ours(_) => OUR_LAW,
             Self::Rival(kind, _) => kind.name(),
         }
     }

@@ -4,9 +4,9 @@
 //! be shown.
 
 use super::clock::SimClock;
-use super::faults::{Faults, Part};
-use super::world::World;
-use crate::sessions::ports::Port;
+use super::faults::{Faults, FaultyPart};
+use super::simulated_hardware::SimulatedHardware;
+use crate::sessions::ports::ClientPort;
 use embedded_io_async::{ErrorType, Write};
 use firmware::hardware::Clock;
 use firmware::link::frame::{Frame, Parser};
@@ -17,28 +17,28 @@ use std::convert::Infallible;
 use std::rc::Rc;
 
 /// The line out of the vehicle.
-pub struct Voice {
+pub struct Downlink {
     pub clock: SimClock,
     pub faults: Faults,
-    pub port: Rc<RefCell<Port>>,
-    pub world: World,
+    pub port: Rc<RefCell<ClientPort>>,
+    pub hardware: SimulatedHardware,
     /// Texts with their times, us.
     pub texts: Rc<RefCell<Vec<(u64, String)>>>,
     pub parser: Parser,
 }
 
-impl ErrorType for Voice {
+impl ErrorType for Downlink {
     type Error = Infallible;
 }
 
-impl Write for Voice {
+impl Write for Downlink {
     async fn write(&mut self, frame: &[u8]) -> Result<usize, Infallible> {
         let now = self.clock.now();
-        if !self.faults.has(Part::GroundStation, now) {
+        if !self.faults.has(FaultyPart::GroundStation, now) {
             self.port.borrow_mut().send(frame);
         }
-        let (world, texts) = (&self.world, &self.texts);
-        self.parser.feed(frame, now, &mut |frame| follow(frame, world, now, texts));
+        let (hardware, texts) = (&self.hardware, &self.texts);
+        self.parser.feed(frame, now, &mut |frame| follow(frame, hardware, now, texts));
         Ok(frame.len())
     }
 
@@ -47,12 +47,12 @@ impl Write for Voice {
     }
 }
 
-fn follow(frame: &Frame<'_>, world: &World, now: u64, texts: &RefCell<Vec<(u64, String)>>) {
-    world.receive(frame);
+fn follow(frame: &Frame<'_>, hardware: &SimulatedHardware, now: u64, texts: &RefCell<Vec<(u64, String)>>) {
+    hardware.receive(frame);
     match frame.message {
         TIMESYNC_DATA::ID => {
             if let Some(TIMESYNC_DATA { tc1: 0, ts1 }) = frame.decode() {
-                world.answer_time_sync(ts1);
+                hardware.answer_time_sync(ts1);
             }
         }
         STATUSTEXT_DATA::ID => {

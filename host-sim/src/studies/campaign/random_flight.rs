@@ -2,8 +2,8 @@
 
 use super::draw::circumstances;
 use super::outcome::Outcome;
-use super::rows::Row;
-use crate::flight::flier::Flier;
+use super::rows::FlightRow;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use controller_core::certificate::Certificate;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
@@ -12,15 +12,15 @@ use scenario::Scenario;
 /// the same for every law; what `certificate` proves of our commands, those of any law are held against.
 ///
 /// # Errors
-/// As [`Flier::flight`]'s.
-pub fn throw(
-    flier: &Flier,
+/// As [`LawOnVehicle::flight`]'s.
+pub fn fly(
+    law: &LawOnVehicle,
     scenario: &Scenario,
     certificate: &Certificate,
     seed: u64,
     number: u64,
-) -> Result<Row, ParameterError> {
+) -> Result<FlightRow, ParameterError> {
     let thrown = circumstances(scenario, &scenario.campaign.ranges, seed, number);
-    let outcome = Outcome::of(&thrown, flier.flight(&thrown)?, certificate);
-    Ok(Row::new(number, &thrown, outcome))
+    let outcome = Outcome::judge(&thrown, law.flight(&thrown)?, certificate);
+    Ok(FlightRow::new(number, &thrown, outcome))
 }

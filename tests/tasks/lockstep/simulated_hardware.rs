@@ -1,11 +1,11 @@
 //! The vehicle as the firmware's peripherals meet it: rotors that lag, a body that falls, sensors and motors.
 
-use super::clock::SimClock;
 use controller_core::allocation::Rotors;
 use controller_core::configuration::Configuration;
 use controller_core::state::State;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use host_sim::sessions::sitl::clock::SimClock;
 use host_sim::vehicle::plant::Plant;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -13,15 +13,15 @@ use scenario::body::{BodyState, attitude_from_euler};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// Integration step, us; also the IMU's period.
-pub const STEP: u64 = 1_000;
+/// Of the integration; also the IMU's period.
+pub const STEP_US: u64 = 1_000;
 
 /// The file that the firmware embeds; what the firmware does not know of it is the rotors' lag.
 const EMBEDDED: &str = include_str!("../../../vehicles/study.toml");
 
-/// Everything outside the processor; clones are the same world.
+/// Everything outside the processor; clones are the same.
 #[derive(Clone)]
-pub struct World(Rc<Inner>);
+pub struct SimulatedHardware(Rc<Inner>);
 
 struct Inner {
     clock: SimClock,
@@ -60,7 +60,7 @@ struct Body {
 
 /// The rigid body at `state`.
 fn body(configuration: &Configuration, state: BodyState) -> Plant {
-    Plant::new(configuration.vehicle(), configuration.limits(), STEP as f64 * 1e-6, state)
+    Plant::new(configuration.vehicle(), configuration.limits(), STEP_US as f64 * 1e-6, state)
 }
 
 impl Health {
@@ -73,7 +73,7 @@ impl Health {
     }
 }
 
-impl World {
+impl SimulatedHardware {
     /// A vehicle standing on level ground at the origin, heading along world x.
     pub fn new(clock: &SimClock, configuration: &Configuration) -> Self {
         let rotors = configuration.rotors().unwrap().clone();
@@ -83,7 +83,7 @@ impl World {
         let plant = body(configuration, state);
         let greatest = f64::from(rotors[0].speed_at(rotors[0].thrust_max));
         let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
-        let left = (-1e-6 * STEP as f64 / lag).exp();
+        let left = (-1e-6 * STEP_US as f64 / lag).exp();
         let force = Vector3::new(0.0, 0.0, f64::from(configuration.vehicle().gravity));
         let speeds = [0.0; MOTORS];
         let configuration = configuration.clone();
@@ -104,7 +104,7 @@ impl World {
     pub async fn run(self) {
         loop {
             let clock = &self.0.clock;
-            clock.until(clock.now() + STEP).await;
+            clock.until(clock.now() + STEP_US).await;
             let command = self.command();
             self.0.body.borrow_mut().step(command);
         }
@@ -189,21 +189,21 @@ impl Body {
         }
         let after = self.plant.state();
         let gravity = Vector3::new(0.0, 0.0, f64::from(self.configuration.vehicle().gravity));
-        let gained = (after.velocity - before.velocity) / (STEP as f64 * 1e-6) + gravity;
+        let gained = (after.velocity - before.velocity) / (STEP_US as f64 * 1e-6) + gravity;
         self.force = nalgebra::UnitQuaternion::new_normalize(after.attitude).inverse_transform_vector(&gained);
     }
 }
 
 /// The board's IMU: a sample at each step, with enough noise that it does not count as stuck.
-pub struct SimImu(pub World);
+pub struct SimImu(pub SimulatedHardware);
 
 impl Imu for SimImu {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let clock = &self.0.0.clock;
-        let time = (clock.now() / STEP + 1) * STEP;
+        let time = (clock.now() / STEP_US + 1) * STEP_US;
         clock.until(time).await;
         self.0.0.sensor.get().answer().await?;
-        let jitter = (time / STEP % 7) as f32 * 1e-5 - 3e-5;
+        let jitter = (time / STEP_US % 7) as f32 * 1e-5 - 3e-5;
         let body = self.0.0.body.borrow();
         let angular_velocity = body.plant.state().measured().angular_velocity.add_scalar(jitter);
         Ok(RawImu { time, angular_velocity, specific_force: Some(body.force.cast().add_scalar(jitter)) })
@@ -219,7 +219,7 @@ impl Imu for SimImu {
 }
 
 /// The board's motor outputs.
-pub struct SimMotors(pub World);
+pub struct SimMotors(pub SimulatedHardware);
 
 impl Motors for SimMotors {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
@@ -230,7 +230,7 @@ impl Motors for SimMotors {
 }
 
 /// The board's watchdog.
-pub struct SimWatchdog(pub World);
+pub struct SimWatchdog(pub SimulatedHardware);
 
 impl Watchdog for SimWatchdog {
     fn feed(&mut self) {
@@ -239,7 +239,7 @@ impl Watchdog for SimWatchdog {
 }
 
 /// The board's battery.
-pub struct SimBattery(pub World);
+pub struct SimBattery(pub SimulatedHardware);
 
 impl Battery for SimBattery {
     async fn voltage(&mut self) -> Option<f32> {

@@ -32,7 +32,7 @@ const LEAST_TURNING: f64 = 0.5;
 
 /// A flight, from the failure on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Flown {
+struct FlightWithoutRotor {
     /// m.
     height_lost: f64,
     /// Across, m.
@@ -47,14 +47,14 @@ struct Flown {
 
 /// What is known of the loss of one rotor.
 struct Loss {
-    flown: Flown,
+    flown: FlightWithoutRotor,
     hover: Result<RelaxedHover, NoHover>,
     /// The spectral radius about that.
     radius: Option<f64>,
 }
 
 impl Loss {
-    fn of(
+    fn fly_and_analyse(
         scenario: &Scenario,
         certified: &Certified,
         law: &WithoutARotor,
@@ -86,7 +86,7 @@ impl Loss {
 
     /// A row of the table, without the rotor's name.
     fn cells(&self) -> [String; 4] {
-        let Flown { height_lost, farthest, lands_from, turning, lost } = &self.flown;
+        let FlightWithoutRotor { height_lost, farthest, lands_from, turning, lost } = &self.flown;
         if let Some(lost) = lost.filter(|_| !self.is_survived()) {
             return [&*format!("lost after {} s", rounded(lost)), "", "", ""].map(str::to_owned);
         }
@@ -139,7 +139,7 @@ pub fn lines(scenario: &Scenario, certified: Option<&Certified>) -> Result<Strin
     let mut losses = Vec::new();
     for rotor in 0..rotors.len() {
         if let Some(law) = WithoutARotor::new(configuration, rotor, scenario.timing.period() as f32) {
-            losses.push(Loss::of(scenario, certified, &law, rotor)?);
+            losses.push(Loss::fly_and_analyse(scenario, certified, &law, rotor)?);
         }
     }
     let has_drag = scenario.reality.drag.is_some();
@@ -191,13 +191,18 @@ fn relaxed(loss: &Loss) -> String {
 }
 
 /// Flies the loss of a rotor.
-fn flown(scenario: &Scenario, certified: &Certified, rotor: usize) -> Result<(Flown, Flight), ParameterError> {
+fn flown(
+    scenario: &Scenario,
+    certified: &Certified,
+    rotor: usize,
+) -> Result<(FlightWithoutRotor, Flight), ParameterError> {
     let mut model = hover(scenario, Vector3::zeros(), 0.0)?;
     let failure = Failure { rotor, time: FAILURE_TIME, thrust_left: 0.0 };
     model.reality = Reality { drag: scenario.reality.drag, failure: Some(failure), ..Reality::default() };
     let mut flight = Flight::certified(&model, certified)?;
     let period = scenario.timing.period();
-    let mut flown = Flown { height_lost: 0.0, farthest: 0.0, lands_from: 0.0, turning: Vector3::zeros(), lost: None };
+    let mut flown =
+        FlightWithoutRotor { height_lost: 0.0, farthest: 0.0, lands_from: 0.0, turning: Vector3::zeros(), lost: None };
     let (mut last, mut left) = (model.initial, None);
     for number in 0..((FAILURE_TIME + WATCHED_TIME) / period) as u64 {
         let time = number as f64 * period - FAILURE_TIME;
