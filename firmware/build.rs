@@ -15,10 +15,10 @@ use std::{env, fs};
 
 /// What is built in without SCENARIO, to be flown on desks and emulated boards only: tuned for 30 ms of rotor lag and a
 /// whole sample of delay, certified to the rotors.
-const STUDY: &str = "vehicles/study.toml";
+const STUDY_SCENARIO: &str = "vehicles/study.toml";
 
 /// Boards and the files that describe their memory, from this package's folder.
-const MEMORY: &[(&str, &str)] = &[
+const MEMORY_FILES: &[(&str, &str)] = &[
     ("MICOAIR_H743", "memory/stm32h743.x"),
     ("MATEK_H743", "memory/stm32h743.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
@@ -27,7 +27,7 @@ const MEMORY: &[(&str, &str)] = &[
 ];
 
 /// The same for who builds with `BOOTLOADER=kept`: behind the bootloader that the board came with.
-const KEPT: &[(&str, &str)] = &[
+const KEPT_MEMORY_FILES: &[(&str, &str)] = &[
     ("MICOAIR_H743", "memory/stm32h743-kept.x"),
     ("MATEK_H743", "memory/stm32h743-kept.x"),
     ("CRAZYFLIE_BOLT", "memory/crazyflie-bolt.x"),
@@ -66,7 +66,7 @@ fn scenario(target: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-changed=build/embed.rs");
     println!("cargo::rerun-if-changed=build/policy.rs");
     let top = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join("..");
-    let name = env::var("SCENARIO").unwrap_or_else(|_| STUDY.to_owned());
+    let name = env::var("SCENARIO").unwrap_or_else(|_| STUDY_SCENARIO.to_owned());
     let file = top.join(&name);
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file)
@@ -101,9 +101,9 @@ fn carried(top: &Path) -> Result<String, String> {
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.
 fn link(out: &Path) -> Result<(), String> {
     let active = |(board, _): &&(&str, &str)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some();
-    let boards: Vec<_> = MEMORY.iter().filter(active).collect();
+    let boards: Vec<_> = MEMORY_FILES.iter().filter(active).collect();
     let [(_, memory)] = boards.as_slice() else {
-        let names: Vec<_> = MEMORY.iter().map(|(board, _)| board.to_lowercase().replace('_', "-")).collect();
+        let names: Vec<_> = MEMORY_FILES.iter().map(|(board, _)| board.to_lowercase().replace('_', "-")).collect();
         let names = names.join(", ");
         return Err(format!("exactly one board's feature must be on, found {}; boards: {names}", boards.len()));
     };
@@ -111,7 +111,8 @@ fn link(out: &Path) -> Result<(), String> {
     let memory = match env::var("BOOTLOADER").as_deref() {
         Err(_) => memory,
         Ok("kept") => {
-            let kept = KEPT.iter().find(|(board, _)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some());
+            let kept =
+                KEPT_MEMORY_FILES.iter().find(|(board, _)| env::var_os(format!("CARGO_FEATURE_{board}")).is_some());
             kept.map(|(_, memory)| memory).ok_or("BOOTLOADER: this board has none")?
         }
         Ok(other) => return Err(format!("BOOTLOADER: found {other:?}, allowed is \"kept\", or nothing at all")),

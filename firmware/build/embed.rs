@@ -56,8 +56,8 @@ pub const NAME: &str = \"{name}\";
 /// A number of this configuration, below 2^24: see `scenario::board::identity`.
 pub const IDENTITY: u32 = {identity};
 
-/// The time between control ticks, us.
-pub const PERIOD: u64 = {period};
+/// The time between control ticks.
+pub const PERIOD_US: u64 = {period};
 
 /// Which factors on its gains have sampled loops with margin.
 pub static LOOPS: JudgedLoops = JudgedLoops::from_bits([{across}], [{vertical}]);

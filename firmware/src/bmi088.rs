@@ -22,7 +22,7 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Wake, Write};
 use crate::registers::{
-    ACCESS_WITHIN, POWER_TAKES, POWER_UP_WITHIN, PowerUp, RATE_PER_COUNT, READ, Registers, Step,
+    ACCESS_TIMEOUT_US, POWER_DELAY_US, POWER_UP_TIMEOUT_US, PowerUp, RATE_PER_COUNT, READ_BIT, Registers, Step,
     acceleration_per_count, counts, exchange,
 };
 use crate::spi;
@@ -35,12 +35,12 @@ mod tests;
 /// m/s^2 in one count, at 24 g.
 pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(24.0);
 
-/// Time between samples, us.
-const PERIOD: u64 = 1_000;
+/// Time between samples.
+const SAMPLE_PERIOD_US: u64 = 1_000;
 
-/// How long an accelerometer that did not power up is left alone, us: on a bus that hangs, asking costs the gyroscope
+/// How long an accelerometer that did not power up is left alone: on a bus that hangs, asking costs the gyroscope
 /// time.
-const LEFT_ALONE: u64 = 100_000;
+const ACCELEROMETER_RETRY_INTERVAL_US: u64 = 100_000;
 
 /// Both devices hold their identity here.
 const CHIP_ID: u8 = 0x00;
@@ -121,9 +121,9 @@ struct Port<'a, D, C> {
 impl<D: spi::Device, C: Clock> Port<'_, D, C> {
     /// Reads `count` registers, at most six, from `register` on.
     async fn read_many(&mut self, register: u8, count: usize) -> Result<[u8; 6], Fault> {
-        let mut bytes = [READ | register, 0, 0, 0, 0, 0, 0, 0];
+        let mut bytes = [READ_BIT | register, 0, 0, 0, 0, 0, 0, 0];
         let used = bytes.get_mut(..self.device.lead + count).ok_or(Fault)?;
-        exchange(self.spi, self.clock, ACCESS_WITHIN, used).await?;
+        exchange(self.spi, self.clock, ACCESS_TIMEOUT_US, used).await?;
         let [_, early @ .., _] = bytes;
         let [_, _, late @ ..] = bytes;
         Ok(if self.device.lead == 1 { early } else { late })
@@ -147,7 +147,7 @@ impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
 
     async fn write(&mut self, register: u8, bytes: &[u8]) -> Result<(), Fault> {
         let &[value] = bytes else { return Err(Fault) };
-        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut [register, value]).await
+        exchange(self.spi, self.clock, ACCESS_TIMEOUT_US, &mut [register, value]).await
     }
 }
 
@@ -165,17 +165,17 @@ pub struct Bmi088<D, P, C> {
 impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up. `devices` are accelerometer and gyroscope.
     pub fn new(devices: [D; 2], data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
-        let time = clock.now() + POWER_TAKES;
+        let time = clock.now() + POWER_DELAY_US;
         let (accelerometer, gyroscope) = (Part::new(&ACCELEROMETER, time), Part::new(&GYROSCOPE, time));
-        Self { devices, pace: Pace::new(data_ready, PERIOD), clock, mounting, accelerometer, gyroscope }
+        Self { devices, pace: Pace::new(data_ready, SAMPLE_PERIOD_US), clock, mounting, accelerometer, gyroscope }
     }
 
     /// Both devices at once, because most of it is waiting; the gyroscope's faults end it, and the accelerometer's only
     /// its own. An accelerometer that is being left alone is not waited for.
     async fn power_up(&mut self) -> Result<(), Fault> {
         let now = self.clock.now();
-        let end = now + POWER_UP_WITHIN;
-        let mut with_accelerometer = self.accelerometer.power_up.due() <= now + POWER_TAKES;
+        let end = now + POWER_UP_TIMEOUT_US;
+        let mut with_accelerometer = self.accelerometer.power_up.due() <= now + POWER_DELAY_US;
         loop {
             let (now, fast, slow) = (self.clock.now(), &self.gyroscope.power_up, &self.accelerometer.power_up);
             let waiting = with_accelerometer && !slow.is_done(now);
@@ -209,7 +209,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
         let mut port = Port { spi, clock, device: accelerometer.device };
         let advanced = accelerometer.power_up.advance(&mut port, clock).await;
         if advanced.is_err() {
-            accelerometer.power_up.restart(clock.now() + LEFT_ALONE);
+            accelerometer.power_up.restart(clock.now() + ACCELEROMETER_RETRY_INTERVAL_US);
         }
         advanced
     }
@@ -218,7 +218,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
     async fn rates(&mut self) -> Result<Vector3<f32>, Fault> {
         let Self { devices: [_, spi], clock, gyroscope, .. } = self;
         let measured = Port { spi, clock, device: gyroscope.device }.measure().await;
-        gyroscope.power_up.judge(measured, clock.now() + POWER_TAKES)
+        gyroscope.power_up.judge(measured, clock.now() + POWER_DELAY_US)
     }
 
     /// The accelerations, in counts; none from an accelerometer that does not answer, which is powered up by a step
@@ -231,7 +231,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi088<D, P, C> {
         }
         let Self { devices: [spi, _], clock, accelerometer, .. } = self;
         let measured = Port { spi, clock, device: accelerometer.device }.measure().await;
-        accelerometer.power_up.judge(measured, clock.now() + LEFT_ALONE).ok()
+        accelerometer.power_up.judge(measured, clock.now() + ACCELEROMETER_RETRY_INTERVAL_US).ok()
     }
 }
 

@@ -22,7 +22,7 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Upload, Wake, Write};
 use crate::registers::{
-    POWER_TAKES, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts, exchange, read_many,
+    POWER_DELAY_US, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts, exchange, read_many,
 };
 use crate::spi;
 use estimation::imu::ImuParameters;
@@ -43,17 +43,17 @@ pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 pub const PARAMETERS: ImuParameters =
     ImuParameters { rate: 800.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4, leap: 33.0, late: 1_185 };
 
-/// Time between samples, us.
-const PERIOD: u64 = 1_250;
+/// Time between samples.
+const SAMPLE_PERIOD_US: u64 = 1_250;
 
-/// The longest that writing the file may take, us; at 5 MHz it takes 530 us.
-const UPLOAD_WITHIN: u64 = 2_000;
+/// The longest that writing the file may take; at 5 MHz it takes 530 us.
+const UPLOAD_TIMEOUT_US: u64 = 2_000;
 
 const CHIP_ID: u8 = 0x00;
-const ID: u8 = 0x24;
+const CHIP_ID_BMI270: u8 = 0x24;
 
 /// Where the data start: x, y, z of the accelerometer, then of the gyroscope, low byte first.
-const DATA: u8 = 0x0C;
+const DATA_REGISTER: u8 = 0x0C;
 
 /// Where the file leaves how much of z the gyroscope's x feels.
 const CROSS_SENSITIVITY: u8 = 0x1E;
@@ -67,7 +67,7 @@ const POWER_UP: [Step; 19] = [
     (CHIP_ID, 0, Wake),
     (0x7E, 0xB6, Write(2_000)),
     (CHIP_ID, 0, Wake),
-    (CHIP_ID, ID, Expect(0xFF)),
+    (CHIP_ID, CHIP_ID_BMI270, Expect(0xFF)),
     (0x7C, 0x00, Set(1_000)),
     (0x59, 0x00, Write(0)),
     (0x5B, 0x00, Write(0)),
@@ -105,7 +105,7 @@ impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
             *address = register;
             rest.copy_from_slice(bytes);
         }
-        exchange(self.spi, self.clock, UPLOAD_WITHIN, used).await
+        exchange(self.spi, self.clock, UPLOAD_TIMEOUT_US, used).await
     }
 }
 
@@ -123,8 +123,8 @@ pub struct Bmi270<D, P, C> {
 impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up.
     pub fn new(spi: D, data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
-        let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_TAKES);
-        let pace = Pace::new(data_ready, PERIOD);
+        let power_up = PowerUp::new(&POWER_UP, clock.now() + POWER_DELAY_US);
+        let pace = Pace::new(data_ready, SAMPLE_PERIOD_US);
         Self { spi, clock, pace, mounting, power_up, cross_sensitivity: None }
     }
 
@@ -147,11 +147,11 @@ impl<D: spi::Device, P: DataReady, C: Clock> Bmi270<D, P, C> {
 
     async fn measure(&mut self, cross_sensitivity: f32) -> Result<RawImu, Fault> {
         let time = self.pace.next(&self.clock).await;
-        if self.port().read(CHIP_ID).await? != ID {
+        if self.port().read(CHIP_ID).await? != CHIP_ID_BMI270 {
             return Err(Fault);
         }
         let [_, _, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5] =
-            read_many(&mut self.spi, &self.clock, DATA).await?;
+            read_many(&mut self.spi, &self.clock, DATA_REGISTER).await?;
         let mut rates = counts([g0, g1, g2, g3, g4, g5]);
         rates.x -= cross_sensitivity * rates.z;
         let accelerations = counts([a0, a1, a2, a3, a4, a5]);
@@ -167,7 +167,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Imu for Bmi270<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         let cross_sensitivity = self.ready().await?;
         let sample = self.measure(cross_sensitivity).await;
-        let sample = self.power_up.judge(sample, self.clock.now() + POWER_TAKES);
+        let sample = self.power_up.judge(sample, self.clock.now() + POWER_DELAY_US);
         if !self.power_up.is_done(self.clock.now()) {
             self.cross_sensitivity = None;
         }

@@ -59,7 +59,7 @@ pub fn start<M: RawMutex>(
         configuration,
         loops: &configuration::LOOPS,
         identity: configuration::IDENTITY,
-        period: configuration::PERIOD,
+        period: configuration::PERIOD_US,
     };
     start_named(place, shared, built, configuration::IS_NAMED)
 }

@@ -21,7 +21,7 @@
 //!   reported.
 //! - A card may take its time or take for ever: everything here blocks, so a board gives this task the lowest priority
 //!   of all. A card that is missing, full, removed, worn out or formatted for something else is reported in words,
-//!   tried again every [`RETRY`], and does not prevent arming.
+//!   tried again every [`RETRY_INTERVAL_US`], and does not prevent arming.
 //! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
 //!   that was there before: [`log`] and [`volume`] explain why.
 
@@ -44,22 +44,22 @@ use library::Library;
 use log::Log;
 use volume::{Trouble, Volume};
 
-/// Time between looks for records, us.
-pub const PACE: u64 = 10_000;
+/// Time between looks for records.
+pub const POLL_INTERVAL_US: u64 = 10_000;
 
-/// Time between attempts to use a card that cannot be used, us.
-pub const RETRY: u64 = 3_000_000;
+/// Time between attempts to use a card that cannot be used.
+pub const RETRY_INTERVAL_US: u64 = 3_000_000;
 
-/// What is made ready before a flight, bytes: 8 minutes.
-pub const PREPARED: u32 = 8 << 20;
+/// What is made ready before a flight: 8 minutes.
+pub const PREPARED_BYTES: u32 = 8 << 20;
 
 /// Records that are taken at one look, at most: what fell behind is caught up with in several.
-const AT_ONCE: usize = 200;
+const RECORDS_AT_ONCE: usize = 200;
 
 /// Events that are kept for the beginning of the next flight.
-const KEPT: usize = 16;
+const EVENTS_KEPT: usize = 16;
 
-/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED`], if there is nothing
+/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED_BYTES`], if there is nothing
 /// against it.
 pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: CardView<'_, M>) -> ! {
     let mut logger = Logger {
@@ -76,7 +76,7 @@ pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl 
         let Err(trouble) = logger.use_card(&mut card).await;
         shared.card().set(if trouble == Trouble::Absent { CardState::Absent } else { CardState::Failed }, clock.now());
         logger.report(trouble);
-        clock.until(clock.now().saturating_add(RETRY)).await;
+        clock.until(clock.now().saturating_add(RETRY_INTERVAL_US)).await;
     }
 }
 
@@ -97,7 +97,7 @@ struct Logger<'a, K, M: RawMutex> {
     shared: CardView<'a, M>,
     follower: Follower,
     /// The newest announced events, and when, us.
-    events: Deque<(u64, Event), KEPT>,
+    events: Deque<(u64, Event), EVENTS_KEPT>,
     /// Whether the recording that the start found has been copied, as far as it could be.
     is_copied: bool,
     /// Records that this flight's file lacks.
@@ -170,7 +170,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
                 },
                 Flight::None | Flight::Recording => {}
             }
-            self.clock.until(self.clock.now().saturating_add(PACE)).await;
+            self.clock.until(self.clock.now().saturating_add(POLL_INTERVAL_US)).await;
         }
     }
 
@@ -190,7 +190,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     /// Writes what there is to be written.
     fn write<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<Flight, Trouble> {
         self.keep_events();
-        for _ in 0..AT_ONCE {
+        for _ in 0..RECORDS_AT_ONCE {
             match self.shared.recorder().follow(&mut self.follower) {
                 Followed::Record { is_first: true, .. } if log.has_begun() => {
                     // The next flight, whose first record is for the next file.

@@ -1,6 +1,6 @@
 //! The configuration this build flies: chosen with `SCENARIO=file.toml` at build time, certified again at boot.
 
-use crate::hardware::MOTORS;
+use crate::hardware::MOTOR_COUNT;
 use controller_core::allocation::{Rotor, Rotors, Spin};
 use controller_core::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
@@ -28,4 +28,4 @@ pub const NO_VEHICLE: ParameterError =
     ParameterError { field: "no vehicle: build with SCENARIO", reason: Reason::NotPositive };
 
 /// The error for a scenario without rotors.
-pub const NO_ROTORS: ParameterError = ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) };
+pub const NO_ROTORS: ParameterError = ParameterError { field: "rotors", reason: Reason::TooFew(MOTOR_COUNT) };

@@ -17,7 +17,9 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::link::origin::Origin;
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
-use crate::shared::{ControlView, Event, INCREMENTS, MissionReport, POSES, Queue, QueuedRequest, Report, Take, Timing};
+use crate::shared::{
+    ControlView, Event, INCREMENTS_CAPACITY, MissionReport, POSES_CAPACITY, Queue, QueuedRequest, Report, Take, Timing,
+};
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -25,17 +27,17 @@ use estimation::estimator::{Accepted, Fault as EstimatorFault, Increment, Reject
 use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Stored, Transition};
 use heapless::Vec;
 
-/// How long the motors' frame may take to write at most, us: half of a period, where that is less.
-const WRITING_MAX: u64 = 2_000;
+/// How long the motors' frame may take to write at most: half of a period, where that is less.
+const MOTORS_WRITE_TIMEOUT_US: u64 = 2_000;
 
-/// The greatest age of a voltage that counts, us.
-const VOLTAGE_AGE_MAX: u64 = 1_000_000;
+/// The greatest age of a voltage that counts.
+const VOLTAGE_AGE_MAX_US: u64 = 1_000_000;
 
-/// How long a fault of the IMU is held after its last sample, us.
-const IMU_FAULT_HOLD: u64 = 1_000_000;
+/// How long a fault of the IMU is held after its last sample.
+const IMU_FAULT_HOLD_US: u64 = 1_000_000;
 
-/// The least interval between reports of refused poses, and of estimator faults, us.
-const TEXT_INTERVAL: u64 = 1_000_000;
+/// The least interval between reports of refused poses, and of estimator faults.
+const TEXT_INTERVAL_US: u64 = 1_000_000;
 
 /// The control task's own state.
 pub struct Control<'a, M: RawMutex> {
@@ -86,7 +88,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// Runs for ever.
     pub async fn run(&mut self, clock: &impl Clock, motors: &mut impl Motors, watchdog: &mut impl Watchdog) -> ! {
         let period = self.pilot.period();
-        let writing_max = WRITING_MAX.min(period / 2);
+        let writing_max = MOTORS_WRITE_TIMEOUT_US.min(period / 2);
         let mut due = clock.now() + period;
         loop {
             clock.until(due).await;
@@ -108,8 +110,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
         self.shared.pass(now);
-        let increments: Vec<Increment, INCREMENTS> = waiting(self.shared.increments());
-        let poses: Vec<_, POSES> = waiting(self.shared.poses());
+        let increments: Vec<Increment, INCREMENTS_CAPACITY> = waiting(self.shared.increments());
+        let poses: Vec<_, POSES_CAPACITY> = waiting(self.shared.poses());
         increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests().take();
         self.pilot.use_settings(&self.shared.parameters().flight_settings());
@@ -135,7 +137,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let (parameters, voltage) = (self.shared.parameters(), self.shared.voltage().get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
-        let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX, now);
+        let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX_US, now);
         self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, voltage));
         command
     }
@@ -157,7 +159,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             now,
             under_way: self.shared.under_way().get().map(|newest| newest.value),
             body_rate: self.shared.imu().get().map(|newest| newest.map(|sample| sample.angular_velocity)),
-            imu_fault: self.shared.imu_fault().recent(IMU_FAULT_HOLD, now),
+            imu_fault: self.shared.imu_fault().recent(IMU_FAULT_HOLD_US, now),
             ground_station: self.shared.ground_station().get().map(|last| last.time),
             request: asked.map(|asked| asked.request),
             disarm: self.shared.disarm().take() || handed_over,
@@ -207,7 +209,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     fn battery(&self, now: u64) -> Battery {
         let parameters = self.shared.parameters();
         let (low, critical) = (parameters.get(Name::BatteryLow), parameters.get(Name::BatteryCritical));
-        match self.shared.voltage().recent(VOLTAGE_AGE_MAX, now) {
+        match self.shared.voltage().recent(VOLTAGE_AGE_MAX_US, now) {
             None if low > 0.0 || critical > 0.0 => Battery::Missing,
             None => Battery::Unknown,
             Some(voltage) if voltage < critical => Battery::Critical,
@@ -268,7 +270,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             // Before there is an IMU to compare it with, nothing is wrong with a pose.
             Some(Err(Rejected::NoImu | Rejected::TooOld)) if outcome.estimated.is_none() => {}
             Some(Err(rejected)) if now >= *pose => {
-                *pose = now.saturating_add(TEXT_INTERVAL);
+                *pose = now.saturating_add(TEXT_INTERVAL_US);
                 self.shared.announce(Event::Pose(Err(rejected)));
             }
             Some(Ok(taken @ (Accepted::Rebased | Accepted::Refound))) => self.shared.announce(Event::Pose(Ok(taken))),
@@ -279,7 +281,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         if worst != self.reported.estimator && now >= *fault {
             self.reported.estimator = worst;
             if let Some(worst) = worst {
-                *fault = now.saturating_add(TEXT_INTERVAL);
+                *fault = now.saturating_add(TEXT_INTERVAL_US);
                 self.shared.announce(Event::Estimator(worst));
             }
         }

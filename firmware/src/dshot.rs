@@ -6,29 +6,29 @@
 //! if one. [`Waveform`] holds a frame for each of a timer's four channels, one row a bit, in the order in which its
 //! burst transfer wants them. Channels without a motor stay low.
 
-use crate::hardware::{Fault, MOTORS, MotorCommand};
+use crate::hardware::{Fault, MOTOR_COUNT, MotorCommand};
 use dshot_frame::{Command, NormalFrame};
 use flight::Word;
 
 /// Bits in a second.
-pub const BIT_RATE: u32 = 300_000;
+pub const BIT_RATE_HZ: u32 = 300_000;
 
 /// Bits in a frame.
-pub const BITS: usize = 16;
+pub const FRAME_BITS: usize = 16;
 
 /// Rows of a waveform: the bits, and two rows of silence. With them a waveform fills whole 16-byte blocks for 2-byte
 /// and for 4-byte words, which the transfer's bursts of four need.
-pub const ROWS: usize = BITS + 2;
+pub const WAVEFORM_ROWS: usize = FRAME_BITS + 2;
 
 /// Values that turn a motor, less one: from the slowest (48 on the wire) to the fastest (2047).
-const STEPS: f32 = 1999.0;
+const THROTTLE_STEPS: f32 = 1999.0;
 
 /// One frame for each motor, in the motors' order.
 ///
 /// # Errors
 /// [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing but stop
 /// is right for all of them.
-pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
+pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTOR_COUNT], Fault> {
     let mut frames = stop();
     match command {
         MotorCommand::Stop => {}
@@ -45,8 +45,8 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTORS], Fault> {
 
 /// The stop command for every motor.
 #[must_use]
-pub fn stop() -> [NormalFrame; MOTORS] {
-    [(); MOTORS].map(|()| NormalFrame::command(Command::MotorStop, false))
+pub fn stop() -> [NormalFrame; MOTOR_COUNT] {
+    [(); MOTOR_COUNT].map(|()| NormalFrame::command(Command::MotorStop, false))
 }
 
 /// The frame of a word to a controller.
@@ -66,7 +66,7 @@ fn run(command: f32) -> Result<NormalFrame, Fault> {
         return Err(Fault);
     }
     // Saturating: below the range 0, above it the last step.
-    let step = (command.clamp(0.0, 1.0) * STEPS + 0.5) as u16;
+    let step = (command.clamp(0.0, 1.0) * THROTTLE_STEPS + 0.5) as u16;
     NormalFrame::new(step, false).ok_or(Fault)
 }
 
@@ -78,17 +78,17 @@ pub const fn zero_width(period: u16) -> u16 {
 
 /// Compare values of a timer's four channels, one row for each bit. Aligned so that no burst crosses a kilobyte.
 #[repr(align(16))]
-pub struct Waveform<W>([[W; MOTORS]; ROWS]);
+pub struct Waveform<W>([[W; MOTOR_COUNT]; WAVEFORM_ROWS]);
 
 impl<W: From<u16>> Waveform<W> {
     /// All low.
     #[must_use]
     pub fn silent() -> Self {
-        Self([(); ROWS].map(|()| [(); MOTORS].map(|()| W::from(0))))
+        Self([(); WAVEFORM_ROWS].map(|()| [(); MOTOR_COUNT].map(|()| W::from(0))))
     }
 
     /// Draws `frames` at `period` ticks a bit, motor i on channel `channels[i]` (0 to 3) or on none of this timer's.
-    pub fn draw(&mut self, frames: &[NormalFrame; MOTORS], channels: &[Option<u8>; MOTORS], period: u16) {
+    pub fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT], channels: &[Option<u8>; MOTOR_COUNT], period: u16) {
         let zero = zero_width(period);
         for (frame, &channel) in frames.iter().zip(channels) {
             let Some(channel) = channel.map(usize::from) else { continue };
@@ -96,7 +96,7 @@ impl<W: From<u16>> Waveform<W> {
             let bits = frame.inner().reverse_bits();
             for (index, row) in self.0.iter_mut().enumerate() {
                 let width = match index {
-                    BITS.. => 0,
+                    FRAME_BITS.. => 0,
                     _ if (bits >> index) & 1 == 1 => 2 * zero,
                     _ => zero,
                 };

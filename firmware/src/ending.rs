@@ -7,10 +7,10 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// Stop frames before anything is reported: controllers may miss some, and want a few in a row.
-pub const FRAMES: usize = 10;
+pub const STOP_FRAMES_BEFORE: usize = 10;
 
 /// Stop frames while the report is fetched.
-pub const LAST_FRAMES: usize = 200;
+pub const STOP_FRAMES_AFTER: usize = 200;
 
 /// Whether the last acts have begun.
 pub struct Ending(AtomicBool);
@@ -25,9 +25,9 @@ impl Ending {
     /// Acts, the first time: `stop` sends so many stop frames, `say` reports why.
     pub fn act(&self, stop: impl Fn(usize), say: impl FnOnce()) {
         if !self.0.swap(true, Ordering::Relaxed) {
-            stop(FRAMES);
+            stop(STOP_FRAMES_BEFORE);
             say();
-            stop(LAST_FRAMES);
+            stop(STOP_FRAMES_AFTER);
         }
     }
 }

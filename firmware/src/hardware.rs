@@ -9,7 +9,7 @@ use flight::Word;
 use nalgebra::Vector3;
 
 /// Rotors that a board drives.
-pub const MOTORS: usize = 4;
+pub const MOTOR_COUNT: usize = 4;
 
 /// The board's time.
 pub trait Clock {
@@ -96,7 +96,7 @@ pub enum MotorCommand {
     /// The stop command: the only frame that a disarmed vehicle sends.
     Stop,
     /// Command of each motor, 0 (slowest) to 1 (full), in the rotors' order.
-    Run([f32; MOTORS]),
+    Run([f32; MOTOR_COUNT]),
     /// One motor turns at a command from 0 to 1; the others get the stop command.
     One {
         /// Its index in the rotors' order.
@@ -116,9 +116,9 @@ pub enum MotorCommand {
 impl MotorCommand {
     /// Each motor's command, 0 to 1; 0 where it stops.
     #[must_use]
-    pub fn levels(&self) -> [f32; MOTORS] {
+    pub fn levels(&self) -> [f32; MOTOR_COUNT] {
         match *self {
-            Self::Stop | Self::Word { .. } => [0.0; MOTORS],
+            Self::Stop | Self::Word { .. } => [0.0; MOTOR_COUNT],
             Self::Run(levels) => levels,
             Self::One { motor, level } => core::array::from_fn(|index| if index == motor { level } else { 0.0 }),
         }
@@ -199,7 +199,7 @@ pub trait Flash {
 }
 
 /// Bytes of a sector of a memory card.
-pub const SECTOR: usize = 512;
+pub const SECTOR_BYTES: usize = 512;
 
 /// A slot for a memory card. Each call blocks until the card is done, for seconds where a card is at odds with itself:
 /// only a task that nothing waits for may hold it.
@@ -217,11 +217,11 @@ pub trait Card {
     ///
     /// # Errors
     /// [`Fault`] if the card does not answer, or reports an error.
-    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> Result<(), Fault>;
+    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR_BYTES]) -> Result<(), Fault>;
 
     /// Writes a sector. It is on the card for good once this returns.
     ///
     /// # Errors
     /// [`Fault`] if the card does not take it: the sector is as it was, as it should be, or part of both.
-    fn write(&mut self, sector: u32, data: &[u8; SECTOR]) -> Result<(), Fault>;
+    fn write(&mut self, sector: u32, data: &[u8; SECTOR_BYTES]) -> Result<(), Fault>;
 }

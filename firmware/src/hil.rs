@@ -42,13 +42,13 @@ use mavlink::dialects::common::{
 use nalgebra::Vector3;
 
 /// Bytes taken from the line at once.
-const CHUNK: usize = 64;
+const READ_CHUNK_BYTES: usize = 64;
 
-/// The timeout of a read of the line, us.
-const SILENCE: u64 = 100_000;
+/// The timeout of a read of the line.
+const READ_TIMEOUT_US: u64 = 100_000;
 
-/// Pause before the line is read again, us.
-const RETRY: u64 = 1_000;
+/// Pause before the line is read again.
+const RETRY_DELAY_US: u64 = 1_000;
 
 /// What a simulator must send: accelerometer and gyro, all axes.
 const INERTIAL: HilSensorUpdatedFlags = HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_XACC
@@ -157,7 +157,7 @@ pub async fn transmit<M: RawMutex>(
     let mut writer = Writer::new();
     loop {
         // The time limit only makes the wait a bounded one.
-        let _ = within(clock, SILENCE, hil.outgoing.wait()).await;
+        let _ = within(clock, READ_TIMEOUT_US, hil.outgoing.wait()).await;
         let Some(command) = hil.command.take() else { continue };
         writer.write(shared.parameters().get(Name::SystemId) as u8, &controls(&command));
         // Before the next is due. What does not go out is not answered, and shows as sensors that grow old.
@@ -178,10 +178,10 @@ pub async fn receive<M: RawMutex>(
         Err(error) => imu::refuse(shared.samples(), clock, &error).await,
     };
     let mut parser = Parser::new();
-    let mut chunk = [0; CHUNK];
+    let mut chunk = [0; READ_CHUNK_BYTES];
     loop {
-        let Ok(Ok(count @ 1..)) = within(clock, SILENCE, line.read(&mut chunk)).await else {
-            clock.until(clock.now() + RETRY).await;
+        let Ok(Ok(count @ 1..)) = within(clock, READ_TIMEOUT_US, line.read(&mut chunk)).await else {
+            clock.until(clock.now() + RETRY_DELAY_US).await;
             continue;
         };
         let now = clock.now();

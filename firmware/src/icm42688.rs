@@ -27,8 +27,8 @@ use crate::mounting::Mounting;
 use crate::pace::Pace;
 use crate::registers::Action::{Expect, Set, Write};
 use crate::registers::{
-    ACCESS_WITHIN, POWER_TAKES, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts, exchange,
-    read_many,
+    ACCESS_TIMEOUT_US, POWER_DELAY_US, PowerUp, RATE_PER_COUNT, Registers, Step, acceleration_per_count, counts,
+    exchange, read_many,
 };
 use crate::spi;
 use estimation::imu::ImuParameters;
@@ -45,21 +45,21 @@ pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
 pub const PARAMETERS: ImuParameters =
     ImuParameters { rate: 1000.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4, leap: 52.0, late: 1_030 };
 
-/// Time between samples, us.
-const PERIOD: u64 = 1_000;
+/// Time between samples.
+const SAMPLE_PERIOD_US: u64 = 1_000;
 
 /// WHO_AM_I.
-const IDENTITY: u8 = 0x75;
+const WHO_AM_I: u8 = 0x75;
 
 /// REG_BANK_SEL, in every bank.
-const BANK: u8 = 0x76;
+const REG_BANK_SEL: u8 = 0x76;
 
 /// Where the data start: x, y, z of the accelerometer, then of the gyroscope.
-const DATA: u8 = 0x1F;
+const DATA_REGISTER: u8 = 0x1F;
 
 /// What data registers hold from a reset to the first sample, and in the order in which they are read before the
 /// settings.
-const NOTHING: [[u8; 2]; 2] = [i16::MIN.to_le_bytes(), i16::MIN.to_be_bytes()];
+const NO_DATA: [[u8; 2]; 2] = [i16::MIN.to_le_bytes(), i16::MIN.to_be_bytes()];
 
 /// INTF_CONFIG1 as after a reset, but for bits 7 and 6, 01 in place of 10. They hold the gyroscope to one range: where
 /// it changes its range by itself, it repeats one value for one or two milliseconds.
@@ -103,9 +103,9 @@ impl Model {
         let [low, high] = square.to_le_bytes();
         let high = shift << 4 | high;
         [
-            (BANK, 0, Write(0)),
+            (REG_BANK_SEL, 0, Write(0)),
             (0x11, 0x01, Write(2_000)),
-            (IDENTITY, self.identity(), Expect(0xFF)),
+            (WHO_AM_I, self.identity(), Expect(0xFF)),
             (0x4C, 0x03, Set(0)),
             (0x4D, AFSR_OFF, Set(0)),
             (0x14, 0x03, Set(0)),
@@ -114,15 +114,15 @@ impl Model {
             (0x4F, 0x06, Set(0)),
             (0x50, 0x06, Set(0)),
             (0x52, 0xFF, Set(0)),
-            (BANK, 1, Write(0)),
+            (REG_BANK_SEL, 1, Write(0)),
             (0x0C, delt, Set(0)),
             (0x0D, low, Set(0)),
             (0x0E, high, Set(0)),
-            (BANK, 2, Write(0)),
+            (REG_BANK_SEL, 2, Write(0)),
             (0x03, delt << 1, Set(0)),
             (0x04, low, Set(0)),
             (0x05, high, Set(0)),
-            (BANK, 0, Write(0)),
+            (REG_BANK_SEL, 0, Write(0)),
             (0x4E, 0x0F, Set(50_000)),
         ]
     }
@@ -152,7 +152,7 @@ impl<D: spi::Device, C: Clock> Registers for Port<'_, D, C> {
 
     async fn write(&mut self, register: u8, bytes: &[u8]) -> Result<(), Fault> {
         let &[value] = bytes else { return Err(Fault) };
-        exchange(self.spi, self.clock, ACCESS_WITHIN, &mut [register, value]).await
+        exchange(self.spi, self.clock, ACCESS_TIMEOUT_US, &mut [register, value]).await
     }
 }
 
@@ -169,8 +169,8 @@ pub struct Icm42688<D, P, C> {
 impl<D: spi::Device, P: DataReady, C: Clock> Icm42688<D, P, C> {
     /// Touches nothing yet: the first sample powers the sensor up.
     pub fn new(model: Model, spi: D, data_ready: P, clock: C, mounting: &'static Mounting) -> Self {
-        let power_up = PowerUp::new(model.steps(), clock.now() + POWER_TAKES);
-        Self { spi, pace: Pace::new(data_ready, PERIOD), clock, mounting, model, power_up }
+        let power_up = PowerUp::new(model.steps(), clock.now() + POWER_DELAY_US);
+        Self { spi, pace: Pace::new(data_ready, SAMPLE_PERIOD_US), clock, mounting, model, power_up }
     }
 
     async fn power_up(&mut self) -> Result<(), Fault> {
@@ -181,11 +181,11 @@ impl<D: spi::Device, P: DataReady, C: Clock> Icm42688<D, P, C> {
     async fn measure(&mut self) -> Result<RawImu, Fault> {
         let time = self.pace.next(&self.clock).await;
         let mut port = Port { spi: &mut self.spi, clock: &self.clock };
-        if port.read(IDENTITY).await? != self.model.identity() {
+        if port.read(WHO_AM_I).await? != self.model.identity() {
             return Err(Fault);
         }
-        let [_, data @ ..] = read_many::<13>(port.spi, port.clock, DATA).await?;
-        if NOTHING.iter().any(|nothing| data.as_chunks().0.iter().all(|counted| counted == nothing)) {
+        let [_, data @ ..] = read_many::<13>(port.spi, port.clock, DATA_REGISTER).await?;
+        if NO_DATA.iter().any(|nothing| data.as_chunks().0.iter().all(|counted| counted == nothing)) {
             return Err(Fault);
         }
         let [a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5] = data;
@@ -202,7 +202,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Imu for Icm42688<D, P, C> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         self.power_up().await?;
         let sample = self.measure().await;
-        self.power_up.judge(sample, self.clock.now() + POWER_TAKES)
+        self.power_up.judge(sample, self.clock.now() + POWER_DELAY_US)
     }
 
     fn parameters(&self) -> ImuParameters {

@@ -25,15 +25,15 @@ use calibrator::Calibrator;
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// How long a sample may keep us waiting, us. A sensor that must be powered up first takes a tenth of a second for it,
+/// How long a sample may keep us waiting. A sensor that must be powered up first takes a tenth of a second for it,
 /// and is dropped half-way by less. How old a sample may be, others decide.
-pub const PATIENCE: u64 = 200_000;
+pub const SAMPLE_TIMEOUT_US: u64 = 200_000;
 
-/// How long to leave a faulty sensor alone, us.
-const RETRY: u64 = 1_000;
+/// How long to leave a faulty sensor alone.
+const RETRY_DELAY_US: u64 = 1_000;
 
-/// How often a task that cannot work looks whether there is anything to do, us: there never is.
-const IDLE: u64 = 1_000_000;
+/// How often a task that cannot work looks whether there is anything to do: there never is.
+const IDLE_INTERVAL_US: u64 = 1_000_000;
 
 /// Runs for ever, for a control that ticks every `period` us.
 pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &mut impl Imu, period: u64) -> ! {
@@ -50,7 +50,7 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
     loop {
         calibrator.poll(clock.now());
         let standby = if calibrator.needs_standby() { start_standby(clock, imu).await } else { None };
-        let sample = within(clock, PATIENCE, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
+        let sample = within(clock, SAMPLE_TIMEOUT_US, imu.sample()).await.unwrap_or(Err(Fault)).and_then(finite);
         if imu.unit() != unit {
             unit = imu.unit();
             shared.announce(Event::new(Severity::Critical, "IMU: the second takes over"));
@@ -73,7 +73,7 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
                     shared.announce(Event::new(Severity::Warning, words));
                 }
             }
-            Err(Fault) => clock.until(clock.now() + RETRY).await,
+            Err(Fault) => clock.until(clock.now() + RETRY_DELAY_US).await,
         }
         if sample.is_ok() != is_healthy {
             is_healthy = sample.is_ok();
@@ -87,7 +87,7 @@ pub async fn run<M: RawMutex>(shared: ImuView<'_, M>, clock: &impl Clock, imu: &
 
 /// A sample of the sensor that stands by.
 async fn start_standby(clock: &impl Clock, imu: &mut impl Imu) -> Option<Result<RawImu, Fault>> {
-    let answer = within(clock, PATIENCE, imu.standby()).await.unwrap_or(Some(Err(Fault)))?;
+    let answer = within(clock, SAMPLE_TIMEOUT_US, imu.standby()).await.unwrap_or(Some(Err(Fault)))?;
     Some(answer.and_then(finite))
 }
 
@@ -102,6 +102,6 @@ fn finite(sample: RawImu) -> Result<RawImu, Fault> {
 pub async fn refuse<M: RawMutex>(shared: SamplesView<'_, M>, clock: &impl Clock, error: &ParameterError) -> ! {
     shared.announce(Event::new(Severity::Critical, error));
     loop {
-        clock.until(clock.now() + IDLE).await;
+        clock.until(clock.now() + IDLE_INTERVAL_US).await;
     }
 }

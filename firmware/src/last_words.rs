@@ -12,21 +12,21 @@ use core::panic::PanicInfo;
 use mavlink::calculate_crc;
 
 /// Bytes of the words.
-const LENGTH: usize = 148;
+const WORDS_MAX_BYTES: usize = 148;
 
 /// Bytes in memory: the words, their length, a checksum. Whole words of any error-correcting code that there is.
-pub const SIZE: usize = 160;
+pub const MEMORY_BYTES: usize = 160;
 
 /// What the checksum begins with, so that zeros are no words.
-const SEED: u8 = b'W';
+const CHECKSUM_SEED: u8 = b'W';
 
 /// The part of a source file's path that is kept: its end.
-const PATH: usize = 40;
+const PATH_MAX_BYTES: usize = 40;
 
 /// The words; what does not fit is cut off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LastWords {
-    bytes: [u8; LENGTH],
+    bytes: [u8; WORDS_MAX_BYTES],
     length: u8,
 }
 
@@ -34,7 +34,7 @@ impl LastWords {
     /// The words of something.
     #[must_use]
     pub fn new(words: impl fmt::Display) -> Self {
-        let mut kept = Self { bytes: [0; LENGTH], length: 0 };
+        let mut kept = Self { bytes: [0; WORDS_MAX_BYTES], length: 0 };
         // An error means that it is full.
         let _ = write!(kept, "{words}");
         kept
@@ -44,7 +44,7 @@ impl LastWords {
     #[must_use]
     pub fn panic(info: &PanicInfo<'_>) -> Self {
         let (file, line) = info.location().map_or(("", 0), |location| (location.file(), location.line()));
-        let file = file.get(file.len().saturating_sub(PATH)..).unwrap_or(file);
+        let file = file.get(file.len().saturating_sub(PATH_MAX_BYTES)..).unwrap_or(file);
         Self::new(format_args!("panic at {file}:{line}: {}", info.message()))
     }
 
@@ -56,23 +56,23 @@ impl LastWords {
 
     /// As they lie in memory.
     #[must_use]
-    pub fn to_bytes(&self) -> [u8; SIZE] {
-        let mut memory = [0; SIZE];
-        let (bytes, rest) = memory.split_at_mut(LENGTH);
+    pub fn to_bytes(&self) -> [u8; MEMORY_BYTES] {
+        let mut memory = [0; MEMORY_BYTES];
+        let (bytes, rest) = memory.split_at_mut(WORDS_MAX_BYTES);
         bytes.copy_from_slice(&self.bytes);
         rest.iter_mut().take(1).for_each(|length| *length = self.length);
         if let Some((covered, checksum)) = memory.split_last_chunk_mut::<2>() {
-            *checksum = calculate_crc(covered, SEED).to_le_bytes();
+            *checksum = calculate_crc(covered, CHECKSUM_SEED).to_le_bytes();
         }
         memory
     }
 
     /// Out of memory, where there are any.
     #[must_use]
-    pub fn from_bytes(memory: &[u8; SIZE]) -> Option<Self> {
+    pub fn from_bytes(memory: &[u8; MEMORY_BYTES]) -> Option<Self> {
         let (covered, checksum) = memory.split_last_chunk::<2>()?;
-        let (bytes, rest) = covered.split_first_chunk::<LENGTH>()?;
-        let is_whole = calculate_crc(covered, SEED) == u16::from_le_bytes(*checksum);
+        let (bytes, rest) = covered.split_first_chunk::<WORDS_MAX_BYTES>()?;
+        let is_whole = calculate_crc(covered, CHECKSUM_SEED) == u16::from_le_bytes(*checksum);
         is_whole.then_some(Self { bytes: *bytes, length: *rest.first()? })
     }
 }

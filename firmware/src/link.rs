@@ -49,4 +49,4 @@ pub mod transmit;
 pub mod writer;
 
 /// MAV_COMP_ID_AUTOPILOT1: this component.
-pub const COMPONENT: u8 = 1;
+pub const COMPONENT_ID: u8 = 1;

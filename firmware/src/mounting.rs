@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 pub struct Mounting([[f32; 3]; 3]);
 
 /// How far products of rows may be from those of a rotation: six digits are enough for a board at 45 degrees.
-const TOLERANCE: f32 = 1e-5;
+const ROTATION_TOLERANCE: f32 = 1e-5;
 
 impl Mounting {
     /// The sensor's axes are the body's.
@@ -45,7 +45,7 @@ impl Mounting {
 
 /// No number that is not finite is anything.
 const fn is(product: f32, expected: f32) -> bool {
-    (product - expected).abs() <= TOLERANCE
+    (product - expected).abs() <= ROTATION_TOLERANCE
 }
 
 const fn dot([ax, ay, az]: [f32; 3], [bx, by, bz]: [f32; 3]) -> f32 {

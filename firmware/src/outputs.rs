@@ -5,7 +5,7 @@
 //! `docs/thrust-stand.md` describes how a is measured. A full command is the scenario's greatest thrust, at the voltage
 //! where it was measured.
 
-use crate::hardware::{MOTORS, MotorCommand};
+use crate::hardware::{MOTOR_COUNT, MotorCommand};
 use controller_core::allocation::curve::Battery;
 use controller_core::allocation::{Rotor, Rotors, ThrustCurve};
 use controller_core::error::{ParameterError, Reason};
@@ -14,15 +14,15 @@ use flight::{Output, Stamped};
 /// The outputs that the rotors' controllers are wired to, from 0: the first digit of `order` is the first rotor's
 /// output, from 1. None unless each of the outputs is there once.
 #[must_use]
-pub fn wiring(order: f32) -> Option<[usize; MOTORS]> {
+pub fn wiring(order: f32) -> Option<[usize; MOTOR_COUNT]> {
     let order = order as usize;
     let outputs = [1_000, 100, 10, 1].map(|place| (order / place % 10).wrapping_sub(1));
-    (0..MOTORS).all(|output| outputs.contains(&output)).then_some(outputs)
+    (0..MOTOR_COUNT).all(|output| outputs.contains(&output)).then_some(outputs)
 }
 
 /// The thrust curves of a vehicle's motors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outputs([ThrustCurve; MOTORS]);
+pub struct Outputs([ThrustCurve; MOTOR_COUNT]);
 
 impl Outputs {
     /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command
@@ -34,8 +34,10 @@ impl Outputs {
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, linear);
         match &rotors[..] {
             [a, b, c, d] => Ok(Self([curve(a)?, curve(b)?, curve(c)?, curve(d)?])),
-            fewer if fewer.len() < MOTORS => Err(ParameterError { field: "rotors", reason: Reason::TooFew(MOTORS) }),
-            _ => Err(ParameterError { field: "rotors", reason: Reason::TooMany(MOTORS) }),
+            fewer if fewer.len() < MOTOR_COUNT => {
+                Err(ParameterError { field: "rotors", reason: Reason::TooFew(MOTOR_COUNT) })
+            }
+            _ => Err(ParameterError { field: "rotors", reason: Reason::TooMany(MOTOR_COUNT) }),
         }
     }
 
@@ -45,11 +47,11 @@ impl Outputs {
     pub fn command(&self, output: &Output, ratio: f32, idle: f32) -> MotorCommand {
         match output {
             Output::Stop => MotorCommand::Stop,
-            Output::Idle => MotorCommand::Run([idle; MOTORS]),
+            Output::Idle => MotorCommand::Run([idle; MOTOR_COUNT]),
             Output::Test { rotor, level } => MotorCommand::One { motor: *rotor, level: *level },
             Output::Word { rotor, word } => MotorCommand::Word { motor: *rotor, word: *word },
             Output::Thrusts(thrusts) => {
-                let mut commands = [0.0; MOTORS];
+                let mut commands = [0.0; MOTOR_COUNT];
                 for ((command, curve), thrust) in commands.iter_mut().zip(&self.0).zip(thrusts) {
                     *command = curve.command(*thrust, ratio);
                 }
@@ -93,7 +95,7 @@ mod tests {
         let test = Output::Test { rotor: 2, level: 0.1 };
         assert_eq!(outputs().command(&test, 1.0, 0.03), MotorCommand::One { motor: 2, level: 0.1 });
         assert_eq!(outputs().command(&Output::Stop, 1.0, 0.03), MotorCommand::Stop);
-        assert_eq!(outputs().command(&Output::Idle, 1.0, 0.03), MotorCommand::Run([0.03; MOTORS]));
+        assert_eq!(outputs().command(&Output::Idle, 1.0, 0.03), MotorCommand::Run([0.03; MOTOR_COUNT]));
     }
 
     #[test]

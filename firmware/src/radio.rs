@@ -14,7 +14,7 @@
 //!   switch alone acts as it stands, and keeps its last received position when the receiver falls silent.
 //! - The sticks command velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
 //!   setpoints; those of the link are then refused. On the ground they begin a flight when the stick is pushed up.
-//! - A transmitter counts as a ground station until it has been silent for [`SILENCE`]. If its sticks flew, the vehicle
+//! - A transmitter counts as a ground station until it has been silent for [`RADIO_TIMEOUT_US`]. If its sticks flew, the vehicle
 //!   then holds, and nothing takes over by itself: setpoints of the link stay refused until a client requests to fly
 //!   them, or the radio is received again and its switch selects the link.
 //! - A receiver that goes on with the last or with set positions when it has lost its transmitter says so in its link
@@ -34,21 +34,21 @@ use sticks::{Push, Sticks};
 use uf_crsf::CrsfParser;
 use uf_crsf::packets::{CrsfPacket, LinkStatistics, RcChannelsPacked};
 
-/// How long a receiver may be silent, us. It sends 50 frames a second or more, and none when it does not receive its
+/// How long a receiver may be silent. It sends 50 frames a second or more, and none when it does not receive its
 /// transmitter.
-pub const SILENCE: u64 = 500_000;
+pub const RADIO_TIMEOUT_US: u64 = 500_000;
 
-/// The longest wait for bytes, us, and the wait after a line that failed.
-const WAIT: u64 = 100_000;
-const RECOVERY: u64 = 10_000;
+/// The longest wait for bytes, and the wait after a line that failed.
+const READ_TIMEOUT_US: u64 = 100_000;
+const RETRY_DELAY_US: u64 = 10_000;
 
 /// Bytes read at once.
-const CHUNK: usize = 64;
+const READ_CHUNK_BYTES: usize = 64;
 
 /// Channel values at -1, 0 and 1.
-const LEAST: f32 = 172.0;
-const CENTRE: f32 = 992.0;
-const MOST: f32 = 1811.0;
+const CHANNEL_MIN: f32 = 172.0;
+const CHANNEL_CENTRE: f32 = 992.0;
+const CHANNEL_MAX: f32 = 1811.0;
 
 /// Where a switch stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,7 +78,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(channels: &[u16; 16]) -> Self {
+    fn read(channels: &[u16; 16]) -> Self {
         let [right, forward, up, yaw, arm, flies, kill, ..] = channels.map(scaled);
         let sticks = Sticks { forward, right, up, yaw };
         Self { sticks, arm: Switch::at(arm), flies: Switch::at(flies), killed: Switch::at(kill) == Switch::High }
@@ -87,22 +87,22 @@ impl Frame {
 
 /// -1 to 1.
 fn scaled(value: u16) -> f32 {
-    let from_centre = f32::from(value) - CENTRE;
-    let most = if from_centre < 0.0 { CENTRE - LEAST } else { MOST - CENTRE };
+    let from_centre = f32::from(value) - CHANNEL_CENTRE;
+    let most = if from_centre < 0.0 { CHANNEL_CENTRE - CHANNEL_MIN } else { CHANNEL_MAX - CHANNEL_CENTRE };
     (from_centre / most).clamp(-1.0, 1.0)
 }
 
 /// Receives for ever.
 pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: RadioView<'_, M>) -> ! {
     let mut radio = Radio::new(shared);
-    let mut chunk = [0; CHUNK];
+    let mut chunk = [0; READ_CHUNK_BYTES];
     loop {
-        let wake = clock.now().saturating_add(WAIT);
+        let wake = clock.now().saturating_add(READ_TIMEOUT_US);
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
                 radio.feed(chunk.get(..count).unwrap_or(&chunk), clock.now());
             }
-            Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
+            Either::First(_) => clock.until(clock.now().saturating_add(RETRY_DELAY_US)).await,
             Either::Second(()) => {}
         }
         radio.check_silence(clock.now());
@@ -141,18 +141,18 @@ impl<'a, M: RawMutex> Radio<'a, M> {
 
     /// Takes bytes that came at `now`, us, and acts on the frames of channels and of statistics that they complete.
     pub fn feed(&mut self, mut bytes: &[u8], now: u64) {
-        const CHANNELS: u8 = RcChannelsPacked::PACKET_TYPE as u8;
-        const STATISTICS: u8 = LinkStatistics::PACKET_TYPE as u8;
+        const CHANNELS_PACKET: u8 = RcChannelsPacked::PACKET_TYPE as u8;
+        const STATISTICS_PACKET: u8 = LinkStatistics::PACKET_TYPE as u8;
         // By its type, because reading every kind of packet would take 12 KB of flash.
         while let Some(packet) = self.parser.next_raw_packet(&mut bytes) {
             let Ok(packet) = packet else { continue };
             match (packet.raw_packet_type(), packet.payload()) {
-                (CHANNELS, payload) => {
+                (CHANNELS_PACKET, payload) => {
                     if let Ok(channels) = RcChannelsPacked::from_bytes(payload) {
                         self.take(&channels.0, now);
                     }
                 }
-                (STATISTICS, &[_, _, uplink_quality, ..]) => self.take_quality(uplink_quality, now),
+                (STATISTICS_PACKET, &[_, _, uplink_quality, ..]) => self.take_quality(uplink_quality, now),
                 _ => {}
             }
         }
@@ -170,7 +170,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         if self.is_linked.get() == Some(false) {
             return;
         }
-        let frame = Frame::of(channels);
+        let frame = Frame::read(channels);
         self.heard = Some(now);
         if self.killed.take(frame.killed, now) {
             self.shared.killed().put(frame.killed, now);
@@ -203,7 +203,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
 
     /// Reports the radio lost after silence, and holds if its sticks flew.
     pub fn check_silence(&mut self, now: u64) {
-        if self.heard.is_some_and(|heard| now.saturating_sub(heard) > SILENCE) {
+        if self.heard.is_some_and(|heard| now.saturating_sub(heard) > RADIO_TIMEOUT_US) {
             self.lose();
         }
     }

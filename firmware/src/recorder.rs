@@ -4,10 +4,10 @@
 //! control -> Tick -> Ring (memory that no start clears) -> ULog over the link (LOG_REQUEST_LIST, LOG_REQUEST_DATA)
 //! ```
 //!
-//! - A recording begins when the vehicle is armed and ends [`AFTERWARDS`] after it is disarmed or stopped. The one
+//! - A recording begins when the vehicle is armed and ends [`RECORDED_AFTERWARDS_US`] after it is disarmed or stopped. The one
 //!   before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be fetched.
 //! - A record is of one tick. Up to 100 Hz each tick makes one, above that each second, third ...: records are
-//!   [`SPACING`] or more apart, so that memory and card hold as long a flight at any rate.
+//!   [`RECORD_SPACING_MIN_US`] or more apart, so that memory and card hold as long a flight at any rate.
 //! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was
 //!   never written.
 //! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is
@@ -27,11 +27,11 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use ring::Ring;
 use tick::Tick;
 
-/// How long is recorded after the motors have stopped, us: what the vehicle does then is worth knowing.
-pub const AFTERWARDS: u64 = 2_000_000;
+/// How long is recorded after the motors have stopped: what the vehicle does then is worth knowing.
+pub const RECORDED_AFTERWARDS_US: u64 = 2_000_000;
 
-/// The least time between two records, us.
-pub const SPACING: u64 = 10_000;
+/// The least time between two records.
+pub const RECORD_SPACING_MIN_US: u64 = 10_000;
 
 /// What records, and what there is.
 struct Recording {
@@ -59,7 +59,14 @@ impl<M: RawMutex> Recorder<M> {
     /// Records in `ring` from now on; what it has kept can be fetched, as of a `vehicle` that is called so.
     pub fn attach(&self, ring: Ring<'static>, vehicle: &'static str) {
         self.0.lock(|recording| {
-            recording.replace(Some(Recording { ring, vehicle, period: SPACING, spacing: SPACING, next: 0, left: 0 }))
+            recording.replace(Some(Recording {
+                ring,
+                vehicle,
+                period: RECORD_SPACING_MIN_US,
+                spacing: RECORD_SPACING_MIN_US,
+                next: 0,
+                left: 0,
+            }))
         });
     }
 
@@ -69,18 +76,18 @@ impl<M: RawMutex> Recorder<M> {
         self.with(|recording| recording.vehicle).unwrap_or_default()
     }
 
-    /// Control ticks are so long apart, us: [`SPACING`], unless this says otherwise.
+    /// Control ticks are so long apart, us: [`RECORD_SPACING_MIN_US`], unless this says otherwise.
     pub fn ticks_last(&self, period: u64) {
         self.with(|recording| {
             recording.period = period.max(1);
-            recording.spacing = SPACING.div_ceil(recording.period) * recording.period;
+            recording.spacing = RECORD_SPACING_MIN_US.div_ceil(recording.period) * recording.period;
         });
     }
 
     /// The time between two records, us.
     #[must_use]
     pub fn spacing(&self) -> u64 {
-        self.with(|recording| recording.spacing).unwrap_or(SPACING)
+        self.with(|recording| recording.spacing).unwrap_or(RECORD_SPACING_MIN_US)
     }
 
     /// One control tick of a vehicle that is `armed` or not.
@@ -91,7 +98,7 @@ impl<M: RawMutex> Recorder<M> {
                 ring.begin();
                 *next = 0;
             }
-            *left = if armed { AFTERWARDS } else { left.saturating_sub(*period) };
+            *left = if armed { RECORDED_AFTERWARDS_US } else { left.saturating_sub(*period) };
             if *left > 0 && *next == 0 {
                 ring.put(&tick().to_bytes());
                 *next = *spacing;

@@ -2,9 +2,9 @@
 //! off.
 //!
 //! ```text
-//! first ── answers with [`TAKE_OVER_AFTER`] faults in a row ──────────────┐
+//! first ── answers with [`TAKE_OVER_AFTER_FAULTS`] faults in a row ──────────────┐
 //!       ── its gyro or accelerometer repeats one value ───────────────────┼──> second, for good
-//!       ── its accelerometer does not answer for [`SILENT_AFTER`] samples ┘
+//!       ── its accelerometer does not answer for [`SILENT_AFTER_SAMPLES`] samples ┘
 //! ```
 //!
 //! There is no way back: a sensor that failed once under way is not trusted with the rest of it. Nor is there a way to
@@ -20,10 +20,10 @@ use estimation::imu::faults::FaultMonitor;
 use estimation::imu::{ImuFault, ImuParameters};
 
 /// Faults of the first in a row after which the second takes over: 10 ms at worst.
-pub const TAKE_OVER_AFTER: u8 = 4;
+pub const TAKE_OVER_AFTER_FAULTS: u8 = 4;
 
 /// Samples without a force in a row after which the second takes over: as many as make a sensor stuck.
-pub const SILENT_AFTER: u8 = 20;
+pub const SILENT_AFTER_SAMPLES: u8 = 20;
 
 /// Both, and which of them speaks.
 pub struct Redundant<First, Second> {
@@ -49,11 +49,11 @@ impl<First: Imu, Second: Imu> Redundant<First, Second> {
 
     /// Whether the first's newest answer is the last that is borne.
     fn fails(&mut self, answer: &Result<RawImu, Fault>) -> bool {
-        let Ok(sample) = answer else { return self.faults >= TAKE_OVER_AFTER };
+        let Ok(sample) = answer else { return self.faults >= TAKE_OVER_AFTER_FAULTS };
         self.faults = 0;
         self.silent = if sample.specific_force.is_some() { 0 } else { self.silent.saturating_add(1) };
         let fault = self.watch.check(&sample.angular_velocity, sample.specific_force.as_ref());
-        self.silent >= SILENT_AFTER || matches!(fault, Some(ImuFault::GyroStuck | ImuFault::AccelerometerStuck))
+        self.silent >= SILENT_AFTER_SAMPLES || matches!(fault, Some(ImuFault::GyroStuck | ImuFault::AccelerometerStuck))
     }
 }
 
@@ -61,8 +61,11 @@ impl<First: Imu, Second: Imu> Imu for Redundant<First, Second> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
         if self.unit == Unit::First {
             self.faults = self.faults.saturating_add(1);
-            let answer =
-                if self.faults > TAKE_OVER_AFTER && self.is_ready { Err(Fault) } else { self.first.sample().await };
+            let answer = if self.faults > TAKE_OVER_AFTER_FAULTS && self.is_ready {
+                Err(Fault)
+            } else {
+                self.first.sample().await
+            };
             if !self.fails(&answer) || !self.is_ready {
                 return answer;
             }

@@ -2,8 +2,8 @@
 //!
 //! An [`exchange`] is bounded in time. A power-up is a table of [`Step`]s. [`PowerUp`] does one of them at a time, when
 //! its time has come, so that a task with other work meanwhile does it. A setting is written, read back a millisecond
-//! later, and written again if it did not stick, up to [`TRIES`] times: the BMI088's accelerometer is known to need
-//! that. Everything before a setting that failed for good is done again by the next attempt. After [`RESTART_AFTER`]
+//! later, and written again if it did not stick, up to [`WRITE_ATTEMPTS_MAX`] times: the BMI088's accelerometer is known to need
+//! that. Everything before a setting that failed for good is done again by the next attempt. After [`RESTART_AFTER_FAILURES`]
 //! faulty measurements in a row it is all done again.
 
 use crate::deadline::within;
@@ -12,28 +12,28 @@ use crate::spi::Device;
 use nalgebra::Vector3;
 
 /// The bit of the address that makes an access a read.
-pub const READ: u8 = 0x80;
+pub const READ_BIT: u8 = 0x80;
 
 /// How often a setting is written before it counts as refused.
-pub const TRIES: u8 = 8;
+pub const WRITE_ATTEMPTS_MAX: u8 = 8;
 
 /// Faults in a row after which a device is powered up anew.
-pub const RESTART_AFTER: u8 = 5;
+pub const RESTART_AFTER_FAILURES: u8 = 5;
 
-/// The longest a register access or the reading of a sample may take, us; 14 bytes at 5 MHz take 22 us.
-pub const ACCESS_WITHIN: u64 = 500;
+/// The longest a register access or the reading of a sample may take; 14 bytes at 5 MHz take 22 us.
+pub const ACCESS_TIMEOUT_US: u64 = 500;
 
-/// The longest a power-up may take, us.
-pub const POWER_UP_WITHIN: u64 = 150_000;
+/// The longest a power-up may take.
+pub const POWER_UP_TIMEOUT_US: u64 = 150_000;
 
 /// rad/s in one count of a gyroscope: 2000 deg/s in 2^15 counts.
 pub const RATE_PER_COUNT: f32 = 2000.0 / 32768.0 * core::f32::consts::PI / 180.0;
 
-/// From power to the first access, us. It also keeps a bus that fails at once from taking all of its task's time.
-pub const POWER_TAKES: u64 = 1_000;
+/// From power to the first access. It also keeps a bus that fails at once from taking all of its task's time.
+pub const POWER_DELAY_US: u64 = 1_000;
 
-/// From a write to reading it back, us.
-const WRITE_TAKES: u64 = 1_000;
+/// From a write to reading it back.
+const WRITE_DELAY_US: u64 = 1_000;
 
 /// Exchanges `bytes` with `device`, within `limit`, us. The first of them is an address.
 ///
@@ -46,15 +46,15 @@ pub async fn exchange(device: &mut impl Device, clock: &impl Clock, limit: u64, 
 /// Reads `N` bytes from `register` on, of which the first means nothing.
 ///
 /// # Errors
-/// As [`exchange`]'s, within [`ACCESS_WITHIN`].
+/// As [`exchange`]'s, within [`ACCESS_TIMEOUT_US`].
 pub async fn read_many<const N: usize>(
     device: &mut impl Device,
     clock: &impl Clock,
     register: u8,
 ) -> Result<[u8; N], Fault> {
     let mut bytes = [0; N];
-    *bytes.first_mut().ok_or(Fault)? = READ | register;
-    exchange(device, clock, ACCESS_WITHIN, &mut bytes).await?;
+    *bytes.first_mut().ok_or(Fault)? = READ_BIT | register;
+    exchange(device, clock, ACCESS_TIMEOUT_US, &mut bytes).await?;
     Ok(bytes)
 }
 
@@ -128,18 +128,18 @@ impl PowerUp {
     /// The measurement's.
     pub fn judge<T>(&mut self, measured: Result<T, Fault>, time: u64) -> Result<T, Fault> {
         self.faults = if measured.is_ok() { 0 } else { self.faults + 1 };
-        if self.faults >= RESTART_AFTER {
+        if self.faults >= RESTART_AFTER_FAILURES {
             self.restart(time);
         }
         measured
     }
 
-    /// Does everything that is left, within [`POWER_UP_WITHIN`].
+    /// Does everything that is left, within [`POWER_UP_TIMEOUT_US`].
     ///
     /// # Errors
     /// As [`Self::advance`]'s, or if it takes longer.
     pub async fn complete(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
-        let end = clock.now() + POWER_UP_WITHIN;
+        let end = clock.now() + POWER_UP_TIMEOUT_US;
         while !self.is_done(clock.now()) {
             if self.due() > end {
                 return Err(Fault);
@@ -163,13 +163,13 @@ impl PowerUp {
     /// Does what is due.
     ///
     /// # Errors
-    /// [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than [`POWER_TAKES`] from
+    /// [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than [`POWER_DELAY_US`] from
     /// now.
     pub async fn advance(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
         let Some(step) = self.steps.get(self.next).filter(|_| clock.now() >= self.not_before) else { return Ok(()) };
         let done = self.act(step, device, clock).await;
         if done.is_err() {
-            self.restart(clock.now() + POWER_TAKES);
+            self.restart(clock.now() + POWER_DELAY_US);
         }
         done
     }
@@ -204,14 +204,14 @@ impl PowerUp {
                 self.written = true;
                 // One that fails does not read back.
                 let _ = device.write(register, &[value]).await;
-                self.not_before = clock.now() + WRITE_TAKES;
+                self.not_before = clock.now() + WRITE_DELAY_US;
                 return Ok(());
             }
             Action::Set(settles) => {
                 self.written = false;
                 if device.read(register).await != Ok(value) {
                     self.tries += 1;
-                    return if self.tries < TRIES { Ok(()) } else { Err(Fault) };
+                    return if self.tries < WRITE_ATTEMPTS_MAX { Ok(()) } else { Err(Fault) };
                 }
                 settles
             }

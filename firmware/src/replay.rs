@@ -30,32 +30,32 @@ use nalgebra::{Quaternion, Vector3};
 use sha2::{Digest, Sha256};
 
 /// Control ticks of the flight.
-pub const TICKS: u64 = 4000;
+pub const FLIGHT_TICKS: u64 = 4000;
 
-/// Time between two of them, us.
+/// Time between two of them.
 pub const PERIOD_US: u64 = 10_000;
 
-/// Times between the ticks at which a recovery is replayed, us: 100 Hz, 500 Hz and 1 kHz.
-pub const PERIODS: [u64; 3] = [10_000, 2_000, 1_000];
+/// Times between the ticks at which a recovery is replayed: 100 Hz, 500 Hz and 1 kHz.
+pub const PERIODS_US: [u64; 3] = [10_000, 2_000, 1_000];
 
 /// Single-precision numbers of one recorded state: p, v (world), q (scalar first), omega (body).
-pub const NUMBERS: usize = 13;
+pub const STATE_NUMBERS: usize = 13;
 
 /// Bytes of one recorded state.
-pub const RECORD: usize = 4 * NUMBERS;
+pub const STATE_BYTES: usize = 4 * STATE_NUMBERS;
 
 /// The numbers of the paper's Table I and Section VI; `scenarios/paper.toml` has the same numbers.
 const VEHICLE: VehicleParameters =
     VehicleParameters { mass: 0.46, inertia: Vector3::new(2.24e-3, 2.9e-3, 5.3e-3), gravity: 9.81 };
 const LIMITS: LimitParameters = LimitParameters { thrust_max: 7.0, torque_max: Vector3::new(0.5, 0.5, 0.5) };
-const TURN: f64 = 0.418_879_02;
+const TURN_RATE_RAD_PER_S: f64 = 0.418_879_02;
 #[expect(clippy::approx_constant, reason = "the digits of scenarios/paper.toml")]
 const REFERENCE: HarmonicParameters = HarmonicParameters {
     center: [-3.0, 1.0, 4.5],
     amplitude: [1.0; 3],
-    frequency: [TURN; 3],
+    frequency: [TURN_RATE_RAD_PER_S; 3],
     phase: [0.0, -1.570_796_33, 0.0],
-    heading: HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 3.141_592_65, frequency: TURN },
+    heading: HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 3.141_592_65, frequency: TURN_RATE_RAD_PER_S },
 };
 
 /// The paper's vehicle, limits and Table I, for its own reference.
@@ -104,7 +104,7 @@ impl Replay {
     ///
     /// # Errors
     /// The law's own, for a state that it cannot use.
-    pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<Wrench, InputError> {
+    pub fn tick(&mut self, record: &[u8; STATE_BYTES]) -> Result<Wrench, InputError> {
         let (wrench, diagnostics) = self.controller.step(&state(record), &self.reference.at(self.tick * PERIOD_US))?;
         self.tick += 1;
         let memory = self.controller.memory();
@@ -144,10 +144,10 @@ fn digest(hash: Sha256) -> heapless::String<64> {
 
 /// A state as it is recorded.
 #[must_use]
-pub fn record(state: &State) -> [u8; RECORD] {
+pub fn record(state: &State) -> [u8; STATE_BYTES] {
     let State { position: p, velocity: v, attitude: q, angular_velocity: w } = state;
-    let numbers: [f32; NUMBERS] = [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z];
-    let mut bytes = [0; RECORD];
+    let numbers: [f32; STATE_NUMBERS] = [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z];
+    let mut bytes = [0; STATE_BYTES];
     for (place, number) in bytes.chunks_exact_mut(4).zip(numbers) {
         place.copy_from_slice(&number.to_le_bytes());
     }
@@ -155,8 +155,8 @@ pub fn record(state: &State) -> [u8; RECORD] {
 }
 
 /// The state that `record` holds.
-fn state(record: &[u8; RECORD]) -> State {
-    let mut numbers = [0.0; NUMBERS];
+fn state(record: &[u8; STATE_BYTES]) -> State {
+    let mut numbers = [0.0; STATE_NUMBERS];
     for (number, bytes) in numbers.iter_mut().zip(record.chunks_exact(4)) {
         *number = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     }

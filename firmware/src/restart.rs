@@ -7,11 +7,11 @@ use crate::hardware::{Clock, Restart};
 use crate::shared::{Event, RestartView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// The interval of polls for a requested restart, us.
-const LOOK: u64 = 100_000;
+/// The interval of polls for a requested restart.
+const RESTART_POLL_INTERVAL_US: u64 = 100_000;
 
-/// Time for the answer to go out, and for parameters to be saved, us.
-pub const GRACE: u64 = 500_000;
+/// Time for the answer to go out, and for parameters to be saved.
+pub const RESTART_DELAY_US: u64 = 500_000;
 
 /// Restarts on request, for ever where it does not end the program.
 pub async fn run<M: RawMutex, R: Restart>(shared: RestartView<'_, M>, clock: &impl Clock, machine: &mut R) -> ! {
@@ -20,11 +20,11 @@ pub async fn run<M: RawMutex, R: Restart>(shared: RestartView<'_, M>, clock: &im
         shared.has_bootloader().raise();
     }
     loop {
-        clock.until(clock.now().saturating_add(LOOK)).await;
+        clock.until(clock.now().saturating_add(RESTART_POLL_INTERVAL_US)).await;
         if !shared.restarting().is_raised() {
             continue;
         }
-        clock.until(clock.now().saturating_add(GRACE)).await;
+        clock.until(clock.now().saturating_add(RESTART_DELAY_US)).await;
         // Neither can be, since arming is refused meanwhile and saving does not give way; but what would follow is too
         // bad to rely on it.
         if shared.is_turning() || shared.saving().is_raised() {

@@ -37,17 +37,17 @@ mod setpoint_owner;
 mod table;
 
 pub use access::{All, Read, Take, Write};
-pub use card::{CARD_EVENTS, CARD_SILENCE, CardState, CardStatus};
+pub use card::{CARD_EVENTS_CAPACITY, CARD_TIMEOUT_US, CardState, CardStatus};
 pub use count::Count;
 pub use event::{Event, Severity, TEXT_MAX, Text};
 pub use flag::Flag;
 pub use latest::Latest;
-pub use library::{Answer, Bytes, CHUNK, Library, Question};
+pub use library::{Answer, Bytes, LOG_CHUNK_BYTES, Library, Question};
 pub use mission::Mission;
 pub use queue::{Full, Queue};
 pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
 pub use report::{MissionReport, Report, Timing, Traffic};
-pub use requests::{REQUESTS, Requests};
+pub use requests::{REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 
 use self::recent_texts::RecentTexts;
@@ -67,19 +67,19 @@ use mavlink::dialects::common::MavResult;
 use table::{offers, values, views};
 
 /// IMU increments that wait for control, which takes all of them: 40 ms.
-pub const INCREMENTS: usize = 8;
+pub const INCREMENTS_CAPACITY: usize = 8;
 
 /// Poses that wait for control, which takes all of them: 40 ms of them at 200 Hz.
-pub const POSES: usize = 8;
+pub const POSES_CAPACITY: usize = 8;
 
 /// Calibrations that wait to be begun.
-pub const CALIBRATIONS: usize = 2;
+pub const CALIBRATIONS_CAPACITY: usize = 2;
 
 /// Events that wait to be sent or logged.
-pub const EVENTS: usize = 8;
+pub const EVENTS_CAPACITY: usize = 8;
 
 /// Replies that wait to be sent, and as many answers of control: more than there can be requests on their way.
-pub const REPLIES: usize = 8;
+pub const REPLIES_CAPACITY: usize = 8;
 
 /// Everything that passes between tasks, for the code that starts them.
 pub struct Shared<M: RawMutex>(Values<M>);
@@ -122,17 +122,17 @@ values! {
     /// The newest fault of gyro or accelerometer. It counts for 1 s.
     pub imu_fault: Latest<M, ImuFault> { Write: SamplesView; Read: ControlView }
     /// What the inertial samples add up to, in order. Put in with [`Values::increment`].
-    pub increments: Queue<M, Increment, INCREMENTS> { Take: ControlView }
+    pub increments: Queue<M, Increment, INCREMENTS_CAPACITY> { Take: ControlView }
     /// What they add up to since the last of these, where it goes on from that.
     pub under_way: Latest<M, Increment> { Write: SamplesView; Read: ControlView }
     /// Increments that were dropped for want of room.
     pub lost_increments: Count { Read: StatusView }
     /// Requested calibrations.
-    pub calibrations: Queue<M, Calibration, CALIBRATIONS> { Write: ReceiveView; Take: ImuView }
+    pub calibrations: Queue<M, Calibration, CALIBRATIONS_CAPACITY> { Write: ReceiveView; Take: ImuView }
     /// Poses in the order in which they came, with the times at which they were true;
     /// [`estimator`](estimation::estimator) decides how old they may be. Without room a pose is dropped: the next will
     /// do.
-    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES> { Write: ReceiveView, SimulatorView; Take: ControlView }
+    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES_CAPACITY> { Write: ReceiveView, SimulatorView; Take: ControlView }
     /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` gives.
     pub pose_delay_unknown: Flag { Write: ReceiveView; Read: ControlView }
     /// Its time is that of the last heartbeat of a ground station.
@@ -159,15 +159,15 @@ values! {
     /// The mission's items. They are replaced while it is not flown.
     pub mission: Mission<M> { Write: ReceiveView; Read: ControlView, TransmitView }
     /// Answers to requests. Put in with [`Values::answer`].
-    pub answers: Queue<M, Reply, REPLIES> { Take: TransmitView }
+    pub answers: Queue<M, Reply, REPLIES_CAPACITY> { Take: TransmitView }
     /// Replies from the receiving half of the link to the sending half. Put in with [`Values::reply`].
-    pub replies: Queue<M, Reply, REPLIES> { Take: TransmitView }
+    pub replies: Queue<M, Reply, REPLIES_CAPACITY> { Take: TransmitView }
     /// Events on their way to the ground station. Put in with [`Values::announce`], as the next two are.
-    pub events: Queue<M, Event, EVENTS> { Take: TransmitView }
+    pub events: Queue<M, Event, EVENTS_CAPACITY> { Take: TransmitView }
     /// The same events on their way to the log.
-    pub log: Queue<M, Event, EVENTS> { Take: StatusView }
+    pub log: Queue<M, Event, EVENTS_CAPACITY> { Take: StatusView }
     /// The same events on their way to the card, while that is ready.
-    pub card_events: Queue<M, Event, CARD_EVENTS> { Take: CardView }
+    pub card_events: Queue<M, Event, CARD_EVENTS_CAPACITY> { Take: CardView }
     /// Events that found one of the queues full.
     pub lost_events: Count { Read: TransmitView, StatusView }
     /// There is something new for the link's sending half.

@@ -8,7 +8,7 @@
 //! | slow blinking (1 Hz) | armed, on the ground |
 //! | on | flying |
 //! | fast blinking (5 Hz) | going down without a pose |
-//! | flickering (10 Hz) | no report from control for [`REPORT_AGE_MAX`] |
+//! | flickering (10 Hz) | no report from control for [`REPORT_AGE_MAX_US`] |
 
 mod euler;
 mod log;
@@ -22,31 +22,31 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Mode;
 
 pub use euler::{Euler, euler};
-pub use restart_report::{AGAIN, RestartReport};
+pub use restart_report::{RESTART_REPORT_INTERVAL_US, RestartReport};
 
-/// Time between steps, us.
-pub const STEP: u64 = 50_000;
+/// Time between steps.
+pub const LIGHT_STEP_US: u64 = 50_000;
 
-/// Time between readings of the battery, us.
-const BATTERY_INTERVAL: u64 = 200_000;
+/// Time between readings of the battery.
+const BATTERY_INTERVAL_US: u64 = 200_000;
 
-/// The longest a reading may take, us.
-const BATTERY_TIME_MAX: u64 = 20_000;
+/// The longest a reading may take.
+const BATTERY_TIMEOUT_US: u64 = 20_000;
 
-/// Time between log lines, us.
-const SUMMARY_INTERVAL: u64 = 1_000_000;
+/// Time between log lines.
+const SUMMARY_INTERVAL_US: u64 = 1_000_000;
 
-/// Time between warnings of a low battery, us.
-const WARNING_INTERVAL: u64 = 10_000_000;
+/// Time between warnings of a low battery.
+const WARNING_INTERVAL_US: u64 = 10_000_000;
 
-/// The greatest age of a report that counts, us.
-pub const REPORT_AGE_MAX: u64 = 1_000_000;
+/// The greatest age of a report that counts.
+pub const REPORT_AGE_MAX_US: u64 = 1_000_000;
 
-/// Whether the light is on at `now` (us), a multiple of [`STEP`] or close behind one; no mode without a fresh report.
+/// Whether the light is on at `now` (us), a multiple of [`LIGHT_STEP_US`] or close behind one; no mode without a fresh report.
 #[must_use]
 pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
     // Steps into the present second, 0 to 19.
-    let step = now % 1_000_000 / STEP;
+    let step = now % 1_000_000 / LIGHT_STEP_US;
     match mode {
         Some(Mode::Boot | Mode::Checks | Mode::Ready) => step == 0,
         Some(Mode::MotorTest) => step == 0 || step == 4,
@@ -70,10 +70,10 @@ pub async fn run<M: RawMutex>(
     let mut restart = RestartReport::default();
     loop {
         let now = clock.now();
-        let report = shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX);
+        let report = shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX_US);
         light.set(is_lit(report.map(|report| report.value.mode), now));
         if now >= reading {
-            reading = now.saturating_add(BATTERY_INTERVAL);
+            reading = now.saturating_add(BATTERY_INTERVAL_US);
             measure(&mut battery, clock, shared, &mut warning).await;
         }
         restart.tick(shared, now);
@@ -86,12 +86,12 @@ pub async fn run<M: RawMutex>(
             log::event(&event);
         }
         if now >= summary {
-            summary = now.saturating_add(SUMMARY_INTERVAL);
+            summary = now.saturating_add(SUMMARY_INTERVAL_US);
             log::summary(report.as_ref(), shared);
         }
         // By whole steps, so that the pattern does not drift through the second.
         let now = clock.now();
-        clock.until(now - now % STEP + STEP).await;
+        clock.until(now - now % LIGHT_STEP_US + LIGHT_STEP_US).await;
     }
 }
 
@@ -102,7 +102,7 @@ async fn measure<M: RawMutex>(
     shared: StatusView<'_, M>,
     warning: &mut u64,
 ) {
-    let end = clock.now().saturating_add(BATTERY_TIME_MAX);
+    let end = clock.now().saturating_add(BATTERY_TIMEOUT_US);
     let Either::First(Some(voltage)) = select(battery.voltage(), clock.until(end)).await else { return };
     if !voltage.is_finite() {
         return;
@@ -110,7 +110,7 @@ async fn measure<M: RawMutex>(
     let now = clock.now();
     shared.voltage().put(voltage, now);
     if voltage < shared.parameters().get(Name::BatteryLow) && now >= *warning {
-        *warning = now.saturating_add(WARNING_INTERVAL);
+        *warning = now.saturating_add(WARNING_INTERVAL_US);
         shared.announce(Event::new(Severity::Warning, format_args!("Battery low: {voltage:.1} V")));
     }
 }

@@ -6,7 +6,7 @@
 //! | beep | the word; then the stop command, for as long as the tone sounds |
 //! | direction | the word; four times as long the stop command; the word to save; the stop command while it is saved |
 //!
-//! A word stands for [`WORD_DURATION_US`], or the least whole number of ticks that is no shorter. It goes out every
+//! A word stands for [`WORD_DURATION_US`], rounded up to whole ticks. It goes out every
 //! millisecond, so ten times or more: more than the six that such words take to be believed.
 
 use super::exchange::Output;
@@ -14,10 +14,10 @@ use super::motor::{MotorSetting, MotorTest, Setting, Word};
 use super::refusal::Refusal;
 use super::rules::{MOTOR_TEST_LEVEL_MAX, MOTOR_TEST_MAX_US};
 
-/// How long a setting takes: the tone of a beep, which is the longest.
+/// How long a setting takes: as long as its longest part, the tone of a beep.
 const SETTING_DURATION_US: u64 = 300_000;
 
-/// How long a word stands at least.
+/// How long a word is sent, at least.
 const WORD_DURATION_US: u64 = 10_000;
 
 /// When a direction is saved, in durations of a word after its command.
@@ -77,24 +77,4 @@ impl Bench {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn at_any_rate_a_word_stands_for_ten_milliseconds_or_more_also_in_a_tick_that_comes_a_little_late() {
-        let bench = Bench::Setting(MotorSetting { rotor: 1, setting: Setting::Reversed });
-        for (period, word_lasts) in
-            [(20_000, 20_000), (10_000, 10_000), (8_000, 16_000), (2_000, 10_000), (1_000, 10_000)]
-        {
-            for (begins, word) in [(0, Word::Reversed), (5 * word_lasts, Word::Save)] {
-                for (tick, late) in
-                    (0..word_lasts / period).flat_map(|tick| [0, 1, period - 1].map(|late| (tick, late)))
-                {
-                    let output = bench.output(begins + tick * period + late, period);
-                    assert_eq!(output, Output::Word { rotor: 1, word }, "tick {tick} of {period} us, {late} us late");
-                }
-                assert_eq!(bench.output(begins + word_lasts, period), Output::Stop, "{period} us");
-            }
-        }
-    }
-}
+mod tests;

@@ -19,7 +19,7 @@ use controller_core::math;
 use controller_core::reference::{Reference, ReferenceBounds};
 use nalgebra::{Vector2, Vector3};
 
-/// How fast a speed across falls, in the greatest acceleration across and the greatest jerk of a reference.
+/// How fast a speed across falls, as a share of the maximum horizontal acceleration and jerk of a reference.
 const ACROSS_SHARE: f32 = 0.95;
 
 /// How fast a vertical speed falls, m/s^2 (0.4 g, as a shield's law brakes) and m/s^3.

@@ -45,7 +45,7 @@ impl Memory {
     pub const EMPTY: Self = Self { governor: governor::Memory::EMPTY, mixer: Mixer::NONE };
 }
 
-/// What the law was given in a tick and what it made of it.
+/// A tick of the law: its inputs and its output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flown {
     /// The state: estimated, or (levelling) on the reference with the estimated attitude.
@@ -69,7 +69,7 @@ pub(super) struct Chain<'m> {
     law: Law,
     mixer: &'m mut Mixer,
     rotors: usize,
-    /// The greatest horizontal speed of a reference, m/s.
+    /// The maximum horizontal speed of a reference, m/s.
     speed: f32,
     braking: Braking,
     /// The vehicle's mass, kg, and gravity, m/s^2.
@@ -273,7 +273,7 @@ impl<'m> Chain<'m> {
         self.refused = self.refused.saturating_add(self.tick);
         let flown = self.command(state, step);
         if flown.is_err() {
-            // The rotors keep their last thrusts for a tick that the law knows nothing of.
+            // The rotors keep their last thrusts for a tick that the law does not see.
             self.law.hold_estimates();
         }
         flown

@@ -4,7 +4,7 @@
 //! one so strong that only the ground gives it, a *hit* one beyond the accelerometer's range.
 //!
 //! - *Landed*, with an estimate: the reference has gone on down and the vehicle has not, and stands still, for longer
-//!   than a vehicle does that turns round in the air: where wind carries it upwards faster than it may go down, say.
+//!   than a vehicle that reverses in the air does, in a rising wind for example.
 //! - *Landed*, by the IMU alone: an impact has stopped the vehicle, and the law now commands less thrust than carries
 //!   it. Or, where the ground was soft, so little thrust that the vehicle must fall faster, and it does not. Rotors that
 //!   deliver 8 % more than commanded would snapshot the same: with the law's thrust scale and force they do not. So would

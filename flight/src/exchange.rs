@@ -1,4 +1,4 @@
-//! What a tick is given, and what it decides.
+//! The inputs and the outcome of a tick.
 
 use super::chain::Flown;
 use super::mission::{MissionItem, MissionStep};
@@ -29,17 +29,17 @@ pub enum Battery {
     Good,
     /// Time to land.
     Low,
-    /// Next to nothing.
+    /// Almost empty.
     Critical,
 }
 
-/// What a tick is given: what has come since the last. Everything is handed over once, but for the newest
-/// body rate and the ground station's time.
+/// The inputs of a tick: what has come since the last. Each is passed once, but for the newest body rate and the ground
+/// station's time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inputs<'a> {
     /// The vehicle's clock, us.
     pub now: u64,
-    /// What the IMU did, each increment beginning where the last ended: one each 5 ms, where nothing is late.
+    /// What the IMU did, each increment beginning where the last ended: one each 5 ms, unless the IMU task is late.
     pub increments: &'a [Increment],
     /// What the IMU has done since the last of them, as far as it has been sampled.
     pub under_way: Option<Increment>,
@@ -102,7 +102,7 @@ pub enum Output {
     },
 }
 
-/// What a tick decided.
+/// The outcome of a tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// For the motors.

@@ -89,7 +89,7 @@ pub(super) fn to_fly_mission(mode: Mode) -> Result<(), Refusal> {
 /// station on the link.
 pub(super) fn to_arm(estimate: &Estimate, ground_station_silent: bool) -> Result<Start, Refusal> {
     let faults = estimate.health.faults;
-    // Without an IMU nothing else can be well.
+    // First, because every other check needs an IMU.
     require(!faults.contain(Fault::ImuStale), Refusal::ImuStale)?;
     faults.worst().map_or(Ok(()), |fault| Err(Refusal::Estimator(fault)))?;
     // With an estimate it is the body rate that is missing.

@@ -123,7 +123,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         }
     }
 
-    /// Other settings from now on, while the law drives nothing; an armed vehicle keeps those that it was armed with.
+    /// Other settings from now on, while disarmed; an armed vehicle keeps those that it was armed with.
     pub fn use_settings(&mut self, settings: &FlightSettings) {
         if !self.mode.is_armed() {
             self.settings = settings.within_range();

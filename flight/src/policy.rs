@@ -1,6 +1,6 @@
 //! A policy aboard: a controller of somebody else's, behind a [shield](controller_core::shield).
 //!
-//! An image without one carries nothing of it: [`NoPolicy`] is empty, and every request for it is refused. With one,
+//! An image without one has no code for it: [`NoPolicy`] is empty, and every request for it is refused. With one,
 //! `FlyPolicy` lets it fly in the air, in the mode in which setpoints are flown, as long as every rule of that mode is
 //! kept. The goal is the newest setpoint's place; at first where the reference was. The box is inside the fence.
 

@@ -95,47 +95,26 @@ impl Reason {
     /// Whether the vehicle acts on its own because something is wrong.
     #[must_use]
     pub const fn is_own_doing(self) -> bool {
-        match self {
+        !matches!(
+            self,
             Self::Started
-            | Self::Ready
-            | Self::NotReady
-            | Self::Armed
-            | Self::Disarmed
-            | Self::MotorTestRequested
-            | Self::MotorTestInterrupted
-            | Self::MotorTestOver
-            | Self::IdlingOver
-            | Self::TakeOffCommanded
-            | Self::TakenOff
-            | Self::SetpointsCommanded
-            | Self::HoldCommanded
-            | Self::HeldOnGround
-            | Self::LandCommanded
-            | Self::Landed
-            | Self::PoseRegained
-            | Self::LandingResumed => false,
-            Self::NotCertified
-            | Self::Killed
-            | Self::Crashed
-            | Self::ImuLost
-            | Self::ThrustsRefused
-            | Self::PoseLost
-            | Self::PosesGivenUp
-            | Self::LandingOver
-            | Self::PoseLostOnGround
-            | Self::ImuDoubtful
-            | Self::DescendingOver
-            | Self::GroundStationLost
-            | Self::GroundStationLostOnGround
-            | Self::GroundStationGone
-            | Self::SetpointsLost
-            | Self::BatteryLow
-            | Self::BatteryCritical
-            | Self::FenceBreached
-            | Self::TrackingLost
-            | Self::RotorLost
-            | Self::Saturated
-            | Self::Overrun => true,
-        }
+                | Self::Ready
+                | Self::NotReady
+                | Self::Armed
+                | Self::Disarmed
+                | Self::MotorTestRequested
+                | Self::MotorTestInterrupted
+                | Self::MotorTestOver
+                | Self::IdlingOver
+                | Self::TakeOffCommanded
+                | Self::TakenOff
+                | Self::SetpointsCommanded
+                | Self::HoldCommanded
+                | Self::HeldOnGround
+                | Self::LandCommanded
+                | Self::Landed
+                | Self::PoseRegained
+                | Self::LandingResumed
+        )
     }
 }

@@ -27,21 +27,21 @@ use estimation::estimator::EXTRAPOLATION_MAX_US;
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
 pub const COASTING_MAX_US: u64 = 1_000_000;
 
-/// The greatest age of an IMU sample that is flown: twenty samples missed, and the delay of its own filters. The
+/// The maximum age of an IMU sample that is flown: twenty samples missed, and the delay of its own filters. The
 /// attitude loop stands no more (docs/sampled-loop.md), and without rates the attitude is unknown.
 pub const IMU_AGE_MAX_US: u64 = EXTRAPOLATION_MAX_US;
 
 /// How long a vehicle without a pose only levels: poses may come back. Then it goes down.
 pub const LEVELLING_MAX_US: u64 = 1_000_000;
 
-/// How long it may go down by the IMU alone, levelling included: 20 m at the least speed.
+/// How long it may go down by the IMU alone, levelling included: 20 m at the minimum speed.
 pub const DESCENDING_MAX_US: u64 = 30_000_000;
 
 /// How long a landing may brake across before it goes down.
 pub const BRAKING_MAX_US: u64 = 5_000_000;
 
-/// How long a landing may take: so many times what the greatest height that it has been at takes at its speed, as far
-/// as the fence reaches, and so many seconds besides. Then its poses do not lead to the ground.
+/// How long a landing may take: this many times the time from its maximum height (at most the fence's) at its speed, and
+/// [`LANDING_TIMEOUT_EXTRA_S`]. After that its poses do not lead to the ground.
 pub const LANDING_TIMEOUT_FACTOR: f32 = 2.0;
 /// See [`LANDING_TIMEOUT_FACTOR`].
 pub const LANDING_TIMEOUT_EXTRA_S: f32 = 12.0;
@@ -67,16 +67,16 @@ pub const TRACKING_DEBOUNCE_US: u64 = 5_000_000;
 /// How long the rotors may deliver less than the command. In a certified flight they never do.
 pub const SATURATION_DEBOUNCE_US: u64 = 1_000_000;
 
-/// How long a vehicle without a rotor has been on its way at least before a reference at rest has arrived.
+/// How long a vehicle without a rotor must have been on its way before a reference at rest counts as arrived.
 pub const ARRIVING_MIN_US: u64 = 1_000_000;
 
 /// How long control may be late with every tick.
 pub const OVERRUN_DEBOUNCE_US: u64 = 100_000;
 
-/// The greatest level of a motor test, as a part of the command's range: turns a rotor, lifts nothing.
+/// The maximum level of a motor test, as a part of the command's range: turns a rotor, lifts nothing.
 pub const MOTOR_TEST_LEVEL_MAX: f32 = 0.15;
 
-/// The longest motor test.
+/// Of a motor test.
 pub const MOTOR_TEST_MAX_US: u64 = 2_000_000;
 
 /// How long the last thrusts are held without new ones, where the law or the allocation refuses its input tick

@@ -88,7 +88,7 @@ impl Sinking {
         }
     }
 
-    /// How fast to go down, m/s: so fast that the vehicle sinks truly, whatever the accelerometer has summed up.
+    /// How fast to go down, m/s: so fast that the vehicle truly sinks, despite the drift of the accelerometer's sum.
     pub fn descent(&self) -> f32 {
         DESCENT_SPEED_MIN_M_PER_S
             + if self.lied { SPEED_DRIFT_AFTER_LIES_M_PER_S2 } else { SPEED_DRIFT_M_PER_S2 } * self.time

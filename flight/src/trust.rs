@@ -28,7 +28,7 @@ const RESUMED_DOUBT_S: f32 = 1.6;
 /// The decay of doubt in a second of believed poses, s.
 const DOUBT_DECAY_SHARE: f32 = 0.03;
 
-/// The longest time that one pose accounts for.
+/// The time that one pose accounts for.
 const POSE_INTERVAL_MAX_US: u64 = 100_000;
 
 /// The evidence against a source of poses.

@@ -5,7 +5,7 @@ use controller_core::reference::Reference;
 use controller_core::state::State;
 use estimation::imu::low_pass::LowPass;
 use firmware::hardware::MotorCommand;
-use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::recorder::tick::Tick;
 use flight::Mode;
 use host_sim::identification::identify::flight_log::{FlightLog, Source};
@@ -181,7 +181,7 @@ fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
 #[test]
 fn the_recorders_file_says_what_log_csv_says() {
     let log = FlightLog::from_csv(&fly(&hover().replace("duration = 40.0", "duration = 3.0")).unwrap()).unwrap();
-    let mut memory = vec![[0; SLOT]; 600];
+    let mut memory = vec![[0; SLOT_BYTES]; 600];
     let mut ring = Ring::recover(&mut memory);
     ring.begin();
     // On the ground first, and for a moment without a state.

@@ -4,7 +4,7 @@
 use controller_core::certificate::certified::Certified;
 use controller_core::controller::{Controller, Diagnostics};
 use controller_core::reference::Reference;
-use firmware::replay::{PERIOD_US, Replay, TICKS, record};
+use firmware::replay::{FLIGHT_TICKS, PERIOD_US, Replay, record};
 use host_sim::flight::Flight;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -20,10 +20,10 @@ fn bits(wrench: &controller_core::state::Wrench) -> [u32; 4] {
 #[test]
 fn the_papers_flight_is_the_published_number_on_this_machine() {
     let scenario = Scenario::paper().unwrap();
-    assert_eq!((scenario.timing.ticks, scenario.timing.period_us), (TICKS, PERIOD_US));
+    assert_eq!((scenario.timing.ticks, scenario.timing.period_us), (FLIGHT_TICKS, PERIOD_US));
     let mut flight = Flight::new(&scenario).unwrap();
     let mut replay = Replay::new().unwrap();
-    for tick in 0..TICKS {
+    for tick in 0..FLIGHT_TICKS {
         // The live flight's own wrench: the replay flies the same vehicle, gains and reference.
         let flown = flight.tick().unwrap();
         let replayed = replay.tick(&record(&flown.state.measured())).unwrap();
@@ -36,9 +36,9 @@ fn the_papers_flight_is_the_published_number_on_this_machine() {
 fn one_bit_of_one_state_changes_the_number() {
     let mut flight = Flight::new(&Scenario::paper().unwrap()).unwrap();
     let mut replay = Replay::new().unwrap();
-    for tick in 0..TICKS {
+    for tick in 0..FLIGHT_TICKS {
         let mut state = record(&flight.tick().unwrap().state.measured());
-        if tick == TICKS / 2 {
+        if tick == FLIGHT_TICKS / 2 {
             state[0] ^= 1;
         }
         replay.tick(&state).unwrap();
@@ -72,7 +72,7 @@ fn number(thrust: impl Fn(&Reference, &Diagnostics) -> f32) -> (String, u64) {
     let mut controller = Controller::new(&certified, scenario.timing.period() as f32).unwrap();
     let mut flight = Flight::new(&scenario).unwrap();
     let (mut hash, mut different) = (Sha256::new(), 0);
-    for tick in 0..TICKS {
+    for tick in 0..FLIGHT_TICKS {
         let state = flight.tick().unwrap().state.measured();
         let reference = scenario.trajectory.at(tick * PERIOD_US);
         let (wrench, diagnostics) = controller.step(&state, &reference).unwrap();
@@ -106,6 +106,6 @@ fn one_fused_multiplication_and_addition_changes_the_number() {
     // What is fused below is the law's own line: as it stands, it gives the law's bits and the published number.
     assert_eq!(with(separate), (PUBLISHED_HASH.trim().to_owned(), 0));
     let (found, different) = with(fused);
-    println!("fused: {different} of {TICKS} thrusts have other bits");
+    println!("fused: {different} of {FLIGHT_TICKS} thrusts have other bits");
     assert!(different > 0 && found != PUBLISHED_HASH.trim(), "{different}");
 }

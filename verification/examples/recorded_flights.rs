@@ -6,7 +6,7 @@
 use firmware::replay::estimate::Estimate;
 use firmware::replay::recovery::{self, Recovery};
 use firmware::replay::shielded::Shielded;
-use firmware::replay::{PERIODS, RECORD, TICKS, record};
+use firmware::replay::{FLIGHT_TICKS, PERIODS_US, STATE_BYTES, record};
 use host_sim::flight::Flight;
 use host_sim::studies::tune::trials;
 use scenario::Scenario;
@@ -20,11 +20,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).ok_or("expected a FOLDER")?;
     let folder = Path::new(&folder);
     // The states that the law saw at every tick.
-    let paper = states(&mut Flight::new(&Scenario::paper()?)?, TICKS)?;
+    let paper = states(&mut Flight::new(&Scenario::paper()?)?, FLIGHT_TICKS)?;
     std::fs::write(folder.join("states.f32"), paper.concat())?;
 
     let mut all = Vec::new();
-    for period in PERIODS {
+    for period in PERIODS_US {
         let recovered = recovery(period)?;
         let mut replay = Recovery::new(period).ok_or("the embedded scenario is not certified")?;
         let mut estimate = Estimate::new(period).ok_or("the estimator's figures are refused")?;
@@ -45,14 +45,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The states of a recovery of the embedded scenario's vehicle, flown in ticks of `period` us, one of which its
 /// commands are late.
-fn recovery(period: u64) -> Result<Vec<[u8; RECORD]>, Box<dyn Error>> {
+fn recovery(period: u64) -> Result<Vec<[u8; STATE_BYTES]>, Box<dyn Error>> {
     let text = EMBEDDED.replace("rate = 100.0 ", &format!("rate = {}.0 ", 1_000_000 / period));
     let text = text.replace("delay = 0.010 ", &format!("delay = {} ", period as f64 * 1e-6));
     let embedded = Scenario::parse(&text, "vehicles/study.toml")?;
-    let mut flight = Flight::new(&trials::recovery(&embedded, recovery::DURATION as f64 * 1e-6)?)?;
-    states(&mut flight, recovery::DURATION / period)
+    let mut flight = Flight::new(&trials::recovery(&embedded, recovery::RECOVERY_DURATION_US as f64 * 1e-6)?)?;
+    states(&mut flight, recovery::RECOVERY_DURATION_US / period)
 }
 
-fn states(flight: &mut Flight, ticks: u64) -> Result<Vec<[u8; RECORD]>, Box<dyn Error>> {
+fn states(flight: &mut Flight, ticks: u64) -> Result<Vec<[u8; STATE_BYTES]>, Box<dyn Error>> {
     (0..ticks).map(|_| Ok(record(&flight.tick()?.state.measured()))).collect()
 }

@@ -19,7 +19,7 @@ use controller_core::governor::GovernorLimits;
 pub use estimation::estimator::PoseMeasurement;
 use estimation::estimator::{Estimator, Increment, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
-use firmware::hardware::{MOTORS, MotorCommand};
+use firmware::hardware::{MOTOR_COUNT, MotorCommand};
 use firmware::outputs::Outputs;
 use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, Pilot, Pose, Stamped};
 use host_sim::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US, TrueMotion};
@@ -111,7 +111,7 @@ pub struct PilotedVehicle<'m> {
     instruments: Instruments,
     conditioner: Conditioner,
     outputs: Outputs,
-    curves: [ThrustCurve; MOTORS],
+    curves: [ThrustCurve; MOTOR_COUNT],
     /// Plant steps in a millisecond.
     steps: u32,
     /// From a motor command to its effect, us.
@@ -122,7 +122,7 @@ pub struct PilotedVehicle<'m> {
     waiting: VecDeque<(u64, MotorCommand)>,
     acting: MotorCommand,
     /// The part of its thrust that each rotor is left with.
-    left: [f32; MOTORS],
+    left: [f32; MOTOR_COUNT],
     increments: Vec<Increment>,
     body_rate: Option<Stamped<Vector3<f32>>>,
     poses: Vec<Stamped<PoseMeasurement>>,
@@ -169,7 +169,7 @@ impl<'m> PilotedVehicle<'m> {
             now,
             waiting: VecDeque::new(),
             acting: MotorCommand::Stop,
-            left: [1.0; MOTORS],
+            left: [1.0; MOTOR_COUNT],
             increments: Vec::new(),
             body_rate: None,
             poses: Vec::new(),
@@ -235,7 +235,7 @@ impl<'m> PilotedVehicle<'m> {
     }
 
     /// The commanded thrusts, N, as far as the rotors can give them.
-    fn thrusts(&self) -> [f32; MOTORS] {
+    fn thrusts(&self) -> [f32; MOTOR_COUNT] {
         let commands = self.acting.levels();
         std::array::from_fn(|rotor| self.left[rotor] * self.curves[rotor].thrust(commands[rotor], 1.0))
     }

@@ -12,7 +12,7 @@ mod target {
     use firmware::replay::estimate::Estimate;
     use firmware::replay::recovery::{self, Recovery};
     use firmware::replay::shielded::Shielded;
-    use firmware::replay::{PERIODS, RECORD, Replay, TICKS};
+    use firmware::replay::{FLIGHT_TICKS, PERIODS_US, Replay, STATE_BYTES};
     use semihosting::fs::File;
     use semihosting::io::Read;
 

@@ -23,10 +23,10 @@ mod target {
     static mut STARTS: MaybeUninit<u32> = MaybeUninit::uninit();
 
     /// Why the third start comes about.
-    const WORDS: &str = "a restart of the test's own";
+    const RESTART_WORDS: &str = "a restart of the test's own";
 
     /// What [`STARTS`] holds once the first start is over.
-    const SECOND: u32 = 0x5EC0_4D00;
+    const SECOND_START: u32 = 0x5EC0_4D00;
 
     /// A bootloader's task has its stack somewhere.
     static mut TASK: [u64; 128] = [0; 128];
@@ -44,17 +44,17 @@ mod target {
         let control = control::read();
         // SAFETY: one thread, aligned memory that nothing else touches; any bits are a number.
         if let Some(words) = kept::take(false) {
-            check("kept over the reset", words.as_str() == WORDS);
+            check("kept over the reset", words.as_str() == RESTART_WORDS);
             let _ = mps2::begin();
             hprintln!("kept over the reset");
             hprintln!("{}", overflow(black_box(1)));
             exit::fail("no stack overflow")
         }
-        let is_first = unsafe { (&raw const STARTS).cast::<u32>().read_volatile() } != SECOND;
+        let is_first = unsafe { (&raw const STARTS).cast::<u32>().read_volatile() } != SECOND_START;
         if is_first {
             // SAFETY: as above; all that it spoils is there for this.
             unsafe {
-                (&raw mut STARTS).cast::<u32>().write_volatile(SECOND);
+                (&raw mut STARTS).cast::<u32>().write_volatile(SECOND_START);
                 spoil(&mut Peripherals::steal())
             }
         }
@@ -77,7 +77,7 @@ mod target {
         check("no region of protected memory but the guard", is_unprotected(&mut core));
         check("an interrupt's floats survive a more urgent one", floats_survive(&mut core));
         hprintln!("as after a reset");
-        kept::keep(&LastWords::new(WORDS));
+        kept::keep(&LastWords::new(RESTART_WORDS));
         cortex_m::peripheral::SCB::sys_reset()
     }
 
@@ -140,19 +140,19 @@ mod target {
     static mut FOUND: u32 = 0;
 
     /// A float that no code makes by chance.
-    const FLOAT: u32 = 0x4049_0FDB;
+    const PI_BITS: u32 = 0x4049_0FDB;
 
     /// Lets PendSV hold a float while SVCall, more urgent, uses the same register.
     fn floats_survive(core: &mut Peripherals) -> bool {
         /// The most and the least urgent of the emulated core's priorities; where PendSV's is.
-        const PENDSV: (usize, u8) = (10, 0xE0);
+        const PENDSV_PRIORITY: (usize, u8) = (10, 0xE0);
         // SAFETY: no critical section relies on it.
-        unsafe { core.SCB.shpr[PENDSV.0].write(PENDSV.1) };
+        unsafe { core.SCB.shpr[PENDSV_PRIORITY.0].write(PENDSV_PRIORITY.1) };
         cortex_m::peripheral::SCB::set_pendsv();
         cortex_m::asm::dsb();
         cortex_m::asm::isb();
         // SAFETY: its only writer is done.
-        unsafe { (&raw const FOUND).read_volatile() == FLOAT }
+        unsafe { (&raw const FOUND).read_volatile() == PI_BITS }
     }
 
     #[exception]
@@ -160,7 +160,7 @@ mod target {
         let found: u32;
         // SAFETY: the register is named, and what the supervisor call does is below.
         unsafe {
-            asm!("vmov s0, {0}", "svc #0", "vmov {0}, s0", inout(reg) FLOAT => found, out("s0") _);
+            asm!("vmov s0, {0}", "svc #0", "vmov {0}, s0", inout(reg) PI_BITS => found, out("s0") _);
             (&raw mut FOUND).write_volatile(found);
         }
     }

@@ -12,7 +12,7 @@ mod target {
     use firmware::boards::mps2::{self, executors, exit, idle, uart};
     use firmware::boards::recorder;
     use firmware::boot;
-    use firmware::configuration::{PERIOD, Pilot};
+    use firmware::configuration::{PERIOD_US, Pilot};
     use firmware::control::Control;
     use firmware::hil::{self, Hil, SelectedMotors};
     use firmware::link::{receive, transmit};
@@ -24,8 +24,8 @@ mod target {
     static SHARED: Shared<CriticalSectionRawMutex> = Shared::new();
     static HIL: Hil<CriticalSectionRawMutex> = Hil::new();
 
-    /// How long the control task may take to come back, us.
-    const WATCHDOG: u32 = if PERIOD > 10_000 { 5 * PERIOD as u32 } else { 50_000 };
+    /// How long the control task may take to come back.
+    const WATCHDOG_TIMEOUT_US: u32 = if PERIOD_US > 10_000 { 5 * PERIOD_US as u32 } else { 50_000 };
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
@@ -55,19 +55,19 @@ mod target {
     async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
         let shared = SHARED.for_control();
         let mut motors =
-            SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock, period: PERIOD };
-        let mut watchdog = BoardWatchdog::start(WATCHDOG);
+            SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock, period: PERIOD_US };
+        let mut watchdog = BoardWatchdog::start(WATCHDOG_TIMEOUT_US);
         Control::new(shared, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
     }
 
     #[embassy_executor::task]
     async fn to_simulator() {
-        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, SHARED.for_simulator(), PERIOD).await;
+        hil::transmit(&HIL, uart::SIMULATOR.split().1, &BoardClock, SHARED.for_simulator(), PERIOD_US).await;
     }
 
     #[embassy_executor::task]
     async fn from_simulator() {
-        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, SHARED.for_simulator(), PERIOD).await;
+        hil::receive(&HIL, uart::SIMULATOR.split().0, &BoardClock, SHARED.for_simulator(), PERIOD_US).await;
     }
 
     #[embassy_executor::task]

@@ -4,7 +4,7 @@ mod bench;
 
 use super::*;
 use crate::bench::{Jumping, Pin, X_LEFT, on_one_bus};
-use crate::registers::RESTART_AFTER;
+use crate::registers::RESTART_AFTER_FAILURES;
 use bench::{Bench, Part, Registers, bench};
 use core::cell::Cell;
 use core::future::{Future, pending};
@@ -47,7 +47,7 @@ fn power_up_waits_as_long_as_the_devices_need() {
 fn power_up_ends_before_the_task_loses_patience() {
     let mut bench = bench(&Mounting::ALIGNED);
     bench.sample().unwrap();
-    assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
+    assert!(bench.clock.now() + 10_000 < crate::imu::SAMPLE_TIMEOUT_US, "{} us", bench.clock.now());
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn settings_are_written_again_one_by_one_until_they_stick() {
             let settings = steps.iter().filter(|step| matches!(step.2, Set(_)));
             let values = part.0.borrow().values;
             assert!(settings.into_iter().all(|(register, value, _)| values[usize::from(*register)] == *value));
-            assert!(bench.clock.now() < crate::imu::PATIENCE, "{} us", bench.clock.now());
+            assert!(bench.clock.now() < crate::imu::SAMPLE_TIMEOUT_US, "{} us", bench.clock.now());
         }
     }
 }
@@ -167,7 +167,7 @@ fn the_gyro_is_delivered_while_the_accelerometer_fails_and_is_powered_up_between
             bench.clock.jump(last + 1_000);
             let sample = bench.sample().unwrap();
             assert_eq!((sample.angular_velocity.x, sample.specific_force), (4096.0 * RATE_PER_COUNT, None));
-            assert!(bench.clock.now() - last <= 1_000 + 2 * ACCESS_WITHIN, "{} us", bench.clock.now() - last);
+            assert!(bench.clock.now() - last <= 1_000 + 2 * ACCESS_TIMEOUT_US, "{} us", bench.clock.now() - last);
             last = bench.clock.now();
         }
         disturb(&mut bench.accelerometer.0.borrow_mut(), false);
@@ -234,7 +234,7 @@ fn chip_selects_are_high_after_a_sample_that_is_dropped_half_way() {
         }
 
         async fn until(&self, time: u64) {
-            if time == self.now() + ACCESS_WITHIN {
+            if time == self.now() + ACCESS_TIMEOUT_US {
                 pending().await
             }
             self.0.jump(time);
@@ -265,7 +265,7 @@ fn one_fault_costs_one_sample_and_many_power_the_gyroscope_up_anew() {
     bench.sample().unwrap();
     assert_eq!(writes(&bench.gyroscope).len(), writes_of_one_power_up);
     bench.gyroscope.0.borrow_mut().line.fails = true;
-    for _ in 0..RESTART_AFTER {
+    for _ in 0..RESTART_AFTER_FAILURES {
         bench.sample().unwrap_err();
     }
     bench.gyroscope.0.borrow_mut().line.fails = false;

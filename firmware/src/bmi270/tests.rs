@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
-use crate::registers::{READ, RESTART_AFTER};
+use crate::registers::{READ_BIT, RESTART_AFTER_FAILURES};
 use core::cell::{Cell, RefCell};
 use embassy_futures::block_on;
 use nalgebra::Vector3;
@@ -24,7 +24,7 @@ struct Chip {
 impl Chip {
     fn reset(&mut self) {
         self.values = [0; 128];
-        (self.values[0], self.values[0x7C]) = (ID, 0x03);
+        (self.values[0], self.values[0x7C]) = (CHIP_ID_BMI270, 0x03);
         (self.asleep, self.file) = (true, Vec::new());
     }
 }
@@ -37,8 +37,8 @@ impl Device for Chip {
     fn exchange(&mut self, bytes: &mut [u8]) {
         let asleep = std::mem::take(&mut self.asleep);
         let [address, data @ ..] = bytes else { return };
-        let register = *address & !READ;
-        if *address & READ != 0 {
+        let register = *address & !READ_BIT;
+        if *address & READ_BIT != 0 {
             // One byte that means nothing comes first.
             for (index, byte) in data.iter_mut().enumerate().skip(1) {
                 let read = self.values[usize::from(register) + index - 1];
@@ -119,7 +119,7 @@ fn power_up_writes_the_file_and_the_data_sheets_registers_in_order() {
     assert!(time(0) >= 1_000 && time(1) - time(0) >= 2_000 && time(2) - time(1) >= 450 && time(6) - time(5) >= 20_000);
     assert!(bench.clock.now() - time(13) >= 45_000, "the gyroscope has its time");
     drop(chip);
-    assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
+    assert!(bench.clock.now() + 10_000 < crate::imu::SAMPLE_TIMEOUT_US, "{} us", bench.clock.now());
 }
 
 #[test]
@@ -129,11 +129,11 @@ fn a_file_that_does_not_run_is_a_fault() {
     // A reset forgets it: only what is written after the reset counts, so it runs.
     bench.sample().unwrap();
     bench.chip.borrow_mut().reset();
-    for _ in 0..RESTART_AFTER {
+    for _ in 0..RESTART_AFTER_FAILURES {
         bench.load(0, &[0]);
         bench.sample().unwrap_err();
     }
-    bench.load(0, &[ID]);
+    bench.load(0, &[CHIP_ID_BMI270]);
     bench.sample().unwrap();
     assert_eq!(bench.chip.borrow().file, CONFIGURATION, "powered up anew");
 }

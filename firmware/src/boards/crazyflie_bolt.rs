@@ -8,7 +8,7 @@ use super::stm32::board::Board;
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088, Bus, FAST, SharedBus};
+use super::stm32::imu::{self, BoardBmi088, Bus, FAST_EDGES, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
@@ -91,7 +91,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     static BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PB13, p.PB15, p.PB14, p.DMA1_CH4, p.DMA1_CH3, Interrupts, imu::config());
     let bus = BUS.init(Bus::new(spi));
-    let devices = [imu::device(bus, p.PB1, FAST), imu::device(bus, p.PB0, FAST)];
+    let devices = [imu::device(bus, p.PB1, FAST_EDGES), imu::device(bus, p.PB0, FAST_EDGES)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC14, p.EXTI14, Pull::None, Interrupts), line: 14 };
     let imu = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
 

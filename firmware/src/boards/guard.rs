@@ -21,7 +21,7 @@ use super::mps2::exit::faulted;
 use super::stm32::fault::faulted;
 
 /// Bytes of the guard, a power of two: its place is a multiple of it.
-pub const GUARD: usize = 16 * 1024;
+pub const GUARD_BYTES: usize = 16 * 1024;
 
 unsafe extern "C" {
     /// Where the stack begins, and where it would meet what lies below it: the linker's.
@@ -31,22 +31,22 @@ unsafe extern "C" {
 
 /// Where the guard begins: as far down as its alignment allows.
 fn guard() -> usize {
-    (&raw const _stack_end).addr().next_multiple_of(GUARD)
+    (&raw const _stack_end).addr().next_multiple_of(GUARD_BYTES)
 }
 
 /// Guards the stack from here on. What the guard does not cover is as without the unit; a fault's handler is not held
 /// to it.
 pub fn watch(mpu: &mut MPU) {
     /// Privileged code has the default map elsewhere; the unit is on.
-    const ON: u32 = 0b101;
+    const ENABLE_BITS: u32 = 0b101;
     /// No execution; the size as a power of two, less one; on. No access.
-    const NO_ACCESS: u32 = 1 << 28 | (GUARD.trailing_zeros() - 1) << 1 | 1;
+    const NO_ACCESS_BITS: u32 = 1 << 28 | (GUARD_BYTES.trailing_zeros() - 1) << 1 | 1;
     // SAFETY: nothing lies in the guard but what a stack of this size never reaches.
     unsafe {
         mpu.rnr.write(0);
         mpu.rbar.write(guard() as u32);
-        mpu.rasr.write(NO_ACCESS);
-        mpu.ctrl.write(ON);
+        mpu.rasr.write(NO_ACCESS_BITS);
+        mpu.ctrl.write(ENABLE_BITS);
     }
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
@@ -65,7 +65,7 @@ fn fault_at(frame: *const ExceptionFrame) -> Fault {
     // SAFETY: aligned, and within the memory that the linker gives to the stack, where any bits are numbers.
     let frame = is_stack.then(|| unsafe { ptr::read(frame) });
     // An access to the guard is named (DACCVIOL, MMARVALID).
-    let in_guard = status & 0x82 == 0x82 && (guard()..guard() + GUARD).contains(&memory_address);
+    let in_guard = status & 0x82 == 0x82 && (guard()..guard() + GUARD_BYTES).contains(&memory_address);
     let is_overflow = !is_saved || in_guard;
     let place = frame.map(|frame| (frame.pc(), frame.lr()));
     Fault { place, status, hard_status: core.hfsr.read(), bus_address: core.bfar.read(), is_overflow }

@@ -57,13 +57,13 @@ core::arch::global_asm!(
 );
 
 /// The core's own two interrupts that may wait: SysTick (PENDSTCLR) and PendSV (PENDSVCLR).
-const END_PENDING: u32 = 1 << 25 | 1 << 27;
+const END_PENDING_BITS: u32 = 1 << 25 | 1 << 27;
 
 /// What a reset leaves in the configuration and control register beside the caches' bits.
-const CONFIGURATION: u32 = 1 << 9;
+const CONFIGURATION_RESET_BIT: u32 = 1 << 9;
 
 /// The caches' bits there, of data and of instructions: each is turned on and off in an order of its own.
-const CACHES: u32 = 0b11 << 16;
+const CACHE_BITS: u32 = 0b11 << 16;
 
 /// The rest of what may be on, and the core's peripherals, taken here for the first time. `quiet` ends what the chip
 /// adds to them, with every interrupt still off.
@@ -77,14 +77,14 @@ pub fn begin_anew(quiet: impl FnOnce(&mut Peripherals)) -> Peripherals {
     // but what this firmware starts.
     unsafe {
         core.SYST.csr.write(0);
-        core.SCB.icsr.write(END_PENDING);
+        core.SCB.icsr.write(END_PENDING_BITS);
         core.NVIC.icer.iter().for_each(|lines| lines.write(u32::MAX));
         core.NVIC.icpr.iter().for_each(|lines| lines.write(u32::MAX));
         core.NVIC.ipr.iter().for_each(|priority| priority.write(0));
         core.SCB.shpr.iter().for_each(|priority| priority.write(0));
         core.SCB.shcsr.write(0);
         core.SCB.scr.write(0);
-        core.SCB.ccr.modify(|bits| bits & CACHES | CONFIGURATION);
+        core.SCB.ccr.modify(|bits| bits & CACHE_BITS | CONFIGURATION_RESET_BIT);
         core.SCB.cfsr.write(u32::MAX);
         core.SCB.hfsr.write(u32::MAX);
         core.MPU.ctrl.write(0);
@@ -100,13 +100,13 @@ pub fn begin_anew(quiet: impl FnOnce(&mut Peripherals)) -> Peripherals {
 }
 
 /// A Cortex-M7's part number, and where the identification register has it.
-const CORTEX_M7: u32 = 0xC27;
+const CORTEX_M7_PART: u32 = 0xC27;
 
 /// Turns the instruction cache on, where the core has one; whether it is as it should be then. One that is on already
 /// was emptied by the first instructions.
 #[must_use]
 pub fn cache_instructions(core: &mut Peripherals) -> bool {
-    let has_cache = core.CPUID.base.read() >> 4 & 0xFFF == CORTEX_M7;
+    let has_cache = core.CPUID.base.read() >> 4 & 0xFFF == CORTEX_M7_PART;
     if has_cache {
         core.SCB.enable_icache();
     }

@@ -9,7 +9,7 @@ use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardIcm42688, Bus, SLOW, SharedBus};
+use super::stm32::imu::{self, BoardIcm42688, Bus, SLOW_EDGES, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
@@ -66,7 +66,7 @@ const SECOND_MOUNTING: Mounting =
     Mounting::new([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]).expect("no rotation");
 
 /// The battery's divider, of the same definition.
-const DIVIDER: f32 = 11.0;
+const BATTERY_DIVIDER: f32 = 11.0;
 
 /// The inertial sensors: the ICM-42688-P flies, the ICM-42605 stands by.
 pub type BoardImu = Redundant<BoardIcm42688, BoardIcm42688>;
@@ -110,12 +110,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
 
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI1, p.PA5, p.PD7, p.PA6, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
-    let device = imu::device(FIRST_BUS.init(Bus::new(spi)), p.PC15, SLOW);
+    let device = imu::device(FIRST_BUS.init(Bus::new(spi)), p.PC15, SLOW_EDGES);
     let data_ready = StampedPin { pin: ExtiInput::new(p.PB2, p.EXTI2, Pull::None, Interrupts), line: 2 };
     let first = Icm42688::new(Model::Icm42688P, device, data_ready, SystemClock, &MOUNTING);
     static SECOND_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI4, p.PE12, p.PE14, p.PE13, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
-    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PC13, SLOW);
+    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PC13, SLOW_EDGES);
     // Without edges, should this pin not be the sensor's, it is polled.
     let data_ready = StampedPin { pin: ExtiInput::new(p.PE15, p.EXTI15, Pull::Down, Interrupts), line: 15 };
     let second = Icm42688::new(Model::Icm42605, device, data_ready, SystemClock, &SECOND_MOUNTING);
@@ -136,14 +136,14 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
 
     let (clock, command) = (p.PC12, p.PD2);
     let mut card = sdmmc::Config::default();
-    card.data_transfer_timeout = card::TIMEOUT;
+    card.data_transfer_timeout = card::BUSY_TIMEOUT_CYCLES;
     let card = Sdmmc::new_4bit(p.SDMMC1, Interrupts, clock, command, p.PC8, p.PC9, p.PC10, p.PC11, card);
 
     Board {
         imu: Redundant::new(first, second),
         motors,
         watchdog: ChipWatchdog::new(p.IWDG1),
-        battery: DividedBattery::new(p.ADC1, p.PC0, DIVIDER),
+        battery: DividedBattery::new(p.ADC1, p.PC0, BATTERY_DIVIDER),
         light: Lamp::new(Output::new(p.PE4, Level::High, Speed::Low), Level::Low),
         receiver,
         transmitter,

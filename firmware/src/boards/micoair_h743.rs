@@ -7,7 +7,7 @@ use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
 use super::stm32::edges::{StampedPin, Stamps};
-use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST, SharedBus};
+use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST_EDGES, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
@@ -63,7 +63,7 @@ const MOUNTING: Mounting = Mounting::new([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.
 const SECOND_MOUNTING: Mounting = Mounting::ALIGNED;
 
 /// The battery's divider, of the same definition.
-const DIVIDER: f32 = 21.12;
+const BATTERY_DIVIDER: f32 = 21.12;
 
 /// The inertial sensors: the BMI088 flies, the BMI270 stands by.
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
@@ -100,12 +100,12 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());
     let bus = FIRST_BUS.init(Bus::new(spi));
-    let devices = [imu::device(bus, p.PD4, FAST), imu::device(bus, p.PD5, FAST)];
+    let devices = [imu::device(bus, p.PD4, FAST_EDGES), imu::device(bus, p.PD5, FAST_EDGES)];
     let data_ready = StampedPin { pin: ExtiInput::new(p.PC15, p.EXTI15, Pull::None, Interrupts), line: 15 };
     let first = Bmi088::new(devices, data_ready, SystemClock, &MOUNTING);
     static SECOND_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI3, p.PB3, p.PD6, p.PB4, p.DMA1_CH5, p.DMA1_CH6, Interrupts, imu::config());
-    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15, FAST);
+    let device = imu::device(SECOND_BUS.init(Bus::new(spi)), p.PA15, FAST_EDGES);
     let data_ready = StampedPin { pin: ExtiInput::new(p.PB7, p.EXTI7, Pull::None, Interrupts), line: 7 };
     let imu = Redundant::new(first, Bmi270::new(device, data_ready, SystemClock, &SECOND_MOUNTING));
 
@@ -125,14 +125,14 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
 
     let (clock, command) = (p.PC12, p.PD2);
     let mut card = sdmmc::Config::default();
-    card.data_transfer_timeout = card::TIMEOUT;
+    card.data_transfer_timeout = card::BUSY_TIMEOUT_CYCLES;
     let card = Sdmmc::new_4bit(p.SDMMC1, Interrupts, clock, command, p.PC8, p.PC9, p.PC10, p.PC11, card);
 
     Board {
         imu,
         motors,
         watchdog: ChipWatchdog::new(p.IWDG1),
-        battery: DividedBattery::new(p.ADC1, p.PC0, DIVIDER),
+        battery: DividedBattery::new(p.ADC1, p.PC0, BATTERY_DIVIDER),
         light: Lamp::new(Output::new(p.PE2, Level::High, Speed::Low), Level::Low),
         receiver,
         transmitter,

@@ -26,7 +26,7 @@ use lines::Interrupt;
 
 /// Lines by urgency, the most urgent first. Devices only move bytes and wake tasks, so they may interrupt the flight
 /// tasks.
-const PRIORITIES: [(Interrupt, u8); 7] = [
+const LINE_PRIORITIES: [(Interrupt, u8); 7] = [
     (Interrupt::Timer0, 0x20),
     (Interrupt::Uart0Receive, 0x40),
     (Interrupt::Uart0Transmit, 0x40),
@@ -52,7 +52,7 @@ pub fn begin() -> cortex_m::Peripherals {
 /// Starts time and the UARTs; the executors' lines are turned on when they start.
 pub fn init(mut core: cortex_m::Peripherals) {
     // Unmasking below cannot break a critical section: nothing has started one yet.
-    for (line, priority) in PRIORITIES {
+    for (line, priority) in LINE_PRIORITIES {
         // SAFETY: no line is unmasked yet, and no critical section relies on priorities.
         unsafe { core.NVIC.set_priority(line, priority) };
     }

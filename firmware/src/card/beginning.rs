@@ -8,9 +8,9 @@
 //! messages keep their places and lengths, so what a cut leaves of an older beginning under a newer one is still a
 //! beginning.
 
-use super::sector::{FILLER, HEAD, ROOM, Sector};
+use super::sector::{FILLER_KIND, MESSAGE_HEAD_BYTES, SECTOR_CAPACITY_BYTES, Sector};
 use crate::configuration::CONSTANTS;
-use crate::hardware::SECTOR;
+use crate::hardware::SECTOR_BYTES;
 use crate::parameters::Parameters;
 use crate::parameters::table::PARAMETERS;
 use crate::recorder::ulog;
@@ -21,10 +21,10 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 pub const HEAD_SECTORS: usize = 11;
 
 /// Those of information and format.
-const DEFINED: usize = 2;
+const DEFINITION_SECTORS: usize = 2;
 
 /// Parameters and constants in each of the others.
-const AT_ONCE: usize = 13;
+const CONSTANTS_PER_SECTOR: usize = 13;
 
 /// The longest of their names, bytes.
 const NAME_MAX: usize = 24;
@@ -33,9 +33,11 @@ const NAME_MAX: usize = 24;
 const KIND: &str = "float ";
 
 const _: () = {
-    assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINED) * AT_ONCE);
-    let message = HEAD + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
-    assert!(AT_ONCE * message + ulog::SUBSCRIBED[0].len() + ulog::SUBSCRIBED[1].len() <= ROOM);
+    assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINITION_SECTORS) * CONSTANTS_PER_SECTOR);
+    let message = MESSAGE_HEAD_BYTES + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
+    assert!(
+        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIBED[0].len() + ulog::SUBSCRIBED[1].len() <= SECTOR_CAPACITY_BYTES
+    );
 };
 
 /// What a file says of the vehicle.
@@ -49,32 +51,35 @@ pub struct Beginning<'a, M: RawMutex> {
 impl<M: RawMutex> Beginning<'_, M> {
     /// One of its sectors, of a file whose first record is of `time`.
     #[must_use]
-    pub fn sector(&self, place: usize, time: u64) -> [u8; SECTOR] {
-        match place.checked_sub(DEFINED) {
+    pub fn sector(&self, place: usize, time: u64) -> [u8; SECTOR_BYTES] {
+        match place.checked_sub(DEFINITION_SECTORS) {
             None => self.defined(place, time),
             Some(place) => self.numbers(place),
         }
     }
 
-    fn defined(&self, place: usize, time: u64) -> [u8; SECTOR] {
-        let mut sector = [0xFF; SECTOR];
-        let (time, left) = (time.to_le_bytes(), (DEFINED * SECTOR).saturating_sub(ulog::definitions_size() + HEAD));
-        let filler = ulog::head(FILLER, left);
+    fn defined(&self, place: usize, time: u64) -> [u8; SECTOR_BYTES] {
+        let mut sector = [0xFF; SECTOR_BYTES];
+        let (time, left) = (
+            time.to_le_bytes(),
+            (DEFINITION_SECTORS * SECTOR_BYTES).saturating_sub(ulog::definitions_size() + MESSAGE_HEAD_BYTES),
+        );
+        let filler = ulog::head(FILLER_KIND, left);
         let parts = ulog::definitions(&time, self.vehicle).chain([&filler[..]]);
-        let _ = ulog::copy(parts, place * SECTOR, &mut sector);
+        let _ = ulog::copy(parts, place * SECTOR_BYTES, &mut sector);
         sector
     }
 
-    fn numbers(&self, place: usize) -> [u8; SECTOR] {
+    fn numbers(&self, place: usize) -> [u8; SECTOR_BYTES] {
         let parameters = PARAMETERS.iter().map(|row| (row.name, self.parameters.get(row.parameter)));
         let numbers = parameters.chain(CONSTANTS);
         let mut sector = Sector::new();
-        for (name, value) in numbers.skip(place * AT_ONCE).take(AT_ONCE) {
+        for (name, value) in numbers.skip(place * CONSTANTS_PER_SECTOR).take(CONSTANTS_PER_SECTOR) {
             let length = KIND.len() + name.len();
             let head = ulog::head(b'P', 1 + length + size_of_val(&value));
             let _ = sector.put(&[&head, &[length as u8], KIND.as_bytes(), name.as_bytes(), &value.to_le_bytes()]);
         }
-        if place + DEFINED + 1 == HEAD_SECTORS {
+        if place + DEFINITION_SECTORS + 1 == HEAD_SECTORS {
             let _ = sector.put(&ulog::SUBSCRIBED);
         }
         sector.finish()
@@ -95,16 +100,16 @@ mod tests {
         let beginning = Beginning { vehicle: "mine", parameters: shared.for_card().parameters() };
         let time = 0x0123_4567_89AB_CDEF;
         let bytes: Vec<u8> = (0..HEAD_SECTORS).flat_map(|place| beginning.sector(place, time)).collect();
-        assert_eq!((&bytes[8..16], bytes.len()), (&time.to_le_bytes()[..], HEAD_SECTORS * SECTOR));
+        assert_eq!((&bytes[8..16], bytes.len()), (&time.to_le_bytes()[..], HEAD_SECTORS * SECTOR_BYTES));
         let (mut at, mut kinds, mut idle) = (16, String::new(), None);
         while at < bytes.len() {
             let length = usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
-            let body = &bytes[at + HEAD..at + HEAD + length];
+            let body = &bytes[at + MESSAGE_HEAD_BYTES..at + MESSAGE_HEAD_BYTES + length];
             kinds.push(char::from(bytes[at + 2]));
             if body.starts_with(b"\x0Efloat MOT_IDLE") {
                 idle = body[15..].try_into().ok().map(f32::from_le_bytes);
             }
-            at += HEAD + length;
+            at += MESSAGE_HEAD_BYTES + length;
         }
         assert_eq!((at, idle), (bytes.len(), Some(0.0625)));
         let count = PARAMETERS.len() + CONSTANTS.len();

@@ -2,7 +2,7 @@
 //! of power.
 
 use super::volume::{Kind, Trouble, Volume};
-use crate::hardware::{Card, SECTOR};
+use crate::hardware::{Card, SECTOR_BYTES};
 use crate::recorder::Recorder;
 use crate::shared::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -26,7 +26,7 @@ pub fn copy<C: Card, M: RawMutex>(
         return Ok(Some(newest.number));
     }
     let (file, number) = volume.create(Kind::Recording)?;
-    let (mut offset, mut sector) = (0, [0; SECTOR]);
+    let (mut offset, mut sector) = (0, [0; SECTOR_BYTES]);
     while offset < size {
         let count = recorder.read(offset, &mut sector);
         if count == 0 {
@@ -47,9 +47,9 @@ fn is_copy<C: Card, M: RawMutex>(
     recorder: Read<'_, Recorder<M>>,
 ) -> Result<bool, Trouble> {
     let file = volume.open_file(Kind::Recording, number)?;
-    let (mut there, mut here) = ([0; SECTOR], [0; SECTOR]);
+    let (mut there, mut here) = ([0; SECTOR_BYTES], [0; SECTOR_BYTES]);
     let mut is_same = true;
-    for offset in (0..size).step_by(SECTOR) {
+    for offset in (0..size).step_by(SECTOR_BYTES) {
         let count = volume.read(file, offset, &mut there)?;
         is_same &= recorder.read(offset, &mut here) == count && there.get(..count) == here.get(..count);
         if !is_same {

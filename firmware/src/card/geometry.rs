@@ -4,23 +4,23 @@
 //! are found here, before it reads it. A card has a partition table, and in its first partition FAT16 or FAT32 in
 //! sectors of 512 bytes.
 
-use crate::hardware::SECTOR;
+use crate::hardware::SECTOR_BYTES;
 use core::ops::Range;
 
 /// The last bytes of the table and of a file system's first sector.
-const SIGNATURE: u16 = 0xAA55;
+const BOOT_SIGNATURE: u16 = 0xAA55;
 
 /// Where the first partition is described.
-const PARTITION: usize = 446;
+const PARTITION_OFFSET: usize = 446;
 
 /// Kinds of partition that hold FAT16 or FAT32.
-const KINDS: [u8; 5] = [0x04, 0x06, 0x0B, 0x0C, 0x0E];
+const FAT_PARTITION_KINDS: [u8; 5] = [0x04, 0x06, 0x0B, 0x0C, 0x0E];
 
 /// Bytes of a directory's entry.
-const ENTRY: u32 = 32;
+const DIRECTORY_ENTRY_BYTES: u32 = 32;
 
 /// Clusters from which on it is FAT32.
-const FAT32: u32 = 65_525;
+const FAT32_CLUSTERS_MIN: u32 = 65_525;
 
 /// The parts of a file system, in sectors of the card.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub struct Geometry {
 }
 
 /// A sector's bytes as numbers.
-struct Numbers<'a>(&'a [u8; SECTOR]);
+struct Numbers<'a>(&'a [u8; SECTOR_BYTES]);
 
 impl Numbers<'_> {
     fn byte(&self, at: usize) -> u8 {
@@ -50,35 +50,38 @@ impl Numbers<'_> {
 
 /// The first sector of the first partition, if the card's first sector describes one of a known kind.
 #[must_use]
-pub fn partition(table: &[u8; SECTOR]) -> Option<u32> {
+pub fn partition(table: &[u8; SECTOR_BYTES]) -> Option<u32> {
     let table = Numbers(table);
-    let is_known = KINDS.contains(&table.byte(PARTITION + 4)) && table.byte(PARTITION) & 0x7F == 0;
-    (table.short(SECTOR - 2) == SIGNATURE && is_known).then(|| table.long(PARTITION + 8)).filter(|&start| start > 0)
+    let is_known =
+        FAT_PARTITION_KINDS.contains(&table.byte(PARTITION_OFFSET + 4)) && table.byte(PARTITION_OFFSET) & 0x7F == 0;
+    (table.short(SECTOR_BYTES - 2) == BOOT_SIGNATURE && is_known)
+        .then(|| table.long(PARTITION_OFFSET + 8))
+        .filter(|&start| start > 0)
 }
 
 impl Geometry {
     /// Reads the first sector of a file system that begins at sector `start` of a card of `sectors`. None if it is not
     /// one that can be used.
     #[must_use]
-    pub fn of(first: &[u8; SECTOR], start: u32, sectors: u32) -> Option<Self> {
+    pub fn read(first: &[u8; SECTOR_BYTES], start: u32, sectors: u32) -> Option<Self> {
         let first = Numbers(first);
         let nonzero = |short: u16, long: u32| if short > 0 { u32::from(short) } else { long };
         let cluster = u32::from(first.byte(13));
         let (reserved, tables) = (u32::from(first.short(14)), u32::from(first.byte(16)));
         let table = nonzero(first.short(22), first.long(36));
         let total = nonzero(first.short(19), first.long(32));
-        let root = (u32::from(first.short(17)) * ENTRY).div_ceil(SECTOR as u32);
+        let root = (u32::from(first.short(17)) * DIRECTORY_ENTRY_BYTES).div_ceil(SECTOR_BYTES as u32);
         let data = table.checked_mul(tables)?.checked_add(reserved)?.checked_add(root)?;
         let end = start.checked_add(total).filter(|&end| end <= sectors)?;
         let clusters = total.checked_sub(data)?.checked_div(cluster)?;
-        let is_sound = first.short(SECTOR - 2) == SIGNATURE
-            && first.short(11) == SECTOR as u16
+        let is_sound = first.short(SECTOR_BYTES - 2) == BOOT_SIGNATURE
+            && first.short(11) == SECTOR_BYTES as u16
             && cluster.is_power_of_two()
             && reserved > 0
             && (1..=2).contains(&tables)
             // A table has room for every cluster, in 16 bits or 32.
-            && clusters + 2 <= table.saturating_mul(SECTOR as u32 / if clusters < FAT32 { 2 } else { 4 })
-            && (clusters < FAT32 || (2..clusters + 2).contains(&first.long(44)) && u32::from(first.short(48)) < reserved);
+            && clusters + 2 <= table.saturating_mul(SECTOR_BYTES as u32 / if clusters < FAT32_CLUSTERS_MIN { 2 } else { 4 })
+            && (clusters < FAT32_CLUSTERS_MIN || (2..clusters + 2).contains(&first.long(44)) && u32::from(first.short(48)) < reserved);
         is_sound.then(|| Self { tables: start + reserved..start + data - root, data: start + data..end })
     }
 }

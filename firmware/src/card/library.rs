@@ -1,30 +1,30 @@
 //! The card's files, read over the link: counted, measured, read a chunk at a time, between two looks for records.
 //!
-//! Offered are the newest [`OFFERED`] files, in the order of their numbers, and behind them the flight recorder's
+//! Offered are the newest [`FILES_OFFERED_MAX`] files, in the order of their numbers, and behind them the flight recorder's
 //! recording. What a number stands for is settled when they are counted. Files are opened for reading only. One that
 //! cannot be read is reported as unreadable, and the card goes on logging: an old file's damage is no reason not to log
 //! the next flight.
 
 use super::log;
 use super::volume::{Entry, File, Kind, Trouble, Volume};
-use crate::hardware::{Card, SECTOR};
+use crate::hardware::{Card, SECTOR_BYTES};
 use crate::recorder::Recorder;
-use crate::shared::{Answer, Bytes, CHUNK, Question, Read};
+use crate::shared::{Answer, Bytes, LOG_CHUNK_BYTES, Question, Read};
 use core::ops::ControlFlow;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
 
 /// Files that are offered at most.
-pub const OFFERED: usize = 64;
+pub const FILES_OFFERED_MAX: usize = 64;
 
-/// How long after a question the next one is expected, us: what can wait does, meanwhile.
-const ATTENTION: u64 = 1_000_000;
+/// How long after a question the next one is expected: what can wait does, meanwhile.
+const QUESTION_INTERVAL_MAX_US: u64 = 1_000_000;
 
 /// What is offered, and what of it is open. It belongs to the volume that it was used with.
 #[derive(Default)]
 pub struct Library {
     /// In the order of their numbers; none until they have been counted.
-    files: Option<Vec<Entry, OFFERED>>,
+    files: Option<Vec<Entry, FILES_OFFERED_MAX>>,
     open: Option<Open>,
     /// Until when a client is reading, us.
     busy_until: u64,
@@ -54,7 +54,7 @@ impl Library {
         next: u32,
         recorder: Read<'_, Recorder<M>>,
     ) -> Answer {
-        self.busy_until = now.saturating_add(ATTENTION);
+        self.busy_until = now.saturating_add(QUESTION_INTERVAL_MAX_US);
         let answer = self.find(question, volume, next, recorder);
         answer.unwrap_or_else(|_| {
             self.close(volume);
@@ -99,8 +99,8 @@ impl Library {
         };
         let open = self.opened(id, &entry, volume)?;
         let Some(offset) = offset else { return Ok(Answer::Size(open.size)) };
-        let mut bytes = [0; CHUNK];
-        let left = open.size.saturating_sub(offset).min(CHUNK as u32) as usize;
+        let mut bytes = [0; LOG_CHUNK_BYTES];
+        let left = open.size.saturating_sub(offset).min(LOG_CHUNK_BYTES as u32) as usize;
         let wanted = bytes.get_mut(..left).unwrap_or_default();
         let count = if left > 0 { volume.read(open.file, offset, wanted)? } else { 0 };
         Ok(Answer::Bytes(bytes.get(..count).and_then(|bytes| Bytes::from_slice(bytes).ok()).unwrap_or_default()))
@@ -115,7 +115,7 @@ impl Library {
         let file = volume.open_to_read(entry.kind, entry.number)?;
         // Known as open before anything else can fail: a failure closes it.
         let open = self.open.insert(Open { id, file, size: entry.size });
-        if entry.kind == Kind::Log && entry.size.is_multiple_of(SECTOR as u32) {
+        if entry.kind == Kind::Log && entry.size.is_multiple_of(SECTOR_BYTES as u32) {
             open.size = log::end(volume, file, entry.size)?;
         }
         Ok(*open)
@@ -123,8 +123,8 @@ impl Library {
 }
 
 /// The newest files that hold something, in the order of their numbers.
-fn files<C: Card>(volume: &Volume<'_, C>, next: u32) -> Result<Vec<Entry, OFFERED>, Trouble> {
-    let mut files: Vec<Entry, OFFERED> = Vec::new();
+fn files<C: Card>(volume: &Volume<'_, C>, next: u32) -> Result<Vec<Entry, FILES_OFFERED_MAX>, Trouble> {
+    let mut files: Vec<Entry, FILES_OFFERED_MAX> = Vec::new();
     volume.list(|entry| {
         let is_offered = entry.size > 0 && entry.is_sound && (entry.kind, entry.number) != (Kind::Log, next);
         let place = files.iter().take_while(|other| other.number < entry.number).count();

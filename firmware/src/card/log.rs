@@ -2,37 +2,37 @@
 //!
 //! The file is made as long as a flight before the flight begins, so that in flight nothing is written but the sector
 //! that is due, over a blank one: neither a table nor the directory changes, and what power cuts short is that sector
-//! and no other. A longer flight lengthens its file by [`CHUNK`] at a time; one that reaches [`SIZE_MAX`] goes on in
+//! and no other. A longer flight lengthens its file by [`GROWTH_BYTES`] at a time; one that reaches [`SIZE_MAX_BYTES`] goes on in
 //! the next file.
 //!
 //! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in
 //! one byte: no cut leaves a length that mixes two.
 
 use super::beginning::{Beginning, HEAD_SECTORS};
-use super::sector::{BLANK, Content, ROOM, Sector};
+use super::sector::{BLANK_SECTOR, Content, SECTOR_CAPACITY_BYTES, Sector};
 use super::volume::{File, Kind, Trouble, Volume};
-use crate::hardware::{Card, SECTOR};
+use crate::hardware::{Card, SECTOR_BYTES};
 use crate::recorder::{tick, ulog};
 use crate::shared::{Event, Severity, Text};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// What a file grows by, bytes: 3.8 s of flight.
-pub const CHUNK: u32 = 64 << 10;
+/// What a file grows by: 3.8 s of flight.
+pub const GROWTH_BYTES: u32 = 64 << 10;
 
-/// The longest file, bytes: 16 minutes.
-pub const SIZE_MAX: u32 = 0x00FF_0000;
+/// The longest file: 16 minutes.
+pub const SIZE_MAX_BYTES: u32 = 0x00FF_0000;
 
-/// Room for what is written between two looks at [`Log::is_full`], bytes: a record, every event that waits, and the
+/// Room for what is written between two looks at [`Log::is_full`]: a record, every event that waits, and the
 /// sector that had begun.
-const RESERVE: u32 = 8 * STEP;
+const RESERVE_BYTES: u32 = 8 * SECTOR_STEP_BYTES;
 
 /// Bytes before the first record's sector.
-const BEGINNING: u32 = (HEAD_SECTORS * SECTOR) as u32;
+const BEGINNING_BYTES: u32 = (HEAD_SECTORS * SECTOR_BYTES) as u32;
 
 /// Bytes of a sector, as offsets in a file count.
-const STEP: u32 = SECTOR as u32;
+const SECTOR_STEP_BYTES: u32 = SECTOR_BYTES as u32;
 
-const _: () = assert!(ulog::DATA.len() + tick::SIZE <= ROOM);
+const _: () = assert!(ulog::DATA_HEAD.len() + tick::TICK_BYTES <= SECTOR_CAPACITY_BYTES);
 
 /// A file that is being filled.
 pub struct Log {
@@ -60,14 +60,14 @@ impl Log {
     ) -> Result<Self, Trouble> {
         // A file that was cut short while it got its first length may be at odds with the tables: it is left alone.
         let newest = volume.newest(&[Kind::Log])?;
-        if let Some(entry) = newest.filter(|entry| entry.size.is_multiple_of(STEP) && entry.is_sound) {
+        if let Some(entry) = newest.filter(|entry| entry.size.is_multiple_of(SECTOR_STEP_BYTES) && entry.is_sound) {
             let file = volume.open_file(entry.kind, entry.number)?;
             let mut end = end(volume, file, entry.size)?;
-            if end > BEGINNING && read(volume, file, end - STEP)? == Content::Torn {
-                end -= STEP;
-                volume.overwrite(file, end, &BLANK)?;
+            if end > BEGINNING_BYTES && read(volume, file, end - SECTOR_STEP_BYTES)? == Content::Torn {
+                end -= SECTOR_STEP_BYTES;
+                volume.overwrite(file, end, &BLANK_SECTOR)?;
             }
-            if end <= BEGINNING {
+            if end <= BEGINNING_BYTES {
                 return Self::new(file, entry.number, entry.size).begun(volume, beginning);
             }
             volume.close(file)?;
@@ -82,14 +82,17 @@ impl Log {
         volume: &Volume<'_, C>,
         beginning: &Beginning<'_, M>,
     ) -> Result<Self, Trouble> {
-        if self.size < CHUNK {
-            self.lengthen(volume, |place| if place < HEAD_SECTORS { beginning.sector(place, 0) } else { BLANK })?;
+        if self.size < GROWTH_BYTES {
+            self.lengthen(
+                volume,
+                |place| if place < HEAD_SECTORS { beginning.sector(place, 0) } else { BLANK_SECTOR },
+            )?;
         }
         Ok(self)
     }
 
     const fn new(file: File, number: u32, size: u32) -> Self {
-        Self { file, number, size, next: BEGINNING, sector: Sector::new(), pending: 0, written: 0 }
+        Self { file, number, size, next: BEGINNING_BYTES, sector: Sector::new(), pending: 0, written: 0 }
     }
 
     /// Its number.
@@ -126,24 +129,24 @@ impl Log {
     /// written.
     #[must_use]
     pub fn is_full(&self) -> bool {
-        self.next >= SIZE_MAX - RESERVE
+        self.next >= SIZE_MAX_BYTES - RESERVE_BYTES
     }
 
-    /// Makes it longer, up to the next multiple of [`CHUNK`].
+    /// Makes it longer, up to the next multiple of [`GROWTH_BYTES`].
     ///
     /// # Errors
     /// [`Trouble::Full`] if there is no room. What there was room for is noted as well: nothing else can have it.
     pub fn grow<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
-        self.lengthen(volume, |_| BLANK)
+        self.lengthen(volume, |_| BLANK_SECTOR)
     }
 
     fn lengthen<C: Card>(
         &mut self,
         volume: &Volume<'_, C>,
-        sector: impl Fn(usize) -> [u8; SECTOR],
+        sector: impl Fn(usize) -> [u8; SECTOR_BYTES],
     ) -> Result<(), Trouble> {
-        let end = (self.size / CHUNK + 1) * CHUNK;
-        for place in self.size / STEP..end / STEP {
+        let end = (self.size / GROWTH_BYTES + 1) * GROWTH_BYTES;
+        for place in self.size / SECTOR_STEP_BYTES..end / SECTOR_STEP_BYTES {
             if let Err(trouble) = volume.append(self.file, &sector(place as usize)) {
                 if trouble == Trouble::Full {
                     volume.note(self.file)?;
@@ -164,16 +167,16 @@ impl Log {
         &mut self,
         volume: &Volume<'_, C>,
         beginning: &Beginning<'_, M>,
-        record: &[u8; tick::SIZE],
+        record: &[u8; tick::TICK_BYTES],
     ) -> Result<(), Trouble> {
         if !self.has_begun() {
             let time = record.first_chunk().map_or(0, |time| u64::from_le_bytes(*time));
             // But for the time and values it is what is there already, so a cut does no harm.
-            for (offset, place) in (0..).step_by(SECTOR).zip(0..HEAD_SECTORS) {
+            for (offset, place) in (0..).step_by(SECTOR_BYTES).zip(0..HEAD_SECTORS) {
                 volume.overwrite(self.file, offset, &beginning.sector(place, time))?;
             }
         }
-        self.put(volume, &[&ulog::DATA, record])?;
+        self.put(volume, &[&ulog::DATA_HEAD, record])?;
         self.pending += 1;
         Ok(())
     }
@@ -217,7 +220,7 @@ impl Log {
             self.grow(volume)?;
         }
         volume.overwrite(self.file, self.next, &self.sector.finish())?;
-        self.next += STEP;
+        self.next += SECTOR_STEP_BYTES;
         self.written += core::mem::take(&mut self.pending);
         Ok(())
     }
@@ -244,9 +247,9 @@ impl Log {
 
 /// What a sector of a file holds.
 fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Content, Trouble> {
-    let mut sector = [0; SECTOR];
+    let mut sector = [0; SECTOR_BYTES];
     let _ = volume.read(file, offset, &mut sector)?;
-    Ok(Content::of(&sector))
+    Ok(Content::from_bytes(&sector))
 }
 
 /// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of the search
@@ -255,13 +258,13 @@ fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Cont
 /// # Errors
 /// If the file cannot be read.
 pub fn end<C: Card>(volume: &Volume<'_, C>, file: File, size: u32) -> Result<u32, Trouble> {
-    let (mut used, mut blank) = (HEAD_SECTORS as u32, size / STEP);
+    let (mut used, mut blank) = (HEAD_SECTORS as u32, size / SECTOR_STEP_BYTES);
     while used < blank {
         let middle = used + (blank - used) / 2;
-        match read(volume, file, middle * STEP)? {
+        match read(volume, file, middle * SECTOR_STEP_BYTES)? {
             Content::Blank => blank = middle,
             Content::Whole | Content::Torn => used = middle + 1,
         }
     }
-    Ok(blank * STEP)
+    Ok(blank * SECTOR_STEP_BYTES)
 }

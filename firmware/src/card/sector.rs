@@ -9,29 +9,29 @@
 //! A sector that power cut short while it was written keeps blank bytes at one end: its checksum is wrong, and where a
 //! reader takes them for numbers they are NaN, which stands for what is not known.
 
-use crate::hardware::SECTOR;
+use crate::hardware::SECTOR_BYTES;
 use crate::recorder::ulog;
 use mavlink::calculate_crc;
 
 /// The kind of a message that readers skip.
-pub const FILLER: u8 = b'Z';
+pub const FILLER_KIND: u8 = b'Z';
 
 /// Bytes of a message's head.
-pub const HEAD: usize = 3;
+pub const MESSAGE_HEAD_BYTES: usize = 3;
 
 /// Bytes of the checksum.
-const CHECKSUM: usize = 2;
+const CHECKSUM_BYTES: usize = 2;
 
 /// What the checksum begins with.
-const SEED: u8 = FILLER;
+const CHECKSUM_SEED: u8 = FILLER_KIND;
 
 /// Bytes of messages that a sector has room for.
-pub const ROOM: usize = SECTOR - HEAD - CHECKSUM;
+pub const SECTOR_CAPACITY_BYTES: usize = SECTOR_BYTES - MESSAGE_HEAD_BYTES - CHECKSUM_BYTES;
 
 /// A sector without messages.
-pub const BLANK: [u8; SECTOR] = {
-    let mut bytes = [0xFF; SECTOR];
-    [bytes[0], bytes[1], bytes[2]] = ulog::head(FILLER, SECTOR - HEAD);
+pub const BLANK_SECTOR: [u8; SECTOR_BYTES] = {
+    let mut bytes = [0xFF; SECTOR_BYTES];
+    [bytes[0], bytes[1], bytes[2]] = ulog::head(FILLER_KIND, SECTOR_BYTES - MESSAGE_HEAD_BYTES);
     bytes
 };
 
@@ -49,13 +49,13 @@ pub enum Content {
 impl Content {
     /// What is in these bytes.
     #[must_use]
-    pub fn of(bytes: &[u8; SECTOR]) -> Self {
-        if *bytes == BLANK {
+    pub fn from_bytes(bytes: &[u8; SECTOR_BYTES]) -> Self {
+        if *bytes == BLANK_SECTOR {
             return Self::Blank;
         }
         let is_whole = bytes
-            .split_last_chunk::<CHECKSUM>()
-            .is_some_and(|(covered, checksum)| calculate_crc(covered, SEED) == u16::from_le_bytes(*checksum));
+            .split_last_chunk::<CHECKSUM_BYTES>()
+            .is_some_and(|(covered, checksum)| calculate_crc(covered, CHECKSUM_SEED) == u16::from_le_bytes(*checksum));
         if is_whole { Self::Whole } else { Self::Torn }
     }
 }
@@ -63,7 +63,7 @@ impl Content {
 /// A sector that fills up.
 #[derive(Debug, Clone)]
 pub struct Sector {
-    bytes: [u8; SECTOR],
+    bytes: [u8; SECTOR_BYTES],
     used: usize,
 }
 
@@ -71,7 +71,7 @@ impl Sector {
     /// Nothing in it yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { bytes: BLANK, used: 0 }
+        Self { bytes: BLANK_SECTOR, used: 0 }
     }
 
     /// Whether there is nothing in it.
@@ -85,7 +85,7 @@ impl Sector {
     #[must_use]
     pub fn put(&mut self, parts: &[&[u8]]) -> bool {
         let length: usize = parts.iter().map(|part| part.len()).sum();
-        if self.used + length > ROOM {
+        if self.used + length > SECTOR_CAPACITY_BYTES {
             return false;
         }
         let to = self.bytes.iter_mut().skip(self.used);
@@ -96,14 +96,14 @@ impl Sector {
 
     /// The sector as it is written, and a new one in its place.
     #[must_use]
-    pub fn finish(&mut self) -> [u8; SECTOR] {
+    pub fn finish(&mut self) -> [u8; SECTOR_BYTES] {
         let Self { mut bytes, used } = core::mem::take(self);
-        let filler = ulog::head(FILLER, SECTOR - used - HEAD);
+        let filler = ulog::head(FILLER_KIND, SECTOR_BYTES - used - MESSAGE_HEAD_BYTES);
         let mut filling = bytes.iter_mut().skip(used);
         filling.by_ref().zip(filler).for_each(|(to, from)| *to = from);
         filling.for_each(|to| *to = 0xFF);
-        if let Some((covered, checksum)) = bytes.split_last_chunk_mut::<CHECKSUM>() {
-            *checksum = calculate_crc(covered, SEED).to_le_bytes();
+        if let Some((covered, checksum)) = bytes.split_last_chunk_mut::<CHECKSUM_BYTES>() {
+            *checksum = calculate_crc(covered, CHECKSUM_SEED).to_le_bytes();
         }
         bytes
     }

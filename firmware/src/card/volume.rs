@@ -8,7 +8,7 @@
 //! are of 1980.
 
 use super::geometry::{Geometry, partition};
-use crate::hardware::{Card, Fault, SECTOR};
+use crate::hardware::{Card, Fault, SECTOR_BYTES};
 use core::cell::{Cell, RefCell};
 use core::fmt;
 use core::ops::ControlFlow;
@@ -117,7 +117,7 @@ impl<C: Card> BlockDevice for Sectors<'_, C> {
         for (sector, block) in (start.0..).zip(blocks) {
             let Geometry { tables, data } = &self.geometry;
             let is_permitted = match self.permission.get() {
-                Permission::All => (tables.start.saturating_sub(RESERVED)..data.end).contains(&sector),
+                Permission::All => (tables.start.saturating_sub(RESERVED_SECTORS_MAX)..data.end).contains(&sector),
                 Permission::NoTables => !tables.contains(&sector) && (tables.end..data.end).contains(&sector),
                 Permission::Data => data.contains(&sector),
             };
@@ -135,7 +135,7 @@ impl<C: Card> BlockDevice for Sectors<'_, C> {
 }
 
 /// Sectors before the tables, at most: how many clusters are free is noted among them.
-const RESERVED: u32 = u16::MAX as u32;
+const RESERVED_SECTORS_MAX: u32 = u16::MAX as u32;
 
 /// The clock that there is not.
 struct NoTime;
@@ -180,7 +180,7 @@ pub struct Entry {
 
 impl Entry {
     /// A file of this program's, by its name.
-    fn of(entry: &DirEntry) -> Option<Self> {
+    fn read(entry: &DirEntry) -> Option<Self> {
         let (name, extension) = (entry.name.base_name(), entry.name.extension());
         let kind = [Kind::Log, Kind::Recording].into_iter().find(|kind| name.starts_with(kind.prefix().as_bytes()))?;
         let digits = name.get(3..).filter(|digits| digits.len() == 5 && extension == b"ULG")?;
@@ -205,11 +205,11 @@ impl<'c, C: Card> Volume<'c, C> {
     /// # Errors
     /// [`Trouble::Foreign`] if it has no usable file system, [`Trouble::Failed`] if the card fails.
     pub fn open(card: &'c mut C) -> Result<Self, Trouble> {
-        let mut sector = [0; SECTOR];
+        let mut sector = [0; SECTOR_BYTES];
         card.read(0, &mut sector)?;
         let start = partition(&sector).filter(|&start| start < card.sectors()).ok_or(Trouble::Foreign)?;
         card.read(start, &mut sector)?;
-        let geometry = Geometry::of(&sector, start, card.sectors()).ok_or(Trouble::Foreign)?;
+        let geometry = Geometry::read(&sector, start, card.sectors()).ok_or(Trouble::Foreign)?;
         let sectors = Sectors { card: RefCell::new(card), geometry, permission: Cell::new(Permission::All) };
         let manager = VolumeManager::new_with_limits(sectors, NoTime, 1);
         let volume = manager.open_raw_volume(VolumeIdx(0))?;
@@ -222,7 +222,7 @@ impl<'c, C: Card> Volume<'c, C> {
     /// # Errors
     /// If the directory cannot be read.
     pub fn list(&self, mut each: impl FnMut(Entry) -> ControlFlow<()>) -> Result<(), Trouble> {
-        let each = |entry: &DirEntry| Entry::of(entry).map_or(ControlFlow::Continue(()), &mut each);
+        let each = |entry: &DirEntry| Entry::read(entry).map_or(ControlFlow::Continue(()), &mut each);
         Ok(self.manager.iterate_dir(self.root, each)?)
     }
 
@@ -285,8 +285,8 @@ impl<'c, C: Card> Volume<'c, C> {
     ///
     /// # Errors
     /// If the file has none there, or the card fails.
-    pub fn overwrite(&self, file: File, offset: u32, sector: &[u8; SECTOR]) -> Result<(), Trouble> {
-        if offset.saturating_add(SECTOR as u32) > self.manager.file_length(file.0)? {
+    pub fn overwrite(&self, file: File, offset: u32, sector: &[u8; SECTOR_BYTES]) -> Result<(), Trouble> {
+        if offset.saturating_add(SECTOR_BYTES as u32) > self.manager.file_length(file.0)? {
             return Err(Trouble::Failed);
         }
         let write = || {

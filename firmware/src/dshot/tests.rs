@@ -3,20 +3,20 @@ use super::*;
 /// Ticks of a bit on the MicoAir: 200 MHz / 300 kHz.
 const PERIOD: u16 = 666;
 
-fn values(command: MotorCommand) -> [u16; MOTORS] {
+fn values(command: MotorCommand) -> [u16; MOTOR_COUNT] {
     frames(command).unwrap().map(|frame| frame.inner() >> 5)
 }
 
 /// What a controller at the end of `channel` reads: a bit is one if it is high for more than half its time.
 fn read(waveform: &Waveform<u16>, channel: usize) -> u16 {
-    let rows: &[[u16; MOTORS]] = waveform.words().as_chunks().0;
-    let bit = |row: &[u16; MOTORS]| u16::from(row[channel] > PERIOD / 2);
-    rows[..BITS].iter().fold(0, |frame, row| frame << 1 | bit(row))
+    let rows: &[[u16; MOTOR_COUNT]] = waveform.words().as_chunks().0;
+    let bit = |row: &[u16; MOTOR_COUNT]| u16::from(row[channel] > PERIOD / 2);
+    rows[..FRAME_BITS].iter().fold(0, |frame, row| frame << 1 | bit(row))
 }
 
 #[test]
 fn stop_is_the_value_zero_with_the_checksum_zero() {
-    assert_eq!(frames(MotorCommand::Stop).unwrap().map(|frame| frame.inner()), [0; MOTORS]);
+    assert_eq!(frames(MotorCommand::Stop).unwrap().map(|frame| frame.inner()), [0; MOTOR_COUNT]);
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn commands_cover_48_to_2047_and_never_the_settings_between() {
     assert_eq!(values(MotorCommand::Run([-0.0, f32::MIN_POSITIVE, 1.0 - f32::EPSILON, 1.5])), [48, 48, 2047, 2047]);
     assert_eq!(values(MotorCommand::Run([-1.0, f32::MIN, f32::MAX, 2.0])), [48, 48, 2047, 2047]);
     for step in 0..=10_000 {
-        let [value, ..] = values(MotorCommand::Run([step as f32 / 10_000.0; MOTORS]));
+        let [value, ..] = values(MotorCommand::Run([step as f32 / 10_000.0; MOTOR_COUNT]));
         assert!((48..=2047).contains(&value));
     }
 }
@@ -50,8 +50,8 @@ fn commands_cover_48_to_2047_and_never_the_settings_between() {
 #[test]
 fn a_command_that_is_not_finite_is_a_fault_for_all_motors() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        for motor in 0..MOTORS {
-            let mut commands = [0.5; MOTORS];
+        for motor in 0..MOTOR_COUNT {
+            let mut commands = [0.5; MOTOR_COUNT];
             commands[motor] = bad;
             assert_eq!(frames(MotorCommand::Run(commands)).err(), Some(Fault));
         }
@@ -61,8 +61,8 @@ fn a_command_that_is_not_finite_is_a_fault_for_all_motors() {
 #[test]
 fn frames_carry_value_no_telemetry_and_checksum() {
     // 1046 = 0b10000010110, telemetry 0; nibbles 1000 0010 1100, their exclusive or 0110.
-    let command = (1046.0 - 48.0) / STEPS;
-    let [frame, ..] = frames(MotorCommand::Run([command; MOTORS])).unwrap();
+    let command = (1046.0 - 48.0) / THROTTLE_STEPS;
+    let [frame, ..] = frames(MotorCommand::Run([command; MOTOR_COUNT])).unwrap();
     assert_eq!(frame.inner(), 0b1000_0010_1100_0110);
 }
 
@@ -86,7 +86,7 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
         waveform.draw(&frames, &channels, PERIOD);
         for channel in 0..4_u8 {
             let motor = channels.iter().position(|&on| on == Some(channel));
-            let low = waveform.words().iter().skip(channel.into()).step_by(MOTORS).all(|width| *width == 0);
+            let low = waveform.words().iter().skip(channel.into()).step_by(MOTOR_COUNT).all(|width| *width == 0);
             assert_eq!(low, motor.is_none(), "channel {channel}");
             let expected = motor.map_or(0, |motor| frames[motor].inner());
             assert_eq!(read(&waveform, channel.into()), expected, "channel {channel}");
@@ -97,7 +97,7 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
 #[test]
 fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
     let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
     assert!((first - 0.75).abs() < 0.003, "{first}");
     waveform.draw(&stop(), &[0, 1, 2, 3].map(Some), PERIOD);
@@ -109,9 +109,11 @@ fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
 #[test]
 fn a_waveform_ends_silent_and_fills_whole_bursts() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTORS])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
     let words = waveform.words();
-    assert!(words[BITS * MOTORS..].iter().all(|word| *word == 0) && words.len() == ROWS * MOTORS);
+    assert!(
+        words[FRAME_BITS * MOTOR_COUNT..].iter().all(|word| *word == 0) && words.len() == WAVEFORM_ROWS * MOTOR_COUNT
+    );
     assert_eq!(size_of_val(words) % 16, 0);
     assert_eq!(size_of_val(Waveform::<u32>::silent().words()) % 16, 0);
     assert_eq!(align_of::<Waveform<u16>>(), 16);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
 use crate::bmi270;
-use crate::registers::{READ, RESTART_AFTER};
+use crate::registers::{READ_BIT, RESTART_AFTER_FAILURES};
 use core::cell::{Cell, RefCell};
 use embassy_futures::block_on;
 use nalgebra::Vector3;
@@ -46,7 +46,7 @@ impl Chip {
         for (bank, register, value) in RESET {
             self.banks[bank][register] = value;
         }
-        self.banks[0][usize::from(IDENTITY)] = self.id;
+        self.banks[0][usize::from(WHO_AM_I)] = self.id;
         // Nothing is measured, high byte first.
         self.banks[0][0x1F..0x2B].copy_from_slice(&[0x80, 0].repeat(6));
     }
@@ -59,8 +59,8 @@ impl Device for Chip {
 
     fn exchange(&mut self, bytes: &mut [u8]) {
         let [address, data @ ..] = bytes else { return };
-        let register = usize::from(*address & !READ);
-        if *address & READ != 0 {
+        let register = usize::from(*address & !READ_BIT);
+        if *address & READ_BIT != 0 {
             // With the low byte first where it was set so.
             let swap = usize::from(self.banks[0][0x4C] & 0x10 == 0);
             for (index, byte) in data.iter_mut().enumerate() {
@@ -165,7 +165,7 @@ fn power_up_writes_the_data_sheets_registers_in_order() {
         let time = |index: usize| chip.written[index].0;
         assert!(time(0) >= 1_000 && time(2) - time(1) >= 2_000);
         assert!(bench.clock.now() - time(chip.written.len() - 1) >= 45_000, "the gyroscope has its time");
-        assert!(bench.clock.now() + 10_000 < crate::imu::PATIENCE, "{} us", bench.clock.now());
+        assert!(bench.clock.now() + 10_000 < crate::imu::SAMPLE_TIMEOUT_US, "{} us", bench.clock.now());
     }
 }
 
@@ -198,7 +198,7 @@ fn the_mounting_turns_both_measurements() {
 fn one_model_is_not_taken_for_the_other() {
     for (model, other) in [(Model::Icm42688P, Model::Icm42605), (Model::Icm42605, Model::Icm42688P)] {
         let mut bench = bench(model, &Mounting::ALIGNED);
-        bench.chip.borrow_mut().banks[0][usize::from(IDENTITY)] = other.identity();
+        bench.chip.borrow_mut().banks[0][usize::from(WHO_AM_I)] = other.identity();
         assert_eq!(bench.sample(), Err(Fault));
         bench.chip.borrow_mut().id = other.identity();
         bench.imu.power_up.restart(bench.clock.now());
@@ -218,7 +218,7 @@ fn settings_are_written_again_one_by_one_until_they_stick() {
         let before = bench.clock.now();
         let powered = block_on(bench.imu.power_up());
         assert_eq!(powered.is_ok(), sticks, "{lost} lost");
-        assert!(bench.clock.now() - before < crate::imu::PATIENCE, "{} us", bench.clock.now() - before);
+        assert!(bench.clock.now() - before < crate::imu::SAMPLE_TIMEOUT_US, "{} us", bench.clock.now() - before);
     }
 }
 
@@ -227,7 +227,7 @@ fn a_device_that_was_reset_measures_nothing_and_is_powered_up_anew() {
     let mut bench = bench(Model::Icm42688P, &Mounting::ALIGNED);
     bench.sample().unwrap();
     bench.chip.borrow_mut().reset();
-    for _ in 0..RESTART_AFTER {
+    for _ in 0..RESTART_AFTER_FAILURES {
         assert_eq!(bench.sample(), Err(Fault));
     }
     block_on(bench.imu.power_up()).unwrap();
@@ -240,7 +240,7 @@ fn a_device_that_was_reset_measures_nothing_and_is_powered_up_anew() {
 fn a_device_left_in_another_bank_is_powered_up_from_there() {
     let mut bench = bench(Model::Icm42605, &Mounting::ALIGNED);
     bench.chip.borrow_mut().bank = 2;
-    for _ in 0..RESTART_AFTER {
+    for _ in 0..RESTART_AFTER_FAILURES {
         assert_eq!(bench.sample(), Err(Fault));
     }
     block_on(bench.imu.power_up()).unwrap();

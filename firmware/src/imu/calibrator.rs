@@ -15,7 +15,7 @@
 //! Only a disarmed vehicle is calibrated; arming ends it, and so does a simulator that takes over the sensors. A
 //! calibration without a request is done in silence, again and again until it stood still for once.
 
-use super::solution::{GRAVITY, solve};
+use super::solution::{GRAVITY_M_PER_S2, solve};
 use crate::hardware::{Fault, RawImu, Unit};
 use crate::link::acknowledgement::Order;
 use crate::parameters::calibration;
@@ -27,11 +27,11 @@ use estimation::imu::six_point::{SixPoint, SixPointError};
 use estimation::imu::standstill::{Moved, Standstill, StandstillMeans};
 use mavlink::dialects::common::MavResult;
 
-/// How long a sensor may need for a second's samples, us.
-const STANDSTILL_WITHIN: u64 = 5_000_000;
+/// How long a sensor may need for a second's samples.
+const STANDSTILL_TIMEOUT_US: u64 = 5_000_000;
 
-/// How long the next side may take, us.
-const SIDE_WITHIN: u64 = 60_000_000;
+/// How long the next side may take.
+const SIDE_TIMEOUT_US: u64 = 60_000_000;
 
 /// What is found out about one sensor.
 #[derive(Default)]
@@ -73,7 +73,7 @@ struct Job {
 
 impl Job {
     fn new(procedure: Procedure, order: Option<Order>, now: u64) -> Self {
-        let within = if procedure == Procedure::SixSides { SIDE_WITHIN } else { STANDSTILL_WITHIN };
+        let within = if procedure == Procedure::SixSides { SIDE_TIMEOUT_US } else { STANDSTILL_TIMEOUT_US };
         let findings = Default::default();
         Self { procedure, order, until: now.saturating_add(within), findings, sides: 0, standby: None, reported: None }
     }
@@ -243,14 +243,14 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
     ) -> bool {
         for (index, (findings, rest)) in job.findings.iter_mut().zip(rests).enumerate() {
             let Some(rest) = rest else { continue };
-            let added = findings.sides.add(rest, GRAVITY);
+            let added = findings.sides.add(rest, GRAVITY_M_PER_S2);
             if index != place(unit) {
                 continue;
             }
             match added {
                 Ok(()) => {
                     (job.sides, job.reported) = (job.sides + 1, None);
-                    job.until = time.saturating_add(SIDE_WITHIN);
+                    job.until = time.saturating_add(SIDE_TIMEOUT_US);
                     let words = format_args!("Calibration: {} of 6 sides", job.sides);
                     shared.announce(Event::new(Severity::Information, words));
                 }

@@ -1,6 +1,6 @@
 //! A sensor's samples on their way to control: conditioned, and put down where control finds them.
 //!
-//! A fault is reported when it sets in, and again when it comes back after [`QUIET`] without it: eight kinds of faults
+//! A fault is reported when it sets in, and again when it comes back after [`FAULT_REPORT_PAUSE_US`] without it: eight kinds of faults
 //! cannot flood the link.
 //!
 //! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a
@@ -13,8 +13,8 @@ use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters};
 
-/// How long a fault must have been absent to be reported again, us.
-const QUIET: u64 = 1_000_000;
+/// How long a fault must have been absent to be reported again.
+const FAULT_REPORT_PAUSE_US: u64 = 1_000_000;
 
 /// A sensor's samples, as far as they have come.
 pub struct Flow<'a, M: RawMutex> {
@@ -98,7 +98,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
             self.shared.imu_fault().put(fault, time);
         }
         let Some(seen) = self.seen.get_mut(fault as usize) else { return };
-        let is_new = seen.is_none_or(|seen| time.saturating_sub(seen) >= QUIET);
+        let is_new = seen.is_none_or(|seen| time.saturating_sub(seen) >= FAULT_REPORT_PAUSE_US);
         *seen = Some(time);
         if is_new {
             self.shared.announce(Event::new(Severity::Critical, fault));

@@ -8,11 +8,11 @@ use estimation::imu::six_point::{SixPoint, SixPointError};
 use estimation::imu::standstill::StandstillMeans;
 use nalgebra::Vector3;
 
-/// What a sensor at rest feels, m/s^2.
-pub const GRAVITY: f32 = 9.806_65;
+/// What a sensor at rest feels.
+pub const GRAVITY_M_PER_S2: f32 = 9.806_65;
 
-/// The greatest offset that one side alone may find, m/s^2: the data sheet's four times, or 4.7 degrees of tilt.
-const OFFSET_MAX: f32 = 0.8;
+/// The greatest offset that one side alone may find: the data sheet's four times, or 4.7 degrees of tilt.
+const OFFSET_MAX_M_PER_S2: f32 = 0.8;
 
 /// Why there is no calibration.
 pub enum Problem {
@@ -49,13 +49,13 @@ pub fn solve(
         Procedure::Gyro => Ok(before.with_gyro_bias(rest)),
         Procedure::Level => before.levelled(rest).map_err(Problem::NotLevel),
         Procedure::OneSide => {
-            let offset = rest.specific_force - Vector3::z().component_div(&before.scale) * GRAVITY;
-            let plausible = offset.iter().all(|component| component.abs() <= OFFSET_MAX);
+            let offset = rest.specific_force - Vector3::z().component_div(&before.scale) * GRAVITY_M_PER_S2;
+            let plausible = offset.iter().all(|component| component.abs() <= OFFSET_MAX_M_PER_S2);
             if plausible { Ok(Calibration { offset, level, ..*before }) } else { Err(Problem::Offset) }
         }
         Procedure::SixSides => {
             let sides = sides.ok_or(Problem::Sides(SixPointError::FaceMissing))?;
-            let (offset, scale) = sides.solve(GRAVITY).map_err(Problem::Sides)?;
+            let (offset, scale) = sides.solve(GRAVITY_M_PER_S2).map_err(Problem::Sides)?;
             Ok(Calibration { offset, scale, level, ..*before })
         }
     }

@@ -21,7 +21,7 @@ pub struct Order {
 
 impl Order {
     /// The one in a frame.
-    pub(super) const fn of(command: u16, frame: &Frame<'_>) -> Self {
+    pub(super) const fn read(command: u16, frame: &Frame<'_>) -> Self {
         let Frame { header: Header { system, component, sequence }, checksum, .. } = *frame;
         let [high, low] = checksum.to_be_bytes();
         Self { command, sender: (system, component), frame: u32::from_be_bytes([system, sequence, high, low]) }
@@ -44,9 +44,9 @@ pub struct Acknowledgement {
 }
 
 /// Where COMMAND_LONG and COMMAND_INT have their command: after seven numbers of four bytes.
-const COMMAND: core::ops::Range<usize> = 28..30;
+const COMMAND_BYTES: core::ops::Range<usize> = 28..30;
 /// And after it whom it is for.
-const TARGET: core::ops::Range<usize> = 30..32;
+const TARGET_BYTES: core::ops::Range<usize> = 30..32;
 
 /// The number of a command in a message of this kind that could not be read, and whom it is for: system, component.
 pub fn command_of(message: u32, payload: &[u8]) -> Option<(u16, [u8; 2])> {
@@ -56,8 +56,8 @@ pub fn command_of(message: u32, payload: &[u8]) -> Option<(u16, [u8; 2])> {
     // Zeros at the end are cut off.
     let byte = |place: usize| payload.get(place).copied().unwrap_or(0);
     Some((
-        u16::from_le_bytes([byte(COMMAND.start), byte(COMMAND.start + 1)]),
-        [byte(TARGET.start), byte(TARGET.start + 1)],
+        u16::from_le_bytes([byte(COMMAND_BYTES.start), byte(COMMAND_BYTES.start + 1)]),
+        [byte(TARGET_BYTES.start), byte(TARGET_BYTES.start + 1)],
     ))
 }
 

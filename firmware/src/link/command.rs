@@ -19,14 +19,14 @@
 
 #![expect(deprecated, reason = "superseded commands and frames: clients still send them")]
 
-use super::mission::ITEMS;
+use super::mission::MISSION_CAPACITY;
 use super::origin::{Origin, Place};
 use super::set_mode::SetMode;
 use super::streams;
 use super::telemetry::kind::Kind;
 use super::telemetry::vehicle;
 use crate::frames;
-use crate::hardware::MOTORS;
+use crate::hardware::MOTOR_COUNT;
 use crate::shared::{Procedure, Reply};
 use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{MotorSetting, MotorTest, Request, Setting};
@@ -37,11 +37,11 @@ use mavlink::dialects::common::{
 use nalgebra::Vector3;
 
 /// The number that forces (MAVLink's, in parameter 2 of an arm command).
-const FORCE: f32 = 21196.0;
+const FORCE_NUMBER: f32 = 21196.0;
 
 /// PX4's custom main modes, and what AUTO is divided into.
-const AUTO: f32 = 4.0;
-const OFFBOARD: f32 = 6.0;
+const MAIN_AUTO: f32 = 4.0;
+const MAIN_OFFBOARD: f32 = 6.0;
 const AUTO_TAKEOFF: f32 = 2.0;
 const AUTO_LOITER: f32 = 3.0;
 const AUTO_MISSION: f32 = 4.0;
@@ -119,7 +119,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
     let [first, second, ..] = call.parameters;
     match call.command {
         MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match first {
-            0.0 if second == FORCE => Action::ForceDisarm,
+            0.0 if second == FORCE_NUMBER => Action::ForceDisarm,
             0.0 => Action::Ask(Request::Disarm),
             1.0 => Action::Ask(Request::Arm),
             _ => denied("Arm: parameter 1 is 1 to arm, 0 to disarm"),
@@ -142,16 +142,16 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         },
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
         MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN => restart(call),
-        MavCmd::MAV_CMD_REQUEST_MESSAGE if first == MODES_NUMBER => match second {
+        MavCmd::MAV_CMD_REQUEST_MESSAGE if first == AVAILABLE_MODES_NUMBER => match second {
             0.0 => Action::ReplyModes,
-            index if (1.0..=f32::from(vehicle::MODES)).contains(&index) => Action::Reply(Reply::Mode(index as u8)),
+            index if (1.0..=f32::from(vehicle::MODE_COUNT)).contains(&index) => Action::Reply(Reply::Mode(index as u8)),
             _ => denied("Modes: parameter 2 is 0 or a mode's index"),
         },
         MavCmd::MAV_CMD_REQUEST_MESSAGE => of_kind(first, Action::Send),
         MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => of_kind(first, |kind| Action::Reply(Reply::IntervalOf(kind))),
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL if second.is_finite() => of_kind(first, |kind| match kind {
             // Other systems detect the vehicle by it.
-            Kind::Heartbeat if !(0.0..=HEARTBEAT).contains(&second) => {
+            Kind::Heartbeat if !(0.0..=HEARTBEAT_INTERVAL_MAX_US).contains(&second) => {
                 denied("HEARTBEAT: once a second, or more often")
             }
             _ => Action::Reply(Reply::Interval { kind, interval: second as i64 }),
@@ -166,10 +166,10 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
 }
 
 /// AVAILABLE_MODES.
-const MODES_NUMBER: f32 = 435.0;
+const AVAILABLE_MODES_NUMBER: f32 = 435.0;
 
-/// The longest time between heartbeats, us.
-const HEARTBEAT: f32 = 1e6;
+/// The longest time between heartbeats.
+const HEARTBEAT_INTERVAL_MAX_US: f32 = 1e6;
 
 /// An action on the message of this number; unsupported if the vehicle does not send it.
 fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
@@ -187,8 +187,8 @@ fn above_home(frame: MavFrame, altitude: f32, home: f32) -> Option<f32> {
     }
 }
 
-/// How far from home a take-off may be requested, m.
-const HERE: f32 = 2.0;
+/// How far from home a take-off may be requested.
+const TAKE_OFF_DISTANCE_MAX_M: f32 = 2.0;
 
 /// Taking off, straight up. Most clients that name no height or place send NaN or the greatest number, some zero.
 fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
@@ -207,7 +207,10 @@ fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     let Some(height) = height else { return unsupported("Take-off: in a global frame only") };
     let (latitude, longitude) = place;
     let away = origin.local(&Place { latitude, longitude, altitude }) - home;
-    if place != (0, 0) && latitude != i32::MAX && away.xy().norm_squared() > HERE * HERE {
+    if place != (0, 0)
+        && latitude != i32::MAX
+        && away.xy().norm_squared() > TAKE_OFF_DISTANCE_MAX_M * TAKE_OFF_DISTANCE_MAX_M
+    {
         return denied("Take-off: from here, not from another place");
     }
     Action::Ask(Request::TakeOff(is_named.then_some(height)))
@@ -252,7 +255,7 @@ const fn unsupported(words: &'static str) -> Action {
 
 /// The number of a mission's item.
 fn mission_item(number: f32) -> Option<u8> {
-    (0..ITEMS as u8).find(|&item| number == f32::from(item))
+    (0..MISSION_CAPACITY as u8).find(|&item| number == f32::from(item))
 }
 
 /// Flying the mission from an item on, or from where it was left; always to its end.
@@ -306,7 +309,7 @@ fn configure_actuator(call: &Call) -> Action {
 
 /// The index of a motor that is counted from 1.
 fn motor(number: f32) -> Option<usize> {
-    (0..MOTORS).find(|&rotor| number == (rotor + 1) as f32)
+    (0..MOTOR_COUNT).find(|&rotor| number == (rotor + 1) as f32)
 }
 
 /// A restart of the autopilot, and of nothing else.
@@ -352,12 +355,12 @@ fn set_mode(call: &Call, armed: bool) -> Action {
     let base = MavModeFlag::from_bits_retain(base as u8);
     if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
         return match (main, sub) {
-            (OFFBOARD, _) => Action::Ask(Request::FlySetpoints),
-            (AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
-            (AUTO, AUTO_MISSION) => Action::Ask(Request::FlyMission(None)),
-            (AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
-            (AUTO, AUTO_LAND) => Action::Ask(Request::Land),
-            (AUTO, AUTO_EXTERNAL1) => Action::Ask(Request::FlyPolicy),
+            (MAIN_OFFBOARD, _) => Action::Ask(Request::FlySetpoints),
+            (MAIN_AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
+            (MAIN_AUTO, AUTO_MISSION) => Action::Ask(Request::FlyMission(None)),
+            (MAIN_AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
+            (MAIN_AUTO, AUTO_LAND) => Action::Ask(Request::Land),
+            (MAIN_AUTO, AUTO_EXTERNAL1) => Action::Ask(Request::FlyPolicy),
             _ => NO_MODE,
         };
     }

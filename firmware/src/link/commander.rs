@@ -2,7 +2,7 @@
 //!
 //! No other station may disarm it, not even by force; every station may request everything else. Where no ground
 //! station armed it but a companion computer, a ground station may as well: the operator overrides a program. A station
-//! that has been silent for [`SILENCE`] commands no more: any other may then stop the motors, as any station may where
+//! that has been silent for [`COMMANDER_TIMEOUT_US`] commands no more: any other may then stop the motors, as any station may where
 //! a radio armed it. Control decides who armed, since many may have asked. A heartbeat shows who is a ground station.
 
 use super::command::Call;
@@ -10,11 +10,11 @@ use flight::Stamped;
 use heapless::Deque;
 use mavlink::dialects::common::MavCmd;
 
-/// How long a commanding station may be silent, us: as long as the flight rules wait for it.
-pub const SILENCE: u64 = flight::rules::GROUND_STATION_TIMEOUT_US;
+/// How long a commanding station may be silent: as long as the flight rules wait for it.
+pub const COMMANDER_TIMEOUT_US: u64 = flight::rules::GROUND_STATION_TIMEOUT_US;
 
 /// Ground stations that are remembered, the last.
-const STATIONS: usize = 4;
+const STATIONS_REMEMBERED: usize = 4;
 
 /// Who sent something: system and component.
 type Sender = (u8, u8);
@@ -26,7 +26,7 @@ type Armed = Option<Stamped<Option<Sender>>>;
 #[derive(Debug, Default)]
 pub struct Commander {
     received: u64,
-    stations: Deque<Sender, STATIONS>,
+    stations: Deque<Sender, STATIONS_REMEMBERED>,
 }
 
 impl Commander {
@@ -62,7 +62,7 @@ impl Commander {
             let yields = |commander| self.is_ground_station(sender) && !self.is_ground_station(commander);
             // Frames of the commander before it do not count.
             value.is_some_and(|commander| commander != sender && !yields(commander))
-                && now.saturating_sub(self.received.max(time)) <= SILENCE
+                && now.saturating_sub(self.received.max(time)) <= COMMANDER_TIMEOUT_US
         });
         !(stops && other)
     }
@@ -87,11 +87,11 @@ mod tests {
         );
         commander.receive((255, 1), armed, 2_000_000);
         commander.receive((254, 1), armed, 2_000_001);
-        assert!(!commander.may(&call(0.0), (254, 1), armed, 2_000_000 + SILENCE));
-        assert!(commander.may(&call(0.0), (254, 1), armed, 2_000_001 + SILENCE));
+        assert!(!commander.may(&call(0.0), (254, 1), armed, 2_000_000 + COMMANDER_TIMEOUT_US));
+        assert!(commander.may(&call(0.0), (254, 1), armed, 2_000_001 + COMMANDER_TIMEOUT_US));
         // Arming counts as receiving it.
         let later = Some(Stamped { value: Some((9, 1)), time: 9_000_000 });
-        assert!(!commander.may(&call(0.0), (255, 1), later, 9_000_000 + SILENCE));
+        assert!(!commander.may(&call(0.0), (255, 1), later, 9_000_000 + COMMANDER_TIMEOUT_US));
     }
 
     #[test]

@@ -1,25 +1,25 @@
 //! Requested logs, a message at a time: their list, or one of them.
 //!
 //! Where a card is ready its task answers ([`Library`](crate::shared::Library)): a file is requested chunk by chunk,
-//! the next one while the last goes out. After [`ANSWER_WITHIN`] without an answer the download ends. Elsewhere there
+//! the next one while the last goes out. After [`ANSWER_TIMEOUT_US`] without an answer the download ends. Elsewhere there
 //! is the flight recorder's recording, which is in memory. Nothing goes out while the vehicle is armed.
 
-use crate::shared::{Answer, Bytes, CHUNK, CardState, Event, Question, Severity, TransmitView};
+use crate::shared::{Answer, Bytes, CardState, Event, LOG_CHUNK_BYTES, Question, Severity, TransmitView};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA};
 
-/// Time between messages, us: 45 KB/s at most, half of a fast line.
-pub const INTERVAL: u64 = 2_000;
+/// Time between messages: 45 KB/s at most, half of a fast line.
+pub const MESSAGE_INTERVAL_US: u64 = 2_000;
 
-/// The longest that the card may take over an answer, us: it also finishes a flight meanwhile, two seconds of it, and
+/// The longest that the card may take over an answer: it also finishes a flight meanwhile, two seconds of it, and
 /// begins the next one's file.
-pub const ANSWER_WITHIN: u64 = 6_000_000;
+pub const ANSWER_TIMEOUT_US: u64 = 6_000_000;
 
 /// Bytes of a message.
-const PART: usize = 90;
+const LOG_PART_BYTES: usize = 90;
 
-const _: () = assert!(CHUNK.is_multiple_of(PART));
+const _: () = assert!(LOG_CHUNK_BYTES.is_multiple_of(LOG_PART_BYTES));
 
 /// A message.
 pub enum Message {
@@ -122,15 +122,15 @@ impl Download {
                 })
             }
             Job::Data { id, next, end } => {
-                let wanted = end.saturating_sub(next).min(PART as u32) as usize;
+                let wanted = end.saturating_sub(next).min(LOG_PART_BYTES as u32) as usize;
                 let (data, count) = self.part(id, next, wanted, end, now, shared)?;
                 let after = next.saturating_add(count as u32);
                 // A message that is not full is the last: what ends with a full one is followed by an empty one.
-                self.job = (count == PART && after < end).then_some(Job::Data { id, next: after, end });
+                self.job = (count == LOG_PART_BYTES && after < end).then_some(Job::Data { id, next: after, end });
                 Message::Data(LOG_DATA_DATA { ofs: next, id, count: count as u8, data })
             }
         };
-        self.due = now.saturating_add(INTERVAL);
+        self.due = now.saturating_add(MESSAGE_INTERVAL_US);
         Some(message)
     }
 
@@ -143,7 +143,7 @@ impl Download {
         end: u32,
         now: u64,
         shared: TransmitView<'_, M>,
-    ) -> Option<([u8; PART], usize)> {
+    ) -> Option<([u8; LOG_PART_BYTES], usize)> {
         let begin = next.checked_sub(self.offset).unwrap_or(u32::MAX) as usize;
         // A chunk that is not full ends where the log does.
         let is_there = |chunk: &Bytes| begin <= chunk.len() && (begin + wanted <= chunk.len() || !chunk.is_full());
@@ -169,7 +169,7 @@ impl Download {
         }
         let begin = next.saturating_sub(self.offset) as usize;
         let bytes = self.chunk.as_ref().and_then(|chunk| chunk.get(begin..)).unwrap_or_default();
-        let mut data = [0; PART];
+        let mut data = [0; LOG_PART_BYTES];
         let count = data.iter_mut().zip(bytes.iter().take(wanted)).map(|(to, from)| *to = *from).count();
         Some((data, count))
     }
@@ -202,7 +202,7 @@ impl Download {
     fn ask<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) {
         if self.from_card {
             shared.library().ask(question, now);
-            self.asked = Some((question, now.saturating_add(ANSWER_WITHIN)));
+            self.asked = Some((question, now.saturating_add(ANSWER_TIMEOUT_US)));
         }
     }
 

@@ -18,12 +18,12 @@ use mavlink::error::ParserError;
 use mavlink::{MavlinkVersion, MessageData};
 
 /// The message's own fields before that header: network, system, component.
-const FIELDS: usize = 3;
+const FIELDS_BYTES: usize = 3;
 
 /// Operations from here on are answers.
-const ANSWERS: u8 = 128;
+const FIRST_ANSWER: u8 = 128;
 /// An answer: it did not go well.
-const REFUSED: u8 = 129;
+const NEGATIVE_ANSWER: u8 = 129;
 /// Why: no such operation here.
 const UNKNOWN_OPERATION: u8 = 7;
 
@@ -43,14 +43,14 @@ pub struct FileRequest {
 impl FileRequest {
     /// The request in a FILE_TRANSFER_PROTOCOL, with whom it is for: system, component. None if it is an answer, which
     /// must not be answered.
-    pub fn of(frame: &Frame<'_>) -> Option<(Self, [u8; 2])> {
+    pub fn read(frame: &Frame<'_>) -> Option<(Self, [u8; 2])> {
         // Zeros at the end are cut off.
         let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
-        let sequence = u16::from_le_bytes([byte(FIELDS), byte(FIELDS + 1)]);
-        let (session, operation) = (byte(FIELDS + 2), byte(FIELDS + 3));
+        let sequence = u16::from_le_bytes([byte(FIELDS_BYTES), byte(FIELDS_BYTES + 1)]);
+        let (session, operation) = (byte(FIELDS_BYTES + 2), byte(FIELDS_BYTES + 3));
         let sender = (frame.header.system, frame.header.component);
         let request = Self { sender, sequence, session, operation };
-        (operation < ANSWERS).then_some((request, [byte(1), byte(2)]))
+        (operation < FIRST_ANSWER).then_some((request, [byte(1), byte(2)]))
     }
 }
 
@@ -68,7 +68,7 @@ impl MessageData for NoFiles {
     fn ser(&self, _: MavlinkVersion, payload: &mut [u8]) -> usize {
         let FileRequest { sender: (system, component), sequence, session, operation } = self.0;
         let [low, high] = sequence.wrapping_add(1).to_le_bytes();
-        let header = [low, high, session, REFUSED, 1, operation, 0, 0, 0, 0, 0, 0];
+        let header = [low, high, session, NEGATIVE_ANSWER, 1, operation, 0, 0, 0, 0, 0, 0];
         let bytes = [0, system, component].into_iter().chain(header).chain([UNKNOWN_OPERATION]);
         payload.iter_mut().zip(bytes).map(|(place, byte)| *place = byte).count()
     }

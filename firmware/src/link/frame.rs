@@ -6,15 +6,15 @@
 //! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped
 //!   whole. It has no mark of its own, but where a frame has just ended, or been skipped, another begins.
 //! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may
-//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX`] bytes
+//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX_BYTES`] bytes
 //!   at most.
 //!
 //! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
-//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX`] are thrown away. So an
+//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX_US`] are thrown away. So an
 //! old pose never comes out as a fresh one.
 //!
 //! Checksums need a number for each message that only the dialect defines, so frames of messages outside `common` look
-//! like noise. After a pause of [`FRAME_AGE_MAX`] within a frame, the sender is taken to begin anew.
+//! like noise. After a pause of [`FRAME_AGE_MAX_US`] within a frame, the sender is taken to begin anew.
 //!
 //! Work for one byte is bounded: at most one frame is checked for each byte given up, and no byte is given up twice.
 
@@ -22,26 +22,26 @@ use mavlink::dialects::common::MavMessage;
 use mavlink::{MavlinkVersion, Message, MessageData, calculate_crc};
 
 /// The longest frame: version 2, 255 bytes of payload, signed.
-pub const FRAME_MAX: usize = 280;
+pub const FRAME_MAX_BYTES: usize = 280;
 
-/// Bytes that have waited longer than this for the rest of their frame are dropped, us: the age at which a pose is
+/// Bytes that have waited longer than this for the rest of their frame are dropped: the age at which a pose is
 /// refused.
-pub const FRAME_AGE_MAX: u64 = 100_000;
+pub const FRAME_AGE_MAX_US: u64 = 100_000;
 
 /// First byte of a version 1 frame.
 const START_V1: u8 = 0xFE;
 /// First byte of a version 2 frame.
 const START_V2: u8 = 0xFD;
 /// Bytes before the payload: start, length, sequence, system, component, message.
-const HEADER_V1: usize = 6;
+const HEADER_V1_BYTES: usize = 6;
 /// Bytes before the payload: start, length, two of flags, sequence, system, component, three of message.
-const HEADER_V2: usize = 10;
+const HEADER_V2_BYTES: usize = 10;
 /// Bytes of the checksum behind the payload.
-const CHECKSUM: usize = 2;
-const SIGNATURE: usize = 13;
+const CHECKSUM_BYTES: usize = 2;
+const SIGNATURE_BYTES: usize = 13;
 
 /// The only incompatibility flag that is understood: a signature follows. [`super::signing`] verifies it.
-pub const SIGNED: u8 = 1;
+pub const SIGNED_FLAG: u8 = 1;
 
 /// The protocol's version of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,7 +108,7 @@ enum Candidate {
 
 /// Finds frames in a stream of bytes.
 pub struct Parser {
-    buffer: [u8; FRAME_MAX],
+    buffer: [u8; FRAME_MAX_BYTES],
     length: usize,
     /// The frame last handed out, still at the start of the buffer.
     taken: usize,
@@ -125,7 +125,7 @@ impl Parser {
     /// Nothing received yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { buffer: [0; FRAME_MAX], length: 0, taken: 0, is_aligned: true, barred: 0, since: 0, discarded: 0 }
+        Self { buffer: [0; FRAME_MAX_BYTES], length: 0, taken: 0, is_aligned: true, barred: 0, since: 0, discarded: 0 }
     }
 
     /// Takes the next byte, which arrived at `now` (us), and returns a frame if there is one. There may be more: call
@@ -133,7 +133,7 @@ impl Parser {
     pub fn push(&mut self, byte: u8, now: u64) -> Option<Frame<'_>> {
         self.remove(self.taken);
         self.taken = 0;
-        if now.saturating_sub(self.since) > FRAME_AGE_MAX || self.length == FRAME_MAX {
+        if now.saturating_sub(self.since) > FRAME_AGE_MAX_US || self.length == FRAME_MAX_BYTES {
             self.forget();
         }
         if self.length == 0 {
@@ -218,17 +218,17 @@ impl Default for Parser {
 fn candidate(bytes: &[u8]) -> Candidate {
     let (header, signature) = match *bytes {
         [] => return Candidate::Incomplete,
-        [START_V1, ..] => (HEADER_V1, 0),
+        [START_V1, ..] => (HEADER_V1_BYTES, 0),
         [START_V2] | [START_V2, _] => return Candidate::Incomplete,
-        [START_V2, _, flags, ..] => (HEADER_V2, if flags & SIGNED == 0 { 0 } else { SIGNATURE }),
+        [START_V2, _, flags, ..] => (HEADER_V2_BYTES, if flags & SIGNED_FLAG == 0 { 0 } else { SIGNATURE_BYTES }),
         _ => return Candidate::Noise,
     };
     let (Some(&payload), Some(message)) = (bytes.get(1), message(bytes)) else { return Candidate::Incomplete };
     let end = header + usize::from(payload);
-    let length = end + CHECKSUM + signature;
+    let length = end + CHECKSUM_BYTES + signature;
     // Messages without such a number, in the dialect or not, look like noise.
     let Some(extra) = extra(message).filter(|_| is_understood(bytes)) else { return Candidate::Foreign(length) };
-    let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM)) else {
+    let (Some(checked), Some(&[low, high])) = (bytes.get(1..end), bytes.get(end..end + CHECKSUM_BYTES)) else {
         return Candidate::Incomplete;
     };
     if calculate_crc(checked, extra) != u16::from_le_bytes([low, high]) {
@@ -239,7 +239,7 @@ fn candidate(bytes: &[u8]) -> Candidate {
 
 /// Whether all incompatibility flags are known.
 fn is_understood(bytes: &[u8]) -> bool {
-    !matches!(*bytes, [START_V2, _, flags, ..] if flags & !SIGNED != 0)
+    !matches!(*bytes, [START_V2, _, flags, ..] if flags & !SIGNED_FLAG != 0)
 }
 
 /// A message definition's part of the checksum; none for a message outside the dialect.
@@ -259,12 +259,12 @@ fn message(bytes: &[u8]) -> Option<u32> {
 /// The parts of a complete frame.
 fn frame(bytes: &[u8], time: u64) -> Option<Frame<'_>> {
     let (version, header, [sequence, system, component]) = match *bytes {
-        [START_V1, _, sequence, system, component, ..] => (Version::V1, HEADER_V1, [sequence, system, component]),
-        [_, _, _, _, sequence, system, component, ..] => (Version::V2, HEADER_V2, [sequence, system, component]),
+        [START_V1, _, sequence, system, component, ..] => (Version::V1, HEADER_V1_BYTES, [sequence, system, component]),
+        [_, _, _, _, sequence, system, component, ..] => (Version::V2, HEADER_V2_BYTES, [sequence, system, component]),
         _ => return None,
     };
     let end = header + usize::from(*bytes.get(1)?);
-    let &[low, high] = bytes.get(end..end + CHECKSUM)? else { return None };
+    let &[low, high] = bytes.get(end..end + CHECKSUM_BYTES)? else { return None };
     Some(Frame {
         version,
         header: Header { system, component, sequence },

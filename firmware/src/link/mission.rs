@@ -28,17 +28,17 @@ use mavlink::dialects::common::{MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd
 use nalgebra::Vector3;
 
 /// How many there may be.
-pub const ITEMS: usize = 64;
+pub const MISSION_CAPACITY: usize = 64;
 
 /// A yaw that is no number.
 const NO_YAW: i16 = i16::MIN;
 
 /// Units of a local place in MISSION_ITEM_INT, and of a degree, which is also what is kept.
-const LOCAL_UNITS: f64 = 1e4;
-const GLOBAL_UNITS: f64 = 1e7;
+const UNITS_PER_M: f64 = 1e4;
+const UNITS_PER_DEG: f64 = 1e7;
 
-/// The farthest place, m.
-const DISTANCE_MAX: f32 = 10_000.0;
+/// The farthest place.
+const DISTANCE_MAX_M: f32 = 10_000.0;
 
 /// How a place is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,7 +129,7 @@ impl ItemRefusal {
 /// What MISSION_ITEM and MISSION_ITEM_INT have, read byte by byte: the crate's types do not decode a command or a frame
 /// that they do not know, and its sender is to be told which.
 #[derive(Debug, Clone, Copy)]
-pub struct Sent {
+pub struct SentItem {
     parameters: [f32; 4],
     place: [[u8; 4]; 2],
     z: f32,
@@ -144,10 +144,10 @@ pub struct Sent {
     is_int: bool,
 }
 
-impl Sent {
+impl SentItem {
     /// The fields of such a payload. Zeros at its end are cut off.
     #[must_use]
-    pub fn of(payload: &[u8], is_int: bool) -> Self {
+    pub fn read(payload: &[u8], is_int: bool) -> Self {
         let byte = |place: usize| payload.get(place).copied().unwrap_or(0);
         let word = |place: usize| [0, 1, 2, 3].map(|next| byte(place + next));
         let number = |place: usize| f32::from_le_bytes(word(place));
@@ -232,20 +232,20 @@ impl Sent {
             other => return Err(ItemRefusal::Frame(other)),
         };
         let is_local = matches!(axes, Axes::Ned | Axes::Enu);
-        let unit = if is_local { LOCAL_UNITS } else { GLOBAL_UNITS };
+        let unit = if is_local { UNITS_PER_M } else { UNITS_PER_DEG };
         let number = |place: [u8; 4]| match self.is_int {
             true => f64::from(i32::from_le_bytes(place)),
             false => f64::from(f32::from_le_bytes(place)) * unit,
         };
         let [x, y] = if leg == Leg::TakeOff { [0.0; 2] } else { self.place.map(number) };
-        let limits = if is_local { [f64::from(DISTANCE_MAX); 2] } else { [85.0, 180.0] };
+        let limits = if is_local { [f64::from(DISTANCE_MAX_M); 2] } else { [85.0, 180.0] };
         // Written so that NaN is refused.
         for (number, value, limit) in [(5, x, limits[0]), (6, y, limits[1])] {
             if !((-limit * unit)..=(limit * unit)).contains(&value) {
                 return Err(ItemRefusal::Parameter(number, "not a place"));
             }
         }
-        if !(-DISTANCE_MAX..=DISTANCE_MAX).contains(&self.z) {
+        if !(-DISTANCE_MAX_M..=DISTANCE_MAX_M).contains(&self.z) {
             return Err(ItemRefusal::Parameter(7, "not a height"));
         }
         Ok((axes, [x, y, f64::from(self.z)]))
@@ -256,7 +256,7 @@ impl Item {
     /// As the pilot flies it, with the local frame at `origin` and armed at `home`, m, NED.
     #[must_use]
     pub fn placed(&self, origin: &Origin, home: &Vector3<f32>) -> MissionItem {
-        let local = [self.x, self.y].map(|units| units as f32 / LOCAL_UNITS as f32);
+        let local = [self.x, self.y].map(|units| units as f32 / UNITS_PER_M as f32);
         let on_the_globe =
             |above: f32| origin.local(&Place { latitude: self.x, longitude: self.y, altitude: above + self.z });
         let ned = match self.axes {
@@ -309,7 +309,7 @@ impl Item {
     #[must_use]
     pub fn old_message(&self, sequence: u16, target: (u8, u8)) -> MISSION_ITEM_DATA {
         let message = self.message(sequence, target);
-        let unit = if matches!(self.axes, Axes::Ned | Axes::Enu) { LOCAL_UNITS } else { GLOBAL_UNITS };
+        let unit = if matches!(self.axes, Axes::Ned | Axes::Enu) { UNITS_PER_M } else { UNITS_PER_DEG };
         let MISSION_ITEM_INT_DATA { param1, param2, param3, param4, z, seq, command, frame, .. } = message;
         let MISSION_ITEM_INT_DATA { target_system, target_component, current, autocontinue, .. } = message;
         let [x, y] = [self.x, self.y].map(|units| (f64::from(units) / unit) as f32);

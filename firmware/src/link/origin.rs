@@ -12,14 +12,14 @@ use controller_core::math;
 use nalgebra::Vector3;
 
 /// Metres to a unit of latitude.
-const METRES: f32 = 0.011_119_493;
+const M_PER_UNIT: f32 = 0.011_119_493;
 
 /// Degrees beyond which there is no place, units.
 const LATITUDE_MAX: i32 = 850_000_000;
 const LONGITUDE_MAX: i32 = 1_800_000_000;
 
 /// Units of angle that are 2^64 parts of a turn: 2^64 / 3.6e9.
-const TURNS: i64 = 5_124_095_576;
+const TURNS_PER_UNIT: i64 = 5_124_095_576;
 
 /// Where the local frame's origin is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,8 +54,8 @@ impl Origin {
 
     /// Metres to a unit of longitude here.
     fn metres_east(&self) -> f32 {
-        let turns = i64::from(self.latitude).wrapping_mul(TURNS).cast_unsigned();
-        METRES * math::sin_cos_turns(turns).1
+        let turns = i64::from(self.latitude).wrapping_mul(TURNS_PER_UNIT).cast_unsigned();
+        M_PER_UNIT * math::sin_cos_turns(turns).1
     }
 
     /// A place of north, east, down, m.
@@ -63,7 +63,7 @@ impl Origin {
     pub fn place(&self, ned: &Vector3<f32>) -> Place {
         let units = |metres: f32, unit: f32| (metres / unit) as i32;
         Place {
-            latitude: self.latitude.saturating_add(units(ned.x, METRES)),
+            latitude: self.latitude.saturating_add(units(ned.x, M_PER_UNIT)),
             longitude: self.longitude.saturating_add(units(ned.y, self.metres_east())),
             altitude: self.altitude as f32 * 1e-3 - ned.z,
         }
@@ -72,7 +72,7 @@ impl Origin {
     /// Where a place is, north, east, down, m.
     #[must_use]
     pub fn local(&self, place: &Place) -> Vector3<f32> {
-        let north = place.latitude.wrapping_sub(self.latitude) as f32 * METRES;
+        let north = place.latitude.wrapping_sub(self.latitude) as f32 * M_PER_UNIT;
         let east = place.longitude.wrapping_sub(self.longitude) as f32 * self.metres_east();
         Vector3::new(north, east, self.altitude as f32 * 1e-3 - place.altitude)
     }
@@ -99,7 +99,7 @@ mod tests {
         let origin = Origin::new(600_000_000, 0, 0).unwrap();
         let place = Place { latitude: 600_000_000, longitude: 10_000, altitude: 0.0 };
         let local = origin.local(&place);
-        assert!((local.y - 0.5 * 10_000.0 * METRES).abs() < 0.01, "{local}");
+        assert!((local.y - 0.5 * 10_000.0 * M_PER_UNIT).abs() < 0.01, "{local}");
         assert_eq!(local.x, 0.0);
     }
 

@@ -10,8 +10,8 @@ use crate::shared::{self, Event, Flag, PortView, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::{Error, ErrorKind, ErrorType, Read, Write};
 
-/// The interval of polls whether the port is open, us.
-pub const LOOK: u64 = 100_000;
+/// The interval of polls whether the port is open.
+pub const PORT_POLL_INTERVAL_US: u64 = 100_000;
 
 /// One direction of the link, on whichever line it is.
 pub struct Line<'a, S, P> {
@@ -73,6 +73,6 @@ pub async fn watch<M: RawMutex>(port: &impl Port, clock: &impl Clock, shared: Po
             };
             shared.announce(Event::new(Severity::Information, words));
         }
-        clock.until(clock.now().saturating_add(LOOK)).await;
+        clock.until(clock.now().saturating_add(PORT_POLL_INTERVAL_US)).await;
     }
 }

@@ -12,14 +12,14 @@
 //! gives it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was overtaken,
 //! and is dropped.
 //!
-//! One sender is listened to at a time, until it has been silent for [`SOURCE_SILENCE`]: two that disagree would look
+//! One sender is listened to at a time, until it has been silent for [`SOURCE_TIMEOUT_US`]: two that disagree would look
 //! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count. Velocities and body rates
 //! must be finite too, though the IMU's are flown (docs/mocap.md says why). Of the pose's covariance the greatest
 //! variances of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender
 //! left it out). Infinite ones mean that the sender has no pose, and are refused.
 
 use super::frame::Frame;
-use super::sender_clock::{LATE_MAX, SenderClock};
+use super::sender_clock::{LATE_MAX_US, SenderClock};
 use super::time_sync::{Offset, TimeSync};
 use crate::frames;
 use controller_core::math;
@@ -34,18 +34,18 @@ use mavlink::dialects::common::{
 };
 use nalgebra::{Quaternion, Vector3};
 
-/// How long a source must have been silent before another is listened to, us.
-pub const SOURCE_SILENCE: u64 = 1_000_000;
+/// How long a source must have been silent before another is listened to.
+pub const SOURCE_TIMEOUT_US: u64 = 1_000_000;
 
-/// How long a delay that TIMESYNC gave counts as known, us: single messages may be stamped too early for it.
-const DELAY_KNOWN: u64 = 1_000_000;
+/// How long a delay that TIMESYNC gave counts as known: single messages may be stamped too early for it.
+const DELAY_KNOWN_US: u64 = 1_000_000;
 
 /// Where ODOMETRY's extension fields lie, which the message's type does not have.
-const RESET_COUNTER: usize = ODOMETRY_DATA::ENCODED_LEN;
-const QUALITY: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
+const RESET_COUNTER_OFFSET: usize = ODOMETRY_DATA::ENCODED_LEN;
+const QUALITY_OFFSET: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
 
 /// And a vision message's, a float each of the covariance, and behind it the reset counter.
-const VISION_RESET_COUNTER: usize = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 84;
+const VISION_RESET_COUNTER_OFFSET: usize = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 84;
 
 /// Whether a message of this number is a pose.
 #[must_use]
@@ -178,7 +178,7 @@ impl Poses {
         };
         let source = self.source.get_or_insert(fresh);
         if (source.system, source.component, source.message) != sender {
-            if frame.time.saturating_sub(source.arrived) <= SOURCE_SILENCE {
+            if frame.time.saturating_sub(source.arrived) <= SOURCE_TIMEOUT_US {
                 return Err(PoseRefusal::SecondSource);
             }
             *source = fresh;
@@ -225,7 +225,7 @@ impl Poses {
 impl Source {
     /// Whether TIMESYNC gave the delay of its last messages.
     fn is_synchronised(&self) -> bool {
-        self.synchronised.is_some_and(|known| self.arrived.saturating_sub(known) <= DELAY_KNOWN)
+        self.synchronised.is_some_and(|known| self.arrived.saturating_sub(known) <= DELAY_KNOWN_US)
     }
 
     /// What a message of `time` took at least, us, by TIMESYNC; none if that is not of the clock which stamps the
@@ -235,7 +235,7 @@ impl Source {
         let Offset { value, error } = self.sync.offset(self.arrived)?;
         let delay = clock.offset() - value;
         // No message is here before it was sent; and one that is too late does not count.
-        let plausible = (-i128::from(error)..=i128::from(LATE_MAX)).contains(&delay);
+        let plausible = (-i128::from(error)..=i128::from(LATE_MAX_US)).contains(&delay);
         plausible.then(|| u64::try_from(delay).unwrap_or(0))
     }
 
@@ -245,7 +245,7 @@ impl Source {
         let goes_on = self.clock.as_ref().is_some_and(|clock| clock.advances(time));
         let known = self.sync.recent(arrived).filter(|_| self.is_synchronised() && goes_on && time != 0);
         known.is_some_and(|Offset { value, error }| {
-            i128::from(arrived) - i128::from(time) - value > i128::from(LATE_MAX) + i128::from(error)
+            i128::from(arrived) - i128::from(time) - value > i128::from(LATE_MAX_US) + i128::from(error)
         })
     }
 
@@ -279,7 +279,7 @@ pub(crate) fn odometry(frame: &Frame<'_>, message: &ODOMETRY_DATA) -> Result<Pos
     let measured = deviations(measured, &message.pose_covariance)?;
     // Zeros at the end are cut off, and older senders do not know these fields.
     let extension = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
-    Ok(measured.quality(extension(QUALITY).cast_signed()).reset_counter(extension(RESET_COUNTER)))
+    Ok(measured.quality(extension(QUALITY_OFFSET).cast_signed()).reset_counter(extension(RESET_COUNTER_OFFSET)))
 }
 
 /// The pose in a vision message, which came in `frame`.
@@ -297,7 +297,7 @@ fn vision(frame: &Frame<'_>, message: &VISION_POSITION_ESTIMATE_DATA) -> Result<
         f32::from_le_bytes([0, 1, 2, 3].map(|byte| extension(place + byte)))
     };
     let measured = deviations(measured, &core::array::from_fn(number))?;
-    Ok(measured.reset_counter(extension(VISION_RESET_COUNTER)))
+    Ok(measured.reset_counter(extension(VISION_RESET_COUNTER_OFFSET)))
 }
 
 /// With the deviations of a covariance, if it is known.

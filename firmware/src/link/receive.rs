@@ -5,7 +5,7 @@
 
 #![expect(deprecated, reason = "superseded messages: clients still send them")]
 
-use super::COMPONENT;
+use super::COMPONENT_ID;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
 use super::pose::{Poses, is_pose};
@@ -44,29 +44,29 @@ mod setpoints;
 mod signatures;
 mod upload;
 
-/// The longest wait for bytes, us. Nothing hangs on it: it keeps the wait a bounded one.
-const SILENCE: u64 = 1_000_000;
+/// The longest wait for bytes. Nothing hangs on it: it keeps the wait a bounded one.
+const READ_TIMEOUT_US: u64 = 1_000_000;
 
-/// The wait after a line that failed, us.
-const RECOVERY: u64 = 10_000;
+/// The wait after a line that failed.
+const RETRY_DELAY_US: u64 = 10_000;
 
-/// The least interval between texts about one kind of refusal, us.
-const TEXT_INTERVAL: u64 = 1_000_000;
+/// The least interval between texts about one kind of refusal.
+const TEXT_INTERVAL_US: u64 = 1_000_000;
 
-/// The least interval between answers to TIMESYNC, us.
-const TIME_INTERVAL: u64 = 20_000;
+/// The least interval between answers to TIMESYNC.
+const TIME_INTERVAL_US: u64 = 20_000;
 
 /// Bytes read at once.
-const CHUNK: usize = 64;
+const READ_CHUNK_BYTES: usize = 64;
 
 /// Receives for ever.
 pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shared: ReceiveView<'_, M>) -> ! {
     let mut parser = Parser::new();
     let mut receiver = Receiver::new(shared);
-    let mut chunk = [0; CHUNK];
+    let mut chunk = [0; READ_CHUNK_BYTES];
     let mut on_port = shared.on_port().is_raised();
     loop {
-        let wake = clock.now().saturating_add(SILENCE);
+        let wake = clock.now().saturating_add(READ_TIMEOUT_US);
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
                 let now = clock.now();
@@ -80,7 +80,7 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
                 yield_now().await;
             }
             // A line that ended or failed may come back, but must not take all the time there is.
-            Either::First(_) => clock.until(clock.now().saturating_add(RECOVERY)).await,
+            Either::First(_) => clock.until(clock.now().saturating_add(RETRY_DELAY_US)).await,
             Either::Second(()) => {}
         }
     }
@@ -95,7 +95,7 @@ struct RateLimit {
 impl RateLimit {
     fn warn<M: RawMutex>(&mut self, shared: ReceiveView<'_, M>, now: u64, words: impl Display) {
         if now >= self.not_before {
-            self.not_before = now.saturating_add(TEXT_INTERVAL);
+            self.not_before = now.saturating_add(TEXT_INTERVAL_US);
             shared.announce(Event::new(Severity::Warning, words));
         }
     }
@@ -149,7 +149,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         let own = self.own_system();
         self.traffic.frames = self.traffic.frames.wrapping_add(1);
         // Our own frames, echoed by the line.
-        if (frame.header.system, frame.header.component) == (own, COMPONENT) {
+        if (frame.header.system, frame.header.component) == (own, COMPONENT_ID) {
             return;
         }
         if self.is_genuine(frame) {
@@ -169,7 +169,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
             SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
             COMMAND_LONG_DATA::ID => self.command(frame, frame.decode::<COMMAND_LONG_DATA>().as_ref()),
             COMMAND_INT_DATA::ID => self.command(frame, frame.decode::<COMMAND_INT_DATA>().as_ref()),
-            SetMode::ID => self.command(frame, Some(&SetMode::of(frame))),
+            SetMode::ID => self.command(frame, Some(&SetMode::read(frame))),
             SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.decoded(frame, Self::set_origin),
             MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
             MISSION_ITEM_INT_DATA::ID | MISSION_ITEM_DATA::ID => self.mission_item(frame),
@@ -204,7 +204,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
 
     /// Whether an addressee is this vehicle or everyone.
     fn is_addressed(&self, system: u8, component: u8) -> bool {
-        (system == 0 || system == self.own_system()) && (component == 0 || component == COMPONENT)
+        (system == 0 || system == self.own_system()) && (component == 0 || component == COMPONENT_ID)
     }
 
     /// Shares the counts, with the parser's.
@@ -268,7 +268,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         match message.tc1 {
             // Two clocks at zero would ask each other for ever.
             0 if frame.time >= self.next_time_sent => {
-                self.next_time_sent = frame.time.saturating_add(TIME_INTERVAL);
+                self.next_time_sent = frame.time.saturating_add(TIME_INTERVAL_US);
                 self.shared.reply(Reply::TimeSync { asked: message.ts1 });
             }
             0 => {}

@@ -7,15 +7,15 @@
 use super::frame::{Frame, Header};
 use heapless::Deque;
 
-/// How long the same frame again is a repetition, us. Its sequence number returns after 256 frames, which take longer.
-const REPETITION: u64 = 1_000_000;
+/// How long the same frame again is a repetition. Its sequence number returns after 256 frames, which take longer.
+const REPETITION_MAX_US: u64 = 1_000_000;
 
 /// Commands that are remembered to detect repetitions.
-const REMEMBERED: usize = 8;
+const COMMANDS_REMEMBERED: usize = 8;
 
 /// The frames that were acted on last.
 #[derive(Debug, Default)]
-pub struct Repetitions(Deque<Delivered, REMEMBERED>);
+pub struct Repetitions(Deque<Delivered, COMMANDS_REMEMBERED>);
 
 /// A frame that was acted on, with the number of its command.
 #[derive(Debug)]
@@ -42,7 +42,8 @@ impl Repetitions {
     pub fn look(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
         let Frame { header, checksum, time, .. } = *frame;
         let is_same = |before: &Delivered| {
-            (before.header, before.checksum) == (header, checksum) && time.saturating_sub(before.time) < REPETITION
+            (before.header, before.checksum) == (header, checksum)
+                && time.saturating_sub(before.time) < REPETITION_MAX_US
         };
         if let Some(place) = self.0.iter().position(is_same) {
             let sender = (header.system, header.component);

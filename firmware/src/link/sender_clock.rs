@@ -15,29 +15,29 @@
 //! least that o can be, since no message arrives before it is sent, the next message that keeps to it brings o back.
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
-//! that would be more than [`LATE_MAX`] late, or that would bring o down by more than a line becomes quicker: by
-//! [`LEAD_MAX`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
-//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`STEADY`] such frames, and more
+//! that would be more than [`LATE_MAX_US`] late, or that would bring o down by more than a line becomes quicker: by
+//! [`LEAD_MAX_US`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
+//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`TRIAL_FRAMES`] such frames, and more
 //! than were taken meanwhile, it is believed, and o is found anew: forging fewer messages than are true does not
 //! suffice. A line that is that late from some time on looks the same; with TIMESYNC the caller must refuse its
 //! messages first.
 
 /// Frames that prove a clock that is not where it was: 50 ms at 100 Hz.
-pub const STEADY: u8 = 5;
+pub const TRIAL_FRAMES: u8 = 5;
 
-/// How late a message may be, us.
-pub const LATE_MAX: u64 = 500_000;
+/// How late a message may be.
+pub const LATE_MAX_US: u64 = 500_000;
 
-/// How much quicker a line may become than at its first message, us.
-pub const LEAD_MAX: u64 = 100_000;
+/// How much quicker a line may become than at its first message.
+pub const LEAD_MAX_US: u64 = 100_000;
 
-/// By how much the clocks may differ over the frames that prove another clock, us, and how much quicker than those a
-/// line may become. Frames that come too early may differ by [`LEAD_MAX`]: the first message may have been a slow one
+/// By how much the clocks may differ over the frames that prove another clock, and how much quicker than those a
+/// line may become. Frames that come too early may differ by [`LEAD_MAX_US`]: the first message may have been a slow one
 /// on a line whose delay varies.
-const SPACING_ERROR: u64 = 20_000;
+const SPACING_ERROR_MAX_US: u64 = 20_000;
 
 /// One over the drift between two clocks.
-pub(super) const DRIFT: u64 = 5_000;
+pub(super) const INVERSE_DRIFT: u64 = 5_000;
 
 /// The estimate of a sender's clock.
 #[derive(Debug, Clone, Copy)]
@@ -71,7 +71,13 @@ impl SenderClock {
     /// From a sender's first message.
     #[must_use]
     pub fn new(time: u64, arrived: u64) -> Self {
-        Self { offset: difference(arrived, time), spare: LEAD_MAX, last: (time, arrived), begun: arrived, trial: None }
+        Self {
+            offset: difference(arrived, time),
+            spare: LEAD_MAX_US,
+            last: (time, arrived),
+            begun: arrived,
+            trial: None,
+        }
     }
 
     /// o, with what every message takes at least, us: the vehicle's clock less the sender's.
@@ -97,31 +103,31 @@ impl SenderClock {
     pub fn restore(&mut self, least: i128, time: u64, arrived: u64) {
         if self.offset < least && least <= difference(arrived, time) {
             let raised = u64::try_from(least - self.offset).unwrap_or(u64::MAX);
-            *self = Self { offset: least, spare: self.spare.saturating_add(raised).min(LEAD_MAX), ..*self };
+            *self = Self { offset: least, spare: self.spare.saturating_add(raised).min(LEAD_MAX_US), ..*self };
         }
     }
 
     /// When a message of `time` that arrived at `arrived` was true, us of the vehicle's clock; none if its time is not
     /// a new one.
     pub fn stamp(&mut self, time: u64, arrived: u64) -> Option<u64> {
-        let parted = arrived.saturating_sub(self.last.1) / DRIFT;
+        let parted = arrived.saturating_sub(self.last.1) / INVERSE_DRIFT;
         let drifted = self.offset + i128::from(parted);
         let offset = drifted.min(difference(arrived, time));
         let late = difference(arrived, time) - drifted;
         let lowered = u64::try_from((self.offset - offset).max(0)).unwrap_or(u64::MAX);
-        let spare = self.spare.max(self.spare.saturating_add(parted).min(SPACING_ERROR)).checked_sub(lowered);
-        if let (true, Some(spare)) = (self.advances(time) && late <= i128::from(LATE_MAX), spare) {
+        let spare = self.spare.max(self.spare.saturating_add(parted).min(SPACING_ERROR_MAX_US)).checked_sub(lowered);
+        if let (true, Some(spare)) = (self.advances(time) && late <= i128::from(LATE_MAX_US), spare) {
             let trial = self.trial.and_then(Trial::doubt);
             *self = Self { offset, spare, last: (time, arrived), trial, ..*self };
         } else {
-            let apart_max = if spare.is_none() { LEAD_MAX } else { SPACING_ERROR };
+            let apart_max = if spare.is_none() { LEAD_MAX_US } else { SPACING_ERROR_MAX_US };
             let trial = self.trial.and_then(|trial| trial.next(time, arrived, apart_max));
             let trial = trial.unwrap_or_else(|| Trial::new(time, arrived));
             self.trial = Some(trial);
-            if trial.count < STEADY {
+            if trial.count < TRIAL_FRAMES {
                 return None;
             }
-            *self = Self { offset: trial.least, spare: SPACING_ERROR, ..Self::new(time, arrived) };
+            *self = Self { offset: trial.least, spare: SPACING_ERROR_MAX_US, ..Self::new(time, arrived) };
         }
         u64::try_from(i128::from(time) + self.offset).ok()
     }

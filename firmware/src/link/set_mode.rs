@@ -21,7 +21,7 @@ impl SetMode {
 
     /// The fields of a message of that number.
     #[must_use]
-    pub fn of(frame: &Frame<'_>) -> Self {
+    pub fn read(frame: &Frame<'_>) -> Self {
         // Zeros at the end are cut off.
         let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
         Self { main: byte(2), sub: byte(3), system: byte(4), base: byte(5) }

@@ -77,7 +77,7 @@ pub struct Here {
 impl Here {
     /// Of a vehicle in this state; none where it points straight up or down.
     #[must_use]
-    pub fn of(state: &State) -> Option<Self> {
+    pub fn at(state: &State) -> Option<Self> {
         let ahead = (UnitQuaternion::new_unchecked(state.attitude) * Vector3::x()).xy();
         let length = math::sqrt(ahead.norm_squared());
         (length > 0.1).then(|| Self { position: state.position, ahead: ahead / length })
@@ -136,9 +136,9 @@ pub fn setpoint(
 ) -> Result<Setpoint, SetpointRefusal> {
     let &SET_POSITION_TARGET_LOCAL_NED_DATA { x, y, z, vx, vy, vz, afx, afy, afz, type_mask: mask, .. } = message;
     let axes = axes(message.coordinate_frame, here)?;
-    let position = Used::of([x, y, z], mask, NO_POSITION)?;
-    let velocity = Used::of([vx, vy, vz], mask, NO_VELOCITY)?;
-    let acceleration = Used::of([afx, afy, afz], mask, NO_ACCELERATION)?;
+    let position = Used::read([x, y, z], mask, NO_POSITION)?;
+    let velocity = Used::read([vx, vy, vz], mask, NO_VELOCITY)?;
+    let acceleration = Used::read([afx, afy, afz], mask, NO_ACCELERATION)?;
     let place = axes.place(position.vector);
     let (moving, accelerating) = (axes.vector(velocity.vector), axes.vector(acceleration.vector));
     let motion = match (position.axes, velocity.axes, acceleration.axes) {
@@ -188,7 +188,7 @@ struct Used {
 }
 
 impl Used {
-    fn of(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Self, SetpointRefusal> {
+    fn read(vector: [f32; 3], mask: Mask, ignored: Mask) -> Result<Self, SetpointRefusal> {
         // The bits of a vector are neighbours, x lowest.
         let first = ignored.bits().trailing_zeros();
         let axes = [0, 1, 2].map(|axis| mask.bits() >> (first + axis) & 1 == 0);

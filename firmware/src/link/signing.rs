@@ -5,15 +5,15 @@
 //! frame in counts only if its signature is right and its stamp is above that of the frame before it. Stamps rise for
 //! each stream (link, system, component) by itself. The vehicle's own clock of stamps has no calendar: it begins where
 //! it was left off, goes on with the time, and jumps to every accepted stamp that is ahead of it. One that is further
-//! ahead than [`LEAP`] is accepted only as the first since the start, and none from [`LATEST`] on: a sender whose clock
+//! ahead than [`LEAP_MAX`] is accepted only as the first since the start, and none from [`STAMP_MAX`] on: a sender whose clock
 //! is broken would deafen the vehicle to everybody else, or use up the 48 bits.
 //!
 //! A frame that was accepted once is refused for ever after, also from a stream that was forgotten for want of room and
 //! after a restart: stamps at or below a floor are refused from streams that are not known. The floor is the newest
-//! stamp of any forgotten stream, and at boot the one in flash. That is kept ahead of the clock, by [`AHEAD`] when it
-//! is written and [`LEAST_AHEAD`] at least, because nothing can be written in flight.
+//! stamp of any forgotten stream, and at boot the one in flash. That is kept ahead of the clock, by [`KEPT_AHEAD`] when it
+//! is written and [`KEPT_AHEAD_MIN`] at least, because nothing can be written in flight.
 
-use super::frame::{FRAME_MAX, Frame, SIGNED, Version};
+use super::frame::{FRAME_MAX_BYTES, Frame, SIGNED_FLAG, Version};
 use core::cell::RefCell;
 use core::fmt;
 use embassy_sync::blocking_mutex::Mutex;
@@ -23,67 +23,67 @@ use mavlink::{MAVLinkV2MessageRaw, Message, calculate_crc};
 use sha2::{Digest, Sha256};
 
 /// Bytes of a key.
-pub const KEY: usize = 32;
+pub const KEY_BYTES: usize = 32;
 
 /// Words that are kept in flash: the key, and the floor.
-pub const WORDS: usize = KEY / size_of::<u32>() + 2;
+pub const KEPT_WORDS: usize = KEY_BYTES / size_of::<u32>() + 2;
 
 /// 10 us since 2015 began, by the sender's clock; 48 bits.
 pub type Stamp = u64;
 
 /// A minute. A stream that is not known is refused if it is further behind the vehicle's clock.
-const MINUTE: Stamp = 6_000_000;
+const STAMPS_PER_MINUTE: Stamp = 6_000_000;
 
 /// A year: no vehicle is put away for so long, so that no sound clock is further ahead of one that came before.
-pub const LEAP: Stamp = 525_600 * MINUTE;
+pub const LEAP_MAX: Stamp = 525_600 * STAMPS_PER_MINUTE;
 
 /// The year 2100. 48 bits last four years longer.
-pub const LATEST: Stamp = 31_046 * 1_440 * MINUTE;
+pub const STAMP_MAX: Stamp = 31_046 * 1_440 * STAMPS_PER_MINUTE;
 
 /// How far ahead of the clock the kept floor is put: no flight is longer.
-pub const AHEAD: Stamp = 60 * MINUTE;
+pub const KEPT_AHEAD: Stamp = 60 * STAMPS_PER_MINUTE;
 
 /// How far ahead of it the kept floor is at least while it can be kept.
-pub const LEAST_AHEAD: Stamp = 30 * MINUTE;
+pub const KEPT_AHEAD_MIN: Stamp = 30 * STAMPS_PER_MINUTE;
 
 /// Streams that are known at a time.
-pub const STREAMS: usize = 8;
+pub const STREAMS_KNOWN: usize = 8;
 
 /// Bytes of a signature behind the stamp.
-const VALUE: usize = 6;
+const SIGNATURE_BYTES: usize = 6;
 
 /// Bytes of the checksum, and of link and stamp behind it.
-const CHECKSUM: usize = 2;
-const LINK_AND_STAMP: usize = 7;
+const CHECKSUM_BYTES: usize = 2;
+const LINK_AND_STAMP_BYTES: usize = 7;
 
 /// The number of the vehicle's own link.
-const LINK: u8 = 0;
+const OWN_LINK: u8 = 0;
 
 /// The secret of both ends. It is never shown; zeros are no key.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Key([u32; KEY / size_of::<u32>()]);
+pub struct Key([u32; KEY_BYTES / size_of::<u32>()]);
 
 impl Key {
     /// The key of these bytes, if they are one.
     #[must_use]
-    pub fn new(bytes: [u8; KEY]) -> Option<Self> {
+    pub fn new(bytes: [u8; KEY_BYTES]) -> Option<Self> {
         let mut words = [0; _];
         words.iter_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = u32::from_le_bytes(*bytes));
         Self::of_words(words)
     }
 
-    fn of_words(words: [u32; KEY / size_of::<u32>()]) -> Option<Self> {
+    fn of_words(words: [u32; KEY_BYTES / size_of::<u32>()]) -> Option<Self> {
         (words != [0; _]).then_some(Self(words))
     }
 
     /// The signature of a frame that ends with link and stamp.
-    fn sign(&self, frame: &[u8]) -> [u8; VALUE] {
-        let mut bytes = [0; KEY + FRAME_MAX];
-        let (key, rest) = bytes.split_at_mut(KEY);
+    fn sign(&self, frame: &[u8]) -> [u8; SIGNATURE_BYTES] {
+        let mut bytes = [0; KEY_BYTES + FRAME_MAX_BYTES];
+        let (key, rest) = bytes.split_at_mut(KEY_BYTES);
         key.as_chunks_mut().0.iter_mut().zip(self.0).for_each(|(bytes, word)| *bytes = word.to_le_bytes());
         rest.iter_mut().zip(frame).for_each(|(place, byte)| *place = *byte);
-        let digest = Sha256::digest(bytes.get(..KEY + frame.len()).unwrap_or(&bytes));
-        let mut value = [0; VALUE];
+        let digest = Sha256::digest(bytes.get(..KEY_BYTES + frame.len()).unwrap_or(&bytes));
+        let mut value = [0; SIGNATURE_BYTES];
         value.iter_mut().zip(digest).for_each(|(value, byte)| *value = byte);
         value
     }
@@ -138,7 +138,7 @@ struct State {
     since: u64,
     /// Whether a sender's clock was received since the start.
     is_set: bool,
-    streams: [Stream; STREAMS],
+    streams: [Stream; STREAMS_KNOWN],
     floor: Stamp,
     /// The floor after a boot, as flash has it.
     kept: Stamp,
@@ -150,7 +150,7 @@ struct State {
 
 impl State {
     const fn new() -> Self {
-        let streams = [Stream { id: [0; 3], newest: 0 }; STREAMS];
+        let streams = [Stream { id: [0; 3], newest: 0 }; STREAMS_KNOWN];
         let (key, is_set, changed, is_lost) = (None, false, false, false);
         Self { key, newest: 0, since: 0, is_set, streams, floor: 0, kept: 0, changed, is_lost }
     }
@@ -170,7 +170,7 @@ impl State {
     /// Takes a stamp that is new; it is not any more afterwards.
     fn admit(&mut self, id: [u8; 3], stamp: Stamp, now: u64) -> Result<(), Refusal> {
         let clock = self.clock(now);
-        if stamp >= LATEST || self.is_set && stamp > clock.saturating_add(LEAP) {
+        if stamp >= STAMP_MAX || self.is_set && stamp > clock.saturating_add(LEAP_MAX) {
             return Err(Refusal::Ahead);
         }
         let is_known = |stream: &&mut Stream| stream.id == id && stream.newest > 0;
@@ -180,7 +180,7 @@ impl State {
             }
             stream.newest = stamp;
         } else {
-            if stamp <= self.floor || stamp.saturating_add(MINUTE) < clock {
+            if stamp <= self.floor || stamp.saturating_add(STAMPS_PER_MINUTE) < clock {
                 return Err(Refusal::Replayed);
             }
             // A free place, or that of the stream that is furthest behind.
@@ -219,7 +219,7 @@ impl<M: RawMutex> Signing<M> {
     /// Takes a key, or none any more, and a stamp below which nothing was signed with it yet; one that is too late is
     /// none. Stamps received under the same key before stay used.
     pub fn set(&self, key: Option<Key>, stamp: Stamp, now: u64) {
-        let stamp = if stamp < LATEST { stamp } else { 0 };
+        let stamp = if stamp < STAMP_MAX { stamp } else { 0 };
         self.with(|state| {
             if state.key != key || state.is_lost {
                 *state = State { key, floor: stamp, changed: true, ..State::new() };
@@ -256,15 +256,15 @@ impl<M: RawMutex> Signing<M> {
         };
         let Some((key, stamp)) = self.with(next).flatten() else { return };
         let (end, extra) = (frame.raw_bytes().len(), MavMessage::extra_crc(frame.message_id()));
-        *frame.incompatibility_flags_mut() |= SIGNED;
-        if let Some((checked, tail)) = frame.as_mut_slice().split_at_mut_checked(end - CHECKSUM)
+        *frame.incompatibility_flags_mut() |= SIGNED_FLAG;
+        if let Some((checked, tail)) = frame.as_mut_slice().split_at_mut_checked(end - CHECKSUM_BYTES)
             && let Some((tail, _)) = tail.split_first_chunk_mut()
         {
             let [low, high] = calculate_crc(&checked[1..], extra).to_le_bytes();
             let [a, b, c, d, e, f, ..] = stamp.to_le_bytes();
-            *tail = [low, high, LINK, a, b, c, d, e, f];
+            *tail = [low, high, OWN_LINK, a, b, c, d, e, f];
         }
-        let (signed, value) = frame.as_mut_slice().split_at_mut(end + LINK_AND_STAMP);
+        let (signed, value) = frame.as_mut_slice().split_at_mut(end + LINK_AND_STAMP_BYTES);
         if let Some((value, _)) = value.split_first_chunk_mut() {
             *value = key.sign(signed);
         }
@@ -279,14 +279,14 @@ impl<M: RawMutex> Signing<M> {
 
     /// What is to be written to flash at `now`, us, if it is not up to date there, or `is_endangered`.
     #[must_use]
-    pub fn unkept(&self, now: u64, is_endangered: bool) -> Option<[u32; WORDS]> {
+    pub fn unkept(&self, now: u64, is_endangered: bool) -> Option<[u32; KEPT_WORDS]> {
         self.with(|state| {
             let clock = state.clock(now);
-            let does = clock.saturating_add(LEAST_AHEAD) <= state.kept || state.key.is_none();
+            let does = clock.saturating_add(KEPT_AHEAD_MIN) <= state.kept || state.key.is_none();
             if does && !state.changed && !is_endangered {
                 return None;
             }
-            (state.kept, state.changed) = (clock.saturating_add(AHEAD), false);
+            (state.kept, state.changed) = (clock.saturating_add(KEPT_AHEAD), false);
             let [a, b, c, d, e, f, g, h] = state.key.map_or([0; _], |key| key.0);
             Some([a, b, c, d, e, f, g, h, state.kept as u32, (state.kept >> u32::BITS) as u32])
         })
@@ -294,7 +294,7 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// Takes what was in flash at boot: nothing that was accepted before is accepted again.
-    pub fn restore(&self, words: &[u32; WORDS]) {
+    pub fn restore(&self, words: &[u32; KEPT_WORDS]) {
         let [key @ .., low, high] = *words;
         let (key, kept) = (Key::of_words(key), Stamp::from(high) << u32::BITS | Stamp::from(low));
         self.with(|state| *state = State { key, newest: kept, floor: kept, kept, ..State::new() });
@@ -325,8 +325,8 @@ fn number([a, b, c, d, e, f]: [u8; 6]) -> Stamp {
 }
 
 /// A signed frame's parts: what is signed, link and stamp at its end, the signature.
-fn parts<'a>(frame: &Frame<'a>) -> Option<(&'a [u8], [u8; LINK_AND_STAMP], [u8; VALUE])> {
-    if frame.version == Version::V1 || frame.bytes.get(2)? & SIGNED == 0 {
+fn parts<'a>(frame: &Frame<'a>) -> Option<(&'a [u8], [u8; LINK_AND_STAMP_BYTES], [u8; SIGNATURE_BYTES])> {
+    if frame.version == Version::V1 || frame.bytes.get(2)? & SIGNED_FLAG == 0 {
         return None;
     }
     let (signed, value) = frame.bytes.split_last_chunk()?;

@@ -38,8 +38,8 @@ pub const STREAMS: [(Kind, Rate); 19] = [
     (Kind::ProtocolVersion,    Rate::OnRequest),
 ];
 
-/// The shortest interval that is granted, us.
-const SHORTEST: u64 = 10_000;
+/// The shortest interval that is granted.
+const INTERVAL_MIN_US: u64 = 10_000;
 
 /// One message: how often it goes out, and when next.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +104,7 @@ impl Schedule {
         for stream in self.0.iter_mut().filter(|stream| stream.kind == kind) {
             stream.asked = match u64::try_from(interval) {
                 Ok(0) => None,
-                Ok(interval) => Some(interval.max(SHORTEST)),
+                Ok(interval) => Some(interval.max(INTERVAL_MIN_US)),
                 Err(_) => Some(u64::MAX),
             };
             stream.due = now;

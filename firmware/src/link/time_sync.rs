@@ -11,18 +11,18 @@
 //! cannot be of the same clock, it was set, and the last of them counts. So o holds no delay of the line, which
 //! [`SenderClock`](super::sender_clock::SenderClock) cannot distinguish from a clock that is behind.
 
-use super::sender_clock::DRIFT;
+use super::sender_clock::INVERSE_DRIFT;
 use mavlink::dialects::common::TIMESYNC_DATA;
 
-/// The longest that an answer may take, us.
-pub const ANSWER_MAX: u64 = 100_000;
+/// The longest that an answer may take.
+pub const ANSWER_DELAY_MAX_US: u64 = 100_000;
 
 /// Answers in a row that contradict the best one and prove that the clock was set: a single one may be of another clock
 /// in the same system.
-const SET: u8 = 2;
+const CONTRADICTIONS_MAX: u8 = 2;
 
-/// The greatest age of an answer that counts, us: three questions' time.
-const RECENT: u64 = 3_000_000;
+/// The greatest age of an answer that counts: three questions' time.
+const ANSWER_AGE_MAX_US: u64 = 3_000_000;
 
 /// The clocks' offset, the vehicle's less the sender's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,13 +65,14 @@ impl TimeSync {
     /// Of a clock that differs by about `value`, us, at `now`, us: any answer replaces it.
     #[must_use]
     pub fn presumed(value: i128, now: u64) -> Self {
-        Self { best: Some((Offset { value, error: ANSWER_MAX }, now)), ..Self::default() }
+        Self { best: Some((Offset { value, error: ANSWER_DELAY_MAX_US }, now)), ..Self::default() }
     }
 
     /// Takes an answer that arrived at `arrived`, us. One to a question of the future, or of long ago, says nothing.
     pub fn take(&mut self, message: &TIMESYNC_DATA, arrived: u64) {
         let asked = u64::try_from(message.ts1 / 1_000).ok();
-        let Some(took) = asked.and_then(|asked| arrived.checked_sub(asked)).filter(|&took| took <= ANSWER_MAX) else {
+        let Some(took) = asked.and_then(|asked| arrived.checked_sub(asked)).filter(|&took| took <= ANSWER_DELAY_MAX_US)
+        else {
             return;
         };
         let value = i128::from(arrived) - i128::from(took / 2) - i128::from(message.tc1 / 1_000);
@@ -81,7 +82,7 @@ impl TimeSync {
             (offset.value - best.value).unsigned_abs() > u128::from(offset.error) + u128::from(best.error)
         });
         self.contradictions = if is_other { self.contradictions.saturating_add(1) } else { 0 };
-        if best.is_none_or(|best| offset.error <= best.error) || self.contradictions >= SET {
+        if best.is_none_or(|best| offset.error <= best.error) || self.contradictions >= CONTRADICTIONS_MAX {
             self.best = Some((offset, arrived));
             self.contradictions = 0;
         }
@@ -94,14 +95,14 @@ impl TimeSync {
     #[must_use]
     pub fn recent(&self, now: u64) -> Option<Offset> {
         let confirmed = self.confirmed?;
-        self.offset(now).filter(|_| now.saturating_sub(confirmed) <= RECENT)
+        self.offset(now).filter(|_| now.saturating_sub(confirmed) <= ANSWER_AGE_MAX_US)
     }
 
     /// The offset at `now`, us.
     #[must_use]
     pub fn offset(&self, now: u64) -> Option<Offset> {
         let (offset, arrived) = self.best?;
-        Some(Offset { error: offset.error + now.saturating_sub(arrived).div_ceil(DRIFT), ..offset })
+        Some(Offset { error: offset.error + now.saturating_sub(arrived).div_ceil(INVERSE_DRIFT), ..offset })
     }
 }
 
@@ -167,7 +168,7 @@ mod tests {
     fn an_answer_to_no_question_or_an_old_one_is_ignored() {
         let mut sync = TimeSync::default();
         for (ts1, arrived) in
-            [(2_000_001_000, 2_000_000), (-1_000, 5), (i64::MIN, 5), (i64::MAX, u64::MAX), (0, ANSWER_MAX + 1)]
+            [(2_000_001_000, 2_000_000), (-1_000, 5), (i64::MIN, 5), (i64::MAX, u64::MAX), (0, ANSWER_DELAY_MAX_US + 1)]
         {
             sync.take(&TIMESYNC_DATA { tc1: i64::MIN, ts1 }, arrived);
             assert_eq!(sync.offset(arrived), None, "{ts1} {arrived}");

@@ -1,6 +1,6 @@
 //! Outgoing messages and their times: telemetry by the clock; answers, replies and events as they come.
 //!
-//! Every write has [`WRITE_TIME_MAX`]; a line that takes no more loses frames, and holds up nothing but this task.
+//! Every write has [`WRITE_TIMEOUT_US`]; a line that takes no more loses frames, and holds up nothing but this task.
 
 use super::acknowledgement::{Acknowledgement, Order};
 use super::download::{Download, Message};
@@ -25,18 +25,18 @@ use mavlink::dialects::common::{
     MISSION_ITEM_REACHED_DATA, MISSION_REQUEST_INT_DATA, MavResult,
 };
 
-/// The longest a frame may take to be written, us: 280 bytes take 49 ms at 57,600 baud.
-pub const WRITE_TIME_MAX: u64 = 100_000;
+/// The longest a frame may take to be written: 280 bytes take 49 ms at 57,600 baud.
+pub const WRITE_TIMEOUT_US: u64 = 100_000;
 
-/// Time between the values of a list of parameters, us: slow enough to leave the line to the rest.
-const LIST_INTERVAL: u64 = 20_000;
+/// Time between the values of a list of parameters: slow enough to leave the line to the rest.
+const LIST_INTERVAL_US: u64 = 20_000;
 
-/// The greatest age of a report that is still sent, and of a voltage, us.
-const REPORT_AGE_MAX: u64 = 1_000_000;
+/// The greatest age of a report that is still sent, and of a voltage.
+const REPORT_AGE_MAX_US: u64 = 1_000_000;
 
 /// Answers to commands that are remembered, to be given again; and commands that wait for another's answer.
-const ANSWERED: usize = 8;
-const OWED: usize = 6;
+const ANSWERS_REMEMBERED: usize = 8;
+const OWED_CAPACITY: usize = 6;
 
 /// A command that is answered as another is.
 #[derive(Clone, Copy)]
@@ -48,7 +48,7 @@ struct Owed {
 }
 
 /// No command has this number.
-const NONE: Order = Order { command: 0, sender: (0, 0), frame: 0 };
+const NO_ORDER: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 
 /// Transmits for ever: in turn a message that is due and one that was requested, so that neither keeps the other from
 /// being sent, however slow the line.
@@ -60,7 +60,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
             if turn(&mut speaker, clock.now()) {
                 silent = false;
                 speaker.writer.sign(shared.signing(), clock.now());
-                send(&mut line, clock, WRITE_TIME_MAX, speaker.writer.bytes()).await;
+                send(&mut line, clock, WRITE_TIMEOUT_US, speaker.writer.bytes()).await;
             }
         }
         if silent {
@@ -84,11 +84,11 @@ struct Speaker<'a, M: RawMutex> {
     /// Lost events that were reported.
     reported: u32,
     /// The last answers to commands, one of each frame.
-    answered: [Acknowledgement; ANSWERED],
+    answered: [Acknowledgement; ANSWERS_REMEMBERED],
     /// Where the last was put; the next takes the place of the oldest.
     next_answer: usize,
     /// Questions that one of them answers, now or once it is there.
-    owed: [Owed; OWED],
+    owed: [Owed; OWED_CAPACITY],
     next_owed: usize,
 }
 
@@ -102,9 +102,9 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
             mission: MissionReport::default(),
             writer: Writer::new(),
             reported: 0,
-            answered: [const { NONE.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
+            answered: [const { NO_ORDER.answered(MavResult::MAV_RESULT_ACCEPTED) }; _],
             next_answer: 0,
-            owed: [Owed { order: NONE, of: 0, times: 0 }; _],
+            owed: [Owed { order: NO_ORDER, of: 0, times: 0 }; _],
             next_owed: 0,
         }
     }
@@ -158,7 +158,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     fn listed(&mut self, now: u64) -> bool {
         let Some((index, time)) = self.list.filter(|&(_, time)| now >= time) else { return false };
         let name = Name::from_index(index);
-        self.list = name.map(|_| (index + 1, time.max(now.saturating_sub(LIST_INTERVAL)) + LIST_INTERVAL));
+        self.list = name.map(|_| (index + 1, time.max(now.saturating_sub(LIST_INTERVAL_US)) + LIST_INTERVAL_US));
         let Some(name) = name else { return false };
         self.parameter(name);
         true
@@ -177,10 +177,10 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     /// Writes a message of the present state; whether there was a value to send.
     fn message(&mut self, kind: Kind, now: u64) -> bool {
         let shared = self.shared;
-        let voltage = shared.voltage().get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX);
+        let voltage = shared.voltage().get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX_US);
         let view = View {
             now,
-            report: shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX),
+            report: shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX_US),
             voltage: voltage.map(|voltage| voltage.value),
             traffic: shared.traffic().get().map_or_else(Default::default, |traffic| traffic.value),
             simulated: shared.hil().is_raised(),
@@ -235,7 +235,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         self.say(&acknowledgement);
         let before = self.answered.iter().position(|before| before.order.frame == acknowledgement.order.frame);
         let place = before.unwrap_or_else(|| {
-            self.next_answer = (self.next_answer + 1) % ANSWERED;
+            self.next_answer = (self.next_answer + 1) % ANSWERS_REMEMBERED;
             self.next_answer
         });
         if let Some(place) = self.answered.get_mut(place) {
@@ -251,7 +251,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 match self.owed.iter_mut().find(|owed| (owed.order.frame, owed.of) == (order.frame, of)) {
                     Some(owed) => owed.times = owed.times.saturating_add(1),
                     None => {
-                        self.next_owed = (self.next_owed + 1) % OWED;
+                        self.next_owed = (self.next_owed + 1) % OWED_CAPACITY;
                         if let Some(place) = self.owed.get_mut(self.next_owed) {
                             *place = Owed { order, of, times: 1 };
                         }

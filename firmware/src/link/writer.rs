@@ -1,6 +1,6 @@
 //! Frames to send: messages of the `mavlink` crate's types as frames of version 2, numbered in the order they are sent.
 
-use super::COMPONENT;
+use super::COMPONENT_ID;
 use super::signing::Signing;
 use crate::shared::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -21,7 +21,7 @@ impl Writer {
 
     /// Writes a message from this component of `system` over the one before.
     pub fn write(&mut self, system: u8, message: &impl MessageData) {
-        let header = MavHeader { system_id: system.into(), component_id: COMPONENT, sequence: self.sequence };
+        let header = MavHeader { system_id: system.into(), component_id: COMPONENT_ID, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         // Not the last one's: signed, perhaps.
         *self.frame.incompatibility_flags_mut() = 0;

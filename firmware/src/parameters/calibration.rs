@@ -13,7 +13,7 @@ use estimation::imu::standstill::StandstillMeans;
 use nalgebra::Vector3;
 
 /// Rows of one sensor: bias, offset and scale on three axes, level on two.
-const ROWS: usize = 11;
+const ROWS_OF_A_SENSOR: usize = 11;
 
 /// A sensor's rows, in the table's order.
 fn rows(unit: Unit) -> impl Iterator<Item = Name> {
@@ -21,7 +21,7 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
         Unit::First => Name::Imu1GyroX,
         Unit::Second => Name::Imu2GyroX,
     };
-    PARAMETERS.iter().skip(first as usize).take(ROWS).map(|row| row.parameter)
+    PARAMETERS.iter().skip(first as usize).take(ROWS_OF_A_SENSOR).map(|row| row.parameter)
 }
 
 /// What corrects the samples of `unit`.
@@ -29,7 +29,7 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
 /// # Errors
 /// All of it but the level, where that is tilted by more than 5 degrees.
 pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Result<Calibration, Calibration> {
-    let mut values = [0.0; ROWS];
+    let mut values = [0.0; ROWS_OF_A_SENSOR];
     for (value, name) in values.iter_mut().zip(rows(unit)) {
         *value = parameters.get(name);
     }

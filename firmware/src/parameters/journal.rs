@@ -22,23 +22,23 @@
 use crate::hardware::{Fault, Flash, Record};
 
 /// The most values that a record holds.
-pub const VALUES_MAX: usize = VALUES_END - VALUES;
+pub const VALUES_MAX: usize = CHECKSUM_WORD - FIRST_VALUE_WORD;
 
 /// Where in a record its values start, and where they end, which is where its checksum is.
-const VALUES: usize = 2;
-const VALUES_END: usize = size_of::<Record>() / size_of::<u32>() - 1;
+const FIRST_VALUE_WORD: usize = 2;
+const CHECKSUM_WORD: usize = size_of::<Record>() / size_of::<u32>() - 1;
 
 /// A word without anything in it.
-const BLANK: u32 = u32::MAX;
+const BLANK_WORD: u32 = u32::MAX;
 
 /// Where a record's second word has how many words it holds. Older firmware wrote zeros above it, and reads anything
 /// else there as more words than there are.
 const COUNT_MASK: u32 = 0xFFFF;
 
 /// Above it: the other kind has a record, that is lost, and the lowest bits of the number of its first copy.
-const HAS_OTHER: u32 = 1 << 31;
-const OTHER_LOST: u32 = 1 << 30;
-const OTHER_BITS: u32 = 14;
+const HAS_OTHER_BIT: u32 = 1 << 31;
+const OTHER_LOST_BIT: u32 = 1 << 30;
+const OTHER_SHIFT: u32 = 14;
 
 /// Copies of a record.
 const RECORD_COPIES: usize = 2;
@@ -53,7 +53,7 @@ pub enum Kind {
 }
 
 /// What the checksums of each kind are changed by.
-const SEALS: [u32; 2] = [0, 0x4E47_4953];
+const CHECKSUM_MASKS: [u32; 2] = [0, 0x4E47_4953];
 
 /// What there is of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl<F: Flash> Journal<F> {
         let mut ends = [0; 2];
         for place in 0..2 * F::RECORDS {
             let record = journal.flash.read(place);
-            if record == Ok([BLANK; _]) {
+            if record == Ok([BLANK_WORD; _]) {
                 continue;
             }
             (ends[place / F::RECORDS], journal.is_blank) = (place + 1, false);
@@ -153,7 +153,7 @@ impl<F: Flash> Journal<F> {
     /// Takes note of a whole record.
     fn find(&mut self, kind: usize, place: usize, record: &Record) {
         let number = record[0];
-        let values = checksum(&record[VALUES..VALUES_END]);
+        let values = checksum(&record[FIRST_VALUE_WORD..CHECKSUM_WORD]);
         let newest = &mut self.newest[kind];
         let follows = |before: u32, after: u32| before.wrapping_add(1) == after;
         match newest {
@@ -184,7 +184,7 @@ impl<F: Flash> Journal<F> {
             return if kept == Kept::Lost { kept } else { Kept::Never };
         };
         let Ok(record) = self.flash.read(newest.place) else { return Kept::Lost };
-        let stored = record[VALUES..VALUES_END].iter().take((record[1] & COUNT_MASK) as usize);
+        let stored = record[FIRST_VALUE_WORD..CHECKSUM_WORD].iter().take((record[1] & COUNT_MASK) as usize);
         words.iter_mut().zip(stored).for_each(|(word, stored)| *word = *stored);
         kept
     }
@@ -203,9 +203,9 @@ impl<F: Flash> Journal<F> {
     /// [`Fault`] if the flash does not take both copies. The record before them, or the first of them, counts then; the
     /// next goes to another place.
     pub fn append(&mut self, kind: Kind, words: &[u32]) -> Result<(), Fault> {
-        let mut record = [BLANK; _];
+        let mut record = [BLANK_WORD; _];
         record[1] = words.len() as u32;
-        record[VALUES..VALUES_END].iter_mut().zip(words).for_each(|(place, word)| *place = *word);
+        record[FIRST_VALUE_WORD..CHECKSUM_WORD].iter_mut().zip(words).for_each(|(place, word)| *place = *word);
         self.put(kind, &mut record)?;
         self.lost[kind as usize] = false;
         // The other kind's is to know of it.
@@ -264,12 +264,12 @@ impl<F: Flash> Journal<F> {
         self.number = self.number.wrapping_add(1);
         let other = match self.newest(kind.other()) {
             Some(newest) => stated(newest.number.wrapping_sub(newest.is_doubled.into())),
-            None if self.is_lost(kind.other()) => HAS_OTHER | OTHER_LOST,
+            None if self.is_lost(kind.other()) => HAS_OTHER_BIT | OTHER_LOST_BIT,
             None => 0,
         };
         record[0] = self.number;
         record[1] = record[1] & COUNT_MASK | other;
-        record[VALUES_END] = checksum(&record[..VALUES_END]) ^ SEALS[kind as usize];
+        record[CHECKSUM_WORD] = checksum(&record[..CHECKSUM_WORD]) ^ CHECKSUM_MASKS[kind as usize];
         self.flash.write(place, record)?;
         if self.flash.read(place)? != *record {
             return Err(Fault);
@@ -287,13 +287,13 @@ impl Newest {
 
     /// Whether it knows that there is a record of the other kind.
     fn knows_other(&self) -> bool {
-        self.head & HAS_OTHER != 0
+        self.head & HAS_OTHER_BIT != 0
     }
 }
 
 /// What a record says of the other kind's newest, the first copy of which has this number.
 fn stated(number: u32) -> u32 {
-    HAS_OTHER | (number & ((1 << OTHER_BITS) - 1)) << (u32::BITS / 2)
+    HAS_OTHER_BIT | (number & ((1 << OTHER_SHIFT) - 1)) << (u32::BITS / 2)
 }
 
 impl Kind {
@@ -307,8 +307,8 @@ impl Kind {
 
 /// What a record holds, if it is whole.
 fn kind(record: &Record) -> Option<usize> {
-    let seal = record[VALUES_END] ^ checksum(&record[..VALUES_END]);
-    SEALS.iter().position(|known| *known == seal)
+    let seal = record[CHECKSUM_WORD] ^ checksum(&record[..CHECKSUM_WORD]);
+    CHECKSUM_MASKS.iter().position(|known| *known == seal)
 }
 
 /// CRC-32 (that of Ethernet) of words, each taken low byte first.

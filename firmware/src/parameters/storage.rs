@@ -15,17 +15,17 @@ use super::table::PARAMETERS;
 use super::{DEFAULTS, Values};
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault, Flash};
-use crate::link::signing::WORDS;
+use crate::link::signing::KEPT_WORDS;
 use crate::shared::{Event, Severity, StorageView};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 const _: () = assert!(PARAMETERS.len() <= VALUES_MAX);
 
-/// How often the values are looked at without a word that one has changed, us.
-const LOOK: u64 = 10_000_000;
+/// How often the values are looked at without a word that one has changed.
+const SAVE_POLL_INTERVAL_US: u64 = 10_000_000;
 
-/// How often a change waiting for the vehicle to disarm is looked at again, us.
-const RETRY: u64 = 200_000;
+/// How often a change waiting for the vehicle to disarm is looked at again.
+const SAVE_RETRY_INTERVAL_US: u64 = 200_000;
 
 /// Flash that keeps parameters.
 pub struct Storage<F> {
@@ -45,7 +45,7 @@ impl<F: Flash> Storage<F> {
             shared.parameters().lose_all();
             shared.announce(Event::new(Severity::Critical, "Parameters lost: defaults taken; set them again"));
         }
-        let mut signing = [0; WORDS];
+        let mut signing = [0; KEPT_WORDS];
         match journal.read(Kind::Signing, &mut signing) {
             Kept::Whole => {
                 shared.signing().restore(&signing);
@@ -75,12 +75,12 @@ impl<F: Flash> Storage<F> {
     pub async fn keep<M: RawMutex>(&mut self, clock: &impl Clock, shared: StorageView<'_, M>) -> ! {
         loop {
             // A change is announced by the signal; the time limit only makes the wait a bounded one.
-            let _ = within(clock, LOOK, shared.parameters().changed.wait()).await;
+            let _ = within(clock, SAVE_POLL_INTERVAL_US, shared.parameters().changed.wait()).await;
             // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
             shared.saving().raise();
             while shared.is_turning() {
                 shared.saving().lower();
-                clock.until(clock.now().saturating_add(RETRY)).await;
+                clock.until(clock.now().saturating_add(SAVE_RETRY_INTERVAL_US)).await;
                 shared.saving().raise();
             }
             self.save(shared);

@@ -1,11 +1,11 @@
 //! What a noisy line says again and again counts once it has come in [`FRAMES_MIN`] frames in a row, over
-//! [`SWITCH_DEBOUNCE`].
+//! [`SWITCH_DEBOUNCE_US`].
 //!
 //! CRSF has 8 bits of checksum, so of frames that are corrupted on their way one in some 256 passes. One of these must
 //! not move a switch.
 
-/// How long something must have come without anything else between, us.
-pub const SWITCH_DEBOUNCE: u64 = 60_000;
+/// How long something must have come without anything else between.
+pub const SWITCH_DEBOUNCE_US: u64 = 60_000;
 
 /// In how many frames it must have come, also where a frame takes longer than usual.
 pub const FRAMES_MIN: u8 = 3;
@@ -36,7 +36,7 @@ impl<T: Copy + PartialEq> Debounced<T> {
         let (_, since, frames) = self.coming.filter(|(coming, ..)| *coming == value).unwrap_or((value, now, 0));
         let frames = frames.saturating_add(1);
         let is_new = self.counts != Some(value);
-        let changes = is_new && frames >= FRAMES_MIN && now.saturating_sub(since) >= SWITCH_DEBOUNCE;
+        let changes = is_new && frames >= FRAMES_MIN && now.saturating_sub(since) >= SWITCH_DEBOUNCE_US;
         if changes {
             self.counts = Some(value);
         }

@@ -8,16 +8,16 @@ use controller_core::state::State;
 use nalgebra::Vector3;
 
 /// The part of its way that a stick may be from its rest and still be there.
-const DEAD: f32 = 0.06;
+const DEAD_BAND: f32 = 0.06;
 
-/// The greatest speeds of the sticks' setpoint, m/s, across and up or down; and the greatest rate of turn, rad/s.
-const ACROSS: f32 = 3.0;
-const VERTICAL: f32 = 1.0;
-const TURNING: f32 = 1.0;
+/// The greatest speeds of the sticks' setpoint, across and up or down; and the greatest rate of turn, rad/s.
+const SPEED_MAX_M_PER_S: f32 = 3.0;
+const CLIMB_MAX_M_PER_S: f32 = 1.0;
+const YAW_RATE_MAX_RAD_PER_S: f32 = 1.0;
 
 /// How far up a stick begins a flight, and how far down it requests a landing.
-const BEGINS: f32 = 0.3;
-const LANDS: f32 = -0.95;
+const TAKE_OFF_STICK_MIN: f32 = 0.3;
+const LANDING_STICK_MAX: f32 = -0.95;
 
 /// Sticks, each from -1 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,8 +50,8 @@ impl Sticks {
     #[must_use]
     pub fn push(&self) -> Push {
         match self.up {
-            up if up < LANDS => Push::Down,
-            up if up > BEGINS => Push::Up,
+            up if up < LANDING_STICK_MAX => Push::Down,
+            up if up > TAKE_OFF_STICK_MIN => Push::Up,
             _ if [self.forward, self.right, self.up, self.yaw].iter().all(|stick| live(*stick) == 0.0) => Push::None,
             _ => Push::Any,
         }
@@ -61,15 +61,18 @@ impl Sticks {
     #[must_use]
     pub fn setpoint(&self, state: &State) -> Option<Setpoint> {
         // Ahead, left, up.
-        let velocity = Vector3::new(live(self.forward), -live(self.right), 0.0) * ACROSS;
-        let velocity = Here::of(state)?.turned(&velocity) + Vector3::z() * (live(self.up) * VERTICAL);
+        let velocity = Vector3::new(live(self.forward), -live(self.right), 0.0) * SPEED_MAX_M_PER_S;
+        let velocity = Here::at(state)?.turned(&velocity) + Vector3::z() * (live(self.up) * CLIMB_MAX_M_PER_S);
         // To the right is clockwise from above.
-        Some(Setpoint { motion: Motion::Velocity(velocity), turn: HeadingSetpoint::Rate(-live(self.yaw) * TURNING) })
+        Some(Setpoint {
+            motion: Motion::Velocity(velocity),
+            turn: HeadingSetpoint::Rate(-live(self.yaw) * YAW_RATE_MAX_RAD_PER_S),
+        })
     }
 }
 
 /// A stick's way beyond its rest, -1 to 1.
 fn live(stick: f32) -> f32 {
-    let beyond = (stick.abs() - DEAD).max(0.0) / (1.0 - DEAD);
+    let beyond = (stick.abs() - DEAD_BAND).max(0.0) / (1.0 - DEAD_BAND);
     if stick < 0.0 { -beyond } else { beyond }
 }

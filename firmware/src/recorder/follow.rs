@@ -30,7 +30,7 @@ pub enum Followed {
     /// A record.
     Record {
         /// It.
-        record: [u8; tick::SIZE],
+        record: [u8; tick::TICK_BYTES],
         /// How many were overwritten before it.
         missed: u32,
         /// Whether a flight begins with what was read of it.

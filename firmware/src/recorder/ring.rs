@@ -12,16 +12,16 @@ use super::tick;
 use mavlink::calculate_crc;
 
 /// Bytes of a slot.
-pub const SLOT: usize = tick::SIZE + TAIL;
+pub const SLOT_BYTES: usize = tick::TICK_BYTES + TAIL_BYTES;
 
 /// Number, flight and checksum.
-const TAIL: usize = 8;
+const TAIL_BYTES: usize = 8;
 
 /// What the checksum begins with: another layout of the record is no record.
-const SEED: u8 = tick::FORMAT.len() as u8;
+const CHECKSUM_SEED: u8 = tick::FORMAT.len() as u8;
 
 /// A slot of the memory.
-pub type Slot = [u8; SLOT];
+pub type Slot = [u8; SLOT_BYTES];
 
 /// What stands in a slot beside its record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,13 +32,13 @@ struct Label {
 
 impl Label {
     /// The label of a slot whose checksum is right.
-    fn of(slot: &Slot) -> Option<Self> {
+    fn read(slot: &Slot) -> Option<Self> {
         let (rest, checksum) = slot.split_last_chunk::<2>()?;
         let (rest, flight) = rest.split_last_chunk::<2>()?;
         let (_, number) = rest.split_last_chunk::<4>()?;
-        let covered = slot.first_chunk::<{ SLOT - 2 }>()?;
+        let covered = slot.first_chunk::<{ SLOT_BYTES - 2 }>()?;
         let label = Self { number: u32::from_le_bytes(*number), flight: u16::from_le_bytes(*flight) };
-        (calculate_crc(covered, SEED) == u16::from_le_bytes(*checksum)).then_some(label)
+        (calculate_crc(covered, CHECKSUM_SEED) == u16::from_le_bytes(*checksum)).then_some(label)
     }
 }
 
@@ -57,7 +57,7 @@ impl<'m> Ring<'m> {
     /// Finds what `slots` have kept.
     #[must_use]
     pub fn recover(slots: &'m mut [Slot]) -> Self {
-        let labelled = slots.iter().enumerate().filter_map(|(index, slot)| Some((index, Label::of(slot)?)));
+        let labelled = slots.iter().enumerate().filter_map(|(index, slot)| Some((index, Label::read(slot)?)));
         let Some((newest, label)) = labelled.max_by_key(|(_, label)| label.number) else {
             return Self { slots, next: 0, label: Label { number: 0, flight: 0 }, count: 0 };
         };
@@ -65,7 +65,7 @@ impl<'m> Ring<'m> {
         let follows = |back: &usize| {
             let slot = slots.get((newest + length - back) % length);
             let number = label.number.checked_sub(*back as u32);
-            number.is_some_and(|number| slot.and_then(Label::of) == Some(Label { number, ..label }))
+            number.is_some_and(|number| slot.and_then(Label::read) == Some(Label { number, ..label }))
         };
         let count = (0..length).take_while(follows).count();
         Self { slots, next: (newest + 1) % length, label, count }
@@ -78,13 +78,14 @@ impl<'m> Ring<'m> {
     }
 
     /// Writes one record.
-    pub fn put(&mut self, record: &[u8; tick::SIZE]) {
+    pub fn put(&mut self, record: &[u8; tick::TICK_BYTES]) {
         let number = self.label.number.wrapping_add(1);
         let Some(slot) = self.slots.get_mut(self.next) else { return };
-        let mut written: Slot = [0; SLOT];
+        let mut written: Slot = [0; SLOT_BYTES];
         let tail = number.to_le_bytes().into_iter().chain(self.label.flight.to_le_bytes());
         written.iter_mut().zip(record.iter().copied().chain(tail)).for_each(|(to, from)| *to = from);
-        let checksum = written.first_chunk::<{ SLOT - 2 }>().map_or(0, |covered| calculate_crc(covered, SEED));
+        let checksum =
+            written.first_chunk::<{ SLOT_BYTES - 2 }>().map_or(0, |covered| calculate_crc(covered, CHECKSUM_SEED));
         if let Some(last) = written.last_chunk_mut::<2>() {
             *last = checksum.to_le_bytes();
         }
@@ -108,7 +109,7 @@ impl<'m> Ring<'m> {
 
     /// A record, the oldest first.
     #[must_use]
-    pub fn get(&self, index: usize) -> Option<&[u8; tick::SIZE]> {
+    pub fn get(&self, index: usize) -> Option<&[u8; tick::TICK_BYTES]> {
         let back = self.count.checked_sub(index).filter(|&back| back > 0)?;
         let length = self.slots.len();
         self.slots.get((self.next + length - back) % length)?.first_chunk()

@@ -15,7 +15,7 @@ float[3] angular_velocity;float[3] reference_position;float[3] reference_velocit
 float[4] motors;float voltage;float thrust_scale;float pose_age;uint16_t missed_ticks;uint8_t mode;uint8_t airborne;";
 
 /// Bytes of a record.
-pub const SIZE: usize = 8 + 4 * 30 + 2 + 1 + 1;
+pub const TICK_BYTES: usize = 8 + 4 * 30 + 2 + 1 + 1;
 
 /// One control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +47,8 @@ pub struct Tick {
 impl Tick {
     /// The record.
     #[must_use]
-    pub fn to_bytes(&self) -> [u8; SIZE] {
-        let mut record = Writer { bytes: [0; SIZE], at: 0 };
+    pub fn to_bytes(&self) -> [u8; TICK_BYTES] {
+        let mut record = Writer { bytes: [0; TICK_BYTES], at: 0 };
         record.put(&self.time.to_le_bytes());
         let state = self.state.as_ref();
         record.vector(state.map(|state| &state.position));
@@ -76,7 +76,7 @@ impl Tick {
 
 /// Bytes one after the other.
 struct Writer {
-    bytes: [u8; SIZE],
+    bytes: [u8; TICK_BYTES],
     at: usize,
 }
 
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_format_is_as_long_as_a_record_and_has_no_gaps() {
-        assert_eq!(fields().iter().map(|(size, count, _)| size * count).sum::<usize>(), SIZE);
+        assert_eq!(fields().iter().map(|(size, count, _)| size * count).sum::<usize>(), TICK_BYTES);
         assert!(fields().is_sorted_by(|a, b| a.0 >= b.0));
         assert_eq!(MotorCommand::One { motor: 2, level: 0.5 }.levels(), [0.0, 0.0, 0.5, 0.0]);
     }

@@ -13,10 +13,10 @@ use super::ring::Ring;
 use super::tick;
 
 /// The first bytes of every file, with the format's version.
-const MAGIC: [u8; 8] = [b'U', b'L', b'o', b'g', 0x01, 0x12, 0x35, 0x01];
+const FILE_MAGIC: [u8; 8] = [b'U', b'L', b'o', b'g', 0x01, 0x12, 0x35, 0x01];
 
 /// Kind B: nothing that a reader must know about, nothing appended.
-const FLAGS: [u8; 43] = {
+const FLAGS_MESSAGE: [u8; 43] = {
     let mut message = [0; 43];
     message[0] = 40;
     message[2] = b'B';
@@ -36,10 +36,10 @@ const INFORMATION: [Information; 4] = [
 ];
 
 /// What the vehicle is called takes so many bytes, spaces at its end: files are as long whatever it is called.
-const VEHICLE: usize = 32;
+const VEHICLE_NAME_BYTES: usize = 32;
 const VEHICLE_KEY: &str = "char[32] vehicle";
-const VEHICLE_HEAD: [u8; 4] = Information::head(VEHICLE_KEY, VEHICLE);
-const SPACES: [u8; VEHICLE] = [b' '; VEHICLE];
+const VEHICLE_HEAD: [u8; 4] = Information::head(VEHICLE_KEY, VEHICLE_NAME_BYTES);
+const SPACES: [u8; VEHICLE_NAME_BYTES] = [b' '; VEHICLE_NAME_BYTES];
 
 /// Kind I: a key, with its type, and a text.
 struct Information {
@@ -66,66 +66,66 @@ pub const fn head(kind: u8, length: usize) -> [u8; 3] {
 }
 
 /// The head of the message that defines a record.
-const FORMAT: [u8; 3] = head(b'F', tick::FORMAT.len());
+const FORMAT_HEAD: [u8; 3] = head(b'F', tick::FORMAT.len());
 
 /// Kind A: records are subscription 0, the first of their name.
-const SUBSCRIPTION: [u8; 6] = {
+const SUBSCRIPTION_HEAD: [u8; 6] = {
     let [low, high, kind] = head(b'A', 7);
     [low, high, kind, 0, 0, 0]
 };
 const NAME: &str = "tick";
 
 /// What stands before each record.
-pub const DATA: [u8; 5] = {
-    let [low, high, kind] = head(b'D', 2 + tick::SIZE);
+pub const DATA_HEAD: [u8; 5] = {
+    let [low, high, kind] = head(b'D', 2 + tick::TICK_BYTES);
     [low, high, kind, 0, 0]
 };
 
 /// Bytes of a record in the file.
-const RECORD: usize = DATA.len() + tick::SIZE;
+const RECORD_BYTES: usize = DATA_HEAD.len() + tick::TICK_BYTES;
 
 /// Bytes of the time of a record, which is what it begins with.
-pub const TIME: usize = 8;
+pub const TIME_BYTES: usize = 8;
 
 /// The parts of the file up to the format, where the first record was of `time`, and the `vehicle` is called so.
 pub fn definitions<'a>(time: &'a [u8], vehicle: &'a str) -> impl Iterator<Item = &'a [u8]> {
-    let name = vehicle.as_bytes().get(..VEHICLE).unwrap_or(vehicle.as_bytes());
+    let name = vehicle.as_bytes().get(..VEHICLE_NAME_BYTES).unwrap_or(vehicle.as_bytes());
     let spaces = SPACES.get(name.len()..).unwrap_or_default();
     let called = [&VEHICLE_HEAD[..], VEHICLE_KEY.as_bytes(), name, spaces];
     let information = INFORMATION
         .iter()
         .flat_map(|information| [&information.head[..], information.key.as_bytes(), information.text.as_bytes()]);
-    let format = [&FORMAT[..], tick::FORMAT.as_bytes()];
-    [&MAGIC[..], time, &FLAGS].into_iter().chain(information).chain(called).chain(format)
+    let format = [&FORMAT_HEAD[..], tick::FORMAT.as_bytes()];
+    [&FILE_MAGIC[..], time, &FLAGS_MESSAGE].into_iter().chain(information).chain(called).chain(format)
 }
 
 /// The message after which data may come.
-pub const SUBSCRIBED: [&[u8]; 2] = [&SUBSCRIPTION, NAME.as_bytes()];
+pub const SUBSCRIBED: [&[u8]; 2] = [&SUBSCRIPTION_HEAD, NAME.as_bytes()];
 
 /// Bytes of [`definitions`].
 #[must_use]
 pub fn definitions_size() -> usize {
-    definitions(&[0; TIME], "").map(<[u8]>::len).sum()
+    definitions(&[0; TIME_BYTES], "").map(<[u8]>::len).sum()
 }
 
 /// Bytes before the data.
 fn beginning_size() -> usize {
-    definitions_size() + SUBSCRIPTION.len() + NAME.len()
+    definitions_size() + SUBSCRIPTION_HEAD.len() + NAME.len()
 }
 
 /// Bytes of a file of so many records.
 #[must_use]
 pub fn size(records: usize) -> u32 {
-    u32::try_from(beginning_size() + records * RECORD).unwrap_or(u32::MAX)
+    u32::try_from(beginning_size() + records * RECORD_BYTES).unwrap_or(u32::MAX)
 }
 
 /// Reads the file of a `vehicle` from `offset` on into `out`; how many bytes there were.
 pub fn read(ring: &Ring<'_>, vehicle: &str, offset: usize, out: &mut [u8]) -> usize {
-    let time = ring.get(0).and_then(|record| record.first_chunk::<TIME>()).copied().unwrap_or_default();
+    let time = ring.get(0).and_then(|record| record.first_chunk::<TIME_BYTES>()).copied().unwrap_or_default();
     let from_data =
-        |index| (index..ring.len()).filter_map(|index| ring.get(index)).flat_map(|record| [&DATA[..], record]);
+        |index| (index..ring.len()).filter_map(|index| ring.get(index)).flat_map(|record| [&DATA_HEAD[..], record]);
     match offset.checked_sub(beginning_size()) {
-        Some(offset) => copy(from_data(offset / RECORD), offset % RECORD, out),
+        Some(offset) => copy(from_data(offset / RECORD_BYTES), offset % RECORD_BYTES, out),
         None => copy(definitions(&time, vehicle).chain(SUBSCRIBED).chain(from_data(0)), offset, out),
     }
 }

@@ -109,7 +109,7 @@ fn a_sensor_that_is_stuck_or_without_a_force_is_left_after_20_samples() {
 fn a_wait_that_is_given_up_counts_as_a_fault() {
     let mut pair = pair();
     pair.first.says = Says::Hangs;
-    for _ in 0..TAKE_OVER_AFTER {
+    for _ in 0..TAKE_OVER_AFTER_FAULTS {
         let mut sample = pin!(pair.sample());
         assert!(sample.as_mut().poll(&mut Context::from_waker(Waker::noop())).is_pending());
     }

@@ -5,7 +5,7 @@
 //! from one state to the other, the force is what the change of velocity takes. Every `POSES_APART` a state is a
 //! pose, handed over `LATE` poses later.
 
-use super::{RECORD, digest, state};
+use super::{STATE_BYTES, digest, state};
 use controller_core::state::State;
 use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
@@ -14,14 +14,14 @@ use heapless::Deque;
 use nalgebra::{UnitQuaternion, Vector3};
 use sha2::{Digest, Sha256};
 
-/// Time between poses, us, a whole number of ticks.
-const POSES_APART: u64 = 10_000;
+/// Time between poses, a whole number of ticks.
+const POSE_INTERVAL_US: u64 = 10_000;
 
 /// Poses that become true from the moment that one is true to its arrival.
-const LATE: usize = 3;
+const POSES_LATE: usize = 3;
 
-/// Time between samples of the IMU, us.
-const SAMPLE: u64 = 1_000;
+/// Time between samples of the IMU.
+const SAMPLE_PERIOD_US: u64 = 1_000;
 
 /// The estimate, as far as it has been replayed.
 pub struct Estimate {
@@ -31,7 +31,7 @@ pub struct Estimate {
     last: Option<State>,
     period: u64,
     now: u64,
-    poses: Deque<Stamped<PoseMeasurement>, { LATE + 1 }>,
+    poses: Deque<Stamped<PoseMeasurement>, { POSES_LATE + 1 }>,
     hash: Sha256,
 }
 
@@ -54,12 +54,12 @@ impl Estimate {
     }
 
     /// One tick at a recorded state.
-    pub fn tick(&mut self, record: &[u8; RECORD]) {
+    pub fn tick(&mut self, record: &[u8; STATE_BYTES]) {
         let state = state(record);
         if let Some(last) = self.last.replace(state) {
             self.move_on(&last, &state);
         }
-        if self.now.is_multiple_of(POSES_APART) {
+        if self.now.is_multiple_of(POSE_INTERVAL_US) {
             self.look(&state);
         }
         if let Some(estimated) = self.estimated() {
@@ -95,13 +95,13 @@ impl Estimate {
 
     /// The samples between two states.
     fn move_on(&mut self, last: &State, state: &State) {
-        let (per_period, samples) = (1e6 / self.period as f32, self.period / SAMPLE);
+        let (per_period, samples) = (1e6 / self.period as f32, self.period / SAMPLE_PERIOD_US);
         let mut force = (state.velocity - last.velocity) * per_period;
         force.z += self.gravity;
         let force = UnitQuaternion::new_unchecked(last.attitude).inverse_transform_vector(&force);
         let step = (state.angular_velocity - last.angular_velocity) / samples as f32;
         for sample in 1..=samples {
-            self.now += SAMPLE;
+            self.now += SAMPLE_PERIOD_US;
             let rate = last.angular_velocity + step * sample as f32;
             if let Some(increment) = self.conditioner.sample(self.now, &rate, Some(&force)).increment {
                 self.estimator.imu(&increment);

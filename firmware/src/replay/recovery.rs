@@ -1,7 +1,7 @@
 //! A recovery from upside down under the law of the embedded scenario, replayed: the same states, hence the same bits,
 //! of the wrench and of everything the law remembers, its estimates among it.
 
-use super::{RECORD, digest, embedded_at, state};
+use super::{STATE_BYTES, digest, embedded_at, state};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -12,8 +12,8 @@ use controller_core::state::Wrench;
 use nalgebra::{Quaternion, Vector3};
 use sha2::{Digest, Sha256};
 
-/// How long the flight takes, us.
-pub const DURATION: u64 = 20_000_000;
+/// How long the flight takes.
+pub const RECOVERY_DURATION_US: u64 = 20_000_000;
 
 /// The flight, as far as it has been replayed.
 pub struct Recovery {
@@ -37,7 +37,7 @@ impl Recovery {
     ///
     /// # Errors
     /// The law's own, for a state that it cannot use.
-    pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<Wrench, InputError> {
+    pub fn tick(&mut self, record: &[u8; STATE_BYTES]) -> Result<Wrench, InputError> {
         let (wrench, diagnostics) = self.law.step(&state(record), &self.reference.at(0))?;
         self.add(&[wrench.thrust, self.law.thrust_scale()]);
         self.add(wrench.torque.as_slice());

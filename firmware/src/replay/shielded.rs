@@ -1,7 +1,7 @@
 //! The same recovery behind a shield, replayed: the law takes over from an upset start, and from half of the flight on
 //! a network flies. The same states, hence the same bits of the network's outputs and of the commands.
 
-use super::{RECORD, digest, embedded_at, state};
+use super::{STATE_BYTES, digest, embedded_at, state};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -11,11 +11,11 @@ use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
 use nalgebra::Vector3;
 use sha2::{Digest, Sha256};
 
-/// How long the law flies, us.
-const UPSET: u64 = 10_000_000;
+/// How long the law flies.
+const UPSET_TIME_US: u64 = 10_000_000;
 
 /// The outputs of the network's middle.
-const MIDDLE: usize = 32;
+const HIDDEN_OUTPUTS: usize = 32;
 
 /// Weights without a pattern that an error could keep, small enough to fly.
 const fn weights<const COUNT: usize>() -> [f32; COUNT] {
@@ -31,10 +31,10 @@ const fn weights<const COUNT: usize>() -> [f32; COUNT] {
     weights
 }
 
-static FIRST: [f32; INPUT_COUNT * MIDDLE] = weights();
-static SECOND: [f32; MIDDLE * MIDDLE] = weights();
-static THIRD: [f32; MIDDLE * OUTPUT_COUNT] = weights();
-static BIASES: [f32; MIDDLE] = weights();
+static FIRST: [f32; INPUT_COUNT * HIDDEN_OUTPUTS] = weights();
+static SECOND: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
+static THIRD: [f32; HIDDEN_OUTPUTS * OUTPUT_COUNT] = weights();
+static BIASES: [f32; HIDDEN_OUTPUTS] = weights();
 static LAYERS: [Layer<'static>; 3] = [
     Layer { weights: &FIRST, biases: &BIASES },
     Layer { weights: &SECOND, biases: &BIASES },
@@ -80,8 +80,8 @@ impl Shielded {
     ///
     /// # Errors
     /// The law's own, for a state that it cannot use.
-    pub fn tick(&mut self, record: &[u8; RECORD]) -> Result<(), InputError> {
-        if self.tick * self.period == UPSET {
+    pub fn tick(&mut self, record: &[u8; STATE_BYTES]) -> Result<(), InputError> {
+        if self.tick * self.period == UPSET_TIME_US {
             self.shield.reset(&Heading::FORWARD);
         }
         let state = state(record);

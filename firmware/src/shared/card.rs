@@ -3,10 +3,10 @@
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 /// Events that wait to be logged.
-pub const CARD_EVENTS: usize = 16;
+pub const CARD_EVENTS_CAPACITY: usize = 16;
 
-/// The longest the card's task may be silent, us: more than an attempt to start a card and the wait for the next one.
-pub const CARD_SILENCE: u64 = 10_000_000;
+/// The longest the card's task may be silent: more than an attempt to start a card and the wait for the next one.
+pub const CARD_TIMEOUT_US: u64 = 10_000_000;
 
 /// How the card is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl CardStatus {
     #[must_use]
     pub fn is_silent(&self, now: u64) -> bool {
         let silence = milliseconds(now).wrapping_sub(self.updated.load(Ordering::Relaxed));
-        self.state() != CardState::NoSlot && u64::from(silence) > CARD_SILENCE / 1_000
+        self.state() != CardState::NoSlot && u64::from(silence) > CARD_TIMEOUT_US / 1_000
     }
 
     /// Whether flights are logged at `now`, us; none where there is no card that could.

@@ -10,10 +10,10 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
 
 /// Bytes of an answer at most: eight messages full.
-pub const CHUNK: usize = 720;
+pub const LOG_CHUNK_BYTES: usize = 720;
 
 /// Bytes of a log.
-pub type Bytes = Vec<u8, CHUNK>;
+pub type Bytes = Vec<u8, LOG_CHUNK_BYTES>;
 
 /// Something about the logs. They are numbered from 0 on, in the order in which they were made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub enum Answer {
     Count(u16),
     /// So many bytes.
     Size(u32),
-    /// These; fewer than [`CHUNK`] at its end only.
+    /// These; fewer than [`LOG_CHUNK_BYTES`] at its end only.
     Bytes(Bytes),
     /// There is no log of that number.
     Unknown,
@@ -56,7 +56,7 @@ impl<M: RawMutex> Recorder<M> {
             (Question::Count, _) => Answer::Count(size.is_some().into()),
             (Question::Size(0), Some(size)) => Answer::Size(size),
             (Question::Bytes { id: 0, offset }, Some(_)) => {
-                let mut bytes = [0; CHUNK];
+                let mut bytes = [0; LOG_CHUNK_BYTES];
                 let count = self.read(offset, &mut bytes);
                 Answer::Bytes(bytes.get(..count).and_then(|bytes| Vec::from_slice(bytes).ok()).unwrap_or_default())
             }

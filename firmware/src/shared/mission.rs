@@ -1,13 +1,13 @@
 //! The mission: the items that the link has received last, all of them, for control to fly.
 
-use crate::link::mission::{ITEMS, Item};
+use crate::link::mission::{Item, MISSION_CAPACITY};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use heapless::Vec;
 
 /// The items, in memory only: none after a restart.
-pub struct Mission<M: RawMutex>(Mutex<M, RefCell<Vec<Item, ITEMS>>>);
+pub struct Mission<M: RawMutex>(Mutex<M, RefCell<Vec<Item, MISSION_CAPACITY>>>);
 
 impl<M: RawMutex> Mission<M> {
     /// No items.

@@ -9,14 +9,14 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Texts that are remembered.
-const REMEMBERED: usize = 8;
+const TEXTS_REMEMBERED: usize = 8;
 
-/// How long a text is not sent again, ms.
-const SILENCE: u32 = 1_000;
+/// How long a text is not sent again.
+const TEXT_INTERVAL_MIN_MS: u32 = 1_000;
 
 /// The last texts, each by its kind's hash, and when they were sent, ms.
 pub(super) struct RecentTexts<M: RawMutex> {
-    sent: Mutex<M, Cell<[(u32, u32); REMEMBERED]>>,
+    sent: Mutex<M, Cell<[(u32, u32); TEXTS_REMEMBERED]>>,
     /// The time of control's last tick, ms; zero before the first, when nothing is held back.
     now: AtomicU32,
 }
@@ -24,7 +24,7 @@ pub(super) struct RecentTexts<M: RawMutex> {
 impl<M: RawMutex> RecentTexts<M> {
     /// Nothing sent yet.
     pub const fn new() -> Self {
-        Self { sent: Mutex::new(Cell::new([(0, 0); REMEMBERED])), now: AtomicU32::new(0) }
+        Self { sent: Mutex::new(Cell::new([(0, 0); TEXTS_REMEMBERED])), now: AtomicU32::new(0) }
     }
 
     /// It is `now`, us.
@@ -47,7 +47,8 @@ impl<M: RawMutex> RecentTexts<M> {
         let sum = sum.0;
         self.sent.lock(|cell| {
             let mut sent = cell.get();
-            let is_recent = |&(text, at): &(u32, u32)| text == sum && at != 0 && now.wrapping_sub(at) < SILENCE;
+            let is_recent =
+                |&(text, at): &(u32, u32)| text == sum && at != 0 && now.wrapping_sub(at) < TEXT_INTERVAL_MIN_MS;
             if sent.iter().any(is_recent) {
                 return true;
             }

@@ -3,7 +3,7 @@
 //! Of each kind the latest waits, one of the link and one of the pilot's radio: a client that repeats one keeps another
 //! out. An equal request that waits is answered with it. Where there is no room, a lesser one of the link makes some.
 //! So landing, disarming and the pilot's switches always have room, and none waits for more than the others,
-//! [`REQUESTS`] ticks.
+//! [`REQUESTS_CAPACITY`] ticks.
 
 use super::reply::QueuedRequest;
 use crate::link::acknowledgement::Order;
@@ -15,10 +15,10 @@ use flight::Request;
 use heapless::Deque;
 
 /// How many may wait: the five of the radio, landing and disarming by the link, and one of the others.
-pub const REQUESTS: usize = 8;
+pub const REQUESTS_CAPACITY: usize = 8;
 
 /// Requests in the order of their coming.
-pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<QueuedRequest, REQUESTS>>>);
+pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<QueuedRequest, REQUESTS_CAPACITY>>>);
 
 impl<M: RawMutex> Requests<M> {
     /// None.
@@ -50,7 +50,7 @@ impl<M: RawMutex> Requests<M> {
 }
 
 /// Takes the one at a place, by handing all of them round: nothing here may panic in control's tick.
-fn remove(waiting: &mut Deque<QueuedRequest, REQUESTS>, place: usize) -> Option<QueuedRequest> {
+fn remove(waiting: &mut Deque<QueuedRequest, REQUESTS_CAPACITY>, place: usize) -> Option<QueuedRequest> {
     let mut removed = None;
     for index in 0..waiting.len() {
         let asked = waiting.pop_front()?;

@@ -1,11 +1,11 @@
 //! Why the vehicle restarted by itself, reported: to the first ground station, to the card once it is ready, and every
-//! [`AGAIN`] until the vehicle arms.
+//! [`RESTART_REPORT_INTERVAL_US`] until the vehicle arms.
 
 use crate::shared::{CardState, Event, Severity, StatusView, TEXT_MAX};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// The time between two reports, us.
-pub const AGAIN: u64 = 60_000_000;
+/// The time between two reports.
+pub const RESTART_REPORT_INTERVAL_US: u64 = 60_000_000;
 
 /// When and to whom they are reported.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ impl RestartReport {
         if !is_new && now < self.due {
             return;
         }
-        *self = Self { listened: listening, due: now.saturating_add(AGAIN), is_over: false };
+        *self = Self { listened: listening, due: now.saturating_add(RESTART_REPORT_INTERVAL_US), is_over: false };
         let mut rest = words.value.as_str();
         let mut head = "Restarted: ";
         while !rest.is_empty() {

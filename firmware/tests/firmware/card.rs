@@ -8,12 +8,12 @@ use crate::support::card::{Image, Parsed, START, Simulation, files, formatted, p
 use crate::support::receiver::{Local, texts};
 use core::ops::Range;
 use fatfs::FatType;
-use firmware::card::log::{CHUNK, SIZE_MAX};
-use firmware::card::{RETRY, run};
-use firmware::hardware::{MotorCommand, SECTOR};
+use firmware::card::log::{GROWTH_BYTES, SIZE_MAX_BYTES};
+use firmware::card::{RETRY_INTERVAL_US, run};
+use firmware::hardware::{MotorCommand, SECTOR_BYTES};
 use firmware::link::telemetry::vehicle;
-use firmware::recorder::AFTERWARDS;
-use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::RECORDED_AFTERWARDS_US;
+use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::shared::{CardState, Event, Report, Severity, Shared, Traffic};
 use mavlink::dialects::common::MavSysStatusSensor;
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ const ROOM: usize = 500;
 
 pub fn shared() -> Local {
     let shared = Shared::new();
-    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())), "mine");
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; ROOM].into_boxed_slice())), "mine");
     shared
 }
 
@@ -57,14 +57,14 @@ impl<'s> Ticks<'s> {
 
 /// The times of the ticks of a flight, us: armed from `from` to `to`, and what is recorded afterwards.
 pub fn times(from: u64, to: u64) -> Vec<u64> {
-    (from..to + AFTERWARDS - TICK).step_by(TICK as usize).collect()
+    (from..to + RECORDED_AFTERWARDS_US - TICK).step_by(TICK as usize).collect()
 }
 
 /// Logs for `duration` us what flights there are in these times.
 fn fly(card: &Simulation, clock: &Simulated, shared: &Local, duration: u64, armed: &[Range<u64>]) {
     let mut ticks = Ticks::new(shared);
     ticks.due = clock.0.get();
-    clock.run(duration, run(card.clone(), CHUNK, clock, shared.for_card()), |now| ticks.until(now, armed));
+    clock.run(duration, run(card.clone(), GROWTH_BYTES, clock, shared.for_card()), |now| ticks.until(now, armed));
 }
 
 /// The files of a card that are not empty, read.
@@ -89,7 +89,7 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
         let card = Simulation::new(image, sectors, &clock);
         let mut ticks = Ticks::new(&shared);
         let flights = [SECOND..3 * SECOND, 6 * SECOND..7 * SECOND];
-        clock.run(10 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
+        clock.run(10 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
             ticks.until(now, &flights);
             if now == 900_000 || now == 2_000_000 {
                 shared.announce(Event::new(Severity::Critical, format_args!("said at {now}")));
@@ -151,7 +151,7 @@ fn in_flight_nothing_is_written_but_the_flights_own_sectors_in_order() {
     // The task starts anew, and the card is as it was: the first thing it writes is the flight.
     fly(&card, &clock, &shared, 2 * SECOND, &[SECOND..10 * SECOND]);
     let written: Vec<u32> = card.medium.borrow().written.iter().map(|(sector, _)| *sector).collect();
-    let data = written[0]..written[0] + CHUNK / SECTOR as u32;
+    let data = written[0]..written[0] + GROWTH_BYTES / SECTOR_BYTES as u32;
     assert!(written.len() > 60 && written.iter().all(|sector| data.contains(sector)), "{written:?}");
     assert!(written[2..].is_sorted_by(|a, b| b - a == 1));
     let after = files(&mut card.medium.borrow_mut().image, sectors);
@@ -169,8 +169,8 @@ fn a_flight_longer_than_its_file_makes_it_longer_and_then_goes_on_in_the_next() 
     assert!(ticks == times(SECOND, minutes), "{}", ticks.len());
     assert!(logs.iter().all(|(_, log)| log.is_whole && log.gaps.is_empty()));
     let sizes: Vec<usize> = files(&mut card.medium.borrow_mut().image, sectors).values().map(Vec::len).collect();
-    assert_eq!((sizes.len(), sizes[0]), (3, SIZE_MAX as usize));
-    assert!(sizes.iter().all(|size| size.is_multiple_of(CHUNK as usize)));
+    assert_eq!((sizes.len(), sizes[0]), (3, SIZE_MAX_BYTES as usize));
+    assert!(sizes.iter().all(|size| size.is_multiple_of(GROWTH_BYTES as usize)));
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn a_card_that_fails_in_flight_is_reported_and_after_recovery_the_rest_goes_to_t
     let mut ticks = Ticks::new(&shared);
     let medium = card.medium.clone();
     let mut seen = vec![];
-    clock.run(12 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
+    clock.run(12 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
         ticks.until(now, &[SECOND..8 * SECOND]);
         medium.borrow_mut().fails = (3 * SECOND..5 * SECOND).contains(&now);
         if now == 4 * SECOND {
@@ -230,16 +230,16 @@ fn a_missing_or_removed_card_is_reported_once_and_an_inserted_one_is_used() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
     let card = Simulation::new(image, sectors, &clock);
     card.medium.borrow_mut().is_absent = true;
-    fly(&card, &clock, &shared, 4 * RETRY, &[]);
+    fly(&card, &clock, &shared, 4 * RETRY_INTERVAL_US, &[]);
     assert_eq!(texts(&shared), ["No card: flights are not logged"]);
     assert_eq!(bits(&shared, clock.0.get()), (false, false));
     let medium = card.medium.clone();
     let mut ticks = Ticks::new(&shared);
     let begin = clock.0.get();
     ticks.due = begin;
-    clock.run(4 * RETRY, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
-        medium.borrow_mut().is_absent = now < begin + 2 * RETRY || now > begin + 3 * RETRY;
-        ticks.until(now, &[begin + 3 * RETRY - SECOND..u64::MAX]);
+    clock.run(4 * RETRY_INTERVAL_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
+        medium.borrow_mut().is_absent = now < begin + 2 * RETRY_INTERVAL_US || now > begin + 3 * RETRY_INTERVAL_US;
+        ticks.until(now, &[begin + 3 * RETRY_INTERVAL_US - SECOND..u64::MAX]);
     });
     assert_eq!(
         texts(&shared),
@@ -262,7 +262,7 @@ fn a_full_card_is_reported_keeps_its_files_and_gets_no_empty_ones() {
     assert!(before.len() <= 2 && ticks.len() > 4_000, "{} {}", before.len(), ticks.len());
     assert_eq!(*ticks, times(SECOND, minutes)[..ticks.len()]);
     // With a recording that a reset has left, which finds no room either.
-    fly(&card, &clock, &shared, 10 * RETRY, &[]);
+    fly(&card, &clock, &shared, 10 * RETRY_INTERVAL_US, &[]);
     let mut after = files(&mut card.medium.borrow_mut().image, sectors);
     after.retain(|name, bytes| !bytes.is_empty() || before.contains_key(name));
     assert!(after == before, "{:?}", after.keys());
@@ -288,7 +288,7 @@ fn a_card_with_a_foreign_format_is_reported_and_left_as_it_is() {
         change(&mut image);
         let (clock, shared) = (Simulated::default(), shared());
         let card = Simulation::new(image, sectors, &clock);
-        fly(&card, &clock, &shared, 2 * RETRY, &[SECOND..2 * SECOND]);
+        fly(&card, &clock, &shared, 2 * RETRY_INTERVAL_US, &[SECOND..2 * SECOND]);
         assert_eq!(texts(&shared), ["Card unusable: format it as FAT32 (MBR)"]);
         assert!(card.medium.borrow().written.is_empty());
     };
@@ -310,7 +310,7 @@ proptest! {
 
     #[test]
     fn a_damaged_beginning_of_a_file_system_ends_in_words_and_never_in_a_panic(
-        damage in prop::collection::vec((0..SECTOR, any::<u8>()), 1..6), is_table: bool,
+        damage in prop::collection::vec((0..SECTOR_BYTES, any::<u8>()), 1..6), is_table: bool,
     ) {
         let (mut image, sectors) = small();
         let sector = image.get_mut(if is_table { &0 } else { &START }).unwrap();

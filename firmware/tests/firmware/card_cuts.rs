@@ -7,16 +7,16 @@ use crate::support::Simulated;
 use crate::support::card::{Image, Simulation, files, formatted, parsed};
 use crate::support::receiver::{Local, texts};
 use fatfs::FatType;
-use firmware::card::log::CHUNK;
+use firmware::card::log::GROWTH_BYTES;
 use firmware::card::run;
-use firmware::hardware::SECTOR;
+use firmware::hardware::SECTOR_BYTES;
 use std::collections::BTreeMap;
 
 const SECOND: u64 = 1_000_000;
 
 /// Bytes of a torn sector that are new: in a name, a first cluster and a length of the directory's entries, in numbers
 /// of tables, in records.
-const TEARS: [usize; 5] = [1, 62, 131, 430, SECTOR - 1];
+const TEARS: [usize; 5] = [1, 62, 131, 430, SECTOR_BYTES - 1];
 
 /// Records in a sector: what a cut may lose of those that were written before.
 const SECTOR_RECORDS: usize = 3;
@@ -28,7 +28,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 /// write began.
 fn flown(card: &Simulation, clock: &Simulated, shared: &Local) {
     let mut ticks = Ticks::new(shared);
-    clock.run(12 * SECOND, run(card.clone(), CHUNK, clock, shared.for_card()), |now| {
+    clock.run(12 * SECOND, run(card.clone(), GROWTH_BYTES, clock, shared.for_card()), |now| {
         ticks.until(now, &[SECOND..2 * SECOND, 5 * SECOND..9 * SECOND]);
     });
 }
@@ -48,7 +48,7 @@ fn check(image: &mut Image, sectors: u32, known: &Files, on_card: usize, what: &
 }
 
 /// Records in a sector that was written, where it is one of records.
-fn records(sector: &[u8; SECTOR]) -> usize {
+fn records(sector: &[u8; SECTOR_BYTES]) -> usize {
     let head = [&b"ULog\x01\x12\x35\x01"[..], &[0; 8]].concat();
     parsed(&[&head[..], sector].concat()).ticks.len()
 }
@@ -61,7 +61,7 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
     let written = std::mem::take(&mut card.medium.borrow_mut().written);
     let last = files(&mut card.medium.borrow_mut().image, sectors);
     assert_eq!(last.keys().collect::<Vec<_>>(), ["LOG00001.ULG", "LOG00002.ULG", "LOG00003.ULG"]);
-    assert!(last["LOG00002.ULG"].len() == 2 * CHUNK as usize, "the second is longer than a chunk");
+    assert!(last["LOG00002.ULG"].len() == 2 * GROWTH_BYTES as usize, "the second is longer than a chunk");
 
     let (mut image, mut on_card) = (empty, 0);
     let mut known = Files::new();
@@ -69,7 +69,7 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
         let old = image.get(sector).copied();
         let what = format!("write {index} of {}, sector {sector}", written.len());
         for tear in TEARS {
-            let mut torn = old.unwrap_or([0; SECTOR]);
+            let mut torn = old.unwrap_or([0; SECTOR_BYTES]);
             torn[..tear].copy_from_slice(&data[..tear]);
             image.insert(*sector, torn);
             let _ = check(&mut image, sectors, &known, on_card, &format!("{what}, torn at {tear}"));
@@ -77,7 +77,7 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
         // A start after the cut, now and then: it changes no file but the newest, and logs to one that it may log to.
         if index % 7 == 0 {
             let tear = TEARS[index / 7 % TEARS.len()];
-            let mut torn = old.unwrap_or([0; SECTOR]);
+            let mut torn = old.unwrap_or([0; SECTOR_BYTES]);
             torn[..tear].copy_from_slice(&data[..tear]);
             image.insert(*sector, torn);
             restart(image.clone(), sectors, &known, &format!("{what}, torn at {tear}"));
@@ -102,7 +102,7 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     let before = files(&mut image.clone(), sectors);
     let card = Simulation::new(image, sectors, &clock);
     let mut ticks = Ticks::new(&shared);
-    clock.run(4 * SECOND, run(card.clone(), CHUNK, &clock, shared.for_card()), |now| {
+    clock.run(4 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
         ticks.until(now, &[SECOND..SECOND + 50_000])
     });
     let after = files(&mut card.medium.borrow_mut().image, sectors);
@@ -115,7 +115,7 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     assert!(texts(&shared).iter().any(|text| text.ends_with("204 records, 0 missed")), "{what}");
     // Where it had records before, they were not overwritten: the flight is in another file, and the torn sector is
     // gone.
-    for (name, bytes) in before.iter().filter(|(_, bytes)| bytes.len() > 2 * SECTOR) {
+    for (name, bytes) in before.iter().filter(|(_, bytes)| bytes.len() > 2 * SECTOR_BYTES) {
         let (old, new) = (parsed(bytes), parsed(&after[name]));
         let untouched = old.ticks.is_empty() || name != newest.0;
         assert!(untouched || !old.is_whole, "{what}: {name} was overwritten");

@@ -11,11 +11,11 @@ use core::ops::Range;
 use core::pin::Pin;
 use core::task::{Context, Waker};
 use embassy_futures::select::select;
-use firmware::card::library::OFFERED;
-use firmware::card::log::CHUNK;
+use firmware::card::library::FILES_OFFERED_MAX;
+use firmware::card::log::GROWTH_BYTES;
 use firmware::card::run;
-use firmware::hardware::SECTOR;
-use firmware::link::download::ANSWER_WITHIN;
+use firmware::hardware::SECTOR_BYTES;
+use firmware::link::download::ANSWER_TIMEOUT_US;
 use firmware::link::transmit::transmit;
 use firmware::shared::CardState;
 use flight::Mode;
@@ -47,7 +47,7 @@ impl Bench {
         let written: &RefCell<Vec<u8>> = Box::leak(Box::default());
         let (image, sectors) = small();
         let card = Simulation::new(image, sectors, clock);
-        let logging = run(card.clone(), CHUNK, clock, shared.for_card());
+        let logging = run(card.clone(), GROWTH_BYTES, clock, shared.for_card());
         let link = transmit(Outgoing { written, at_once: 64 }, clock, shared.for_transmit());
         let tasks = Box::pin(async {
             select(logging, link).await;
@@ -132,11 +132,14 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
     let recording = bench.shared.recorder.size().unwrap();
     // The used part of the two flights' files, and the recorder's recording; not the next flight's file.
     let used = |name: &str| {
-        let used = files[name].chunks(SECTOR).take_while(|sector| sector[3..] != [0xFF; SECTOR - 3]).count();
-        (used * SECTOR) as u32
+        let used =
+            files[name].chunks(SECTOR_BYTES).take_while(|sector| sector[3..] != [0xFF; SECTOR_BYTES - 3]).count();
+        (used * SECTOR_BYTES) as u32
     };
     let sizes = [used("LOG00001.ULG"), used("LOG00002.ULG"), recording];
-    assert!(SECTOR as u32 * 90 < sizes[0] && sizes[0] < sizes[1] && sizes[1] < files["LOG00002.ULG"].len() as u32);
+    assert!(
+        SECTOR_BYTES as u32 * 90 < sizes[0] && sizes[0] < sizes[1] && sizes[1] < files["LOG00002.ULG"].len() as u32
+    );
     let all = [(0, 3, 2, sizes[0]), (1, 3, 2, sizes[1]), (2, 3, 2, sizes[2])];
     assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))), all);
     // A lost part is requested again; a request beyond the end returns the end.
@@ -241,8 +244,8 @@ fn a_card_that_falls_silent_or_goes_ends_the_download_in_words() {
     let link = transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared.for_transmit());
     Fed::new(&shared).message(&part(0, 0, 90), 0);
     let mut patient = true;
-    clock.run(ANSWER_WITHIN + 2 * SECOND, link, |now| {
-        patient &= now > ANSWER_WITHIN || texts_in(&written).is_empty();
+    clock.run(ANSWER_TIMEOUT_US + 2 * SECOND, link, |now| {
+        patient &= now > ANSWER_TIMEOUT_US || texts_in(&written).is_empty();
     });
     assert!(patient);
     assert_eq!(texts_in(&written), ["Log: the card does not answer"]);
@@ -268,7 +271,7 @@ fn what_the_card_offered_is_not_taken_for_the_recorders_when_the_card_goes() {
 #[test]
 fn an_unreadable_file_is_reported_and_the_next_flight_is_logged() {
     let mut bench = Bench::flown();
-    let worn = bench.files()["LOG00001.ULG"][18 * SECTOR..19 * SECTOR].to_vec();
+    let worn = bench.files()["LOG00001.ULG"][18 * SECTOR_BYTES..19 * SECTOR_BYTES].to_vec();
     bench.card.medium.borrow_mut().worn = Some(worn);
     let failed = bench.asked(SECOND, |fed| fed.message(&part(0, 0, u32::MAX), 0));
     assert!(sent::<LOG_DATA_DATA>(&failed).len() < 120);
@@ -284,14 +287,17 @@ fn an_unreadable_file_is_reported_and_the_next_flight_is_logged() {
 #[test]
 fn of_many_files_the_newest_are_offered_in_their_order() {
     let mut bench = Bench::new();
-    let flights = OFFERED as u64 + 3;
+    let flights = FILES_OFFERED_MAX as u64 + 3;
     bench.armed = (0..flights).map(|flight| (1 + 4 * flight) * SECOND..(1 + 4 * flight) * SECOND + 50_000).collect();
     bench.run((flights * 4 + 2) * SECOND, |_, _| ());
     bench.shared.recorder.erase();
     let listed = entries(&bench.asked(2 * SECOND, |fed| fed.message(&list(0, u16::MAX), 0)));
-    assert_eq!(listed.iter().map(|entry| entry.0).collect::<Vec<_>>(), (0..OFFERED as u16).collect::<Vec<_>>());
-    assert!(listed.iter().all(|entry| entry.1 == OFFERED as u16 && entry.3 > 0));
-    for (id, flight) in [(0, 3), (OFFERED as u16 - 1, flights - 1)] {
+    assert_eq!(
+        listed.iter().map(|entry| entry.0).collect::<Vec<_>>(),
+        (0..FILES_OFFERED_MAX as u16).collect::<Vec<_>>()
+    );
+    assert!(listed.iter().all(|entry| entry.1 == FILES_OFFERED_MAX as u16 && entry.3 > 0));
+    for (id, flight) in [(0, 3), (FILES_OFFERED_MAX as u16 - 1, flights - 1)] {
         let file = parsed(&bench.fetched(id));
         assert_eq!(file.time, (1 + 4 * flight) * SECOND, "{id}");
     }

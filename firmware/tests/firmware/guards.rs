@@ -6,7 +6,7 @@ use crate::support::chip::{Chip, Words};
 use crate::support::desk::Desk;
 use crate::support::receiver::{Fed, Local, disarm, texts};
 use firmware::boot;
-use firmware::link::signing::{Key, WORDS};
+use firmware::link::signing::{KEPT_WORDS, Key};
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::QueuedRequest;
@@ -103,7 +103,7 @@ fn places(chip: &RefCell<Chip>, words: u8) -> Vec<usize> {
     numbers.into_iter().map(|(_, place)| place).collect()
 }
 
-const OF_THE_KEY: u8 = WORDS as u8;
+const OF_THE_KEY: u8 = KEPT_WORDS as u8;
 const OF_PARAMETERS: u8 = PARAMETERS.len() as u8;
 
 #[test]

@@ -6,7 +6,7 @@ use crate::support::receiver::{Local, texts};
 use core::future::pending;
 use estimation::imu::ImuParameters;
 use firmware::hardware::{Clock, Fault, Imu, RawImu};
-use firmware::imu::{PATIENCE, run};
+use firmware::imu::{SAMPLE_TIMEOUT_US, run};
 use nalgebra::Vector3;
 
 /// A sensor's answer a millisecond after it is read.
@@ -78,7 +78,7 @@ fn every_fault_leaves_the_last_sample_to_age_and_is_reported_once() {
         assert_eq!(texts, ["IMU does not answer", "IMU: gap in the samples", "IMU answers again"]);
         // A sensor that hangs is asked again after so long, and found well.
         let back = times.iter().find(|time| **time >= 350_000).unwrap();
-        assert!(*back <= 350_000 + PATIENCE + 10_000, "{back}");
+        assert!(*back <= 350_000 + SAMPLE_TIMEOUT_US + 10_000, "{back}");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::support::{Simulated, v2};
 use estimation::estimator::Increment;
 use firmware::hardware::Imu;
 use firmware::redundant::Redundant;
-use firmware::shared::INCREMENTS;
+use firmware::shared::INCREMENTS_CAPACITY;
 use firmware::{hil, imu};
 use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
@@ -88,7 +88,7 @@ fn increments_that_overflow_are_counted_and_leave_a_gap() {
         }
     });
     let lost = shared.lost_increments.get();
-    assert!((20 - INCREMENTS - 1..=20 - INCREMENTS + 1).contains(&(lost as usize)), "{lost}");
+    assert!((20 - INCREMENTS_CAPACITY - 1..=20 - INCREMENTS_CAPACITY + 1).contains(&(lost as usize)), "{lost}");
     assert_eq!(gaps(&increments), 1);
     let missing = increments.windows(2).map(|pair| pair[1].start - pair[0].end).max();
     assert_eq!(missing, Some(u64::from(lost) * 5_000));

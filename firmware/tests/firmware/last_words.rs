@@ -2,9 +2,9 @@
 
 use crate::support::Simulated;
 use crate::support::receiver::{Local, report, texts};
-use firmware::last_words::{LastWords, SIZE};
+use firmware::last_words::{LastWords, MEMORY_BYTES};
 use firmware::shared::CardState;
-use firmware::status::{AGAIN, RestartReport};
+use firmware::status::{RESTART_REPORT_INTERVAL_US, RestartReport};
 use flight::Mode;
 
 const FAULT: &str = "fault at 0x08012344 from 0x08012001, CFSR 0x00008200, HFSR 0x40000000, BFAR 0x00000004";
@@ -20,13 +20,13 @@ fn words_survive_the_memory_and_nothing_else_passes_for_words() {
     let words = LastWords::new(FAULT);
     let memory = words.to_bytes();
     assert_eq!(LastWords::from_bytes(&memory).map(|words| words.as_str().to_owned()).as_deref(), Some(FAULT));
-    for place in 0..SIZE {
+    for place in 0..MEMORY_BYTES {
         let mut spoiled = memory;
         spoiled[place] ^= 0x10;
         assert_eq!(LastWords::from_bytes(&spoiled), None, "byte {place}");
     }
-    assert_eq!(LastWords::from_bytes(&[0; SIZE]), None);
-    assert_eq!(LastWords::from_bytes(&[0xFF; SIZE]), None);
+    assert_eq!(LastWords::from_bytes(&[0; MEMORY_BYTES]), None);
+    assert_eq!(LastWords::from_bytes(&[0xFF; MEMORY_BYTES]), None);
 }
 
 #[test]
@@ -69,11 +69,19 @@ fn it_is_repeated_until_the_vehicle_arms() {
         reporter.tick(shared.for_status(), time);
         texts(&shared).len()
     };
-    assert_eq!([count(0), count(AGAIN - 1), count(AGAIN), count(AGAIN + 1)], [2, 0, 2, 0]);
-    report(&shared, Mode::Idling, 2 * AGAIN);
-    assert_eq!(count(2 * AGAIN), 0);
-    report(&shared, Mode::Ready, 3 * AGAIN);
-    assert_eq!(count(3 * AGAIN), 0);
+    assert_eq!(
+        [
+            count(0),
+            count(RESTART_REPORT_INTERVAL_US - 1),
+            count(RESTART_REPORT_INTERVAL_US),
+            count(RESTART_REPORT_INTERVAL_US + 1)
+        ],
+        [2, 0, 2, 0]
+    );
+    report(&shared, Mode::Idling, 2 * RESTART_REPORT_INTERVAL_US);
+    assert_eq!(count(2 * RESTART_REPORT_INTERVAL_US), 0);
+    report(&shared, Mode::Ready, 3 * RESTART_REPORT_INTERVAL_US);
+    assert_eq!(count(3 * RESTART_REPORT_INTERVAL_US), 0);
 }
 
 #[test]

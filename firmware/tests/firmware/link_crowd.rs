@@ -10,7 +10,7 @@ use embassy_futures::join::join;
 use firmware::link::acknowledgement::Acknowledgement;
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
-use firmware::shared::{QueuedRequest, REQUESTS, Reply};
+use firmware::shared::{QueuedRequest, REQUESTS_CAPACITY, Reply};
 use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
@@ -73,7 +73,7 @@ fn the_pilots_switches_do_not_wait_for_room_on_the_link() {
     }
     let asked = std::iter::from_fn(|| shared.requests.take()).collect::<Vec<_>>();
     let by_radio = asked.iter().filter(|asked| asked.order.is_none()).count();
-    assert_eq!((asked.len(), by_radio), (REQUESTS, 5), "{asked:?}");
+    assert_eq!((asked.len(), by_radio), (REQUESTS_CAPACITY, 5), "{asked:?}");
     // And all of them, the link's landing and disarming too, whatever comes behind.
     let urgent = [command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]), command(ARM_DISARM, [0.0; 5])];
     urgent.iter().for_each(|message| fed.message(message, 0));

@@ -1,7 +1,7 @@
 //! Frames out of any stream of bytes: whole, broken, repeated, hidden behind noise.
 
 use crate::support::{v1, v2, v2_of_payload};
-use firmware::link::frame::{FRAME_AGE_MAX, FRAME_MAX, Header, Parser, Version};
+use firmware::link::frame::{FRAME_AGE_MAX_US, FRAME_MAX_BYTES, Header, Parser, Version};
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, LOGGING_DATA_DATA, MavCmd, ODOMETRY_DATA,
     PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA,
@@ -237,12 +237,12 @@ fn half_a_frame_is_forgotten_when_the_rest_comes_too_late() {
     let mut parser = Parser::new();
     let (early, late) = bytes.split_at(100);
     assert!(early.iter().all(|&byte| parser.push(byte, 0).is_none()));
-    assert!(late.iter().all(|&byte| parser.push(byte, FRAME_AGE_MAX + 1).is_none()));
+    assert!(late.iter().all(|&byte| parser.push(byte, FRAME_AGE_MAX_US + 1).is_none()));
     assert!(parser.discarded() >= 100);
     // In time, it would have been a frame.
     let mut parser = Parser::new();
     assert!(early.iter().all(|&byte| parser.push(byte, 0).is_none()));
-    assert!(late.iter().filter(|&&byte| parser.push(byte, FRAME_AGE_MAX).is_some()).count() == 1);
+    assert!(late.iter().filter(|&&byte| parser.push(byte, FRAME_AGE_MAX_US).is_some()).count() == 1);
 }
 
 proptest! {
@@ -259,14 +259,14 @@ proptest! {
             let now = count as u64 * pace;
             let mut next = parser.push(byte, now);
             while let Some(frame) = next {
-                prop_assert!(frame.time <= now && now - frame.time <= FRAME_AGE_MAX);
+                prop_assert!(frame.time <= now && now - frame.time <= FRAME_AGE_MAX_US);
                 least += frame.payload.len() + 8;
                 most += frame.payload.len() + 25;
                 next = parser.next_frame();
             }
         }
         let discarded = parser.discarded() as usize;
-        prop_assert!(discarded + least <= bytes.len() && bytes.len() <= discarded + most + FRAME_MAX);
+        prop_assert!(discarded + least <= bytes.len() && bytes.len() <= discarded + most + FRAME_MAX_BYTES);
     }
 
     #[test]
@@ -282,7 +282,7 @@ proptest! {
             bytes.extend(v2(sequence as u8, &odometry()));
         }
         // Noise may hold the last ones back until more bytes come.
-        bytes.extend([0; FRAME_MAX]);
+        bytes.extend([0; FRAME_MAX_BYTES]);
         let is_last = |&(message, sequence): &(u32, u8)| message == ODOMETRY_DATA::ID && sequence < 100;
         let found: Vec<_> = parsed(&bytes).into_iter().filter(is_last).collect();
         let expected: Vec<_> = (0..noise.len()).map(|sequence| (ODOMETRY_DATA::ID, sequence as u8)).collect();

@@ -7,7 +7,7 @@ use crate::support::{extended, from};
 use controller_core::governor::HeadingSetpoint;
 use core::f32::consts::FRAC_PI_2;
 use firmware::frames;
-use firmware::link::mission::{Item, Sent};
+use firmware::link::mission::{Item, SentItem};
 use firmware::link::origin::Origin;
 use firmware::shared::{MissionList, MissionReport, Reply, Report};
 use flight::{Leg, MISSION_RADIUS, Mode, Request};
@@ -85,7 +85,7 @@ fn payload<D: MessageData>(message: &D) -> Vec<u8> {
 }
 
 fn item_of(message: &MISSION_ITEM_INT_DATA, is_last: bool) -> Item {
-    Sent::of(&payload(message), true).item(is_last).unwrap()
+    SentItem::read(&payload(message), true).item(is_last).unwrap()
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn what_is_not_flown_is_refused_with_its_number_and_its_reason() {
     for (place, value, words) in [(30, 0xFE, "command 254 is not flown"), (34, 99, "frame 99 is not used")] {
         let mut bytes = payload(&good);
         bytes[place] = value;
-        assert_eq!(Sent::of(&bytes, true).item(true).unwrap_err().to_string(), words);
+        assert_eq!(SentItem::read(&bytes, true).item(true).unwrap_err().to_string(), words);
     }
     // In a list, where they do not belong.
     for (command, number, words) in [

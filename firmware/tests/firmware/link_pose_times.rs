@@ -3,7 +3,7 @@
 use crate::link_poses::{mocap, odometry};
 use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::v2;
-use firmware::link::sender_clock::STEADY;
+use firmware::link::sender_clock::TRIAL_FRAMES;
 use firmware::parameters::table::Name;
 use mavlink::dialects::common::TIMESYNC_DATA;
 
@@ -27,7 +27,7 @@ fn a_clock_set_back_costs_no_more_than_40_ms_of_poses() {
     for start in [1, 1_000_000, 5_900_000] {
         for stamps in [set_back(|time| v2(1, &odometry(time)), start), set_back(|time| v2(1, &mocap(time, 0.0)), start)]
         {
-            let lost = usize::from(STEADY) - 1;
+            let lost = usize::from(TRIAL_FRAMES) - 1;
             assert!(stamps[..lost].iter().all(Option::is_none), "{stamps:?}");
             let back: Vec<_> = (lost as u64..10).map(|count| Some(1_000_000 + 10_000 * count)).collect();
             assert_eq!(stamps[lost..], back, "from {start}");
@@ -157,7 +157,7 @@ fn timesync_answers_of_a_clock_do_not_count_once_it_was_set_back() {
         let stamps = synchronised(&shared, 1_500, |truth| (clock(truth), 20_000));
         assert!(worst(&stamps, 2_500_000) <= 3_500, "{back}: {} us", worst(&stamps, 2_500_000));
         let lost = stamps.iter().filter(|(truth, stamp)| *truth >= 2_500_000 && stamp.is_none()).count();
-        assert!(lost <= usize::from(STEADY), "{lost}");
+        assert!(lost <= usize::from(TRIAL_FRAMES), "{lost}");
     }
 }
 

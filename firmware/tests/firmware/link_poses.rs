@@ -4,7 +4,7 @@ use crate::support::receiver::{Fed, Local, newest, texts};
 use crate::support::{extended, patched, v1, v2};
 use core::f32::consts::FRAC_1_SQRT_2;
 use estimation::estimator::{PoseMeasurement, Settings};
-use firmware::link::pose::SOURCE_SILENCE;
+use firmware::link::pose::SOURCE_TIMEOUT_US;
 use flight::Stamped;
 use mavlink::dialects::common::{ATT_POS_MOCAP_DATA, MavFrame, ODOMETRY_DATA};
 use nalgebra::{Quaternion, Vector3};
@@ -154,10 +154,10 @@ fn one_source_is_listened_to_at_a_time() {
     fed.message(&mocap(20_000, 0.0), 10_000);
     fed.message(&mocap(30_000, 0.0), 20_000);
     assert_eq!(newest(&shared).unwrap().time, 0);
-    fed.message(&mocap(2_000_000, 0.0), SOURCE_SILENCE);
+    fed.message(&mocap(2_000_000, 0.0), SOURCE_TIMEOUT_US);
     assert!(newest(&shared).is_none());
-    fed.message(&mocap(2_010_000, 0.0), SOURCE_SILENCE + 1);
-    assert_eq!(newest(&shared).unwrap().time, SOURCE_SILENCE + 1);
+    fed.message(&mocap(2_010_000, 0.0), SOURCE_TIMEOUT_US + 1);
+    assert_eq!(newest(&shared).unwrap().time, SOURCE_TIMEOUT_US + 1);
     assert_eq!(texts(&shared), ["Pose refused: another source is in use"]);
 }
 

@@ -6,7 +6,7 @@ use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::telemetry::kind::Kind;
-use firmware::shared::{MissionList, Ping, REPLIES, Reply};
+use firmware::shared::{MissionList, Ping, REPLIES_CAPACITY, Reply};
 use flight::{Mode, Request};
 use mavlink::MessageData;
 use mavlink::dialects::common::{
@@ -181,7 +181,7 @@ fn a_flood_of_questions_overflows_nothing() {
     for _ in 0..1000 {
         fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [148.0, 0.0, 0.0, 0.0, 0.0]), 0);
     }
-    assert_eq!(replies(&shared).len(), REPLIES);
+    assert_eq!(replies(&shared).len(), REPLIES_CAPACITY);
 }
 
 #[test]

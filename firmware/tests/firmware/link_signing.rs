@@ -18,7 +18,9 @@ use crate::support::{Simulated, v1, v2};
 use core::cell::RefCell;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::link::frame::Parser;
-use firmware::link::signing::{AHEAD, Key, LATEST, LEAP, LEAST_AHEAD, Refusal, STREAMS, Signing, Stamp};
+use firmware::link::signing::{
+    KEPT_AHEAD, KEPT_AHEAD_MIN, Key, LEAP_MAX, Refusal, STAMP_MAX, STREAMS_KNOWN, Signing, Stamp,
+};
 use firmware::link::transmit::transmit;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::Name;
@@ -232,7 +234,7 @@ fn a_stream_that_was_forgotten_cannot_be_replayed() {
     let frames = first.say(&disarm(), 0);
     assert_eq!(judged(&signing, &frames, 0), Ok(()));
     // As many others as there is room for, all ahead of it.
-    for system in 0..STREAMS as u32 {
+    for system in 0..STREAMS_KNOWN as u32 {
         let mut other = Sender::new(system + 1, key(), FIRST + 10);
         assert_eq!(judged(&signing, &other.say(&disarm(), 0), 0), Ok(()), "{system}");
     }
@@ -297,15 +299,15 @@ fn stamped(system: u32, stamp: Stamp) -> Vec<u8> {
 fn one_stamp_far_ahead_blocks_no_other_sender() {
     let signing = Signing::<NoopRawMutex>::new();
     signing.set(key(), FIRST, 0);
-    let year = LEAP;
+    let year = LEAP_MAX;
     // The first frame since the start may set the clock, but not beyond what 48 bits last for.
-    for stamp in [LATEST, (1 << 48) - 5_000, (1 << 48) - 1] {
+    for stamp in [STAMP_MAX, (1 << 48) - 5_000, (1 << 48) - 1] {
         assert_eq!(judged(&signing, &stamped(7, stamp), 0), Err(Refusal::Ahead));
     }
     assert_eq!(judged(&signing, &stamped(7, FIRST + 9 * year), 0), Ok(()));
     // After that a clock that is wrong by years is refused, of a stream that is known and of another.
     let now = FIRST + 9 * year;
-    for (system, stamp) in [(7, now + year + 1), (8, now + 2 * year), (8, LATEST - 1)] {
+    for (system, stamp) in [(7, now + year + 1), (8, now + 2 * year), (8, STAMP_MAX - 1)] {
         assert_eq!(judged(&signing, &stamped(system, stamp), 0), Err(Refusal::Ahead));
     }
     // And those whose clock is right are accepted.

@@ -12,7 +12,7 @@ use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
 use firmware::link::receive::receive;
 use firmware::link::telemetry::kind::Kind;
-use firmware::link::transmit::{WRITE_TIME_MAX, transmit};
+use firmware::link::transmit::{WRITE_TIMEOUT_US, transmit};
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::shared::{Event, MissionList, Ping, QueuedRequest, Reply, Report, Severity, Timing, Traffic};
 use flight::{Mode, Refusal, Request};
@@ -326,14 +326,14 @@ fn a_line_that_takes_nothing_loses_frames_but_not_the_task() {
     let (clock, shared, written) = (Simulated::default(), Local::new(), RefCell::default());
     let stuck = Outgoing { written: &written, at_once: 0 };
     let mut waiting = Vec::new();
-    clock.run(20 * WRITE_TIME_MAX, transmit(stuck, &clock, shared.for_transmit()), |now| {
+    clock.run(20 * WRITE_TIMEOUT_US, transmit(stuck, &clock, shared.for_transmit()), |now| {
         flying(&shared, now);
         if shared.events.put(Event::new(Severity::Warning, "one of many")).is_ok() {
             waiting.push(now);
         }
     });
     // Events are taken, each one given up in its time, even though telemetry is always due.
-    assert!(waiting.iter().any(|&time| time > 10 * WRITE_TIME_MAX), "{waiting:?}");
+    assert!(waiting.iter().any(|&time| time > 10 * WRITE_TIMEOUT_US), "{waiting:?}");
 }
 
 /// What these replies put into the payloads of messages of one number, byte for byte.

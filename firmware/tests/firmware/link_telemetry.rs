@@ -185,17 +185,17 @@ fn ground_and_air_are_distinguished() {
 
 #[test]
 fn modes_have_names_and_the_heartbeat_says_the_same_number() {
-    let named: Vec<_> = (1..=vehicle::MODES).map(|index| vehicle::available_mode(index).unwrap()).collect();
-    assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODES + 1).is_none());
+    let named: Vec<_> = (1..=vehicle::MODE_COUNT).map(|index| vehicle::available_mode(index).unwrap()).collect();
+    assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODE_COUNT + 1).is_none());
     let flown = [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing].map(|mode| (mode, false));
     for (mode, mission) in flown.into_iter().chain([(Mode::Flying, true)]) {
-        let shown = vehicle::Shown { mode, mission, policy: false };
+        let shown = vehicle::FlownMode { mode, mission, policy: false };
         let number = vehicle::heartbeat(Some(shown), false).custom_mode;
         assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
         assert_eq!(vehicle::current_mode(&shown).custom_mode, number);
     }
     // PX4's AUTO, EXTERNAL1: named only where a policy is built in.
-    let shown = vehicle::Shown { mode: Mode::Flying, mission: false, policy: true };
+    let shown = vehicle::FlownMode { mode: Mode::Flying, mission: false, policy: true };
     let number = vehicle::heartbeat(Some(shown), false).custom_mode;
     assert_eq!(number, 4 << 16 | 11 << 24);
     assert_eq!(named.iter().any(|named| named.custom_mode == number), option_env!("POLICY").is_some());

@@ -6,7 +6,7 @@ use crate::support::{Simulated, sent, v2};
 use core::cell::{Cell, RefCell};
 use embassy_futures::select::select;
 use firmware::hardware::Port;
-use firmware::link::port::{LOOK, Line, watch};
+use firmware::link::port::{Line, PORT_POLL_INTERVAL_US, watch};
 use firmware::link::receive::receive;
 use firmware::link::transmit::transmit;
 use flight::Mode;
@@ -114,7 +114,7 @@ fn it_does_not_move_while_a_motor_turns() {
         assert_eq!(bench.shared.on_port.is_raised(), !turns, "{mode:?}");
         let bench = Bench::new(false, 2 * SECOND, |bench, now| {
             bench.port.0.set(now < SECOND);
-            report(&bench.shared, if now < LOOK { Mode::Ready } else { mode }, now);
+            report(&bench.shared, if now < PORT_POLL_INTERVAL_US { Mode::Ready } else { mode }, now);
         });
         assert_eq!(bench.shared.on_port.is_raised(), turns, "{mode:?}");
     }
@@ -156,7 +156,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     // Who waits on the serial line when the port is opened still reads what comes there next.
     let bench = Bench::new(true, SECOND, |bench, now| {
         bench.port.0.set(true);
-        if now == LOOK {
+        if now == PORT_POLL_INTERVAL_US {
             bench.incoming[0].say(&key());
         }
     });
@@ -164,11 +164,11 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     assert_eq!(bench.shared.signing.unkept(0, false), None);
     // All of it but its last byte before the port is opened, and a frame from there.
     let bench = Bench::new(true, SECOND, |bench, now| {
-        bench.port.0.set(now > LOOK);
-        if now == LOOK {
+        bench.port.0.set(now > PORT_POLL_INTERVAL_US);
+        if now == PORT_POLL_INTERVAL_US {
             bench.incoming[0].say(&key()[..key().len() - 1]);
         }
-        if now == LOOK + 20_000 {
+        if now == PORT_POLL_INTERVAL_US + 20_000 {
             bench.shared.on_port.raise();
             bench.incoming[0].say(&[0]);
             bench.incoming[1].say(&heartbeat(1));
@@ -179,7 +179,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     // It would have counted there.
     let bench = Bench::new(true, 2 * SECOND, |bench, now| {
         bench.port.0.set(true);
-        if now == LOOK {
+        if now == PORT_POLL_INTERVAL_US {
             bench.incoming[1].say(&key());
         }
     });

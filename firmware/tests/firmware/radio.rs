@@ -9,8 +9,8 @@ use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use firmware::radio::debounced::SWITCH_DEBOUNCE;
-use firmware::radio::{Radio, SILENCE, receive};
+use firmware::radio::debounced::SWITCH_DEBOUNCE_US;
+use firmware::radio::{RADIO_TIMEOUT_US, Radio, receive};
 use firmware::shared::Report;
 use flight::{Mode, Request};
 use mavlink::dialects::common::{
@@ -72,7 +72,7 @@ fn statistics(quality: u8) -> Vec<u8> {
 
 /// The time between frames of the tests, us, and how many of them move a switch.
 const FRAME_PERIOD: u64 = 20_000;
-const FRAMES_TO_COUNT: u64 = SWITCH_DEBOUNCE / FRAME_PERIOD + 1;
+const FRAMES_TO_COUNT: u64 = SWITCH_DEBOUNCE_US / FRAME_PERIOD + 1;
 
 /// Frames that say the same for as long as moves a switch, from a time on, us; when the next one comes.
 fn held(radio: &mut Radio<'_, NoopRawMutex>, channels: &[u16; 16], from: u64) -> u64 {
@@ -124,7 +124,7 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
         assert_eq!(requests(&shared), [request]);
     }
     // Silent for a while, it is as if it were turned on again.
-    radio.check_silence(now + SILENCE);
+    radio.check_silence(now + RADIO_TIMEOUT_US);
     held(&mut radio, &channels(LOW, LOW, LOW), 1_000_000);
     assert!(requests(&shared).is_empty());
     assert_eq!(texts(&shared), ["Radio received", "Radio lost", "Radio received"]);
@@ -327,8 +327,8 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
     let mut fed = Fed::new(&shared);
     held(&mut radio, &channels(HIGH, HIGH, LOW), 0);
     fed.message(&target(), 100_000);
-    fed.message(&offboard(), SILENCE);
-    fed.message(&target(), SILENCE + 100_000);
+    fed.message(&offboard(), RADIO_TIMEOUT_US);
+    fed.message(&target(), RADIO_TIMEOUT_US + 100_000);
     assert!(shared.setpoint.get().is_none());
     // Received again, its switch selects who flies.
     radio.check_silence(9_000_000);
@@ -343,9 +343,9 @@ fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let mut radio = Radio::new(shared.for_radio());
     let heard = held(&mut radio, &channels(HIGH, flies, LOW), 0) - FRAME_PERIOD;
     report(&shared, mode, true);
-    radio.check_silence(heard + SILENCE);
+    radio.check_silence(heard + RADIO_TIMEOUT_US);
     assert!(requests(&shared).is_empty());
-    (1..5).for_each(|wait| radio.check_silence(heard + SILENCE + wait * 100_000));
+    (1..5).for_each(|wait| radio.check_silence(heard + RADIO_TIMEOUT_US + wait * 100_000));
     requests(&shared)
 }
 
@@ -364,7 +364,7 @@ fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let mut fed = Fed::new(&shared);
     (0..20).for_each(|_| fed.message(&land, 0));
-    radio.check_silence(heard + SILENCE + 1);
+    radio.check_silence(heard + RADIO_TIMEOUT_US + 1);
     assert_eq!(requests(&shared), [Request::Land, Request::Hold]);
 }
 

@@ -6,9 +6,9 @@ use crate::support::{Simulated, sent};
 use core::cell::RefCell;
 use firmware::hardware::MotorCommand;
 use firmware::link::transmit::transmit;
-use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::recorder::ulog;
-use firmware::recorder::{AFTERWARDS, SPACING};
+use firmware::recorder::{RECORD_SPACING_MIN_US, RECORDED_AFTERWARDS_US};
 use firmware::shared::Report;
 use mavlink::dialects::common::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
@@ -18,12 +18,12 @@ use mavlink::dialects::common::{
 const ROOM: usize = 500;
 
 /// Ticks that are recorded after a flight, with the one in which it ends.
-const AFTER: u64 = AFTERWARDS / SPACING;
+const AFTER: u64 = RECORDED_AFTERWARDS_US / RECORD_SPACING_MIN_US;
 
 /// Shared, with a recorder for [`ROOM`] ticks.
 fn shared() -> Local {
     let shared = Local::new();
-    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT]; ROOM].into_boxed_slice())), "mine");
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; ROOM].into_boxed_slice())), "mine");
     shared
 }
 
@@ -89,7 +89,7 @@ fn at_any_rate_records_are_ten_milliseconds_or_more_apart_and_last_as_long() {
             });
         }
         let times = times.into_inner();
-        let last = 1_200_000 + (1_200_000 + AFTERWARDS - 2 * period) / spacing * spacing;
+        let last = 1_200_000 + (1_200_000 + RECORDED_AFTERWARDS_US - 2 * period) / spacing * spacing;
         assert_eq!((times[0], *times.last().unwrap()), (1_200_000, last), "{period} us");
         assert!(times.windows(2).all(|pair| pair[1] - pair[0] == spacing), "{times:?}");
     }

@@ -4,7 +4,7 @@ use crate::support::Simulated;
 use crate::support::receiver::{Fed, Local, command, ordered, replies, report, texts};
 use firmware::hardware::Restart;
 use firmware::link::acknowledgement::Acknowledgement;
-use firmware::restart::{self, GRACE};
+use firmware::restart::{self, RESTART_DELAY_US};
 use firmware::shared::Reply;
 use flight::Mode;
 use mavlink::dialects::common::{MavCmd, MavResult};
@@ -135,7 +135,7 @@ fn it_is_done_once_the_answer_had_time_to_go_out() {
     for (first, into_bootloader) in [(1.0, false), (3.0, true)] {
         let (started, texts) = restarted(Mode::Ready, first);
         let (time, bootloader) = started.unwrap();
-        assert!((500_000 + GRACE..=600_000 + GRACE).contains(&time), "{time:?}");
+        assert!((500_000 + RESTART_DELAY_US..=600_000 + RESTART_DELAY_US).contains(&time), "{time:?}");
         assert_eq!((bootloader, texts), (into_bootloader, vec![]));
     }
 }

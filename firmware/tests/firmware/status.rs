@@ -7,7 +7,7 @@ use core::future::pending;
 use firmware::hardware::{Battery, Light};
 use firmware::parameters::table::Name;
 use firmware::shared::{Event, Flag, Severity, TEXT_MAX, Text};
-use firmware::status::{STEP, is_lit, run};
+use firmware::status::{LIGHT_STEP_US, is_lit, run};
 use flight::{Mode, Reason, Refusal};
 use std::cell::RefCell;
 
@@ -33,7 +33,7 @@ impl Battery for Cell {
 
 /// The light over one second, step by step.
 fn pattern(mode: Option<Mode>) -> String {
-    (0..1_000_000 / STEP).map(|step| if is_lit(mode, step * STEP) { '#' } else { '.' }).collect()
+    (0..1_000_000 / LIGHT_STEP_US).map(|step| if is_lit(mode, step * LIGHT_STEP_US) { '#' } else { '.' }).collect()
 }
 
 #[test]
@@ -127,5 +127,5 @@ fn events_without_room_are_counted() {
     for _ in 0..20 {
         shared.announce(Event::new(Severity::Critical, "again"));
     }
-    assert_eq!(shared.lost_events.get(), 20 - firmware::shared::EVENTS as u32);
+    assert_eq!(shared.lost_events.get(), 20 - firmware::shared::EVENTS_CAPACITY as u32);
 }

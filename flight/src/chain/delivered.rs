@@ -11,7 +11,7 @@ impl Chain<'_> {
         self.law.estimates().map_or(0.0, |estimates| estimates.force.z)
     }
 
-    /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 if it estimates nothing, and of a
+    /// Delivered over commanded thrust, by the law's estimates in steady flight; 1 without estimates, and of a
     /// vehicle that has lost a rotor.
     ///
     /// A hover commands (g - d_z) m / s and delivers m g. The thrust scale s alone is not enough: the vertical force
@@ -26,8 +26,8 @@ impl Chain<'_> {
     /// The acceleration that neither the commanded thrust nor the estimated force explains, m/s^2, world.
     pub fn unexpected(&self, flown: &Flown, estimated: &EstimatedState) -> Vector3<f32> {
         let attitude = UnitQuaternion::new_unchecked(flown.state.attitude);
-        let asked = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);
-        estimated.acceleration + Vector3::z() * (self.gravity - self.vertical_force()) - asked
+        let commanded = attitude * Vector3::z() * (flown.wrench.thrust / self.mass);
+        estimated.acceleration + Vector3::z() * (self.gravity - self.vertical_force()) - commanded
     }
 
     /// The vertical acceleration of the commanded thrust and the estimated force, m/s^2.

@@ -30,7 +30,7 @@ impl<P: Aboard> Pilot<'_, P> {
         let followed = self.follow_jump(estimate);
         let detected = self.detect(inputs, estimate);
         self.judge_poses(estimate, &detected, now);
-        // What others want.
+        // Setpoints and requests.
         self.keep_setpoint(inputs);
         self.expire_setpoints_request(inputs);
         let answer = inputs.request.map(|request| self.answer(request, inputs, estimate, &detected));

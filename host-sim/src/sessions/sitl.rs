@@ -47,7 +47,7 @@ use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::tuned::Built;
-use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::shared::Shared;
 use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
@@ -171,7 +171,7 @@ impl Sitl {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
         let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
-        let memory = Box::leak(vec![[0; SLOT]; RECORDER_CAPACITY].into_boxed_slice());
+        let memory = Box::leak(vec![[0; SLOT_BYTES]; RECORDER_CAPACITY].into_boxed_slice());
         shared.recorder.attach(Ring::recover(memory), self.name);
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);

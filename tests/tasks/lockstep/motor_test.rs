@@ -1,7 +1,7 @@
 //! The motor test: one motor, slowly, not for long, and never against a disarm command.
 
 use super::flight::Flight;
-use firmware::hardware::{MOTORS, MotorCommand};
+use firmware::hardware::{MOTOR_COUNT, MotorCommand};
 use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
@@ -19,7 +19,7 @@ fn ready() -> Flight {
 
 #[test]
 fn each_motor_turns_alone_at_the_greatest_level_for_the_longest_time_and_stops() {
-    for motor in 0..MOTORS {
+    for motor in 0..MOTOR_COUNT {
         let mut flight = ready();
         let begin = flight.now();
         flight.station.test_motor(motor as u8 + 1, 15.0, 2.0);

@@ -4,7 +4,7 @@ use controller_core::allocation::Rotors;
 use controller_core::configuration::Configuration;
 use controller_core::state::State;
 use estimation::imu::ImuParameters;
-use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTOR_COUNT, MotorCommand, Motors, RawImu, Watchdog};
 use host_sim::sessions::sitl::clock::SimClock;
 use host_sim::vehicle::plant::Plant;
 use nalgebra::Vector3;
@@ -49,7 +49,7 @@ struct Body {
     rotors: Rotors,
     /// Speed of a full command, rad/s.
     greatest: f64,
-    speeds: [f64; MOTORS],
+    speeds: [f64; MOTOR_COUNT],
     /// What a step leaves of a speed's error.
     left: f64,
     /// What the accelerometer says, m/s^2, body.
@@ -85,7 +85,7 @@ impl SimulatedHardware {
         let lag = Scenario::parse(EMBEDDED, "vehicles/study.toml").unwrap().rotor_lag;
         let left = (-1e-6 * STEP_US as f64 / lag).exp();
         let force = Vector3::new(0.0, 0.0, f64::from(configuration.vehicle().gravity));
-        let speeds = [0.0; MOTORS];
+        let speeds = [0.0; MOTOR_COUNT];
         let configuration = configuration.clone();
         let body = Body { configuration, plant, rotors, greatest, speeds, left, force, touchdown: None };
         let command = Cell::new((MotorCommand::Stop, 0));

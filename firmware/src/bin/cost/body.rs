@@ -5,12 +5,12 @@ use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
 
 /// Steps between two ticks.
-const STEPS: u32 = 10;
+const STEPS_PER_TICK: u32 = 10;
 
 /// Advances `state` by `period` seconds with `wrench` held: ideal actuators, semi-implicit Euler steps.
 pub fn advance(state: &mut State, vehicle: &Vehicle, wrench: &Wrench, period: f32) {
-    let (inertia, step) = (&vehicle.inertia, period / STEPS as f32);
-    for _ in 0..STEPS {
+    let (inertia, step) = (&vehicle.inertia, period / STEPS_PER_TICK as f32);
+    for _ in 0..STEPS_PER_TICK {
         let omega = state.angular_velocity;
         let gyroscopic = omega.cross(&inertia.component_mul(&omega));
         state.angular_velocity += (wrench.torque - gyroscopic).component_div(inertia) * step;

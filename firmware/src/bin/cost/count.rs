@@ -2,8 +2,8 @@
 
 use cortex_m_semihosting::hprintln;
 
-/// Clocks of the boards, MHz.
-pub const CLOCKS: [f64; 2] = [168.0, 400.0];
+/// Clocks of the boards.
+pub const CLOCKS_MHZ: [f64; 2] = [168.0, 400.0];
 
 /// Mean and worst of one kind of call.
 #[derive(Default)]
@@ -34,7 +34,7 @@ impl Cost {
     /// As a line of the table.
     pub fn print(&self, what: &str) {
         let mean = self.mean();
-        let [bolt, h743] = CLOCKS.map(|clock| mean / clock);
+        let [bolt, h743] = CLOCKS_MHZ.map(|clock| mean / clock);
         hprintln!("{:<42} {:>10.1} {:>10.0} {:>9.2} {:>9.2}", what, mean, self.worst, bolt, h743);
     }
 }

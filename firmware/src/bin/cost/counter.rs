@@ -12,9 +12,9 @@ use core::sync::atomic::{Ordering, compiler_fence};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 
-const RELOAD: u32 = 0x00FF_FFFF;
+const SYSTICK_RELOAD: u32 = 0x00FF_FFFF;
 /// Iterations of the calibration loop, of two instructions each.
-const CALIBRATION: u32 = 100_000;
+const CALIBRATION_LOOPS: u32 = 100_000;
 
 /// Timer 1 (CMSDK APB timer), counting down from the top of its range, once: with nothing to reload it stops at zero.
 mod timer {
@@ -53,13 +53,13 @@ impl Counter {
     /// Starts the counter; none if the same loop does not take the same time twice: then nothing counts instructions.
     pub fn start(mut syst: SYST) -> Option<Self> {
         syst.set_clock_source(SystClkSource::Core);
-        syst.set_reload(RELOAD);
+        syst.set_reload(SYSTICK_RELOAD);
         syst.clear_current();
         syst.enable_counter();
         let mut counter = Self { overhead: 0, ticks_per_instruction: 0.0 };
         counter.overhead = counter.window(|| ()).0;
         let (first, second) = (counter.window(known_loop).0, counter.window(known_loop).0);
-        counter.ticks_per_instruction = f64::from(first - counter.overhead) / f64::from(2 * CALIBRATION);
+        counter.ticks_per_instruction = f64::from(first - counter.overhead) / f64::from(2 * CALIBRATION_LOOPS);
         (first.abs_diff(second) <= 1).then_some(counter)
     }
 
@@ -91,15 +91,15 @@ impl Counter {
         compiler_fence(Ordering::SeqCst);
         let end = SYST::get_current();
         compiler_fence(Ordering::SeqCst);
-        (start.wrapping_sub(end) & RELOAD, result)
+        (start.wrapping_sub(end) & SYSTICK_RELOAD, result)
     }
 }
 
-/// Two instructions, [`CALIBRATION`] times.
+/// Two instructions, [`CALIBRATION_LOOPS`] times.
 #[inline(always)]
 fn known_loop() {
     // SAFETY: counts a register of its own down to zero; touches flags and nothing else.
     unsafe {
-        asm!("2: subs {n}, {n}, #1", "bne 2b", n = inout(reg) CALIBRATION => _, options(nomem, nostack));
+        asm!("2: subs {n}, {n}, #1", "bne 2b", n = inout(reg) CALIBRATION_LOOPS => _, options(nomem, nostack));
     }
 }

@@ -13,14 +13,14 @@ use nalgebra::{Quaternion, Vector3};
 use static_cell::StaticCell;
 
 /// Samples of a measured flight, one a millisecond.
-const SAMPLES: u64 = 10_000;
+const SAMPLE_COUNT: u64 = 10_000;
 
-/// Time between control ticks, us: what the samples' low-pass is made for.
-const PERIOD: u64 = 10_000;
+/// Time between control ticks: what the samples' low-pass is made for.
+const PERIOD_US: u64 = 10_000;
 
 /// The vehicle turns in place at this rate, in 2^-64 turns a microsecond: 0.5 rad/s.
-const TURNING: u64 = 1_467_934_022_605;
-const RATE: f32 = 0.5;
+const TURNS_PER_US: u64 = 1_467_934_022_605;
+const RATE_RAD_PER_S: f32 = 0.5;
 
 type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
 type Take = fn(&mut Estimator, &Increment);
@@ -57,16 +57,16 @@ struct Flight<'a> {
 impl Flight<'_> {
     /// Flies ten seconds, and prints what the poses cost; and with `all` the rest. False if a pose was not fused.
     fn fly(&mut self, stream: &Stream, all: bool) -> bool {
-        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, PERIOD) else {
+        let Ok(mut conditioner) = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, PERIOD_US) else {
             return false;
         };
         *self.estimator = Estimator::new(&self.settings);
         let (sample, take): (Sample, Take) = (black_box(Conditioner::sample), black_box(Estimator::imu));
         let (fuse, state_of): (Fuse, StateOf) = (black_box(Estimator::pose), black_box(Estimator::state));
         let [mut samples, mut increments, mut poses, mut states] = [(); 4].map(|()| Cost::default());
-        for n in 0..SAMPLES {
+        for n in 0..SAMPLE_COUNT {
             let (now, jitter) = (n * 1_000, (n % 5) as f32 * 1e-4);
-            let (rate, force) = (Vector3::new(jitter, 0.0, RATE), Vector3::new(jitter, 0.0, 9.81));
+            let (rate, force) = (Vector3::new(jitter, 0.0, RATE_RAD_PER_S), Vector3::new(jitter, 0.0, 9.81));
             let (cost, conditioned) = self.counter.short(|| sample(&mut conditioner, now, &rate, Some(&force)));
             samples.add(cost);
             if let Some(increment) = conditioned.increment {
@@ -96,7 +96,7 @@ impl Flight<'_> {
 
 /// Where the vehicle was.
 fn pose(time: u64) -> Option<Stamped<PoseMeasurement>> {
-    let (sin, cos) = math::sin_cos_turns(TURNING.wrapping_mul(time) / 2);
+    let (sin, cos) = math::sin_cos_turns(TURNS_PER_US.wrapping_mul(time) / 2);
     let nothing = Velocity::World(Vector3::zeros());
     let pose = Pose::new(Vector3::new(1.0, 2.0, 3.0), nothing, Quaternion::new(cos, 0.0, 0.0, sin)).ok()?;
     Some(Stamped { value: PoseMeasurement::new(&pose), time })

@@ -31,9 +31,9 @@ use nalgebra::{Quaternion, Vector3};
 use static_cell::ConstStaticCell;
 
 /// Steps of a measured flight.
-const STEPS: u64 = 1000;
+const FLIGHT_STEPS: u64 = 1000;
 const PERIOD_US: u64 = 10_000;
-const PERIOD: f32 = 0.01;
+const PERIOD_S: f32 = 0.01;
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
 
@@ -58,13 +58,13 @@ fn measure() -> bool {
         return false;
     };
     let Some(certified) = certified(&counter, &embedded) else { return false };
-    let Ok(law) = Law::new(&certified, PERIOD) else { return false };
+    let Ok(law) = Law::new(&certified, PERIOD_S) else { return false };
     let (Some(rotors), Some(circle)) = (embedded.rotors(), circle()) else { return false };
     let Ok(target) = Hover::new(Vector3::new(0.0, 0.0, 5.0), Heading::FORWARD) else { return false };
     let Some(papers) = replay::papers().ok().and_then(|papers| Certified::new(papers).ok()) else {
         return false;
     };
-    let Ok(papers_law) = Law::new(&papers, PERIOD) else { return false };
+    let Ok(papers_law) = Law::new(&papers, PERIOD_S) else { return false };
     let mixer = Mixer::new(rotors);
     let (mut allocation, mut governing) = (Cost::default(), Cost::default());
 
@@ -75,7 +75,7 @@ fn measure() -> bool {
     cost.print("step, circle");
     allocation.print("allocation, circle");
     let mut recovering = Cost::default();
-    let Some((_, cost)) = flight.fly(TUMBLING, &target, &mut recovering) else { return false };
+    let Some((_, cost)) = flight.fly(TUMBLING_STATE, &target, &mut recovering) else { return false };
     cost.print("step, tumbling recovery");
     recovering.print("allocation, tumbling recovery");
     let mut flight = Flight { law: papers_law, mixer: None, certified: &papers, counter: &counter };
@@ -139,13 +139,13 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    /// Flies [`STEPS`] ticks from `state` after a reset; none if the law or the allocation refuses an input.
+    /// Flies [`FLIGHT_STEPS`] ticks from `state` after a reset; none if the law or the allocation refuses an input.
     fn fly(&mut self, mut state: State, trajectory: &dyn Trajectory, allocation: &mut Cost) -> Option<(State, Cost)> {
         let step: Step = black_box(Law::command);
         let allocate: Allocate = black_box(Mixer::allocate);
         let mut cost = Cost::default();
         self.law.reset();
-        for tick in 0..STEPS {
+        for tick in 0..FLIGHT_STEPS {
             let reference = black_box(trajectory.at(tick * PERIOD_US));
             let (instructions, command) = self.counter.short(|| step(&mut self.law, &state, &reference));
             cost.add(instructions);
@@ -159,7 +159,7 @@ impl Flight<'_> {
                     mixer.wrench(&allocated.ok()?.thrusts)
                 }
             };
-            body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD);
+            body::advance(&mut state, self.certified.configuration().vehicle(), &achieved, PERIOD_S);
         }
 
         Some((state, cost))
@@ -169,15 +169,15 @@ impl Flight<'_> {
 /// A hover behind the shield, and the network that would fly it; whether the policy flew.
 fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
     let (corner, zero) = (Vector3::repeat(20.0), Vector3::zeros());
-    let shield = Shield::new(certified.configuration(), &Settings::new(-corner, corner), PERIOD);
-    let (Ok(mut law), Ok(mut shield)) = (Law::new(certified, PERIOD), shield) else { return false };
+    let shield = Shield::new(certified.configuration(), &Settings::new(-corner, corner), PERIOD_S);
+    let (Ok(mut law), Ok(mut shield)) = (Law::new(certified, PERIOD_S), shield) else { return false };
     let (Some(law), Some(network)) = (law.extended(), network()) else { return false };
     let step: Shielded = black_box(Shield::step);
     let outputs: fn(&Network<'static>, &[f32; INPUT_COUNT]) -> [f32; OUTPUT_COUNT] = black_box(Network::outputs);
     let (mut cost, mut thinking, mut state) = (Cost::default(), Cost::default(), *from);
     let observation = Observation { state, goal: zero, heading: Heading::FORWARD };
     let inputs = inputs_of(&observation, &[0.0; OUTPUT_COUNT]);
-    for _ in 0..STEPS {
+    for _ in 0..FLIGHT_STEPS {
         let acceleration = -state.velocity - (state.position - from.position);
         let demand = Demand::Acceleration { acceleration, yaw_rate: 0.0 };
         let (instructions, flown) = counter.short(|| step(&mut shield, law, &state, Some(&demand)));
@@ -186,7 +186,7 @@ fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
             return false;
         }
         cost.add(instructions);
-        body::advance(&mut state, certified.configuration().vehicle(), &flown.wrench, PERIOD);
+        body::advance(&mut state, certified.configuration().vehicle(), &flown.wrench, PERIOD_S);
         let (instructions, answer) = counter.short(|| outputs(&network, &inputs));
         black_box(answer);
         thinking.add(instructions);
@@ -216,7 +216,7 @@ fn on(trajectory: &impl Trajectory) -> State {
 }
 
 /// Upside down, falling, spinning about every axis.
-const TUMBLING: State = State {
+const TUMBLING_STATE: State = State {
     position: Vector3::new(3.0, -2.0, 8.0),
     velocity: Vector3::new(2.0, 1.0, -3.0),
     attitude: Quaternion::from_vector(nalgebra::Vector4::new(1.0, 0.0, 0.0, 0.0)),
@@ -227,24 +227,28 @@ const TUMBLING: State = State {
 /// count.
 fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
     static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
-    const RATE: f32 = 1.0;
+    const TURN_RATE_RAD_PER_S: f32 = 1.0;
     let bounds = configuration.bounds();
     // At one radian a second all derivatives are as great as the radius.
     let radius = 0.7 * bounds.horizontal_acceleration.min(bounds.jerk).min(bounds.snap).min(bounds.horizontal_speed);
-    let Ok(governor) = Governor::new(bounds, &GovernorLimits::default(), PERIOD, MEMORY.take()) else {
+    let Ok(governor) = Governor::new(bounds, &GovernorLimits::default(), PERIOD_S, MEMORY.take()) else {
         return false;
     };
     let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);
     let mut follows = true;
     for number in 0..3500_u32 {
         // In 2^-32 turns, then as a phase, which wraps.
-        let turned = f64::from(RATE * PERIOD * number as f32) / core::f64::consts::TAU * 4_294_967_296.0;
+        let turned =
+            f64::from(TURN_RATE_RAD_PER_S * PERIOD_S * number as f32) / core::f64::consts::TAU * 4_294_967_296.0;
         let (sin, cos) = math::sin_cos_turns((turned as u64) << 32);
         let out = Vector3::new(cos, sin, 0.0) * radius;
         if number % 5 == 0 {
-            let velocity = Vector3::new(-sin, cos, 0.0) * (radius * RATE);
-            let motion =
-                Motion::PositionVelocityAcceleration { position: out, velocity, acceleration: -out * (RATE * RATE) };
+            let velocity = Vector3::new(-sin, cos, 0.0) * (radius * TURN_RATE_RAD_PER_S);
+            let motion = Motion::PositionVelocityAcceleration {
+                position: out,
+                velocity,
+                acceleration: -out * (TURN_RATE_RAD_PER_S * TURN_RATE_RAD_PER_S),
+            };
             if governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).is_err() {
                 return false;
             }
@@ -253,7 +257,7 @@ fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
         if number >= 2500 {
             cost.add(instructions);
             // A tick later than sent.
-            follows &= (reference.position - out).norm() < radius * RATE * PERIOD + 0.001;
+            follows &= (reference.position - out).norm() < radius * TURN_RATE_RAD_PER_S * PERIOD_S + 0.001;
         }
     }
     follows
@@ -263,7 +267,7 @@ fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
 fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> bool {
     static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::EMPTY);
     let (bounds, limits) = (configuration.bounds(), GovernorLimits::default());
-    let Ok(governor) = Governor::new(bounds, &limits, PERIOD, MEMORY.take()) else {
+    let Ok(governor) = Governor::new(bounds, &limits, PERIOD_S, MEMORY.take()) else {
         return false;
     };
     let tick: fn(&mut Governor) -> Reference = black_box(Governor::tick);

@@ -28,34 +28,35 @@ use flight::{FlightSettings, Memory, Mode, Pilot, Pose, Request, Stamped, Veloci
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// The rates of control that are measured: in the table's words, and a period, us.
-const RATES: [(&str, u64); 3] = [("100 Hz", 10_000), ("500 Hz", 2_000), ("1 kHz", 1_000)];
+/// The rates of control that are measured: in the table's words, and a period.
+const RATES_AND_PERIODS_US: [(&str, u64); 3] = [("100 Hz", 10_000), ("500 Hz", 2_000), ("1 kHz", 1_000)];
 
-/// How long the vehicle stands, goes up, and flies the circle that is measured, us.
-const STANDING: u64 = 2_000_000;
-const RISING: u64 = 5_000_000;
-const CIRCLING: u64 = 10_000_000;
+/// How long the vehicle stands, goes up, and flies the circle that is measured.
+const STANDING_US: u64 = 2_000_000;
+const RISING_US: u64 = 5_000_000;
+const CIRCLING_US: u64 = 10_000_000;
 
-/// When setpoints are requested, us.
-const FLYING: u64 = STANDING + 200_000;
+/// When setpoints are requested.
+const SETPOINTS_FROM_US: u64 = STANDING_US + 200_000;
 
-/// Time between samples of the IMU, us.
-const SAMPLE: u64 = 1_000;
+/// Time between samples of the IMU.
+const SAMPLE_PERIOD_US: u64 = 1_000;
 
-/// Time between poses, and between setpoints, us.
-const POSES_APART: u64 = 10_000;
-const SETPOINTS_APART: u64 = 100_000;
+/// Time between poses, and between setpoints.
+const POSE_INTERVAL_US: u64 = 10_000;
+const SETPOINT_INTERVAL_US: u64 = 100_000;
 
 /// How many poses have become true since the one that comes.
-const LATE: usize = 2;
+const POSES_LATE: usize = 2;
 
 type Tick<'a> = fn(&mut Control<'a, NoopRawMutex>, u64) -> MotorCommand;
 
 /// Flies at each rate, and prints what the ticks of the circle cost; whether it flew.
 pub fn measure(counter: &Counter, circle: &impl Trajectory) -> bool {
-    static ESTIMATORS: [StaticCell<Estimator>; RATES.len()] = [const { StaticCell::new() }; _];
-    static MEMORIES: [ConstStaticCell<Memory>; RATES.len()] = [const { ConstStaticCell::new(Memory::EMPTY) }; _];
-    RATES.iter().zip(&ESTIMATORS).zip(&MEMORIES).all(|((&(rate, period), estimator), memory)| {
+    static ESTIMATORS: [StaticCell<Estimator>; RATES_AND_PERIODS_US.len()] = [const { StaticCell::new() }; _];
+    static MEMORIES: [ConstStaticCell<Memory>; RATES_AND_PERIODS_US.len()] =
+        [const { ConstStaticCell::new(Memory::EMPTY) }; _];
+    RATES_AND_PERIODS_US.iter().zip(&ESTIMATORS).zip(&MEMORIES).all(|((&(rate, period), estimator), memory)| {
         let Some(certified) = embedded_at(period).and_then(|embedded| Certified::new(embedded).ok()) else {
             return false;
         };
@@ -85,7 +86,7 @@ impl Flown {
         self.ticks.print(&label("whole control tick"));
         // Instructions a microsecond, over those that the clock has: percent, at each clock.
         let percent = |each: f64| CLOCKS.map(|clock| 100.0 * each / clock);
-        let (period, between) = (period as f64, SAMPLE as f64);
+        let (period, between) = (period as f64, SAMPLE_PERIOD_US as f64);
         for (what, [bolt, h743]) in [
             ("worst tick of its period, %", percent(self.ticks.worst() / period)),
             ("share of the processor, %", percent(self.ticks.mean() / period + self.samples.mean() / between)),
@@ -123,11 +124,11 @@ fn fly(
     let mut flow = Flow::new(shared.for_samples(), &ImuParameters::PROMPT, &Calibration::NONE, period).ok()?;
     let mut body = Body::standing(*configuration.vehicle());
     let mut flown = Flown::default();
-    for now in (SAMPLE..=STANDING + RISING + CIRCLING).step_by(SAMPLE as usize) {
+    for now in (SAMPLE_PERIOD_US..=STANDING_US + RISING_US + CIRCLING_US).step_by(SAMPLE_PERIOD_US as usize) {
         let wrench = link.report().get().and_then(|report| report.value.wrench);
         let sample = body.advance(wrench.as_ref(), now);
         let (instructions, ()) = counter.short(|| flow.take(&sample));
-        let circling = now.checked_sub(STANDING + RISING);
+        let circling = now.checked_sub(STANDING_US + RISING_US);
         if circling.is_some() {
             flown.samples.add(instructions);
         }
@@ -139,14 +140,14 @@ fn fly(
         }
         link.ground_station().put((), now);
         let asked = match now {
-            STANDING => Some(Request::Arm),
-            FLYING => Some(Request::FlySetpoints),
+            STANDING_US => Some(Request::Arm),
+            SETPOINTS_FROM_US => Some(Request::FlySetpoints),
             _ => None,
         };
         if let Some(request) = asked {
             link.request(QueuedRequest { request, order: None, setpoints: None });
         }
-        if now > STANDING && now.is_multiple_of(SETPOINTS_APART) {
+        if now > STANDING_US && now.is_multiple_of(SETPOINT_INTERVAL_US) {
             link.setpoint().put(setpoint(circle, circling), now);
         }
         let (instructions, _) = counter.short(|| tick(&mut control, now));
@@ -177,24 +178,24 @@ struct Body {
     vehicle: Vehicle,
     state: State,
     /// At the last times of poses, the newest last.
-    past: [State; LATE + 1],
+    past: [State; POSES_LATE + 1],
 }
 
 impl Body {
     fn standing(vehicle: Vehicle) -> Self {
         let zero = Vector3::zeros();
         let state = State { position: zero, velocity: zero, attitude: Quaternion::identity(), angular_velocity: zero };
-        Self { vehicle, state, past: [state; LATE + 1] }
+        Self { vehicle, state, past: [state; POSES_LATE + 1] }
     }
 
     /// Moves on to `now`, us, under the commanded wrench; returns the IMU's sample. Without thrust it stands.
     fn advance(&mut self, wrench: Option<&Wrench>, now: u64) -> RawImu {
-        let seconds = SAMPLE as f32 * 1e-6;
+        let seconds = SAMPLE_PERIOD_US as f32 * 1e-6;
         let before = self.state;
         if let Some(wrench) = wrench {
             body::advance(&mut self.state, &self.vehicle, wrench, seconds);
         }
-        if now.is_multiple_of(POSES_APART) {
+        if now.is_multiple_of(POSE_INTERVAL_US) {
             self.past.rotate_left(1);
             if let Some(last) = self.past.last_mut() {
                 *last = self.state;
@@ -210,9 +211,10 @@ impl Body {
         }
     }
 
-    /// Where it was [`LATE`] poses ago, by a camera that is never still, if one comes now.
+    /// Where it was [`POSES_LATE`] poses ago, by a camera that is never still, if one comes now.
     fn late_pose(&self, now: u64) -> Option<Stamped<PoseMeasurement>> {
-        let time = now.is_multiple_of(POSES_APART).then_some(now)?.checked_sub(LATE as u64 * POSES_APART)?;
+        let time =
+            now.is_multiple_of(POSE_INTERVAL_US).then_some(now)?.checked_sub(POSES_LATE as u64 * POSE_INTERVAL_US)?;
         let was = self.past.first()?;
         let trembling = Vector3::repeat(math::sin_cos_turns(time << 50).0 * 1e-4);
         let pose = Pose::new(was.position + trembling, Velocity::World(Vector3::zeros()), was.attitude).ok()?;

@@ -72,8 +72,8 @@ impl bench::Device for Registers {
     fn exchange(&mut self, bytes: &mut [u8]) {
         let asleep = std::mem::take(&mut self.asleep);
         let [address, data @ ..] = bytes else { return };
-        let register = *address & !READ;
-        if *address & READ == 0 {
+        let register = *address & !READ_BIT;
+        if *address & READ_BIT == 0 {
             if asleep {
                 return;
             }

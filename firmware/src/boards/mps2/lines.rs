@@ -2,8 +2,8 @@
 
 use cortex_m::interrupt::InterruptNumber;
 
-/// What the processor and all devices on the bus run at, Hz.
-pub const CLOCK: u32 = 25_000_000;
+/// What the processor and all devices on the bus run at.
+pub const CLOCK_HZ: u32 = 25_000_000;
 
 /// The lines of the interrupt controller that are in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

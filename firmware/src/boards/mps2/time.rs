@@ -4,7 +4,7 @@
 //! alarm runs timer 0 down from exactly the cycles that are left, so the processor sleeps from alarm to alarm, and an
 //! alarm is a cycle late at most, 40 ns.
 
-use super::lines::CLOCK;
+use super::lines::CLOCK_HZ;
 use core::cell::{Cell, RefCell};
 use core::task::Waker;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -14,13 +14,13 @@ use embassy_time_driver::Driver;
 use embassy_time_queue_utils::Queue;
 
 /// Cycles in a microsecond.
-const CYCLES: u64 = CLOCK as u64 / 1_000_000;
+const CYCLES_PER_US: u64 = CLOCK_HZ as u64 / 1_000_000;
 
 /// Microseconds in one round of SysTick: whole, and as many cycles as its 24 bits hold.
-const ROUND: u64 = 500_000;
+const ROUND_US: u64 = 500_000;
 
 /// Cycles in one round.
-const ROUND_CYCLES: u64 = ROUND * CYCLES;
+const ROUND_CYCLES: u64 = ROUND_US * CYCLES_PER_US;
 
 const _: () = assert!(ROUND_CYCLES <= 1 << 24);
 
@@ -85,11 +85,11 @@ impl Time {
     fn arm(&self, cs: CriticalSection) {
         let mut queue = self.queue.borrow_ref_mut(cs);
         loop {
-            let next = queue.next_expiration(self.cycles(cs) / CYCLES);
+            let next = queue.next_expiration(self.cycles(cs) / CYCLES_PER_US);
             if next == u64::MAX {
                 return timer::stop();
             }
-            let left = next.saturating_mul(CYCLES).saturating_sub(self.cycles(cs));
+            let left = next.saturating_mul(CYCLES_PER_US).saturating_sub(self.cycles(cs));
             if left > 0 {
                 // An alarm further away than the timer counts is looked at again when it has run down.
                 return timer::start(u32::try_from(left).unwrap_or(u32::MAX));
@@ -100,7 +100,7 @@ impl Time {
 
 impl Driver for Time {
     fn now(&self) -> u64 {
-        critical_section::with(|cs| self.cycles(cs) / CYCLES)
+        critical_section::with(|cs| self.cycles(cs) / CYCLES_PER_US)
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {

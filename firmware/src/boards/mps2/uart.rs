@@ -15,17 +15,17 @@ use embedded_io_async::{ErrorType, Read, Write};
 
 /// Received bytes that wait to be read: more than two answers of the simulator, each of two poses and ten samples of
 /// its sensors.
-const BUFFER: usize = 4096;
+const BUFFER_BYTES: usize = 4096;
 
 /// Cycles a bit: 25 MHz / 27 = 926 kBd. The emulator sends bytes at once, but wants a rate that a UART could have.
-const DIVIDER: u32 = 27;
+const CYCLES_PER_BIT: u32 = 27;
 
 // Offsets in words, and bits.
-const DATA: usize = 0;
-const STATE: usize = 1;
-const CONTROL: usize = 2;
-const INTERRUPTS: usize = 3;
-const BAUD_DIVIDER: usize = 4;
+const DATA_REGISTER: usize = 0;
+const STATE_REGISTER: usize = 1;
+const CONTROL_REGISTER: usize = 2;
+const INTERRUPTS_REGISTER: usize = 3;
+const BAUD_DIVIDER_REGISTER: usize = 4;
 const STATE_TRANSMIT_FULL: u32 = 1 << 0;
 const STATE_RECEIVE_FULL: u32 = 1 << 1;
 const CONTROL_ENABLE: u32 = 0b1111;
@@ -35,7 +35,7 @@ const INTERRUPT_RECEIVE: u32 = 1 << 1;
 /// One of the board's UARTs.
 pub struct Uart {
     base: usize,
-    received: Pipe<CriticalSectionRawMutex, BUFFER>,
+    received: Pipe<CriticalSectionRawMutex, BUFFER_BYTES>,
     transmitted: AtomicWaker,
     lost: Mutex<CriticalSectionRawMutex, Cell<u32>>,
 }
@@ -62,8 +62,8 @@ impl Uart {
     }
 
     pub(super) fn init(&self) {
-        self.write_register(BAUD_DIVIDER, DIVIDER);
-        self.write_register(CONTROL, CONTROL_ENABLE);
+        self.write_register(BAUD_DIVIDER_REGISTER, CYCLES_PER_BIT);
+        self.write_register(CONTROL_REGISTER, CONTROL_ENABLE);
     }
 
     /// Both directions of the stream. The buffers are shared: one reader and one writer at a time make sense of it.
@@ -79,9 +79,9 @@ impl Uart {
     }
 
     fn on_receive(&self) {
-        self.write_register(INTERRUPTS, INTERRUPT_RECEIVE);
-        while self.read_register(STATE) & STATE_RECEIVE_FULL != 0 {
-            let byte = self.read_register(DATA) as u8;
+        self.write_register(INTERRUPTS_REGISTER, INTERRUPT_RECEIVE);
+        while self.read_register(STATE_REGISTER) & STATE_RECEIVE_FULL != 0 {
+            let byte = self.read_register(DATA_REGISTER) as u8;
             if self.received.try_write(&[byte]).is_err() {
                 self.lost.lock(|lost| lost.set(lost.get().saturating_add(1)));
             }
@@ -89,7 +89,7 @@ impl Uart {
     }
 
     fn on_transmit(&self) {
-        self.write_register(INTERRUPTS, INTERRUPT_TRANSMIT);
+        self.write_register(INTERRUPTS_REGISTER, INTERRUPT_TRANSMIT);
         self.transmitted.wake();
     }
 }
@@ -117,13 +117,13 @@ impl ErrorType for Sender {
 impl Write for Sender {
     async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         for byte in bytes {
-            let full = || self.0.read_register(STATE) & STATE_TRANSMIT_FULL != 0;
+            let full = || self.0.read_register(STATE_REGISTER) & STATE_TRANSMIT_FULL != 0;
             poll_fn(|context| {
                 self.0.transmitted.register(context.waker());
                 if full() { Poll::Pending } else { Poll::Ready(()) }
             })
             .await;
-            self.0.write_register(DATA, u32::from(*byte));
+            self.0.write_register(DATA_REGISTER, u32::from(*byte));
         }
         Ok(bytes.len())
     }

@@ -1,6 +1,6 @@
 //! What a board may lack.
 
-use crate::hardware::{Battery, Card, Fault, SECTOR};
+use crate::hardware::{Battery, Card, Fault, SECTOR_BYTES};
 
 /// The slot that there is not.
 pub enum NoCard {}
@@ -14,11 +14,11 @@ impl Card for NoCard {
         match *self {}
     }
 
-    fn read(&mut self, _: u32, _: &mut [u8; SECTOR]) -> Result<(), Fault> {
+    fn read(&mut self, _: u32, _: &mut [u8; SECTOR_BYTES]) -> Result<(), Fault> {
         match *self {}
     }
 
-    fn write(&mut self, _: u32, _: &[u8; SECTOR]) -> Result<(), Fault> {
+    fn write(&mut self, _: u32, _: &[u8; SECTOR_BYTES]) -> Result<(), Fault> {
         match *self {}
     }
 }

@@ -4,7 +4,7 @@
 //! reset stops, not started. So the wish is kept in memory that no start clears, behind the flight recorder's, and
 //! looked at first of all.
 
-use super::chip::{self, BOOTLOADER};
+use super::chip::{self, BOOTLOADER_ADDRESS};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{Ordering, fence};
 
@@ -15,11 +15,11 @@ unsafe extern "C" {
 
 /// The request, written four times: a write to memory that has error-correcting codes may wait in the chip for the next
 /// one, and be lost if a reset comes first.
-const WISH: [u64; 4] = [0x4446_5520_706C_6561; 4];
+const WISH_WORDS: [u64; 4] = [0x4446_5520_706C_6561; 4];
 
 /// Has the next start enter the bootloader.
 pub fn wish() {
-    set(WISH);
+    set(WISH_WORDS);
 }
 
 /// Enters the bootloader if that was wished for before the restart, which was the firmware's own or not. Before
@@ -30,7 +30,7 @@ pub fn enter_if_wished(is_own_restart: bool) {
         // SAFETY: nothing else uses this part of the memory, it has been written to since power came, and any bits are
         // numbers.
         let wish = unsafe { UnsafeCell::raw_get(&raw const _bootloader_wish).read_volatile() };
-        wish.iter().zip(&WISH).filter(|(wish, expected)| wish == expected).count() >= WISH.len() - 1
+        wish.iter().zip(&WISH_WORDS).filter(|(wish, expected)| wish == expected).count() >= WISH_WORDS.len() - 1
     };
     set([0; 4]);
     if is_wished {
@@ -50,9 +50,9 @@ fn enter() -> ! {
     // SAFETY: one register, nothing else runs; the address is that of ST's bootloader in this chip's system memory,
     // where a valid vector table is (application note AN2606), and nothing of this firmware is in use any more.
     unsafe {
-        (*cortex_m::peripheral::SCB::PTR).vtor.write(BOOTLOADER);
+        (*cortex_m::peripheral::SCB::PTR).vtor.write(BOOTLOADER_ADDRESS);
         cortex_m::asm::dsb();
         cortex_m::asm::isb();
-        cortex_m::asm::bootload(BOOTLOADER as *const u32)
+        cortex_m::asm::bootload(BOOTLOADER_ADDRESS as *const u32)
     }
 }

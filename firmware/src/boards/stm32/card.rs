@@ -6,7 +6,7 @@
 //!
 //! Its DMA does not reach the stack, which lies in the DTCM: sectors go through a buffer of their own.
 
-use crate::hardware::{Card, Fault, SECTOR};
+use crate::hardware::{Card, Fault, SECTOR_BYTES};
 use core::pin::pin;
 use core::task::{Context, Poll, Waker};
 use embassy_stm32::sdmmc::Sdmmc;
@@ -16,14 +16,14 @@ use embassy_time::{Duration, Instant};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// The bus's clock: what every card supports without negotiation.
-const FREQUENCY: Hertz = Hertz(25_000_000);
+const BUS_FREQUENCY: Hertz = Hertz(25_000_000);
 
 /// The longest a transfer may take.
-const TRANSFER: Duration = Duration::from_millis(1_000);
+const TRANSFER_TIMEOUT: Duration = Duration::from_millis(1_000);
 
 /// The longest the card may be busy in one, cycles of the bus: 0.8 s. The standard lets large cards take half a second
 /// to write.
-pub const TIMEOUT: u32 = 20_000_000;
+pub const BUSY_TIMEOUT_CYCLES: u32 = 20_000_000;
 
 /// The slot.
 pub struct CardSlot {
@@ -50,8 +50,8 @@ impl CardSlot {
 impl Card for CardSlot {
     fn start(&mut self) -> Result<(), Fault> {
         self.sectors = 0;
-        finish(self.device.reacquire(self.command, FREQUENCY))?;
-        self.sectors = u32::try_from(self.device.card().size() / SECTOR as u64).unwrap_or(u32::MAX);
+        finish(self.device.reacquire(self.command, BUS_FREQUENCY))?;
+        self.sectors = u32::try_from(self.device.card().size() / SECTOR_BYTES as u64).unwrap_or(u32::MAX);
         Ok(())
     }
 
@@ -59,22 +59,22 @@ impl Card for CardSlot {
         self.sectors
     }
 
-    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> Result<(), Fault> {
+    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR_BYTES]) -> Result<(), Fault> {
         finish(self.device.read_block(sector, self.block))?;
         data.copy_from_slice(&**self.block);
         Ok(())
     }
 
-    fn write(&mut self, sector: u32, data: &[u8; SECTOR]) -> Result<(), Fault> {
+    fn write(&mut self, sector: u32, data: &[u8; SECTOR_BYTES]) -> Result<(), Fault> {
         (**self.block).copy_from_slice(data);
         finish(self.device.write_block(sector, self.block))
     }
 }
 
-/// Polls `work` until it is done, or until [`TRANSFER`] is over. The thread has nothing else to do meanwhile.
+/// Polls `work` until it is done, or until [`TRANSFER_TIMEOUT`] is over. The thread has nothing else to do meanwhile.
 fn finish<E>(work: impl Future<Output = Result<(), E>>) -> Result<(), Fault> {
     let mut work = pin!(work);
-    let end = Instant::now() + TRANSFER;
+    let end = Instant::now() + TRANSFER_TIMEOUT;
     loop {
         match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
             Poll::Ready(done) => return done.map_err(|_| Fault),

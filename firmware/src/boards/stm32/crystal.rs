@@ -4,13 +4,13 @@ use embassy_stm32::pac::RCC;
 
 /// Looks at it, at least: each takes 4 cycles or more of a core at 64 MHz or less, so a tenth of a second together at
 /// the least. A crystal takes a few milliseconds.
-const POLLS: u32 = 1_600_000;
+const POLLS_MAX: u32 = 1_600_000;
 
 /// Starts the crystal; whether it runs. Before the clocks are set, once.
 #[must_use]
 pub fn starts() -> bool {
     RCC.cr().modify(|w| w.set_hseon(true));
-    let runs = (0..POLLS).any(|_| RCC.cr().read().hserdy());
+    let runs = (0..POLLS_MAX).any(|_| RCC.cr().read().hserdy());
     if !runs {
         RCC.cr().modify(|w| w.set_hseon(false));
     }

@@ -9,10 +9,10 @@ use embassy_stm32::pac::EXTI;
 use embassy_time::Instant;
 
 /// Lines that pins have.
-const LINES: usize = 16;
+const LINE_COUNT: usize = 16;
 
 /// The newest edge of each line, us, its lowest 32 bits.
-static EDGES: [AtomicU32; LINES] = [const { AtomicU32::new(0) }; LINES];
+static EDGES: [AtomicU32; LINE_COUNT] = [const { AtomicU32::new(0) }; LINE_COUNT];
 
 /// Bound to the lines' interrupts before Embassy's handler, which ends what is pending.
 pub struct Stamps;

@@ -28,14 +28,14 @@
 //! stop for want of frames within their own time-out. The watchdog is fed once before these steps, so that the restart
 //! is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
-use super::chip::{SILENCE, WATCHDOG};
+use super::chip::{FRAME_PAUSE_CYCLES, WATCHDOG};
 use super::motors::rest;
 use crate::boards::chosen::MOTOR_TIMERS;
 use crate::boards::fault::Fault;
 use crate::boards::kept;
-use crate::dshot::{BITS, zero_width};
-use crate::ending::{Ending, FRAMES, LAST_FRAMES};
-use crate::hardware::MOTORS;
+use crate::dshot::{FRAME_BITS, zero_width};
+use crate::ending::{Ending, STOP_FRAMES_AFTER, STOP_FRAMES_BEFORE};
+use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
 use core::panic::PanicInfo;
 use cortex_m::peripheral::{SCB, SYST};
@@ -45,10 +45,10 @@ use embassy_stm32::pac::timer::TimGp16;
 
 /// Polls after which a period counts as not ending: the timer was never set up. One takes a few cycles of the
 /// peripheral bus.
-const POLLS: usize = 10_000;
+const PERIOD_POLLS_MAX: usize = 10_000;
 
 /// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
-const _: () = assert!((FRAMES + LAST_FRAMES) * 140 < 34_000);
+const _: () = assert!((STOP_FRAMES_BEFORE + STOP_FRAMES_AFTER) * 140 < 34_000);
 
 static ENDING: Ending = Ending::new();
 
@@ -92,18 +92,18 @@ fn stop(frames: usize) {
 /// let it.
 fn silence() {
     /// It runs by the core's clock, without an interrupt.
-    const RUN: u32 = 0b101;
-    const HAS_ENDED: u32 = 1 << 16;
+    const RUN_BITS: u32 = 0b101;
+    const HAS_ENDED_BIT: u32 = 1 << 16;
     // SAFETY: nothing else runs any more, and nothing else uses it.
     let timer = unsafe { &*SYST::PTR };
     // SAFETY: as above; no interrupt is enabled.
     unsafe {
-        timer.rvr.write(SILENCE - 1);
+        timer.rvr.write(FRAME_PAUSE_CYCLES - 1);
         timer.cvr.write(0);
-        timer.csr.write(RUN);
+        timer.csr.write(RUN_BITS);
     }
     // A look takes more than a cycle.
-    let _ = (0..SILENCE).find(|_| timer.csr.read() & HAS_ENDED != 0);
+    let _ = (0..FRAME_PAUSE_CYCLES).find(|_| timer.csr.read() & HAS_ENDED_BIT != 0);
 }
 
 /// One stop frame by polling, on all timers at once; none on one that does not run.
@@ -120,7 +120,7 @@ fn stop_frame() {
             *runs = *runs && period_ends(timer);
         }
     };
-    for _ in 0..BITS {
+    for _ in 0..FRAME_BITS {
         periods_end();
     }
     for timer in MOTOR_TIMERS {
@@ -130,14 +130,14 @@ fn stop_frame() {
 }
 
 fn widths(timer: TimGp16, width: u16) {
-    for channel in 0..MOTORS {
+    for channel in 0..MOTOR_COUNT {
         timer.ccr(channel).write(|w| w.set_ccr(width));
     }
 }
 
 /// Waits for it, and whether it did.
 fn period_ends(timer: TimGp16) -> bool {
-    let ended = (0..POLLS).any(|_| timer.sr().read().uif());
+    let ended = (0..PERIOD_POLLS_MAX).any(|_| timer.sr().read().uif());
     timer.sr().write(|w| w.0 = 0);
     ended
 }

@@ -70,10 +70,10 @@ pub type SharedBus = Mutex<CriticalSectionRawMutex, Bus>;
 pub type Device = Selected<'static, CriticalSectionRawMutex, Bus, Output<'static>>;
 
 /// How steep a chip select's edges are.
-pub const FAST: Speed = Speed::VeryHigh;
+pub const FAST_EDGES: Speed = Speed::VeryHigh;
 
 /// And on PC13 to PC15, which can drive little.
-pub const SLOW: Speed = Speed::Low;
+pub const SLOW_EDGES: Speed = Speed::Low;
 
 /// A device on `bus`, chosen by a low level on `select`.
 pub fn device(bus: &'static SharedBus, select: Peri<'static, impl Pin>, speed: Speed) -> Device {
@@ -91,12 +91,12 @@ pub type BoardIcm42688 = Icm42688<Device, StampedPin, SystemClock>;
 
 /// The sensors take up to 10 MHz. The driver rounds to its nearest divider, above the requested one too: this becomes
 /// 6.25 MHz on the H743 (100 MHz / 16) and 5.25 MHz on the F405 (42 MHz / 8), where 8 MHz would become 10.5 MHz.
-const FREQUENCY: Hertz = Hertz(6_000_000);
+const BUS_FREQUENCY: Hertz = Hertz(6_000_000);
 
 /// SPI mode 0, as the bus driver has it by default.
 #[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
-    config.frequency = FREQUENCY;
+    config.frequency = BUS_FREQUENCY;
     config
 }

@@ -27,26 +27,26 @@ pub type RadioReceiver = BufferedUartRx<'static>;
 pub type SimulatorTransmitter = BufferedUartTx<'static>;
 
 /// Bytes of the ring.
-const RING: usize = 2048;
+const RING_BYTES: usize = 2048;
 
 /// Bytes on their way to a simulator and from it: more than a tick's messages.
-const SIMULATOR_RING: usize = 512;
+const SIMULATOR_RING_BYTES: usize = 512;
 
 /// Room for those bytes, in the order (to, from). Once.
 pub fn simulator_rings() -> (&'static mut [u8], &'static mut [u8]) {
-    static TO: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
-    static FROM: StaticCell<[u8; SIMULATOR_RING]> = StaticCell::new();
-    (TO.init([0; SIMULATOR_RING]), FROM.init([0; SIMULATOR_RING]))
+    static TO: StaticCell<[u8; SIMULATOR_RING_BYTES]> = StaticCell::new();
+    static FROM: StaticCell<[u8; SIMULATOR_RING_BYTES]> = StaticCell::new();
+    (TO.init([0; SIMULATOR_RING_BYTES]), FROM.init([0; SIMULATOR_RING_BYTES]))
 }
 
 /// Bytes from a radio: 12 ms of a full line. The other half is never used.
-const RADIO_RING: usize = 512;
+const RADIO_RING_BYTES: usize = 512;
 
 /// Room for those bytes, in the order (to, from). Once.
 pub fn radio_rings() -> (&'static mut [u8], &'static mut [u8]) {
     static TO: StaticCell<[u8; 16]> = StaticCell::new();
-    static FROM: StaticCell<[u8; RADIO_RING]> = StaticCell::new();
-    (TO.init([0; 16]), FROM.init([0; RADIO_RING]))
+    static FROM: StaticCell<[u8; RADIO_RING_BYTES]> = StaticCell::new();
+    (TO.init([0; 16]), FROM.init([0; RADIO_RING_BYTES]))
 }
 
 /// 420,000 baud, as receivers of CRSF speak.
@@ -74,7 +74,7 @@ pub fn config() -> Config {
 
 /// The link's two halves, for two tasks. Once.
 pub fn halves(uart: Uart<'static, Async>) -> (Receiver, Transmitter) {
-    static BYTES: StaticCell<[u8; RING]> = StaticCell::new();
+    static BYTES: StaticCell<[u8; RING_BYTES]> = StaticCell::new();
     let (transmitter, receiver) = uart.split();
-    (receiver.into_ring_buffered(BYTES.init([0; RING])), transmitter)
+    (receiver.into_ring_buffered(BYTES.init([0; RING_BYTES])), transmitter)
 }

@@ -10,8 +10,8 @@
 //! in both halves of the register, a motor at full throttle.
 
 use super::transfers;
-use crate::dshot::{self, BIT_RATE, ROWS, Waveform};
-use crate::hardware::{Fault, MOTORS, MotorCommand, Motors};
+use crate::dshot::{self, BIT_RATE_HZ, WAVEFORM_ROWS, Waveform};
+use crate::hardware::{Fault, MOTOR_COUNT, MotorCommand, Motors};
 use core::marker::PhantomData;
 use core::mem::forget;
 use dshot_frame::NormalFrame;
@@ -30,13 +30,13 @@ use embassy_stm32::timer::{
     AdvancedInstance4Channel, Channel, GeneralInstance4Channel, TimerChannel, TimerComplementaryPin, TimerPin, UpDma,
 };
 
-/// How long a frame may take, us. It takes a bit time a row, 60 us.
-const FRAME_WITHIN: u64 = 4 * ROWS as u64 * 1_000_000 / BIT_RATE as u64;
+/// How long a frame may take. It takes a bit time a row, 60 us.
+const FRAME_TIMEOUT_US: u64 = 4 * WAVEFORM_ROWS as u64 * 1_000_000 / BIT_RATE_HZ as u64;
 
 /// The enable bits of a channel in CCER, the first channel's: the others' follow every four bits. Timers without
 /// complementary outputs have nothing in the second's place.
-const DIRECT: u32 = 1;
-const COMPLEMENTARY: u32 = 1 << 2;
+const DIRECT_ENABLE_BIT: u32 = 1;
+const COMPLEMENTARY_ENABLE_BIT: u32 = 1 << 2;
 
 /// An output: a pin that a channel of the timer drives from here on.
 pub struct Line<T> {
@@ -49,7 +49,7 @@ impl<T: GeneralInstance4Channel> Line<T> {
     /// On a channel's own pin.
     pub fn direct<C: TimerChannel>(pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
         forget(PwmPin::<T, C>::new(pin, OutputType::PushPull));
-        Self::new(C::CHANNEL, DIRECT)
+        Self::new(C::CHANNEL, DIRECT_ENABLE_BIT)
     }
 
     /// On the pin of its complementary output (CHxN), which is as high as its own would be while that is off.
@@ -58,7 +58,7 @@ impl<T: GeneralInstance4Channel> Line<T> {
         T: AdvancedInstance4Channel,
     {
         forget(ComplementaryPwmPin::<T, C>::new(pin, OutputType::PushPull));
-        Self::new(C::CHANNEL, COMPLEMENTARY)
+        Self::new(C::CHANNEL, COMPLEMENTARY_ENABLE_BIT)
     }
 
     fn new(channel: Channel, enable: u32) -> Self {
@@ -70,10 +70,10 @@ impl<T: GeneralInstance4Channel> Line<T> {
 /// What sends frames to some of the motors, or to all.
 pub trait Lines {
     /// Wires motor i to the output `wiring[i]` of those that the board has.
-    fn wire(&mut self, wiring: [usize; MOTORS]);
+    fn wire(&mut self, wiring: [usize; MOTOR_COUNT]);
 
     /// Prepares a frame for each motor.
-    fn draw(&mut self, frames: &[NormalFrame; MOTORS]);
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]);
 
     /// Sends the frames.
     fn send(&mut self) -> impl Future<Output = Result<(), Fault>>;
@@ -86,7 +86,7 @@ pub struct OnTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     interrupts: I,
     waveform: Waveform<T::Word>,
     /// The channel (0 to 3) of each motor; none where it is on another timer.
-    channels: [Option<u8>; MOTORS],
+    channels: [Option<u8>; MOTOR_COUNT],
     /// Timer ticks in a bit.
     period: u16,
 }
@@ -101,13 +101,13 @@ where
     /// timer; `dma` is the timer's update request.
     pub fn new(
         timer: Peri<'static, T>,
-        lines: [Option<Line<T>>; MOTORS],
+        lines: [Option<Line<T>>; MOTOR_COUNT],
         dma: Peri<'static, D>,
         interrupts: I,
     ) -> Self {
         let timer = Timer::new(timer);
         timer.set_counting_mode(CountingMode::EdgeAlignedUp);
-        timer.set_frequency(Hertz(BIT_RATE), RoundTo::Slower);
+        timer.set_frequency(Hertz(BIT_RATE_HZ), RoundTo::Slower);
         timer.set_autoreload_preload(true);
         for channel in [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4] {
             timer.set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
@@ -129,12 +129,12 @@ where
     D: UpDma<T>,
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
-    fn wire(&mut self, wiring: [usize; MOTORS]) {
+    fn wire(&mut self, wiring: [usize; MOTOR_COUNT]) {
         let channels = self.channels;
         self.channels = wiring.map(|output| channels.get(output).copied().flatten());
     }
 
-    fn draw(&mut self, frames: &[NormalFrame; MOTORS]) {
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]) {
         self.waveform.draw(frames, &self.channels, self.period);
     }
 
@@ -146,7 +146,7 @@ where
         let transfer = self.timer.setup_update_dma_burst(dma, interrupts, Channel::Ch1, Channel::Ch4, words);
         let begun = transfers::begin();
         self.timer.start();
-        let sent = select(transfer, embassy_time::Timer::after_micros(FRAME_WITHIN)).await;
+        let sent = select(transfer, embassy_time::Timer::after_micros(FRAME_TIMEOUT_US)).await;
         drop(resting);
         match sent {
             Either::First(()) => begun.whole(),
@@ -156,12 +156,12 @@ where
 }
 
 impl<A: Lines, B: Lines> Lines for (A, B) {
-    fn wire(&mut self, wiring: [usize; MOTORS]) {
+    fn wire(&mut self, wiring: [usize; MOTOR_COUNT]) {
         self.0.wire(wiring);
         self.1.wire(wiring);
     }
 
-    fn draw(&mut self, frames: &[NormalFrame; MOTORS]) {
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]) {
         self.0.draw(frames);
         self.1.draw(frames);
     }
@@ -177,7 +177,7 @@ pub struct Dshot<L>(pub L);
 
 impl<L: Lines> Dshot<L> {
     /// Wires motor i to the output `wiring[i]` of those that the board has.
-    pub fn wire(&mut self, wiring: [usize; MOTORS]) {
+    pub fn wire(&mut self, wiring: [usize; MOTOR_COUNT]) {
         self.0.wire(wiring);
     }
 }
@@ -207,7 +207,7 @@ impl Drop for Resting {
 pub fn rest(timer: TimGp16) {
     timer.dier().modify(|w| w.set_ude(false));
     timer.cr1().modify(|w| w.set_cen(false));
-    for channel in 0..MOTORS {
+    for channel in 0..MOTOR_COUNT {
         timer.ccr(channel).write(|w| w.set_ccr(0));
     }
     timer.egr().write(|w| w.set_ug(true));

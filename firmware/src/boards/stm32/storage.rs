@@ -24,10 +24,10 @@ mod chip;
 mod chip;
 
 /// Bytes of a sector.
-const SECTOR: usize = 128 * 1024;
+const SECTOR_BYTES: usize = 128 * 1024;
 
 /// What opens the control register.
-const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+const UNLOCK_KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 
 /// The two sectors.
 pub struct ParameterFlash {
@@ -45,25 +45,25 @@ impl ParameterFlash {
 /// The first word of a place.
 fn words(place: usize) -> Result<*mut u32, Fault> {
     let inside = place < 2 * ParameterFlash::RECORDS;
-    if inside { Ok((chip::START + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
+    if inside { Ok((chip::FIRST_ADDRESS + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
 /// Waits for the flash, and checks its error flags. Counts instead of reading the clock, which may stand still.
 fn done() -> Result<(), Fault> {
-    let is_done = (0..chip::POLLS).any(|_| !chip::is_busy());
+    let is_done = (0..chip::POLLS_MAX).any(|_| !chip::is_busy());
     if is_done && !chip::has_failed() { Ok(()) } else { Err(Fault) }
 }
 
 /// Does `work` on the opened flash, and closes it again.
 fn opened(work: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
-    chip::open(KEYS);
+    chip::open(UNLOCK_KEYS);
     let worked = work();
     chip::close();
     worked
 }
 
 impl Flash for ParameterFlash {
-    const RECORDS: usize = SECTOR / size_of::<Record>();
+    const RECORDS: usize = SECTOR_BYTES / size_of::<Record>();
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         let mut word = words(place)?;

@@ -16,7 +16,7 @@ use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort
 use super::watchdog::ChipWatchdog;
 use crate::boards::chosen::{self, BoardBattery, BoardCard, BoardImu, BoardMotors};
 use crate::boards::{guard, handover, kept, recorder};
-use crate::configuration::{PERIOD, Pilot};
+use crate::configuration::{PERIOD_US, Pilot};
 use crate::control::Control;
 use crate::hil::{self, SelectedMotors};
 use crate::last_words::LastWords;
@@ -127,18 +127,18 @@ async fn control(
     mut watchdog: ChipWatchdog,
 ) {
     let pins = Repeater { repeated, clock: SystemClock };
-    let mut motors = SelectedMotors { pins, hil, wanted: shared.hil(), clock: SystemClock, period: PERIOD };
+    let mut motors = SelectedMotors { pins, hil, wanted: shared.hil(), clock: SystemClock, period: PERIOD_US };
     Control::new(shared, pilot, outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
 }
 
 #[embassy_executor::task]
 async fn repeat_commands(repeated: &'static Repeated, mut motors: BoardMotors) {
-    repeat::run(repeated, &mut motors, &SystemClock, PERIOD).await;
+    repeat::run(repeated, &mut motors, &SystemClock, PERIOD_US).await;
 }
 
 #[embassy_executor::task]
 async fn sample(shared: ImuView<'static, Raw>, mut sensor: BoardImu) {
-    imu::run(shared, &SystemClock, &mut sensor, PERIOD).await;
+    imu::run(shared, &SystemClock, &mut sensor, PERIOD_US).await;
 }
 
 /// Starts what the link consists of. The port's parts are for one executor, so they are made in it.
@@ -183,12 +183,12 @@ async fn watch_port(shared: PortView<'static, Raw>, port: UsbPort) {
 
 #[embassy_executor::task]
 async fn simulated_sensors(shared: SimulatorView<'static, Raw>, hil: &'static Hil, line: SimulatorReceiver) {
-    hil::receive(hil, line, &SystemClock, shared, PERIOD).await;
+    hil::receive(hil, line, &SystemClock, shared, PERIOD_US).await;
 }
 
 #[embassy_executor::task]
 async fn simulated_motors(shared: SimulatorView<'static, Raw>, hil: &'static Hil, line: SimulatorTransmitter) {
-    hil::transmit(hil, line, &SystemClock, shared, PERIOD).await;
+    hil::transmit(hil, line, &SystemClock, shared, PERIOD_US).await;
 }
 
 #[embassy_executor::task]
@@ -213,5 +213,5 @@ async fn restart_on_request(shared: RestartView<'static, Raw>) {
 
 #[embassy_executor::task]
 async fn log_flights(shared: CardView<'static, Raw>, slot: BoardCard) {
-    card::run(slot, card::PREPARED, &SystemClock, shared).await;
+    card::run(slot, card::PREPARED_BYTES, &SystemClock, shared).await;
 }

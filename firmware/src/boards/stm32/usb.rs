@@ -16,12 +16,12 @@ use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// Bytes of a packet at full speed.
-const PACKET: usize = 64;
+const PACKET_BYTES: usize = 64;
 
 /// pid.codes' numbers for trying things out: this firmware has none of its own.
-const VENDOR: u16 = 0x1209;
-/// See [`VENDOR`].
-const PRODUCT: u16 = 0x0001;
+const VENDOR_ID: u16 = 0x1209;
+/// See [`VENDOR_ID`].
+const PRODUCT_ID: u16 = 0x0001;
 
 /// The chip's side of the port.
 pub type Controller = Driver<'static, USB_OTG_FS>;
@@ -52,7 +52,7 @@ pub fn config() -> usb::Config {
 /// Where the driver puts packets that arrive. Once.
 pub fn packets() -> &'static mut [u8] {
     // The control endpoint's and the line's own.
-    static PACKETS: ConstStaticCell<[u8; 2 * PACKET]> = ConstStaticCell::new([0; _]);
+    static PACKETS: ConstStaticCell<[u8; 2 * PACKET_BYTES]> = ConstStaticCell::new([0; _]);
     PACKETS.take()
 }
 
@@ -61,19 +61,19 @@ impl Usb {
     pub fn new(driver: Controller, name: &'static str) -> Self {
         static CONFIGURATION: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; _]);
         static OBJECTS: ConstStaticCell<[u8; 32]> = ConstStaticCell::new([0; _]);
-        static CONTROL: ConstStaticCell<[u8; PACKET]> = ConstStaticCell::new([0; _]);
+        static CONTROL: ConstStaticCell<[u8; PACKET_BYTES]> = ConstStaticCell::new([0; _]);
         static STATE: StaticCell<State<'static>> = StaticCell::new();
         static WATCHER: ConstStaticCell<Watcher> = ConstStaticCell::new(Watcher);
-        let mut config = Config::new(VENDOR, PRODUCT);
+        let mut config = Config::new(VENDOR_ID, PRODUCT_ID);
         config.product = Some(name);
         config.serial_number = Some(embassy_stm32::uid::uid_hex());
         let mut builder = Builder::new(driver, config, CONFIGURATION.take(), OBJECTS.take(), &mut [], CONTROL.take());
         builder.handler(WATCHER.take());
-        let class = CdcAcmClass::new(&mut builder, STATE.init_with(State::new), PACKET as u16);
+        let class = CdcAcmClass::new(&mut builder, STATE.init_with(State::new), PACKET_BYTES as u16);
         let (sender, receiver, control) = class.split_with_control();
         Self {
             device: builder.build(),
-            receiver: PortReceiver { receiver, packet: [0; PACKET], unread: 0..0 },
+            receiver: PortReceiver { receiver, packet: [0; PACKET_BYTES], unread: 0..0 },
             transmitter: PortTransmitter(sender),
             port: UsbPort(control),
         }
@@ -81,18 +81,18 @@ impl Usb {
 }
 
 /// Whether the host has gone to sleep, or gone: both look the same.
-static ASLEEP: AtomicBool = AtomicBool::new(true);
+static IS_ASLEEP: AtomicBool = AtomicBool::new(true);
 
 /// Follows the host's state.
 struct Watcher;
 
 impl Handler for Watcher {
     fn configured(&mut self, configured: bool) {
-        ASLEEP.store(!configured, Ordering::Relaxed);
+        IS_ASLEEP.store(!configured, Ordering::Relaxed);
     }
 
     fn suspended(&mut self, suspended: bool) {
-        ASLEEP.store(suspended, Ordering::Relaxed);
+        IS_ASLEEP.store(suspended, Ordering::Relaxed);
     }
 }
 
@@ -101,14 +101,14 @@ pub struct UsbPort(ControlChanged<'static>);
 
 impl Port for UsbPort {
     fn is_open(&self) -> bool {
-        self.0.dtr() && !ASLEEP.load(Ordering::Relaxed)
+        self.0.dtr() && !IS_ASLEEP.load(Ordering::Relaxed)
     }
 }
 
 /// Bytes that arrive.
 pub struct PortReceiver {
     receiver: Receiver<'static, Controller>,
-    packet: [u8; PACKET],
+    packet: [u8; PACKET_BYTES],
     unread: core::ops::Range<usize>,
 }
 
@@ -139,7 +139,7 @@ impl ErrorType for PortTransmitter {
 impl Write for PortTransmitter {
     /// At most one packet, and never a full one: after that a host waits for more before it hands on what it has.
     async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        let part = bytes.get(..PACKET - 1).unwrap_or(bytes);
+        let part = bytes.get(..PACKET_BYTES - 1).unwrap_or(bytes);
         self.0.write_packet(part).await.map_err(|_| ErrorKind::NotConnected)?;
         Ok(part.len())
     }

@@ -1,19 +1,19 @@
 //! The independent watchdog: a clock of its own restarts the chip when the control task stops feeding it.
 
 use super::chip;
-use crate::configuration::PERIOD;
+use crate::configuration::PERIOD_US;
 use crate::hardware::Watchdog;
 use embassy_stm32::Peri;
 use embassy_stm32::pac::iwdg::Iwdg;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::IndependentWatchdog;
 
-/// Time without food, us: 50 ms, or five ticks of a slow control task. The watchdog's clock is crude: on the F405 50 ms
+/// Time without food: 50 ms, or five ticks of a slow control task. The watchdog's clock is crude: on the F405 50 ms
 /// are 34 to 94 ms.
-const TIMEOUT: u32 = if PERIOD > 10_000 { 5 * PERIOD as u32 } else { 50_000 };
+const TIMEOUT_US: u32 = if PERIOD_US > 10_000 { 5 * PERIOD_US as u32 } else { 50_000 };
 
 /// Polls within which the watchdog takes over new settings. It needs five of its own cycles, a third of a millisecond.
-const SETTLES: usize = 100_000;
+const SETTING_POLLS_MAX: usize = 100_000;
 
 /// The chip's watchdog. It starts with the first food, so that booting may take its time; then nothing but a restart
 /// stops it.
@@ -25,7 +25,7 @@ pub struct ChipWatchdog {
 impl ChipWatchdog {
     /// Not started.
     pub fn new(peripheral: Peri<'static, chip::Watchdog>) -> Self {
-        Self { watchdog: IndependentWatchdog::new(peripheral, TIMEOUT), started: false }
+        Self { watchdog: IndependentWatchdog::new(peripheral, TIMEOUT_US), started: false }
     }
 }
 
@@ -70,6 +70,6 @@ fn set(registers: Iwdg, prescaler: Pr, reload: u16) {
         registers.rlr().write(|w| w.set_rl(reload));
     });
     // Fed too early, it would start from the old value.
-    let _ = (0..SETTLES).find(|_| registers.sr().read().0 & 0b11 == 0);
+    let _ = (0..SETTING_POLLS_MAX).find(|_| registers.sr().read().0 & 0b11 == 0);
     registers.kr().write(|w| w.set_key(Key::RESET));
 }

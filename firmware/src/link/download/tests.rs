@@ -23,7 +23,7 @@ fn messages(size: u32, offset: u32, wanted: u32) -> (Vec<Message>, u64) {
                 Question::Count => Answer::Count(1),
                 Question::Size(0) => Answer::Size(size),
                 Question::Bytes { id: 0, offset } => {
-                    let end = size.min(offset.saturating_add(CHUNK as u32)).max(offset);
+                    let end = size.min(offset.saturating_add(LOG_CHUNK_BYTES as u32)).max(offset);
                     Answer::Bytes((offset..end).map(|place| place as u8).collect())
                 }
                 _ => Answer::Unknown,
@@ -58,9 +58,9 @@ fn a_log_is_sent_in_parts_and_its_end_is_marked() {
     assert_eq!(counts(0, 0, 90), [0]);
     assert_eq!(counts(200, 500, 90), [0]);
     assert_eq!(counts(200, u32::MAX, u32::MAX), [0]);
-    let long = counts(3 * CHUNK as u32, 0, u32::MAX);
+    let long = counts(3 * LOG_CHUNK_BYTES as u32, 0, u32::MAX);
     assert!(long.len() == 25 && long[..24].iter().all(|count| *count == 90) && long[24] == 0, "{long:?}");
-    assert_eq!(counts(CHUNK as u32 + 10, 0, u32::MAX), [[90; 8].as_slice(), &[10]].concat());
+    assert_eq!(counts(LOG_CHUNK_BYTES as u32 + 10, 0, u32::MAX), [[90; 8].as_slice(), &[10]].concat());
 }
 
 #[test]

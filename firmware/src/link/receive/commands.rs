@@ -58,7 +58,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         let unknown = command_of(frame.message, frame.payload);
         match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
             Some((command, _)) => {
-                let order = Order::of(command, frame);
+                let order = Order::read(command, frame);
                 self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
             }
             None => self.refused(),
@@ -68,7 +68,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// Acts on a command once, and has it answered.
     #[inline(never)]
     pub(super) fn call(&mut self, frame: &Frame<'_>, call: &Call) {
-        let (order, armed) = (Order::of(call.command as u16, frame), self.shared.commander().get());
+        let (order, armed) = (Order::read(call.command as u16, frame), self.shared.commander().get());
         let delivery = self.repetitions.look(frame, order.command);
         if delivery != Delivery::New {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
@@ -132,7 +132,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 return None;
             }
             Action::Reply(reply) => self.shared.reply(reply),
-            Action::ReplyModes => (1..=vehicle::MODES).for_each(|index| self.shared.reply(Reply::Mode(index))),
+            Action::ReplyModes => (1..=vehicle::MODE_COUNT).for_each(|index| self.shared.reply(Reply::Mode(index))),
         }
         Some(MavResult::MAV_RESULT_ACCEPTED)
     }

@@ -28,8 +28,8 @@ const NOT_USED: [(u32, usize, &str); 10] = [
     (VISION_SPEED_ESTIMATE_DATA::ID, FOR_ALL, VISION_SPEED_ESTIMATE_DATA::NAME),
     (GPS_INPUT_DATA::ID, FOR_ALL, GPS_INPUT_DATA::NAME),
 ];
-const SETPOINTS: usize = 3;
-const FLOWN: usize = 5;
+const SETPOINT_MESSAGES: usize = 3;
+const FLOWN_MESSAGES: usize = 5;
 /// Behind every payload: for every system.
 const FOR_ALL: usize = 255;
 
@@ -43,12 +43,12 @@ impl<M: RawMutex> Receiver<'_, M> {
             return;
         };
         self.refused();
-        if index < SETPOINTS {
+        if index < SETPOINT_MESSAGES {
             self.foreign.setpoint = Some(Stamped { value: name, time: frame.time });
         }
         if self.foreign.explained >> index & 1 == 0 {
             self.foreign.explained |= 1 << index;
-            let what = if index < FLOWN { "flown" } else { "used" };
+            let what = if index < FLOWN_MESSAGES { "flown" } else { "used" };
             self.shared.announce(Event::new(Severity::Warning, format_args!("Not {what}: {name}")));
         }
     }

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! One client uploads at a time. The next item is requested again while it does not come, by the clock of whatever
-//! frames come; an item of another number is dropped. After [`GIVEN_UP_AFTER`] without the right one the upload is
+//! frames come; an item of another number is dropped. After [`ITEM_TIMEOUT_US`] without the right one the upload is
 //! given up, and the items that there were stay. A frame that the line delivers twice counts once. No mission is
 //! changed while it is flown. The fence and the rally points are empty lists.
 
@@ -14,7 +14,7 @@ use super::senders::Sender;
 use super::upload::Upload;
 use crate::link::command::Call;
 use crate::link::frame::Frame;
-use crate::link::mission::{ITEMS, Item, ItemRefusal, Sent};
+use crate::link::mission::{Item, ItemRefusal, MISSION_CAPACITY, SentItem};
 use crate::link::origin::Origin;
 use crate::link::plans::list_of;
 use crate::shared::{Event, MissionList, QueuedRequest, Reply, Severity};
@@ -28,14 +28,14 @@ use mavlink::dialects::common::{
 };
 use nalgebra::Vector3;
 
-/// How long an item is waited for before it is requested again, us, and how long in all: five times more, as the
+/// How long an item is waited for before it is requested again, and how long in all: five times more, as the
 /// protocol has it (<https://mavlink.io/en/services/mission.html>).
-const REQUESTED_AGAIN_AFTER: u64 = 250_000;
-const GIVEN_UP_AFTER: u64 = 1_500_000;
+const ITEM_RETRY_INTERVAL_US: u64 = 250_000;
+const ITEM_TIMEOUT_US: u64 = 1_500_000;
 
 /// MAV_MISSION_TYPE: the mission, and all lists.
-const MISSION: u8 = 0;
-const ALL: u8 = 255;
+const LIST_MISSION: u8 = 0;
+const LIST_ALL: u8 = 255;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
@@ -43,12 +43,12 @@ impl<M: RawMutex> Receiver<'_, M> {
             return;
         }
         let list = asked(frame, message);
-        let result = if list.list != MISSION {
+        let result = if list.list != LIST_MISSION {
             MavMissionResult::MAV_MISSION_UNSUPPORTED
         } else if let Err(result) = self.may_change(list.sender) {
             result
-        } else if usize::from(message.count) > ITEMS {
-            self.say(format_args!("Mission: {} items, {ITEMS} at most", message.count));
+        } else if usize::from(message.count) > MISSION_CAPACITY {
+            self.say(format_args!("Mission: {} items, {MISSION_CAPACITY} at most", message.count));
             MavMissionResult::MAV_MISSION_NO_SPACE
         } else if message.count == 0 {
             self.change(&[]);
@@ -69,13 +69,13 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// MISSION_ITEM_INT and MISSION_ITEM.
     pub(super) fn mission_item(&mut self, frame: &Frame<'_>) {
-        let sent = Sent::of(frame.payload, frame.message == MISSION_ITEM_INT_DATA::ID);
+        let sent = SentItem::read(frame.payload, frame.message == MISSION_ITEM_INT_DATA::ID);
         let [system, component] = sent.target;
         if !self.is_addressed(system, component) || self.is_again(frame) {
             return;
         }
         let list = MissionList { sender: sender(frame), list: sent.list };
-        let result = if sent.list != MISSION {
+        let result = if sent.list != LIST_MISSION {
             MavMissionResult::MAV_MISSION_UNSUPPORTED
         } else if self.upload.client == Some(list.sender) {
             if usize::from(sent.sequence) != self.upload.items.len() {
@@ -105,7 +105,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Takes the next item; whether it was the last.
-    fn take_item(&mut self, sent: &Sent) -> Result<bool, ItemRefusal> {
+    fn take_item(&mut self, sent: &SentItem) -> Result<bool, ItemRefusal> {
         let is_last = sent.sequence.checked_add(1) == Some(self.upload.count);
         let item = sent.item(is_last)?;
         self.check_item(&item).map_err(ItemRefusal::Flight)?;
@@ -135,8 +135,8 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// Requests an item again that has not come by `now`, us, or gives the upload up.
     pub(super) fn chase_upload(&mut self, now: u64) {
         let Some(client) = self.upload.client else { return };
-        if now.saturating_sub(self.upload.progressed) < GIVEN_UP_AFTER {
-            if now.saturating_sub(self.upload.requested) >= REQUESTED_AGAIN_AFTER {
+        if now.saturating_sub(self.upload.progressed) < ITEM_TIMEOUT_US {
+            if now.saturating_sub(self.upload.requested) >= ITEM_RETRY_INTERVAL_US {
                 self.ask_for_next(client, now);
             }
             return;
@@ -148,14 +148,14 @@ impl<M: RawMutex> Receiver<'_, M> {
             (MavMissionResult::MAV_MISSION_OPERATION_CANCELLED, "Mission: upload broken off, nothing changed")
         };
         self.say(words);
-        self.shared.reply(Reply::Mission(MissionList { sender: client, list: MISSION }, result));
+        self.shared.reply(Reply::Mission(MissionList { sender: client, list: LIST_MISSION }, result));
     }
 
     /// A client breaks its upload off.
     pub(super) fn mission_ack(&mut self, frame: &Frame<'_>, message: &MISSION_ACK_DATA) {
         if self.is_addressed(message.target_system, message.target_component)
             && self.upload.client == Some(sender(frame))
-            && list_of::<MISSION_ACK_DATA>(frame) == MISSION
+            && list_of::<MISSION_ACK_DATA>(frame) == LIST_MISSION
         {
             self.upload.client = None;
         }
@@ -164,7 +164,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn mission_list(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_LIST_DATA) {
         if self.is_addressed(message.target_system, message.target_component) {
             let list = asked(frame, message);
-            let count = if list.list == MISSION { self.shared.mission().count() } else { 0 };
+            let count = if list.list == LIST_MISSION { self.shared.mission().count() } else { 0 };
             self.shared.reply(Reply::MissionCount(list, count));
         }
     }
@@ -182,7 +182,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     fn send_item(&self, list: MissionList, number: u16, is_int: bool) {
-        let exists = list.list == MISSION && number < self.shared.mission().count();
+        let exists = list.list == LIST_MISSION && number < self.shared.mission().count();
         self.shared.reply(match exists {
             true => Reply::MissionItem { list, number, is_int },
             false => Reply::Mission(list, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE),
@@ -204,7 +204,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
         let list = asked(frame, message);
         let result = match list.list {
-            MISSION | ALL => self.may_change(list.sender).err().unwrap_or_else(|| {
+            LIST_MISSION | LIST_ALL => self.may_change(list.sender).err().unwrap_or_else(|| {
                 self.change(&[]);
                 MavMissionResult::MAV_MISSION_ACCEPTED
             }),
@@ -253,7 +253,7 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     fn ask_for_next(&mut self, client: Sender, now: u64) {
         self.upload.requested = now;
-        let list = MissionList { sender: client, list: MISSION };
+        let list = MissionList { sender: client, list: LIST_MISSION };
         self.shared.reply(Reply::MissionRequest(list, self.upload.items.len() as u16));
     }
 

@@ -27,7 +27,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// There are no files.
     pub(super) fn file(&mut self, frame: &Frame<'_>) {
         if let Some((request, _)) =
-            FileRequest::of(frame).filter(|(_, [system, component])| self.is_addressed(*system, *component))
+            FileRequest::read(frame).filter(|(_, [system, component])| self.is_addressed(*system, *component))
         {
             self.shared.reply(Reply::NoFiles(request));
         }

@@ -5,7 +5,7 @@ use controller_core::governor::Setpoint;
 use flight::{SETPOINT_AGE_MAX_US, Stamped};
 
 /// Senders that are known at a time.
-const SENDERS: usize = 4;
+const SENDERS_KNOWN: usize = 4;
 
 /// A sender: system and component.
 pub(super) type Sender = (u8, u8);
@@ -17,7 +17,7 @@ const NO_SENDER: Stamped<Sender> = Stamped { value: (0, 0), time: 0 };
 #[derive(Debug)]
 pub(super) struct Senders {
     /// Each sender, and when its last came, us.
-    pub senders: [Stamped<Sender>; SENDERS],
+    pub senders: [Stamped<Sender>; SENDERS_KNOWN],
     /// Whose are taken before a request on the link, and when the last came, us.
     pub taken: Stamped<Sender>,
     /// The last that was refused because the sticks fly, and whose it was.
@@ -28,7 +28,7 @@ pub(super) struct Senders {
 
 impl Default for Senders {
     fn default() -> Self {
-        Self { senders: [NO_SENDER; SENDERS], taken: NO_SENDER, kept: None, clock: SetpointClock::default() }
+        Self { senders: [NO_SENDER; SENDERS_KNOWN], taken: NO_SENDER, kept: None, clock: SetpointClock::default() }
     }
 }
 

@@ -12,7 +12,7 @@
 //! counted as true when they come; from there on a clock is learnt anew. It refuses nothing, and takes a tenth of the
 //! memory of [`sender_clock`](crate::link::sender_clock), which keeps old and forged poses out.
 
-use crate::link::sender_clock::DRIFT;
+use crate::link::sender_clock::INVERSE_DRIFT;
 use controller_core::governor::SETPOINT_AGE_MAX_S;
 
 /// A sender's clock.
@@ -30,7 +30,7 @@ impl SetpointClock {
     /// When a setpoint of the sender's `time`, ms, that arrived at `arrived`, us, was true, us.
     pub fn stamp(&mut self, time: u32, arrived: u64) -> u64 {
         let found = arrived as i64 - i64::from(time) * 1_000;
-        let drifted = self.offset + arrived.saturating_sub(self.arrived) as i64 / DRIFT as i64;
+        let drifted = self.offset + arrived.saturating_sub(self.arrived) as i64 / INVERSE_DRIFT as i64;
         let goes_on = self.last > 0 && time > self.last;
         let is_late = (found - drifted) as f32 * 1e-6 > SETPOINT_AGE_MAX_S;
         let offset = if goes_on && !is_late { found.min(drifted) } else { found };

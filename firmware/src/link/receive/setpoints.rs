@@ -9,7 +9,7 @@ use super::Receiver;
 use super::senders::{Sender, counts};
 use crate::link::frame::Frame;
 use crate::link::setpoint::{Here, SetpointRefusal, setpoint};
-use crate::radio::SILENCE as RADIO_SILENCE;
+use crate::radio::RADIO_TIMEOUT_US as RADIO_SILENCE;
 use controller_core::governor::Setpoint;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::{SETPOINT_AGE_MAX_US, Stamped};
@@ -31,7 +31,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
     ) -> Result<(), SetpointRefusal> {
         let state = self.shared.report().get().and_then(|report| report.value.state);
-        let value = setpoint(message, state.as_ref().and_then(Here::of).as_ref())?;
+        let value = setpoint(message, state.as_ref().and_then(Here::at).as_ref())?;
         let (sender, time) = ((frame.header.system, frame.header.component), frame.time);
         self.setpoints.receive(sender, time);
         if self.shared.sticks().get().is_some_and(|sticks| sticks.value) {

@@ -1,7 +1,7 @@
 //! An upload of a mission.
 
 use super::senders::Sender;
-use crate::link::mission::{ITEMS, Item};
+use crate::link::mission::{Item, MISSION_CAPACITY};
 use heapless::Vec;
 
 /// An upload, and the last that was finished.
@@ -11,7 +11,7 @@ pub(super) struct Upload {
     pub client: Option<Sender>,
     /// How many items there will be.
     pub count: u16,
-    pub items: Vec<Item, ITEMS>,
+    pub items: Vec<Item, MISSION_CAPACITY>,
     /// When the next was requested, and when the last one came, us.
     pub requested: u64,
     pub progressed: u64,

@@ -75,7 +75,7 @@ fn forging_every_fourth_message_stops_no_other_sender() {
             }
             match clock.stamp(time, arrived) {
                 // Nor is what it says taken for older than the line may be quicker.
-                Some(stamp) => assert!(stamp <= arrived && arrived - stamp <= LEAD_MAX + 2_000, "{forged} {k}"),
+                Some(stamp) => assert!(stamp <= arrived && arrived - stamp <= LEAD_MAX_US + 2_000, "{forged} {k}"),
                 None => refused += 1,
             }
         }
@@ -107,7 +107,7 @@ fn messages_that_a_line_held_back_are_not_taken_as_fresh() {
     for k in 2..100 {
         let stamp = clock.stamp(10_000 * k, 1_000_000);
         let late = 1_000_000 - 10_000 * k;
-        assert_eq!(stamp.is_some(), late <= LATE_MAX, "{k}");
+        assert_eq!(stamp.is_some(), late <= LATE_MAX_US, "{k}");
         assert!(stamp.is_none_or(|stamp| stamp.abs_diff(10_000 * k) <= 250));
     }
 }

@@ -5,7 +5,7 @@
 use mavlink::dialects::common::{AUTOPILOT_VERSION_DATA, MavProtocolCapability, PROTOCOL_VERSION_DATA};
 
 /// This firmware's version, as MAVLink packs it: major, minor, patch, and a type (0: development).
-const VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) << 24
+const FIRMWARE_VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) << 24
     | number(env!("CARGO_PKG_VERSION_MINOR")) << 16
     | number(env!("CARGO_PKG_VERSION_PATCH")) << 8;
 
@@ -26,7 +26,7 @@ pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
             | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
-        flight_sw_version: VERSION,
+        flight_sw_version: FIRMWARE_VERSION,
         ..AUTOPILOT_VERSION_DATA::DEFAULT
     }
 }

@@ -52,8 +52,8 @@ pub enum Kind {
     ProtocolVersion,
 }
 
-/// What every frame has around its message, bytes.
-const FRAME: usize = 12;
+/// What every frame has around its message.
+const FRAME_OVERHEAD_BYTES: usize = 12;
 
 impl Kind {
     /// The message's number, and how long it can be.
@@ -93,6 +93,6 @@ impl Kind {
     /// The longest frame it makes, bytes.
     #[must_use]
     pub fn bytes_at_most(self) -> usize {
-        self.facts().1 + FRAME
+        self.facts().1 + FRAME_OVERHEAD_BYTES
     }
 }

@@ -14,11 +14,11 @@ use mavlink::dialects::common::{
 };
 
 /// The version of the protocol that HEARTBEAT names.
-const PROTOCOL: u8 = 3;
+const PROTOCOL_VERSION: u8 = 3;
 
 /// A mode, and whether a mission is flown in it, or a policy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct FlownMode {
     /// The mode.
     pub mode: Mode,
     /// Whether a mission is flown.
@@ -27,40 +27,40 @@ pub struct Shown {
     pub policy: bool,
 }
 
-impl From<&Report> for Shown {
+impl From<&Report> for FlownMode {
     fn from(report: &Report) -> Self {
         Self { mode: report.mode, mission: report.mission.is_flown, policy: report.flies_policy }
     }
 }
 
 /// The main and sub-modes of PX4's clients.
-const AUTO: u32 = 4 << 16;
-const AUTO_READY: u32 = AUTO | 1 << 24;
-const AUTO_TAKEOFF: u32 = AUTO | 2 << 24;
-const AUTO_LOITER: u32 = AUTO | 3 << 24;
-const AUTO_MISSION: u32 = AUTO | 4 << 24;
-const AUTO_LAND: u32 = AUTO | 6 << 24;
-const AUTO_EXTERNAL1: u32 = AUTO | 11 << 24;
-const OFFBOARD: u32 = 6 << 16;
+const MAIN_AUTO: u32 = 4 << 16;
+const AUTO_READY: u32 = MAIN_AUTO | 1 << 24;
+const AUTO_TAKEOFF: u32 = MAIN_AUTO | 2 << 24;
+const AUTO_LOITER: u32 = MAIN_AUTO | 3 << 24;
+const AUTO_MISSION: u32 = MAIN_AUTO | 4 << 24;
+const AUTO_LAND: u32 = MAIN_AUTO | 6 << 24;
+const AUTO_EXTERNAL1: u32 = MAIN_AUTO | 11 << 24;
+const MAIN_OFFBOARD: u32 = 6 << 16;
 
 /// PX4's number for the mode that comes nearest.
-fn custom_mode(shown: &Shown) -> u32 {
-    let Shown { mode, mission, policy } = *shown;
+fn custom_mode(shown: &FlownMode) -> u32 {
+    let FlownMode { mode, mission, policy } = *shown;
     match mode {
         Mode::Boot | Mode::Checks | Mode::Ready | Mode::MotorTest => AUTO_READY,
         Mode::Idling | Mode::Stopped | Mode::Locked => AUTO_READY,
         Mode::TakingOff => AUTO_TAKEOFF,
         Mode::Flying if policy => AUTO_EXTERNAL1,
         Mode::Flying if mission => AUTO_MISSION,
-        Mode::Flying => OFFBOARD,
+        Mode::Flying => MAIN_OFFBOARD,
         Mode::Holding => AUTO_LOITER,
         Mode::Landing | Mode::Descending => AUTO_LAND,
     }
 }
 
 /// The modes that may be requested, with their names and MAVLink's standard ones.
-const SELECTABLE: [(u32, &str, MavStandardMode); 6] = [
-    (OFFBOARD, "Setpoints", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
+const SELECTABLE_MODES: [(u32, &str, MavStandardMode); 6] = [
+    (MAIN_OFFBOARD, "Setpoints", MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD),
     (AUTO_LOITER, "Hold", MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD),
     (AUTO_MISSION, "Mission", MavStandardMode::MAV_STANDARD_MODE_MISSION),
     (AUTO_TAKEOFF, "Take-off", MavStandardMode::MAV_STANDARD_MODE_TAKEOFF),
@@ -69,17 +69,17 @@ const SELECTABLE: [(u32, &str, MavStandardMode); 6] = [
 ];
 
 /// How many modes there are to be named: the last one only where a policy is built in.
-pub const MODES: u8 = SELECTABLE.len() as u8 - !configuration::Policy::EXISTS as u8;
+pub const MODE_COUNT: u8 = SELECTABLE_MODES.len() as u8 - !configuration::Policy::EXISTS as u8;
 
 /// The mode of this number, from 1 on, with its name.
 #[must_use]
 pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
-    let index = Some(index).filter(|index| *index <= MODES)?;
-    let &(custom_mode, name, standard_mode) = SELECTABLE.get(usize::from(index).checked_sub(1)?)?;
+    let index = Some(index).filter(|index| *index <= MODE_COUNT)?;
+    let &(custom_mode, name, standard_mode) = SELECTABLE_MODES.get(usize::from(index).checked_sub(1)?)?;
     Some(AVAILABLE_MODES_DATA {
         custom_mode,
         properties: MavModeProperty::empty(),
-        number_modes: MODES,
+        number_modes: MODE_COUNT,
         mode_index: index,
         standard_mode,
         mode_name: name.into(),
@@ -88,9 +88,9 @@ pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
 
 /// The mode that is flown.
 #[must_use]
-pub fn current_mode(shown: &Shown) -> CURRENT_MODE_DATA {
+pub fn current_mode(shown: &FlownMode) -> CURRENT_MODE_DATA {
     let custom_mode = custom_mode(shown);
-    let standard = SELECTABLE.iter().find(|(custom, ..)| *custom == custom_mode);
+    let standard = SELECTABLE_MODES.iter().find(|(custom, ..)| *custom == custom_mode);
     let standard_mode = standard.map_or(MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD, |(.., standard)| *standard);
     CURRENT_MODE_DATA { custom_mode, intended_custom_mode: 0, standard_mode }
 }
@@ -118,7 +118,7 @@ pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
 
 /// The vehicle's type and state; no mode without a fresh report.
 #[must_use]
-pub fn heartbeat(shown: Option<Shown>, hil: bool) -> HEARTBEAT_DATA {
+pub fn heartbeat(shown: Option<FlownMode>, hil: bool) -> HEARTBEAT_DATA {
     let mode = shown.map(|shown| shown.mode);
     let system_status = match mode {
         None | Some(Mode::Boot) => MavState::MAV_STATE_BOOT,
@@ -141,7 +141,7 @@ pub fn heartbeat(shown: Option<Shown>, hil: bool) -> HEARTBEAT_DATA {
         autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC,
         base_mode,
         system_status,
-        mavlink_version: PROTOCOL,
+        mavlink_version: PROTOCOL_VERSION,
     }
 }
 

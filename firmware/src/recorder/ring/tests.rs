@@ -1,8 +1,8 @@
 use super::*;
 
 /// A record with its number in every byte.
-fn record(number: usize) -> [u8; tick::SIZE] {
-    [number as u8; tick::SIZE]
+fn record(number: usize) -> [u8; tick::TICK_BYTES] {
+    [number as u8; tick::TICK_BYTES]
 }
 
 /// What can be read, by the records' first bytes.
@@ -16,7 +16,7 @@ fn recovered(slots: &[Slot]) -> Vec<u8> {
 
 /// Memory after `first` records of one flight and `second` of another.
 fn flown(slots: usize, first: usize, second: usize) -> Vec<Slot> {
-    let mut memory = vec![[0; SLOT]; slots];
+    let mut memory = vec![[0; SLOT_BYTES]; slots];
     let mut ring = Ring::recover(&mut memory);
     ring.begin();
     (0..first).for_each(|number| ring.put(&record(200 + number)));
@@ -27,7 +27,7 @@ fn flown(slots: usize, first: usize, second: usize) -> Vec<Slot> {
 
 #[test]
 fn the_oldest_records_give_way_and_the_others_stay_in_order() {
-    let mut memory = vec![[0; SLOT]; 5];
+    let mut memory = vec![[0; SLOT_BYTES]; 5];
     let mut ring = Ring::recover(&mut memory);
     assert!(ring.is_empty() && ring.get(0).is_none());
     ring.begin();
@@ -62,13 +62,15 @@ fn a_write_that_a_reset_cuts_short_loses_no_more_than_itself_and_the_oldest() {
         // All but the oldest, if it is that one's place.
         let survivors = if records >= slots { old[1..].to_vec() } else { old.clone() };
         let changed = (0..slots).find(|&slot| before[slot] != after[slot]).unwrap();
-        for written in 0..=SLOT {
+        for written in 0..=SLOT_BYTES {
             // The first bytes, the last bytes, and every third: the order in which memory is written is unknown.
             let orders: [&dyn Fn(usize) -> bool; 3] =
-                [&|byte| byte < written, &|byte| byte >= SLOT - written, &|byte| byte % 3 == 0 && byte < written];
+                [&|byte| byte < written, &|byte| byte >= SLOT_BYTES - written, &|byte| byte % 3 == 0 && byte < written];
             for is_written in orders {
                 let mut torn = before.clone();
-                (0..SLOT).filter(|&byte| is_written(byte)).for_each(|byte| torn[changed][byte] = after[changed][byte]);
+                (0..SLOT_BYTES)
+                    .filter(|&byte| is_written(byte))
+                    .for_each(|byte| torn[changed][byte] = after[changed][byte]);
                 let found = recovered(&torn);
                 // In an empty flight nothing is left but the flight before.
                 let none_yet = records == 0 && found == [200, 201];
@@ -81,10 +83,10 @@ fn a_write_that_a_reset_cuts_short_loses_no_more_than_itself_and_the_oldest() {
 #[test]
 fn what_was_never_written_holds_nothing_and_neither_does_no_memory() {
     for byte in [0x00, 0xFF, 0xA5] {
-        assert!(recovered(&[[byte; SLOT]; 9]).is_empty());
+        assert!(recovered(&[[byte; SLOT_BYTES]; 9]).is_empty());
     }
     let noise: Vec<Slot> = (0..64_usize)
-        .map(|slot| core::array::from_fn(|byte| (((slot * SLOT + byte) * 2_654_435_761) >> 13) as u8))
+        .map(|slot| core::array::from_fn(|byte| (((slot * SLOT_BYTES + byte) * 2_654_435_761) >> 13) as u8))
         .collect();
     assert!(recovered(&noise).is_empty());
     let mut ring = Ring::recover(&mut []);
@@ -97,7 +99,7 @@ fn what_was_never_written_holds_nothing_and_neither_does_no_memory() {
 fn a_record_that_has_changed_ends_what_can_be_read() {
     let memory = flown(8, 0, 8);
     for slot in 0..8 {
-        for byte in 0..SLOT {
+        for byte in 0..SLOT_BYTES {
             let mut changed = memory.clone();
             changed[slot][byte] ^= 0x10;
             let expected: Vec<u8> = if slot == 7 { (0..7).collect() } else { (slot as u8 + 1..8).collect() };

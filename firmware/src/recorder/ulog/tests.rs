@@ -1,12 +1,12 @@
 use super::*;
-use crate::recorder::ring::SLOT;
+use crate::recorder::ring::SLOT_BYTES;
 
 /// A ring of ten records, each of its own byte.
-fn filled(memory: &mut Vec<[u8; SLOT]>) -> Ring<'_> {
-    memory.resize(10, [0; SLOT]);
+fn filled(memory: &mut Vec<[u8; SLOT_BYTES]>) -> Ring<'_> {
+    memory.resize(10, [0; SLOT_BYTES]);
     let mut ring = Ring::recover(memory);
     ring.begin();
-    (1..=10).for_each(|number| ring.put(&[number; tick::SIZE]));
+    (1..=10).for_each(|number| ring.put(&[number; tick::TICK_BYTES]));
     ring
 }
 
@@ -42,7 +42,7 @@ fn every_message_is_as_long_as_it_says_and_of_a_kind_in_its_place() {
     let mut memory = vec![];
     let ring = filled(&mut memory);
     let file = file(&ring, 4_096);
-    assert_eq!((&file[..8], &file[8..16]), (&MAGIC[..], &[1; 8][..]));
+    assert_eq!((&file[..8], &file[8..16]), (&FILE_MAGIC[..], &[1; 8][..]));
     let (mut at, mut kinds) = (16, String::new());
     while at < file.len() {
         let length = usize::from(u16::from_le_bytes([file[at], file[at + 1]]));
@@ -52,7 +52,7 @@ fn every_message_is_as_long_as_it_says_and_of_a_kind_in_its_place() {
             b'B' => assert_eq!(body, [0; 40]),
             b'F' => assert_eq!(body, tick::FORMAT.as_bytes()),
             b'A' => assert_eq!(body, b"\0\0\0tick"),
-            b'D' => assert!(body[2..].iter().all(|byte| *byte == body[2]) && body.len() == 2 + tick::SIZE),
+            b'D' => assert!(body[2..].iter().all(|byte| *byte == body[2]) && body.len() == 2 + tick::TICK_BYTES),
             _ => {}
         }
         at += 3 + length;
@@ -63,7 +63,7 @@ fn every_message_is_as_long_as_it_says_and_of_a_kind_in_its_place() {
 #[test]
 fn whatever_a_vehicle_is_called_its_file_is_as_long() {
     for (name, written) in [("", ""), ("mine", "mine"), (&"long".repeat(20)[..], &"long".repeat(8)[..])] {
-        let bytes: Vec<u8> = definitions(&[0; TIME], name).flatten().copied().collect();
+        let bytes: Vec<u8> = definitions(&[0; TIME_BYTES], name).flatten().copied().collect();
         assert_eq!(bytes.len(), definitions_size());
         assert!(String::from_utf8_lossy(&bytes).contains(&format!("char[32] vehicle{written:32}")), "{name}");
     }

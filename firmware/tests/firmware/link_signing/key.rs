@@ -101,7 +101,7 @@ fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
     let mut vehicle = shared;
     // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which
     // lasts as long as what was kept before it.
-    let flight = AHEAD * 10 - 1_000_000;
+    let flight = KEPT_AHEAD * 10 - 1_000_000;
     for _ in 0..2 {
         let frames: Vec<_> = (0..=4).map(|part| station.say(&disarm(), part * flight / 4)).collect();
         for (part, frame) in frames.iter().enumerate() {
@@ -140,7 +140,7 @@ fn stamps_are_kept_twice_an_hour_at_most_and_never_while_a_motor_turns() {
         }
     });
     assert_eq!(chip.borrow().writes, ready);
-    assert_eq!(AHEAD, 2 * LEAST_AHEAD);
+    assert_eq!(KEPT_AHEAD, 2 * KEPT_AHEAD_MIN);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::Simulated;
 use fatfs::{FatType, FileSystem, FormatVolumeOptions, FsOptions, format_volume};
-use firmware::hardware::{Card, Fault, SECTOR};
+use firmware::hardware::{Card, Fault, SECTOR_BYTES};
 use firmware::recorder::tick;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -14,7 +14,7 @@ use std::rc::Rc;
 pub const START: u32 = 64;
 
 /// Sectors that are not zero, by their numbers.
-pub type Image = HashMap<u32, [u8; SECTOR]>;
+pub type Image = HashMap<u32, [u8; SECTOR_BYTES]>;
 
 /// What the card does.
 #[derive(Default)]
@@ -22,7 +22,7 @@ pub struct Medium {
     pub image: Image,
     pub sectors: u32,
     /// Every write so far, in order.
-    pub written: Vec<(u32, [u8; SECTOR])>,
+    pub written: Vec<(u32, [u8; SECTOR_BYTES])>,
     /// Whether there is a card in the slot.
     pub is_absent: bool,
     /// Whether writes fail.
@@ -56,14 +56,14 @@ impl Card for Simulation<'_> {
         self.medium.borrow().sectors
     }
 
-    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR]) -> core::result::Result<(), Fault> {
+    fn read(&mut self, sector: u32, data: &mut [u8; SECTOR_BYTES]) -> core::result::Result<(), Fault> {
         let medium = self.medium.borrow();
-        *data = medium.image.get(&sector).copied().unwrap_or([0; SECTOR]);
+        *data = medium.image.get(&sector).copied().unwrap_or([0; SECTOR_BYTES]);
         let is_worn = medium.worn.as_deref() == Some(data.as_slice());
         if medium.is_absent || is_worn || sector >= medium.sectors { Err(Fault) } else { Ok(()) }
     }
 
-    fn write(&mut self, sector: u32, data: &[u8; SECTOR]) -> core::result::Result<(), Fault> {
+    fn write(&mut self, sector: u32, data: &[u8; SECTOR_BYTES]) -> core::result::Result<(), Fault> {
         let mut medium = self.medium.borrow_mut();
         if medium.is_absent || medium.fails || sector >= medium.sectors {
             return Err(Fault);
@@ -86,8 +86,8 @@ struct Partition<'i> {
 impl Partition<'_> {
     /// The sector at the present place, where in it that is, and how much of it is left for so many bytes.
     fn place(&self, bytes: usize) -> (u32, usize, usize) {
-        let (sector, offset) = (self.at / SECTOR as u64, (self.at % SECTOR as u64) as usize);
-        let left = if sector < u64::from(self.sectors) { SECTOR - offset } else { 0 };
+        let (sector, offset) = (self.at / SECTOR_BYTES as u64, (self.at % SECTOR_BYTES as u64) as usize);
+        let left = if sector < u64::from(self.sectors) { SECTOR_BYTES - offset } else { 0 };
         (START + sector as u32, offset, left.min(bytes))
     }
 }
@@ -109,7 +109,7 @@ impl Write for Partition<'_> {
         let (sector, offset, count) = self.place(bytes.len());
         let bytes = &bytes[..count];
         if self.image.contains_key(&sector) || bytes.iter().any(|byte| *byte != 0) {
-            self.image.entry(sector).or_insert([0; SECTOR])[offset..offset + count].copy_from_slice(bytes);
+            self.image.entry(sector).or_insert([0; SECTOR_BYTES])[offset..offset + count].copy_from_slice(bytes);
         }
         self.at += count as u64;
         Ok(count)
@@ -122,7 +122,7 @@ impl Write for Partition<'_> {
 
 impl Seek for Partition<'_> {
     fn seek(&mut self, to: SeekFrom) -> Result<u64> {
-        let end = u64::from(self.sectors) * SECTOR as u64;
+        let end = u64::from(self.sectors) * SECTOR_BYTES as u64;
         let at = match to {
             SeekFrom::Start(at) => Some(at),
             SeekFrom::Current(by) => self.at.checked_add_signed(by),
@@ -138,7 +138,7 @@ pub fn formatted(kind: FatType, sectors: u32, cluster: u32) -> (Image, u32) {
     let mut image = Image::new();
     let options = FormatVolumeOptions::new().fat_type(kind).bytes_per_cluster(cluster);
     format_volume(Partition { image: &mut image, sectors, at: 0 }, options).unwrap();
-    let mut table = [0; SECTOR];
+    let mut table = [0; SECTOR_BYTES];
     table[446 + 4] = if kind == FatType::Fat32 { 0x0C } else { 0x06 };
     table[446 + 8..446 + 12].copy_from_slice(&START.to_le_bytes());
     table[446 + 12..446 + 16].copy_from_slice(&sectors.to_le_bytes());
@@ -193,7 +193,7 @@ pub fn parsed(file: &[u8]) -> Parsed {
         let length = usize::from(u16::from_le_bytes([*low, *high]));
         let Some((body, behind)) = behind.split_at_checked(length) else { return parsed };
         match kind {
-            b'D' if length == 2 + tick::SIZE => {
+            b'D' if length == 2 + tick::TICK_BYTES => {
                 parsed.ticks.push(number(&body[2..10]));
                 parsed.records.push(body[2..].to_vec());
             }

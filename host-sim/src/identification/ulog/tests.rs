@@ -5,7 +5,7 @@ use super::writer::{Topic, Writer};
 use super::{HEAD_BYTES, MAGIC};
 use firmware::card::sector;
 use firmware::hardware::MotorCommand;
-use firmware::recorder::ring::{Ring, SLOT};
+use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::recorder::tick::{self, Tick};
 use firmware::recorder::ulog;
 use flight::Mode;
@@ -24,7 +24,7 @@ fn file(messages: &[(u8, &[u8])]) -> Vec<u8> {
 
 /// The firmware's recording of two ticks.
 fn recording() -> Vec<u8> {
-    let mut memory = vec![[0; SLOT]; 4];
+    let mut memory = vec![[0; SLOT_BYTES]; 4];
     let mut ring = Ring::recover(&mut memory);
     ring.begin();
     for index in 0..2 {
@@ -171,13 +171,13 @@ fn one_damaged_message_costs_itself_alone_whatever_byte_of_it_is_damaged() {
 #[test]
 fn a_card_whose_sectors_end_with_filler_is_read_whole() {
     let recording = recording();
-    let last = &recording[recording.len() - ulog::DATA.len() - tick::SIZE..];
-    let mut sector = sector::BLANK;
+    let last = &recording[recording.len() - ulog::DATA_HEAD.len() - tick::TICK_BYTES..];
+    let mut sector = sector::BLANK_SECTOR;
     let (record, filler) = sector.split_at_mut(last.len());
     record.copy_from_slice(last);
-    let head = ulog::head(sector::FILLER, filler.len() - sector::HEAD);
-    filler[..sector::HEAD].copy_from_slice(&head);
-    let card = [recording, sector.repeat(40), sector::BLANK.repeat(20)].concat();
+    let head = ulog::head(sector::FILLER_KIND, filler.len() - sector::MESSAGE_HEAD_BYTES);
+    filler[..sector::MESSAGE_HEAD_BYTES].copy_from_slice(&head);
+    let card = [recording, sector.repeat(40), sector::BLANK_SECTOR.repeat(20)].concat();
     let read = Ulog::read(&card, &[TICK_TOPIC]).unwrap();
     assert_eq!(read.damage.to_string(), "");
     assert_eq!(read.topic(TICK_TOPIC).unwrap().len(), 2 + 40);

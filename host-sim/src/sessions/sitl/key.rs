@@ -1,6 +1,6 @@
 //! The key that frames are signed with, from a file: 64 hexadecimal digits.
 
-use firmware::link::signing::{KEY, Key, Stamp};
+use firmware::link::signing::{KEY_BYTES, Key, Stamp};
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -18,9 +18,9 @@ pub fn read(path: &Path) -> Result<Key, String> {
     let text = scenario::text::bytes(path, KEY_FILE_MAX_BYTES)
         .map_err(|error| format!("--signing-key {}: cannot be read: {error}", path.display()))?;
     parsed(text.trim_ascii()).ok_or_else(|| {
-        let digits = 2 * KEY;
+        let digits = 2 * KEY_BYTES;
         format!(
-            "--signing-key {}: must hold {digits} hexadecimal digits, not all 0; 'openssl rand -hex {KEY}' makes some",
+            "--signing-key {}: must hold {digits} hexadecimal digits, not all 0; 'openssl rand -hex {KEY_BYTES}' makes some",
             path.display()
         )
     })
@@ -31,7 +31,7 @@ fn parsed(digits: &[u8]) -> Option<Key> {
     let digits: Vec<u32> = digits.iter().map(digit).collect::<Option<_>>()?;
     let bytes: Vec<u8> =
         digits.chunks(2).map(|pair| pair.iter().fold(0, |byte, digit| byte << 4 | *digit as u8)).collect();
-    if digits.len() == 2 * KEY { Key::new(bytes.try_into().ok()?) } else { None }
+    if digits.len() == 2 * KEY_BYTES { Key::new(bytes.try_into().ok()?) } else { None }
 }
 
 /// The desk's time as stamps count it.

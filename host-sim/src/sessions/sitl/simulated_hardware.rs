@@ -20,7 +20,7 @@ use crate::vehicle::plant::Diverged;
 use crate::vehicle::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use estimation::imu::ImuParameters;
-use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTORS, MotorCommand, Motors, RawImu, Watchdog};
+use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTOR_COUNT, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::link::frame::Frame;
 use firmware::link::signing::{Key, Stamp};
 use flight::{ImuSample, Stamped};
@@ -70,9 +70,9 @@ struct Body {
     /// The time up to which all is simulated, us.
     now: u64,
     /// Thrusts on their way, N, with the times at which they act, us.
-    waiting: VecDeque<(u64, [f32; MOTORS])>,
+    waiting: VecDeque<(u64, [f32; MOTOR_COUNT])>,
     /// The rotors' commanded thrusts, N.
-    acting: [f32; MOTORS],
+    acting: [f32; MOTOR_COUNT],
     sample: ImuSample,
     encoder: Encoder,
     /// The way poses take.
@@ -114,7 +114,7 @@ impl SimulatedHardware {
             curves: rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?,
             now: 0,
             waiting: VecDeque::new(),
-            acting: [0.0; MOTORS],
+            acting: [0.0; MOTOR_COUNT],
             sample: ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::zeros() },
             encoder: Encoder::default(),
             line,
@@ -185,7 +185,7 @@ impl SimulatedHardware {
         self.catch_up();
         let commands = command.levels();
         let mut body = self.0.body.borrow_mut();
-        let mut thrusts = [0.0; MOTORS];
+        let mut thrusts = [0.0; MOTOR_COUNT];
         for ((thrust, curve), command) in thrusts.iter_mut().zip(&body.curves).zip(commands) {
             *thrust = curve.thrust(command, 1.0);
         }
@@ -204,7 +204,7 @@ impl Body {
         while let Some((_, thrusts)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
             self.acting = thrusts;
         }
-        for rotor in 0..MOTORS {
+        for rotor in 0..MOTOR_COUNT {
             self.vehicle.weaken(rotor, faults.thrust_left(rotor, self.now));
         }
         for _ in 0..self.steps {

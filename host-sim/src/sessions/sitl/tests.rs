@@ -1,6 +1,6 @@
 use super::*;
 use estimation::estimator::Fault as EstimatorFault;
-use firmware::link::signing::{AHEAD, Key, Signing};
+use firmware::link::signing::{KEPT_AHEAD, Key, Signing};
 use flight::Mode;
 use mavlink::dialects::common::{
     ATT_POS_MOCAP_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavCmd, MavFrame, MavType, PositionTargetTypemask,

@@ -26,10 +26,10 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::UART5;
 pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::CAN1_TX;
 
 /// Cycles of the core in 0.08 ms.
-pub const SILENCE: u32 = 13_440;
+pub const FRAME_PAUSE_CYCLES: u32 = 13_440;
 
 /// Where the vector table of the chip's own bootloader is.
-pub const BOOTLOADER: u32 = 0x1FFF_0000;
+pub const BOOTLOADER_ADDRESS: u32 = 0x1FFF_0000;
 
 /// Sets the clocks and takes every peripheral; whether the crystal runs. Once.
 ///

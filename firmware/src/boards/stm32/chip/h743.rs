@@ -29,13 +29,13 @@ pub const SENSOR_INTERRUPT: interrupt::Interrupt = interrupt::SAI2;
 pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::SAI3;
 
 /// Cycles of the core in 0.08 ms.
-pub const SILENCE: u32 = 32_000;
+pub const FRAME_PAUSE_CYCLES: u32 = 32_000;
 
 /// Where the vector table of the chip's own bootloader is.
-pub const BOOTLOADER: u32 = 0x1FF0_9800;
+pub const BOOTLOADER_ADDRESS: u32 = 0x1FF0_9800;
 
 /// Looks at a clock that is to change. It changes within microseconds.
-const POLLS: usize = 100_000;
+const CLOCK_POLLS_MAX: usize = 100_000;
 
 /// Sets the clocks and takes every peripheral; whether the crystal runs. Once.
 ///
@@ -57,8 +57,8 @@ fn spare_revision_y() {
     /// AXI_TARG7_FN_MOD, and its bit READ_ISS_OVERRIDE.
     const AXI_SRAM: (*mut u32, u32) = (0x5100_8108 as *mut u32, 1);
     /// The first revision without that fault has 0x2001.
-    const MENDED: u16 = 0x2000;
-    if DBGMCU.idc().read().rev_id() < MENDED {
+    const FIRST_MENDED_REVISION: u16 = 0x2000;
+    if DBGMCU.idc().read().rev_id() < FIRST_MENDED_REVISION {
         let (register, limit) = AXI_SRAM;
         // SAFETY: a register of the bus matrix, which nothing else here uses.
         unsafe { register.write_volatile(limit) };
@@ -144,12 +144,12 @@ fn end_caching(core: &mut cortex_m::Peripherals) {
 /// Back to the chip's own oscillator. Embassy sets the PLLs as if none ran.
 fn stop_plls() {
     RCC.cr().modify(|w| w.set_hsion(true));
-    let _ = (0..POLLS).find(|_| RCC.cr().read().hsirdy());
+    let _ = (0..CLOCK_POLLS_MAX).find(|_| RCC.cr().read().hsirdy());
     RCC.cfgr().modify(|w| w.set_sw(Sw::HSI));
-    let _ = (0..POLLS).find(|_| RCC.cfgr().read().sws() == Sw::HSI);
+    let _ = (0..CLOCK_POLLS_MAX).find(|_| RCC.cfgr().read().sws() == Sw::HSI);
     for pll in 0..3 {
         RCC.cr().modify(|w| w.set_pllon(pll, false));
-        let _ = (0..POLLS).find(|_| !RCC.cr().read().pllrdy(pll));
+        let _ = (0..CLOCK_POLLS_MAX).find(|_| !RCC.cr().read().pllrdy(pll));
     }
 }
 
@@ -173,10 +173,10 @@ pub fn map_bootloader() {}
 #[must_use]
 pub fn has_usb_supply() -> bool {
     /// Each takes 20 ns or more.
-    const POLLS: u32 = 1_000_000;
+    const SUPPLY_POLLS_MAX: u32 = 1_000_000;
     let control = PWR.cr3();
     control.modify(|w| w.set_usb33den(true));
-    (0..POLLS).any(|_| control.read().usb33rdy())
+    (0..SUPPLY_POLLS_MAX).any(|_| control.read().usb33rdy())
 }
 
 executors::handlers! { SAI1 => CONTROL, SAI2 => SENSOR, SAI3 => SERVICES }

@@ -5,19 +5,19 @@ use embassy_stm32::pac::FLASH;
 use embassy_stm32::pac::flash::vals::Psize;
 
 /// Where the two sectors start: the tenth and eleventh, counted from 0.
-pub const START: usize = 0x080C_0000;
+pub const FIRST_ADDRESS: usize = 0x080C_0000;
 const FIRST_SECTOR: u8 = 10;
 
 /// Looks at a flash at work, at most: each takes 6 cycles or more of a core at 168 MHz, so seven seconds together at
 /// the least. An erase takes up to two, and stalls most of them.
-pub const POLLS: u32 = 200_000_000;
+pub const POLLS_MAX: u32 = 200_000_000;
 
 /// The error flags of the status register; writing them clears them.
-const FAILURES: u32 = 0b1111_0010;
+const FAILURE_FLAGS: u32 = 0b1111_0010;
 
 /// Forgets what failed before, and opens the control register with its two keys.
 pub fn open(keys: [u32; 2]) {
-    FLASH.sr().write(|w| w.0 = FAILURES);
+    FLASH.sr().write(|w| w.0 = FAILURE_FLAGS);
     // A second key would close it until the next reset.
     if FLASH.cr().read().lock() {
         keys.iter().for_each(|key| FLASH.keyr().write_value(*key));
@@ -49,7 +49,7 @@ pub fn is_busy() -> bool {
 
 /// Whether it reports an error.
 pub fn has_failed() -> bool {
-    FLASH.sr().read().0 & FAILURES != 0
+    FLASH.sr().read().0 & FAILURE_FLAGS != 0
 }
 
 /// Closes the control register, and empties the data cache, which an erase leaves as it was. It may only be emptied

@@ -12,15 +12,15 @@ use embassy_stm32::pac::flash::Bank;
 use embassy_stm32::pac::flash::regs::Ccr;
 
 /// Where the two sectors start: the sixth and seventh of the second bank, counted from 0.
-pub const START: usize = 0x081C_0000;
+pub const FIRST_ADDRESS: usize = 0x081C_0000;
 const FIRST_SECTOR: u8 = 6;
 
 /// Looks at a flash at work, at most: each takes 16 cycles or more of a core at 400 MHz, for its barrier and two reads
 /// over a bus at half of that, so eight seconds together at the least. An erase takes up to four.
-pub const POLLS: u32 = 200_000_000;
+pub const POLLS_MAX: u32 = 200_000_000;
 
 /// The error flags of the status register, and the same bits of the register that clears them.
-const FAILURES: u32 = 0x17EE_0000;
+const FAILURE_FLAGS: u32 = 0x17EE_0000;
 
 /// A core that runs at the priority of a fault takes no notice of bus faults of data (bit BFHFNMIGN).
 const IGNORE_BUS_FAULTS: u32 = 1 << 8;
@@ -32,7 +32,7 @@ fn bank() -> Bank {
 
 /// Forgets what failed before, and opens the bank's control register with its two keys.
 pub fn open(keys: [u32; 2]) {
-    bank().ccr().write_value(Ccr(FAILURES));
+    bank().ccr().write_value(Ccr(FAILURE_FLAGS));
     // A second key would close it until the next reset.
     if bank().cr().read().lock() {
         keys.iter().for_each(|key| bank().keyr().write_value(*key));
@@ -67,7 +67,7 @@ pub fn is_busy() -> bool {
 
 /// Whether it reports an error.
 pub fn has_failed() -> bool {
-    bank().sr().read().0 & FAILURES != 0
+    bank().sr().read().0 & FAILURE_FLAGS != 0
 }
 
 /// Closes the control register, which keeps what it holds when it closes: emptied first, with it whatever a word
@@ -79,7 +79,7 @@ pub fn close() {
 
 /// Reads, and whether the value is valid. Nothing but a non-maskable interrupt comes between.
 pub fn read(words: impl FnOnce()) -> Result<(), Fault> {
-    bank().ccr().write_value(Ccr(FAILURES));
+    bank().ccr().write_value(Ccr(FAILURE_FLAGS));
     // SAFETY: the only access to this register while nothing else runs, undone below.
     let control = unsafe { &(*SCB::PTR).ccr };
     // SAFETY: masks all faults and interrupts for a few microseconds; the barrier ends the reads before they can count.
@@ -94,6 +94,6 @@ pub fn read(words: impl FnOnce()) -> Result<(), Fault> {
         asm!("cpsie f");
     }
     let torn = bank().sr().read().dbeccerr();
-    bank().ccr().write_value(Ccr(FAILURES));
+    bank().ccr().write_value(Ccr(FAILURE_FLAGS));
     if torn { Err(Fault) } else { Ok(()) }
 }

@@ -14,7 +14,7 @@ fn a_key_that_was_kept_is_the_cameras_as_well() {
     assert_eq!(given.mode(), Mode::Ready, "{:?}", given.sitl.texts);
     drop(given);
     let mut kept = boot(None);
-    kept.signing.set(key, key::now() + 2 * AHEAD, 0);
+    kept.signing.set(key, key::now() + 2 * KEPT_AHEAD, 0);
     kept.pass(6.0);
     std::fs::remove_file(&path).unwrap();
     assert_eq!(kept.mode(), Mode::Ready, "{:?}", kept.sitl.texts);
@@ -98,7 +98,7 @@ fn a_vehicle_with_a_key_believes_its_camera_and_obeys_who_signs() {
     // Key and received stamps outlast a restart: this client did not receive how far the stamps have come.
     flown.command(ARM, 1.0);
     assert_eq!((flown.mode(), flown.said("its time stamp was used before")), (Mode::Checks, true));
-    flown.signing.set(key, key::now() + 2 * AHEAD, 0);
+    flown.signing.set(key, key::now() + 2 * KEPT_AHEAD, 0);
     flown.pass(1.0);
     flown.command(ARM, 1.0);
     assert_eq!(flown.mode(), Mode::Idling, "{:?}", flown.sitl.texts);
