@@ -77,12 +77,12 @@ fn refuse_retired(section: &Section, name: &str) -> Result<(), FieldError> {
 
 /// Refuses a delay longer than the memory of the law's actuator model.
 fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> Result<(), FieldError> {
-    const DELAY_MAX_TICKS: usize = DELAY_MAX_TICKS - 1;
+    const DELAY_MAX_PERIODS: usize = DELAY_MAX_TICKS - 1;
     ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {
         let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
-        let longest = DELAY_MAX_TICKS as f64 * f64::from(period);
+        let longest = DELAY_MAX_PERIODS as f64 * f64::from(period);
         let problem = format!(
-            "under the extended law must be, both delays together, at most {DELAY_MAX_TICKS} control periods, {longest:.3} s, found {} s",
+            "under the extended law must be, both delays together, at most {DELAY_MAX_PERIODS} control periods, {longest:.3} s, found {} s",
             actuators.delay
         );
         FieldError::new(field, problem)

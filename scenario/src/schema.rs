@@ -78,7 +78,7 @@ fn number(name: &str, bounds: &Bounds) -> Value {
 fn constants(section: &str, tables: &[&[Constant]]) -> Value {
     let mut properties = Map::new();
     for constant in tables.iter().copied().flatten().filter(|constant| constant.section == section) {
-        let (min, max) = (f64::from(constant.range.least), f64::from(constant.range.greatest));
+        let (min, max) = (f64::from(constant.range.min), f64::from(constant.range.max));
         let earlier = properties.get(constant.key);
         let bound = |name: &str| earlier.and_then(|schema: &Value| schema[name].as_f64());
         let min = bound("minimum").map_or(min, |other| min.min(other));

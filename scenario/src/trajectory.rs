@@ -53,7 +53,7 @@ pub const FORCE_KEPT: Key = Key::number(
     Bounds::not_negative("m/s^2"),
     "The force per mass, in any direction, that is kept free along it.",
 )
-.or(controller_core::certificate::path::FORCE_KEPT as f64);
+.or(controller_core::certificate::path::FORCE_KEPT_M_PER_S2 as f64);
 
 /// A path through points.
 pub const WAYPOINTS: Layout = Layout {

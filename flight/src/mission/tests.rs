@@ -3,7 +3,13 @@ use super::*;
 const HOME: Vector3<f32> = Vector3::new(10.0, -20.0, 1.0);
 
 fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
-    MissionItem { leg, position: HOME + Vector3::new(x, y, z), turn: HeadingSetpoint::Keep, radius: ACCEPTANCE_RADIUS_M, hold: 0 }
+    MissionItem {
+        leg,
+        position: HOME + Vector3::new(x, y, z),
+        turn: HeadingSetpoint::Keep,
+        radius: ACCEPTANCE_RADIUS_M,
+        hold: 0,
+    }
 }
 
 fn checked(item: &MissionItem) -> Result<(), MissionRefusal> {
