@@ -61,14 +61,52 @@ pub struct Constant {
     pub range: Range,
     /// Whether `tune` searches it.
     pub searched: bool,
+    /// The formula of its default, as written in its declaration; empty without one.
+    pub formula: &'static str,
 }
 
-/// Declares a struct of constants, each with its entry of the table.
+/// Declares a struct of constants, each with its entry of the table. With `by Quantities |d|` each entry ends with its
+/// default: a formula of the quantities d, which have a method for every constant.
 macro_rules! constants {
     (
         $(#[$outer:meta])*
         pub struct $name:ident {
             $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident; )*
+        }
+    ) => {
+        $crate::constants::constants! { @table
+            $(#[$outer])* pub struct $name { $( #[doc = $about] $section.$key: $range, $searched, ""; )* }
+        }
+    };
+    (
+        $(#[$outer:meta])*
+        pub struct $name:ident by $quantities:ident |$of:ident| {
+            $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident, $formula:expr; )*
+        }
+    ) => {
+        $crate::constants::constants! { @table
+            $(#[$outer])*
+            pub struct $name { $( #[doc = $about] $section.$key: $range, $searched, stringify!($formula); )* }
+        }
+
+        impl $name {
+            /// Every constant as it is given or by its formula, in the table's order.
+            pub(super) fn defaults(of: &$quantities) -> [f64; Self::COUNT] {
+                [$(of.$key()),*]
+            }
+        }
+
+        impl $quantities<'_> {
+            $( #[doc = $about] #[allow(unused_variables)] pub(super) fn $key(&self) -> f64 {
+                let $of = self;
+                self.given(stringify!($key)).unwrap_or_else(|| $formula)
+            } )*
+        }
+    };
+    (@table
+        $(#[$outer:meta])*
+        pub struct $name:ident {
+            $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident, $formula:expr; )*
         }
     ) => {
         $(#[$outer])*
@@ -94,6 +132,7 @@ macro_rules! constants {
                     about: $about,
                     range: $range,
                     searched: $crate::constants::$searched,
+                    formula: $formula,
                 } ),*
             ];
 

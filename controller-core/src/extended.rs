@@ -26,7 +26,7 @@
 //! | [`memory`] | the law's memory from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`crate::constants`], [`parameters`] | all of its constants, declared once, validated | |
-//! | [`defaults`] | every constant from a vehicle's numbers | 14 |
+//! | [`quantities`], [`defaults`] | every constant from a vehicle's numbers | 14 |
 //!
 //! Each estimate has a level; a level of zero turns it off.
 
@@ -46,6 +46,7 @@ pub mod measured;
 pub mod memory;
 pub mod parameters;
 pub mod position;
+pub mod quantities;
 pub mod rotor_loss;
 pub mod saturation;
 pub mod thrust_range;
