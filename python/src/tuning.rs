@@ -6,7 +6,7 @@ use crate::scenarios::Scenario;
 use crate::threads::alone;
 use crate::whole_number::Whole;
 use host_sim::studies::tune::effort::Effort;
-use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
+use host_sim::studies::tune::requirements::{RECOVERY_MAX_S, RECOVERY_MIN_S, Requirements};
 use host_sim::studies::tune::trials::TrialFigures;
 use host_sim::studies::tune::{output, tune as search};
 use pyo3::prelude::*;
@@ -108,8 +108,8 @@ pub fn tune(
         check(value > 0.0 && value.is_finite(), field, "must be greater than zero and finite", value)?;
     }
     let least = LoopMargin::FLYABLE_MIN;
-    let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
-    check((LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&recovery), "recovery", &allowed, recovery)?;
+    let allowed = format!("must be from {RECOVERY_MIN_S} to {RECOVERY_MAX_S} s");
+    check((RECOVERY_MIN_S..=RECOVERY_MAX_S).contains(&recovery), "recovery", &allowed, recovery)?;
     check((0.0..1.0).contains(&margin), "margin", "must be from 0 to below 1", margin)?;
     check(gain_margin >= least.gain && gain_margin.is_finite(), "gain_margin", "must be 1.5 or more", gain_margin)?;
     check(

@@ -25,7 +25,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Ticks between two looks at the clock.
-const TICKS_PER_SHOW: u64 = 5000;
+const PROGRESS_PERIOD_TICKS: u64 = 5000;
 const RECORDING_FILE: &str = "flight.mcap";
 
 /// Whether they can be written is checked before the flight.
@@ -175,7 +175,7 @@ fn log_flight(
         }
         flown.observe(&tick);
         page.observe(&tick);
-        if done % TICKS_PER_SHOW == 0 {
+        if done % PROGRESS_PERIOD_TICKS == 0 {
             progress.show(done);
         }
     }
@@ -192,7 +192,7 @@ pub fn watched(scenario: &Scenario, interrupt: &Interrupt) -> Result<Track, FlyE
     for done in 0..scenario.timing.ticks {
         interrupted(interrupt)?;
         page.observe(&flight.tick()?);
-        if done % TICKS_PER_SHOW == 0 {
+        if done % PROGRESS_PERIOD_TICKS == 0 {
             progress.show(done);
         }
     }

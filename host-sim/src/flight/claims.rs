@@ -14,7 +14,7 @@
 //! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
 //! errors of its last quarter are reported without a verdict.
 
-use crate::flight::extremes::{FlightExtremes, NEAR_MRP, NEAR_POSITION};
+use crate::flight::extremes::{FlightExtremes, MRP_TOLERANCE, POSITION_TOLERANCE_M};
 use crate::output::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
@@ -24,14 +24,14 @@ use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 use std::fmt::Write;
 
-/// Section VI: thrust, N.
-pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
-/// Section VI: |torque| about each axis, N m.
-pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
-/// Section VI: steady-state position error, m.
-pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+/// Section VI: thrust.
+pub const PUBLISHED_THRUST_N: (f64, f64) = (3.51, 6.19);
+/// Section VI: |torque| about each axis.
+pub const PUBLISHED_TORQUE_N_M: [f64; 3] = [0.29, 0.33, 0.48];
+/// Section VI: steady-state position error.
+pub const PUBLISHED_POSITION_ERROR_M: f64 = 1e-3;
 /// By when a flight must have reached its reference, as a fraction of its duration.
-pub const REACHED_BY: f64 = 0.9;
+pub const REACHED_BY_SHARE: f64 = 0.9;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
 pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// One line of the table.
@@ -56,13 +56,13 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) ->
     let mut claims = vec![
         commands(verdict),
         loops(verdict),
-        near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration),
-        near(format!("within {NEAR_MRP} of its attitude for good"), flown.attitude_reached(), duration),
+        near(format!("within {POSITION_TOLERANCE_M} m of the reference for good"), flown.position_reached(), duration),
+        near(format!("within {MRP_TOLERANCE} of its attitude for good"), flown.attitude_reached(), duration),
         tracking(scenario, flown),
         at_most(
             format!("position error, {steady}"),
             flown.steady_position_error,
-            published.then_some(PUBLISHED_POSITION_ERROR),
+            published.then_some(PUBLISHED_POSITION_ERROR_M),
             " m",
         ),
         at_most(format!("MRP error, {steady}"), flown.steady_mrp_error, published.then_some(PUBLISHED_MRP_ERROR), ""),
@@ -71,8 +71,8 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) ->
         claims.insert(2, large_motions(&flights));
     }
     if published {
-        claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST));
-        claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE));
+        claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST_N));
+        claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE_N_M));
     }
     claims.extend(bounds(verdict.certificate(), flown));
     let limits = scenario.configuration.limits();
@@ -96,7 +96,8 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) ->
 #[must_use]
 pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let duration = scenario.timing.duration();
-    let own = near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration);
+    let own =
+        near(format!("within {POSITION_TOLERANCE_M} m of the reference for good"), flown.position_reached(), duration);
     let reported = claims(scenario, verdict, flown).into_iter().skip(3).map(|claim| Claim { holds: None, ..claim });
     std::iter::once(own).chain(reported).collect()
 }
@@ -159,12 +160,12 @@ fn large_motions(flights: &Result<Farthest, NotArrived>) -> Claim {
 /// Whether a flight reached its reference, position and attitude, in time and for good.
 #[must_use]
 pub fn reached(scenario: &Scenario, flown: &FlightExtremes) -> bool {
-    let latest = REACHED_BY * scenario.timing.duration();
+    let latest = REACHED_BY_SHARE * scenario.timing.duration();
     [flown.position_reached(), flown.attitude_reached()].iter().all(|since| since.is_some_and(|since| since <= latest))
 }
 
 fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
-    let latest = REACHED_BY * duration;
+    let latest = REACHED_BY_SHARE * duration;
     Claim {
         claim,
         required: format!("<= {} s", short(latest)),

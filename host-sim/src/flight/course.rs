@@ -18,8 +18,8 @@ use controller_core::allocation::Thrusts;
 use scenario::Scenario;
 use std::collections::VecDeque;
 
-/// How near the yaw is to be, rad.
-const NEAR_YAW: f64 = 0.1;
+/// How near the yaw is to be.
+const YAW_TOLERANCE_RAD: f64 = 0.1;
 
 /// A flight's course.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,7 +143,7 @@ impl Course {
         }
         let end = (ticks * scenario.timing.period_us) as f64 / 1e6;
         course.settled = course.settled.filter(|since| *since < end);
-        course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
+        course.turned = course.turned.filter(|_| course.yaw_error <= YAW_TOLERANCE_RAD);
         course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
         course.activity = last_half.activity.rms();
         Ok(course)
@@ -162,7 +162,7 @@ impl Course {
             self.settled = Some(next);
         }
         self.yaw_error = tick.state.heading_error(&tick.reference.heading);
-        if self.yaw_error > NEAR_YAW {
+        if self.yaw_error > YAW_TOLERANCE_RAD {
             self.turned = Some(next);
         }
     }

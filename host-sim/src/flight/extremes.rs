@@ -2,7 +2,7 @@
 //!
 //! "Steady state" is the last quarter of a flight, its last tick at least: of the paper's 40 s, the last 10. A flight
 //! has *reached* its reference once it is near it and stays near it until the end: in position within
-//! [`NEAR_POSITION`], in attitude, heading included, within [`NEAR_MRP`]. Where a known path goes beyond
+//! [`POSITION_TOLERANCE_M`], in attitude, heading included, within [`MRP_TOLERANCE`]. Where a known path goes beyond
 //! `[reference_bounds]` its heading may lag, so there the tilt alone counts. A vehicle that stands on the ground does
 //! not fly: it is away from its reference wherever that is.
 //!
@@ -15,16 +15,16 @@ use controller_core::reference::{Reference, ReferenceBounds};
 use nalgebra::Vector3;
 use scenario::Scenario;
 
-/// How near to its reference's position a vehicle must stay, m: less than a quadrotor's own size.
-pub const NEAR_POSITION: f64 = 0.2;
+/// How near to its reference's position a vehicle must stay: less than a quadrotor's own size.
+pub const POSITION_TOLERANCE_M: f64 = 0.2;
 /// How near to the desired attitude, norm of the modified Rodrigues parameters: 11 degrees.
-pub const NEAR_MRP: f64 = 0.05;
-/// How near to the reference's velocity a flight must start to be there, m/s.
-const NEAR_VELOCITY: f64 = 0.2;
-/// For how long a flight must be near before it is there, us: a vehicle that passes by is not.
-const THERE_FOR: u64 = 1_000_000;
+pub const MRP_TOLERANCE: f64 = 0.05;
+/// How near to the reference's velocity a flight must start to be there.
+const VELOCITY_TOLERANCE_M_PER_S: f64 = 0.2;
+/// For how long a flight must be near before it is there: a vehicle that passes by is not.
+const ARRIVAL_DEBOUNCE_US: u64 = 1_000_000;
 /// Extremes of no value at all.
-const NOTHING_YET: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+const EMPTY_EXTREMES: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// The extremes of a flight, gathered tick by tick.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,7 +89,7 @@ impl FlightExtremes {
             last_sign: None,
             start_height: None,
             ticks: 0,
-            thrust: NOTHING_YET,
+            thrust: EMPTY_EXTREMES,
             torque: [0.0; 3],
             rotors: Vec::new(),
             filter: 0.0,
@@ -113,7 +113,7 @@ impl FlightExtremes {
         }
         self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
         // While the first command is on its way there is none.
-        self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), NOTHING_YET);
+        self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), EMPTY_EXTREMES);
         for (extremes, thrust) in self.rotors.iter_mut().zip(&tick.rotor_thrusts) {
             let thrust = f64::from(*thrust);
             *extremes = (extremes.0.min(thrust), extremes.1.max(thrust));
@@ -125,15 +125,15 @@ impl FlightExtremes {
         self.height_lost = self.height_lost.max(*self.start_height.get_or_insert(height) - height);
         let position_error = (tick.state.position - tick.reference.position.map(f64::from)).norm();
         let mrp_error = f64::from(diagnostics.mrp.norm());
-        if position_error > NEAR_POSITION || tick.surroundings.standing {
+        if position_error > POSITION_TOLERANCE_M || tick.surroundings.standing {
             self.away_until_us.0 = tick.time_us + self.period_us;
         }
-        if claimed_error(&diagnostics.mrp, &tick.reference, &self.bounds) > NEAR_MRP {
+        if claimed_error(&diagnostics.mrp, &tick.reference, &self.bounds) > MRP_TOLERANCE {
             self.away_until_us.1 = tick.time_us + self.period_us;
         }
         let velocity_error = (tick.state.velocity - tick.reference.velocity.map(f64::from)).norm();
-        self.there |= self.ticks == 1 && self.away_until_us == (0, 0) && velocity_error <= NEAR_VELOCITY;
-        self.there |= tick.time_us >= self.away_until_us.0.max(self.away_until_us.1) + THERE_FOR;
+        self.there |= self.ticks == 1 && self.away_until_us == (0, 0) && velocity_error <= VELOCITY_TOLERANCE_M_PER_S;
+        self.there |= tick.time_us >= self.away_until_us.0.max(self.away_until_us.1) + ARRIVAL_DEBOUNCE_US;
         if self.there && self.strayed.is_none_or(|(greatest, _)| position_error > greatest) {
             self.strayed = Some((position_error, tick.time_us as f64 / 1e6));
         }

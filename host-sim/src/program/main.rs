@@ -39,8 +39,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use terminal::{BAD_INPUT, complain, not_a_campaigns, print, print_text, same_file, status, text_of, watch};
 
-/// The largest log without `--large-log`, bytes.
-const LARGE_LOG: u64 = 1_000_000_000;
+/// The largest log without `--large-log`.
+const LARGE_LOG_BYTES: u64 = 1_000_000_000;
 
 fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
@@ -232,7 +232,7 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
 fn permit(scenario: &Scenario, named: &str, duration: &str, allowed: bool) -> Result<(), String> {
     let rows = scenario.timing.ticks;
     let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));
-    if bytes <= LARGE_LOG {
+    if bytes <= LARGE_LOG_BYTES {
         return Ok(());
     }
     let size = format!("{named}log.csv will take about {} GB, {rows} rows", short(bytes as f64 / 1e9));

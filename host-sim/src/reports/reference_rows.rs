@@ -8,7 +8,7 @@ use scenario::Scenario;
 use std::io::{self, Write};
 
 /// The most rows a second: a reference's time is in whole microseconds.
-pub const GREATEST_RATE: f64 = 1000.0;
+pub const ROW_RATE_MAX_HZ: f64 = 1000.0;
 
 /// How many times slower than the reference rows are that a vehicle follows to within 2 cm.
 pub const FOLLOWED_WITHIN_2_CM_FACTOR: f64 = 1.1;

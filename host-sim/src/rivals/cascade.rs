@@ -72,16 +72,16 @@ pub const GAIN_PACES: [Pace; 18] = [
     Pace::Kept,
 ];
 
-/// Greatest commanded tilt, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
+/// Greatest commanded tilt; greatest body rates: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
 /// `MC_YAWRATE_MAX`.
-const TILT_MAX: f64 = 0.785;
-const RATES_MAX: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
-/// Level of the rate's integral, rad/s^2.
-const RATE_INTEGRAL_MAX: f64 = 20.0;
-/// Error of a rate beyond which its integral takes nothing in, rad/s: 400 degrees/s.
-const RATE_ERROR_MAX: f64 = 6.98;
+const TILT_MAX_RAD: f64 = 0.785;
+const RATES_MAX_RAD_PER_S: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
+/// Level of the rate's integral.
+const RATE_INTEGRAL_MAX_RAD_PER_S2: f64 = 20.0;
+/// Error of a rate beyond which its integral takes nothing in: 400 degrees/s.
+const RATE_ERROR_MAX_RAD_PER_S: f64 = 6.98;
 /// Share of the thrust kept for moving across, however hard the vertical asks.
-const THRUST_KEPT: f64 = 0.3;
+const LEVEL_THRUST_SHARE: f64 = 0.3;
 
 /// The law and its memory.
 #[derive(Debug, Clone)]
@@ -146,11 +146,11 @@ impl Cascade {
         let greatest = self.model.thrust_max / self.model.mass;
         let vertical = self.model.gravity + commanded.z;
         let wanted_across = commanded.xy().norm();
-        let kept = wanted_across.min(THRUST_KEPT * greatest);
+        let kept = wanted_across.min(LEVEL_THRUST_SHARE * greatest);
         let up = vertical.clamp(0.0, (greatest * greatest - kept * kept).sqrt());
         let room = (greatest * greatest - up * up).max(0.0).sqrt();
         // The tilt counts from gravity, as if the vertical were not accelerated.
-        let produced = limited(commanded.xy(), room.min(TILT_MAX.tan() * up.max(self.model.gravity)));
+        let produced = limited(commanded.xy(), room.min(TILT_MAX_RAD.tan() * up.max(self.model.gravity)));
 
         let period = self.model.period;
         let lost = (commanded.xy() - produced) * (2.0 / self.k_v.x);
@@ -190,17 +190,17 @@ impl Rival for Cascade {
         let needed = target.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
         let reference = Frame::new(&needed, &target.heading, HeadingRule::Horizontal);
         let forward = state.attitude.inverse() * (reference.attitude * reference.rate);
-        let commanded = (rates + forward).zip_map(&RATES_MAX, |rate, limit| rate.clamp(-limit, limit));
+        let commanded = (rates + forward).zip_map(&RATES_MAX_RAD_PER_S, |rate, limit| rate.clamp(-limit, limit));
 
         let error = commanded - state.rate;
         let (_, acceleration) = self.rate.take(&state.rate);
         let turning = self.k_w.component_mul(&error) + self.rate_integral
             - Vector3::new(acceleration.x, acceleration.y, 0.0) * self.k_e;
         if !self.saturated {
-            let share = error.map(|error| (1.0 - (error / RATE_ERROR_MAX).powi(2)).max(0.0));
+            let share = error.map(|error| (1.0 - (error / RATE_ERROR_MAX_RAD_PER_S).powi(2)).max(0.0));
             let taken = self.k_j.component_mul(&error).component_mul(&share) * self.model.period;
-            self.rate_integral =
-                (self.rate_integral + taken).map(|part| part.clamp(-RATE_INTEGRAL_MAX, RATE_INTEGRAL_MAX));
+            self.rate_integral = (self.rate_integral + taken)
+                .map(|part| part.clamp(-RATE_INTEGRAL_MAX_RAD_PER_S2, RATE_INTEGRAL_MAX_RAD_PER_S2));
         }
         let inertia = &self.model.inertia;
         Commanded {

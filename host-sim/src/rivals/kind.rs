@@ -13,8 +13,8 @@ use super::rival::Rival;
 use super::start::{Pace, Start};
 use scenario::Scenario;
 
-/// About x and y, of a vehicle that the starts serve, kg m^2: the Hummingbird's.
-const START_INERTIA: f64 = 3.665e-3;
+/// About x and y, of a vehicle that the starts serve: the Hummingbird's.
+const START_INERTIA_KG_M2: f64 = 3.665e-3;
 
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,7 +102,7 @@ impl RivalKind {
             Self::Continuous => (&continuous::START_GAINS, &continuous::GAIN_PACES),
             Self::Memoryless => (&memoryless::START_GAINS, &memoryless::GAIN_PACES),
         };
-        Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA }
+        Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA_KG_M2 }
     }
 
     /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; `None` if there are

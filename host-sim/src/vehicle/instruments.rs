@@ -28,9 +28,9 @@ use std::collections::VecDeque;
 /// Of the instruments.
 pub const SAMPLE_PERIOD_US: u64 = 1_000;
 
-/// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them, Hz.
-const GYRO_BANDWIDTH: f64 = 116.0;
-const ACCELEROMETER_BANDWIDTH: f64 = 145.0;
+/// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them.
+const GYRO_BANDWIDTH_HZ: f64 = 116.0;
+const ACCELEROMETER_BANDWIDTH_HZ: f64 = 145.0;
 
 /// An IMU's input, before filters and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +56,7 @@ fn butterworth(bandwidth: f64) -> LowPass {
 /// The gyro's own filter, sampled at [`IMU_RATE_HZ`].
 #[must_use]
 pub fn gyro_filter() -> LowPass {
-    butterworth(GYRO_BANDWIDTH)
+    butterworth(GYRO_BANDWIDTH_HZ)
 }
 
 impl OwnFilter {
@@ -113,7 +113,7 @@ impl Instruments {
             gyro_bias,
             accelerometer_bias,
             velocity,
-            filters: Some([gyro_filter(), butterworth(ACCELEROMETER_BANDWIDTH)].map(OwnFilter::new)),
+            filters: Some([gyro_filter(), butterworth(ACCELEROMETER_BANDWIDTH_HZ)].map(OwnFilter::new)),
             late: VecDeque::new(),
         }
     }

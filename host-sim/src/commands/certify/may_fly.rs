@@ -14,8 +14,8 @@ use scenario::Scenario;
 use scenario::along::name;
 use scenario::judge::judge;
 
-/// The circle's, m.
-pub const CIRCLE_RADIUS: f64 = 3.0;
+/// Of the circle whose greatest speed is searched.
+pub const CIRCLE_RADIUS_M: f64 = 3.0;
 
 /// The greatest speed (m/s), acceleration (m/s^2) and jerk (m/s^3) that are searched.
 const SEARCH_MAX: [f64; 3] = [100.0, 1_000.0, 10_000.0];
@@ -46,7 +46,7 @@ pub fn circle(scenario: &Scenario) -> Option<Circle> {
 
 /// A circle's motion where it goes along y.
 fn turning(speed: f64) -> PathMotion {
-    let turn = speed / CIRCLE_RADIUS;
+    let turn = speed / CIRCLE_RADIUS_M;
     PathMotion {
         velocity: [0.0, speed, 0.0],
         acceleration: [-speed * turn, 0.0, 0.0],
@@ -57,7 +57,7 @@ fn turning(speed: f64) -> PathMotion {
 }
 
 fn bounds(speed: f64) -> ReferenceBounds {
-    let turn = speed / CIRCLE_RADIUS;
+    let turn = speed / CIRCLE_RADIUS_M;
     ReferenceBounds {
         horizontal_speed: speed as f32,
         horizontal_acceleration: (speed * turn) as f32,
@@ -92,16 +92,16 @@ pub fn lines(scenario: &Scenario) -> String {
     let judge = judge::<f64>(configuration, scenario.force_kept);
     let beside = judge.as_ref().map_or(String::new(), |judge| straight(judge, scenario.force_kept));
     let Some(Circle { speed, limit }) = circle(scenario) else {
-        return format!("{beside}{CIRCLE_RADIUS} m circle: none certifies, not even at rest\n");
+        return format!("{beside}{CIRCLE_RADIUS_M} m circle: none certifies, not even at rest\n");
     };
     let thrust = f64::from(configuration.limits().thrust_max);
     let rotors = configuration.rotors().map_or(f64::INFINITY, |rotors| f64::from(rotors.thrust_together().1));
     let held = thrust.min(rotors) / f64::from(configuration.vehicle().mass);
-    let physical = (CIRCLE_RADIUS * (held * held - gravity * gravity).sqrt()).sqrt();
-    let acceleration = speed * speed / CIRCLE_RADIUS;
+    let physical = (CIRCLE_RADIUS_M * (held * held - gravity * gravity).sqrt()).sqrt();
+    let acceleration = speed * speed / CIRCLE_RADIUS_M;
     let limit = limit.map_or(String::new(), |limit| format!("; {limit} limits it"));
     format!(
-        "{beside}{CIRCLE_RADIUS} m circle: {} m/s, {} m/s^2 ({:.2} g), {:.0} % of what all thrust holds{limit}\n",
+        "{beside}{CIRCLE_RADIUS_M} m circle: {} m/s, {} m/s^2 ({:.2} g), {:.0} % of what all thrust holds{limit}\n",
         short(speed),
         short(acceleration),
         acceleration / gravity,

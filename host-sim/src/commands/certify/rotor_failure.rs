@@ -1,7 +1,7 @@
 //! What becomes of a vehicle when one of its rotors is gone: flights of the model, and what they lack where it is lost.
 //!
 //! The model, with the file's `[drag]` and nothing else of what is really there, hovers; a rotor goes; the reference
-//! stays. After [`WATCHED_TIME`] the vehicle is near its place, or lost. One that then turns faster and faster is
+//! stays. After [`WATCHED_S`] the vehicle is near its place, or lost. One that then turns faster and faster is
 //! flown on until it is lost, to say by when it must have landed. Beside the flights stand the relaxed hover that the
 //! vehicle comes to, and the sampled loop about it ([`scenario::rotor_loss`]). None of this decides whether it may fly.
 
@@ -19,16 +19,16 @@ use scenario::rotor_loss::relaxed_hover::{NoHover, RelaxedHover};
 use scenario::rotor_loss::{PLACE_HELD_DISTANCE_M, SOFT_LANDING_SPEED_M_PER_S, WithoutARotor, turning_loop};
 use scenario::sampled_loop::Timing;
 
-/// When the rotor goes, and for how long the vehicle is watched then, s; and how long if it turns ever faster.
-const FAILURE_TIME: f64 = 1.0;
-const WATCHED_TIME: f64 = 10.0;
-const LONGEST_WATCHED: f64 = 30.0;
+/// When the rotor goes, and for how long the vehicle is watched then; and how long if it turns ever faster.
+const FAILURE_S: f64 = 1.0;
+const WATCHED_S: f64 = 10.0;
+const WATCHED_MAX_S: f64 = 30.0;
 
-/// A vehicle that moves faster after that, m/s, is lost, as one is that is farther from its place than [`PLACE_HELD_DISTANCE_M`].
-const GREATEST_SPEED: f64 = 1.0;
+/// A vehicle that moves faster after that is lost, as one is that is farther from its place than [`PLACE_HELD_DISTANCE_M`].
+const SPEED_MAX_M_PER_S: f64 = 1.0;
 
-/// Up to here a vehicle keeps its heading, rad/s.
-const LEAST_TURNING: f64 = 0.5;
+/// Up to here a vehicle keeps its heading.
+const HEADING_KEPT_RATE_RAD_PER_S: f64 = 0.5;
 
 /// A flight, from the failure on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ struct FlightWithoutRotor {
     farthest: f64,
     /// From higher than this above the ground, m, it never comes down faster than a soft landing.
     lands_from: f64,
-    /// Body rates after [`WATCHED_TIME`], rad/s.
+    /// Body rates after [`WATCHED_S`], rad/s.
     turning: Vector3<f64>,
     /// When the vehicle is lost, s.
     lost: Option<f64>,
@@ -79,9 +79,9 @@ impl Loss {
         Ok(Self { flown, hover, radius })
     }
 
-    /// Whether it is there after [`WATCHED_TIME`].
+    /// Whether it is there after [`WATCHED_S`].
     fn is_survived(&self) -> bool {
-        self.flown.lost.is_none_or(|lost| lost >= WATCHED_TIME)
+        self.flown.lost.is_none_or(|lost| lost >= WATCHED_S)
     }
 
     /// A row of the table, without the rotor's name.
@@ -92,8 +92,11 @@ impl Loss {
         }
         let from = if *lands_from > 0.0 { format!("{} m", rounded(*lands_from)) } else { "any height".to_owned() };
         let rate = turning.norm();
-        let turns =
-            if rate < LEAST_TURNING { "keeps its heading".to_owned() } else { format!("{} rad/s", rounded(rate)) };
+        let turns = if rate < HEADING_KEPT_RATE_RAD_PER_S {
+            "keeps its heading".to_owned()
+        } else {
+            format!("{} rad/s", rounded(rate))
+        };
         [format!("{} m", rounded(*height_lost)), format!("{} m", rounded(*farthest)), from, turns]
     }
 
@@ -101,7 +104,7 @@ impl Loss {
     fn lacks(&self, has_drag: bool) -> Option<String> {
         let lost = self.flown.lost?;
         let drag = if has_drag { "" } else { "; give [drag]: the air may slow it" };
-        let land = if lost < WATCHED_TIME { String::new() } else { format!("; land within {} s", lost.floor()) };
+        let land = if lost < WATCHED_S { String::new() } else { format!("; land within {} s", lost.floor()) };
         Some(match (&self.hover, self.radius) {
             (Err(NoHover::TooLittleThrust(share)), _) => {
                 format!("too little thrust: two rotors hold {share:.2} of the weight")
@@ -197,15 +200,15 @@ fn flown(
     rotor: usize,
 ) -> Result<(FlightWithoutRotor, Flight), ParameterError> {
     let mut model = hover(scenario, Vector3::zeros(), 0.0)?;
-    let failure = Failure { rotor, time: FAILURE_TIME, thrust_left: 0.0 };
+    let failure = Failure { rotor, time: FAILURE_S, thrust_left: 0.0 };
     model.reality = Reality { drag: scenario.reality.drag, failure: Some(failure), ..Reality::default() };
     let mut flight = Flight::certified(&model, certified)?;
     let period = scenario.timing.period();
     let mut flown =
         FlightWithoutRotor { height_lost: 0.0, farthest: 0.0, lands_from: 0.0, turning: Vector3::zeros(), lost: None };
     let (mut last, mut left) = (model.initial, None);
-    for number in 0..((FAILURE_TIME + WATCHED_TIME) / period) as u64 {
-        let time = number as f64 * period - FAILURE_TIME;
+    for number in 0..((FAILURE_S + WATCHED_S) / period) as u64 {
+        let time = number as f64 * period - FAILURE_S;
         let Ok(tick) = flight.brief_tick() else {
             flown.lost = Some(left.unwrap_or(time));
             return Ok((flown, flight));
@@ -222,23 +225,23 @@ fn flown(
         left = left.or((last.position.norm() > PLACE_HELD_DISTANCE_M).then_some(time));
     }
     flown.turning = last.angular_velocity;
-    let is_there = last.position.norm() < PLACE_HELD_DISTANCE_M && last.velocity.norm() < GREATEST_SPEED;
-    flown.lost = if is_there { None } else { left.or(Some(WATCHED_TIME - period)) };
+    let is_there = last.position.norm() < PLACE_HELD_DISTANCE_M && last.velocity.norm() < SPEED_MAX_M_PER_S;
+    flown.lost = if is_there { None } else { left.or(Some(WATCHED_S - period)) };
     Ok((flown, flight))
 }
 
-/// How long after the failure a flight that was watched is lost, s, if it is within [`LONGEST_WATCHED`].
+/// How long after the failure a flight that was watched is lost, s, if it is within [`WATCHED_MAX_S`].
 fn lost_after(flight: &mut Flight, period: f64) -> Option<f64> {
-    let ticks = ((LONGEST_WATCHED - WATCHED_TIME) / period) as u64;
+    let ticks = ((WATCHED_MAX_S - WATCHED_S) / period) as u64;
     let is_lost = |flight: &mut Flight| {
         flight.brief_tick().map_or(true, |tick| tick.state.position.norm() > PLACE_HELD_DISTANCE_M)
     };
-    (0..ticks).find(|_| is_lost(flight)).map(|tick| WATCHED_TIME + tick as f64 * period)
+    (0..ticks).find(|_| is_lost(flight)).map(|tick| WATCHED_S + tick as f64 * period)
 }
 
 /// The axis that a body turns about, the end that is up; the law's if it hardly turns.
 fn upwards(turning: &Vector3<f64>, law: &WithoutARotor) -> Vector3<f64> {
-    turning.try_normalize(LEAST_TURNING).map_or_else(|| law.axis(), |axis| axis * axis.z.signum())
+    turning.try_normalize(HEADING_KEPT_RATE_RAD_PER_S).map_or_else(|| law.axis(), |axis| axis * axis.z.signum())
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@
 //! be about this circle, one whose vehicle may fly no circle, and one whose `duration` is too short for it. What is
 //! added is TOML below the file's text, so that the report shows it, and it can be copied and changed.
 
-use crate::commands::certify::may_fly::{CIRCLE_RADIUS, circle};
-use crate::studies::campaign::draw::DRAG_PER_MASS;
+use crate::commands::certify::may_fly::{CIRCLE_RADIUS_M, circle};
+use crate::studies::campaign::draw::DRAG_PER_MASS_PER_S;
 use scenario::campaign::default_wind;
 use scenario::{Scenario, ScenarioError};
 use std::f64::consts::TAU;
@@ -17,21 +17,21 @@ use toml_edit::{DocumentMut, value};
 
 /// Of the greatest speed at which the circle certifies.
 const SPEED_SHARE: f64 = 0.6;
-/// The greatest speed, m/s: faster is hard to watch.
-const SPEED_MAX: f64 = 4.0;
+/// The greatest speed: faster is hard to watch.
+const SPEED_MAX_M_PER_S: f64 = 4.0;
 /// Of the wind that a campaign blows by default.
 const GUST_SHARE: f64 = 0.6;
 
-/// Where the flight begins, and the circle's height, m.
-const START_HEIGHT: f64 = 10.0;
-/// Until the vehicle has caught up with the circle, s, at the latest.
-const GUST_START: f64 = 8.0;
-/// How long the gust takes to rise and fall, s.
-const GUST_DURATION: f64 = 3.0;
-/// Between the gust's end and the flight's, s, at least.
-const CALM_AFTER_GUST: f64 = 5.0;
-/// The longest flight, s; a circle that takes longer is not closed.
-const FLIGHT_MAX: f64 = 60.0;
+/// Where the flight begins, and the circle's height.
+const START_HEIGHT_M: f64 = 10.0;
+/// Until the vehicle has caught up with the circle, at the latest.
+const GUST_START_S: f64 = 8.0;
+/// How long the gust takes to rise and fall.
+const GUST_DURATION_S: f64 = 3.0;
+/// Between the gust's end and the flight's, at least.
+const CALM_AFTER_GUST_S: f64 = 5.0;
+/// The longest flight; a circle that takes longer is not closed.
+const FLIGHT_MAX_S: f64 = 60.0;
 
 /// A flight, and the text of the file that would describe it.
 pub struct FlownFile {
@@ -63,15 +63,15 @@ fn with_task(text: &str, scenario: &Scenario) -> Option<(String, String)> {
     if has("initial") || has("reference") || scenario.configuration.paper().is_some() {
         return None;
     }
-    let speed = (SPEED_SHARE * circle(scenario)?.speed).min(SPEED_MAX);
+    let speed = (SPEED_SHARE * circle(scenario)?.speed).min(SPEED_MAX_M_PER_S);
     // So that nobody reads a dozen digits.
-    let turning = (1e3 * speed / CIRCLE_RADIUS).round() * 1e-3;
+    let turning = (1e3 * speed / CIRCLE_RADIUS_M).round() * 1e-3;
     if turning <= 0.0 {
         return None;
     }
-    let height = START_HEIGHT + scenario.reality.ground.map_or(0.0, |ground| ground.height);
+    let height = START_HEIGHT_M + scenario.reality.ground.map_or(0.0, |ground| ground.height);
     let lap = TAU / turning;
-    let duration = (GUST_START + lap.max(GUST_DURATION + CALM_AFTER_GUST)).ceil().min(FLIGHT_MAX);
+    let duration = (GUST_START_S + lap.max(GUST_DURATION_S + CALM_AFTER_GUST_S)).ceil().min(FLIGHT_MAX_S);
     let mut task = format!(
         "
 # NOT IN THE FILE: a flight to look at, added where a file has neither [initial] nor [reference].
@@ -82,25 +82,25 @@ euler_deg = [179.0, 0.0, 0.0]         # upside down
 [reference]
 kind = \"harmonic\"                     # a circle
 center = [0.0, 0.0, {height:?}]             # m
-amplitude = [{CIRCLE_RADIUS:?}, {CIRCLE_RADIUS:?}, 0.0]           # m
+amplitude = [{CIRCLE_RADIUS_M:?}, {CIRCLE_RADIUS_M:?}, 0.0]           # m
 frequency = [{turning}, {turning}, 0.0]       # rad/s
 phase = [0.0, -1.570796326794897, 0.0]
 "
     );
-    let mut said = format!("upside down, then a circle of {CIRCLE_RADIUS} m at {:.2} m/s", turning * CIRCLE_RADIUS);
+    let mut said = format!("upside down, then a circle of {CIRCLE_RADIUS_M} m at {:.2} m/s", turning * CIRCLE_RADIUS_M);
     let gust = (10.0 * GUST_SHARE * default_wind(&scenario.configuration)).round() * 0.1;
     if gust > 0.0 && !["wind", "disturbance", "battery", "failure"].into_iter().any(has) {
-        said += &format!(", a gust of {gust:.1} m/s at {GUST_START} s");
+        said += &format!(", a gust of {gust:.1} m/s at {GUST_START_S} s");
         // A section [drag] would change the constants of the law: without one the gust is the force that it makes.
         task += &if has("drag") {
             format!(
-                "\n[wind]\ngust = {{ kind = \"pulse\", start = {GUST_START:?}, duration = {GUST_DURATION:?}, \
+                "\n[wind]\ngust = {{ kind = \"pulse\", start = {GUST_START_S:?}, duration = {GUST_DURATION_S:?}, \
                  velocity = [{gust:.1}, 0.0, 0.0] }}  # s, m/s\n"
             )
         } else {
-            let push = DRAG_PER_MASS * gust;
+            let push = DRAG_PER_MASS_PER_S * gust;
             format!(
-                "\n[disturbance]\nacceleration = [{push:.2}, 0.0, 0.0]     # m/s^2: wind of {gust:.1} m/s\nstart = {GUST_START:?}                           # s\n"
+                "\n[disturbance]\nacceleration = [{push:.2}, 0.0, 0.0]     # m/s^2: wind of {gust:.1} m/s\nstart = {GUST_START_S:?}                           # s\n"
             )
         };
     }

@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 /// it.
 const NORMAL_QUANTILE: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
-const ONE_SIDED: f64 = 3.090;
+const ONE_SIDED_QUANTILE: f64 = 3.090;
 
 /// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two
 /// say something of the same, it does not show which of them errs.
@@ -87,7 +87,7 @@ fn spread(covariance: &SMatrix<f64, 5, 5>, row: &SVector<f64, 5>) -> f64 {
 fn greatest(freedom: usize, parts: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
     freedom as f64
-        * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3)
+        * (1.0 - part + ONE_SIDED_QUANTILE * part.sqrt()).powi(3)
         * (student_t::consistent(parts) / NORMAL_QUANTILE).powi(2)
 }
 

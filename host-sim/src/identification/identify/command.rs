@@ -6,7 +6,7 @@ use super::output::{Values, rewritten};
 use super::quantities::{Quantities, Quantity};
 use super::{foreign, identify, margins, observability, ulog};
 use crate::identification::ulog::MAGIC;
-use crate::identification::ulog::command::LONGEST_LOG;
+use crate::identification::ulog::command::LOG_MAX_BYTES;
 use crate::output::table::{aligned, short};
 use crate::output::whole_file::WholeFile;
 use controller_core::allocation::Rotors;
@@ -102,8 +102,8 @@ fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path, Who
 
 /// A log of either kind; a ULog is known by its first bytes.
 fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, Refused> {
-    let bytes =
-        scenario::text::bytes(path, LONGEST_LOG).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
+    let bytes = scenario::text::bytes(path, LOG_MAX_BYTES)
+        .map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
     let log = if bytes.starts_with(&MAGIC) {
         ulog::read(&bytes, rotors, curve)
     } else if let Some(what) = foreign::recognised(&bytes) {

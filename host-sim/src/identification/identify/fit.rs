@@ -22,8 +22,8 @@
 //! updates leaves artefacts from tick to tick.
 
 use super::model::{
-    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns,
-    WHOLE_DELAY, prior,
+    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG_INDEX, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns,
+    WHOLE_DELAY_INDEX, prior,
 };
 use super::noise::{Noise, Whitening};
 use super::student_t::PART_COUNT_RANGE;
@@ -50,7 +50,8 @@ const CONVERGED_STEP_SIGMAS: f64 = 0.1;
 
 /// Which uncertainties come out too small even so, and by what factor: errors over uncertainties of 300 trials of each
 /// of two vehicles (the example `identify_coverage`), root mean square.
-pub const UNCERTAINTY_FACTORS: [(usize, f64); 3] = [(WHOLE_DELAY, 1.4), (SQUARED_LAG, 1.2), (DRAG_INDEX, 1.3)];
+pub const UNCERTAINTY_FACTORS: [(usize, f64); 3] =
+    [(WHOLE_DELAY_INDEX, 1.4), (SQUARED_LAG_INDEX, 1.2), (DRAG_INDEX, 1.3)];
 
 /// Whitened series, a channel each.
 type White = Vec<Vec<f64>>;
@@ -109,7 +110,8 @@ pub fn fit(model: &IdentifiedModel, reference: &IdentifiedModel, period: f64) ->
                 let moved = |by: f64| {
                     let mut moved = unknowns;
                     moved[unknown] += by;
-                    let late = [WHOLE_DELAY, SQUARED_LAG].contains(&unknown).then(|| model.impulses(&moved));
+                    let late =
+                        [WHOLE_DELAY_INDEX, SQUARED_LAG_INDEX].contains(&unknown).then(|| model.impulses(&moved));
                     let flown = seen(model.residuals(&moved, late.as_ref().unwrap_or(&impulses), &sensed_motions));
                     (flown, seen(reference.residuals(&moved, &hovering, &[])))
                 };

@@ -36,9 +36,9 @@ pub const STRENGTH_INDEX: usize = 0;
 /// About x; y and z follow.
 pub const INERTIA_STRENGTH_INDEX: usize = 1;
 /// The whole delay, with that of the measured rates.
-pub const WHOLE_DELAY: usize = 4;
+pub const WHOLE_DELAY_INDEX: usize = 4;
 /// The squared lag.
-pub const SQUARED_LAG: usize = 5;
+pub const SQUARED_LAG_INDEX: usize = 5;
 /// Along x; y follows.
 pub const CENTRE_INDEX: usize = 6;
 /// Along x; y and z follow.
@@ -58,8 +58,8 @@ pub const CHANNEL_COUNT: usize = 6;
 /// Six series.
 pub type Channels = [Vec<f64>; CHANNEL_COUNT];
 
-/// At the start of a log the rotors' speeds are unknown, s.
-const UNKNOWN_START: f64 = 0.5;
+/// At the start of a log the rotors' speeds are unknown.
+const UNKNOWN_START_S: f64 = 0.5;
 
 /// A log and the model that is fitted to it.
 #[derive(Debug, Clone)]
@@ -99,7 +99,7 @@ impl<'a> IdentifiedModel<'a> {
             inertia: vehicle.inertia.map(f64::from),
             gravity: vehicle.gravity.into(),
             layout: Layout::of_rotors(rotors),
-            first: (UNKNOWN_START / log.period).round() as usize,
+            first: (UNKNOWN_START_S / log.period).round() as usize,
         })
     }
 
@@ -112,7 +112,7 @@ impl<'a> IdentifiedModel<'a> {
     /// The rotors' impulses for these unknowns.
     #[must_use]
     pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {
-        self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
+        self.commands.impulses(unknowns[WHOLE_DELAY_INDEX], unknowns[SQUARED_LAG_INDEX])
     }
 
     /// The low-passes of the log's body rates.

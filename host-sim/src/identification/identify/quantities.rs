@@ -14,7 +14,7 @@
 use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
 use super::fit::Fit;
-use super::model::{CENTRE_INDEX, DRAG_INDEX, SQUARED_LAG, STRENGTH_INDEX, WHOLE_DELAY};
+use super::model::{CENTRE_INDEX, DRAG_INDEX, SQUARED_LAG_INDEX, STRENGTH_INDEX, WHOLE_DELAY_INDEX};
 use super::student_t;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
@@ -104,9 +104,9 @@ impl Quantities {
             Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]), coverage)
         };
         let strength = direct(STRENGTH_INDEX);
-        let whole = direct(WHOLE_DELAY);
+        let whole = direct(WHOLE_DELAY_INDEX);
         let whole_delay = Quantity::new(whole.value - late, whole.uncertainty, coverage);
-        let lag = lag(&direct(SQUARED_LAG), &whole, coverage);
+        let lag = lag(&direct(SQUARED_LAG_INDEX), &whole, coverage);
         let drag = |axis: usize| {
             let of_mass = direct(DRAG_INDEX + axis);
             let relative = mass.uncertainty / mass.value * of_mass.value;

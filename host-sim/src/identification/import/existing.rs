@@ -6,7 +6,7 @@ use toml_edit::{DocumentMut, Item};
 /// The most changes that an error lists.
 const LISTED_MAX: usize = 6;
 /// The longest value that an error shows, characters.
-const SHOWN_MAX: usize = 60;
+const VALUE_LETTERS_MAX: usize = 60;
 
 /// Why `new` must not take the place of `existing` unasked: the numbers that would change; none if both are the same.
 #[must_use]
@@ -58,10 +58,10 @@ fn flatten(path: &str, item: &Item, values: &mut BTreeMap<String, String>) {
 }
 
 fn quoted_value(value: &str) -> String {
-    if value.chars().count() <= SHOWN_MAX {
+    if value.chars().count() <= VALUE_LETTERS_MAX {
         return value.to_owned();
     }
-    value.chars().take(SHOWN_MAX).chain("…".chars()).collect()
+    value.chars().take(VALUE_LETTERS_MAX).chain("…".chars()).collect()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 const BRACKET_DEPTH_MAX: usize = 64;
 /// How many values names may stand for, all together: lists of lists by name would grow without end.
-const MOST_REPEATED: usize = 10_000;
+const REPEATED_VALUES_MAX: usize = 10_000;
 
 /// What a file assigns at its outermost level, in its order: each name with its value, or with what of it cannot be
 /// worked out.
@@ -223,9 +223,9 @@ impl<'a> Reader<'a> {
         }
         if let Some(value) = self.names.get(name) {
             self.repeated += value.size();
-            return match self.repeated <= MOST_REPEATED {
+            return match self.repeated <= REPEATED_VALUES_MAX {
                 true => Ok(value.clone()),
-                false => self.refused(&format!("names stand for more than {MOST_REPEATED} values")),
+                false => self.refused(&format!("names stand for more than {REPEATED_VALUES_MAX} values")),
             };
         }
         let function = name.rsplit('.').next().unwrap_or_default();

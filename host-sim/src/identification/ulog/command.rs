@@ -6,8 +6,8 @@ use crate::output::whole_file::WholeFile;
 use std::io::Write;
 use std::path::Path;
 
-/// The longest log, bytes: an hour of ticks is 50 MB.
-pub const LONGEST_LOG: u64 = 1 << 30;
+/// The longest log: an hour of ticks is 50 MB.
+pub const LOG_MAX_BYTES: u64 = 1 << 30;
 
 /// Reads `from`, writes `to`, and says in a line what was written.
 ///
@@ -15,8 +15,8 @@ pub const LONGEST_LOG: u64 = 1 << 30;
 /// Names the file, and what is wrong; then nothing is written.
 pub fn run(from: &Path, to: &Path) -> Result<String, String> {
     let in_file = |path: &Path, what: String| format!("{}: {what}", path.display());
-    let bytes =
-        scenario::text::bytes(from, LONGEST_LOG).map_err(|error| in_file(from, format!("cannot be read: {error}")))?;
+    let bytes = scenario::text::bytes(from, LOG_MAX_BYTES)
+        .map_err(|error| in_file(from, format!("cannot be read: {error}")))?;
     let log = Ulog::read(&bytes, &[TICK_TOPIC]).map_err(|what| in_file(from, what))?;
     let file = written(&log).map_err(|what| in_file(from, format!("{what}{}", log.damage)))?;
     let stored = WholeFile::create(to).and_then(|mut out| out.write_all(&file).and_then(|()| out.finish()));

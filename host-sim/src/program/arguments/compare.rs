@@ -54,7 +54,7 @@ fn rivals_names() -> PossibleValuesParser {
 /// The most random flights that are held in memory.
 const FLIGHTS_MAX: u64 = 100_000;
 /// Candidates of each generation of a search that --tune asks for.
-const TUNE_POPULATION: usize = 32;
+const TUNE_POPULATION_SIZE: usize = 32;
 
 /// Which gains of the rivals fly.
 pub enum GainsWanted {
@@ -91,7 +91,7 @@ impl CompareArguments {
         };
         Ok(match (&self.gains, self.tune) {
             (Some(file), _) => GainsWanted::Of(file.clone()),
-            (None, Some(generations)) => GainsWanted::Searched(effort(generations, TUNE_POPULATION)),
+            (None, Some(generations)) => GainsWanted::Searched(effort(generations, TUNE_POPULATION_SIZE)),
             (None, None) => {
                 GainsWanted::BuiltInOr(effort(self.generations.unwrap_or(usual.generations), usual.population))
             }

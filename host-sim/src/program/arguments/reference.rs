@@ -1,7 +1,7 @@
 //! The arguments of `reference`, in clap's terms.
 
 use clap::Args;
-use host_sim::reports::reference_rows::{FOLLOWED_WITHIN_2_CM_FACTOR, GREATEST_RATE};
+use host_sim::reports::reference_rows::{FOLLOWED_WITHIN_2_CM_FACTOR, ROW_RATE_MAX_HZ};
 use std::path::PathBuf;
 
 /// The end of `reference --help`.
@@ -36,10 +36,10 @@ pub struct ReferenceArguments {
 impl ReferenceArguments {
     /// Rows a second.
     pub fn rate(&self) -> Result<f64, String> {
-        if (1.0..=GREATEST_RATE).contains(&self.rate) {
+        if (1.0..=ROW_RATE_MAX_HZ).contains(&self.rate) {
             Ok(self.rate)
         } else {
-            Err(format!("--rate: must be from 1 to {GREATEST_RATE} Hz, found {}", self.rate))
+            Err(format!("--rate: must be from 1 to {ROW_RATE_MAX_HZ} Hz, found {}", self.rate))
         }
     }
 

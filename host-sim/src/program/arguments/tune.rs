@@ -2,7 +2,7 @@
 
 use clap::Args;
 use host_sim::studies::tune::effort::Effort;
-use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
+use host_sim::studies::tune::requirements::{RECOVERY_MAX_S, RECOVERY_MIN_S, Requirements};
 use scenario::stability::LoopMargin;
 use std::path::PathBuf;
 
@@ -94,8 +94,8 @@ impl TuneArguments {
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             return Err(format!("{name}: must be greater than zero and finite, found {value}"));
         }
-        if !(LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&self.recovery) {
-            let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
+        if !(RECOVERY_MIN_S..=RECOVERY_MAX_S).contains(&self.recovery) {
+            let allowed = format!("must be from {RECOVERY_MIN_S} to {RECOVERY_MAX_S} s");
             return Err(format!("--recovery: {allowed}, found {}", self.recovery));
         }
         if !(0.0..1.0).contains(&self.margin) {

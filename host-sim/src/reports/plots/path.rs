@@ -16,7 +16,7 @@ const MARGINS_PIXELS: [f64; 4] = [24.0, 50.0, 24.0, 24.0];
 /// From world x, and above the horizon.
 const VIEW_DIRECTION_DEG: (f64, f64) = (150.0, 24.0);
 /// Half the drawn vehicle's diagonal, as a share of the path's extent.
-const STILL_ARM: f64 = 0.032;
+const STILL_ARM_SHARE: f64 = 0.032;
 
 /// Where the vehicle is at one row of its track.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ pub struct View {
 #[must_use]
 pub fn picture(track: &Track) -> Drawing {
     let poses = poses(track);
-    let view = View::new(&poses, SIZE_PIXELS, STILL_ARM);
+    let view = View::new(&poses, SIZE_PIXELS, STILL_ARM_SHARE);
     let mut drawing = Drawing::new(SIZE_PIXELS);
     view.draw_floor(&mut drawing);
     view.draw_axes(&mut drawing);

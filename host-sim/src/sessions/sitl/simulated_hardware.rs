@@ -32,9 +32,9 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// What the camera's clock is ahead of the vehicle's, us. It is never zero: an answer to TIMESYNC that says zero is a
+/// What the camera's clock is ahead of the vehicle's. It is never zero: an answer to TIMESYNC that says zero is a
 /// question.
-const CAMERA_AHEAD: u64 = 1_000_000_000;
+const CAMERA_CLOCK_OFFSET_US: u64 = 1_000_000_000;
 
 /// Where the vehicle's poses come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -169,7 +169,7 @@ impl SimulatedHardware {
         if body.source == PoseSource::Link {
             return;
         }
-        body.encoder.time_sync(sent, self.0.clock.now() + CAMERA_AHEAD, &mut bytes);
+        body.encoder.time_sync(sent, self.0.clock.now() + CAMERA_CLOCK_OFFSET_US, &mut bytes);
         body.line.push(&bytes);
     }
 
@@ -221,7 +221,8 @@ impl Body {
             let (position, attitude) = (pose.position(), pose.attitude());
             let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer = Answer { poses: vec![Stamped { value, time: time + CAMERA_AHEAD }], samples: Vec::new() };
+            let answer =
+                Answer { poses: vec![Stamped { value, time: time + CAMERA_CLOCK_OFFSET_US }], samples: Vec::new() };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }

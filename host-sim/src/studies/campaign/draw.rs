@@ -38,11 +38,11 @@ use scenario::reference::ReferenceKind;
 use scenario::timing::Timing;
 use std::sync::Arc;
 
-/// The drag over mass of a vehicle without `[drag]`, 1/s.
-pub const DRAG_PER_MASS: f64 = 0.5;
+/// The drag over mass of a vehicle without `[drag]`.
+pub const DRAG_PER_MASS_PER_S: f64 = 0.5;
 const TURBULENCE_ALTITUDE_M: f64 = 10.0;
-/// The least airspeed that turbulence drifts past with, m/s.
-const LEAST_AIRSPEED: f64 = 1.0;
+/// The least airspeed that turbulence drifts past with.
+const AIRSPEED_MIN_M_PER_S: f64 = 1.0;
 /// How velocity is made of noisy poses: bandwidth, rad/s, and the accelerometer's noise, m/s^2, as for the trials of a
 /// search.
 const VELOCITY_SOURCE: VelocitySource =
@@ -99,14 +99,14 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
         return;
     }
     let mass = f64::from(scenario.configuration.vehicle().mass);
-    let drag = Drag { linear: Vector3::repeat(DRAG_PER_MASS * mass), ..Drag::default() };
+    let drag = Drag { linear: Vector3::repeat(DRAG_PER_MASS_PER_S * mass), ..Drag::default() };
     scenario.reality.drag.get_or_insert(drag);
     let level = |wind: Vector3<f64>| Vector3::new(wind.x, wind.y, 0.0);
     let steady = level(steady);
     let turbulence = Turbulence {
         wind_at_20_feet: strength,
         altitude: TURBULENCE_ALTITUDE_M,
-        airspeed: steady.norm().max(LEAST_AIRSPEED),
+        airspeed: steady.norm().max(AIRSPEED_MIN_M_PER_S),
         seed,
     };
     scenario.reality.wind = Some(Wind {

@@ -5,9 +5,9 @@
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
 //! | settled | since when it has been within [`SETTLED_DISTANCE_M`] of its reference, off the ground, for good |
-//! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good ([`claimed_error`]) |
-//! | heading | since when its heading has been within [`NEAR_HEADING`] of the reference's for good |
-//! | in time | whether all three were within the first [`REACHED_BY`] of the flight, as a flight by itself claims |
+//! | attitude | since when its attitude, heading included, has been within [`MRP_TOLERANCE`] of the desired one for good ([`claimed_error`]) |
+//! | heading | since when its heading has been within [`HEADING_TOLERANCE_RAD`] of the reference's for good |
+//! | in time | whether all three were within the first [`REACHED_BY_SHARE`] of the flight, as a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
@@ -18,8 +18,8 @@
 //! [`super::rotor_loss`].
 
 use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
-use crate::flight::claims::REACHED_BY;
-use crate::flight::extremes::{NEAR_MRP, claimed_error, heading_is_followed};
+use crate::flight::claims::REACHED_BY_SHARE;
+use crate::flight::extremes::{MRP_TOLERANCE, claimed_error, heading_is_followed};
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
@@ -29,8 +29,8 @@ use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 
 /// A vehicle that stays nearer to its reference has settled.
 pub const SETTLED_DISTANCE_M: f64 = 0.2;
-/// How near its heading, rad.
-pub const NEAR_HEADING: f64 = 0.2;
+/// How near to its heading a vehicle must stay.
+pub const HEADING_TOLERANCE_RAD: f64 = 0.2;
 
 /// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,11 +141,11 @@ impl Outcome {
         if self.final_error > SETTLED_DISTANCE_M || tick.standing {
             self.settled = next;
         }
-        if claimed_error(&tick.mrp, &tick.reference, bounds) > NEAR_MRP {
+        if claimed_error(&tick.mrp, &tick.reference, bounds) > MRP_TOLERANCE {
             self.attitude = next;
         }
         let followed = heading_is_followed(&tick.reference, bounds);
-        if followed && tick.state.heading_error(&tick.reference.heading) > NEAR_HEADING {
+        if followed && tick.state.heading_error(&tick.reference.heading) > HEADING_TOLERANCE_RAD {
             self.heading = next;
         }
     }
@@ -167,7 +167,7 @@ impl Outcome {
 /// Whether a flight of `duration`, s, has settled in time.
 #[must_use]
 pub fn in_time(settled: Option<f64>, duration: f64) -> bool {
-    settled.is_some_and(|since| since <= REACHED_BY * duration)
+    settled.is_some_and(|since| since <= REACHED_BY_SHARE * duration)
 }
 
 impl Shares {

@@ -4,10 +4,10 @@ use super::columns::{counts, floats, whole_numbers};
 use super::draw::timing;
 use super::losses::Losses;
 use super::manifest::Manifest;
-use super::outcome::{NEAR_HEADING, SETTLED_DISTANCE_M, in_time};
+use super::outcome::{HEADING_TOLERANCE_RAD, SETTLED_DISTANCE_M, in_time};
 use super::quantile;
 use super::rows::{HOLDS_COLUMN, share_of_rotor};
-use crate::flight::extremes::NEAR_MRP;
+use crate::flight::extremes::MRP_TOLERANCE;
 use crate::output::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
@@ -174,7 +174,8 @@ impl fmt::Display for Summary {
             writeln!(f, "{}\n", self.losses)?;
         }
         writeln!(f, "{}", self.quantiles)?;
-        let [attitude, heading] = [4.0 * NEAR_MRP.atan(), NEAR_HEADING].map(|angle| angle.to_degrees().round());
+        let [attitude, heading] =
+            [4.0 * MRP_TOLERANCE.atan(), HEADING_TOLERANCE_RAD].map(|angle| angle.to_degrees().round());
         writeln!(
             f,
             "attitude: within {attitude} degrees of the desired one for good after; heading: {heading} degrees\n"

@@ -39,8 +39,8 @@ const LOST_DISTANCE_M: f64 = 5.0;
 /// For a turbulence of 1 m/s along the wind: MIL-F-8785C at 10 m.
 const WIND_AT_20_FEET_M_PER_S: f64 = 5.3;
 const TURBULENCE_ALTITUDE_M: f64 = 10.0;
-/// Of how far above where it stands a vehicle hovers over the ground, and of how much higher it starts, m.
-const ABOVE_GROUND: f64 = 0.05;
+/// Of how far above where it stands a vehicle hovers over the ground, and of how much higher it starts.
+const HOVER_HEIGHT_M: f64 = 0.05;
 const STARTS_HIGHER_M: f64 = 1.0;
 /// Of the least distance between two rotors.
 const ROTOR_RADIUS_SHARE: f64 = 0.45;
@@ -138,7 +138,7 @@ fn over_ground(file: &Scenario) -> Result<Scenario, ParameterError> {
     let places = rotors.iter().map(|rotor| rotor.position.xy().map(f64::from));
     let apart = places.clone().flat_map(|one| places.clone().map(move |other| (one - other).norm()));
     let least = apart.filter(|apart| *apart > 0.0).fold(f64::INFINITY, f64::min);
-    real.reality.ground = Some(Ground { height: -ABOVE_GROUND });
+    real.reality.ground = Some(Ground { height: -HOVER_HEIGHT_M });
     if let Some(truth) = real.reality.truth.as_mut().filter(|_| least.is_finite()) {
         truth.rotor_radius = ROTOR_RADIUS_SHARE * least;
     }

@@ -24,8 +24,8 @@ use scenario::reality::wind::{Gust, Shape, Wind};
 
 /// Of a vehicle whose file gives none.
 pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
-/// When a wind begins, s.
-const WIND_AT: f64 = 1.0;
+/// When a wind begins.
+const WIND_START_S: f64 = 1.0;
 
 /// A scene.
 #[derive(Clone)]
@@ -59,7 +59,7 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);
     let windy = |speed: f64, duration: f64| {
         let mut windy = at([0.0; 3], duration)?;
-        let gust = Gust { shape: Shape::Step, start: WIND_AT, velocity: Vector3::new(speed, 0.0, 0.0) };
+        let gust = Gust { shape: Shape::Step, start: WIND_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
         windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
         Ok::<_, ParameterError>(windy)
     };

@@ -23,7 +23,7 @@ use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
 /// The share of its time in which a recovery must end.
-const RECOVERED_BY: f64 = 0.75;
+const RECOVERED_BY_SHARE: f64 = 0.75;
 /// After a gust, under a law that estimates.
 const OFFSET_MAX_M: f64 = 0.01;
 
@@ -209,7 +209,7 @@ impl Judge {
         }
         verdict.take(&figures);
         let restless =
-            (verdict.figures.recovered / (RECOVERED_BY * recovery) - 1.0).max(verdict.figures.clipped as f64);
+            (verdict.figures.recovered / (RECOVERED_BY_SHARE * recovery) - 1.0).max(verdict.figures.clipped as f64);
         if restless > 0.0 {
             return Err((1, restless, "recovery: not near in time, or a clipped command".to_owned()));
         }

@@ -32,34 +32,34 @@ use std::fmt;
 use std::sync::Arc;
 
 const ARRIVAL_DISTANCE_M: f64 = 0.1;
-/// The time at which the gust begins, s.
-const GUST_AT: f64 = 1.0;
+/// The time at which the gust begins.
+const GUST_START_S: f64 = 1.0;
 /// Wind of the gust; and the drag of a vehicle whose file gives none, 1/s.
 const GUST_M_PER_S: f64 = 5.0;
-const GUST_DRAG: f64 = 0.5;
+const DEFAULT_DRAG_PER_S: f64 = 0.5;
 const STORM_M_PER_S: f64 = 12.0;
-/// The greatest duration of each trial, s.
-const GUST_TIME: f64 = 6.0;
-const STORM_TIME: f64 = 8.0;
-const STEP_TIME: f64 = 12.0;
-const NOISE_TIME: f64 = 4.0;
+/// The greatest duration of each trial.
+const GUST_FLIGHT_S: f64 = 6.0;
+const STORM_FLIGHT_S: f64 = 8.0;
+const STEP_FLIGHT_S: f64 = 12.0;
+const NOISE_FLIGHT_S: f64 = 4.0;
 /// A flight in still air ends once position and yaw have been settled for this time.
 const SETTLED_FOR_S: f64 = 2.0;
-/// Between two poses, s, and from the moment that one shows to its arrival.
-const BETWEEN_POSES: f64 = 0.01;
-const POSE_DELAY: f64 = 0.02;
-/// How late a gyro, an accelerometer and rotor speeds are by their filters, s: a BMI088's own of 116 Hz makes 1.9 ms
+/// Between two poses, and from the moment that one shows to its arrival.
+const POSE_PERIOD_S: f64 = 0.01;
+const POSE_DELAY_S: f64 = 0.02;
+/// How late a gyro, an accelerometer and rotor speeds are by their filters: a BMI088's own of 116 Hz makes 1.9 ms
 /// (second order: sqrt(2) / (2 pi f)), and a low-pass of 200 Hz against vibration another 1.1 ms.
-const IMU_DELAY: f64 = 0.003;
-/// Noise of an accelerometer's mean over [`BETWEEN_POSES`], m/s^2; white, so that of a shorter time is larger.
-const ACCELEROMETER_NOISE: f64 = 0.05;
+const IMU_DELAY_S: f64 = 0.003;
+/// Noise of an accelerometer's mean over [`POSE_PERIOD_S`]; white, so that of a shorter time is larger.
+const ACCELEROMETER_NOISE_M_PER_S2: f64 = 0.05;
 /// The thrust scale of weak rotors, and the mass factor of a heavy vehicle.
 const WEAK_THRUST_SCALE: f64 = 0.6;
 const HEAVY_MASS_FACTOR: f64 = 1.6;
 
 /// How far off the centre of mass may be, as a share of the longest arm: 5 mm are little on the Hummingbird, and turn
 /// over a vehicle of a hand's size.
-const OFF_CENTRE_MAX: f64 = 0.03;
+const CENTRE_OFFSET_MAX_SHARE: f64 = 0.03;
 
 /// A vehicle as it may really be, relative to the file's model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +68,7 @@ pub struct Model {
     pub mass: f64,
     /// The thrust scale.
     pub thrust: f64,
-    /// Centre of mass, m, body; on small vehicles nearer, by `OFF_CENTRE_MAX`.
+    /// Centre of mass, m, body; on small vehicles nearer, by `CENTRE_OFFSET_MAX_SHARE`.
     pub centre_of_mass: [f64; 2],
     /// Factor on the rotors' lag.
     pub lag: f64,
@@ -207,37 +207,37 @@ pub fn fly_trials(
     let windy = |speed: f64, duration: f64| {
         let mut windy = hovering(Vector3::zeros(), duration)?;
         let mass = f64::from(scenario.configuration.vehicle().mass);
-        let unknown = Drag { linear: Vector3::repeat(GUST_DRAG * mass), ..Drag::default() };
+        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
         windy.reality.drag = scenario.reality.drag.or(Some(unknown));
-        let gust = Gust { shape: Shape::Step, start: GUST_AT, velocity: Vector3::new(speed, 0.0, 0.0) };
+        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
         windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
         course(&windy)
     };
-    let stepped = |position| settled(&hovering(position, STEP_TIME)?);
+    let stepped = |position| settled(&hovering(position, STEP_FLIGHT_S)?);
     let near = Vector3::new(-1.0, 0.0, 0.0);
 
     let recovered = settled(&turned_over(&hovering(Vector3::zeros(), recovery)?))?;
-    let (gusty, step) = (windy(GUST_M_PER_S, GUST_TIME)?, stepped(near)?);
-    let mut noisy = hovering(Vector3::zeros(), NOISE_TIME)?;
+    let (gusty, step) = (windy(GUST_M_PER_S, GUST_FLIGHT_S)?, stepped(near)?);
+    let mut noisy = hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
     let noisy = course(&noisy)?;
     let mut clipped = recovered.clipped + gusty.clipped + step.clipped + noisy.clipped;
 
     let beyond = if *model == COST_MODELS[0] {
-        let storm = windy(STORM_M_PER_S, STORM_TIME)?;
+        let storm = windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
         let far = stepped(Vector3::new(-6.0, -6.0, -5.3))?;
         let truth = Truth::model(scenario.configuration.vehicle());
         let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
             scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
             settled(&scenario)
         };
-        let weak = other(hovering(near, STEP_TIME)?, 1.0, WEAK_THRUST_SCALE)?;
+        let weak = other(hovering(near, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
         let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
         clipped += [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum::<u64>();
         Some(HarderTrialFigures {
             storm: storm.excursion,
-            far: far.settled.unwrap_or(STEP_TIME),
-            weak: weak.settled.unwrap_or(STEP_TIME),
+            far: far.settled.unwrap_or(STEP_FLIGHT_S),
+            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
             heavy_lost: heavy.height_lost,
             heavy: heavy.settled.unwrap_or(recovery),
         })
@@ -251,7 +251,7 @@ pub fn fly_trials(
         turned: recovered.turned.unwrap_or(recovery),
         gust: gusty.excursion,
         offset: gusty.end_error,
-        step: step.settled.unwrap_or(STEP_TIME),
+        step: step.settled.unwrap_or(STEP_FLIGHT_S),
         activity: noisy.activity / hovering_thrust(scenario),
         noise: noisy.rms,
         beyond,
@@ -322,25 +322,25 @@ fn off_centre(scenario: &Scenario, model: &Model) -> Vector3<f64> {
     let off = Vector3::new(x, y, 0.0);
     let Some(rotors) = scenario.configuration.rotors() else { return off };
     let arm = rotors.iter().map(|rotor| f64::from(rotor.position.xy().norm())).fold(0.0, f64::max);
-    off.cap_magnitude(OFF_CENTRE_MAX * arm)
+    off.cap_magnitude(CENTRE_OFFSET_MAX_SHARE * arm)
 }
 
 /// The measured state of the trial under noise.
 #[must_use]
 pub fn noise(period: f64) -> Sensors {
     let ticks = |time: f64| (time / period).round() as u64;
-    let accelerometer = ACCELEROMETER_NOISE * (BETWEEN_POSES / period).sqrt();
+    let accelerometer = ACCELEROMETER_NOISE_M_PER_S2 * (POSE_PERIOD_S / period).sqrt();
     Sensors {
         gyro_noise: 0.01,
         gyro_bias: Vector3::zeros(),
         position_noise: 2e-3,
         attitude_noise: 0.2_f64.to_radians(),
         velocity: VelocitySource::Observer { bandwidth: 8.0, noise: accelerometer, bias: Vector3::zeros() },
-        pose_every: ticks(BETWEEN_POSES).max(1),
+        pose_every: ticks(POSE_PERIOD_S).max(1),
         dropout: 0.0,
         delay_ticks: 0,
-        pose_delay_ticks: ticks(POSE_DELAY),
-        imu_delay: IMU_DELAY,
+        pose_delay_ticks: ticks(POSE_DELAY_S),
+        imu_delay: IMU_DELAY_S,
         seed: 1,
     }
 }

@@ -23,7 +23,7 @@
 //! Where these have hardly a solution, the foot, pushed ahead of a vehicle of little inertia, digs in. What stops a
 //! foot keeps the angular momentum about it.
 //!
-//! Upright again, the other feet take all motion from it, but what they slide on with; beyond [`TILT_MAX`] it has
+//! Upright again, the other feet take all motion from it, but what they slide on with; beyond [`TILT_MAX_RAD`] it has
 //! fallen over, and lies there. Within a step theta'' stays what it is at its start: without rotors it pulls more the
 //! nearer it is to upright, so that no energy comes from that.
 //!
@@ -40,11 +40,11 @@ const FEET_RADIUS_M: f64 = 0.1;
 /// Of the origin above the feet.
 const LEG_LENGTH_M: f64 = 0.1;
 
-/// How far a vehicle may lean and still fall back onto its feet, rad: 30 degrees.
-pub const TILT_MAX: f64 = 0.52;
+/// How far a vehicle may lean and still fall back onto its feet: 30 degrees.
+pub const TILT_MAX_RAD: f64 = 0.52;
 
 /// The share of I that resists turning, at most, of a vehicle whose foot digs in.
-const DIGS_IN: f64 = 0.01;
+const FOOT_RESISTANCE_SHARE: f64 = 0.01;
 
 /// The vehicle's mass, inertia and gravity.
 #[derive(Debug, Clone)]
@@ -103,7 +103,7 @@ impl Lean {
         let axis = UnitVector3::new_normalize(Vector3::z().cross(&toward));
         let rate = axis.dot(&(UnitQuaternion::new_normalize(state.attitude) * state.angular_velocity));
         let angle = tilt(state);
-        (angle <= TILT_MAX).then_some(Self { toward, axis, angle, rate })
+        (angle <= TILT_MAX_RAD).then_some(Self { toward, axis, angle, rate })
     }
 
     /// How much higher than upright the origin is, m, with a foot on the ground; and how fast that rises, m/s.
@@ -165,7 +165,7 @@ impl Rocking {
         let Lean { angle, rate, .. } = &mut self.lean;
         *angle += (*rate + 0.5 * turning * step) * step;
         *rate += turning * step;
-        if *angle > 0.0 && *angle <= TILT_MAX {
+        if *angle > 0.0 && *angle <= TILT_MAX_RAD {
             return Rocked::Leaning(self.state());
         }
         if *angle <= 0.0 {
@@ -173,7 +173,7 @@ impl Rocking {
         }
         let moved = self.state().velocity;
         self.lean.rate = 0.0;
-        let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX;
+        let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX_RAD;
         let velocity = if slides { slowed(&moved, FRICTION_COEFFICIENT * moved.z.abs()) } else { Vector3::zeros() };
         Rocked::Ended(BodyState { velocity, ..self.state() })
     }
@@ -193,7 +193,7 @@ impl Rocking {
         let contact = Vector3::z() + along.try_normalize(0.0).unwrap_or_default() * FRICTION_COEFFICIENT;
         let lever = axis.dot(&r.cross(&contact));
         let left = self.inertia - mass * r.norm_squared() + mass * lever * axis.cross(&r).z;
-        let digs_in = left <= DIGS_IN * self.inertia;
+        let digs_in = left <= FOOT_RESISTANCE_SHARE * self.inertia;
         if digs_in && !slides {
             return (needed.z >= 0.0).then_some(stuck);
         }

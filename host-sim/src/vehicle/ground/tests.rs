@@ -76,7 +76,7 @@ fn one_that_comes_down_on_its_side_stays_there() {
         ground.act(&mut plant, weight * 2.0, &Vector3::new(0.01, 0.0, 0.0));
     }
     let tilt = (0..5000).find_map(|_| ground.act(&mut plant, 0.0, &Vector3::zeros())).unwrap().tilt;
-    assert!(tilt > TILT_MAX);
+    assert!(tilt > TILT_MAX_RAD);
     assert!((up(plant.state()).z - tilt.cos()).abs() < 1e-9);
 }
 
@@ -194,7 +194,7 @@ fn a_torque_that_turns_it_over_its_foot_leaves_it_lying() {
         ground.act(&mut plant, 0.5 * weight, &Vector3::new(0.25, 0.0, 0.0));
     }
     let lying = tilt(plant.state());
-    assert!(ground.stands() && lying > TILT_MAX && lying < TILT_MAX + 0.02, "{lying}");
+    assert!(ground.stands() && lying > TILT_MAX_RAD && lying < TILT_MAX_RAD + 0.02, "{lying}");
     for _ in 0..2000 {
         ground.act(&mut plant, 0.0, &Vector3::zeros());
     }

@@ -34,7 +34,7 @@ fn every_published_vehicle_recovers_flies_a_circle_and_holds_every_claim() {
             flown.strayed
         );
         assert!(claims::all_hold(&claims), "{file}: {added}\n{}", claims::table(&claims));
-        assert!(flown.height_lost < START_HEIGHT, "{file}: falls {} m", flown.height_lost);
+        assert!(flown.height_lost < START_HEIGHT_M, "{file}: falls {} m", flown.height_lost);
     }
 }
 

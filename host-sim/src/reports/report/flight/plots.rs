@@ -1,6 +1,8 @@
 //! The plots of a flight: which columns, against which bounds.
 
-use crate::flight::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
+use crate::flight::claims::{
+    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR_M, PUBLISHED_THRUST_N, PUBLISHED_TORQUE_N_M,
+};
 use crate::reports::report::plot::{Bound, Color, Curve, Plot};
 use crate::reports::report::track::Track;
 use controller_core::certificate::Certificate;
@@ -33,7 +35,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
         Plot::new("Position", "m", [flown(["px", "py", "pz"]), desired(["pdx", "pdy", "pdz"])].concat()),
         Plot::new("Position error", "m", vec![Curve::new("position_error", "|p − p_d|", Color::Blue)])
             .logarithmic()
-            .within(published(PUBLISHED_POSITION_ERROR)),
+            .within(published(PUBLISHED_POSITION_ERROR_M)),
         Plot::new(
             "Yaw",
             "°",
@@ -58,12 +60,12 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     let limits = scenario.configuration.limits();
     let mut thrust = interval(certificate.thrust(), "proven", Color::Ink);
     if scenario.is_papers() {
-        thrust.extend([PUBLISHED_THRUST.0, PUBLISHED_THRUST.1].map(|value| ink(value, "published")));
+        thrust.extend([PUBLISHED_THRUST_N.0, PUBLISHED_THRUST_N.1].map(|value| ink(value, "published")));
     }
     thrust.push(ink(f64::from(limits.thrust_max), LIMIT_LABEL));
     let mut torque = both(certificate.torque().into(), "proven");
     if scenario.is_papers() {
-        torque.extend(both(PUBLISHED_TORQUE, "published"));
+        torque.extend(both(PUBLISHED_TORQUE_N_M, "published"));
     }
     torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT_LABEL));
     let mut plots = vec![

@@ -26,20 +26,20 @@ fn recorded(ticks: u64, columns: Vec<(String, Kept, Read)>) -> Track {
 
 #[test]
 fn every_tick_of_a_short_flight_is_a_row() {
-    let track = recorded(MOST_ROWS, vec![time(Kept::Samples), peak(120_000)]);
+    let track = recorded(ROWS_MAX, vec![time(Kept::Samples), peak(120_000)]);
     let (times, peaks) = (track.column("t").unwrap(), track.column("peak").unwrap());
-    assert_eq!((times.len() as u64, track.step), (MOST_ROWS, 0.01));
+    assert_eq!((times.len() as u64, track.step), (ROWS_MAX, 0.01));
     assert!(times.iter().enumerate().all(|(row, time)| *time == (row as f64 * 0.01) as f32));
     assert_eq!(peaks.iter().position(|value| *value == 7.0), Some(12));
 }
 
 #[test]
 fn a_long_flight_keeps_every_peak_and_stays_bounded() {
-    for ticks in [MOST_ROWS + 1, 12_345, 360_001] {
+    for ticks in [ROWS_MAX + 1, 12_345, 360_001] {
         for at in [0, 1, ticks / 3, ticks - 2, ticks - 1] {
             let track = recorded(ticks, vec![time(Kept::Samples), time(Kept::Extremes), peak(at * 10_000)]);
             let rows = track.columns[0].1.len();
-            assert!(rows as u64 <= MOST_ROWS + 2, "{ticks}: {rows} rows");
+            assert!(rows as u64 <= ROWS_MAX + 2, "{ticks}: {rows} rows");
             assert!(track.columns.iter().all(|(_, values)| values.len() == rows));
             let peaks = &track.columns[2].1;
             assert!(peaks.contains(&7.0), "{ticks}: the peak at {at} is lost");
