@@ -144,7 +144,6 @@ pub enum InputError {
 
 impl InputError {
     /// The input that it is about.
-    #[must_use]
     pub fn field(&self) -> &'static str {
         match *self {
             Self::NotFinite { field } | Self::OutOfRange { field } | Self::NotARotation { field } => field,

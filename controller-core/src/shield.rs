@@ -163,19 +163,16 @@ impl Shield {
     }
 
     /// How often the law took over since the reset, or since a person asked again.
-    #[must_use]
     pub fn hand_overs(&self) -> u32 {
         self.hand_overs
     }
 
     /// Whether the law keeps the vehicle until a person asks again.
-    #[must_use]
     pub fn is_latched(&self) -> bool {
         self.hand_overs >= self.settings.hand_overs
     }
 
     /// Where the heading generator points.
-    #[must_use]
     pub fn heading(&self) -> &Heading {
         self.heading.heading()
     }

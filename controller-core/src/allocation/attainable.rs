@@ -172,7 +172,6 @@ fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
 
 /// The greatest torque about each body axis, N m, that `rotors` deliver to either side with none about the other two,
 /// at whatever thrust suits it best. Not above zero for some axis where they cannot push without turning the vehicle.
-#[must_use]
 pub fn max_torques(rotors: &Rotors) -> Vector3<f32> {
     let order: Vec<usize, ROTORS_MAX> = collected(0..rotors.len());
     let all = generators(rotors, order.iter());

@@ -63,7 +63,6 @@ impl MinimumNorm {
     pub(super) const NONE: Self = Self { actuators: Vec::new() };
 
     /// For `rotors`; configuration time.
-    #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
         let all = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse());
         Self { actuators: collected(all.map(|((rotor, column), share)| Actuator::new(rotor, column, share))) }
@@ -96,7 +95,6 @@ impl MinimumNorm {
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
-    #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         let sum = self.sum(thrusts);
         Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }

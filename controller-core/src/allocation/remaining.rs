@@ -101,7 +101,6 @@ pub struct RemainingRotors {
 impl RemainingRotors {
     /// The `rotors` of a vehicle of so much `weight`, N, with these `limits`, without what is `lost`, all at a thrust
     /// `scale`: delivered over commanded.
-    #[must_use]
     pub fn new(rotors: &Rotors, limits: &Limits, lost: &LostRotor, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
         let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::max);
@@ -125,13 +124,11 @@ impl RemainingRotors {
     }
 
     /// A rotor's share of the weight, N.
-    #[must_use]
     pub fn share(&self) -> f32 {
         self.share
     }
 
     /// The thrusts that the rotors are to deliver, N.
-    #[must_use]
     pub fn allocate(&self, wanted: &Wrench) -> Thrusts {
         let Wrench { thrust, torque } = wanted;
         let mut wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
@@ -180,7 +177,6 @@ impl RemainingRotors {
 
     /// What to command of each, N, for the rotors to deliver `delivered`, within what they may be commanded; nothing of
     /// one that is gone.
-    #[must_use]
     pub fn commands(&self, delivered: &Thrusts) -> Thrusts {
         let command = |(rotor, thrust): (&Remaining, &f32)| {
             let [least, most] = rotor.commanded;
@@ -190,7 +186,6 @@ impl RemainingRotors {
     }
 
     /// B times thrusts, N and N m.
-    #[must_use]
     pub fn wrench(&self, thrusts: &Thrusts) -> Wrench {
         let sum: Vector4<f32> = self.rotors.iter().zip(thrusts).map(|(rotor, thrust)| rotor.column * *thrust).sum();
         let sum = sum.component_div(&self.newtons);

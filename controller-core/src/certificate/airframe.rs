@@ -34,7 +34,6 @@ fn configure(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> 
 /// The widest bounds of references that `law` certifies on `airframe`: a share of [`defaults::reference_bounds`],
 /// lessened in steps of a tenth. If not even a hundredth certifies it is all of them, so that the certificate names the
 /// reason.
-#[must_use]
 pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
     let most = defaults::reference_bounds(airframe, &law.parameters);
     let mut share = 1.0;

@@ -48,7 +48,6 @@ pub struct DesiredRates<R = f64> {
 
 impl<R: Real> DesiredRates<R> {
     /// The componentwise lesser of two bounds.
-    #[must_use]
     pub fn min(&self, other: &Self) -> Self {
         Self {
             angular_velocity: self.angular_velocity.lesser(other.angular_velocity),
@@ -81,7 +80,6 @@ impl<R: Real> DesiredRates<R> {
 }
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: the bound under |omega_d'| <= a and |omega_d| <= v in any body frame.
-#[must_use]
 pub fn feedforward_torque<R: Real>(inertia: &Vector3<R>, velocity: R, acceleration: R) -> Vector3<R> {
     let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).map(R::abs);
     inertia * acceleration + differences * (velocity * 0.5 * velocity)
@@ -116,7 +114,6 @@ fn acceleration_square<R: Real>(
 
 /// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for
 /// everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
-#[must_use]
 #[inline(never)] // a board's stack is not to hold it beside the other bounds
 pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) -> [R; 2] {
     let steepest = reach.horizontal / reach.vertical_min;
@@ -154,7 +151,6 @@ pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) ->
 }
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
-#[must_use]
 pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, inertia: &Vector3<R>) -> DesiredRates<R> {
     let steepest = reach.horizontal / reach.vertical_min;
     let directions = Direction::quarter_turn();

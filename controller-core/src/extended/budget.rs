@@ -89,7 +89,6 @@ struct Share<R> {
 
 impl<R: Real> TorqueBudget<R> {
     /// For the margin of the law's thrust range, N, limits, and rotors if there are any.
-    #[must_use]
     pub fn new(margin: f32, limits: &Limits, rotors: Option<&Rotors>) -> Self {
         let (zero, one) = (R::from(0.0), R::from(1.0));
         let margin = R::from(margin);
@@ -129,7 +128,6 @@ impl<R: Real> TorqueBudget<R> {
     }
 
     /// (1 - mu) U for a thrust scale and no bias, m/s^2.
-    #[must_use]
     pub fn held_acceleration(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
         let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
         most * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
@@ -143,7 +141,6 @@ impl<R: Real> TorqueBudget<R> {
 
 impl TorqueBudget {
     /// U as a tick works it out.
-    #[must_use]
     pub fn ceiling(&self, vehicle: &Vehicle, limits: &Limits) -> Ceiling {
         let mass = f64::from(vehicle.mass);
         Ceiling {
@@ -167,8 +164,7 @@ pub struct Ceiling {
 
 impl Ceiling {
     /// U, m/s^2, for a thrust scale and a bias in N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
         let [lean, twist] = self.per_bias;
         let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
@@ -195,7 +191,6 @@ pub struct TickBudget {
 
 impl TickBudget {
     /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
-    #[must_use]
     pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
         let mut binding: Vec<BudgetRow, ROWS_MAX> = Vec::new();
         for (place, row) in budget.rows.iter().enumerate() {
@@ -213,14 +208,12 @@ impl TickBudget {
     }
 
     /// The greatest torque that fits in every direction at a thrust scale, N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn radius(&self, scale: f32) -> f32 {
         self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::min)
     }
 
     /// A tick's spending at a thrust scale, nothing spent.
-    #[must_use]
     #[inline(always)]
     pub fn spending(&self, scale: f32) -> Spending<'_> {
         Spending { rows: &self.rows, scale, radius: self.radius(scale), spent: Vector2::zeros() }
@@ -263,7 +256,6 @@ pub struct Spending<'a> {
 
 impl Spending<'_> {
     /// The greatest torque that fits in every direction if nothing is spent, N m.
-    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }

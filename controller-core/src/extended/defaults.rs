@@ -15,7 +15,6 @@ pub type Given = [Option<f32>; ExtendedParameters::COUNT];
 pub const NOTHING_GIVEN: Given = [None; ExtendedParameters::COUNT];
 
 /// The constants for `airframe`; the `given` ones stay as they are.
-#[must_use]
 pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let by_key = |key: &str| {
         let found = ExtendedParameters::TABLE.iter().zip(given).find(|(constant, _)| constant.key == key);
@@ -29,7 +28,6 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
 }
 
 /// Bounds of the motions that `parameters` can fly on `airframe`: the governor's limits.
-#[must_use]
 pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
     let p = parameters;
     let budget = TorqueBudget::<f64>::new(p.floor_margin, airframe.limits, airframe.rotors);

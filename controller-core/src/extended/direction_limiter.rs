@@ -50,7 +50,6 @@ pub struct DirectionLimiter {
 
 impl DirectionLimiter {
     /// For an alpha of `acceleration`, rad/s^2, and steps of `period`, s.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, acceleration: f32, period: f32) -> Self {
         let p = parameters;
         Self {
@@ -65,8 +64,7 @@ impl DirectionLimiter {
     }
 
     /// n*, m/s^2, for n, y_z - c_z as `more`, e3 in the axes of the desired frame and U.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
         let most = PUSH_ACROSS_MAX_M_PER_S2 / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
         let length = magnitude + math::saturate(more / math::max(up.z, self.cosine), most);
@@ -74,8 +72,7 @@ impl DirectionLimiter {
     }
 
     /// q for a wanted `turn`, rad/s^2; `up` is e3 in the axes of the desired frame.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn limited(&self, turn: &DirectionMotion, up: &Vector3<f32>) -> Vector2<f32> {
         let DirectionMotion { rate, acceleration, .. } = turn;
         let q = self.kept_in_cone(shortened(*acceleration, self.acceleration), rate, up);
@@ -90,7 +87,6 @@ impl DirectionLimiter {
     /// The change of u'' where the turn is `acceleration` instead of the wanted one, and for u to stay within its ends;
     /// axes of the desired frame, m/s^4. None if nothing is changed. `greatest` is U, m/s^2; `vertical` c_z, c_z' and
     /// c_z'' as wanted, m/s^2, m/s^3, m/s^4.
-    #[must_use]
     #[inline(always)]
     pub fn change(
         &self,
@@ -145,7 +141,6 @@ impl DirectionLimiter {
 
 /// How fast rho_z may fall towards the edge of the cone, per distance from it, 1/s, for an alpha in rad/s^2: braking
 /// takes half of alpha from upright on, and less from there.
-#[must_use]
 pub fn closing<R: Real>(acceleration: R) -> R {
     (acceleration * 0.5).sqrt_of_rounded()
 }

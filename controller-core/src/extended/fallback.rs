@@ -72,7 +72,6 @@ impl<R: Real> Slowed<R> {
     /// c + d, x + d and y + d start and stay within M_s, so |c'| <= 2 k_f M_s and |c''| <= 2 k_f (k_s + k_f) M_s: so
     /// much slower that this takes `TURN_SHARE` of what turns rho at the least |u|, g - D_z+ - M_s less the
     /// reference's.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, gravity: f32) -> Self {
         let p = parameters;
         let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
@@ -86,7 +85,6 @@ impl<R: Real> Slowed<R> {
     }
 
     /// The greatest |c'| and |c''|, m/s^3 and m/s^4, where across and along the vertical feedback is M_s at once.
-    #[must_use]
     pub fn derivatives(&self, parameters: &ExtendedParameters) -> [R; 2] {
         let [k_f, k_s] = [parameters.k_f, parameters.k_s].map(|bandwidth| R::from(bandwidth) * self.factor);
         let jerk = k_f * 2.0 * self.level * R::from(2.0).sqrt();
@@ -98,7 +96,6 @@ impl<R: Real> Slowed<R> {
 const SLOW_SPEED_M_PER_S: f32 = 2.0;
 
 /// The constants of the slowed law.
-#[must_use]
 pub fn slowed(parameters: &ExtendedParameters, gravity: f32) -> ExtendedParameters {
     let by = Slowed::<f64>::new(parameters, gravity).factor as f32;
     let p = parameters;
@@ -147,13 +144,11 @@ impl Fallback {
         Self { slow: false, times: 0, elapsed: 0, now: f32::MAX, near: false, greatest: [0.0; 2], best: [f32::MAX; 2] };
 
     /// Whether the law is slowed.
-    #[must_use]
     pub fn is_slow(&self) -> bool {
         self.slow
     }
 
     /// How often it was slowed since the reset.
-    #[must_use]
     pub fn times(&self) -> u32 {
         self.times
     }

@@ -53,7 +53,6 @@ pub struct Filters {
 
 impl Filters {
     /// All three at `value`.
-    #[must_use]
     pub const fn at(value: Vector3<f32>) -> Self {
         Self { command: value, intermediate: value, smoothed: value }
     }
@@ -106,7 +105,6 @@ impl FeedbackLimits {
     pub const UNLIMITED: Self = Self::each(f32::MAX);
 
     /// The same every way.
-    #[must_use]
     pub const fn each(level: f32) -> Self {
         Self { up: level, down: level, across: level }
     }
@@ -181,13 +179,11 @@ impl PositionLaw {
     }
 
     /// k_f, 1/s.
-    #[must_use]
     pub fn k_f(&self) -> f32 {
         self.k_f
     }
 
     /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2.
-    #[must_use]
     #[inline(always)] // into the law's step
     pub fn feedback(
         &self,
@@ -203,7 +199,6 @@ impl PositionLaw {
     }
 
     /// The same with a demand in place of feedback: `wanted`, m/s^2, cut to the envelope.
-    #[must_use]
     #[inline(always)] // likewise
     pub fn feedback_on_demand(
         &self,
@@ -218,7 +213,6 @@ impl PositionLaw {
     }
 
     /// p~, v~, z_1 and z_2.
-    #[must_use]
     #[inline(always)]
     pub fn errors(
         &self,
@@ -270,7 +264,6 @@ impl PositionLaw {
     }
 
     /// c', m/s^3.
-    #[must_use]
     #[inline(always)]
     pub fn rate(&self, filters: &Filters) -> Vector3<f32> {
         (filters.intermediate - filters.command) * self.k_f
@@ -309,7 +302,6 @@ impl PositionLaw {
     /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never
     /// falls below -A_-, to the last bit; x_z does not lead it there. x stays within `FILTER_REACH` U along each axis,
     /// and c with it: a reference whose derivatives fit no motion cannot drive them away.
-    #[must_use]
     pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, greatest: f32) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
         let (mut drive, mut intermediate) = (*drive, x + drive * self.period);

@@ -46,7 +46,6 @@ pub struct ThrustRange {
 
 impl ThrustRange {
     /// For `rotors`, if there are any, a margin and a greatest thrust in N, and the limit of yaw in N m.
-    #[must_use]
     pub fn new(rotors: Option<&Rotors>, margin: f32, thrust_max: f32, yaw_max: f32) -> Self {
         let mut parts = Vec::new();
         for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
@@ -61,8 +60,7 @@ impl ThrustRange {
 
     /// T nearest to `thrust`, N, and tau_3 nearest to `yaw`, N m, of which `braking` comes before thrust, for a torque
     /// about the tilt's axes that the budget allows and the thrust scale s; and how much of tau_3 either way there is.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn limited(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
         let (mut least, mut most) = (self.margin, self.thrust_max);
         for part in &self.rotors {
@@ -81,7 +79,6 @@ impl ThrustRange {
 
     /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is
     /// at most `thrust`, N, or what it is already.
-    #[must_use]
     #[inline(always)]
     pub fn share(&self, spent: &Vector2<f32>, wanted: &Vector2<f32>, thrust: f32, scale: f32) -> f32 {
         let least = |part: &Part| scale * part.least + (self.margin - part.per_torque.xy().dot(spent));
@@ -128,17 +125,15 @@ impl ThrustRange {
     }
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
-    #[must_use]
     #[inline(always)]
-    pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
+    pub fn min_thrust(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
         least.fold(self.margin, math::max)
     }
 
     /// C(tau), N, likewise; at most T_max.
-    #[must_use]
     #[inline(always)]
-    pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
+    pub fn max_thrust(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
         let greatest =
             self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));
         greatest.fold(self.thrust_max, math::min)

@@ -66,7 +66,6 @@ impl StreamDemand {
 impl FollowingReport {
     /// How many times slower the stream of the last seconds would have to be to keep the bounds; one or less where it
     /// keeps them.
-    #[must_use]
     pub fn slower(&self) -> f32 {
         let cube = math::sqrt(math::sqrt(math::sqrt(self.demand)));
         // Newton's steps for the cube root of at most 4096, from above; each takes a third off, then twice the digits.

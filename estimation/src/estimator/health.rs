@@ -40,13 +40,11 @@ impl Faults {
     }
 
     /// Whether `fault` is one of them.
-    #[must_use]
     pub const fn contain(self, fault: Fault) -> bool {
         self.0 >> fault as u8 & 1 == 1
     }
 
     /// The worst of them.
-    #[must_use]
     pub fn worst(self) -> Option<Fault> {
         Fault::ALL.into_iter().find(|&fault| self.contain(fault))
     }
@@ -144,7 +142,6 @@ impl Health {
     };
 
     /// No fault.
-    #[must_use]
     pub fn is_good(&self) -> bool {
         self.faults == Faults::default()
     }

@@ -80,7 +80,6 @@ const DEVIATION_MAX: f32 = 10.0;
 
 impl Settings {
     /// [`EstimatorParameters::BMI088`], with a vehicle's gravity.
-    #[must_use]
     pub fn bmi088(vehicle: &Vehicle) -> Self {
         // A vehicle's gravity is positive, and the rest is checked by a test.
         Self(EstimatorParameters { gravity: vehicle.gravity, ..EstimatorParameters::BMI088 })
@@ -120,7 +119,6 @@ impl Settings {
     }
 
     /// What they were made from.
-    #[must_use]
     pub fn parameters(&self) -> &EstimatorParameters {
         &self.0
     }

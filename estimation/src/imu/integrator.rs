@@ -50,7 +50,6 @@ impl Integrator {
     };
 
     /// How long after the last sample `time` is, us: zero for one that is not later; none without a last one.
-    #[must_use]
     pub fn age(&self, time: u64) -> Option<u64> {
         self.last.map(|last| time.saturating_sub(last.time))
     }
@@ -82,7 +81,6 @@ impl Integrator {
     }
 
     /// The increment so far, if it has a length.
-    #[must_use]
     pub fn under_way(&self) -> Option<Increment> {
         let end = self.last?.time;
         (end > self.start).then_some(Increment {

@@ -31,8 +31,8 @@ use crate::certificate::form::ARITHMETIC_ALLOWANCE;
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
 use crate::extended::direction_limiter::{self, END_SOFTNESS_PER_S};
+use crate::extended::estimates::HELD_SHARE;
 use crate::extended::fallback::Slowed;
-use crate::extended::force::HELD_SHARE;
 use crate::math;
 use crate::math::real::Real;
 
@@ -77,7 +77,6 @@ pub struct PathJudge<R = f64> {
 
 impl<R: Real> PathJudge<R> {
     /// For `law`, the one of `configuration`, with a force of `force_kept` kept free, m/s^2.
-    #[must_use]
     pub fn new(configuration: &Configuration, law: &ExtendedLaw, force_kept: f32) -> Self {
         let (vehicle, limits, p) = (configuration.vehicle(), configuration.limits(), &law.parameters);
         let budget = TorqueBudget::<R>::new(p.floor_margin, limits, configuration.rotors());
@@ -119,13 +118,11 @@ impl<R: Real> PathJudge<R> {
     }
 
     /// What a motion takes at an instant.
-    #[must_use]
     pub fn shares(&self, motion: &PathMotion<R>) -> RowShares<R> {
         self.shares_within(motion, &Spread::none())
     }
 
     /// What motions take that are no farther than `spread` from `motion`, each at most.
-    #[must_use]
     pub fn shares_within(&self, motion: &PathMotion<R>, spread: &Spread<R>) -> RowShares<R> {
         let one = R::from(1.0);
         // w, w', w'', and how far u and its derivatives are from them.

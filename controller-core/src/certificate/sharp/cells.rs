@@ -138,7 +138,7 @@ impl<R: Real> Tilt<R> {
         Shares {
             stretch: (total - least * least).sqrt_of_rounded() / self.magnitude,
             length,
-            product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
+            product: max_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
             mixed: (length + most.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
         }
     }
@@ -160,7 +160,7 @@ impl<R: Real> Tilt<R> {
 }
 
 /// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
-fn greatest_product<R: Real>(total: R, least: R, most: R) -> R {
+fn max_product<R: Real>(total: R, least: R, most: R) -> R {
     let x = (total * 0.5).greater(least).lesser(most);
     (x * (total - x)).sqrt_of_rounded()
 }

@@ -9,7 +9,7 @@
 
 use super::{Controller, thrust_axis};
 use crate::extended::direction_limiter::PUSH_ACROSS_MAX_M_PER_S2;
-use crate::extended::force::held;
+use crate::extended::estimates::held;
 use crate::extended::memory::Estimates;
 use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
@@ -39,7 +39,6 @@ pub struct StoppingForecast {
 
 impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
-    #[must_use]
     pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;

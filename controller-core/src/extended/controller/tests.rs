@@ -272,7 +272,7 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: b
             }
             continue;
         }
-        assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.max);
+        assert!(f64::from(thrust) >= bounds.thrust.min && f64::from(thrust) <= bounds.thrust.max);
         let excess = torque.abs().map(f64::from) - bounds.torque;
         assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
         let asked = Wrench { thrust: thrust / scale, torque: torque / scale };

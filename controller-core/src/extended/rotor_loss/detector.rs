@@ -149,7 +149,6 @@ pub struct Interval<'a> {
 
 impl Detector {
     /// For ticks `period` seconds apart and rotors of so much `lag`, s. Without rotors it finds nothing.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f32, period: f32) -> Self {
         let columns = || rotors.into_iter().flat_map(Rotors::effectiveness).map(|column| column.map(|x| x as f32));
         let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.max_arm());
@@ -225,7 +224,6 @@ impl Detector {
 
     /// The thrust that a rotor is taken to deliver in an interval, N, and what is missing of it by the torque about the
     /// tilt's axes.
-    #[must_use]
     pub fn missing(&self, rotor: usize, interval: &Interval) -> [f32; 2] {
         let Some(Signature { column, row, .. }) = self.rotors.get(rotor) else { return [0.0; 2] };
         let along = self.residual(interval).yz().dot(&column.yz());

@@ -71,7 +71,7 @@ fn every_torque_that_is_spent_leaves_each_rotor_in_its_range_with_any_thrust_and
             let tilt = spending.spent;
             let along = Vector3::new(tilt.x, tilt.y, 0.0);
             assert!(tilt.x.abs() <= most.x && tilt.y.abs() <= most.y, "{craft:?} {tilt}");
-            assert!(range.least(&along, scale) <= range.greatest(&along, scale), "{craft:?} {tilt}");
+            assert!(range.min_thrust(&along, scale) <= range.max_thrust(&along, scale), "{craft:?} {tilt}");
             let yaw = 3.0 * most.z * random.signed();
             let braking = if random.below(2) == 0 { 0.0 } else { random.between(0.0, 1.0) * yaw };
             let asked = [2.0 * limits.thrust_max * random.signed(), yaw, braking];
@@ -89,7 +89,7 @@ fn no_row_of_rotors_is_narrower_than_they_need() {
         let range = ThrustRange::new(Some(&craft.rotors), 0.0, f32::MAX, f32::MAX);
         for row in budget.rows.iter().filter(|row| row.bound == RowSource::Rotors) {
             let [x, y] = row.direction.map(|part| (1.01 * row.capacity(1.0) * part) as f32);
-            let fails = |torque: Vector3<f32>| range.least(&torque, 1.0) > range.greatest(&torque, 1.0);
+            let fails = |torque: Vector3<f32>| range.min_thrust(&torque, 1.0) > range.max_thrust(&torque, 1.0);
             assert!(fails(Vector3::new(x, y, 0.0)) || fails(Vector3::new(-x, -y, 0.0)), "{craft:?} {row:?}");
         }
     }
@@ -198,6 +198,6 @@ fn the_acceleration_that_is_held_is_the_ticks_own_less_what_a_bias_takes() {
         let bias = random.vector(1.0).component_mul(&(craft.limits.torque_max * 0.2));
         let thrust = ceiling.at(scale, &bias) * craft.vehicle.mass;
         let range = ThrustRange::new(Some(&craft.rotors), 1e-3, craft.limits.thrust_max, f32::MAX);
-        assert!(thrust <= range.greatest(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
+        assert!(thrust <= range.max_thrust(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
     }
 }

@@ -3,7 +3,7 @@
 use super::Random;
 use crate::error::ParameterError;
 use crate::extended::controller::Controller;
-use crate::extended::heading::{self, FrameMotion, HeadingLaw};
+use crate::extended::heading::{self, HeadingLaw};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::example::{self, Craft};
 use nalgebra::Vector3;
@@ -60,7 +60,7 @@ fn small_errors_meet_the_gains_and_a_heading_that_turns_is_fed_forward() {
     let mut random = Random(44);
     for _ in 0..100 {
         let (rate, velocity, acceleration) = (random.vector(4.0), random.vector(9.0), random.signed());
-        let forward = law.forward(&FrameMotion { rate, acceleration }, &velocity);
+        let forward = law.forward(&rate, acceleration, &velocity);
         assert!((forward - (acceleration - velocity.cross(&rate).z)).abs() < 1e-4);
         let torque = law.torque(0.0, 0.0, forward, &velocity, 1.0);
         let gyroscopic = velocity.cross(&j.component_mul(&velocity)).z;
