@@ -81,11 +81,11 @@ impl Configuration {
     ) -> Result<Self, ParameterError> {
         let bounds = bounds.validated()?;
         let room = vehicle.gravity - bounds.vertical_acceleration;
-        let (least, field) = match &law {
+        let (min, field) = match &law {
             LawParameters::Paper(PaperLaw { gains, .. }) => (gains.m_p, "gains.m_p"),
             LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.a_down, "gains.a_down"),
         };
-        require(least < room, field, Reason::NotBelow(room))?;
+        require(min < room, field, Reason::NotBelow(room))?;
         Ok(Self { vehicle, limits, law, bounds, rotors: None })
     }
 
@@ -99,8 +99,8 @@ impl Configuration {
         let field = "control.thrust_floor";
         let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
         require_positive(floor, field)?;
-        let least = self.min_thrust();
-        require(floor <= least, field, Reason::Above(least))?;
+        let min = self.min_thrust();
+        require(floor <= min, field, Reason::Above(min))?;
         Ok(Self { law: LawParameters::Paper(PaperLaw { thrust_floor: Some(floor), ..law }), ..self })
     }
 

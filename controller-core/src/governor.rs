@@ -157,7 +157,7 @@ impl Governor {
         for (value, path) in bounds.values().into_iter().zip(ReferenceBounds::PATHS) {
             require_positive(value, path)?;
         }
-        for (value, most, field) in [
+        for (value, max, field) in [
             (period, 0.1, "governor.period"),
             (limits.horizontal_speed, SPEED_RANGE_M_PER_S, "governor.horizontal_speed"),
             (limits.vertical_speed, SPEED_RANGE_M_PER_S, "governor.vertical_speed"),
@@ -166,7 +166,7 @@ impl Governor {
             (limits.timeout, DURATION_MAX_S, "governor.timeout"),
         ] {
             require_positive(value, field)?;
-            require(value <= most, field, Reason::Above(most))?;
+            require(value <= max, field, Reason::Above(max))?;
         }
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
         *memory = Memory::EMPTY;

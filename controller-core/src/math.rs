@@ -42,9 +42,9 @@ pub fn saturate(x: f32, level: f32) -> f32 {
 }
 
 /// `x` cut to an interval; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
-pub fn clamp(x: f32, least: f32, greatest: f32) -> f32 {
-    let x = if x > greatest { greatest } else { x };
-    if x < least { least } else { x }
+pub fn clamp(x: f32, min: f32, max: f32) -> f32 {
+    let x = if x > max { max } else { x };
+    if x < min { min } else { x }
 }
 
 /// The greater of two numbers; the first where they cannot be compared.

@@ -194,10 +194,10 @@ impl Tuning {
 
     /// `rotors` with the thrusts that were changed.
     fn rotors(&self, rotors: &Rotors, built: &Figures) -> Result<Rotors, ParameterError> {
-        let ([least, most], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
+        let ([min, max], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
         let changed = |rotor: &Rotor| Rotor {
-            thrust_min: if least == built_least { rotor.thrust_min } else { least },
-            thrust_max: if most == built_most { rotor.thrust_max } else { most },
+            thrust_min: if min == built_least { rotor.thrust_min } else { min },
+            thrust_max: if max == built_most { rotor.thrust_max } else { max },
             ..*rotor
         };
         let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> = collected(rotors.iter().map(changed));

@@ -129,11 +129,11 @@ impl Pose {
 }
 
 /// Refuses a vector that is longer than `most`.
-fn within(vector: &Vector3<f32>, most: f32, field: &'static str) -> Result<(), PoseError> {
+fn within(vector: &Vector3<f32>, max: f32, field: &'static str) -> Result<(), PoseError> {
     if !vector.iter().all(|component| component.is_finite()) {
         return Err(PoseError::NotFinite(field));
     }
-    if vector.norm_squared() <= most * most { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
+    if vector.norm_squared() <= max * max { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
 }
 
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.

@@ -160,8 +160,8 @@ impl Rotors {
         }
         for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT_FIELDS) {
             require_positive(rotor.drag_coefficient, field)?;
-            let greatest = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
-            require(rotor.drag_coefficient < greatest, field, Reason::NotBelow(greatest))?;
+            let max = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
+            require(rotor.drag_coefficient < max, field, Reason::NotBelow(max))?;
         }
         for (rotor, field) in rotors.iter().zip(THRUST_MAX_FIELDS) {
             require_positive(rotor.thrust_max, field)?;
@@ -230,9 +230,9 @@ impl Rotors {
     /// Names `rotors.speed`: [`Reason::NotAbove`] where the greatest thrust is too little, [`Reason::NotBelow`] where
     /// the least is too much.
     pub fn check_hover(&self, weight: f32) -> Result<(), ParameterError> {
-        let (least, greatest) = self.thrust_together();
-        require(greatest > weight, "rotors.speed", Reason::NotAbove(weight))?;
-        require(least < weight, "rotors.speed", Reason::NotBelow(weight))
+        let (min, max) = self.thrust_together();
+        require(max > weight, "rotors.speed", Reason::NotAbove(weight))?;
+        require(min < weight, "rotors.speed", Reason::NotBelow(weight))
     }
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.

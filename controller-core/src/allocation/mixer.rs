@@ -190,8 +190,8 @@ impl Mixer {
 }
 
 /// `value` moved into a range.
-fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
-    value.max(least).min(greatest)
+fn within(value: f32, (min, max): (f32, f32)) -> f32 {
+    value.max(min).min(max)
 }
 
 /// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.

@@ -131,21 +131,21 @@ pub struct Commands<'a, R = f64> {
 }
 
 impl<'a, R: Real> Commands<'a, R> {
-    /// Thrust from `least` to `greatest`, N, with torques in the sum of the `torque` terms.
+    /// Thrust from `min` to `max`, N, with torques in the sum of the `torque` terms.
     ///
     /// # Errors
     /// Names `thrust` if its bounds are not finite or in the wrong order.
-    pub fn new(least: R, greatest: R, torque: &'a [TorqueTerm<R>]) -> Result<Self, ParameterError> {
-        let (lower, upper) = (least.lower(), greatest.upper());
+    pub fn new(min: R, max: R, torque: &'a [TorqueTerm<R>]) -> Result<Self, ParameterError> {
+        let (lower, upper) = (min.lower(), max.upper());
         require(lower.is_finite() && upper.is_finite(), "thrust", Reason::NotFinite)?;
         require(lower <= upper, "thrust", Reason::NotIncreasing)?;
-        Ok(Self { thrust: (least, greatest), torque })
+        Ok(Self { thrust: (min, max), torque })
     }
 
     /// The greatest row . (T, tau), rounded outwards.
     fn max_along(&self, row: &Vector4<f64>) -> R {
-        let (least, greatest) = self.thrust;
-        let thrust = (least * row.x).greater(greatest * row.x);
+        let (min, max) = self.thrust;
+        let thrust = (min * row.x).greater(max * row.x);
         let direction = torque_part(row).map(R::from);
         let torque = self.torque.iter().fold(R::from(0.0), |sum, term| sum + term.support(&direction));
         thrust + torque + (thrust.abs() + torque) * TICK_ROUNDING_SHARE

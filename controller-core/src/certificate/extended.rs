@@ -100,8 +100,8 @@ fn feasibility<R: Real>(
     let rate = jerk / least * raised;
     // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
     let acceleration = (snap / least + rate * rate) * raised;
-    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(R::from);
-    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * most;
+    let [most_rate, max] = [p.turn_rate, p.turn_reserve].map(R::from);
+    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * max;
     let floor = (R::from(p.scale_greatest) * bottom + budget.margin + yaw + turning) * raised;
     let weakest = left * mass * (gravity - vertical - up);
     [
@@ -113,7 +113,7 @@ fn feasibility<R: Real>(
             available,
         ),
         Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
-        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), most),
+        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), max),
         Inequality::new("G floor at the target < thrust", "N", floor, weakest),
     ]
 }

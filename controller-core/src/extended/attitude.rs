@@ -26,10 +26,10 @@
 //!
 //! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T a:
 //!
-//! a is the acceleration fed forward in the last tick. With a first-order lag and small motions omega_p' is the
-//! commanded acceleration and the projected angle's rate is omega_p, as if the actuators were ideal. The paper's z_1
-//! and z_2 do the same for its filters. Every bound holds for any errors, so also for projected ones. Torques in the
-//! body frame, N m.
+//! a is the acceleration fed forward in the last tick: this tick's omega_d' is known only after the budget is spent.
+//! With a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is
+//! omega_p, as if the actuators were ideal. The paper's z_1 and z_2 do the same for its filters. Every bound holds for
+//! any errors, so also for projected ones. Torques in the body frame, N m.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude::rotate_back;

@@ -82,8 +82,8 @@ pub struct TorqueBudget<R = f64> {
 
 /// Row of B+ over b_T with the rotor's range.
 struct Share<R> {
-    least: R,
-    greatest: R,
+    min: R,
+    max: R,
     torque: Vector3<R>,
 }
 
@@ -111,8 +111,8 @@ impl<R: Real> TorqueBudget<R> {
         push(RowSource::Limit, [zero, one], zero, -torque_max.y);
 
         let shares = shares::<R>(rotors);
-        let top = shares.iter().map(|share| share.greatest).fold(R::from(f64::INFINITY), R::lesser);
-        let bottom = shares.iter().map(|share| share.least).fold(zero, R::greater);
+        let top = shares.iter().map(|share| share.max).fold(R::from(f64::INFINITY), R::lesser);
+        let bottom = shares.iter().map(|share| share.min).fold(zero, R::greater);
         for (place, share) in shares.iter().enumerate() {
             for other in shares.iter().skip(place + 1) {
                 let difference = share.torque - other.torque;
@@ -129,8 +129,8 @@ impl<R: Real> TorqueBudget<R> {
 
     /// (1 - mu) U for a thrust scale and no bias, m/s^2.
     pub fn held_acceleration(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
-        let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
-        most * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
+        let max = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
+        max * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
     }
 
     /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
@@ -147,7 +147,7 @@ impl TorqueBudget {
             per_scale: (self.ends[1] / mass) as f32,
             fixed: (self.margin / mass) as f32,
             per_bias: self.reach.map(|reach| (reach / mass) as f32),
-            most: (f64::from(limits.thrust_max) / mass) as f32,
+            max: (f64::from(limits.thrust_max) / mass) as f32,
         }
     }
 }
@@ -159,7 +159,7 @@ pub struct Ceiling {
     per_scale: f32,
     fixed: f32,
     per_bias: [f32; 2],
-    most: f32,
+    max: f32,
 }
 
 impl Ceiling {
@@ -168,7 +168,7 @@ impl Ceiling {
     pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
         let [lean, twist] = self.per_bias;
         let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
-        math::min(scale * self.per_scale - taken, self.most)
+        math::min(scale * self.per_scale - taken, self.max)
     }
 }
 
@@ -177,8 +177,8 @@ fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
     collected(rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())).map(|(rotor, row)| {
         let row: &Vector4<f64> = row;
         let torque = Vector3::new(row.y, row.z, row.w).map(|part| R::from(part) / row.x);
-        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
-        Share { least, greatest, torque }
+        let [min, max] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
+        Share { min, max, torque }
     }))
 }
 

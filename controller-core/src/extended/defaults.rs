@@ -40,13 +40,13 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     // The rest of Omega and alpha_0 beside the slowed law, at the least |u|.
     let slowed = Slowed::<f64>::new(p, airframe.vehicle.gravity);
     let [slow_jerk, slow_snap] = slowed.derivatives(p);
-    let least = gravity - up - vertical - slowed.level;
+    let min = gravity - up - vertical - slowed.level;
     // A frame that is tilted turns about its thrust axis as well, by a part of how u turns: yaw has to follow.
     let yaw = f64::from(p.yaw_acceleration);
     let slope = (f64::from(p.force_heading) + horizontal) / (gravity - up);
     let turned = 0.6 * min_f64(rate, math::sqrt_f64(reserve));
-    let jerk = min_f64(min_f64(8.0, turned * least - slow_jerk), least * math::sqrt_f64(0.2 * yaw / slope));
-    let snap = min_f64(0.8 * ((reserve - turned * turned) * least - slow_snap), 0.4 * yaw * least / slope);
+    let jerk = min_f64(min_f64(8.0, turned * min - slow_jerk), min * math::sqrt_f64(0.2 * yaw / slope));
+    let snap = min_f64(0.8 * ((reserve - turned * turned) * min - slow_snap), 0.4 * yaw * min / slope);
     let tilt = math::hypot(1.0, slope);
     let single = |value: f64| max_f64(value, 0.0) as f32;
     ReferenceBounds {

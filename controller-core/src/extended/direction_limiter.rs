@@ -65,10 +65,10 @@ impl DirectionLimiter {
 
     /// n*, m/s^2, for n, y_z - c_z as `more`, e3 in the axes of the desired frame and U.
     #[inline(always)] // into the law's step
-    pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
+    pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, max: f32) -> f32 {
         let most = PUSH_ACROSS_MAX_M_PER_S2 / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
         let length = magnitude + math::saturate(more / math::max(up.z, self.cosine), most);
-        math::min(math::max(length, 0.0), greatest)
+        math::min(math::max(length, 0.0), max)
     }
 
     /// q for a wanted `turn`, rad/s^2; `up` is e3 in the axes of the desired frame.
@@ -85,7 +85,7 @@ impl DirectionLimiter {
     }
 
     /// The change of u'' where the turn is `acceleration` instead of the wanted one, and for u to stay within its ends;
-    /// axes of the desired frame, m/s^4. None if nothing is changed. `greatest` is U, m/s^2; `vertical` c_z, c_z' and
+    /// axes of the desired frame, m/s^4. None if nothing is changed. `max` is U, m/s^2; `vertical` c_z, c_z' and
     /// c_z'' as wanted, m/s^2, m/s^3, m/s^4.
     #[inline(always)]
     pub fn change(
@@ -93,7 +93,7 @@ impl DirectionLimiter {
         turn: &DirectionMotion,
         acceleration: &Vector2<f32>,
         up: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         vertical: [f32; 3],
     ) -> Option<Vector3<f32>> {
         let DirectionMotion { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = turn;
@@ -113,7 +113,7 @@ impl DirectionLimiter {
             along = (least_rising - falling) / up.z;
         }
         let swelling = radial_acceleration + magnitude * rate.norm_squared() + along;
-        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - greatest);
+        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - max);
         if swelling > least_shrinking {
             cold_path();
             along += least_shrinking - swelling;
@@ -125,17 +125,17 @@ impl DirectionLimiter {
     /// alpha.
     fn kept_in_cone(&self, q: Vector2<f32>, rate: &Vector2<f32>, up: &Vector3<f32>) -> Vector2<f32> {
         let z = up.xy();
-        let least = -self.closing * (up.z - self.cosine);
-        if (rate + q * self.period).dot(&z) >= least {
+        let min = -self.closing * (up.z - self.cosine);
+        if (rate + q * self.period).dot(&z) >= min {
             return q;
         }
         cold_path();
         // Beyond the cone's edge by rounding alone: z is as long as the sine of the cone's angle.
         let length = math::sqrt(math::max(z.norm_squared(), 1e-6));
-        let (z, most) = (z / length, self.acceleration);
-        let along = math::saturate((least / length - rate.dot(&z)) / self.period, most);
-        let left = math::sqrt(math::max(most * most - along * along, 0.0));
-        shortened(shortened(q - z * q.dot(&z), left) + z * along, most)
+        let (z, max) = (z / length, self.acceleration);
+        let along = math::saturate((min / length - rate.dot(&z)) / self.period, max);
+        let left = math::sqrt(math::max(max * max - along * along, 0.0));
+        shortened(shortened(q - z * q.dot(&z), left) + z * along, max)
     }
 }
 

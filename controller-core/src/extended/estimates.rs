@@ -111,16 +111,16 @@ impl ForceObserver {
 /// frame: the vertical first, across what it leaves.
 #[inline(always)] // into the law's step
 pub(super) fn held(force: &Vector3<f32>, rest: &Vector3<f32>, acceleration_max: f32) -> Vector3<f32> {
-    let most = acceleration_max * HELD_SHARE;
+    let max = acceleration_max * HELD_SHARE;
     let lift = rest.z - force.z;
     let (wind, across) = (force.xy().norm_squared(), rest.xy().norm_squared());
     // (a + b)^2 <= 2 (a^2 + b^2).
-    if lift <= most && lift * lift + 2.0 * (wind + across) <= most * most {
+    if lift <= max && lift * lift + 2.0 * (wind + across) <= max * max {
         return *force;
     }
     cold_path();
-    let lift = math::min(lift, most);
-    let left = math::sqrt(math::max(most * most - lift * lift, 0.0)) - math::sqrt(across);
+    let lift = math::min(lift, max);
+    let left = math::sqrt(math::max(max * max - lift * lift, 0.0)) - math::sqrt(across);
     let length = math::sqrt(wind);
     // Without a wind there is nothing to cut, whatever the reference takes.
     let share = if length > left { math::max(left, 0.0) / math::max(length, f32::MIN_POSITIVE) } else { 1.0 };

@@ -76,11 +76,11 @@ impl<R: Real> Slowed<R> {
         let p = parameters;
         let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
         let level = R::from(SLOW_LEVEL_M_PER_S2);
-        let least = (R::from(gravity) - R::from(p.force_up) - level - REFERENCE_FALL_M_PER_S2)
+        let min = (R::from(gravity) - R::from(p.force_up) - level - REFERENCE_FALL_M_PER_S2)
             .greater(R::from(COMMAND_MIN_M_PER_S2))
             * TURN_SHARE;
-        let by_acceleration = (reserve * least / (k_f * 2.0 * (k_s + k_f) * level)).sqrt_of_rounded();
-        let by_rate = rate.lesser(reserve.sqrt_of_rounded()) * least / (k_f * 2.0 * level);
+        let by_acceleration = (reserve * min / (k_f * 2.0 * (k_s + k_f) * level)).sqrt_of_rounded();
+        let by_rate = rate.lesser(reserve.sqrt_of_rounded()) * min / (k_f * 2.0 * level);
         Self { factor: by_acceleration.lesser(by_rate).lesser(R::from(1.0)), level }
     }
 
@@ -133,7 +133,7 @@ pub struct Fallback {
     /// Whether the vehicle was near in this window.
     near: bool,
     /// The greatest |p~| and |v~| of this window, m and m/s.
-    greatest: [f32; 2],
+    max: [f32; 2],
     /// What progress is counted from, likewise.
     best: [f32; 2],
 }
@@ -141,7 +141,7 @@ pub struct Fallback {
 impl Fallback {
     /// After a reset.
     pub const FRESH: Self =
-        Self { slow: false, times: 0, elapsed: 0, now: f32::MAX, near: false, greatest: [0.0; 2], best: [f32::MAX; 2] };
+        Self { slow: false, times: 0, elapsed: 0, now: f32::MAX, near: false, max: [0.0; 2], best: [f32::MAX; 2] };
 
     /// Whether the law is slowed.
     pub fn is_slow(&self) -> bool {
@@ -174,14 +174,14 @@ impl Fallback {
             *self = self.next_window([f32::MAX; 2]);
         }
         self.near |= near;
-        for (greatest, error) in self.greatest.iter_mut().zip(errors) {
-            *greatest = math::max(*greatest, error);
+        for (max, error) in self.max.iter_mut().zip(errors) {
+            *max = math::max(*max, error);
         }
         if self.elapsed < micros(PROGRESS_WINDOW_S) {
             return false;
         }
         cold_path();
-        let [farthest, fastest] = self.greatest;
+        let [farthest, fastest] = self.max;
         let [distance, speed] = self.best;
         let is_less =
             |now: f32, best: f32| best > NEAR_DISTANCE_M && now < best - math::min(0.1 * best, PROGRESS_STEP_MAX);

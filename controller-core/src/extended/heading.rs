@@ -28,8 +28,8 @@ use nalgebra::Vector3;
 pub fn check(parameters: &ExtendedParameters, period: f32) -> Result<(), ParameterError> {
     let ExtendedParameters { c_1, c_2, .. } = *parameters;
     require(c_2 * period <= 1.0, "gains.c_2", Reason::Above(1.0 / period))?;
-    let most = 0.5 * c_2 / period;
-    require(c_1 <= most, "gains.c_1", Reason::Above(most))
+    let max = 0.5 * c_2 / period;
+    require(c_1 <= max, "gains.c_1", Reason::Above(max))
 }
 
 /// The part of the torque at hand that a turn is to be braked with.

@@ -45,13 +45,13 @@ impl StreamDemand {
         let a = math::min(acceleration, squared(most));
         let j = math::min(jerk, cubed(most));
         let s = math::min(snap, squared(squared(most)));
-        let greatest = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
+        let max = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
             .into_iter()
             .fold(0.0, math::max);
         let (present, last, lasted) = if self.lasted > MEMORY_S {
-            (greatest, self.present, 0.0)
+            (max, self.present, 0.0)
         } else {
-            (math::max(self.present, greatest), self.last, self.lasted + period)
+            (math::max(self.present, max), self.last, self.lasted + period)
         };
         Self { present, last, lasted, off }
     }

@@ -129,7 +129,7 @@ impl Envelope {
     pub fn new(bounds: &Bounds, blur: f32, period: f32) -> Self {
         let Bounds { speed, acceleration, jerk, snap } = bounds;
         let turn = (0.25 * jerk / (snap * period)).max(1.0) as u32 as f32;
-        let greatest = acceleration.horizontal + acceleration.vertical;
+        let max = acceleration.horizontal + acceleration.vertical;
         let few = 4.0 * period;
         Self {
             period,
@@ -139,7 +139,7 @@ impl Envelope {
             snap: snap * period * period * (1.0 - ROUNDING_MARGIN),
             turn,
             stopping: turn * period + jerk / snap + few,
-            fading: (greatest / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
+            fading: (max / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
         }
     }
 

@@ -384,7 +384,7 @@ impl StreamFollower {
 /// Whether the head and the point both rest, at one place.
 fn rests(head: &HeadMotion, StreamTarget { point, error }: &StreamTarget) -> bool {
     let [near, slow, steady] = REST_TOLERANCES;
-    let within = |vector: &Vector3<f32>, most: f32| vector.norm_squared() < most * most;
+    let within = |vector: &Vector3<f32>, max: f32| vector.norm_squared() < max * max;
     within(&error.position, near)
         && within(&head.velocity, slow)
         && within(&point.velocity, slow)

@@ -53,8 +53,8 @@ impl Settings {
                 Reason::Above(BOX_CORNER_MAX_M),
             )?;
         }
-        let least = (self.high - self.low).min();
-        require(least >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
+        let min = (self.high - self.low).min();
+        require(min >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
         for (value, field) in [
             (self.speed, "shield.speed"),
             (self.silence, "shield.silence"),

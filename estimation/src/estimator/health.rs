@@ -194,8 +194,8 @@ fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
 }
 
 /// Written so that NaN is a fault.
-fn within(value: f32, most: f32) -> bool {
-    value <= most
+fn within(value: f32, max: f32) -> bool {
+    value <= max
 }
 
 #[cfg(test)]

@@ -128,8 +128,8 @@ impl Settings {
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {
-            let least = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
-            controller_core::math::clamp(value, least, DEVIATION_MAX)
+            let min = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
+            controller_core::math::clamp(value, min, DEVIATION_MAX)
         };
         let (position, attitude) = given.unwrap_or(usual);
         (floor(position, usual.0), floor(attitude, usual.1))

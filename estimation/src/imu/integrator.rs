@@ -59,9 +59,9 @@ impl Integrator {
         *self = Self { last: Some(*sample), start: sample.time, ..Self::EMPTY };
     }
 
-    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. A force that is missing is
+    /// Takes the next sample, and gives the increment if that is now as long as `min`, us. A force that is missing is
     /// the last one.
-    pub fn take(&mut self, sample: &Sample, least: u64) -> Option<Increment> {
+    pub fn take(&mut self, sample: &Sample, min: u64) -> Option<Increment> {
         let (last, time) = (self.last?, sample.time);
         let before = last.force.unwrap_or_default();
         let force = sample.force.unwrap_or(before);
@@ -72,7 +72,7 @@ impl Integrator {
         self.angle += turn + self.angle.cross(&turn) * 0.5;
         self.clipped = self.clipped.or(last.clipped).or(sample.clipped);
         self.last = Some(Sample { force: Some(force), ..*sample });
-        if time.saturating_sub(self.start) < least {
+        if time.saturating_sub(self.start) < min {
             return None;
         }
         let increment = self.under_way();

@@ -14,16 +14,16 @@ impl PositionLaw {
         &self,
         z_2: &Vector3<f32>,
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         most: &FeedbackLimits,
     ) -> FeedbackLimits {
-        let up = math::min(math::max(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2), most.up);
+        let up = math::min(math::max(max - self.gravity + force.z, LEVEL_MIN_M_PER_S2), most.up);
         let down = math::min(math::max(self.a_down - force.z, LEVEL_MIN_M_PER_S2), most.down);
         let vertical = z_2.z * self.k_v_vertical;
         let level = if vertical > 0.0 { down } else { up };
         let resting = self.gravity - force.z;
         let lift = resting - vertical * unit_factor(level, vertical * vertical);
-        let reach = math::min(self.reach(lift, greatest), self.reach(resting, greatest));
+        let reach = math::min(self.reach(lift, max), self.reach(resting, max));
         let left = math::max(reach - math::sqrt(force.xy().norm_squared()), LEVEL_MIN_M_PER_S2);
         FeedbackLimits { up, down, across: math::min(left, most.across) }
     }
@@ -41,14 +41,8 @@ impl PositionLaw {
     }
 
     /// ubar where the reference is at rest at z_1, m/s^2.
-    pub fn stopping(
-        &self,
-        z_2: &Vector3<f32>,
-        force: &Vector3<f32>,
-        greatest: f32,
-        most: &FeedbackLimits,
-    ) -> Vector3<f32> {
-        self.saturated([&Vector3::zeros(), z_2], force, greatest, most)
+    pub fn stopping(&self, z_2: &Vector3<f32>, force: &Vector3<f32>, max: f32, most: &FeedbackLimits) -> Vector3<f32> {
+        self.saturated([&Vector3::zeros(), z_2], force, max, most)
     }
 
     /// The inputs of the filters c, x and y in turn, for a position and its derivatives: p + p' / k_f, and that with

@@ -252,8 +252,8 @@ impl RotorLossLaw {
         self.memory.beginning += if turns { SPIN_UP_MAX_S } else { period };
         let is_short = self.memory.beginning < SPIN_UP_MAX_S;
         let begins = is_short && self.memory.lacking > SPIN_UP_MISSING_TORQUE_SHARE_MIN && upwards > SPIN_UP_COSINE_MIN;
-        let least = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
-        let wanted = Wrench { thrust: math::max(along, least), torque };
+        let min = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
+        let wanted = Wrench { thrust: math::max(along, min), torque };
 
         let thrusts = self.rotors.allocate(&wanted);
         let delivered = self.rotors.wrench(&thrusts);
@@ -288,8 +288,8 @@ impl RotorLossLaw {
         let wanted = rest.xy() - (v.xy() + p.xy() * closing) * k_v;
         let lift =
             rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION_M_PER_S2)) * k_v_vertical;
-        let (least, most) = LIFT_RANGE_G;
-        let lift = math::clamp(lift, least * gravity, most * gravity);
+        let (min, max) = LIFT_RANGE_G;
+        let lift = math::clamp(lift, min * gravity, max * gravity);
         let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT_MAX);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
@@ -351,8 +351,8 @@ fn towards(state: &State, reference: &Reference) -> f32 {
     let heading = reference.heading.direction();
     let sine = forward.x * heading.y - forward.y * heading.x;
     let behind = forward.dot(&heading) < 0.0;
-    let (of_one, most) = HEADING_GAIN_AND_RATE;
-    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::saturate(of_one * sine, most) };
+    let (of_one, max) = HEADING_GAIN_AND_RATE;
+    let turn = if behind { if sine < 0.0 { -max } else { max } } else { math::saturate(of_one * sine, max) };
     turn + reference.heading.rate()
 }
 

@@ -148,8 +148,8 @@ fn nothing_it_is_told_takes_a_command_out_of_its_range_or_a_wrench_out_of_its_li
             let RotorLossStep { mrp, .. } = law.step(&state, &hover(), &pending, PERIOD);
             assert!(mrp.norm() <= 1.001, "{mrp}");
             for (index, (command, rotor)) in law.commands().iter().zip(quad().iter()).enumerate() {
-                let least = if index == lost.rotor && lost.left == 0.0 { 0.0 } else { rotor.thrust_min };
-                assert!((least..=rotor.thrust_max).contains(command), "{command}");
+                let min = if index == lost.rotor && lost.left == 0.0 { 0.0 } else { rotor.thrust_min };
+                assert!((min..=rotor.thrust_max).contains(command), "{command}");
             }
             let Wrench { thrust, torque } = law.delivered();
             assert!(*thrust <= 40.0 && (limits().torque_max - torque.abs()).min() >= 0.0, "{thrust} {torque}");
