@@ -28,7 +28,6 @@ impl Range {
     pub const SHARE: Self = Self { min: 1e-7, max: 1.0 };
 
     /// A range of its own.
-    #[must_use]
     pub const fn between(least: f32, greatest: f32) -> Self {
         Self { min: least, max: greatest }
     }
@@ -137,7 +136,6 @@ macro_rules! constants {
             ];
 
             /// The values, in the table's order.
-            #[must_use]
             pub fn values(&self) -> [f32; Self::COUNT] {
                 [$(self.$key),*]
             }
@@ -157,7 +155,6 @@ macro_rules! constants {
             }
 
             /// The struct of these values, in the table's order.
-            #[must_use]
             pub fn from_values(values: [f32; Self::COUNT]) -> Self {
                 let [$($key),*] = values;
                 Self { $($key),* }

@@ -157,7 +157,7 @@ impl Governor {
         for (value, path) in bounds.values().into_iter().zip(ReferenceBounds::PATHS) {
             require_positive(value, path)?;
         }
-        for (value, most, field) in [
+        for (value, max, field) in [
             (period, 0.1, "governor.period"),
             (limits.horizontal_speed, SPEED_RANGE_M_PER_S, "governor.horizontal_speed"),
             (limits.vertical_speed, SPEED_RANGE_M_PER_S, "governor.vertical_speed"),
@@ -166,7 +166,7 @@ impl Governor {
             (limits.timeout, DURATION_MAX_S, "governor.timeout"),
         ] {
             require_positive(value, field)?;
-            require(value <= most, field, Reason::Above(most))?;
+            require(value <= max, field, Reason::Above(max))?;
         }
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
         *memory = Memory::EMPTY;
@@ -285,7 +285,6 @@ impl Governor {
     }
 
     /// Whether the reference is at rest at its goal, and stays there until another setpoint.
-    #[must_use]
     pub fn at_rest(&self) -> bool {
         self.follower.is_averaged()
             && self.crackle == Vector3::zeros()
@@ -296,7 +295,6 @@ impl Governor {
 
     /// How far the reference would go if it were stopped now, m: what it is behind the command, and the command's own
     /// braking. Infinite where it follows a stream directly.
-    #[must_use]
     pub fn way_to_rest(&self) -> f32 {
         if !self.follower.is_averaged() {
             return f32::INFINITY;
@@ -307,7 +305,6 @@ impl Governor {
     }
 
     /// How the stream that is sent is followed, if there is one: position, velocity and acceleration, not at rest.
-    #[must_use]
     pub fn following(&self) -> Option<FollowingReport> {
         self.follower.following()
     }

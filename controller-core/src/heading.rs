@@ -77,7 +77,6 @@ impl Heading {
     }
 
     /// Where a vehicle's x axis points, at rest; along world x where that points up or down.
-    #[must_use]
     pub fn from_attitude(attitude: &Quaternion<f32>) -> Self {
         let forwards = forwards(attitude);
         let length = math::sqrt(forwards.norm_squared());
@@ -90,37 +89,31 @@ impl Heading {
     }
 
     /// The same direction with its rates dropped.
-    #[must_use]
     pub fn at_rest(&self) -> Self {
         Self { rate: 0.0, acceleration: 0.0, ..*self }
     }
 
     /// nu_d, unit length.
-    #[must_use]
     pub fn direction(&self) -> Vector2<f32> {
         self.direction
     }
 
     /// psi', rad/s.
-    #[must_use]
     pub fn rate(&self) -> f32 {
         self.rate
     }
 
     /// psi'', rad/s^2.
-    #[must_use]
     pub fn acceleration(&self) -> f32 {
         self.acceleration
     }
 
     /// nu_d' = psi' S nu, 1/s.
-    #[must_use]
     pub fn first_derivative(&self) -> Vector2<f32> {
         Vector2::new(-self.direction.y, self.direction.x) * self.rate
     }
 
     /// nu_d'' = psi'' S nu - psi'^2 nu, 1/s^2.
-    #[must_use]
     pub fn second_derivative(&self) -> Vector2<f32> {
         Vector2::new(-self.direction.y, self.direction.x) * self.acceleration - self.direction * (self.rate * self.rate)
     }

@@ -24,7 +24,6 @@ use nalgebra::Vector3;
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the
 /// target's ABI shows (stable compilers hide its feature `vfp2`).
 #[inline(always)]
-#[must_use]
 pub fn sqrt(x: f32) -> f32 {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf", target_os = "none"))]
     return sqrtf(x);
@@ -33,7 +32,6 @@ pub fn sqrt(x: f32) -> f32 {
 }
 
 /// `x` cut to ± `level`; a NaN stays one. One comparison where nothing is cut, which is nearly always.
-#[must_use]
 pub fn saturate(x: f32, level: f32) -> f32 {
     if x.abs() > level {
         cold_path();
@@ -44,48 +42,41 @@ pub fn saturate(x: f32, level: f32) -> f32 {
 }
 
 /// `x` cut to an interval; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
-#[must_use]
-pub fn clamp(x: f32, least: f32, greatest: f32) -> f32 {
-    let x = if x > greatest { greatest } else { x };
-    if x < least { least } else { x }
+pub fn clamp(x: f32, min: f32, max: f32) -> f32 {
+    let x = if x > max { max } else { x };
+    if x < min { min } else { x }
 }
 
 /// The greater of two numbers; the first where they cannot be compared.
-#[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
 /// The lesser of two numbers; the first where they cannot be compared.
-#[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
 /// The greater of two numbers; NaN if either is NaN. For proofs, where a NaN must not pass for the lesser
 /// one.
-#[must_use]
 #[cfg_attr(target_os = "none", inline(never))] // a board's image has it in a hundred places: 2 KB
 pub fn max_f64(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
 /// The lesser of two numbers; NaN if either is NaN.
-#[must_use]
 #[cfg_attr(target_os = "none", inline(never))]
 pub fn min_f64(a: f64, b: f64) -> f64 {
     if a <= b || a.is_nan() { a } else { b }
 }
 
 /// The square root of a number that only rounding can have taken below zero.
-#[must_use]
 pub fn sqrt_of_rounded(x: f64) -> f64 {
     sqrt_f64(max_f64(x, 0.0))
 }
 
 /// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those
 /// in one instruction each, where the conversion of 64 bits is a call.
-#[must_use]
 pub fn i64_to_f32(x: i64) -> f32 {
     let low = x as i32;
     let high = (x.wrapping_sub(i64::from(low)) >> 32) as i32;
@@ -94,7 +85,6 @@ pub fn i64_to_f32(x: i64) -> f32 {
 
 /// The whole part of a number, exactly; beyond 2^61 it saturates, and a NaN gives zero. In two halves,
 /// as [`i64_to_f32`].
-#[must_use]
 pub fn f32_to_i64(x: f32) -> i64 {
     const HALF_RANGE: f32 = 2_147_483_648.0;
     let high = (x * (1.0 / HALF_RANGE)) as i32;
@@ -125,7 +115,6 @@ extern "C" fn sqrtf(x: f32) -> f32 {
 /// Sine and cosine of `phase` / 2^64 turns.
 ///
 /// The phase is an integer, so its reduction to an octant is exact however long the clock has run.
-#[must_use]
 pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
     /// Radians per unit of a phase whose full turn is 2^32.
     const RAD_PER_UNIT: f32 = core::f32::consts::TAU / 4_294_967_296.0;
@@ -155,7 +144,6 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 /// fit); the rest of the stated error is rounding. A common factor of A and Q cancels, and the scale of z is the one at
 /// which both leading coefficients are one: two multiplications less. In exact arithmetic 2 A Q <= A^2 + Q^2, and the
 /// rounded quotient was found at most one for every single-precision number, so nothing is clipped.
-#[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
     let z2 = z * z;
     if z2 <= LINEAR_SQUARE_MAX {
@@ -172,7 +160,6 @@ pub fn tanh_of_scaled(z: f32) -> f32 {
 /// [`tanh_of_scaled`] of three numbers, to the same bits. Mostly none of them is large: one comparison instead of
 /// three.
 #[inline(always)]
-#[must_use]
 pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
     let z2 = z.norm_squared();
     if z2 <= LINEAR_SQUARE_MAX {

@@ -88,7 +88,6 @@ impl FilterTransition {
 
     /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all
     /// of them now, to the last bit.
-    #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
         let FilterState { filtered: f, intermediate: s } = state;
         let (x_f, x_s) = self.advance_axis(f.x, s.x, feedback.x);
@@ -98,7 +97,6 @@ impl FilterTransition {
     }
 
     /// One axis' u_f and u_s one period later, with its ubar held.
-    #[must_use]
     pub fn advance_axis(&self, u_f: f32, u_s: f32, ubar: f32) -> (f32, f32) {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them
         // would move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three
@@ -158,7 +156,6 @@ pub struct CommandRates {
 
 impl PositionLaw {
     /// For `gains` under `gravity`, m/s^2.
-    #[must_use]
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;
         let [p, v, f, s, m] = [gains.k_p, gains.k_v, k_f, k_s, m_p].map(f64::from);
@@ -170,7 +167,6 @@ impl PositionLaw {
 
     /// Evaluates the law at one instant; the filters are read, not advanced.
     #[inline(always)]
-    #[must_use]
     pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
         let Self { second_lag, first_lag, .. } = *self;
         let [of_position, of_velocity, of_filtered, of_intermediate] = self.weights;
@@ -193,7 +189,6 @@ impl PositionLaw {
 
     /// u' and u'' while the filters take up `feedback`.
     #[inline(always)]
-    #[must_use]
     pub fn rates(&self, reference: &Reference, filter: &FilterState, feedback: &Vector3<f32>) -> CommandRates {
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
         let towards_intermediate = u_s - u_f;

@@ -5,7 +5,6 @@ use crate::reference::phase::swing;
 use nalgebra::{Quaternion, Vector3};
 
 /// The unit quaternion (cos |x|, sin |x| x/|x|) of the half angle x, rad.
-#[must_use]
 pub fn half_rotation(x: &Vector3<f32>) -> Quaternion<f32> {
     /// Below this, |x|^2 and |x|^4 of the series suffice: the next term is under 2e-9.
     const SERIES_SQUARE_MAX: f32 = 0.01;

@@ -103,7 +103,7 @@ pub struct Shield {
     monitor: Monitor,
     heading: HeadingGenerator,
     /// The greatest levels of feedback while the law flies.
-    most: FeedbackLimits,
+    limits: FeedbackLimits,
     period: f32,
     pilot: InControl,
     /// The last demand that could be used, and how many ticks ago it came.
@@ -128,7 +128,7 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
-            most: stopping(configuration.vehicle().gravity),
+            limits: stopping(configuration.vehicle().gravity),
             period,
             pilot: InControl::Policy,
             demand: None,
@@ -163,19 +163,16 @@ impl Shield {
     }
 
     /// How often the law took over since the reset, or since a person asked again.
-    #[must_use]
     pub fn hand_overs(&self) -> u32 {
         self.hand_overs
     }
 
     /// Whether the law keeps the vehicle until a person asks again.
-    #[must_use]
     pub fn is_latched(&self) -> bool {
         self.hand_overs >= self.settings.hand_overs
     }
 
     /// Where the heading generator points.
-    #[must_use]
     pub fn heading(&self) -> &Heading {
         self.heading.heading()
     }
@@ -202,7 +199,7 @@ impl Shield {
         state: &State,
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
-        let prospect = law.stopping_forecast(state, &self.most);
+        let prospect = law.stopping_forecast(state, &self.limits);
         let against = self.judge(state, &prospect, offers);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
@@ -220,7 +217,7 @@ impl Shield {
                 };
                 self.heading.come_to_rest();
                 let reference = Reference::resting(refuge, *self.heading.heading());
-                let (wrench, diagnostics) = law.step_within(state, &reference, &self.most)?;
+                let (wrench, diagnostics) = law.step_within(state, &reference, &self.limits)?;
                 Ok(ShieldStep { wrench, diagnostics, reason: Some(reason), reference })
             }
         }

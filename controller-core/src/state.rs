@@ -95,7 +95,6 @@ pub struct Wrench {
 
 impl Wrench {
     /// The same wrench, `factor` times as strong.
-    #[must_use]
     pub fn scaled(&self, factor: f32) -> Self {
         Self { thrust: self.thrust * factor, torque: self.torque * factor }
     }

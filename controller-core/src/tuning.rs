@@ -36,7 +36,6 @@ impl Percent {
     pub const AS_BUILT: Self = Self(3);
 
     /// The factor of this many percent, if it is one.
-    #[must_use]
     pub fn new(percent: f32) -> Option<Self> {
         (0..Self::COUNT as u8).map(Self).find(|level| level.percent() == percent)
     }
@@ -47,7 +46,6 @@ impl Percent {
     }
 
     /// In percent.
-    #[must_use]
     pub fn percent(self) -> f32 {
         f32::from(Self::FACTOR_MIN_PERCENT + Self::FACTOR_STEP_PERCENT * self.0)
     }
@@ -149,7 +147,6 @@ pub struct Figures {
 
 impl Figures {
     /// Those of `configuration`; of its rotors' the first one's.
-    #[must_use]
     pub fn from_configuration(configuration: &Configuration) -> Self {
         let first = configuration.rotors().and_then(|rotors| rotors.first());
         Self {
@@ -197,10 +194,10 @@ impl Tuning {
 
     /// `rotors` with the thrusts that were changed.
     fn rotors(&self, rotors: &Rotors, built: &Figures) -> Result<Rotors, ParameterError> {
-        let ([least, most], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
+        let ([min, max], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
         let changed = |rotor: &Rotor| Rotor {
-            thrust_min: if least == built_least { rotor.thrust_min } else { least },
-            thrust_max: if most == built_most { rotor.thrust_max } else { most },
+            thrust_min: if min == built_least { rotor.thrust_min } else { min },
+            thrust_max: if max == built_most { rotor.thrust_max } else { max },
             ..*rotor
         };
         let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> = collected(rotors.iter().map(changed));

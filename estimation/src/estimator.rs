@@ -143,7 +143,6 @@ pub struct Estimator {
 
 impl Estimator {
     /// One without an estimate.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
             settings: *settings,
@@ -218,7 +217,6 @@ impl Estimator {
 
     /// The vertical speed, m/s: at once that of the accelerometer, with its bias as it was on the ground, and after
     /// 8 s that of the poses.
-    #[must_use]
     pub fn climb(&self) -> f32 {
         self.climb
     }
@@ -252,7 +250,6 @@ impl Estimator {
     /// The increment that is `under_way` since the last one turns the attitude on, and beyond it the mean rate of the
     /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX_US`] after the last increment, before
     /// it, and with a rate that is not finite or beyond every sensor.
-    #[must_use]
     pub fn state(&self, now: u64, rate: &Vector3<f32>, under_way: Option<&Increment>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
         let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US && is_measurable(rate))?;
@@ -305,14 +302,12 @@ impl Estimator {
     }
 
     /// What the estimate is worth at `now`, us.
-    #[must_use]
     pub fn health(&self, now: u64) -> Health {
         let imu_age = self.imu_age(now).unwrap_or(u64::MAX);
         Health::new(self.filter.as_ref(), &self.statistics, &self.settings, imu_age, now)
     }
 
     /// The filter at its horizon, if there is one: nominal state, covariance and time.
-    #[must_use]
     pub fn filter(&self) -> Option<&Filter> {
         self.filter.as_ref()
     }

@@ -88,19 +88,16 @@ impl ImuParameters {
 
     /// How late the body rates of a law with ticks every `period` us are at most, s, as long as they change slowly: by
     /// both filters, and by the time to the next sample.
-    #[must_use]
     pub fn rates_late(&self, period: u64) -> f32 {
         self.low_pass(period).delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
     }
 
     /// Where what it shows ends.
-    #[must_use]
     pub fn ranges(&self) -> Ranges {
         Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
     }
 
     /// The low-pass for the body rates of a law with ticks every `period` us.
-    #[must_use]
     pub fn low_pass(&self, period: u64) -> LowPass {
         LowPass::before_ticks(period, self.rate.into())
     }
@@ -170,13 +167,11 @@ impl Conditioner {
 
     /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it
     /// shows, but for the low-pass.
-    #[must_use]
     pub fn newest(&self) -> Option<Stamped<ImuSample>> {
         self.newest
     }
 
     /// What the newest samples add up to since the last increment; none where that ended with the newest.
-    #[must_use]
     pub fn under_way(&self) -> Option<Increment> {
         self.integrator.under_way()
     }

@@ -29,13 +29,11 @@ pub struct Stamped<T> {
 
 impl<T> Stamped<T> {
     /// Something that follows from it, true at the same time.
-    #[must_use]
     pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Stamped<U> {
         Stamped { value: of(self.value), time: self.time }
     }
 
     /// How old it is at `now`, us; zero for a time to come.
-    #[must_use]
     pub fn age(&self, now: u64) -> u64 {
         now.saturating_sub(self.time)
     }
@@ -115,34 +113,30 @@ impl Pose {
     }
 
     /// p, m, world.
-    #[must_use]
     pub fn position(&self) -> Vector3<f32> {
         self.position
     }
 
     /// v, m/s, world.
-    #[must_use]
     pub fn velocity(&self) -> Vector3<f32> {
         self.velocity
     }
 
     /// q, body to world, unit.
-    #[must_use]
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }
 }
 
 /// Refuses a vector that is longer than `most`.
-fn within(vector: &Vector3<f32>, most: f32, field: &'static str) -> Result<(), PoseError> {
+fn within(vector: &Vector3<f32>, max: f32, field: &'static str) -> Result<(), PoseError> {
     if !vector.iter().all(|component| component.is_finite()) {
         return Err(PoseError::NotFinite(field));
     }
-    if vector.norm_squared() <= most * most { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
+    if vector.norm_squared() <= max * max { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
 }
 
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
-#[must_use]
 pub fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
     now.saturating_sub(time) <= age_max && time <= now.saturating_add(STAMP_LEAD_MAX_US)
 }

@@ -150,7 +150,7 @@ impl Certificate {
     #[getter]
     fn thrust(&self) -> (f64, f64) {
         let thrust = self.verdict.certificate().thrust();
-        (thrust.least, thrust.max)
+        (thrust.min, thrust.max)
     }
 
     /// (3,): greatest |torque| that it can command about each body axis, N m.
@@ -163,7 +163,7 @@ impl Certificate {
     #[getter]
     fn rotors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let proven = (0..self.rotors).filter_map(|rotor| self.verdict.certificate().rotor(rotor));
-        array(py, proven.map(|proven| [proven.least, proven.max]).collect())
+        array(py, proven.map(|proven| [proven.min, proven.max]).collect())
     }
 
     fn __bool__(&self) -> bool {

@@ -13,7 +13,7 @@ pub mod turning_loop;
 use controller_core::allocation::remaining::LostRotor;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::extended::memory::Estimates;
-use controller_core::extended::rotor_loss::spinning::SpinningLaw;
+use controller_core::extended::rotor_loss::spinning::RotorLossLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::State;
@@ -28,7 +28,7 @@ pub const SOFT_LANDING_SPEED_M_PER_S: f64 = 1.0;
 /// The law of a vehicle without one of its rotors, before its first tick.
 #[derive(Debug, Clone)]
 pub struct WithoutARotor {
-    law: SpinningLaw,
+    law: RotorLossLaw,
     period: f32,
 }
 
@@ -43,7 +43,7 @@ impl WithoutARotor {
         let lost = LostRotor { rotor, left: 0.0 };
         let times = [law.actuators.lag + law.actuators.delay, period];
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-        Some(Self { law: SpinningLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })
+        Some(Self { law: RotorLossLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })
     }
 
     /// The axis, in the body, about which it turns: at rest and level, the tilt's error is the one from it to z.

@@ -71,7 +71,7 @@ fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
         println!("{}: there after {:?} s", scenario.name, flown.position_reached());
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
         let thrust = Certificate::new(&scenario.configuration).unwrap().thrust();
-        assert!(thrust.least > 0.0 && thrust.max <= f64::from(scenario.configuration.limits().thrust_max));
+        assert!(thrust.min > 0.0 && thrust.max <= f64::from(scenario.configuration.limits().thrust_max));
     }
     for name in [
         "paper",

@@ -19,7 +19,8 @@ fn the_page_shows_the_formulas_of_the_law() {
     let constants = ExtendedParameters::TABLE.iter().map(|constant| (constant.path, constant.formula));
     let mut wrong = String::new();
     for (name, formula) in constants.chain(Quantities::FORMULAS.iter().copied()) {
-        let row = page.lines().find(|line| line.starts_with(&format!("| `{name}` | "))).unwrap_or_else(|| panic!("{name}"));
+        let row =
+            page.lines().find(|line| line.starts_with(&format!("| `{name}` | "))).unwrap_or_else(|| panic!("{name}"));
         let (_, said) = row.trim_end_matches(" |").rsplit_once(" | ").unwrap();
         let expected = format!("`{}`", shown(formula));
         if said != expected {

@@ -192,7 +192,7 @@ impl Usage {
     fn watch(&mut self, wrench: &Wrench, certified: &Certified) {
         let PaperCertificate { sharp, rotors, .. } = certified.certificate().paper().unwrap();
         let thrust = f64::from(wrench.thrust);
-        self.thrust = self.thrust.max(thrust / sharp.thrust.max).max(sharp.thrust.least / thrust);
+        self.thrust = self.thrust.max(thrust / sharp.thrust.max).max(sharp.thrust.min / thrust);
         self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
 
         // What flies never clips, and so is what the mixer does with all its priorities.

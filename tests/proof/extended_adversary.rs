@@ -20,7 +20,7 @@ use controller_core::extended::controller::Controller;
 use controller_core::extended::demand::Demand;
 use controller_core::extended::measured::Measured;
 use controller_core::extended::parameters::Extended;
-use controller_core::extended::rotor_loss::spinning::SpinningLaw;
+use controller_core::extended::rotor_loss::spinning::RotorLossLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
@@ -108,7 +108,7 @@ impl World {
             assert!(*thrust >= rotor.thrust_min && *thrust <= rotor.thrust_max);
         }
         let place = |(f, end): (&f32, &controller_core::certificate::form::Interval)| {
-            2.0 * (f64::from(*f) - end.least) / (end.max - end.least) - 1.0
+            2.0 * (f64::from(*f) - end.min) / (end.max - end.min) - 1.0
         };
         ours.thrusts.iter().zip(&self.bounds.rotors).map(place).collect()
     }
@@ -122,12 +122,12 @@ impl World {
             rotors: [places.iter().copied().fold(0.0, f64::max), -places.iter().copied().fold(0.0, f64::min)],
         };
         let within = shown.all().iter().all(|share| *share <= 1.0);
-        assert!(within && f64::from(wrench.thrust) >= self.bounds.thrust.least, "{shown:?}: {wrench:?}, scale {scale}");
+        assert!(within && f64::from(wrench.thrust) >= self.bounds.thrust.min, "{shown:?}: {wrench:?}, scale {scale}");
         shown
     }
 
     /// A command without a rotor, judged.
-    fn judge_without_a_rotor(&self, law: &SpinningLaw, wrench: &Wrench) {
+    fn judge_without_a_rotor(&self, law: &RotorLossLaw, wrench: &Wrench) {
         let limits = self.configuration().limits();
         let torque = limits.torque_max - wrench.torque.abs();
         assert!(wrench.thrust <= limits.thrust_max && torque.min() >= 0.0, "{wrench:?}");

@@ -226,8 +226,8 @@ fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut 
     let acceleration = ball(form.rates.angular_acceleration * raised, inertia.component_mul(&row));
     let velocity = ball(form.rates.angular_velocity * raised, most_gyroscopic(&inertia, &row));
     let torque = feedback + inertia.component_mul(&acceleration) + velocity.cross(&inertia.component_mul(&velocity));
-    let middle = 0.5 * (form.thrust.least + form.thrust.max);
-    let thrust = middle + used * 0.5 * up * (form.thrust.max - form.thrust.least);
+    let middle = 0.5 * (form.thrust.min + form.thrust.max);
+    let thrust = middle + used * 0.5 * up * (form.thrust.max - form.thrust.min);
     Wrench { thrust: thrust as f32, torque: torque.cast() }
 }
 

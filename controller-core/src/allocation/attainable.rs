@@ -148,9 +148,9 @@ impl<const N: usize> Slabs<N> {
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if it misses the zonotope, nearly so.
     pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
-        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
+        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(min, max), slab| {
             let at = slab.normal.dot(wrench);
-            let into = |s: f32| s.max(least).min(greatest);
+            let into = |s: f32| s.max(min).min(max);
             (into(at - slab.high), into(at - slab.low))
         })
     }
@@ -172,14 +172,13 @@ fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
 
 /// The greatest torque about each body axis, N m, that `rotors` deliver to either side with none about the other two,
 /// at whatever thrust suits it best. Not above zero for some axis where they cannot push without turning the vehicle.
-#[must_use]
 pub fn max_torques(rotors: &Rotors) -> Vector3<f32> {
     let order: Vec<usize, ROTORS_MAX> = collected(0..rotors.len());
     let all = generators(rotors, order.iter());
     let about = |axis: Vector4<f64>| {
         let along = Slabs::<ROTOR_PAIRS_MAX>::new(rotors, &all, Some(Vector4::x()), -axis);
-        let (least, greatest) = along.range(&Vector4::zeros());
-        greatest.min(-least)
+        let (min, max) = along.range(&Vector4::zeros());
+        max.min(-min)
     };
     Vector3::new(about(Vector4::y()), about(Vector4::z()), about(Vector4::w()))
 }

@@ -55,7 +55,6 @@ impl ThrustCurve {
     /// The command in [0, 1] for a thrust, N, at a voltage ratio V_0 / V from [`Battery::ratio`].
     ///
     /// Thrusts out of reach give the nearest command; a NaN stops the rotor.
-    #[must_use]
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
         let fraction = (thrust / self.thrust_max).clamp(0.0, 1.0);
         let root = math::sqrt(self.linear * self.linear + 4.0 * (1.0 - self.linear) * fraction);
@@ -64,7 +63,6 @@ impl ThrustCurve {
     }
 
     /// The thrust, N, of a command in [0, 1] at a voltage ratio V_0 / V.
-    #[must_use]
     pub fn thrust(&self, command: f32, ratio: f32) -> f32 {
         let command = command / ratio;
         self.thrust_max * command * (self.linear + (1.0 - self.linear) * command)
@@ -91,7 +89,6 @@ impl Battery {
     ///
     /// One, if the reading is older than [`VOLTAGE_STALE_AFTER_US`], not finite, or not within a factor of two of
     /// nominal.
-    #[must_use]
     pub fn ratio(&self, voltage: f32, age: u64) -> f32 {
         // Also false for a NaN.
         let plausible =

@@ -73,7 +73,6 @@ pub enum Spin {
 
 impl Spin {
     /// The sign s of the drag torque on the body about +z.
-    #[must_use]
     pub fn sign(self) -> f32 {
         match self {
             Self::Clockwise => 1.0,
@@ -101,13 +100,11 @@ pub struct Rotor {
 
 impl Rotor {
     /// Thrust, N, at a speed in rad/s.
-    #[must_use]
     pub fn thrust_at(&self, speed: f32) -> f32 {
         self.thrust_coefficient * speed * speed
     }
 
     /// Speed, rad/s, at a thrust in N (negative ones count as zero).
-    #[must_use]
     pub fn speed_at(&self, thrust: f32) -> f32 {
         math::sqrt(thrust.max(0.0) / self.thrust_coefficient)
     }
@@ -163,8 +160,8 @@ impl Rotors {
         }
         for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT_FIELDS) {
             require_positive(rotor.drag_coefficient, field)?;
-            let greatest = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
-            require(rotor.drag_coefficient < greatest, field, Reason::NotBelow(greatest))?;
+            let max = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
+            require(rotor.drag_coefficient < max, field, Reason::NotBelow(max))?;
         }
         for (rotor, field) in rotors.iter().zip(THRUST_MAX_FIELDS) {
             require_positive(rotor.thrust_max, field)?;
@@ -206,26 +203,22 @@ impl Rotors {
     }
 
     /// Column i of B: the wrench (T, tau_x, tau_y, tau_z) of one newton of rotor i.
-    #[must_use]
     pub fn effectiveness(&self) -> &[Vector4<f64>] {
         &self.columns
     }
 
     /// Row i of B+: the thrust of rotor i, N, per unit of (T, tau_x, tau_y, tau_z), least sum of squares.
-    #[must_use]
     pub fn pseudo_inverse(&self) -> &[Vector4<f64>] {
         &self.inverse
     }
 
     /// The least and the greatest thrust of all rotors together, N.
-    #[must_use]
     pub fn thrust_together(&self) -> (f32, f32) {
         let sum = |thrust: fn(&Rotor) -> f32| self.rotors.iter().map(thrust).sum();
         (sum(|rotor| rotor.thrust_min), sum(|rotor| rotor.thrust_max))
     }
 
     /// The greatest distance of a rotor from body z, m.
-    #[must_use]
     pub fn max_arm(&self) -> f32 {
         let squares = self.rotors.iter().map(|rotor| rotor.position.xy().norm_squared());
         math::sqrt(squares.fold(f32::MIN_POSITIVE, math::max))
@@ -237,9 +230,9 @@ impl Rotors {
     /// Names `rotors.speed`: [`Reason::NotAbove`] where the greatest thrust is too little, [`Reason::NotBelow`] where
     /// the least is too much.
     pub fn check_hover(&self, weight: f32) -> Result<(), ParameterError> {
-        let (least, greatest) = self.thrust_together();
-        require(greatest > weight, "rotors.speed", Reason::NotAbove(weight))?;
-        require(least < weight, "rotors.speed", Reason::NotBelow(weight))
+        let (min, max) = self.thrust_together();
+        require(max > weight, "rotors.speed", Reason::NotAbove(weight))?;
+        require(min < weight, "rotors.speed", Reason::NotBelow(weight))
     }
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.

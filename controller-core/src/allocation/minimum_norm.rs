@@ -25,21 +25,21 @@ pub(super) struct Actuator {
     pub(super) column: Vector4<f32>,
     /// Its row of B+.
     share: Vector4<f32>,
-    least: f32,
-    greatest: f32,
+    min: f32,
+    max: f32,
 }
 
 impl Actuator {
     fn new(rotor: &Rotor, column: &Vector4<f64>, share: &Vector4<f64>) -> Self {
         let single = |v: &Vector4<f64>| v.map(|x| x as f32);
-        Self { column: single(column), share: single(share), least: rotor.thrust_min, greatest: rotor.thrust_max }
+        Self { column: single(column), share: single(share), min: rotor.thrust_min, max: rotor.thrust_max }
     }
 
     /// `thrust` moved into the rotor's range.
     pub(super) fn clip(&self, thrust: f32) -> f32 {
         // Not `max` and `min`, which are calls; a NaN becomes the least.
-        let thrust = if thrust > self.least { thrust } else { self.least };
-        if thrust < self.greatest { thrust } else { self.greatest }
+        let thrust = if thrust > self.min { thrust } else { self.min };
+        if thrust < self.max { thrust } else { self.max }
     }
 }
 
@@ -63,7 +63,6 @@ impl MinimumNorm {
     pub(super) const NONE: Self = Self { actuators: Vec::new() };
 
     /// For `rotors`; configuration time.
-    #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
         let all = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse());
         Self { actuators: collected(all.map(|((rotor, column), share)| Actuator::new(rotor, column, share))) }
@@ -96,7 +95,6 @@ impl MinimumNorm {
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
-    #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         let sum = self.sum(thrusts);
         Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }

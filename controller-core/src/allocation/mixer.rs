@@ -53,7 +53,6 @@ pub struct Allocation {
 
 impl Allocation {
     /// Whether the delivered wrench is the commanded one (to rounding).
-    #[must_use]
     pub fn is_exact(&self) -> bool {
         !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
     }
@@ -96,7 +95,6 @@ impl Mixer {
     };
 
     /// A mixer for `rotors`; configuration time.
-    #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
         let mut mixer = Self::NONE;
         mixer.prepare(rotors);
@@ -151,7 +149,6 @@ impl Mixer {
     }
 
     /// B times the thrusts, N, in the rotors' order: the wrench they act on the body with.
-    #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         self.minimum_norm.wrench(thrusts)
     }
@@ -193,8 +190,8 @@ impl Mixer {
 }
 
 /// `value` moved into a range.
-fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
-    value.max(least).min(greatest)
+fn within(value: f32, (min, max): (f32, f32)) -> f32 {
+    value.max(min).min(max)
 }
 
 /// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.

@@ -57,8 +57,8 @@ pub struct LostRotor {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Remaining {
     column: Vector4<f32>,
-    least: f32,
-    greatest: f32,
+    min: f32,
+    max: f32,
     preferred: f32,
     /// The range of its command, N.
     commanded: [f32; 2],
@@ -68,12 +68,12 @@ struct Remaining {
 
 impl Remaining {
     fn new(column: Vector4<f32>, commanded: [f32; 2], left: f32, share: f32) -> Self {
-        let [least, greatest] = commanded.map(|thrust| thrust * left);
-        Self { column, least, greatest, preferred: math::clamp(share, least, greatest), commanded, left }
+        let [min, max] = commanded.map(|thrust| thrust * left);
+        Self { column, min, max, preferred: math::clamp(share, min, max), commanded, left }
     }
 
     fn within(&self, thrust: f32) -> f32 {
-        math::clamp(thrust, self.least, self.greatest)
+        math::clamp(thrust, self.min, self.max)
     }
 }
 
@@ -101,7 +101,6 @@ pub struct RemainingRotors {
 impl RemainingRotors {
     /// The `rotors` of a vehicle of so much `weight`, N, with these `limits`, without what is `lost`, all at a thrust
     /// `scale`: delivered over commanded.
-    #[must_use]
     pub fn new(rotors: &Rotors, limits: &Limits, lost: &LostRotor, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
         let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::max);
@@ -125,20 +124,18 @@ impl RemainingRotors {
     }
 
     /// A rotor's share of the weight, N.
-    #[must_use]
     pub fn share(&self) -> f32 {
         self.share
     }
 
     /// The thrusts that the rotors are to deliver, N.
-    #[must_use]
     pub fn allocate(&self, wanted: &Wrench) -> Thrusts {
         let Wrench { thrust, torque } = wanted;
         let mut wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
         // More would bend the tilt for a yaw that is not to be had.
         wanted.w = math::saturate(wanted.w, self.share);
         let mut places: Vec<Place, ROTORS_MAX> = collected(
-            self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.greatest > rotor.least }),
+            self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.max > rotor.min }),
         );
         for _ in 0..ROUNDS_PER_ROTOR * self.rotors.len() {
             let pull = self.pull(&wanted, &places);
@@ -148,7 +145,7 @@ impl RemainingRotors {
         }
         let share = self.share_within_limits(&places);
         let drawn_back =
-            |(rotor, place): (&Remaining, &Place)| rotor.within(rotor.least + (place.thrust - rotor.least) * share);
+            |(rotor, place): (&Remaining, &Place)| rotor.within(rotor.min + (place.thrust - rotor.min) * share);
         collected(self.rotors.iter().zip(&places).map(drawn_back))
     }
 
@@ -156,19 +153,19 @@ impl RemainingRotors {
     fn share_within_limits(&self, places: &[Place]) -> f32 {
         let mut sums = [[Vector4::zeros(); 2]; 2];
         for (rotor, place) in self.rotors.iter().zip(places) {
-            let [least, _] = rotor.commanded;
+            let [min, _] = rotor.commanded;
             let as_if_whole = |thrust: f32| thrust * self.scale / rotor.left;
-            let whole = [least * self.scale, as_if_whole(place.thrust)];
+            let whole = [min * self.scale, as_if_whole(place.thrust)];
             let commanded = if rotor.left > 0.0 { whole } else { [0.0; 2] };
-            for (sum, thrusts) in sums.iter_mut().zip([[rotor.least, place.thrust], commanded]) {
+            for (sum, thrusts) in sums.iter_mut().zip([[rotor.min, place.thrust], commanded]) {
                 for (sum, thrust) in sum.iter_mut().zip(thrusts) {
                     *sum += rotor.column * thrust;
                 }
             }
         }
         let mut share = 1.0;
-        for [least, wanted] in &sums {
-            for ((from, to), limit) in least.iter().zip(wanted).zip(&self.limits) {
+        for [min, wanted] in &sums {
+            for ((from, to), limit) in min.iter().zip(wanted).zip(&self.limits) {
                 if to.abs() > *limit {
                     let end = if *to > 0.0 { *limit } else { -limit };
                     share = math::min(share, math::clamp((end - from) / (to - from), 0.0, 1.0));
@@ -180,17 +177,15 @@ impl RemainingRotors {
 
     /// What to command of each, N, for the rotors to deliver `delivered`, within what they may be commanded; nothing of
     /// one that is gone.
-    #[must_use]
     pub fn commands(&self, delivered: &Thrusts) -> Thrusts {
         let command = |(rotor, thrust): (&Remaining, &f32)| {
-            let [least, most] = rotor.commanded;
-            if rotor.left > 0.0 { math::clamp(thrust / rotor.left, least, most) } else { 0.0 }
+            let [min, max] = rotor.commanded;
+            if rotor.left > 0.0 { math::clamp(thrust / rotor.left, min, max) } else { 0.0 }
         };
         collected(self.rotors.iter().zip(delivered).map(command))
     }
 
     /// B times thrusts, N and N m.
-    #[must_use]
     pub fn wrench(&self, thrusts: &Thrusts) -> Wrench {
         let sum: Vector4<f32> = self.rotors.iter().zip(thrusts).map(|(rotor, thrust)| rotor.column * *thrust).sum();
         let sum = sum.component_div(&self.newtons);
@@ -242,8 +237,8 @@ impl RemainingRotors {
         let (mut strongest, mut which) = (RELEASE_PULL_MIN_N, None);
         for (rotor, place) in self.rotors.iter().zip(places) {
             let inwards = rotor.preferred + rotor.column.dot(pull) - place.thrust;
-            let inwards = if place.thrust > rotor.least { -inwards } else { inwards };
-            if !place.is_free && rotor.greatest > rotor.least && inwards > strongest {
+            let inwards = if place.thrust > rotor.min { -inwards } else { inwards };
+            if !place.is_free && rotor.max > rotor.min && inwards > strongest {
                 (strongest, which) = (inwards, Some(place));
             }
         }

@@ -34,19 +34,18 @@ fn configure(airframe: &Airframe, law: ExtendedLaw, bounds: ReferenceBounds) -> 
 /// The widest bounds of references that `law` certifies on `airframe`: a share of [`defaults::reference_bounds`],
 /// lessened in steps of a tenth. If not even a hundredth certifies it is all of them, so that the certificate names the
 /// reason.
-#[must_use]
 pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
-    let most = defaults::reference_bounds(airframe, &law.parameters);
+    let max = defaults::reference_bounds(airframe, &law.parameters);
     let mut share = 1.0;
     for _ in 0..ATTEMPTS_MAX {
         let bounds = ReferenceBounds {
-            horizontal_acceleration: share * most.horizontal_acceleration,
-            vertical_acceleration: share * most.vertical_acceleration,
-            jerk: share * most.jerk,
-            snap: share * most.snap,
-            heading_rate: share * most.heading_rate,
-            heading_second_derivative: share * most.heading_second_derivative,
-            ..most
+            horizontal_acceleration: share * max.horizontal_acceleration,
+            vertical_acceleration: share * max.vertical_acceleration,
+            jerk: share * max.jerk,
+            snap: share * max.snap,
+            heading_rate: share * max.heading_rate,
+            heading_second_derivative: share * max.heading_second_derivative,
+            ..max
         };
         let certificate = configure(airframe, law, bounds).and_then(|configuration| Certificate::new(&configuration));
         if certificate.is_ok_and(|certificate| certificate.holds()) {
@@ -54,7 +53,7 @@ pub fn flyable(airframe: &Airframe, law: ExtendedLaw) -> ReferenceBounds {
         }
         share *= 0.9;
     }
-    most
+    max
 }
 
 #[cfg(test)]

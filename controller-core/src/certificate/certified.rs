@@ -38,13 +38,11 @@ impl Certified {
     }
 
     /// What was certified.
-    #[must_use]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
     /// The proof.
-    #[must_use]
     pub fn certificate(&self) -> &Certificate {
         &self.certificate
     }

@@ -100,8 +100,8 @@ fn feasibility<R: Real>(
     let rate = jerk / least * raised;
     // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
     let acceleration = (snap / least + rate * rate) * raised;
-    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(R::from);
-    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * most;
+    let [most_rate, max] = [p.turn_rate, p.turn_reserve].map(R::from);
+    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * max;
     let floor = (R::from(p.scale_greatest) * bottom + budget.margin + yaw + turning) * raised;
     let weakest = left * mass * (gravity - vertical - up);
     [
@@ -113,7 +113,7 @@ fn feasibility<R: Real>(
             available,
         ),
         Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
-        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), most),
+        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), max),
         Inequality::new("G floor at the target < thrust", "N", floor, weakest),
     ]
 }
@@ -168,7 +168,7 @@ fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> Ine
 }
 
 /// The least R(s) of the rows about `bound`, N m; infinite without any.
-fn least_room<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>, bound: RowSource) -> R {
+fn min_capacity<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>, bound: RowSource) -> R {
     let ends = [parameters.scale_least, parameters.scale_greatest].map(R::from);
     let rows = budget.rows.iter().filter(|row| row.bound == bound);
     rows.flat_map(|row| ends.map(|scale| row.capacity(scale))).fold(R::from(f64::INFINITY), R::lesser)
@@ -190,7 +190,7 @@ fn torques<R: Real>(
         ("R rotors' range", RowSource::Rotors),
         ("T1 thrust floor at the greatest torque", RowSource::Floor),
     ]
-    .map(|(name, bound)| (name, least_room(p, budget, bound)));
+    .map(|(name, bound)| (name, min_capacity(p, budget, bound)));
     let feedback = rooms.map(|(name, room)| Inequality::new(name, "N m", (R::from(p.m_tilt) + taken) * raised, room));
     let least = rooms.into_iter().map(|(_, room)| room).fold(R::from(f64::INFINITY), R::lesser);
     // The level is each axis's.
@@ -217,7 +217,7 @@ fn bounds<R: Real>(
     let scales = [p.scale_least, p.scale_greatest].map(R::from);
     let zero = R::from(0.0);
     let axes = [[R::from(1.0), zero], [zero, R::from(1.0)]];
-    let [roll, pitch] = axes.map(|axis| greatest_along(&budget.rows, axis, scales));
+    let [roll, pitch] = axes.map(|axis| max_along(&budget.rows, axis, scales));
     let limits = configuration.limits();
     let [mut together, mut yaw] = [limits.thrust_max, limits.torque_max.z].map(R::from);
     let mut rotors = Vec::new();
@@ -231,13 +231,13 @@ fn bounds<R: Real>(
             thrust += greatest;
             twist = [twist[0] + parts[0].greater(parts[1]), twist[1] - parts[0].lesser(parts[1])];
             // As many as there are rotors: it fits.
-            let _ = rotors.push(Interval { least, max: greatest });
+            let _ = rotors.push(Interval { min: least, max: greatest });
         }
         together = together.lesser(thrust * scales[1]);
         yaw = yaw.lesser(twist[0].greater(twist[1]) * scales[1]);
     }
     ExtendedBounds {
-        thrust: Interval { least: R::from(p.floor_margin) / raised, max: together },
+        thrust: Interval { min: R::from(p.floor_margin) / raised, max: together },
         torque: Vector3::new(roll * raised, pitch * raised, yaw * raised),
         rotors,
     }
@@ -245,7 +245,7 @@ fn bounds<R: Real>(
 
 /// The greatest torque along `axis` that all rows allow between two thrust scales, N m: `axis` is a sum of the
 /// directions of two rows, and the torque along it at most the sum of their rooms with the same weights.
-fn greatest_along<R: Real>(rows: &[BudgetRow<R>], axis: [R; 2], scales: [R; 2]) -> R {
+fn max_along<R: Real>(rows: &[BudgetRow<R>], axis: [R; 2], scales: [R; 2]) -> R {
     let mut least = R::from(f64::INFINITY);
     for (place, a) in rows.iter().enumerate() {
         for b in rows.iter().skip(place + 1) {

@@ -28,7 +28,7 @@ pub const ARITHMETIC_ALLOWANCE: f64 = 1e-4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval<R = f64> {
     /// Least value.
-    pub least: R,
+    pub min: R,
     /// Greatest value.
     pub max: R,
 }
@@ -50,13 +50,11 @@ pub struct Form<R = f64> {
 
 impl Form {
     /// Whether every inequality holds.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.inequalities.iter().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
-    #[must_use]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(&self.inequalities)
     }
@@ -106,7 +104,7 @@ pub(super) fn form<R: Real>(configuration: &Configuration, law: &PaperLaw, deriv
     let least_law = mass * reach.vertical_min;
     let floor = R::from(thrust_floor.unwrap_or(0.0));
     let min = if floor.lower() > 0.0 { floor } else { least_law };
-    let thrust = Interval { least: min / raised, max: mass * magnitude * raised };
+    let thrust = Interval { min: min / raised, max: mass * magnitude * raised };
 
     let alone = desired_rates(configuration, gains, R::from(0.0), derivation).feedforward_torque * raised;
     let rates = desired_rates(configuration, gains, m_p, derivation);

@@ -83,7 +83,6 @@ pub struct Spread<R = f64> {
 
 impl<R: Real> Spread<R> {
     /// A motion that is known.
-    #[must_use]
     pub fn none() -> Self {
         let zero = R::from(0.0);
         Self { velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading_rate: zero }
@@ -99,13 +98,11 @@ pub struct RowShares<R = f64> {
 
 impl<R: Real> RowShares<R> {
     /// The greatest share: below one nothing is limited.
-    #[must_use]
     pub fn worst(&self) -> f64 {
         self.each.iter().map(|share| share.upper()).fold(0.0, math::max_f64)
     }
 
     /// The row of which most is taken.
-    #[must_use]
     pub fn row(&self) -> PathRow {
         let first = (PathRow::Fall, f64::NEG_INFINITY);
         let rows = PathRow::ALL.into_iter().zip(self.each.iter().map(|share| share.upper()));

@@ -42,7 +42,6 @@ pub struct Reachable<R = f64> {
 }
 
 /// U_l of Lemma 1: half the L1 norm of the impulse response from ubar to u_f - u_s.
-#[must_use]
 pub fn half_l1_norm<R: Real>(k_f: R, k_s: R) -> R {
     // (k_f / k_s)^(k_f / (k_s - k_f)) = exp(-ln(1 + x) / x) with x = k_s / k_f - 1.
     let x = k_s / k_f - 1.0;
@@ -52,7 +51,6 @@ pub fn half_l1_norm<R: Real>(k_f: R, k_s: R) -> R {
 
 impl<R: Real> Reachable<R> {
     /// For filters of bandwidth `k_f`, `k_s` (1/s), feedback level `m_p` (m/s^2) and a reference within `bounds`.
-    #[must_use]
     pub fn new(k_f: R, k_s: R, m_p: R, gravity: R, bounds: &ReferenceBounds) -> Self {
         let half_l1 = half_l1_norm(k_f, k_s);
         let axis_jerk = k_f * 2.0 * half_l1 * m_p;
@@ -74,7 +72,6 @@ impl<R: Real> Reachable<R> {
     }
 
     /// Greatest |u|.
-    #[must_use]
     pub fn magnitude(&self) -> R {
         self.horizontal.hypot(self.vertical_max)
     }

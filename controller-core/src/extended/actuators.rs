@@ -34,7 +34,6 @@ pub struct ActuatorParameters {
 impl ActuatorParameters {
     /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up,
     /// and one.
-    #[must_use]
     pub fn settling(&self, period: f32) -> u32 {
         // Converting to an integer rounds towards zero, and ends at the greatest.
         (((self.delay + 5.0 * self.lag) / period) as u32).saturating_add(2)
@@ -79,7 +78,6 @@ pub struct ActuatorState {
 
 impl ActuatorState {
     /// The memory after the same command for ever.
-    #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
         Self { acting: wrench, commanded: [wrench; COMMANDS_KEPT], newest: 0 }
     }
@@ -147,7 +145,6 @@ impl ActuatorModel {
     /// The impulse that past commands will still deliver: the integral of the wrench, N s and N m s, if all commands
     /// were zero from now on. The lag passes on the whole command, so the integral is the lag times the acting wrench
     /// plus the commands still in the delay.
-    #[must_use]
     pub fn pending(&self, state: &ActuatorState) -> Vector4<f32> {
         let whole = (0..self.whole_delay).fold(Vector4::zeros(), |sum, age| sum + state.command_before(age));
         let oldest = state.command_before(self.whole_delay);

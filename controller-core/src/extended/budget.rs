@@ -82,14 +82,13 @@ pub struct TorqueBudget<R = f64> {
 
 /// Row of B+ over b_T with the rotor's range.
 struct Share<R> {
-    least: R,
-    greatest: R,
+    min: R,
+    max: R,
     torque: Vector3<R>,
 }
 
 impl<R: Real> TorqueBudget<R> {
     /// For the margin of the law's thrust range, N, limits, and rotors if there are any.
-    #[must_use]
     pub fn new(margin: f32, limits: &Limits, rotors: Option<&Rotors>) -> Self {
         let (zero, one) = (R::from(0.0), R::from(1.0));
         let margin = R::from(margin);
@@ -112,8 +111,8 @@ impl<R: Real> TorqueBudget<R> {
         push(RowSource::Limit, [zero, one], zero, -torque_max.y);
 
         let shares = shares::<R>(rotors);
-        let top = shares.iter().map(|share| share.greatest).fold(R::from(f64::INFINITY), R::lesser);
-        let bottom = shares.iter().map(|share| share.least).fold(zero, R::greater);
+        let top = shares.iter().map(|share| share.max).fold(R::from(f64::INFINITY), R::lesser);
+        let bottom = shares.iter().map(|share| share.min).fold(zero, R::greater);
         for (place, share) in shares.iter().enumerate() {
             for other in shares.iter().skip(place + 1) {
                 let difference = share.torque - other.torque;
@@ -129,10 +128,9 @@ impl<R: Real> TorqueBudget<R> {
     }
 
     /// (1 - mu) U for a thrust scale and no bias, m/s^2.
-    #[must_use]
     pub fn held_acceleration(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
-        let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
-        most * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
+        let max = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
+        max * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
     }
 
     /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
@@ -143,14 +141,13 @@ impl<R: Real> TorqueBudget<R> {
 
 impl TorqueBudget {
     /// U as a tick works it out.
-    #[must_use]
     pub fn ceiling(&self, vehicle: &Vehicle, limits: &Limits) -> Ceiling {
         let mass = f64::from(vehicle.mass);
         Ceiling {
             per_scale: (self.ends[1] / mass) as f32,
             fixed: (self.margin / mass) as f32,
             per_bias: self.reach.map(|reach| (reach / mass) as f32),
-            most: (f64::from(limits.thrust_max) / mass) as f32,
+            max: (f64::from(limits.thrust_max) / mass) as f32,
         }
     }
 }
@@ -162,17 +159,16 @@ pub struct Ceiling {
     per_scale: f32,
     fixed: f32,
     per_bias: [f32; 2],
-    most: f32,
+    max: f32,
 }
 
 impl Ceiling {
     /// U, m/s^2, for a thrust scale and a bias in N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
         let [lean, twist] = self.per_bias;
         let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
-        math::min(scale * self.per_scale - taken, self.most)
+        math::min(scale * self.per_scale - taken, self.max)
     }
 }
 
@@ -181,8 +177,8 @@ fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
     collected(rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())).map(|(rotor, row)| {
         let row: &Vector4<f64> = row;
         let torque = Vector3::new(row.y, row.z, row.w).map(|part| R::from(part) / row.x);
-        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
-        Share { least, greatest, torque }
+        let [min, max] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
+        Share { min, max, torque }
     }))
 }
 
@@ -195,7 +191,6 @@ pub struct TickBudget {
 
 impl TickBudget {
     /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
-    #[must_use]
     pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
         let mut binding: Vec<BudgetRow, ROWS_MAX> = Vec::new();
         for (place, row) in budget.rows.iter().enumerate() {
@@ -213,14 +208,12 @@ impl TickBudget {
     }
 
     /// The greatest torque that fits in every direction at a thrust scale, N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn radius(&self, scale: f32) -> f32 {
         self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::min)
     }
 
     /// A tick's spending at a thrust scale, nothing spent.
-    #[must_use]
     #[inline(always)]
     pub fn spending(&self, scale: f32) -> Spending<'_> {
         Spending { rows: &self.rows, scale, radius: self.radius(scale), spent: Vector2::zeros() }
@@ -263,7 +256,6 @@ pub struct Spending<'a> {
 
 impl Spending<'_> {
     /// The greatest torque that fits in every direction if nothing is spent, N m.
-    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }

@@ -15,7 +15,6 @@ pub type Given = [Option<f32>; ExtendedParameters::COUNT];
 pub const NOTHING_GIVEN: Given = [None; ExtendedParameters::COUNT];
 
 /// The constants for `airframe`; the `given` ones stay as they are.
-#[must_use]
 pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
     let by_key = |key: &str| {
         let found = ExtendedParameters::TABLE.iter().zip(given).find(|(constant, _)| constant.key == key);
@@ -29,7 +28,6 @@ pub fn constants(airframe: &Airframe, given: &Given) -> ExtendedParameters {
 }
 
 /// Bounds of the motions that `parameters` can fly on `airframe`: the governor's limits.
-#[must_use]
 pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) -> ReferenceBounds {
     let p = parameters;
     let budget = TorqueBudget::<f64>::new(p.floor_margin, airframe.limits, airframe.rotors);
@@ -42,13 +40,13 @@ pub fn reference_bounds(airframe: &Airframe, parameters: &ExtendedParameters) ->
     // The rest of Omega and alpha_0 beside the slowed law, at the least |u|.
     let slowed = Slowed::<f64>::new(p, airframe.vehicle.gravity);
     let [slow_jerk, slow_snap] = slowed.derivatives(p);
-    let least = gravity - up - vertical - slowed.level;
+    let min = gravity - up - vertical - slowed.level;
     // A frame that is tilted turns about its thrust axis as well, by a part of how u turns: yaw has to follow.
     let yaw = f64::from(p.yaw_acceleration);
     let slope = (f64::from(p.force_heading) + horizontal) / (gravity - up);
     let turned = 0.6 * min_f64(rate, math::sqrt_f64(reserve));
-    let jerk = min_f64(min_f64(8.0, turned * least - slow_jerk), least * math::sqrt_f64(0.2 * yaw / slope));
-    let snap = min_f64(0.8 * ((reserve - turned * turned) * least - slow_snap), 0.4 * yaw * least / slope);
+    let jerk = min_f64(min_f64(8.0, turned * min - slow_jerk), min * math::sqrt_f64(0.2 * yaw / slope));
+    let snap = min_f64(0.8 * ((reserve - turned * turned) * min - slow_snap), 0.4 * yaw * min / slope);
     let tilt = math::hypot(1.0, slope);
     let single = |value: f64| max_f64(value, 0.0) as f32;
     ReferenceBounds {

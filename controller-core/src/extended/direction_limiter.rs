@@ -50,7 +50,6 @@ pub struct DirectionLimiter {
 
 impl DirectionLimiter {
     /// For an alpha of `acceleration`, rad/s^2, and steps of `period`, s.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, acceleration: f32, period: f32) -> Self {
         let p = parameters;
         Self {
@@ -65,17 +64,15 @@ impl DirectionLimiter {
     }
 
     /// n*, m/s^2, for n, y_z - c_z as `more`, e3 in the axes of the desired frame and U.
-    #[must_use]
-    #[inline(always)] // see position.rs
-    pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, greatest: f32) -> f32 {
+    #[inline(always)] // into the law's step
+    pub fn length(&self, magnitude: f32, more: f32, up: &Vector3<f32>, max: f32) -> f32 {
         let most = PUSH_ACROSS_MAX_M_PER_S2 / math::sqrt(up.xy().norm_squared() + f32::MIN_POSITIVE);
         let length = magnitude + math::saturate(more / math::max(up.z, self.cosine), most);
-        math::min(math::max(length, 0.0), greatest)
+        math::min(math::max(length, 0.0), max)
     }
 
     /// q for a wanted `turn`, rad/s^2; `up` is e3 in the axes of the desired frame.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn limited(&self, turn: &DirectionMotion, up: &Vector3<f32>) -> Vector2<f32> {
         let DirectionMotion { rate, acceleration, .. } = turn;
         let q = self.kept_in_cone(shortened(*acceleration, self.acceleration), rate, up);
@@ -88,16 +85,15 @@ impl DirectionLimiter {
     }
 
     /// The change of u'' where the turn is `acceleration` instead of the wanted one, and for u to stay within its ends;
-    /// axes of the desired frame, m/s^4. None if nothing is changed. `greatest` is U, m/s^2; `vertical` c_z, c_z' and
+    /// axes of the desired frame, m/s^4. None if nothing is changed. `max` is U, m/s^2; `vertical` c_z, c_z' and
     /// c_z'' as wanted, m/s^2, m/s^3, m/s^4.
-    #[must_use]
     #[inline(always)]
     pub fn change(
         &self,
         turn: &DirectionMotion,
         acceleration: &Vector2<f32>,
         up: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         vertical: [f32; 3],
     ) -> Option<Vector3<f32>> {
         let DirectionMotion { rate, acceleration: wanted, magnitude, radial_rate, radial_acceleration } = turn;
@@ -117,7 +113,7 @@ impl DirectionLimiter {
             along = (least_rising - falling) / up.z;
         }
         let swelling = radial_acceleration + magnitude * rate.norm_squared() + along;
-        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - greatest);
+        let least_shrinking = -2.0 * k * radial_rate - k * k * (magnitude - max);
         if swelling > least_shrinking {
             cold_path();
             along += least_shrinking - swelling;
@@ -129,23 +125,22 @@ impl DirectionLimiter {
     /// alpha.
     fn kept_in_cone(&self, q: Vector2<f32>, rate: &Vector2<f32>, up: &Vector3<f32>) -> Vector2<f32> {
         let z = up.xy();
-        let least = -self.closing * (up.z - self.cosine);
-        if (rate + q * self.period).dot(&z) >= least {
+        let min = -self.closing * (up.z - self.cosine);
+        if (rate + q * self.period).dot(&z) >= min {
             return q;
         }
         cold_path();
         // Beyond the cone's edge by rounding alone: z is as long as the sine of the cone's angle.
         let length = math::sqrt(math::max(z.norm_squared(), 1e-6));
-        let (z, most) = (z / length, self.acceleration);
-        let along = math::saturate((least / length - rate.dot(&z)) / self.period, most);
-        let left = math::sqrt(math::max(most * most - along * along, 0.0));
-        shortened(shortened(q - z * q.dot(&z), left) + z * along, most)
+        let (z, max) = (z / length, self.acceleration);
+        let along = math::saturate((min / length - rate.dot(&z)) / self.period, max);
+        let left = math::sqrt(math::max(max * max - along * along, 0.0));
+        shortened(shortened(q - z * q.dot(&z), left) + z * along, max)
     }
 }
 
 /// How fast rho_z may fall towards the edge of the cone, per distance from it, 1/s, for an alpha in rad/s^2: braking
 /// takes half of alpha from upright on, and less from there.
-#[must_use]
 pub fn closing<R: Real>(acceleration: R) -> R {
     (acceleration * 0.5).sqrt_of_rounded()
 }

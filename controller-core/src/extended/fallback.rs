@@ -72,21 +72,19 @@ impl<R: Real> Slowed<R> {
     /// c + d, x + d and y + d start and stay within M_s, so |c'| <= 2 k_f M_s and |c''| <= 2 k_f (k_s + k_f) M_s: so
     /// much slower that this takes `TURN_SHARE` of what turns rho at the least |u|, g - D_z+ - M_s less the
     /// reference's.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, gravity: f32) -> Self {
         let p = parameters;
         let [k_f, k_s, reserve, rate] = [p.k_f, p.k_s, p.turn_reserve, p.turn_rate].map(R::from);
         let level = R::from(SLOW_LEVEL_M_PER_S2);
-        let least = (R::from(gravity) - R::from(p.force_up) - level - REFERENCE_FALL_M_PER_S2)
+        let min = (R::from(gravity) - R::from(p.force_up) - level - REFERENCE_FALL_M_PER_S2)
             .greater(R::from(COMMAND_MIN_M_PER_S2))
             * TURN_SHARE;
-        let by_acceleration = (reserve * least / (k_f * 2.0 * (k_s + k_f) * level)).sqrt_of_rounded();
-        let by_rate = rate.lesser(reserve.sqrt_of_rounded()) * least / (k_f * 2.0 * level);
+        let by_acceleration = (reserve * min / (k_f * 2.0 * (k_s + k_f) * level)).sqrt_of_rounded();
+        let by_rate = rate.lesser(reserve.sqrt_of_rounded()) * min / (k_f * 2.0 * level);
         Self { factor: by_acceleration.lesser(by_rate).lesser(R::from(1.0)), level }
     }
 
     /// The greatest |c'| and |c''|, m/s^3 and m/s^4, where across and along the vertical feedback is M_s at once.
-    #[must_use]
     pub fn derivatives(&self, parameters: &ExtendedParameters) -> [R; 2] {
         let [k_f, k_s] = [parameters.k_f, parameters.k_s].map(|bandwidth| R::from(bandwidth) * self.factor);
         let jerk = k_f * 2.0 * self.level * R::from(2.0).sqrt();
@@ -98,7 +96,6 @@ impl<R: Real> Slowed<R> {
 const SLOW_SPEED_M_PER_S: f32 = 2.0;
 
 /// The constants of the slowed law.
-#[must_use]
 pub fn slowed(parameters: &ExtendedParameters, gravity: f32) -> ExtendedParameters {
     let by = Slowed::<f64>::new(parameters, gravity).factor as f32;
     let p = parameters;
@@ -136,7 +133,7 @@ pub struct Fallback {
     /// Whether the vehicle was near in this window.
     near: bool,
     /// The greatest |p~| and |v~| of this window, m and m/s.
-    greatest: [f32; 2],
+    max: [f32; 2],
     /// What progress is counted from, likewise.
     best: [f32; 2],
 }
@@ -144,16 +141,14 @@ pub struct Fallback {
 impl Fallback {
     /// After a reset.
     pub const FRESH: Self =
-        Self { slow: false, times: 0, elapsed: 0, now: f32::MAX, near: false, greatest: [0.0; 2], best: [f32::MAX; 2] };
+        Self { slow: false, times: 0, elapsed: 0, now: f32::MAX, near: false, max: [0.0; 2], best: [f32::MAX; 2] };
 
     /// Whether the law is slowed.
-    #[must_use]
     pub fn is_slow(&self) -> bool {
         self.slow
     }
 
     /// How often it was slowed since the reset.
-    #[must_use]
     pub fn times(&self) -> u32 {
         self.times
     }
@@ -179,14 +174,14 @@ impl Fallback {
             *self = self.next_window([f32::MAX; 2]);
         }
         self.near |= near;
-        for (greatest, error) in self.greatest.iter_mut().zip(errors) {
-            *greatest = math::max(*greatest, error);
+        for (max, error) in self.max.iter_mut().zip(errors) {
+            *max = math::max(*max, error);
         }
         if self.elapsed < micros(PROGRESS_WINDOW_S) {
             return false;
         }
         cold_path();
-        let [farthest, fastest] = self.greatest;
+        let [farthest, fastest] = self.max;
         let [distance, speed] = self.best;
         let is_less =
             |now: f32, best: f32| best > NEAR_DISTANCE_M && now < best - math::min(0.1 * best, PROGRESS_STEP_MAX);

@@ -37,7 +37,6 @@ pub struct Measured {
 
 impl Measured {
     /// A, if it can be used.
-    #[must_use]
     pub fn usable_acceleration(&self) -> Option<&Vector3<f32>> {
         // A NaN compares false.
         let in_range = |a: &&Vector3<f32>| a.norm_squared() < ACCELERATION_MAX_M_PER_S2 * ACCELERATION_MAX_M_PER_S2;
@@ -56,7 +55,6 @@ pub struct Sensors {
 
 impl Sensors {
     /// For intervals of `period`, s.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, limits: &Limits, period: f32) -> Self {
         let thrust = THRUSTS_MAX * limits.thrust_max;
         let radius = 2.0 * math::sqrt(math::max(vehicle.inertia.x, vehicle.inertia.y) / vehicle.mass);
@@ -69,7 +67,6 @@ impl Sensors {
 
     /// v', m/s^2, and B with it, for an acceleration that was `measured` while velocities have `differed` by theirs and
     /// B was `offset`.
-    #[must_use]
     pub fn acceleration(
         &self,
         measured: &Vector3<f32>,
@@ -82,7 +79,6 @@ impl Sensors {
 
     /// e, and E with it, for a wrench that was `measured` while the model has `acted` and E was `lasting`, N and N m.
     /// The first interval starts E. None for a wrench out of range.
-    #[must_use]
     pub fn quick_difference(
         &self,
         measured: &Wrench,

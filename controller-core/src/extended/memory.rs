@@ -4,7 +4,6 @@ use super::actuators::ActuatorState;
 use super::fallback::Fallback;
 use super::position::Filters;
 use super::rotor_loss::detector::Suspicion;
-use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -25,6 +24,15 @@ impl Estimates {
     pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
 }
 
+/// The thrust scale and the averages behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaleEstimate {
+    /// ybar and fbar, m/s^2. The first interval starts them: any other start would look like a variation.
+    pub slow: Option<[Vector3<f32>; 2]>,
+    /// s.
+    pub scale: f32,
+}
+
 /// The averages, before they are cut to their levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Averages {
@@ -40,9 +48,8 @@ pub struct Averages {
 
 impl Averages {
     /// With torque bias and thrust scale known.
-    #[must_use]
     pub fn known(torque: Vector3<f32>, scale: f32) -> Self {
-        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale), offset: Vector3::zeros() }
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate { slow: None, scale }, offset: Vector3::zeros() }
     }
 }
 

@@ -53,7 +53,6 @@ pub struct Filters {
 
 impl Filters {
     /// All three at `value`.
-    #[must_use]
     pub const fn at(value: Vector3<f32>) -> Self {
         Self { command: value, intermediate: value, smoothed: value }
     }
@@ -106,7 +105,6 @@ impl FeedbackLimits {
     pub const UNLIMITED: Self = Self::each(f32::MAX);
 
     /// The same every way.
-    #[must_use]
     pub const fn each(level: f32) -> Self {
         Self { up: level, down: level, across: level }
     }
@@ -181,13 +179,11 @@ impl PositionLaw {
     }
 
     /// k_f, 1/s.
-    #[must_use]
     pub fn k_f(&self) -> f32 {
         self.k_f
     }
 
-    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2.
-    #[must_use]
+    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `max` U, m/s^2.
     #[inline(always)] // into the law's step
     pub fn feedback(
         &self,
@@ -195,15 +191,14 @@ impl PositionLaw {
         reference: &Reference,
         filters: &Filters,
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         most: &FeedbackLimits,
     ) -> PositionFeedback {
         let errors = self.errors(state, reference, filters, force);
-        self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, greatest, most))
+        self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, max, most))
     }
 
     /// The same with a demand in place of feedback: `wanted`, m/s^2, cut to the envelope.
-    #[must_use]
     #[inline(always)] // likewise
     pub fn feedback_on_demand(
         &self,
@@ -211,14 +206,13 @@ impl PositionLaw {
         reference: &Reference,
         filters: &Filters,
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         wanted: &Vector3<f32>,
     ) -> PositionFeedback {
-        self.passed_on(&self.errors(state, reference, filters, force), filters, self.within(wanted, greatest))
+        self.passed_on(&self.errors(state, reference, filters, force), filters, self.within(wanted, max))
     }
 
     /// p~, v~, z_1 and z_2.
-    #[must_use]
     #[inline(always)]
     pub fn errors(
         &self,
@@ -255,22 +249,21 @@ impl PositionLaw {
 
     /// How far ubar may reach across, m/s^2, where `lift` is g + ubar_z.
     #[inline(always)]
-    fn reach(&self, lift: f32, greatest: f32) -> f32 {
-        let thrust_left = math::sqrt(math::max(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
+    fn reach(&self, lift: f32, max: f32) -> f32 {
+        let thrust_left = math::sqrt(math::max(max * max - lift * lift, 0.0)) * SHARE_ACROSS;
         math::min(self.a_across, math::min(lift * self.tangent, thrust_left))
     }
 
     /// A demand cut to the envelope: the vertical first, then what it leaves across.
-    fn within(&self, wanted: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
-        let vertical = math::max(math::min(wanted.z, greatest - self.gravity), -self.a_down);
-        let reach = math::max(self.reach(self.gravity + vertical, greatest), 0.0);
+    fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
+        let vertical = math::max(math::min(wanted.z, max - self.gravity), -self.a_down);
+        let reach = math::max(self.reach(self.gravity + vertical, max), 0.0);
         let length = math::sqrt(wanted.xy().norm_squared());
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, vertical)
     }
 
     /// c', m/s^3.
-    #[must_use]
     #[inline(always)]
     pub fn rate(&self, filters: &Filters) -> Vector3<f32> {
         (filters.intermediate - filters.command) * self.k_f
@@ -282,11 +275,11 @@ impl PositionLaw {
         &self,
         [z_1, z_2]: [&Vector3<f32>; 2],
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         most: &FeedbackLimits,
     ) -> Vector3<f32> {
         let [braking_across, braking_vertical] = self.braking;
-        let up = math::max(greatest - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
+        let up = math::max(max - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
         let down = math::max(self.a_down - force.z, LEVEL_MIN_M_PER_S2);
         let (up, down) = (math::min(up, most.up), math::min(down, most.down));
         // Above the reference the vehicle descends, and what pushes up brakes it.
@@ -296,7 +289,7 @@ impl PositionLaw {
         let level = if vertical > 0.0 { down } else { up };
         let vertical = -vertical * unit_factor(level, vertical * vertical) - force.z;
 
-        let reach = self.reach(self.gravity + vertical, greatest);
+        let reach = self.reach(self.gravity + vertical, max);
         let (across, wind) = (z_1.xy(), force.xy());
         let level = math::max(reach - math::sqrt(wind.norm_squared()), LEVEL_MIN_M_PER_S2);
         let level = math::min(level, most.across);
@@ -306,14 +299,13 @@ impl PositionLaw {
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never
+    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `max`. c_z never
     /// falls below -A_-, to the last bit; x_z does not lead it there. x stays within `FILTER_REACH` U along each axis,
     /// and c with it: a reference whose derivatives fit no motion cannot drive them away.
-    #[must_use]
-    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, greatest: f32) -> Filters {
+    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, max: f32) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
         let (mut drive, mut intermediate) = (*drive, x + drive * self.period);
-        let farthest = FILTER_REACH * greatest;
+        let farthest = FILTER_REACH * max;
         let near = intermediate.amax() <= farthest;
         if !near {
             cold_path();

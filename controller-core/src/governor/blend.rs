@@ -36,7 +36,7 @@ const DURATION_FACTOR: f32 = 1.15;
 pub(super) struct Watched {
     pub ticks: u32,
     /// f to f''', SI units, and the first two with the vertical as [`super::stream_follower`] counts it.
-    most: [f32; 4],
+    max: [f32; 4],
     flat: [f32; 2],
     /// The share of the bounds.
     used: f32,
@@ -44,7 +44,7 @@ pub(super) struct Watched {
 
 impl Watched {
     /// Nothing yet.
-    pub const NONE: Self = Self { ticks: 0, most: [0.0; 4], flat: [0.0; 2], used: 0.0 };
+    pub const NONE: Self = Self { ticks: 0, max: [0.0; 4], flat: [0.0; 2], used: 0.0 };
 
     /// A tick later.
     pub fn later(&self) -> Self {
@@ -54,12 +54,12 @@ impl Watched {
     /// A tick later, in which the stream `used` this share of the bounds.
     pub fn with(&self, error: &Point, flat: [f32; 2], used: f32) -> Self {
         let Point { position, velocity, acceleration, jerk, .. } = error;
-        let [f, f1, f2, f3] = self.most;
-        let length = |most: f32, y: &Vector3<f32>| math::max(most, math::sqrt(y.norm_squared()));
-        let most = [length(f, position), length(f1, velocity), length(f2, acceleration), length(f3, jerk)];
+        let [f, f1, f2, f3] = self.max;
+        let length = |max: f32, y: &Vector3<f32>| math::max(max, math::sqrt(y.norm_squared()));
+        let max = [length(f, position), length(f1, velocity), length(f2, acceleration), length(f3, jerk)];
         let ([across, along], [now, moving]) = (self.flat, flat);
         Self {
-            most,
+            max,
             flat: [math::max(across, now), math::max(along, moving)],
             used: math::max(self.used, used),
             ..self.later()
@@ -70,7 +70,7 @@ impl Watched {
     fn duration(&self, envelope: &Envelope, span: f32) -> Option<f32> {
         let left = BLENDING_SHARE * (1.0 - self.used);
         let [b1, b2, b3, b4] = STEP_DERIVATIVES_MAX;
-        let ([f, f1, f2, f3], [across, along]) = (self.most, self.flat);
+        let ([f, f1, f2, f3], [across, along]) = (self.max, self.flat);
         let fits = |duration: f32| {
             let x = 1.0 / duration;
             let along_x = |size: f32| Vector3::new(size, 0.0, 0.0);

@@ -45,13 +45,13 @@ impl StreamDemand {
         let a = math::min(acceleration, squared(most));
         let j = math::min(jerk, cubed(most));
         let s = math::min(snap, squared(squared(most)));
-        let greatest = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
+        let max = [squared(squared(cubed(v))), squared(cubed(a)), squared(squared(j)), cubed(s)]
             .into_iter()
             .fold(0.0, math::max);
         let (present, last, lasted) = if self.lasted > MEMORY_S {
-            (greatest, self.present, 0.0)
+            (max, self.present, 0.0)
         } else {
-            (math::max(self.present, greatest), self.last, self.lasted + period)
+            (math::max(self.present, max), self.last, self.lasted + period)
         };
         Self { present, last, lasted, off }
     }
@@ -66,7 +66,6 @@ impl StreamDemand {
 impl FollowingReport {
     /// How many times slower the stream of the last seconds would have to be to keep the bounds; one or less where it
     /// keeps them.
-    #[must_use]
     pub fn slower(&self) -> f32 {
         let cube = math::sqrt(math::sqrt(math::sqrt(self.demand)));
         // Newton's steps for the cube root of at most 4096, from above; each takes a third off, then twice the digits.

@@ -1,8 +1,8 @@
-//! The bounds that a head is kept in, tick by tick, whatever snap is wanted of it.
+//! The bounds that a head is kept in, tick by tick, whatever snap is desired.
 //!
 //! The head is a velocity v, an acceleration a, its difference d a tick, and the second difference q that is chosen
 //! each tick (d+ = d + q, a+ = a + d+). Required always: a in the cylinder C, |d| <= D, |q| <= Q, v in another
-//! cylinder. A head inside may be lost nevertheless: too fast to be stopped before the wall. So a *way out* is kept in
+//! cylinder. A head inside may be lost nevertheless: too fast to be stopped before the wall. So a *retreat* is kept at
 //! hand: a turn of some ticks with one constant q, then braking of d, straight, then a brought to zero, straight.
 //!
 //! - **Braking**: q = -Q d/|d|, at the end -d. The ticks that it takes add up to at most d |d|/(2 Q), so a moves along
@@ -13,7 +13,7 @@
 //! - **Speed**: until d is zero at most t_1 passes, and a is in the hull of these points p and r; then r fades to zero
 //!   evenly, which adds at most r t_2. So v stays in the hull of v, v + t_1 p and these moved by r t_2.
 //!
-//! A q is taken only if from where it leads there is a way out, and that one is kept. Otherwise the way out in hand is
+//! A q is taken only if from where it leads there is a retreat, and that one is kept. Otherwise the retreat at hand is
 //! followed. So the bounds hold for ever, by induction, however poor the guess of a turn; a poor guess gives way too
 //! early.
 
@@ -28,7 +28,7 @@ const ROUNDING_MARGIN: f32 = 1e-4;
 const TURN_INWARDS_WEIGHT: f32 = 0.8;
 const TURN_BACK_WEIGHT: f32 = 0.6;
 
-/// How often what is wanted is halved towards the way out before that is taken.
+/// How often the desired snap is halved towards the retreat's before that is taken.
 const HALVINGS_MAX: u32 = 3;
 
 /// A cylinder about the vertical.
@@ -98,7 +98,7 @@ pub(super) struct Envelope {
     fading: f32,
 }
 
-/// A way out: a snap for some ticks, then braking, then a to zero.
+/// A retreat: a snap for some ticks, then braking, then a to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Retreat {
     snap: Vector3<f32>,
@@ -129,7 +129,7 @@ impl Envelope {
     pub fn new(bounds: &Bounds, blur: f32, period: f32) -> Self {
         let Bounds { speed, acceleration, jerk, snap } = bounds;
         let turn = (0.25 * jerk / (snap * period)).max(1.0) as u32 as f32;
-        let greatest = acceleration.horizontal + acceleration.vertical;
+        let max = acceleration.horizontal + acceleration.vertical;
         let few = 4.0 * period;
         Self {
             period,
@@ -139,7 +139,7 @@ impl Envelope {
             snap: snap * period * period * (1.0 - ROUNDING_MARGIN),
             turn,
             stopping: turn * period + jerk / snap + few,
-            fading: (greatest / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
+            fading: (max / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
         }
     }
 
@@ -179,7 +179,7 @@ impl Envelope {
         inside.then_some(reach)
     }
 
-    /// A way out, if one is known.
+    /// A retreat, if one is known.
     pub fn retreat(&self, head: &HeadMotion) -> Option<Retreat> {
         let HeadMotion { velocity: v, acceleration: a, difference: d } = head;
         if let Some(reach) = self.braked(a, d) {
@@ -201,10 +201,10 @@ impl Envelope {
         })
     }
 
-    /// The snap nearest to `wanted` that leaves a way out, and that way; with the way `out` in hand.
-    pub fn step(&self, head: &HeadMotion, wanted: &Vector3<f32>, out: &Retreat) -> (Vector3<f32>, Retreat) {
-        let mut snap = self.limited(wanted);
-        let (fallback, after) = self.follow(head, out);
+    /// The snap nearest to `desired` that leaves a retreat, and that one; with `retreat` at hand.
+    pub fn step(&self, head: &HeadMotion, desired: &Vector3<f32>, retreat: &Retreat) -> (Vector3<f32>, Retreat) {
+        let mut snap = self.limited(desired);
+        let (fallback, after) = self.follow(head, retreat);
         for _ in 0..HALVINGS_MAX {
             if let Some(way) = self.retreat(&head.after(&snap, self.period)) {
                 return (snap, way);
@@ -214,13 +214,13 @@ impl Envelope {
         (fallback, after)
     }
 
-    /// A tick of a way out, and what is left of it. It ends at rest from acceleration, and stays there.
-    pub fn follow(&self, head: &HeadMotion, out: &Retreat) -> (Vector3<f32>, Retreat) {
+    /// A tick of a retreat, and what is left of it. It ends at rest from acceleration, and stays there.
+    pub fn follow(&self, head: &HeadMotion, retreat: &Retreat) -> (Vector3<f32>, Retreat) {
         let HeadMotion { acceleration: a, difference: d, .. } = head;
-        if out.ticks > 0 {
-            return (out.snap, Retreat { ticks: out.ticks - 1, ..*out });
+        if retreat.ticks > 0 {
+            return (retreat.snap, Retreat { ticks: retreat.ticks - 1, ..*retreat });
         }
-        let braked = out.braked || *d == Vector3::zeros();
+        let braked = retreat.braked || *d == Vector3::zeros();
         let step = BRAKING_SHARE * self.snap;
         let distance = math::sqrt(a.norm_squared()) / step;
         let snap = if !braked || distance == 0.0 {
@@ -229,7 +229,7 @@ impl Envelope {
             let fastest = (step * approach_speed(distance)).min(BRAKING_SHARE * self.jerk);
             a * (-fastest / (distance * step)) - d
         };
-        (self.limited(&snap), Retreat { braked, ..*out })
+        (self.limited(&snap), Retreat { braked, ..*retreat })
     }
 
     /// A snap brought down to Q along its own direction.

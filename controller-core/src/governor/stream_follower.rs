@@ -14,7 +14,7 @@
 //!   stream itself ([`super::blend`]).
 //! - *Direct*: the head's snap is the stream's, with feedback of the head's error, as far as [`super::envelope`] lets
 //!   it.
-//! - *Levelling*: the envelope's way out, until there is no acceleration and the last average has seen nothing else.
+//! - *Levelling*: the envelope's retreat, until there is no acceleration and the last average has seen nothing else.
 //!   From there the averages start ([`super::steady`]), as if this steady motion had always been commanded.
 //!
 //! In every stage the head keeps the bounds, and no change of stage moves it. So the bounds hold across them.
@@ -28,55 +28,52 @@ use super::stream::{Point, StreamTarget};
 use crate::math;
 use nalgebra::Vector3;
 
-/// The share of each bound that a stream may use, and of a jerk from which there is a way out.
+/// The share of each bound that a stream may use, and of a jerk from which there is a retreat.
 const FEASIBLE_SHARE: f32 = 0.9995;
 const RETREATING_SHARE: f32 = 0.98;
 
-/// The share of the bounds on jerk and snap up to which a stream that is followed is believed to keep them.
+/// Up to this many times the bounds on jerk and snap a stream that is followed counts as within them: both are guesses.
 const DERIVATIVE_TOLERANCE_SHARE: f32 = 1.5;
 
-/// The stiffness times the averages' span at the beginning, at most; and the share of it for which a stream is near
-/// enough.
+/// The stiffness at the beginning times the averages' span, and the share of it that counts as near.
 const JOINING_STIFFNESS_SPANS_MAX: f32 = 2.5;
 const JOINING_STIFFNESS_SHARE_MIN: f32 = 0.4;
 
-/// Turning is followed up to so many radians in the last average's delay, and in a tick: beyond, feedback comes too
-/// late.
+/// Rotation is followed up to these angles, in the last average's delay and in a tick: beyond, feedback comes too late.
 const TURN_WITHIN_DELAY_MAX_RAD: f32 = 0.15;
 const TURN_WITHIN_TICK_MAX_RAD: f32 = 0.05;
 
-/// A stream is lost this much farther off than at the beginning, and so far in spans squared of the greatest
-/// acceleration; one that the head is blended onto so far.
+/// A stream is lost at so many times its distance at the beginning and this share of the acceleration times a span
+/// squared; one that the head is blended onto, at the last share alone.
 const LOST_DISTANCE_FACTOR: f32 = 1.5;
 const LOST_DISTANCE_SHARE: f32 = 0.01;
 const BLEND_LOST_DISTANCE_SHARE: f32 = 0.04;
 
-/// What rests: within so many m, m/s and m/s^2.
+/// What rests: m, m/s and m/s^2.
 const REST_TOLERANCES: [f32; 3] = [1e-3, 1e-3, 0.1];
 
-/// Spans that the averages are given to come as near to a stream as they will, and for which it is then watched before
-/// the head is blended onto it.
+/// Time for the averages to come as near to a stream as they will, and then for watching it before the head is blended
+/// onto it.
 const SETTLING_SPANS: f32 = 1.5;
 const WATCHING_SPANS: f32 = 1.5;
 
-/// Spans that a stream must be near for, and that a lost one is left alone for, the first time and at most.
+/// How long a stream must be near, and how long the next one waits after one is lost: the first time and at most.
 const NEAR_SPANS_MIN: f32 = 0.4;
 const RETRY_SPANS: f32 = 1.0;
 const RETRY_SPANS_MAX: f32 = 32.0;
 
-/// What the head is driven by.
-/// Tagged, so that averaged at the beginning is all zeros: [`super::Memory::EMPTY`] counts on it.
+/// What the head follows. Tagged, so that averaged at the beginning is all zeros: [`super::Memory::EMPTY`] counts on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(u32)]
 enum Stage {
     /// With the ticks for which a stream has been near, and how it has moved.
     Averaged { near: u32, watched: Watched },
     /// As direct, with what is followed.
-    Blending { stiffness: f32, out: Retreat, blend: Blend },
-    /// With the way out in hand, and how far off the stream is lost, m.
-    Direct { stiffness: f32, out: Retreat, far: f32 },
-    /// The way out, with the ticks since it has ended.
-    Levelling { out: Retreat, still: u32 },
+    Blending { stiffness: f32, retreat: Retreat, blend: Blend },
+    /// With the retreat at hand, and the distance at which the stream is lost, m.
+    Direct { stiffness: f32, retreat: Retreat, lost_at: f32 },
+    /// The retreat, with the ticks since it has ended.
+    Levelling { retreat: Retreat, still: u32 },
 }
 
 impl Stage {
@@ -104,16 +101,16 @@ pub(super) struct StreamFollower {
     span: f32,
     /// The last average, ticks.
     last: u32,
-    /// The greatest horizontal acceleration, m/s^2, and how many times the greatest vertical one that is.
+    /// The horizontal bound, m/s^2, and how many times the vertical one that is.
     acceleration: f32,
-    flatness: f32,
-    /// The greatest rate of turning, rad/s.
-    fastest: f32,
+    vertical_weight: f32,
+    /// rad/s.
+    turn_rate_max: f32,
     stage: Stage,
     demand: StreamDemand,
-    /// Ticks for which no stream is followed, and how many there will be the next time.
-    barred: u32,
-    next: u32,
+    /// Ticks until a stream is followed again, and how many there will be after the next loss.
+    retry_in: u32,
+    retry_delay: u32,
 }
 
 impl StreamFollower {
@@ -124,27 +121,27 @@ impl StreamFollower {
         span: 0.0,
         last: 0,
         acceleration: 0.0,
-        flatness: 0.0,
-        fastest: 0.0,
+        vertical_weight: 0.0,
+        turn_rate_max: 0.0,
         stage: Stage::AVERAGED,
         demand: StreamDemand::NONE,
-        barred: 0,
-        next: 0,
+        retry_in: 0,
+        retry_delay: 0,
     };
 
     /// Prepares for an envelope of these greatest accelerations, m/s^2, and averages that span so many ticks, the last
     /// of them `last`.
     pub fn design(&mut self, envelope: Envelope, [horizontal, vertical]: [f32; 2], span: u32, last: u32, period: f32) {
         // The last average delays by half of it.
-        let fastest = (2.0 * TURN_WITHIN_DELAY_MAX_RAD / last as f32).min(TURN_WITHIN_TICK_MAX_RAD) / period;
+        let turn_rate_max = (2.0 * TURN_WITHIN_DELAY_MAX_RAD / last as f32).min(TURN_WITHIN_TICK_MAX_RAD) / period;
         *self = Self {
             envelope,
             period,
             span: span as f32 * period,
             last,
             acceleration: horizontal,
-            flatness: horizontal / vertical,
-            fastest,
+            vertical_weight: horizontal / vertical,
+            turn_rate_max,
             ..Self::NONE
         };
         self.start();
@@ -154,8 +151,8 @@ impl StreamFollower {
     pub fn start(&mut self) {
         self.stage = Stage::AVERAGED;
         self.demand = StreamDemand::NONE;
-        self.barred = 0;
-        self.next = self.ticks(RETRY_SPANS);
+        self.retry_in = 0;
+        self.retry_delay = self.ticks(RETRY_SPANS);
     }
 
     fn ticks(&self, spans: f32) -> u32 {
@@ -182,46 +179,42 @@ impl StreamFollower {
     pub fn tick(
         &mut self,
         head: &HeadMotion,
-        sought: Option<&StreamTarget>,
+        stream: Option<&StreamTarget>,
         averaged: &Vector3<i32>,
         unit: f32,
     ) -> HeadDrive {
-        self.barred = self.barred.saturating_sub(1);
-        if sought.is_none() {
+        self.retry_in = self.retry_in.saturating_sub(1);
+        if stream.is_none() {
             self.demand = StreamDemand::NONE;
         }
-        if let (Stage::Averaged { near, .. }, true) = (self.stage, sought.is_some_and(|sought| rests(head, sought))) {
+        if let (Stage::Averaged { near, .. }, true) = (self.stage, stream.is_some_and(|stream| rests(head, stream))) {
             self.rest(near);
             return HeadDrive::Averages;
         }
-        let sought = sought.filter(|sought| self.judge(sought));
-        if sought.is_none() && self.is_averaged() {
-            self.stage = Stage::AVERAGED;
-            return HeadDrive::Averages;
-        }
-        match (self.stage, sought) {
-            (Stage::Averaged { near, watched }, Some(sought)) if self.barred == 0 => {
+        let stream = stream.filter(|stream| self.judge(stream));
+        match (self.stage, stream) {
+            (Stage::Averaged { near, watched }, Some(stream)) if self.retry_in == 0 => {
                 let snap = averaged.map(|units| units as f32 * unit);
-                self.averaged(head, sought, &snap, near, &watched)
+                self.averaged(head, stream, &snap, near, &watched)
             }
             (Stage::Averaged { .. }, _) => {
                 self.stage = Stage::AVERAGED;
                 HeadDrive::Averages
             }
-            (Stage::Blending { stiffness, out, blend }, Some(sought)) => {
+            (Stage::Blending { stiffness, retreat, blend }, Some(stream)) => {
                 let snap = averaged.map(|units| units as f32 * unit);
-                let target = blend.target(head, sought, &snap, self.period);
+                let target = blend.target(head, stream, &snap, self.period);
                 if self.distance(&target) <= self.lost_distance() {
-                    self.blend(head, &target, &snap, stiffness, &out, &blend)
+                    self.blend(head, &target, &snap, stiffness, &retreat, &blend)
                 } else {
-                    self.give_up(head, &out)
+                    self.give_up(head, &retreat)
                 }
             }
-            (Stage::Direct { stiffness, out, far }, Some(sought)) if self.distance(sought) <= far => {
-                self.follow(head, sought, stiffness, &out, far)
+            (Stage::Direct { stiffness, retreat, lost_at }, Some(stream)) if self.distance(stream) <= lost_at => {
+                self.follow(head, stream, stiffness, &retreat, lost_at)
             }
-            (Stage::Blending { out, .. } | Stage::Direct { out, .. }, _) => self.give_up(head, &out),
-            (Stage::Levelling { out, still }, _) => self.level(head, &out, still),
+            (Stage::Blending { retreat, .. } | Stage::Direct { retreat, .. }, _) => self.give_up(head, &retreat),
+            (Stage::Levelling { retreat, still }, _) => self.level(head, &retreat, still),
         }
     }
 
@@ -229,40 +222,40 @@ impl StreamFollower {
     fn rest(&mut self, near: u32) {
         self.stage = Stage::Averaged { near: near.saturating_add(1), watched: Watched::NONE };
         self.demand = StreamDemand::NONE;
-        self.next = self.ticks(RETRY_SPANS);
+        self.retry_delay = self.ticks(RETRY_SPANS);
     }
 
     fn averaged(
         &mut self,
         head: &HeadMotion,
-        sought: &StreamTarget,
+        stream: &StreamTarget,
         snap: &Vector3<f32>,
         agreed: u32,
         watched: &Watched,
     ) -> HeadDrive {
-        let room = self.feedback_capacity(sought);
+        let capacity = self.feedback_capacity(stream);
         let slack = JOINING_STIFFNESS_SPANS_MAX / self.span;
-        let stiffness = self.stiffness_within(sought, room).min(slack);
-        let near = stiffness >= JOINING_STIFFNESS_SHARE_MIN * slack && self.is_near(sought, slack, room);
-        let out = self.envelope.retreat(head).filter(|_| near);
-        match out {
-            Some(out) if agreed >= self.ticks(NEAR_SPANS_MIN) => {
+        let stiffness = self.stiffness_within(stream, capacity).min(slack);
+        let near = stiffness >= JOINING_STIFFNESS_SHARE_MIN * slack && self.is_near(stream, slack, capacity);
+        let retreat = self.envelope.retreat(head).filter(|_| near);
+        match retreat {
+            Some(retreat) if agreed >= self.ticks(NEAR_SPANS_MIN) => {
                 // From rest nothing is to be caught up with.
                 let [_, slow, _] = REST_TOLERANCES;
-                let (stiffness, far) = if head.velocity.norm_squared() < 4.0 * slow * slow {
-                    (self.stiffness_within(sought, room), self.lost_distance())
+                let (stiffness, lost_at) = if head.velocity.norm_squared() < 4.0 * slow * slow {
+                    (self.stiffness_within(stream, capacity), self.lost_distance())
                 } else {
                     (
                         stiffness,
-                        LOST_DISTANCE_FACTOR * self.distance(sought)
+                        LOST_DISTANCE_FACTOR * self.distance(stream)
                             + LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span,
                     )
                 };
-                self.follow(head, sought, stiffness, &out, far)
+                self.follow(head, stream, stiffness, &retreat, lost_at)
             }
             _ => {
-                let near = if out.is_some() { agreed + 1 } else { 0 };
-                self.watch(head, sought, snap, near, watched)
+                let near = if retreat.is_some() { agreed + 1 } else { 0 };
+                self.watch(head, stream, snap, near, watched)
             }
         }
     }
@@ -271,12 +264,12 @@ impl StreamFollower {
     fn watch(
         &mut self,
         head: &HeadMotion,
-        sought: &StreamTarget,
+        stream: &StreamTarget,
         snap: &Vector3<f32>,
         near: u32,
         watched: &Watched,
     ) -> HeadDrive {
-        let StreamTarget { point: Point { velocity, acceleration, jerk, snap: bend, .. }, error } = sought;
+        let StreamTarget { point: Point { velocity, acceleration, jerk, snap: bend, .. }, error } = stream;
         let used = math::max(
             self.envelope.used([acceleration, jerk, bend]),
             math::sqrt(self.envelope.share_of_speed(velocity)),
@@ -289,9 +282,9 @@ impl StreamFollower {
             return HeadDrive::Averages;
         }
         match (watched.blend(&self.envelope, self.span), self.envelope.retreat(head)) {
-            (Some(blend), Some(out)) => {
-                let target = blend.target(head, sought, snap, self.period);
-                self.blend(head, &target, snap, JOINING_STIFFNESS_SPANS_MAX / self.span, &out, &blend)
+            (Some(blend), Some(retreat)) => {
+                let target = blend.target(head, stream, snap, self.period);
+                self.blend(head, &target, snap, JOINING_STIFFNESS_SPANS_MAX / self.span, &retreat, &blend)
             }
             _ => {
                 self.stage = Stage::AVERAGED;
@@ -307,16 +300,16 @@ impl StreamFollower {
         target: &StreamTarget,
         averaged: &Vector3<f32>,
         stiffness: f32,
-        out: &Retreat,
+        retreat: &Retreat,
         blend: &Blend,
     ) -> HeadDrive {
-        let (snap, out) = self.envelope.step(head, &self.commanded_snap(target, stiffness), out);
+        let (snap, retreat) = self.envelope.step(head, &self.commanded_snap(target, stiffness), retreat);
         let stiffness = self.next_stiffness(target, stiffness);
         let blend = blend.after(&(averaged - snap), self.period);
         self.stage = if blend.is_over() {
-            Stage::Direct { stiffness, out, far: self.lost_distance() }
+            Stage::Direct { stiffness, retreat, lost_at: self.lost_distance() }
         } else {
-            Stage::Blending { stiffness, out, blend }
+            Stage::Blending { stiffness, retreat, blend }
         };
         HeadDrive::Snap(snap)
     }
@@ -324,31 +317,31 @@ impl StreamFollower {
     fn follow(
         &mut self,
         head: &HeadMotion,
-        sought: &StreamTarget,
+        stream: &StreamTarget,
         stiffness: f32,
-        out: &Retreat,
-        far: f32,
+        retreat: &Retreat,
+        lost_at: f32,
     ) -> HeadDrive {
-        let (snap, out) = self.envelope.step(head, &self.commanded_snap(sought, stiffness), out);
-        self.stage = Stage::Direct { stiffness: self.next_stiffness(sought, stiffness), out, far };
+        let (snap, retreat) = self.envelope.step(head, &self.commanded_snap(stream, stiffness), retreat);
+        self.stage = Stage::Direct { stiffness: self.next_stiffness(stream, stiffness), retreat, lost_at };
         HeadDrive::Snap(snap)
     }
 
     /// Gives up a stream that is lost, and leaves the next alone for longer each time.
-    fn give_up(&mut self, head: &HeadMotion, out: &Retreat) -> HeadDrive {
-        self.barred = self.next;
-        self.next = (2 * self.next).min(self.ticks(RETRY_SPANS_MAX));
-        self.level(head, out, 0)
+    fn give_up(&mut self, head: &HeadMotion, retreat: &Retreat) -> HeadDrive {
+        self.retry_in = self.retry_delay;
+        self.retry_delay = (2 * self.retry_delay).min(self.ticks(RETRY_SPANS_MAX));
+        self.level(head, retreat, 0)
     }
 
-    fn level(&mut self, head: &HeadMotion, out: &Retreat, still: u32) -> HeadDrive {
+    fn level(&mut self, head: &HeadMotion, retreat: &Retreat, still: u32) -> HeadDrive {
         if still > self.last {
             self.stage = Stage::AVERAGED;
             return HeadDrive::Restarted;
         }
-        let (snap, out) = self.envelope.follow(head, out);
+        let (snap, retreat) = self.envelope.follow(head, retreat);
         let moves = [head.acceleration, head.difference, snap].iter().any(|vector| *vector != Vector3::zeros());
-        self.stage = Stage::Levelling { out, still: if moves { 0 } else { still + 1 } };
+        self.stage = Stage::Levelling { retreat, still: if moves { 0 } else { still + 1 } };
         HeadDrive::Snap(snap)
     }
 
@@ -357,7 +350,7 @@ impl StreamFollower {
         BLEND_LOST_DISTANCE_SHARE * self.acceleration * self.span * self.span
     }
 
-    /// Takes down what a stream asks; whether it moves, not round too fast, keeps the bounds, and leaves a way out.
+    /// Records the stream's demand; whether it moves, turns slowly enough, keeps the bounds, and leaves a retreat.
     fn judge(&mut self, StreamTarget { point, error }: &StreamTarget) -> bool {
         let Point { velocity, acceleration, jerk, snap, rate, .. } = point;
         let (moves, bends) = (*velocity != Vector3::zeros(), *acceleration != Vector3::zeros());
@@ -366,11 +359,11 @@ impl StreamFollower {
             return false;
         }
         let shares = self.envelope.shares([acceleration, jerk, snap]);
-        let turning = rate / self.fastest;
+        let turning = rate / self.turn_rate_max;
         let speed = math::max(self.envelope.share_of_speed(velocity), turning * turning);
         let off = math::sqrt(error.position.norm_squared());
         self.demand = self.demand.with(speed, shares, off, self.period);
-        if !moves || !bends || rate.abs() > self.fastest {
+        if !moves || !bends || rate.abs() > self.turn_rate_max {
             return false;
         }
         let [of_acceleration, of_jerk, of_snap] = shares;
@@ -391,7 +384,7 @@ impl StreamFollower {
 /// Whether the head and the point both rest, at one place.
 fn rests(head: &HeadMotion, StreamTarget { point, error }: &StreamTarget) -> bool {
     let [near, slow, steady] = REST_TOLERANCES;
-    let within = |vector: &Vector3<f32>, most: f32| vector.norm_squared() < most * most;
+    let within = |vector: &Vector3<f32>, max: f32| vector.norm_squared() < max * max;
     within(&error.position, near)
         && within(&head.velocity, slow)
         && within(&point.velocity, slow)

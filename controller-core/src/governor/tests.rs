@@ -52,12 +52,12 @@ pub(super) fn run(governor: &mut Governor) -> (f32, Reference) {
 
 #[test]
 fn ten_metres_take_less_than_six_and_a_half_seconds() {
-    for (target, most) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
+    for (target, max) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
         let governor = governor();
         governor.accept(&go_to(target, 0.0, 0.0)).unwrap();
         let (time, last) = run(governor);
         assert_eq!(last.position, Vector3::new(target, 0.0, 0.0));
-        assert!(time < most, "{target} m took {time} s");
+        assert!(time < max, "{target} m took {time} s");
     }
 }
 

@@ -101,8 +101,8 @@ impl Windows {
             (horizontal, "reference_bounds.horizontal_acceleration"),
             (vertical, "reference_bounds.vertical_acceleration"),
         ] {
-            let least = LEVELS_MIN / (per_metre * share * period * period);
-            require(level * per_metre >= LEVELS_MIN, field, Reason::Below(least))?;
+            let min = LEVELS_MIN / (per_metre * share * period * period);
+            require(level * per_metre >= LEVELS_MIN, field, Reason::Below(min))?;
         }
         // Converting to an integer rounds towards zero.
         let whole = |level: f32| (level * per_metre) as u32 as f32;

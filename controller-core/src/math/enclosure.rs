@@ -228,9 +228,9 @@ impl Real for Enclosure {
 
     /// Beyond sqrt(p/3), where it turns, the cubic rises: where it is positive there, the greatest root is below, and
     /// where it is negative, above.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self {
+    fn max_cubic_root(p: Self, q: Self) -> Self {
         let middle = |x: Self| 0.5 * (x.lower + x.upper);
-        let near = f64::greatest_cubic_root(middle(p), middle(q));
+        let near = f64::max_cubic_root(middle(p), middle(q));
         let turn = (p / 3.0).sqrt_of_rounded();
         let above = |width: &f64| {
             let x = near * (1.0 + width);

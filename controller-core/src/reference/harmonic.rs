@@ -234,19 +234,16 @@ impl Harmonic {
     }
 
     /// omega_i t + phi_i of the three axes, in 2^-64 turns.
-    #[must_use]
     pub fn axis_phases(&self, time_us: u64) -> [u64; 3] {
         self.axes.map(|axis| axis.phase.at(time_us))
     }
 
     /// psi_0 + r t, the heading without its swing, in 2^-64 turns.
-    #[must_use]
     pub fn turn_phase(&self, time_us: u64) -> u64 {
         self.turn.at(time_us)
     }
 
     /// w t of the heading's swing, in 2^-64 turns.
-    #[must_use]
     pub fn swing_phase(&self, time_us: u64) -> u64 {
         self.swing.at(time_us)
     }

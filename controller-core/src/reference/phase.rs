@@ -42,14 +42,12 @@ impl Phase {
     }
 
     /// The phase at `time_us`, in units of 2^-64 turns.
-    #[must_use]
     pub fn at(&self, time_us: u64) -> u64 {
         self.offset.wrapping_add((self.per_microsecond as u64).wrapping_mul(time_us))
     }
 }
 
 /// An angle in radians as 2^-64 turns, modulo a full one.
-#[must_use]
 pub fn turns(angle: f64) -> u64 {
     let turns = angle / TAU;
     let fraction = turns - math::floor(turns);

@@ -43,7 +43,6 @@ pub struct Monitor {
 
 impl Monitor {
     /// For a vehicle under the extended law.
-    #[must_use]
     pub fn new(settings: &Settings, parameters: &ExtendedParameters, vehicle: &Vehicle) -> Self {
         let inertia = math::max(vehicle.inertia.x, vehicle.inertia.y);
         let rate =
@@ -63,7 +62,6 @@ impl Monitor {
     }
 
     /// What speaks against the policy; `doubtful`, for how long an estimate was in doubt, s.
-    #[must_use]
     pub fn violation(&self, state: &State, prospect: &StoppingForecast, doubtful: f32) -> Option<Reason> {
         // Comparisons as they are: one with a NaN is against.
         let w = &state.angular_velocity;

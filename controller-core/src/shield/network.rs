@@ -81,13 +81,11 @@ impl<'a> Network<'a> {
     }
 
     /// What its outputs are multiplied by.
-    #[must_use]
     pub fn scale(&self) -> [f32; OUTPUT_COUNT] {
         self.scale
     }
 
     /// The outputs for these inputs.
-    #[must_use]
     pub fn outputs(&self, inputs: &[f32; INPUT_COUNT]) -> [f32; OUTPUT_COUNT] {
         let mut values = [0.0; WIDTH_MAX];
         for (value, input) in values.iter_mut().zip(inputs) {
@@ -107,7 +105,6 @@ impl<'a> Network<'a> {
     }
 
     /// The demand that outputs make.
-    #[must_use]
     pub fn demand(&self, outputs: &[f32; OUTPUT_COUNT], heading: &Heading) -> Demand {
         let ([x, y, z, turn], [of_x, of_y, of_z, of_turn]) = (*outputs, self.scale);
         let (forwards, heading) = (Vector3::new(x * of_x, y * of_y, z * of_z), heading.direction());
@@ -126,7 +123,6 @@ fn checked(value: f32, field: &'static str) -> Result<(), ParameterError> {
 }
 
 /// The inputs for an observation, after these outputs.
-#[must_use]
 pub fn inputs(observation: &Observation, last: &[f32; OUTPUT_COUNT]) -> [f32; INPUT_COUNT] {
     let Observation { state, goal, heading } = observation;
     let (cos, sin) = (heading.direction().x, heading.direction().y);
@@ -171,7 +167,6 @@ pub struct NetworkPolicy<'a> {
 
 impl<'a> NetworkPolicy<'a> {
     /// Before its first output.
-    #[must_use]
     pub const fn new(network: Network<'a>) -> Self {
         Self { network, last: [0.0; OUTPUT_COUNT] }
     }

@@ -36,7 +36,6 @@ pub struct Settings {
 
 impl Settings {
     /// The usual settings for a box.
-    #[must_use]
     pub const fn new(low: Vector3<f32>, high: Vector3<f32>) -> Self {
         Self { low, high, speed: 10.0, silence: 0.1, patience: 1.0, patience_greatest: 16.0, hand_overs: 10 }
     }
@@ -54,8 +53,8 @@ impl Settings {
                 Reason::Above(BOX_CORNER_MAX_M),
             )?;
         }
-        let least = (self.high - self.low).min();
-        require(least >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
+        let min = (self.high - self.low).min();
+        require(min >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
         for (value, field) in [
             (self.speed, "shield.speed"),
             (self.silence, "shield.silence"),
@@ -68,14 +67,12 @@ impl Settings {
     }
 
     /// For how long the vehicle is to be near its refuge after so many hand-overs, s.
-    #[must_use]
     pub fn patience(&self, hand_overs: u32) -> f32 {
         let doubled = (1_u32 << hand_overs.saturating_sub(1).min(16)) as f32;
         math::min(self.patience * doubled, self.patience_greatest)
     }
 
     /// The place nearest to `place` in the box, less a quarter of a metre.
-    #[must_use]
     pub fn refuge(&self, place: &Vector3<f32>) -> Vector3<f32> {
         let axis = |place: f32, low: f32, high: f32| math::clamp(place, low + REFUGE_INSET_M, high - REFUGE_INSET_M);
         let (low, high) = (&self.low, &self.high);
@@ -83,7 +80,6 @@ impl Settings {
     }
 
     /// Whether `place` is in the box.
-    #[must_use]
     pub fn contain(&self, place: &Vector3<f32>) -> bool {
         // Not a comparison that a NaN passes.
         let inside = |(place, (low, high)): (&f32, (&f32, &f32))| low <= place && place <= high;

@@ -35,20 +35,17 @@ impl JudgedLoops {
     };
 
     /// An earlier judgement, as [`Self::bits`] gave it.
-    #[must_use]
     pub const fn from_bits(across: [u8; CHOICES_ACROSS_BYTES], vertical: [u8; CHOICES_VERTICAL_BYTES]) -> Self {
         Self { across, vertical }
     }
 
     /// To be kept: the bits of the choices of four factors, and of two.
-    #[must_use]
     pub fn bits(&self) -> (&[u8; CHOICES_ACROSS_BYTES], &[u8; CHOICES_VERTICAL_BYTES]) {
         (&self.across, &self.vertical)
     }
 
     /// Calls `across` for every choice of the first four factors, and `vertical` for every choice of the other two; the
     /// factors that are not varied are as built.
-    #[must_use]
     pub fn judge(mut across: impl FnMut(&Factors) -> bool, mut vertical: impl FnMut(&Factors) -> bool) -> Self {
         let mut judged = Self { across: [0; _], vertical: [0; _] };
         for attitude in Percent::all() {
@@ -71,7 +68,6 @@ impl JudgedLoops {
     }
 
     /// Whether every loop was found stable, with margin, under these factors.
-    #[must_use]
     pub fn hold(&self, factors: &Factors) -> bool {
         get(&self.across, index_across(factors)) && get(&self.vertical, index_vertical(factors))
     }

@@ -37,10 +37,10 @@ fn rotors_that_differ_keep_the_thrusts_that_were_not_changed() {
         let rotor = tuning.apply(&built).unwrap().rotors().unwrap()[2];
         (rotor.thrust_min, rotor.thrust_max)
     };
-    let [least, most] = figures.rotor_thrust;
-    assert_eq!(third([least, most]), (0.02, 2.9));
-    assert_eq!(third([0.01, most]), (0.01, 2.9));
-    assert_eq!(third([least, 2.5]), (0.02, 2.5));
+    let [min, max] = figures.rotor_thrust;
+    assert_eq!(third([min, max]), (0.02, 2.9));
+    assert_eq!(third([0.01, max]), (0.01, 2.9));
+    assert_eq!(third([min, 2.5]), (0.02, 2.5));
 }
 
 #[test]

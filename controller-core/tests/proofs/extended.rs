@@ -11,7 +11,7 @@ use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::extended::attitude::AttitudeLaw;
 use controller_core::extended::direction_limiter::DirectionLimiter;
 use controller_core::extended::fallback::{Fallback, PROGRESS_WINDOW_S, Slowed};
-use controller_core::extended::heading::{FrameMotion, HeadingLaw};
+use controller_core::extended::heading::HeadingLaw;
 use controller_core::extended::parameters::ExtendedParameters;
 use controller_core::extended::position::{FeedbackLimits, Filters, PositionLaw};
 use controller_core::heading::Heading;
@@ -270,8 +270,8 @@ pub(super) fn the_heading_is_that_of_the_proofs() {
     let mut random = Random(23);
     for _ in 0..TRIALS {
         let velocity = direction(&mut random) * 10.0;
-        let seen = FrameMotion { rate: direction(&mut random) * 3.0, acceleration: 10.0 * signed(&mut random) };
-        let forward = law.forward(&seen, &velocity);
+        let (frame_rate, acceleration) = (direction(&mut random) * 3.0, 10.0 * signed(&mut random));
+        let forward = law.forward(&frame_rate, acceleration, &velocity);
         let (psi, rate_error) = (2.0 * signed(&mut random), 12.0 * signed(&mut random));
         // Where nothing was left for yaw, A brakes.
         let found = law.torque(psi, rate_error, forward, &velocity, 0.0);

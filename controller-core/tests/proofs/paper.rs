@@ -213,11 +213,11 @@ pub(super) fn the_certificates_thrust_and_torque_are_those_of_the_proofs() {
         let sides = proofs.sides("thrust_interval", "<= T <=");
         near(vehicle.mass * u.norm(), sides[1], 10.0, "T = m |u|");
         assert!(sides.is_sorted());
-        same(sharp.thrust.least * raised, sides[0], "the least thrust");
+        same(sharp.thrust.min * raised, sides[0], "the least thrust");
         same(sharp.thrust.max / raised, sides[2], "the greatest thrust");
         let wider = proofs.sides("thrust_interval_as_printed", "<= T <=");
         assert!(sides[0] == wider[0] && sides[2] <= wider[2]);
-        same(printed.thrust.least * raised, wider[0], "the least thrust as printed");
+        same(printed.thrust.min * raised, wider[0], "the least thrust as printed");
         same(printed.thrust.max / raised, wider[2], "the greatest thrust as printed");
     }
     let left = Proofs::read("Filters").with(&levels).sides("hover_is_left", "M + K_3 <");

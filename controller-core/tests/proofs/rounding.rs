@@ -126,9 +126,9 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
             assert!(proofs.sides("between_ends", between).is_sorted(), "{torque} {between}");
         }
         let (along, least, most) = (tilt.push(0.0), least.min(0.0), most.max(0.0));
-        assert_eq!(f64::from(range.least(&along, scale)), floor, "{tilt} {scale} {margin}");
-        assert_eq!(f64::from(range.greatest(&along, scale)), ceiling, "{tilt} {scale} {margin}");
-        let beside = f64::from(range.greatest(&tilt.push(braking), scale));
+        assert_eq!(f64::from(range.min_thrust(&along, scale)), floor, "{tilt} {scale} {margin}");
+        assert_eq!(f64::from(range.max_thrust(&along, scale)), ceiling, "{tilt} {scale} {margin}");
+        let beside = f64::from(range.max_thrust(&tilt.push(braking), scale));
         let thrust = floor.max(ceiling.min(beside)).min(floor.max(f64::from(wanted)));
         assert_eq!(f64::from(wrench.thrust), thrust, "{tilt} {scale} {margin}");
         assert_eq!(f64::from(torque.z), most.min(least.max(f64::from(yaw))), "{tilt} {scale} {margin}");

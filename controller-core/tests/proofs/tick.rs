@@ -54,12 +54,12 @@ pub(super) fn the_thrust_range_is_that_of_the_proofs() {
             .with_value("rotors", Value::List(rotors_of(&rotors)));
         let proofs = whole.clone().with_value("tau", plane(&tau));
         let floor = proofs.number("floor", &[]);
-        near(range.least(&tau.push(0.0), scale), floor, 10.0, "floor");
-        near(range.greatest(&tau.push(0.0), scale), proofs.number("ceiling", &[]), 10.0, "ceiling");
+        near(range.min_thrust(&tau.push(0.0), scale), floor, 10.0, "floor");
+        near(range.max_thrust(&tau.push(0.0), scale), proofs.number("ceiling", &[]), 10.0, "ceiling");
         let (wanted, yaw) = (40.0 * signed(&mut random), signed(&mut random));
         let braking = 0.3 * signed(&mut random);
         let [alone, beside] = [0.0, f64::from(braking)].map(|braking| proofs.number("ceiling_beside", &[braking]));
-        near(range.greatest(&tau.push(braking), scale), beside, 10.0, "ceiling beside what brakes");
+        near(range.max_thrust(&tau.push(braking), scale), beside, 10.0, "ceiling beside what brakes");
         cut += usize::from(beside < alone && beside < f64::from(wanted));
         let (found, room) = range.limited(wanted, &tau, [yaw, braking], scale);
         near(found.thrust, proofs.number("thrust", &[braking, wanted].map(f64::from)), 10.0, "thrust");

@@ -89,18 +89,14 @@ impl Candidate {
 
     /// Whether up is where the accelerometer says.
     pub fn check_gravity(&self, settings: &Settings) -> Result<(), Rejected> {
-        let most = settings.parameters().accelerometer_bias_max;
-        if self.filter.nominal.accelerometer_bias.norm_squared() > most * most {
-            Err(Rejected::Gravity)
-        } else {
-            Ok(())
-        }
+        let max = settings.parameters().accelerometer_bias_max;
+        if self.filter.nominal.accelerometer_bias.norm_squared() > max * max { Err(Rejected::Gravity) } else { Ok(()) }
     }
 
     /// Whether it may be what `filter`, at the same time, has lost sight of `lost` us ago.
     pub fn compare(&self, filter: &Filter, lost: u64) -> Result<(), Rejected> {
         let t = lost as f32 * 1e-6;
-        let exceeds = |apart: &Vector3<f32>, most: f32| math::sqrt(apart.norm_squared()) > most;
+        let exceeds = |apart: &Vector3<f32>, max: f32| math::sqrt(apart.norm_squared()) > max;
         let (there, here) = (&self.filter.nominal, &filter.nominal);
         let turned = super::nominal::difference(&there.attitude, &here.attitude);
         if exceeds(&turned, 0.1 + 0.02 * t) {

@@ -40,13 +40,11 @@ impl Faults {
     }
 
     /// Whether `fault` is one of them.
-    #[must_use]
     pub const fn contain(self, fault: Fault) -> bool {
         self.0 >> fault as u8 & 1 == 1
     }
 
     /// The worst of them.
-    #[must_use]
     pub fn worst(self) -> Option<Fault> {
         Fault::ALL.into_iter().find(|&fault| self.contain(fault))
     }
@@ -144,7 +142,6 @@ impl Health {
     };
 
     /// No fault.
-    #[must_use]
     pub fn is_good(&self) -> bool {
         self.faults == Faults::default()
     }
@@ -197,8 +194,8 @@ fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
 }
 
 /// Written so that NaN is a fault.
-fn within(value: f32, most: f32) -> bool {
-    value <= most
+fn within(value: f32, max: f32) -> bool {
+    value <= max
 }
 
 #[cfg(test)]

@@ -59,7 +59,6 @@ pub struct Increment {
 
 impl Increment {
     /// h, s.
-    #[must_use]
     pub fn seconds(&self) -> f32 {
         self.end.saturating_sub(self.start) as f32 * 1e-6
     }

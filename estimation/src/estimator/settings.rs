@@ -80,7 +80,6 @@ const DEVIATION_MAX: f32 = 10.0;
 
 impl Settings {
     /// [`EstimatorParameters::BMI088`], with a vehicle's gravity.
-    #[must_use]
     pub fn bmi088(vehicle: &Vehicle) -> Self {
         // A vehicle's gravity is positive, and the rest is checked by a test.
         Self(EstimatorParameters { gravity: vehicle.gravity, ..EstimatorParameters::BMI088 })
@@ -120,7 +119,6 @@ impl Settings {
     }
 
     /// What they were made from.
-    #[must_use]
     pub fn parameters(&self) -> &EstimatorParameters {
         &self.0
     }
@@ -130,8 +128,8 @@ impl Settings {
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {
-            let least = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
-            controller_core::math::clamp(value, least, DEVIATION_MAX)
+            let min = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
+            controller_core::math::clamp(value, min, DEVIATION_MAX)
         };
         let (position, attitude) = given.unwrap_or(usual);
         (floor(position, usual.0), floor(attitude, usual.1))

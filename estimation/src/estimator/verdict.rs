@@ -57,7 +57,6 @@ worded! {
 impl Accepted {
     /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves
     /// the frame, which agrees with nothing yet.
-    #[must_use]
     pub const fn is_believed(self) -> bool {
         match self {
             Self::Fused | Self::Started | Self::Refound => true,
@@ -68,7 +67,6 @@ impl Accepted {
 
 impl Rejected {
     /// Whether it was refused for its values: not for its time or quality, nor for want of an estimate.
-    #[must_use]
     pub const fn is_lie(self) -> bool {
         match self {
             Self::Frozen

@@ -49,19 +49,16 @@ impl Calibration {
     };
 
     /// omega, rad/s.
-    #[must_use]
     pub fn rate(&self, measured: &Vector3<f32>) -> Vector3<f32> {
         self.level * (measured - self.gyro_bias)
     }
 
     /// f, m/s^2.
-    #[must_use]
     pub fn force(&self, measured: &Vector3<f32>) -> Vector3<f32> {
         self.level * (measured - self.offset).component_mul(&self.scale)
     }
 
     /// The same with the gyro's bias as a standstill showed it.
-    #[must_use]
     pub fn with_gyro_bias(&self, rest: &StandstillMeans) -> Self {
         Self { gyro_bias: rest.angular_velocity, ..*self }
     }

@@ -41,13 +41,11 @@ worded! {
 
 impl ImuFault {
     /// Whether the gyro fails.
-    #[must_use]
     pub const fn is_of_the_gyro(self) -> bool {
         matches!(self, Self::GyroStuck | Self::GyroSaturated)
     }
 
     /// Whether the accelerometer fails.
-    #[must_use]
     pub const fn is_of_the_accelerometer(self) -> bool {
         matches!(self, Self::AccelerometerSilent | Self::AccelerometerStuck | Self::AccelerometerSaturated)
     }
@@ -101,13 +99,11 @@ pub struct FaultMonitor {
 
 impl FaultMonitor {
     /// Nothing seen yet.
-    #[must_use]
     pub fn new(ranges: Ranges) -> Self {
         Self { ranges, gyro: SampleHistory::NOTHING, accelerometer: SampleHistory::NOTHING, leapt: false }
     }
 
     /// Which sensor was at full scale in the last sample that it gave; the accelerometer maybe before its own filter.
-    #[must_use]
     pub fn clipped(&self) -> Clipped {
         Clipped { gyro: self.gyro.saturated > 0, accelerometer: self.accelerometer.saturated > 0 || self.leapt }
     }

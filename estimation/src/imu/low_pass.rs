@@ -56,7 +56,6 @@ pub struct LowPass {
 
 impl LowPass {
     /// In front of control ticks every `period` us, of `rate` samples a second.
-    #[must_use]
     pub fn before_ticks(period: u64, rate: f64) -> Self {
         let ticks = 1e6 / period.max(1) as f64;
         let multiple = (ROTOR_FREQUENCY_MIN_HZ / ticks) as u32 + 1;
@@ -66,7 +65,6 @@ impl LowPass {
 
     /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate`
     /// samples a second; all in Hz.
-    #[must_use]
     pub fn new(cutoff: f64, stopped: f64, rate: f64) -> Self {
         let k = math::tan(core::f64::consts::PI * cutoff / rate);
         let tangent = math::tan(core::f64::consts::PI * stopped / rate);
@@ -84,7 +82,6 @@ impl LowPass {
     }
 
     /// The delay of slow changes, s.
-    #[must_use]
     pub fn delay(&self) -> f32 {
         self.delay
     }

@@ -63,9 +63,9 @@ impl SixPoint {
     /// If no axis points up or down, or this one did before.
     pub fn add(&mut self, rest: &StandstillMeans, gravity: f32) -> Result<(), SixPointError> {
         let force = &rest.specific_force;
-        let least = FACE_COSINE_MIN as f32 * gravity;
+        let min = FACE_COSINE_MIN as f32 * gravity;
         let wanted = [force.x, force.y, force.z, -force.x, -force.y, -force.z];
-        let up = self.faces.iter_mut().zip(wanted).find(|(_, along)| *along >= least);
+        let up = self.faces.iter_mut().zip(wanted).find(|(_, along)| *along >= min);
         let (face, _) = up.ok_or(SixPointError::NoFace)?;
         if face.is_some() {
             return Err(SixPointError::FaceTwice);

@@ -318,7 +318,7 @@ impl<P: Aboard> Flight<P> {
             let certificate = self.certified.certificate();
             let (thrust, most) = (certificate.thrust(), certificate.torque());
             assert!(f64::from(flown.wrench.thrust) <= thrust.max, "{flown:?}");
-            assert!(f64::from(flown.wrench.thrust) >= thrust.least, "{flown:?}");
+            assert!(f64::from(flown.wrench.thrust) >= thrust.min, "{flown:?}");
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
             assert!(torque.x <= most.x && torque.y <= most.y && torque.z <= most.z);
         }

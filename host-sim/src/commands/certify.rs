@@ -110,7 +110,7 @@ fn extended(certificate: &ExtendedCertificate) -> String {
     aligned(&rows)
         + &format!(
             "thrust in [{}, {}] N, torques {}, {}, {} N m\n",
-            short(thrust.least),
+            short(thrust.min),
             short(thrust.max),
             short(torque.x),
             short(torque.y),
@@ -195,7 +195,7 @@ fn bounds(name: &str, form: &Form) -> String {
         "{name}: |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in [{}, {}] N, torques {}, {}, {} N m\n",
         short(form.rates.angular_velocity),
         short(form.rates.angular_acceleration),
-        short(form.thrust.least),
+        short(form.thrust.min),
         short(form.thrust.max),
         short(form.torque.x),
         short(form.torque.y),
@@ -206,7 +206,7 @@ fn bounds(name: &str, form: &Form) -> String {
 fn rotors(certificate: &PaperCertificate) -> String {
     let head = ["rotor, excursion from hover", "available", "", "required", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for inequality in certificate.rotors.iter().flat_map(|report| [&report.least, &report.greatest]) {
+    for inequality in certificate.rotors.iter().flat_map(|report| [&report.min, &report.max]) {
         let mut row = vec![inequality.name.to_owned(), short(inequality.available), inequality.unit.to_owned()];
         row.extend(required(inequality));
         rows.push(row);

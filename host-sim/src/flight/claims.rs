@@ -176,7 +176,7 @@ fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
 
 /// The certificate's bounds. They hold for every configuration, whether or not they fit the limits.
 fn bounds(certificate: &Certificate, flown: &FlightExtremes) -> Vec<Claim> {
-    let interval = |Interval { least, max: greatest }: Interval| (least, greatest);
+    let interval = |Interval { min: least, max: greatest }: Interval| (least, greatest);
     let printed = certificate.paper().map(|paper| paper.printed.thrust);
     let printed = printed.map(|thrust| within("thrust, Theorem 1".to_owned(), flown.thrust, interval(thrust)));
     let mut claims: Vec<Claim> = printed.into_iter().collect();

@@ -81,7 +81,7 @@ fn is_explained(before: Mode, outcome: &Outcome) -> bool {
 
 fn is_proven(flown: &Flown, certificate: &Certificate) -> bool {
     let (wrench, raised) = (&flown.wrench, 1.0 + ROUNDING_SHARE);
-    let Interval { least, max: greatest } = certificate.thrust();
+    let Interval { min: least, max: greatest } = certificate.thrust();
     let torque = wrench.torque.map(|torque| f64::from(torque.abs()));
     (least / raised..=greatest * raised).contains(&f64::from(wrench.thrust))
         && torque.iter().zip(certificate.torque().iter()).all(|(asked, proven)| *asked <= proven * raised)
@@ -98,8 +98,9 @@ fn rotors_are_proven(thrusts: &[f32], certified: &Certified) -> bool {
     let rotors = certified.configuration().rotors().unwrap();
     thrusts.iter().enumerate().all(|(rotor, thrust)| {
         let (thrust, least) = (f64::from(*thrust), f64::from(rotors[rotor].thrust_min));
-        certified.certificate().rotor(rotor).is_some_and(|proven| {
-            thrust <= proven.max * (1.0 + ROUNDING_SHARE) && thrust >= least.min(proven.least) - ROUNDING_SHARE
-        })
+        certified
+            .certificate()
+            .rotor(rotor)
+            .is_some_and(|proven| thrust <= proven.max * (1.0 + ROUNDING_SHARE) && thrust >= least.min(proven.min) - ROUNDING_SHARE)
     })
 }

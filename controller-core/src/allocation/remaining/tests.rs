@@ -59,10 +59,10 @@ fn every_thrust_and_command_is_within_its_range_whatever_is_asked() {
         let thrusts = rotors.allocate(&asked(&mut random));
         for (index, (thrust, command)) in thrusts.iter().zip(&rotors.commands(&thrusts)).enumerate() {
             let rotor = quad()[index];
-            let [least, most] = [rotor.thrust_min, rotor.thrust_max];
+            let [min, max] = [rotor.thrust_min, rotor.thrust_max];
             let (share, is_lost) = (if index == number % 4 { left } else { 1.0 }, index == number % 4);
-            assert!((share * least..=share * most).contains(thrust), "{thrust}");
-            assert!((least..=most).contains(command) || is_lost && left == 0.0 && *command == 0.0, "{command}");
+            assert!((share * min..=share * max).contains(thrust), "{thrust}");
+            assert!((min..=max).contains(command) || is_lost && left == 0.0 && *command == 0.0, "{command}");
         }
     }
 }
@@ -74,14 +74,14 @@ fn no_thrusts_within_the_ranges_cost_less() {
         let rotors = without(number % 4, if number % 3 == 0 { random.between(0.1, 0.9) } else { 0.0 });
         let wanted = asked(&mut random);
         let found = rotors.allocate(&wanted);
-        let least = cost(&rotors, &wanted, &found);
+        let min = cost(&rotors, &wanted, &found);
         for _ in 0..40 {
             // Any others, near and far.
             let size = *[0.01, 0.3, 12.0].get(random.below(3)).unwrap();
             let other = |(rotor, thrust): (&Remaining, &f32)| rotor.within(thrust + random.between(-size, size));
             let others: Vec<f32, ROTORS_MAX> = collected(rotors.rotors.iter().zip(&found).map(other));
             let more = cost(&rotors, &wanted, &others);
-            assert!(more >= least - 1e-3 * least.max(1.0), "{wanted:?}: {found:?} {least}, {others:?} {more}");
+            assert!(more >= min - 1e-3 * min.max(1.0), "{wanted:?}: {found:?} {min}, {others:?} {more}");
         }
     }
 }

@@ -21,8 +21,8 @@ fn the_widest_references_are_a_share_of_the_formulas() {
         let craft = Craft::random(&mut random);
         let airframe = craft.airframe();
         let parameters = craft.constants(&NOTHING_GIVEN);
-        let most = defaults::reference_bounds(&airframe, &parameters);
+        let max = defaults::reference_bounds(&airframe, &parameters);
         let widest = flyable(&airframe, craft.law(&parameters));
-        assert!(widest.values().iter().zip(most.values()).all(|(bound, most)| *bound <= most), "{widest:?}");
+        assert!(widest.values().iter().zip(max.values()).all(|(bound, max)| *bound <= max), "{widest:?}");
     }
 }

@@ -34,7 +34,6 @@ pub struct MaxShare {
 
 impl MaxShare {
     /// The most from the start to `end_us`, microseconds.
-    #[must_use]
     pub fn along<R: Real>(judge: &PathJudge<R>, trajectory: &dyn Trajectory, end_us: u64) -> Self {
         let mut search = Search { judge, trajectory, attained: SampledShare::NOTHING, bound: 0.0 };
         let mut from = 0;

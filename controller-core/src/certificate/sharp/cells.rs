@@ -132,14 +132,14 @@ impl<R: Real> Tilt<R> {
 
     /// The shares of u' in the cell `split`, for p at most `longest`.
     pub fn shares(&self, reach: &Reachable<R>, longest: R, split: usize) -> Shares<R> {
-        let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
+        let [min, max] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
         let total = reach.jerk * reach.jerk;
-        let length = most / self.magnitude;
+        let length = max / self.magnitude;
         Shares {
-            stretch: (total - least * least).sqrt_of_rounded() / self.magnitude,
+            stretch: (total - min * min).sqrt_of_rounded() / self.magnitude,
             length,
-            product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
-            mixed: (length + most.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
+            product: max_product(total, min * min, max * max) / (self.magnitude * self.magnitude),
+            mixed: (length + max.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
         }
     }
 
@@ -159,9 +159,9 @@ impl<R: Real> Tilt<R> {
     }
 }
 
-/// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
-fn greatest_product<R: Real>(total: R, least: R, most: R) -> R {
-    let x = (total * 0.5).greater(least).lesser(most);
+/// The greatest sqrt(x (total - x)) for x between `min` and `most`: p r, where p^2 + r^2 = `total`.
+fn max_product<R: Real>(total: R, min: R, max: R) -> R {
+    let x = (total * 0.5).greater(min).lesser(max);
     (x * (total - x)).sqrt_of_rounded()
 }
 

@@ -9,7 +9,7 @@
 
 use super::{Controller, thrust_axis};
 use crate::extended::direction_limiter::PUSH_ACROSS_MAX_M_PER_S2;
-use crate::extended::force::held;
+use crate::extended::estimates::held;
 use crate::extended::memory::Estimates;
 use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
@@ -39,11 +39,10 @@ pub struct StoppingForecast {
 
 impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
-    #[must_use]
     pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
-        let greatest = self.ceiling.at(scale, &torque);
+        let max = self.ceiling.at(scale, &torque);
         let origin = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let errors = self.position.errors(state, &origin, filters, &force);
         let (z_1, z_2) = (errors.z_1, errors.z_2);
@@ -52,12 +51,12 @@ impl Controller {
         command.z += self.vehicle.gravity;
         let magnitude = math::sqrt(command.norm_squared());
 
-        let reaction = self.reaction(&z_2, &command, &force, greatest, most);
+        let reaction = self.reaction(&z_2, &command, &force, max, most);
         let went_on = z_1 + z_2 * reaction;
         let sped_up = acceleration * reaction;
-        let push_velocity = self.pushed(&command, greatest);
+        let push_velocity = self.pushed(&command, max);
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
-            let levels = self.position.stopping_levels(&speed, &force, greatest, most);
+            let levels = self.position.stopping_levels(&speed, &force, max, most);
             at + self.position.stopping_way(&speed, &levels)
         };
         let [first, second] = self.position.stages(state, filters, &force);
@@ -76,14 +75,14 @@ impl Controller {
                 || self.memory.without_velocity > 0
                 || self.spinning.is_some()
                 || self.is_at_a_level()
-                || !self.is_held(&force, greatest),
+                || !self.is_held(&force, max),
         }
     }
 
     /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
-    fn pushed(&self, command: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
+    fn pushed(&self, command: &Vector3<f32>, max: f32) -> Vector3<f32> {
         let across = math::sqrt(command.xy().norm_squared());
-        let most = math::min(PUSH_ACROSS_MAX_M_PER_S2, greatest * across / math::max(command.z, f32::MIN_POSITIVE));
+        let most = math::min(PUSH_ACROSS_MAX_M_PER_S2, max * across / math::max(command.z, f32::MIN_POSITIVE));
         let speed = most * self.position.lag() / math::max(across, f32::MIN_POSITIVE);
         Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
@@ -94,10 +93,10 @@ impl Controller {
         z_2: &Vector3<f32>,
         command: &Vector3<f32>,
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         most: &FeedbackLimits,
     ) -> f32 {
-        let mut stopping = self.position.stopping(z_2, force, greatest, most);
+        let mut stopping = self.position.stopping(z_2, force, max, most);
         stopping.z += self.vehicle.gravity;
         let angle = angle(command, &stopping);
         let parameters = &self.law.parameters;
@@ -120,9 +119,9 @@ impl Controller {
     }
 
     /// Whether the thrust holds all of the force.
-    fn is_held(&self, force: &Vector3<f32>, greatest: f32) -> bool {
+    fn is_held(&self, force: &Vector3<f32>, max: f32) -> bool {
         let weight = Vector3::new(0.0, 0.0, self.vehicle.gravity);
-        held(force, &weight, greatest) == *force
+        held(force, &weight, max) == *force
     }
 
     /// Whether force or thrust scale would be beyond a level that is not zero.

@@ -2,7 +2,8 @@
 
 use super::{Controller, FeedbackSource, PastCommands};
 use crate::attitude::rotate_back;
-use crate::attitude_reference::{DesiredAttitude, DirectionMotion};
+use crate::attitude_reference::{AngularMotion, DesiredAttitude, DirectionMotion};
+use crate::controller::Diagnostics;
 use crate::extended::attitude::{Late, Tilt};
 use crate::extended::budget::TORQUE_THRUST_SHARE;
 use crate::extended::demand::Demand;
@@ -28,7 +29,7 @@ pub(super) struct DirectionCommand {
     pub turn: DirectionMotion,
     /// e3 in the axes of the desired frame.
     pub up: Vector3<f32>,
-    /// c_z, c_z' and c_z'' as wanted, m/s^2, m/s^3, m/s^4.
+    /// c_z, c_z' and the desired c_z'', m/s^2, m/s^3, m/s^4.
     pub vertical: [f32; 3],
 }
 
@@ -60,6 +61,15 @@ pub(super) struct TiltTorque {
     pub acceleration: Vector3<f32>,
 }
 
+/// The torque about z, N m, before it is limited.
+pub(super) struct YawTorque {
+    pub torque: f32,
+    /// What comes before thrust.
+    pub braking: f32,
+    /// The acceleration fed forward, rad/s^2.
+    pub forward: f32,
+}
+
 impl Controller {
     /// The position law in force.
     #[inline(always)]
@@ -67,25 +77,25 @@ impl Controller {
         if self.memory.fallback.is_slow() { &self.slowed } else { &self.position }
     }
 
-    /// Section 1: ubar, and the drive that it wants.
+    /// Section 1: ubar, and the drive for it.
     #[inline(always)]
     pub(super) fn feedback(
         &self,
         state: &State,
         reference: &Reference,
         force: &Vector3<f32>,
-        greatest: f32,
-        wanted: &FeedbackSource,
+        acceleration_max: f32,
+        source: &FeedbackSource,
     ) -> PositionFeedback {
         let (law, filters) = (self.position_law(), &self.memory.filters);
-        match wanted {
-            FeedbackSource::Feedback(most) => {
-                let most = if self.memory.fallback.is_slow() { &self.slow } else { *most };
-                law.feedback(state, reference, filters, force, greatest, most)
+        match source {
+            FeedbackSource::Law(limits) => {
+                let limits = if self.memory.fallback.is_slow() { &self.slow } else { *limits };
+                law.feedback(state, reference, filters, force, acceleration_max, limits)
             }
-            FeedbackSource::Demand(demand) => {
-                let demanded_feedback = self.wanted(state, demand, force);
-                law.feedback_on_demand(state, reference, filters, force, greatest, &demanded_feedback)
+            FeedbackSource::Policy(demand) => {
+                let feedback = self.demanded_feedback(state, demand, force);
+                law.feedback_on_demand(state, reference, filters, force, acceleration_max, &feedback)
             }
         }
     }
@@ -97,17 +107,18 @@ impl Controller {
         reference: &Reference,
         filters: &Filters,
         feedback: &PositionFeedback,
-        greatest: f32,
+        acceleration_max: f32,
     ) -> DirectionCommand {
         let command = self.acceleration_command(reference, &filters.command);
-        let wanted = (feedback.drive - feedback.rate) * self.position_law().k_f();
+        let desired_bend = (feedback.drive - feedback.rate) * self.position_law().k_f();
         let jerk = self.with_drag(&reference.jerk, &reference.acceleration) + feedback.rate;
-        let snap = self.with_drag(&reference.snap, &reference.jerk) + wanted;
+        let snap = self.with_drag(&reference.snap, &reference.jerk) + desired_bend;
         let desired = DesiredAttitude::new(&command, &reference.heading);
         let turn = desired.direction_motion(&jerk, &snap);
-        let vertical = [filters.command.z, feedback.rate.z, wanted.z];
+        let vertical = [filters.command.z, feedback.rate.z, desired_bend.z];
         let up = desired.up();
-        let length = self.turning.length(turn.magnitude, feedback.smoothed.z - filters.command.z, &up, greatest);
+        let length =
+            self.turning.length(turn.magnitude, feedback.smoothed.z - filters.command.z, &up, acceleration_max);
         DirectionCommand { command, length, up, desired, turn, vertical }
     }
 
@@ -117,10 +128,10 @@ impl Controller {
         &self,
         state: &State,
         reference: &Reference,
-        course: &DirectionCommand,
+        direction: &DirectionCommand,
         late: &Late,
     ) -> AttitudeErrors {
-        let DirectionCommand { desired, turn, .. } = course;
+        let DirectionCommand { desired, turn, .. } = direction;
         let error = desired.error(&state.attitude);
         let yaw_rate = desired.yaw_rate(&turn.rate, &reference.heading);
         let turning = rotate_back(&error, &Vector3::new(-turn.rate.y, turn.rate.x, 0.0));
@@ -144,28 +155,29 @@ impl Controller {
     pub(super) fn tilt_torque(
         &self,
         state: &State,
-        course: &DirectionCommand,
+        direction: &DirectionCommand,
         errors: &AttitudeErrors,
         bias: &Vector3<f32>,
         scale: f32,
     ) -> TiltTorque {
         let AttitudeErrors { error, turning, rate, projected, tilt, .. } = errors;
-        let most = self.law.parameters.m_tilt;
+        let level_max = self.law.parameters.m_tilt;
         let mut spending = self.budget.spending(scale);
         let lean = bias.xy();
         spending.spend(&-lean, 0.0);
         let left = spending.radius() - math::sqrt(lean.norm_squared()) - self.reserve;
-        let potential = self.attitude.potential(tilt, math::min(most, math::max(left, LEVEL_SHARE_MIN * most)));
+        let potential =
+            self.attitude.potential(tilt, math::min(level_max, math::max(left, LEVEL_SHARE_MIN * level_max)));
         spending.spend(&-potential, self.reserve);
         spending.spend(&self.attitude.gyroscopic(turning, &state.angular_velocity, rate), self.reserve);
         let damping = self.attitude.damping(tilt, projected);
         let damping = damping * spending.spend(&-damping, self.reserve);
         spending.spend(&self.attitude.precession(&state.angular_velocity, rate), self.reserve);
 
-        let q = self.turning.limited(&course.turn, &course.up);
+        let q = self.turning.limited(&direction.turn, &direction.up);
         let acceleration = rotate_back(error, &Vector3::new(-q.y, q.x, 0.0));
         let torque = self.attitude.torque(&acceleration);
-        let thrust = (1.0 - TORQUE_THRUST_SHARE as f32) * self.vehicle.mass * course.length;
+        let thrust = (1.0 - TORQUE_THRUST_SHARE as f32) * self.vehicle.mass * direction.length;
         let mut share = self.range.share(&spending.spent, &torque, thrust, scale);
         if share < 1.0 {
             cold_path();
@@ -182,33 +194,49 @@ impl Controller {
     pub(super) fn drive(
         &self,
         feedback: &PositionFeedback,
-        course: &DirectionCommand,
-        tilting: &TiltTorque,
-        greatest: f32,
+        direction: &DirectionCommand,
+        tilt: &TiltTorque,
+        acceleration_max: f32,
     ) -> Vector3<f32> {
-        match self.turning.change(&course.turn, &tilting.turn, &course.up, greatest, course.vertical) {
+        match self.turning.change(&direction.turn, &tilt.turn, &direction.up, acceleration_max, direction.vertical) {
             None => feedback.drive,
             Some(change) => {
                 cold_path();
-                feedback.drive + course.desired.turned(&change) * (1.0 / self.position_law().k_f())
+                feedback.drive + direction.desired.turned(&change) * (1.0 / self.position_law().k_f())
             }
         }
     }
 
     /// ubar for a demand, before it is cut to the envelope, m/s^2.
-    fn wanted(&self, state: &State, demand: &Demand, force: &Vector3<f32>) -> Vector3<f32> {
+    fn demanded_feedback(&self, state: &State, demand: &Demand, force: &Vector3<f32>) -> Vector3<f32> {
         match demand {
             // v' = c - kappa v_h + D for a reference at rest.
             Demand::Acceleration { acceleration, .. } => self.with_drag(acceleration, &state.velocity) - force,
             Demand::Attitude { attitude, thrust } => {
-                let mut wanted = super::thrust_axis(attitude) * (thrust / self.vehicle.mass);
-                wanted.z -= self.vehicle.gravity;
-                wanted
+                let mut feedback = super::thrust_axis(attitude) * (thrust / self.vehicle.mass);
+                feedback.z -= self.vehicle.gravity;
+                feedback
             }
         }
     }
 
-    /// What the rotors have done since the last tick: by the model, corrected by what was `measured` of it.
+    /// The yaw torque beside the bias, what of it brakes a spin, and the acceleration fed forward.
+    #[inline(always)]
+    pub(super) fn yaw_torque(
+        &self,
+        velocity: &Vector3<f32>,
+        errors: &AttitudeErrors,
+        motion: &AngularMotion,
+        bias: f32,
+    ) -> YawTorque {
+        let acceleration = rotate_back(&errors.error, &motion.acceleration).z;
+        let forward = self.heading.forward(&errors.frame, acceleration, velocity);
+        let [angle, rate] = [2.0 * errors.lifted.quaternion.k, errors.projected_yaw];
+        let torque = self.heading.torque(angle, rate, forward, velocity, self.memory.yaw_torque_left) - bias;
+        YawTorque { torque, braking: self.heading.braking(torque, rate), forward }
+    }
+
+    /// The wrench of past commands: by the model, corrected by what was `measured` of it.
     #[inline(always)]
     pub(super) fn past_commands(&self, measured: Option<&Wrench>) -> PastCommands {
         let Memory { acted, wrench_offset: lasting, held, without_velocity: blind, ref actuators, .. } = self.memory;
@@ -246,5 +274,36 @@ impl Controller {
     fn with_drag(&self, derivative: &Vector3<f32>, below: &Vector3<f32>) -> Vector3<f32> {
         let drag = self.law.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
+    }
+}
+
+/// What a tick went through.
+#[inline(always)]
+pub(super) fn diagnostics(
+    filters: &Filters,
+    feedback: &PositionFeedback,
+    direction: &DirectionCommand,
+    errors: &AttitudeErrors,
+    tilt: &TiltTorque,
+    motion: &AngularMotion,
+) -> Diagnostics {
+    Diagnostics {
+        position_error: feedback.errors.position,
+        velocity_error: feedback.errors.velocity,
+        z_1: feedback.errors.z_1,
+        z_2: feedback.errors.z_2,
+        feedback: feedback.feedback,
+        filtered: filters.command,
+        intermediate: filters.intermediate,
+        acceleration_command: direction.command,
+        desired_attitude: direction.desired.attitude(),
+        desired_angular_velocity: motion.velocity,
+        desired_angular_acceleration: motion.acceleration,
+        attitude_error: errors.lifted.quaternion,
+        mrp: errors.lifted.mrp,
+        lift_sign: errors.lifted.lift.sign,
+        angular_velocity_error: errors.projected.push(errors.projected_yaw),
+        attitude_feedback: tilt.potential.push(0.0),
+        rate_feedback: tilt.damping.push(0.0),
     }
 }

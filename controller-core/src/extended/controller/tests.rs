@@ -264,15 +264,15 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: b
             assert!(thrust <= limits.thrust_max && within.min() >= 0.0, "{craft:?} {tick}: {wrench:?}");
             for (index, (command, rotor)) in law.commands().iter().zip(craft.rotors.iter()).enumerate() {
                 let is_gone = index == law.lost().rotor && law.lost().left == 0.0;
-                let least = if is_gone { 0.0 } else { rotor.thrust_min };
-                assert!((least..=rotor.thrust_max).contains(command), "{craft:?} {tick}: {command}");
+                let min = if is_gone { 0.0 } else { rotor.thrust_min };
+                assert!((min..=rotor.thrust_max).contains(command), "{craft:?} {tick}: {command}");
             }
             if random.below(20) == 0 {
                 controller.reset();
             }
             continue;
         }
-        assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.max);
+        assert!(f64::from(thrust) >= bounds.thrust.min && f64::from(thrust) <= bounds.thrust.max);
         let excess = torque.abs().map(f64::from) - bounds.torque;
         assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
         let asked = Wrench { thrust: thrust / scale, torque: torque / scale };

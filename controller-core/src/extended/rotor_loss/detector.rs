@@ -149,7 +149,6 @@ pub struct Interval<'a> {
 
 impl Detector {
     /// For ticks `period` seconds apart and rotors of so much `lag`, s. Without rotors it finds nothing.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f32, period: f32) -> Self {
         let columns = || rotors.into_iter().flat_map(Rotors::effectiveness).map(|column| column.map(|x| x as f32));
         let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.max_arm());
@@ -225,7 +224,6 @@ impl Detector {
 
     /// The thrust that a rotor is taken to deliver in an interval, N, and what is missing of it by the torque about the
     /// tilt's axes.
-    #[must_use]
     pub fn missing(&self, rotor: usize, interval: &Interval) -> [f32; 2] {
         let Some(Signature { column, row, .. }) = self.rotors.get(rotor) else { return [0.0; 2] };
         let along = self.residual(interval).yz().dot(&column.yz());
@@ -259,24 +257,24 @@ impl Detector {
         cold_path();
         let [_, end] = interval.angular_velocities;
         let turning = RESIDUAL_OF_TURNING * self.share * math::sqrt(end.xy().norm_squared());
-        let least = large + turning + RESIDUAL_OF_COMMANDS * math::sqrt(suspicion.commands_squared);
-        if square <= least * least {
+        let min = large + turning + RESIDUAL_OF_COMMANDS * math::sqrt(suspicion.commands_squared);
+        if square <= min * min {
             return None;
         }
-        let (mut greatest, mut which) = (0.0, None);
+        let (mut max, mut which) = (0.0, None);
         for (index, rotor) in self.rotors.iter().enumerate() {
             let along = -residual.dot(&rotor.column) * rotor.per_length;
-            if along > greatest {
-                (greatest, which) = (along, Some((index, rotor)));
+            if along > max {
+                (max, which) = (along, Some((index, rotor)));
             }
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
-        let lost = greatest * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share);
-        let aligned = greatest * greatest >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
-        let (least, most) = LOST_SHARE_RANGE;
+        let lost = max * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share);
+        let aligned = max * max >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
+        let (min, most) = LOST_SHARE_RANGE;
         let tells = self.is_observable(index, interval);
-        (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
+        (aligned && tells && lost >= min && lost <= most).then_some((index, lost))
     }
 }
 

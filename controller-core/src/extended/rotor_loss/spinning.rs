@@ -98,7 +98,7 @@ const STEPS_AHEAD: usize = 3;
 
 /// The law for a vehicle with a certain rotor lost, and its memory.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SpinningLaw {
+pub struct RotorLossLaw {
     /// What is lost.
     lost: LostRotor,
     rotors: RemainingRotors,
@@ -139,17 +139,16 @@ struct Memory {
 
 /// A tick's outcome, beside the commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpinningStep {
+pub struct RotorLossStep {
     /// u, m/s^2.
     pub command: Vector3<f32>,
     /// The tilt's error as modified Rodrigues parameters, body frame.
     pub mrp: Vector3<f32>,
 }
 
-impl SpinningLaw {
+impl RotorLossLaw {
     /// For a vehicle whose `rotors` have `lost` one, in ticks `period` seconds apart with commands that are `late`, s,
     /// and with the `estimates` that there were of it.
-    #[must_use]
     pub fn new(
         vehicle: &Vehicle,
         limits: &Limits,
@@ -195,7 +194,7 @@ impl SpinningLaw {
 
     /// Learns what the failed rotor has left, from the thrust that it was taken to deliver in an interval of `period`,
     /// s, and what was `missing` of it, N. A flip, in which it was found to fail, tells too little of that.
-    pub fn refine(&mut self, thrust: f32, missing: f32, period: f32) {
+    pub fn refine_loss(&mut self, thrust: f32, missing: f32, period: f32) {
         let Memory { taken, missed, watched, .. } = &mut self.memory;
         (*taken, *missed, *watched) = (*taken + thrust * period, *missed + missing * period, *watched + period);
         if *watched < REFINING_S {
@@ -213,32 +212,27 @@ impl SpinningLaw {
     }
 
     /// What is lost.
-    #[must_use]
     pub fn lost(&self) -> &LostRotor {
         &self.lost
     }
 
     /// What to command of each rotor, N; nothing before the first tick.
-    #[must_use]
     pub fn commands(&self) -> &Thrusts {
         &self.commands
     }
 
     /// What they deliver.
-    #[must_use]
     pub fn delivered(&self) -> &Wrench {
         &self.delivered
     }
 
     /// d, m/s^2, world frame.
-    #[must_use]
     pub fn force(&self) -> Vector3<f32> {
         self.memory.force
     }
 
     /// One tick: `pending` is the impulse that past commands will still deliver, N s and N m s.
-    #[must_use]
-    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> SpinningStep {
+    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> RotorLossStep {
         self.learn(&state.velocity, period);
         let command = self.command(state, reference);
         let (attitude, velocity) = self.ahead(state, pending);
@@ -258,8 +252,8 @@ impl SpinningLaw {
         self.memory.beginning += if turns { SPIN_UP_MAX_S } else { period };
         let is_short = self.memory.beginning < SPIN_UP_MAX_S;
         let begins = is_short && self.memory.lacking > SPIN_UP_MISSING_TORQUE_SHARE_MIN && upwards > SPIN_UP_COSINE_MIN;
-        let least = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
-        let wanted = Wrench { thrust: math::max(along, least), torque };
+        let min = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
+        let wanted = Wrench { thrust: math::max(along, min), torque };
 
         let thrusts = self.rotors.allocate(&wanted);
         let delivered = self.rotors.wrench(&thrusts);
@@ -270,7 +264,7 @@ impl SpinningLaw {
         self.memory.last = Some((state.velocity, falling));
         self.commands = self.rotors.commands(&thrusts);
         self.delivered = delivered;
-        SpinningStep { command, mrp: error * (-0.5 / (1.0 + half)) }
+        RotorLossStep { command, mrp: error * (-0.5 / (1.0 + half)) }
     }
 
     /// d.
@@ -294,8 +288,8 @@ impl SpinningLaw {
         let wanted = rest.xy() - (v.xy() + p.xy() * closing) * k_v;
         let lift =
             rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION_M_PER_S2)) * k_v_vertical;
-        let (least, most) = LIFT_RANGE_G;
-        let lift = math::clamp(lift, least * gravity, most * gravity);
+        let (min, max) = LIFT_RANGE_G;
+        let lift = math::clamp(lift, min * gravity, max * gravity);
         let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT_MAX);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
@@ -357,8 +351,8 @@ fn towards(state: &State, reference: &Reference) -> f32 {
     let heading = reference.heading.direction();
     let sine = forward.x * heading.y - forward.y * heading.x;
     let behind = forward.dot(&heading) < 0.0;
-    let (of_one, most) = HEADING_GAIN_AND_RATE;
-    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::saturate(of_one * sine, most) };
+    let (of_one, max) = HEADING_GAIN_AND_RATE;
+    let turn = if behind { if sine < 0.0 { -max } else { max } } else { math::saturate(of_one * sine, max) };
     turn + reference.heading.rate()
 }
 

@@ -56,8 +56,8 @@ fn every_torque_that_is_spent_leaves_each_rotor_in_its_range_with_any_thrust_and
         let margin = 1e-3 * craft.vehicle.mass * craft.vehicle.gravity;
         let budget = rows(&craft, margin);
         let tick = TickBudget::new(&budget, scales);
-        let (limits, most) = (craft.limits, craft.limits.torque_max);
-        let range = ThrustRange::new(Some(&craft.rotors), margin, limits.thrust_max, most.z);
+        let (limits, max) = (craft.limits, craft.limits.torque_max);
+        let range = ThrustRange::new(Some(&craft.rotors), margin, limits.thrust_max, max.z);
         for _ in 0..300 {
             let scale = random.between(scales[0], scales[1]);
             if tick.radius(scale) <= 0.0 {
@@ -65,14 +65,14 @@ fn every_torque_that_is_spent_leaves_each_rotor_in_its_range_with_any_thrust_and
             }
             let mut spending = tick.spending(scale);
             for _ in 0..3 {
-                let wanted = unit(&mut random) * (2.0 * most.xy().norm() * random.between(0.0, 1.0));
+                let wanted = unit(&mut random) * (2.0 * max.xy().norm() * random.between(0.0, 1.0));
                 spending.spend(&wanted, 0.0);
             }
             let tilt = spending.spent;
             let along = Vector3::new(tilt.x, tilt.y, 0.0);
-            assert!(tilt.x.abs() <= most.x && tilt.y.abs() <= most.y, "{craft:?} {tilt}");
-            assert!(range.least(&along, scale) <= range.greatest(&along, scale), "{craft:?} {tilt}");
-            let yaw = 3.0 * most.z * random.signed();
+            assert!(tilt.x.abs() <= max.x && tilt.y.abs() <= max.y, "{craft:?} {tilt}");
+            assert!(range.min_thrust(&along, scale) <= range.max_thrust(&along, scale), "{craft:?} {tilt}");
+            let yaw = 3.0 * max.z * random.signed();
             let braking = if random.below(2) == 0 { 0.0 } else { random.between(0.0, 1.0) * yaw };
             let asked = [2.0 * limits.thrust_max * random.signed(), yaw, braking];
             assert!(!clips(&craft.rotors, &range, asked, &tilt, scale), "{craft:?} {tilt} {scale}");
@@ -89,7 +89,7 @@ fn no_row_of_rotors_is_narrower_than_they_need() {
         let range = ThrustRange::new(Some(&craft.rotors), 0.0, f32::MAX, f32::MAX);
         for row in budget.rows.iter().filter(|row| row.bound == RowSource::Rotors) {
             let [x, y] = row.direction.map(|part| (1.01 * row.capacity(1.0) * part) as f32);
-            let fails = |torque: Vector3<f32>| range.least(&torque, 1.0) > range.greatest(&torque, 1.0);
+            let fails = |torque: Vector3<f32>| range.min_thrust(&torque, 1.0) > range.max_thrust(&torque, 1.0);
             assert!(fails(Vector3::new(x, y, 0.0)) || fails(Vector3::new(-x, -y, 0.0)), "{craft:?} {row:?}");
         }
     }
@@ -145,7 +145,7 @@ fn each_part_is_spent_up_to_what_it_has_to_keep_and_the_next_one_beside_it() {
                 })
             };
             assert!(holds(spending.spent), "{before} {wanted} {kept}");
-            let greatest = budget.rows.iter().map(|row| {
+            let max = budget.rows.iter().map(|row| {
                 let along = |torque: Vector2<f32>| {
                     row.direction[0] * f64::from(torque.x) + row.direction[1] * f64::from(torque.y)
                 };
@@ -153,8 +153,8 @@ fn each_part_is_spent_up_to_what_it_has_to_keep_and_the_next_one_beside_it() {
                 let room = row.capacity(f64::from(scale)) * 0.999 - f64::from(kept) - spent * more.signum();
                 room.max(0.0) / more.abs()
             });
-            let greatest = greatest.fold(1.0, f64::min);
-            assert!((f64::from(share) - greatest).abs() < 1e-4, "{before} {wanted} {kept}: {share} of {greatest}");
+            let max = max.fold(1.0, f64::min);
+            assert!((f64::from(share) - max).abs() < 1e-4, "{before} {wanted} {kept}: {share} of {max}");
             if share < 1.0 { part += 1 } else { whole += 1 }
         }
     }
@@ -198,6 +198,6 @@ fn the_acceleration_that_is_held_is_the_ticks_own_less_what_a_bias_takes() {
         let bias = random.vector(1.0).component_mul(&(craft.limits.torque_max * 0.2));
         let thrust = ceiling.at(scale, &bias) * craft.vehicle.mass;
         let range = ThrustRange::new(Some(&craft.rotors), 1e-3, craft.limits.thrust_max, f32::MAX);
-        assert!(thrust <= range.greatest(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
+        assert!(thrust <= range.max_thrust(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
     }
 }

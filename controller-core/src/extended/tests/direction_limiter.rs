@@ -30,7 +30,7 @@ fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random
     let (gravity, h) = (craft.vehicle.gravity, craft.period);
     let position = PositionLaw::new(p, gravity, h).unwrap();
     let limit = DirectionLimiter::new(p, alpha, h);
-    let [greatest, _] = greatest_accelerations(craft, p);
+    let [max, _] = greatest_accelerations(craft, p);
     let (held, smoothing) = ((1.0 - (-p.k_s * h).exp()) / h, 1.0 - (-p.k_d * h).exp());
     let mut filter = Filters::at(Vector3::zeros());
     let (mut ubar, mut torque) = (Vector3::zeros(), 0.0);
@@ -38,8 +38,8 @@ fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random
     for tick in 0..5_000 {
         if random.below(40) == 0 {
             let (sin, cos) = random.between(0.0, core::f32::consts::TAU).sin_cos();
-            let lift = gravity + random.between(-p.a_down, greatest - gravity);
-            let left = (greatest * greatest - lift * lift).max(0.0).sqrt();
+            let lift = gravity + random.between(-p.a_down, max - gravity);
+            let left = (max * max - lift * lift).max(0.0).sqrt();
             let reach = p.a_across.min(0.95 * left).min(0.95 * lift * p.tilt_max.tan());
             ubar = Vector3::new(reach * cos, reach * sin, lift - gravity);
         }
@@ -59,17 +59,17 @@ fn driven(craft: &Craft, p: &ExtendedParameters, alpha: f32, random: &mut Random
         // The tick's budget: never less than the reserve.
         let share = (torque.max(p.turn_reserve) / q.norm()).min(1.0);
         let q: Vector2<f32> = if share < 1.0 { q * share } else { q };
-        let change = limit.change(&turn, &q, &up, greatest, [c.z, rate.z, wanted.z]);
+        let change = limit.change(&turn, &q, &up, max, [c.z, rate.z, wanted.z]);
         worst.rate = worst.rate.max(turn.rate.norm() / p.turn_rate);
         worst.beyond_cone = worst.beyond_cone.max(p.tilt_max.cos() - up.z);
-        worst.thrust = worst.thrust.max(command.norm() / greatest);
+        worst.thrust = worst.thrust.max(command.norm() / max);
         worst.changed += u32::from(change.is_some());
 
         // What was added to u'' is what the drive makes of it, and the turn is the shortened one.
         let change = change.map_or(Vector3::zeros(), |change| desired.turned(&change));
         let made = desired.direction_motion(&rate, &(wanted + change)).acceleration;
         // Where the cone is not held, |u| may be beyond what single precision resolves.
-        let resolved = command.norm() < 2.0 * greatest;
+        let resolved = command.norm() < 2.0 * max;
         let rounding = 1e-4 * (1.0 + turn.acceleration.norm());
         assert!(!resolved || (made - q).norm() <= rounding, "{craft:?} {tick}: {made} {q}");
         filter = position.advance(&filter, &smoothed, &(drive + change / p.k_f), f32::MAX);
@@ -130,16 +130,16 @@ fn a_wanted_turn_is_kept_in_its_direction_and_cut_to_alpha_and_to_its_rate() {
 fn thrust_takes_at_once_what_the_vertical_wants_but_for_what_would_push_across() {
     let craft = Craft::example();
     let limit = DirectionLimiter::new(&craft.constants(&NOTHING_GIVEN), 100.0, craft.period);
-    let (n, greatest) = (12.0, 60.0);
+    let (n, max) = (12.0, 60.0);
     for angle in [0.0_f32, 0.2, 0.6, 1.0] {
         let up = Vector3::new(angle.sin(), 0.0, angle.cos());
         for more in [-30.0_f32, -2.0, 0.5, 3.0, 30.0] {
-            let change = limit.length(n, more, &up, greatest) - n;
+            let change = limit.length(n, more, &up, max) - n;
             let across = change * angle.sin();
-            assert!(across.abs() <= PUSH_ACROSS_MAX_M_PER_S2 * 1.0001 && change >= -n && change <= greatest - n);
+            assert!(across.abs() <= PUSH_ACROSS_MAX_M_PER_S2 * 1.0001 && change >= -n && change <= max - n);
             let is_whole = more.abs() * angle.tan() < PUSH_ACROSS_MAX_M_PER_S2 && more / angle.cos() > -n;
             assert!(!is_whole || (change * angle.cos() - more).abs() < 1e-4, "{angle} {more}: {change}");
         }
     }
-    assert!(limit.length(n, 1e3, &Vector3::z(), greatest) <= greatest);
+    assert!(limit.length(n, 1e3, &Vector3::z(), max) <= max);
 }

@@ -1,11 +1,10 @@
 //! What is estimated: force, torque bias, thrust scale.
 
 use super::Random;
-use crate::extended::force::ForceObserver;
+use crate::extended::estimates::{ForceObserver, ThrustScale, TorqueBias};
+use crate::extended::memory::ScaleEstimate;
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::example;
-use crate::extended::thrust_scale::{ScaleEstimate, ThrustScale};
-use crate::extended::torque_bias::TorqueBias;
 use nalgebra::Vector3;
 
 #[test]
@@ -64,7 +63,7 @@ fn a_bias_is_believed_up_to_its_level() {
 fn learnt(truth: f32, force: Vector3<f32>, ticks: u32, mut commanded: impl FnMut(u32) -> Vector3<f32>) -> [f32; 3] {
     let p = ExtendedParameters { scale_least: 0.5, scale_greatest: 2.0, ..example::parameters() };
     let scale = ThrustScale::new(&p, 0.01);
-    let mut estimate = ScaleEstimate::at(1.0);
+    let mut estimate = ScaleEstimate { slow: None, scale: 1.0 };
     let (first, mut worse) = ((1.0 - truth).abs(), 0.0_f32);
     for tick in 0..ticks {
         let f = commanded(tick);
@@ -102,7 +101,7 @@ fn the_thrust_scale_stays_within_its_limits() {
     let scale = ThrustScale::new(&p, 0.01);
     let mut random = Random(10);
     for truth in [0.1, 5.0] {
-        let mut estimate = ScaleEstimate::at(1.0);
+        let mut estimate = ScaleEstimate { slow: None, scale: 1.0 };
         for _ in 0..5_000 {
             let f = random.vector(20.0);
             estimate = scale.updated(&estimate, &(f * truth), &f);

@@ -138,13 +138,13 @@ fn the_slowed_law_is_never_limited() {
         let position = PositionLaw::new(&law, gravity, h).unwrap();
         let limit = DirectionLimiter::new(&p, p.turn_reserve, h);
         let level = Slowed::<f64>::new(&p, gravity).level as f32;
-        let [greatest, _] = greatest_accelerations(&craft, &p);
+        let [max, _] = greatest_accelerations(&craft, &p);
         // One that thrust, envelope and cone hold with M_s beside it.
         let mut d = force(&mut random, &p);
         let holds = |d: &Vector3<f32>| {
             let (across, lift) = (d.xy().norm() + level, gravity - d.z - level);
             let steep = across > 0.95 * lift * p.tilt_max.tan() || across > p.a_across;
-            !steep && (Vector3::z() * gravity - d).norm() + 1.5 * level <= 0.98 * greatest
+            !steep && (Vector3::z() * gravity - d).norm() + 1.5 * level <= 0.98 * max
         };
         while !holds(&d) {
             d *= 0.9;
@@ -155,14 +155,14 @@ fn the_slowed_law_is_never_limited() {
             if random.below(20) == 0 {
                 state = at(random.vector(1e3), random.vector(1e3));
             }
-            let feedback = position.feedback(&state, &origin, &filter, &d, greatest, &FeedbackLimits::each(level));
+            let feedback = position.feedback(&state, &origin, &filter, &d, max, &FeedbackLimits::each(level));
             let wanted = (feedback.drive - feedback.rate) * position.k_f();
             let c = filter.command;
             let desired = DesiredAttitude::new(&Vector3::new(c.x, c.y, c.z + gravity), &Heading::FORWARD);
             let (turn, up) = (desired.direction_motion(&feedback.rate, &wanted), desired.up());
             let q = limit.limited(&turn, &up);
             assert_eq!(q, turn.acceleration, "{craft:?} {d} tick {tick}");
-            let change = limit.change(&turn, &q, &up, greatest, [c.z, feedback.rate.z, wanted.z]);
+            let change = limit.change(&turn, &q, &up, max, [c.z, feedback.rate.z, wanted.z]);
             assert_eq!(change, None, "{craft:?} {d} tick {tick}");
             filter = position.advance(&filter, &feedback.smoothed, &feedback.drive, f32::MAX);
         }

@@ -27,7 +27,7 @@ fn the_step_is_smooth_and_no_steeper_than_is_counted_on() {
             steepest[order] = steepest[order].max(here[order + 1].abs() / size);
         }
     }
-    assert!(steepest.iter().all(|most| (0.999..1.001).contains(most)), "{steepest:?}");
+    assert!(steepest.iter().all(|max| (0.999..1.001).contains(max)), "{steepest:?}");
 }
 
 #[test]

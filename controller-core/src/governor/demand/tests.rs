@@ -15,8 +15,8 @@ fn the_factor_is_that_of_the_derivative_that_asks_most() {
             let found = asked(&StreamDemand::NONE, derivative, f).following().unwrap().slower();
             assert!((found / f - 1.0).abs() < 1e-5, "derivative {derivative}: {found} for {f}");
         }
-        let most = asked(&StreamDemand::NONE, derivative, 1e4).following().unwrap().slower();
-        assert!((most / 16.0 - 1.0).abs() < 1e-5, "{most}");
+        let max = asked(&StreamDemand::NONE, derivative, 1e4).following().unwrap().slower();
+        assert!((max / 16.0 - 1.0).abs() < 1e-5, "{max}");
     }
     assert_eq!(StreamDemand::NONE.following(), None);
 }

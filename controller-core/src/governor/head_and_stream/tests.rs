@@ -82,13 +82,13 @@ fn a_circle_beyond_the_bounds_comes_out_smaller_and_round() {
     // 1.09 of the acceleration.
     let at = circle(core::f64::consts::FRAC_PI_2, 1.1);
     follow(governor, &at, 2, 0.0, 30.0);
-    let (mut least, mut most) = (f32::MAX, 0.0_f32);
+    let (mut min, mut max) = (f32::MAX, 0.0_f32);
     for tick in 3_000..4_000 {
         governor.accept(&sent(&at, f64::from(tick) * f64::from(PERIOD))).unwrap();
         let radius = governor.tick().position.xy().norm();
-        (least, most) = (least.min(radius), most.max(radius));
+        (min, max) = (min.min(radius), max.max(radius));
     }
-    assert!(least > 0.6 && most < 1.0 && most - least < 0.005, "{least} to {most} m");
+    assert!(min > 0.6 && max < 1.0 && max - min < 0.005, "{min} to {max} m");
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn a_tight_eight_is_flown_as_it_is_sent_from_rest_and_from_a_flight_elsewhere() 
 #[test]
 fn a_tight_eight_with_jitter_and_lost_setpoints_is_flown_within_centimetres() {
     // The last loses up to six in a row, which is 0.3 s.
-    for (every, lost, most) in [(2, 0.0, 0.01), (2, 0.3, 0.015), (5, 0.1, 0.015), (5, 0.3, 0.12)] {
+    for (every, lost, max) in [(2, 0.0, 0.01), (2, 0.3, 0.015), (5, 0.1, 0.015), (5, 0.3, 0.12)] {
         let (governor, mut random) = (governor(), Random::new(12));
         let at = tight_eight();
         let mut worst: f64 = 0.0;
@@ -178,7 +178,7 @@ fn a_tight_eight_with_jitter_and_lost_setpoints_is_flown_within_centimetres() {
                 worst = worst.max((reference.position.map(f64::from) - there).norm());
             }
         }
-        assert!(worst < most, "every {every}, {lost} lost: {worst} m off");
+        assert!(worst < max, "every {every}, {lost} lost: {worst} m off");
     }
 }
 

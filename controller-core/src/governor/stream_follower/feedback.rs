@@ -25,63 +25,64 @@ const TURNING_STIFFNESS_SHARE: f32 = 0.8;
 
 impl StreamFollower {
     /// The stiffness a tick later.
-    pub(super) fn next_stiffness(&self, sought: &StreamTarget, stiffness: f32) -> f32 {
+    pub(super) fn next_stiffness(&self, stream: &StreamTarget, stiffness: f32) -> f32 {
         let grown = stiffness + STIFFNESS_GROWTH * stiffness * stiffness * self.period;
-        grown.min(self.stiffness_within(sought, self.feedback_capacity(sought)))
+        grown.min(self.stiffness_within(stream, self.feedback_capacity(stream)))
     }
 
     /// A length with which lengths along the vertical count as much as the accelerations that undo them.
     pub(super) fn weighted_length(&self, y: &Vector3<f32>) -> f32 {
-        let vertical = y.z * self.flatness;
+        let vertical = y.z * self.vertical_weight;
         math::sqrt(y.x * y.x + y.y * y.y + vertical * vertical)
     }
 
     /// How the error moves beside turning with the stream.
-    pub(super) fn drift(sought: &StreamTarget) -> Vector3<f32> {
-        sought.error.velocity - quarter(&sought.error.position) * sought.point.rate
+    pub(super) fn drift(stream: &StreamTarget) -> Vector3<f32> {
+        stream.error.velocity - quarter(&stream.error.position) * stream.point.rate
     }
 
     /// How far off a stream is, with how far it goes off in a span, m.
-    pub(super) fn distance(&self, sought: &StreamTarget) -> f32 {
-        self.weighted_length(&sought.error.position) + self.span * self.weighted_length(&Self::drift(sought))
+    pub(super) fn distance(&self, stream: &StreamTarget) -> f32 {
+        self.weighted_length(&stream.error.position) + self.span * self.weighted_length(&Self::drift(stream))
     }
 
     /// The acceleration that feedback may command, m/s^2: a share of the rest beside a head whose error turns with the
     /// stream.
-    pub(super) fn feedback_capacity(&self, sought: &StreamTarget) -> f32 {
-        let Point { acceleration, jerk, snap, rate, .. } = &sought.point;
+    pub(super) fn feedback_capacity(&self, stream: &StreamTarget) -> f32 {
+        let Point { acceleration, jerk, snap, rate, .. } = &stream.point;
         let turned = |y: &Vector3<f32>| quarter(y) * *rate;
-        let bent = turned(&turned(&sought.error.position));
+        let bent = turned(&turned(&stream.error.position));
         let twisted = turned(&bent);
         let used = self.envelope.used([&(acceleration - bent), &(jerk - twisted), &(snap - turned(&twisted))]);
         FEEDBACK_SHARE * self.acceleration * math::clamp(1.0 - used, REMAINING_SHARE_MIN, 1.0)
     }
 
     /// The stiffness whose answer to the error is within the room.
-    pub(super) fn stiffness_within(&self, sought: &StreamTarget, room: f32) -> f32 {
-        let Point { position, .. } = &sought.error;
+    pub(super) fn stiffness_within(&self, stream: &StreamTarget, capacity: f32) -> f32 {
+        let Point { position, .. } = &stream.error;
         let stiff = (STIFFNESS_SPANS_MAX / self.span).min(STIFFNESS_PERIODS_MAX / self.period);
-        let within = |off: f32, stiff: f32| if off * stiff * stiff <= room { stiff } else { math::sqrt(room / off) };
-        let turning = (TURNING_STIFFNESS_SHARE * sought.point.rate.abs()).min(stiff);
+        let within =
+            |off: f32, stiff: f32| if off * stiff * stiff <= capacity { stiff } else { math::sqrt(capacity / off) };
+        let turning = (TURNING_STIFFNESS_SHARE * stream.point.rate.abs()).min(stiff);
         let horizontal = within(math::sqrt(position.xy().norm_squared()), stiff).max(turning);
-        within((position.z * self.flatness).abs(), horizontal)
+        within((position.z * self.vertical_weight).abs(), horizontal)
     }
 
     /// Whether what the error does beside turning with the stream is answered within the room.
-    pub(super) fn is_near(&self, sought: &StreamTarget, stiffness: f32, room: f32) -> bool {
-        let Point { velocity, acceleration, .. } = &sought.error;
-        let drift = Self::drift(sought);
-        let bend = acceleration - (quarter(velocity) + quarter(&drift)) * sought.point.rate;
-        2.0 * stiffness * self.weighted_length(&drift) <= room && self.weighted_length(&bend) <= room
+    pub(super) fn is_near(&self, stream: &StreamTarget, stiffness: f32, capacity: f32) -> bool {
+        let Point { velocity, acceleration, .. } = &stream.error;
+        let drift = Self::drift(stream);
+        let bend = acceleration - (quarter(velocity) + quarter(&drift)) * stream.point.rate;
+        2.0 * stiffness * self.weighted_length(&drift) <= capacity && self.weighted_length(&bend) <= capacity
     }
 
     /// The stream's snap and the feedback, m/s^2 per tick squared.
-    pub(super) fn commanded_snap(&self, sought: &StreamTarget, stiffness: f32) -> Vector3<f32> {
-        let Point { position, velocity, acceleration, jerk, .. } = &sought.error;
-        let rate = sought.point.rate;
+    pub(super) fn commanded_snap(&self, stream: &StreamTarget, stiffness: f32) -> Vector3<f32> {
+        let Point { position, velocity, acceleration, jerk, .. } = &stream.error;
+        let rate = stream.point.rate;
         // m y.
         let m = |y: Vector3<f32>| y * stiffness - quarter(&y) * rate;
         let feedback = m(m(m(m(*position) + velocity * 4.0) + acceleration * 6.0) + jerk * 4.0);
-        (sought.point.snap + feedback) * (self.period * self.period)
+        (stream.point.snap + feedback) * (self.period * self.period)
     }
 }

@@ -42,13 +42,13 @@ fn a_vibrating_body_is_attenuated_as_the_table_states() {
 fn the_slow_force_keeps_less_than_a_twentieth_of_a_vibration() {
     for frequency in [70.0, 100.0, 130.0] {
         let speed = |time: u64| (TAU * frequency * time as f32 * 1e-6 + 0.5).sin();
-        let (mut slow, mut most) = (None, 0.0_f32);
+        let (mut slow, mut max) = (None, 0.0_f32);
         for start in (0..2_000_000).step_by(H as usize) {
             let push = Vector3::x() * (speed(start + H) - speed(start));
             slow = Some(slow_force(slow.as_ref(), &increment(start, push, Vector3::zeros())));
-            most = if start > 1_000_000 { most.max(slow.unwrap().x.abs()) } else { 0.0 };
+            max = if start > 1_000_000 { max.max(slow.unwrap().x.abs()) } else { 0.0 };
         }
-        assert!(most < TAU * frequency / 20.0, "{frequency} Hz: {most}");
+        assert!(max < TAU * frequency / 20.0, "{frequency} Hz: {max}");
     }
 }
 

@@ -54,12 +54,12 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
 
 /// The term that displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
 fn cause(form: &Form, terms: &[TorqueTerm], towards: &Vector4<f64>, available: f64) -> (&'static str, f64) {
-    let share = 0.5 * towards.x * (form.thrust.least + form.thrust.max);
+    let share = 0.5 * towards.x * (form.thrust.min + form.thrust.max);
     let beyond = share - available * towards.x.signum();
     if beyond > 0.0 {
         return ("thrust", beyond);
     }
-    let spread = 0.5 * (towards.x * (form.thrust.max - form.thrust.least)).abs();
+    let spread = 0.5 * (towards.x * (form.thrust.max - form.thrust.min)).abs();
     let parts = terms.iter().map(|term| (term.name(), term.support(&torque_part(towards))));
     parts.fold(("thrust", spread), |worst, part| if part.1 > worst.1 { part } else { worst })
 }

@@ -175,7 +175,7 @@ impl Shares {
     fn take(&mut self, tick: &Brief, certificate: &Certificate) -> bool {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
         let raised = 1.0 + BOUND_TOLERANCE;
-        let mut within = (proven.least / raised..=proven.max * raised).contains(&thrust);
+        let mut within = (proven.min / raised..=proven.max * raised).contains(&thrust);
         self.thrust = self.thrust.max(thrust / proven.max);
         let bounds = certificate.torque();
         for (greatest, (torque, proven)) in self.torque.iter_mut().zip(tick.wrench.torque.iter().zip(bounds.iter())) {
@@ -190,7 +190,7 @@ impl Shares {
                 continue;
             };
             *greatest = greatest.max(commanded / proven.max);
-            within &= (proven.least - BOUND_TOLERANCE..=proven.max * raised).contains(&commanded);
+            within &= (proven.min - BOUND_TOLERANCE..=proven.max * raised).contains(&commanded);
         }
         within
     }

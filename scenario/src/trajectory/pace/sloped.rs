@@ -197,8 +197,8 @@ impl<const N: usize> Real for Sloped<N> {
     }
 
     /// From x^3 = p x + q follows (3 x^2 - p) x' = p' x + q'.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self {
-        let root = f64::greatest_cubic_root(p.value, q.value);
+    fn max_cubic_root(p: Self, q: Self) -> Self {
+        let root = f64::max_cubic_root(p.value, q.value);
         let steepness = 3.0 * root * root - p.value;
         Self::linear(&p, &q, root, |i| (p.slopes[i] * root + q.slopes[i]) / steepness)
     }
@@ -214,7 +214,7 @@ mod tests {
         z += x.greater(y * 2.0).sqrt() / 4.0;
         z -= x.lesser(y).ln_1p().exp();
         z *= -y + 7.0;
-        z + Sloped::greatest_cubic_root(x * 9.0, y).sqrt_of_rounded()
+        z + Sloped::max_cubic_root(x * 9.0, y).sqrt_of_rounded()
     }
 
     #[test]

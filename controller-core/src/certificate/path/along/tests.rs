@@ -55,7 +55,7 @@ fn covers(judge: &PathJudge, trajectory: &dyn Trajectory, end_us: u64) -> f64 {
 #[test]
 fn no_instant_takes_more_than_is_said() {
     let mut random = Random(5);
-    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    let (mut min, mut max) = (f64::INFINITY, 0.0_f64);
     for number in 0..20 {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
         let judge = judge(&craft);
@@ -64,10 +64,10 @@ fn no_instant_takes_more_than_is_said() {
             covers(&judge, &eight(6.0, f64::from(3.0 * seconds)), 6_000_000),
             covers(&judge, &through(&mut random, seconds), 16_000_000),
         ] {
-            (least, most) = (least.min(share), most.max(share));
+            (min, max) = (min.min(share), max.max(share));
         }
     }
-    assert!(least < 0.9 && most > 1.0, "{least} {most}");
+    assert!(min < 0.9 && max > 1.0, "{min} {max}");
 }
 
 /// A trembling that is looked at where nothing but its jerk shows.

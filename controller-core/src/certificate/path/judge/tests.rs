@@ -131,7 +131,7 @@ fn taken(judge: &PathJudge, motion: &PathMotion, random: &mut Random) -> [f64; 6
         judge.a_down / (judge.gravity + a.z),
         ((judge.mass * n + judge.reach * torque + judge.spin[0] * spin) / judge.ceiling[0])
             .max(judge.mass * n / judge.ceiling[1])
-            .max(swollen / judge.greatest),
+            .max(swollen / judge.max),
         p.norm() / judge.turn_rate,
         torque / judge.torque[1],
         (judge.floor + judge.reach * torque) / (0.95 * judge.mass * n),

@@ -15,7 +15,7 @@ const ROTOR_3_ROW: Vector4<f64> = Vector4::new(0.25, -2.08, 2.08, 10.24);
 fn form(least: f64, greatest: f64) -> Form {
     let paper = scenario::Scenario::paper().unwrap();
     let certificate = Certificate::new(&paper.configuration).unwrap().paper().unwrap().clone();
-    Form { thrust: Interval { least, max: greatest }, ..certificate.sharp }
+    Form { thrust: Interval { min: least, max: greatest }, ..certificate.sharp }
 }
 
 #[test]

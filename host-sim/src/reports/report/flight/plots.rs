@@ -83,8 +83,7 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
                 interval(proven, &format!("rotor {}, proven", rotor + 1), Color::at_place(rotor))
             })
             .collect();
-        let given =
-            rotors.iter().map(|rotor| Interval { least: rotor.thrust_min.into(), max: rotor.thrust_max.into() });
+        let given = rotors.iter().map(|rotor| Interval { min: rotor.thrust_min.into(), max: rotor.thrust_max.into() });
         bounds.extend(given.take(1).flat_map(|given| interval(given, "a rotor's own limit", Color::Ink)));
         plots.push(Plot::new("Rotor thrusts", "N", (0..rotors.len()).map(curve).collect()).from_zero().within(bounds));
     }
@@ -171,7 +170,7 @@ fn ink(value: f64, label: &str) -> Bound {
     Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT_LABEL }
 }
 
-fn interval(Interval { least, max: greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
+fn interval(Interval { min: least, max: greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
     [least, greatest].map(|value| Bound { value, label: label.to_owned(), color, always: true }).into()
 }
 
