@@ -9,7 +9,7 @@
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
-//! | [`ending`] | the order of a board's last acts |
+//! | [`stop_sequence`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | a board's peripherals, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
@@ -36,9 +36,8 @@
 //! [`flight`].
 
 #![cfg_attr(target_os = "none", no_std)]
+#![allow(clippy::new_without_default, reason = "what tasks share is made by const functions, in statics")]
 
-#[cfg(test)]
-mod bench;
 pub mod bmi088;
 pub mod bmi270;
 #[cfg(target_os = "none")]
@@ -49,7 +48,6 @@ pub mod configuration;
 pub mod control;
 pub mod deadline;
 pub mod dshot;
-pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
@@ -71,3 +69,9 @@ pub mod restart;
 pub mod shared;
 pub mod spi;
 pub mod status;
+pub mod stop_sequence;
+
+#[cfg(test)]
+mod tests {
+    pub mod bench;
+}

@@ -109,7 +109,6 @@ impl fmt::Display for ItemRefusal {
 
 impl ItemRefusal {
     /// MAVLink's number.
-    #[must_use]
     pub fn result(&self) -> MavMissionResult {
         match self {
             Self::Command(_) | Self::Place(_) => MavMissionResult::MAV_MISSION_UNSUPPORTED,
@@ -146,7 +145,6 @@ pub struct SentItem {
 
 impl SentItem {
     /// The fields of such a payload. Zeros at its end are cut off.
-    #[must_use]
     pub fn read(payload: &[u8], is_int: bool) -> Self {
         let byte = |place: usize| payload.get(place).copied().unwrap_or(0);
         let word = |place: usize| [0, 1, 2, 3].map(|next| byte(place + next));
@@ -165,9 +163,7 @@ impl SentItem {
     }
 
     /// The item, the last of its list or not.
-    ///
-    /// # Errors
-    /// What of it is not flown.
+    /// Errors: what of it is not flown.
     pub fn item(&self, is_last: bool) -> Result<Item, ItemRefusal> {
         let leg = self.leg(is_last)?;
         let [hold, radius, pass, yaw] =
@@ -254,7 +250,6 @@ impl SentItem {
 
 impl Item {
     /// As the pilot flies it, with the local frame at `origin` and armed at `home`, m, NED.
-    #[must_use]
     pub fn placed(&self, origin: &Origin, home: &Vector3<f32>) -> MissionItem {
         let local = [self.x, self.y].map(|units| units as f32 / UNITS_PER_M as f32);
         let on_the_globe =
@@ -283,7 +278,6 @@ impl Item {
     }
 
     /// As it goes out, the one of this number, to a client: system and component.
-    #[must_use]
     pub fn message(&self, sequence: u16, (target_system, target_component): (u8, u8)) -> MISSION_ITEM_INT_DATA {
         let (command, frame) = (self.command(), self.frame());
         let [param1, param2, param3, param4] = self.parameters();
@@ -306,7 +300,6 @@ impl Item {
     }
 
     /// The same for clients that ask for MISSION_ITEM, with a place in single precision.
-    #[must_use]
     pub fn old_message(&self, sequence: u16, target: (u8, u8)) -> MISSION_ITEM_DATA {
         let message = self.message(sequence, target);
         let unit = if matches!(self.axes, Axes::Ned | Axes::Enu) { UNITS_PER_M } else { UNITS_PER_DEG };

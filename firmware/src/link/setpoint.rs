@@ -76,7 +76,6 @@ pub struct Here {
 
 impl Here {
     /// Of a vehicle in this state; none where it points straight up or down.
-    #[must_use]
     pub fn at(state: &State) -> Option<Self> {
         let ahead = (UnitQuaternion::new_unchecked(state.attitude) * Vector3::x()).xy();
         let length = math::sqrt(ahead.norm_squared());
@@ -84,7 +83,6 @@ impl Here {
     }
 
     /// Ahead, left, up in the law's world.
-    #[must_use]
     pub fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
         let (cosine, sine) = (self.ahead.x, self.ahead.y);
         Vector3::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z)
@@ -127,9 +125,7 @@ fn axes(frame: MavFrame, here: Option<&Here>) -> Result<Axes<'_>, SetpointRefusa
 }
 
 /// The setpoint of a SET_POSITION_TARGET_LOCAL_NED, for a vehicle that is `here`.
-///
-/// # Errors
-/// [`SetpointRefusal`] for what cannot be done or is not finite.
+/// Errors: [`SetpointRefusal`] for what cannot be done or is not finite.
 pub fn setpoint(
     message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
     here: Option<&Here>,

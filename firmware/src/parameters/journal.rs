@@ -172,7 +172,6 @@ impl<F: Flash> Journal<F> {
     }
 
     /// Whether there was a record of a kind that cannot be read any more, and no other was written since.
-    #[must_use]
     pub fn is_lost(&self, kind: Kind) -> bool {
         self.lost[kind as usize]
     }
@@ -191,17 +190,14 @@ impl<F: Flash> Journal<F> {
 
     /// Whether one more damage would lose a kind's newest record, if there is one: it has no copy, or does not know of
     /// the other kind's.
-    #[must_use]
     pub fn is_endangered(&self, kind: Kind) -> bool {
         let has_other = self.newest(kind.other()).is_some();
         self.newest(kind).is_some_and(|newest| !newest.is_doubled || has_other && !newest.knows_other())
     }
 
     /// Writes a record of `words`, of which there are at most [`VALUES_MAX`].
-    ///
-    /// # Errors
-    /// [`Fault`] if the flash does not take both copies. The record before them, or the first of them, counts then; the
-    /// next goes to another place.
+    /// Errors: [`Fault`] if the flash does not take both copies. The record before them, or the first of them, counts
+    /// then; the next goes to another place.
     pub fn append(&mut self, kind: Kind, words: &[u32]) -> Result<(), Fault> {
         let mut record = [BLANK_WORD; _];
         record[1] = words.len() as u32;

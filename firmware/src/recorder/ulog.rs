@@ -103,7 +103,6 @@ pub fn definitions<'a>(time: &'a [u8], vehicle: &'a str) -> impl Iterator<Item =
 pub const SUBSCRIBED: [&[u8]; 2] = [&SUBSCRIPTION_HEAD, NAME.as_bytes()];
 
 /// Bytes of [`definitions`].
-#[must_use]
 pub fn definitions_size() -> usize {
     definitions(&[0; TIME_BYTES], "").map(<[u8]>::len).sum()
 }
@@ -114,7 +113,6 @@ fn beginning_size() -> usize {
 }
 
 /// Bytes of a file of so many records.
-#[must_use]
 pub fn size(records: usize) -> u32 {
     u32::try_from(beginning_size() + records * RECORD_BYTES).unwrap_or(u32::MAX)
 }

@@ -28,7 +28,7 @@ impl<M: RawMutex> RecentTexts<M> {
     }
 
     /// It is `now`, us.
-    pub fn pass(&self, now: u64) {
+    pub fn set_time(&self, now: u64) {
         self.now.store((now / 1_000) as u32, Ordering::Relaxed);
     }
 

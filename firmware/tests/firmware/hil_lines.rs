@@ -37,7 +37,7 @@ fn transmitted(line: impl Write, commands: &[MotorCommand]) {
             let mut motors = SelectedMotors {
                 pins: &mut Pins::default(),
                 hil: &hil,
-                wanted: (&wanted).into(),
+                requested: (&wanted).into(),
                 clock: board,
                 period: PERIOD,
             };

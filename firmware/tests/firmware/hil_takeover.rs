@@ -64,7 +64,7 @@ fn the_simulator_takes_over_at_a_stop_and_the_pins_carry_stop_from_then_on() {
     let mut motors = SelectedMotors {
         pins: &mut pins,
         hil: &hil,
-        wanted: (&wanted).into(),
+        requested: (&wanted).into(),
         clock: Simulated::default(),
         period: PERIOD,
     };
@@ -113,7 +113,7 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
     let mut motors = SelectedMotors {
         pins: &mut pins,
         hil: &hil,
-        wanted: (&shared.hil).into(),
+        requested: (&shared.hil).into(),
         clock: Simulated::default(),
         period: PERIOD,
     };

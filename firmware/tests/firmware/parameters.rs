@@ -222,7 +222,7 @@ fn a_value_that_could_not_be_saved_is_not_tried_again_and_again() {
 fn the_table_is_in_order_and_within_mavlinks_limits() {
     for (index, row) in PARAMETERS.iter().enumerate() {
         assert_eq!(row.parameter as usize, index);
-        assert!(row.name.len() <= 16 && row.least < row.most, "{row:?}");
+        assert!(row.name.len() <= 16 && row.min < row.max, "{row:?}");
         assert!(if row.parameter.is_tuned() { row.default.is_nan() } else { row.allows(row.default) }, "{row:?}");
         assert!(PARAMETERS.iter().filter(|other| other.name == row.name).count() == 1);
         assert_eq!(Name::from_name(row.name), Some(row.parameter));

@@ -32,7 +32,7 @@ fn refused() -> (Flight, &'static str) {
         Err(&refused),
         &limits,
         &flight_settings,
-        configuration::PERIOD,
+        configuration::PERIOD_US,
         estimator,
         memory,
         configuration::policy(),

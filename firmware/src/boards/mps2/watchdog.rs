@@ -16,7 +16,6 @@ pub struct BoardWatchdog(());
 
 impl BoardWatchdog {
     /// Starts it: from now on it wants to be fed every `microseconds` (up to 171 s).
-    #[must_use]
     pub fn start(microseconds: u32) -> Self {
         // SAFETY: these are the watchdog's registers, and only this module touches them.
         unsafe {

@@ -50,7 +50,6 @@ pub fn radio_rings() -> (&'static mut [u8], &'static mut [u8]) {
 }
 
 /// 420,000 baud, as receivers of CRSF speak.
-#[must_use]
 pub fn radio_config() -> Config {
     let mut config = config();
     config.baudrate = 420_000;
@@ -64,7 +63,6 @@ pub fn simulator_halves(uart: BufferedUart<'static>) -> (SimulatorReceiver, Simu
 }
 
 /// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: an undriven line must not look like bytes.
-#[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.baudrate = 921_600;

@@ -42,7 +42,7 @@ pub fn command(hil: &Hil, time: u64) {
     let (wanted, clock) = (Flag::new(), Simulated::default());
     wanted.raise();
     clock.0.set(time);
-    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: (&wanted).into(), clock, period: PERIOD }
+    now(SelectedMotors { pins: &mut Pins::default(), hil, requested: (&wanted).into(), clock, period: PERIOD }
         .write(MotorCommand::Stop))
     .unwrap();
 }
