@@ -11,7 +11,6 @@ use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use mavlink::calculate_crc;
 
-/// Bytes of the words.
 const WORDS_MAX_BYTES: usize = 148;
 
 /// Bytes in memory: the words, their length, a checksum. Whole words of any error-correcting code that there is.

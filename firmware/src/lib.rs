@@ -30,6 +30,7 @@
 //! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
 //! | [`spi`] | devices on a bus that several may share |
 //! | [`status`] | a light, the battery, the log |
+//! | `words` | enumerations in words |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
 //! list them by priority and run them on Embassy's executors. They decide nothing about flight: that is
@@ -70,6 +71,7 @@ pub mod shared;
 pub mod spi;
 pub mod status;
 pub mod stop_sequence;
+mod words;
 
 #[cfg(test)]
 mod tests {

@@ -19,7 +19,6 @@ pub const FILLER_KIND: u8 = b'Z';
 /// Bytes of a message's head.
 pub const MESSAGE_HEAD_BYTES: usize = 3;
 
-/// Bytes of the checksum.
 const CHECKSUM_BYTES: usize = 2;
 
 /// What the checksum begins with.

@@ -9,8 +9,8 @@
 
 use super::geometry::{Geometry, partition};
 use crate::hardware::{Card, Fault, SECTOR_BYTES};
+use crate::words::worded;
 use core::cell::{Cell, RefCell};
-use core::fmt;
 use core::ops::ControlFlow;
 use embedded_sdmmc::{
     Block, BlockCount, BlockDevice, BlockIdx, ClusterId, DirEntry, Error, Mode, RawDirectory, RawFile, ShortFileName,
@@ -20,45 +20,27 @@ use embedded_sdmmc::{
 /// Files have numbers of five digits, from 1 on.
 pub const NUMBER_MAX: u32 = 99_999;
 
-/// Why flights are not logged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Trouble {
-    /// No card answers.
-    Absent,
-    /// It holds nothing that can be written to.
-    Foreign,
-    /// It has no room, or its root directory has none.
-    Full,
-    /// It failed.
-    Failed,
-}
-
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Absent => "No card: flights are not logged",
-            Self::Foreign => "Card unusable: format it as FAT32 (MBR)",
-            Self::Full => "Card full: move logs off it",
-            Self::Failed => "Card failed: flights are not logged",
-        })
+worded! {
+    /// Why flights are not logged.
+    pub enum Trouble {
+        /// No card answers.
+        Absent = "No card: flights are not logged",
+        /// It holds nothing that can be written to.
+        Foreign = "Card unusable: format it as FAT32 (MBR)",
+        /// It has no room, or its root directory has none.
+        Full = "Card full: move logs off it",
+        /// It failed.
+        Failed = "Card failed: flights are not logged",
     }
 }
 
-/// What went wrong with a card that was read from or written to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Denied {
-    /// It did not take it or give it.
-    Failed,
-    /// Nothing may be written there now.
-    Forbidden,
-}
-
-impl fmt::Display for Denied {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Failed => "the card failed",
-            Self::Forbidden => "the sector may not be written now",
-        })
+worded! {
+    /// What went wrong with a card that was read from or written to.
+    enum Denied {
+        /// It did not take it or give it.
+        Failed = "the card failed",
+        /// Nothing may be written there now.
+        Forbidden = "the sector may not be written now",
     }
 }
 

@@ -163,7 +163,6 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
     }
 }
 
-/// AVAILABLE_MODES.
 const AVAILABLE_MODES_NUMBER: f32 = 435.0;
 
 /// The longest time between heartbeats.

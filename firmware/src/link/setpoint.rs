@@ -21,37 +21,26 @@
 //! world's: there a setpoint ahead needs one across too.
 
 use crate::frames;
+use crate::words::worded;
 use controller_core::governor::{Motion, Setpoint, Turn};
 use controller_core::math;
 use controller_core::state::State;
-use core::fmt;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::{RealField, UnitQuaternion, Vector2, Vector3};
 
-/// Why a setpoint was not taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SetpointRefusal {
-    /// A field in use is NaN or infinite.
-    NotFinite,
-    /// A combination of fields that the governor cannot fly.
-    Mask,
-    /// A frame that is not understood, or one that needs a position, without an estimate.
-    Frame,
-    /// A radio's sticks fly.
-    Sticks,
-    /// Another sender's setpoints are flown.
-    Others,
-}
-
-impl fmt::Display for SetpointRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a field is not finite",
-            Self::Mask => "type mask not supported",
-            Self::Frame => "frame not understood",
-            Self::Sticks => "the sticks fly",
-            Self::Others => "another sender's are flown",
-        })
+worded! {
+    /// Why a setpoint was not taken.
+    pub enum SetpointRefusal {
+        /// A field in use is NaN or infinite.
+        NotFinite = "a field is not finite",
+        /// A combination of fields that the governor cannot fly.
+        Mask = "type mask not supported",
+        /// A frame that is not understood, or one that needs a position, without an estimate.
+        Frame = "frame not understood",
+        /// A radio's sticks fly.
+        Sticks = "the sticks fly",
+        /// Another sender's setpoints are flown.
+        Others = "another sender's are flown",
     }
 }
 

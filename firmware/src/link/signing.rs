@@ -14,6 +14,7 @@
 //! it is written and [`KEPT_AHEAD_MIN`] at least, because nothing can be written in flight.
 
 use super::frame::{FRAME_MAX_BYTES, Frame, SIGNED_FLAG, Version};
+use crate::words::worded;
 use core::cell::RefCell;
 use core::fmt;
 use embassy_sync::blocking_mutex::Mutex;
@@ -94,30 +95,19 @@ impl fmt::Debug for Key {
     }
 }
 
-/// Why a frame does not count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
-    /// It has no signature.
-    Unsigned,
-    /// It was signed with another key, or changed on its way.
-    Forged,
-    /// Its stamp is not above the last of its stream, or of the vehicle.
-    Replayed,
-    /// Its stamp is too far ahead: its sender's clock is wrong.
-    Ahead,
-    /// There was a key, and it cannot be read any more.
-    KeyLost,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Unsigned => "Refused: not signed",
-            Self::Forged => "Refused: signed with another key",
-            Self::Replayed => "Refused: its time stamp was used before",
-            Self::Ahead => "Refused: its time stamp is too far ahead",
-            Self::KeyLost => "Refused: signing key lost; set it over USB",
-        })
+worded! {
+    /// Why a frame does not count.
+    pub enum Refusal {
+        /// It has no signature.
+        Unsigned = "Refused: not signed",
+        /// It was signed with another key, or changed on its way.
+        Forged = "Refused: signed with another key",
+        /// Its stamp is not above the last of its stream, or of the vehicle.
+        Replayed = "Refused: its time stamp was used before",
+        /// Its stamp is too far ahead: its sender's clock is wrong.
+        Ahead = "Refused: its time stamp is too far ahead",
+        /// There was a key, and it cannot be read any more.
+        KeyLost = "Refused: signing key lost; set it over USB",
     }
 }
 

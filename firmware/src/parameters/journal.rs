@@ -40,7 +40,6 @@ const HAS_OTHER_BIT: u32 = 1 << 31;
 const OTHER_LOST_BIT: u32 = 1 << 30;
 const OTHER_SHIFT: u32 = 14;
 
-/// Copies of a record.
 const RECORD_COPIES: usize = 2;
 
 /// What a record holds.

@@ -8,7 +8,6 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// Texts that are remembered.
 const TEXTS_REMEMBERED: usize = 8;
 
 /// How long a text is not sent again.

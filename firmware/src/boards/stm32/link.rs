@@ -26,7 +26,6 @@ pub type RadioReceiver = BufferedUartRx<'static>;
 /// Bytes that leave for a simulator.
 pub type SimulatorTransmitter = BufferedUartTx<'static>;
 
-/// Bytes of the ring.
 const RING_BYTES: usize = 2048;
 
 /// Bytes on their way to a simulator and from it: more than a tick's messages.

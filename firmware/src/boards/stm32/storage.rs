@@ -23,7 +23,6 @@ mod chip;
 #[path = "storage/h743.rs"]
 mod chip;
 
-/// Bytes of a sector.
 const SECTOR_BYTES: usize = 128 * 1024;
 
 /// What opens the control register.
