@@ -166,11 +166,11 @@ pub trait Light {
 /// What flash is read and written by: 256 bytes, whole words of any flash there is.
 pub type Record = [u32; 64];
 
-/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done,
-/// and never without end: while it programs or erases itself, the code in it may not run anyway.
+/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS_PER_SECTOR`]. Each call blocks until the
+/// flash is done, and never without end: while it programs or erases itself, the code in it may not run anyway.
 pub trait Flash {
     /// Places in a sector.
-    const RECORDS: usize;
+    const RECORDS_PER_SECTOR: usize;
 
     /// What is in a place; every bit of a blank one is set.
     /// Errors: [`Fault`] if it cannot be read, as where power failed while it was written.

@@ -19,11 +19,11 @@
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames
-//! of both protocol versions are understood, version 2 is sent, without extension fields but those of [`mission_lists`] and
-//! [`acknowledgement`]. Without a key nothing is signed, and any sender on the line commands. What a message's fields
-//! are is defined by the `mavlink` crate: only the types that matter here are decoded, each by itself, because matching
-//! on all messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect does not
-//! know (a frame, a command, a type) is not decoded.
+//! of both protocol versions are understood, version 2 is sent, without extension fields but those of [`mission_lists`]
+//! and [`acknowledgement`]. Without a key nothing is signed, and any sender on the line commands. What a message's
+//! fields are is defined by the `mavlink` crate: only the types that matter here are decoded, each by itself, because
+//! matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect
+//! does not know (a frame, a command, a type) is not decoded.
 
 pub mod acknowledgement;
 pub mod command;

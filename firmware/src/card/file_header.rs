@@ -36,7 +36,8 @@ const _: () = {
     assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINITION_SECTORS) * CONSTANTS_PER_SECTOR);
     let message = MESSAGE_HEAD_BYTES + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
     assert!(
-        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIBED[0].len() + ulog::SUBSCRIBED[1].len() <= SECTOR_CAPACITY_BYTES
+        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIPTION_PARTS[0].len() + ulog::SUBSCRIPTION_PARTS[1].len()
+            <= SECTOR_CAPACITY_BYTES
     );
 };
 
@@ -79,7 +80,7 @@ impl<M: RawMutex> FileHeader<'_, M> {
             let _ = sector.put(&[&head, &[length as u8], KIND.as_bytes(), name.as_bytes(), &value.to_le_bytes()]);
         }
         if place + DEFINITION_SECTORS + 1 == HEAD_SECTORS {
-            let _ = sector.put(&ulog::SUBSCRIBED);
+            let _ = sector.put(&ulog::SUBSCRIPTION_PARTS);
         }
         sector.finish()
     }

@@ -30,14 +30,14 @@ const fn weights<const COUNT: usize>() -> [f32; COUNT] {
     weights
 }
 
-static FIRST: [f32; INPUTS * HIDDEN_OUTPUTS] = weights();
-static SECOND: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
-static THIRD: [f32; HIDDEN_OUTPUTS * OUTPUTS] = weights();
+static FIRST_WEIGHTS: [f32; INPUTS * HIDDEN_OUTPUTS] = weights();
+static SECOND_WEIGHTS: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
+static THIRD_WEIGHTS: [f32; HIDDEN_OUTPUTS * OUTPUTS] = weights();
 static BIASES: [f32; HIDDEN_OUTPUTS] = weights();
 static LAYERS: [Layer<'static>; 3] = [
-    Layer { weights: &FIRST, biases: &BIASES },
-    Layer { weights: &SECOND, biases: &BIASES },
-    Layer { weights: &THIRD, biases: &[0.1, -0.1, 0.05, -0.05] },
+    Layer { weights: &FIRST_WEIGHTS, biases: &BIASES },
+    Layer { weights: &SECOND_WEIGHTS, biases: &BIASES },
+    Layer { weights: &THIRD_WEIGHTS, biases: &[0.1, -0.1, 0.05, -0.05] },
 ];
 
 /// A network of 22, 32, 32 and 4. None on no machine.

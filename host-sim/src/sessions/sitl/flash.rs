@@ -75,7 +75,7 @@ impl DeskFlash {
 }
 
 impl Flash for DeskFlash {
-    const RECORDS: usize = RECORDS;
+    const RECORDS_PER_SECTOR: usize = RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         self.records.borrow().get(place).copied().ok_or(Fault)
