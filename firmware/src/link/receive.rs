@@ -212,6 +212,7 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     }
 
     /// Whether an addressee is this vehicle or everyone.
+    #[inline(never)] // or each message would get a copy
     fn is_target(&self, (system, component): (u8, u8)) -> bool {
         (system == 0 || system == self.own_system()) && (component == 0 || component == COMPONENT_ID)
     }
