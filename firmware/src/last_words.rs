@@ -4,7 +4,7 @@
 //! panic, fault -> memory that no start clears -> reset -> shared last_words -> STATUSTEXT, card, log
 //! ```
 //!
-//! A board's last acts put them there ([`crate::ending`]), and its next start takes them away.
+//! A board's last acts put them there ([`crate::stop_sequence`]), and its next start takes them away.
 //! [`RestartReport`](crate::status::RestartReport) sends them.
 
 use core::fmt::{self, Write};

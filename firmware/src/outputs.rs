@@ -26,7 +26,7 @@ pub struct Outputs([ThrustCurve; MOTOR_COUNT]);
 impl Outputs {
     /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command
     /// itself.
-    /// An error names `rotors` if there are not [`MOTORS`] of them, `rotors.curve` if there is no such curve.
+    /// An error names `rotors` if there are not [`MOTOR_COUNT`] of them, `rotors.curve` if there is no such curve.
     pub fn new(rotors: &Rotors, linear: f32) -> Result<Self, ParameterError> {
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, linear);
         match &rotors[..] {

@@ -210,7 +210,7 @@ values! {
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
-    /// The memory card, where the board has one. Its task may be silent for [`CARD_SILENCE`].
+    /// The memory card, where the board has one. Its task may be silent for [`CARD_TIMEOUT_US`].
     pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
     /// The link's questions about the card's files.
     pub library: Library<M> { Write: CardView; Read: TransmitView }

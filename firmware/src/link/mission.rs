@@ -2,7 +2,7 @@
 //!
 //! | item | uses | refused |
 //! |---|---|---|
-//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`ACCEPTANCE_RADIUS_M`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
+//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`flight::ACCEPTANCE_RADIUS_M`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
 //! | 22 NAV_TAKEOFF, the first only | 4; altitude. Straight up | |
 //! | 21 NAV_LAND, the last only | 4; place, at the altitude that it has | 2, other than 0: no precision landing |
 //! | 20 NAV_RETURN_TO_LAUNCH, the last only | nothing | |
@@ -23,7 +23,7 @@ use super::origin::{Origin, Place};
 use crate::frames;
 use controller_core::governor::Turn;
 use core::fmt;
-use flight::{Leg, MISSION_RADIUS, MissionItem, MissionRefusal};
+use flight::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal};
 use mavlink::dialects::common::{MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult};
 use nalgebra::Vector3;
 
@@ -272,7 +272,7 @@ impl Item {
             leg: self.leg,
             position: frames::world(&ned),
             turn,
-            radius: if self.radius == 0 { MISSION_RADIUS } else { f32::from(self.radius) * 0.01 },
+            radius: if self.radius == 0 { ACCEPTANCE_RADIUS_M } else { f32::from(self.radius) * 0.01 },
             hold: u64::from(self.hold) * 100_000,
         }
     }

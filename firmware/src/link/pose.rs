@@ -68,7 +68,7 @@ pub enum PoseRefusal {
     Frame,
     /// The sender's time is not after that of its last message.
     Repeated,
-    /// It was under way for more than [`LATE_MAX`], by TIMESYNC.
+    /// It was under way for more than [`LATE_MAX_US`], by TIMESYNC.
     Late,
     /// It was under way for that much longer than others, or its sender's clock was set or stood still: without
     /// TIMESYNC the two look alike.

@@ -8,8 +8,8 @@
 //! with a the arrival and s the sender's time, ms. The least delay stays part of o, so a setpoint is never later than
 //! the line's quickest. A stream of moving points needs the time between two of them to know how acceleration changes
 //! ([`controller_core::governor::Governor::accept_late`]). A sender without times, whose time does not go on, or that
-//! would be more than [`LATEST`](controller_core::governor::LATEST) late, has its setpoints counted as true when they
-//! come; from there on a clock is learnt anew. It refuses nothing, and takes a tenth of the memory of
+//! would be more than [`LATEST`](controller_core::governor::LATEST) late, has its setpoints counted as true when
+//! they come; from there on a clock is learnt anew. It refuses nothing, and takes a tenth of the memory of
 //! [`sender_clock`](crate::link::sender_clock), which keeps old and forged poses out.
 
 use crate::link::sender_clock::INVERSE_DRIFT;
