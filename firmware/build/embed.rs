@@ -26,9 +26,7 @@ pub struct Embedded {
 ///
 /// What the firmware cannot fly is refused ([`board`]). One that is not certified is built all the same, with a
 /// warning. The board itself refuses to arm with it: it boots, answers, tests its motors, and names the inequality.
-///
-/// # Errors
-/// One line: the file, the field or the loop, and what is wrong.
+/// Errors: one line: the file, the field or the loop, and what is wrong.
 pub fn embedded(text: &str, name: &str, rate_max: f64) -> Result<Embedded, String> {
     let scenario = Scenario::parse(text, name).map_err(|error| error.to_string())?;
     let rate = 1.0 / scenario.timing.period();

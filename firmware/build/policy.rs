@@ -15,9 +15,7 @@ pub fn policy() -> Policy {
 ";
 
 /// The source of an image with the policy in `text`, of the file `name`.
-///
-/// # Errors
-/// One line: the file, the field and what is wrong.
+/// Errors: one line: the file, the field and what is wrong.
 pub fn source(text: &str, name: &str) -> Result<String, String> {
     let PolicyFile { layers, scale } = PolicyFile::parse(text, name)?;
     let list = |numbers: &[f32]| numbers.iter().map(|number| format!("{number:e}, ")).collect::<String>();

@@ -14,8 +14,8 @@
 //! Every sample reads both chip identities before it accepts their numbers: a bus stuck high or low would otherwise
 //! read as a vehicle that does not turn. Every wait is bounded. A gyroscope that does not answer in time is a
 //! [`Fault`]; an accelerometer that does not leaves a sample without a force. After several faults in a row a device is
-//! powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a step between
-//! two samples, they do not.
+//! powered up anew. The gyroscope's samples wait for its own, which takes 45 ms; for the accelerometer's, a step
+//! between two samples, they do not.
 
 use crate::hardware::{Clock, DataReady, Fault, Imu, RawImu};
 use crate::mounting::Mounting;

@@ -46,9 +46,7 @@ impl Place {
 
 /// Certifies the embedded configuration with the stored parameters, logs its numbers, and makes a pilot of it,
 /// certified or grounded, in the place that is meant for it; with it comes what turns its thrusts into motor commands.
-///
-/// # Errors
-/// If the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
+/// Fails if the embedded file has no rotors, or not as many as the board has motors; the build refuses such files.
 #[inline(never)]
 pub fn start<M: RawMutex>(
     place: &'static Place,
@@ -65,9 +63,7 @@ pub fn start<M: RawMutex>(
 }
 
 /// The same of what was built for a named vehicle, or for none in particular: that never arms, and says so.
-///
-/// # Errors
-/// As [`start_with`].
+/// Errors: as [`start_with`].
 #[inline]
 pub fn start_named<M: RawMutex>(
     place: &'static Place,
@@ -104,9 +100,7 @@ pub fn start_named<M: RawMutex>(
 }
 
 /// The same of another configuration than the embedded one, on a machine that reads scenario files.
-///
-/// # Errors
-/// If it has no rotors, or not as many as there are motors.
+/// Fails if it has no rotors, or not as many as there are motors.
 #[inline]
 pub fn start_with<M: RawMutex>(
     place: &'static Place,

@@ -9,7 +9,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`sector`] | messages in a sector, whole or torn |
-//! | [`beginning`] | what a flight's file says of the vehicle, before its data |
+//! | [`file_header`] | what a flight's file says of the vehicle, before its data |
 //! | [`log`] | a flight's file, made before the flight |
 //! | [`copy`] | the recording that a reset left, as a file |
 //! | [`library`] | the files, read over the link |
@@ -25,8 +25,8 @@
 //! - A cut of power loses the sector that is being written (three records) and what was not yet in it. It loses no file
 //!   that was there before: [`log`] and [`volume`] explain why.
 
-pub mod beginning;
 pub mod copy;
+pub mod file_header;
 pub mod geometry;
 pub mod library;
 pub mod log;
@@ -36,9 +36,9 @@ pub mod volume;
 use crate::hardware::{Card, Clock};
 use crate::recorder::follow::{Followed, Follower};
 use crate::shared::{CardState, CardView, Event, Severity};
-use beginning::Beginning;
 use core::convert::Infallible;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use file_header::FileHeader;
 use heapless::Deque;
 use library::Library;
 use log::Log;
@@ -59,8 +59,8 @@ const RECORDS_AT_ONCE: usize = 200;
 /// Events that are kept for the beginning of the next flight.
 const EVENTS_KEPT: usize = 16;
 
-/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED_BYTES`], if there is nothing
-/// against it.
+/// Logs every flight, for ever, in files that are `prepared` bytes long before it: [`PREPARED_BYTES`], if there is
+/// nothing against it.
 pub async fn run<C: Card, M: RawMutex>(mut card: C, prepared: u32, clock: &impl Clock, shared: CardView<'_, M>) -> ! {
     let mut logger = Logger {
         prepared,
@@ -140,8 +140,8 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     }
 
     /// What files begin with now.
-    fn beginning(&self) -> Beginning<'_, M> {
-        Beginning { vehicle: self.shared.recorder().vehicle(), parameters: self.shared.parameters() }
+    fn beginning(&self) -> FileHeader<'_, M> {
+        FileHeader { vehicle: self.shared.recorder().vehicle(), parameters: self.shared.parameters() }
     }
 
     /// Fills a file with a flight, as much of it as a file holds. Until the flight begins, other files may be
@@ -177,7 +177,7 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     /// Answers the link's questions about the files; whether a client is reading.
     fn serve<C: Card>(&self, volume: &Volume<'_, C>, log: &Log, library: &mut Library) -> bool {
         let (shared, now) = (self.shared, self.clock.now());
-        if let Some(question) = shared.library().asked() {
+        if let Some(question) = shared.library().take_question() {
             let answer = library.answer(question, now, volume, log.number(), shared.recorder());
             shared.library().answer(question, answer);
             shared.outgoing().signal(());

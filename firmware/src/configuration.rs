@@ -12,9 +12,7 @@ use nalgebra::Vector3;
 include!(concat!(env!("OUT_DIR"), "/configuration.rs"));
 
 /// Vehicle, limits, law, rotors and reference bounds as the scenario file gave them.
-///
-/// # Errors
-/// Never for a file that the build accepted: the same checks have seen the same bits.
+/// Never fails: a file that the build accepted: the same checks have seen the same bits.
 #[inline(never)] // building it takes a stack of its own
 pub fn embedded() -> Result<Configuration, ParameterError> {
     built()

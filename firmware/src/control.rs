@@ -53,12 +53,12 @@ pub struct Control<'a, M: RawMutex> {
     /// When the last IMU increment ended, us.
     integrated: Option<u64>,
     /// The last tick's faults: reported when they change, not in each tick.
-    reported: Reported,
+    reported: ReportedFaults,
 }
 
 /// The faults of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Reported {
+struct ReportedFaults {
     setpoint: Option<Refusal>,
     law: Option<InputError>,
     battery: bool,
@@ -81,7 +81,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             is_late: false,
             simulated: false,
             integrated: None,
-            reported: Reported::default(),
+            reported: ReportedFaults::default(),
         }
     }
 
@@ -109,7 +109,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
     /// One tick, from what the other tasks have put down to the motors' command.
     #[inline(never)] // the bound on the stack is counted from here: budgets.toml
     pub fn tick(&mut self, now: u64) -> MotorCommand {
-        self.shared.pass(now);
+        self.shared.set_text_time(now);
         let increments: Vec<Increment, INCREMENTS_CAPACITY> = waiting(self.shared.increments());
         let poses: Vec<_, POSES_CAPACITY> = waiting(self.shared.poses());
         increments.iter().for_each(|increment| self.integrate(increment));
@@ -251,7 +251,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             self.shared.announce(Event::Streamed(streamed));
         }
         if let Some(handed) = outcome.handover {
-            self.shared.announce(Event::Handed(handed));
+            self.shared.announce(Event::Handover(handed));
         }
     }
 
@@ -343,26 +343,4 @@ impl Timing {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_tick_in_time_is_followed_a_period_later() {
-        for period in [20_000, 10_000, 1_000] {
-            let mut timing = Timing { period, ..Timing::default() };
-            assert!(timing.record(20_000, 20_030, 20_400));
-            assert_eq!(timing, Timing { period, worst_duration: 370, worst_jitter: 30, missed: 0, gaps: 0 });
-            assert_eq!(next_due(20_000, 20_400, period), 20_000 + period);
-        }
-    }
-
-    #[test]
-    fn an_overrun_is_missed_and_not_caught_up_with() {
-        let mut timing = Timing { period: 10_000, ..Timing::default() };
-        assert!(!timing.record(20_000, 20_000, 30_000));
-        assert_eq!(timing.missed, 1);
-        assert_eq!(next_due(20_000, 30_000, 10_000), 40_000);
-        assert_eq!(next_due(20_000, 45_000, 10_000), 50_000);
-        assert_eq!(next_due(20_000, 22_500, 1_000), 23_000);
-    }
-}
+mod tests;

@@ -6,9 +6,7 @@ use embassy_futures::select::{Either, select};
 use embedded_io_async::Write;
 
 /// What `work` comes to, if it does so within `limit` microseconds.
-///
-/// # Errors
-/// [`Fault`] after `limit`; `work` is dropped then.
+/// Errors: [`Fault`] after `limit`; `work` is dropped then.
 pub async fn within<T>(clock: &impl Clock, limit: u64, work: impl Future<Output = T>) -> Result<T, Fault> {
     match select(work, clock.until(clock.now() + limit)).await {
         Either::First(done) => Ok(done),

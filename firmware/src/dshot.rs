@@ -24,10 +24,8 @@ pub const WAVEFORM_ROWS: usize = FRAME_BITS + 2;
 const THROTTLE_STEPS: f32 = 1999.0;
 
 /// One frame for each motor, in the motors' order.
-///
-/// # Errors
-/// [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing but stop
-/// is right for all of them.
+/// Errors: [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing
+/// but stop is right for all of them.
 pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTOR_COUNT], Fault> {
     let mut frames = stop();
     match command {
@@ -44,7 +42,6 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTOR_COUNT], Fault
 }
 
 /// The stop command for every motor.
-#[must_use]
 pub fn stop() -> [NormalFrame; MOTOR_COUNT] {
     [(); MOTOR_COUNT].map(|()| NormalFrame::command(Command::MotorStop, false))
 }
@@ -71,7 +68,6 @@ fn run(command: f32) -> Result<NormalFrame, Fault> {
 }
 
 /// Timer ticks that a zero bit is high for, of `period` ticks a bit.
-#[must_use]
 pub const fn zero_width(period: u16) -> u16 {
     period / 8 * 3 + period % 8 * 3 / 8
 }
@@ -82,7 +78,6 @@ pub struct Waveform<W>([[W; MOTOR_COUNT]; WAVEFORM_ROWS]);
 
 impl<W: From<u16>> Waveform<W> {
     /// All low.
-    #[must_use]
     pub fn silent() -> Self {
         Self([(); WAVEFORM_ROWS].map(|()| [(); MOTOR_COUNT].map(|()| W::from(0))))
     }
@@ -108,7 +103,6 @@ impl<W: From<u16>> Waveform<W> {
     }
 
     /// The words in the order of transfer.
-    #[must_use]
     pub fn words(&self) -> &[W] {
         self.0.as_flattened()
     }

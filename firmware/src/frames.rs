@@ -17,34 +17,29 @@ use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 use nalgebra::{Quaternion, Vector3};
 
 /// A vector of the world: ENU to NED, or NED to ENU.
-#[must_use]
 pub fn world(v: &Vector3<f32>) -> Vector3<f32> {
     Vector3::new(v.y, v.x, -v.z)
 }
 
 /// A vector of the body: FLU to FRD, or FRD to FLU. Angular velocities are vectors like any other here: no mirror is
 /// involved.
-#[must_use]
 pub fn body(v: &Vector3<f32>) -> Vector3<f32> {
     Vector3::new(v.x, -v.y, -v.z)
 }
 
 /// An attitude: FLU to ENU becomes FRD to NED, or the other way round. Keeps the length.
-#[must_use]
 pub fn attitude(q: &Quaternion<f32>) -> Quaternion<f32> {
     Quaternion::new(q.w + q.k, q.i + q.j, q.i - q.j, q.w - q.k) * FRAC_1_SQRT_2
 }
 
 /// A heading, rad: counted from x towards y of one world, to the same in the other, within (-pi, pi] for any in [-pi,
 /// pi].
-#[must_use]
 pub fn heading(psi: f32) -> f32 {
     let turned = FRAC_PI_2 - psi;
     if turned > PI { turned - TAU } else { turned }
 }
 
 /// A heading's rate, rad/s.
-#[must_use]
 pub fn heading_rate(rate: f32) -> f32 {
     -rate
 }

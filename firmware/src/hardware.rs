@@ -58,9 +58,7 @@ pub enum Unit {
 /// An inertial measurement unit. Where a board has two, this is both of them: see [`crate::redundant`].
 pub trait Imu {
     /// Waits for the next sample (about 1 kHz) and reads it.
-    ///
-    /// # Errors
-    /// [`Fault`] if the gyro does not answer as it should; the next call tries again.
+    /// Errors: [`Fault`] if the gyro does not answer as it should; the next call tries again.
     fn sample(&mut self) -> impl Future<Output = Result<RawImu, Fault>>;
 
     /// What the samples are like.
@@ -84,9 +82,7 @@ pub trait Imu {
 /// A sensor's data-ready pin.
 pub trait DataReady {
     /// Waits until it rises; when it did, us of the board's clock, however late the waiting task wakes up.
-    ///
-    /// # Errors
-    /// [`Fault`] if the pin cannot be read.
+    /// Errors: [`Fault`] if the pin cannot be read.
     fn rise(&mut self) -> impl Future<Output = Result<u64, Fault>>;
 }
 
@@ -115,7 +111,6 @@ pub enum MotorCommand {
 
 impl MotorCommand {
     /// Each motor's command, 0 to 1; 0 where it stops.
-    #[must_use]
     pub fn levels(&self) -> [f32; MOTOR_COUNT] {
         match *self {
             Self::Stop | Self::Word { .. } => [0.0; MOTOR_COUNT],
@@ -128,9 +123,7 @@ impl MotorCommand {
 /// The motors' electronic speed controllers.
 pub trait Motors {
     /// Sends one frame to every motor. The caller bounds the time this may take.
-    ///
-    /// # Errors
-    /// [`Fault`] if the frame did not go out.
+    /// Errors: [`Fault`] if the frame did not go out.
     fn write(&mut self, command: MotorCommand) -> impl Future<Output = Result<(), Fault>>;
 }
 
@@ -173,28 +166,22 @@ pub trait Light {
 /// What flash is read and written by: 256 bytes, whole words of any flash there is.
 pub type Record = [u32; 64];
 
-/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS`]. Each call blocks until the flash is done,
-/// and never without end: while it programs or erases itself, the code in it may not run anyway.
+/// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS_PER_SECTOR`]. Each call blocks until the
+/// flash is done, and never without end: while it programs or erases itself, the code in it may not run anyway.
 pub trait Flash {
     /// Places in a sector.
-    const RECORDS: usize;
+    const RECORDS_PER_SECTOR: usize;
 
     /// What is in a place; every bit of a blank one is set.
-    ///
-    /// # Errors
-    /// [`Fault`] if it cannot be read, as where power failed while it was written.
+    /// Errors: [`Fault`] if it cannot be read, as where power failed while it was written.
     fn read(&mut self, place: usize) -> Result<Record, Fault>;
 
     /// Fills a place, which must be blank.
-    ///
-    /// # Errors
-    /// [`Fault`] if the flash reports an error.
+    /// Errors: [`Fault`] if the flash reports an error.
     fn write(&mut self, place: usize, record: &Record) -> Result<(), Fault>;
 
     /// Blanks a sector, 0 or 1.
-    ///
-    /// # Errors
-    /// [`Fault`] if the flash reports an error.
+    /// Errors: [`Fault`] if the flash reports an error.
     fn erase(&mut self, sector: usize) -> Result<(), Fault>;
 }
 
@@ -205,23 +192,17 @@ pub const SECTOR_BYTES: usize = 512;
 /// only a task that nothing waits for may hold it.
 pub trait Card {
     /// Powers up the card that is in the slot now, and learns its size.
-    ///
-    /// # Errors
-    /// [`Fault`] if no card answers.
+    /// Errors: [`Fault`] if no card answers.
     fn start(&mut self) -> Result<(), Fault>;
 
     /// How many sectors it has.
     fn sectors(&self) -> u32;
 
     /// Reads a sector.
-    ///
-    /// # Errors
-    /// [`Fault`] if the card does not answer, or reports an error.
+    /// Errors: [`Fault`] if the card does not answer, or reports an error.
     fn read(&mut self, sector: u32, data: &mut [u8; SECTOR_BYTES]) -> Result<(), Fault>;
 
     /// Writes a sector. It is on the card for good once this returns.
-    ///
-    /// # Errors
-    /// [`Fault`] if the card does not take it: the sector is as it was, as it should be, or part of both.
+    /// Errors: [`Fault`] if the card does not take it: the sector is as it was, as it should be, or part of both.
     fn write(&mut self, sector: u32, data: &[u8; SECTOR_BYTES]) -> Result<(), Fault>;
 }

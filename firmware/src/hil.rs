@@ -77,20 +77,17 @@ struct State {
 
 impl<M: RawMutex> Hil<M> {
     /// No simulator yet.
-    #[must_use]
     pub const fn new() -> Self {
         let state = State { active: false, due: 0, awaiting: false };
         Self { state: Mutex::new(Cell::new(state)), command: Latest::new(), outgoing: Signal::new() }
     }
 
     /// Whether the simulator has sensors and motors.
-    #[must_use]
     pub fn active(&self) -> bool {
         self.state.lock(Cell::get).active
     }
 
     /// Whether a command is on its way that the simulator has not answered.
-    #[must_use]
     pub fn awaiting(&self) -> bool {
         self.state.lock(Cell::get).awaiting
     }
@@ -116,12 +113,6 @@ impl<M: RawMutex> Hil<M> {
     }
 }
 
-impl<M: RawMutex> Default for Hil<M> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// A board's motors, or the simulator's. The change is made between two stops, whatever requested it.
 pub struct SelectedMotors<'a, M: RawMutex, P, C> {
     /// The board's own.
@@ -129,7 +120,7 @@ pub struct SelectedMotors<'a, M: RawMutex, P, C> {
     /// The simulator's.
     pub hil: &'a Hil<M>,
     /// Raised when the simulator is wanted.
-    pub wanted: shared::Read<'a, Flag>,
+    pub requested: shared::Read<'a, Flag>,
     /// The board's time.
     pub clock: C,
     /// The time between control ticks, us.
@@ -138,7 +129,7 @@ pub struct SelectedMotors<'a, M: RawMutex, P, C> {
 
 impl<M: RawMutex, P: Motors, C: Clock> Motors for SelectedMotors<'_, M, P, C> {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
-        if self.hil.active() || self.wanted.is_raised() && command == MotorCommand::Stop {
+        if self.hil.active() || self.requested.is_raised() && command == MotorCommand::Stop {
             self.hil.command(command, self.clock.now(), self.period);
             return self.pins.write(MotorCommand::Stop).await;
         }

@@ -4,14 +4,13 @@
 //! panic, fault -> memory that no start clears -> reset -> shared last_words -> STATUSTEXT, card, log
 //! ```
 //!
-//! A board's last acts put them there ([`crate::ending`]), and its next start takes them away.
+//! A board's last acts put them there ([`crate::stop_sequence`]), and its next start takes them away.
 //! [`RestartReport`](crate::status::RestartReport) sends them.
 
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use mavlink::calculate_crc;
 
-/// Bytes of the words.
 const WORDS_MAX_BYTES: usize = 148;
 
 /// Bytes in memory: the words, their length, a checksum. Whole words of any error-correcting code that there is.
@@ -32,7 +31,6 @@ pub struct LastWords {
 
 impl LastWords {
     /// The words of something.
-    #[must_use]
     pub fn new(words: impl fmt::Display) -> Self {
         let mut kept = Self { bytes: [0; WORDS_MAX_BYTES], length: 0 };
         // An error means that it is full.
@@ -41,7 +39,6 @@ impl LastWords {
     }
 
     /// The words of a panic: its place and message.
-    #[must_use]
     pub fn panic(info: &PanicInfo<'_>) -> Self {
         let (file, line) = info.location().map_or(("", 0), |location| (location.file(), location.line()));
         let file = file.get(file.len().saturating_sub(PATH_MAX_BYTES)..).unwrap_or(file);
@@ -49,13 +46,11 @@ impl LastWords {
     }
 
     /// Them.
-    #[must_use]
     pub fn as_str(&self) -> &str {
         self.bytes.get(..self.length.into()).and_then(|bytes| str::from_utf8(bytes).ok()).unwrap_or("")
     }
 
     /// As they lie in memory.
-    #[must_use]
     pub fn to_bytes(&self) -> [u8; MEMORY_BYTES] {
         let mut memory = [0; MEMORY_BYTES];
         let (bytes, rest) = memory.split_at_mut(WORDS_MAX_BYTES);
@@ -68,7 +63,6 @@ impl LastWords {
     }
 
     /// Out of memory, where there are any.
-    #[must_use]
     pub fn from_bytes(memory: &[u8; MEMORY_BYTES]) -> Option<Self> {
         let (covered, checksum) = memory.split_last_chunk::<2>()?;
         let (bytes, rest) = covered.split_first_chunk::<WORDS_MAX_BYTES>()?;

@@ -9,7 +9,7 @@
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
-//! | [`ending`] | the order of a board's last acts |
+//! | [`stop_sequence`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | a board's peripherals, as narrow traits |
 //! | [`hil`] | a simulator in place of sensors and motors |
@@ -30,15 +30,15 @@
 //! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
 //! | [`spi`] | devices on a bus that several may share |
 //! | [`status`] | a light, the battery, the log |
+//! | `words` | enumerations in words |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
 //! list them by priority and run them on Embassy's executors. They decide nothing about flight: that is
 //! [`flight`].
 
 #![cfg_attr(target_os = "none", no_std)]
+#![allow(clippy::new_without_default, reason = "what tasks share is made by const functions, in statics")]
 
-#[cfg(test)]
-mod bench;
 pub mod bmi088;
 pub mod bmi270;
 #[cfg(target_os = "none")]
@@ -49,7 +49,6 @@ pub mod configuration;
 pub mod control;
 pub mod deadline;
 pub mod dshot;
-pub mod ending;
 pub mod frames;
 pub mod hardware;
 pub mod hil;
@@ -71,3 +70,10 @@ pub mod restart;
 pub mod shared;
 pub mod spi;
 pub mod status;
+pub mod stop_sequence;
+mod words;
+
+#[cfg(test)]
+mod tests {
+    pub mod bench;
+}

@@ -13,17 +13,17 @@
 //! | [`download`] | the list of logs, and a log, part by part |
 //! | [`port`] | which of two lines it is on |
 //! | [`mission`] | the items of a mission |
-//! | [`plans`], [`files`] | which list of items is meant; answers to clients that request files |
+//! | [`mission_lists`], [`files`] | which list of items is meant; answers to clients that request files |
 //! | [`acknowledgement`], [`repetitions`] | answers to commands; commands delivered twice |
 //! | [`signing`] | who may speak: signed frames |
 //! | [`writer`] | messages as frames |
 //!
 //! Two tasks, one for each direction, so that a line that takes nothing more does not keep poses from coming in. Frames
-//! of both protocol versions are understood, version 2 is sent, without extension fields but those of [`plans`] and
-//! [`acknowledgement`]. Without a key nothing is signed, and any sender on the line commands. What a message's fields
-//! are is defined by the `mavlink` crate: only the types that matter here are decoded, each by itself, because matching
-//! on all messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect does not
-//! know (a frame, a command, a type) is not decoded.
+//! of both protocol versions are understood, version 2 is sent, without extension fields but those of [`mission_lists`]
+//! and [`acknowledgement`]. Without a key nothing is signed, and any sender on the line commands. What a message's
+//! fields are is defined by the `mavlink` crate: only the types that matter here are decoded, each by itself, because
+//! matching on all messages of the dialect at once would take 56 KB of flash. A message with a value that the dialect
+//! does not know (a frame, a command, a type) is not decoded.
 
 pub mod acknowledgement;
 pub mod command;
@@ -32,8 +32,8 @@ pub mod download;
 pub mod files;
 pub mod frame;
 pub mod mission;
+pub mod mission_lists;
 pub mod origin;
-pub mod plans;
 pub mod port;
 pub mod pose;
 pub mod receive;

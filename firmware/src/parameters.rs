@@ -73,11 +73,11 @@ impl fmt::Display for ValueRefusal {
         match self {
             Self::OutOfRange(Name::MotorOrder) => f.write_str("MOT_ORDER: each of the digits 1 to 4, once"),
             Self::OutOfRange(parameter) => {
-                let Row { name, least, most, unit, step, .. } = parameter.row();
+                let Row { name, min, max, unit, step, .. } = parameter.row();
                 if *step > 1.0 {
-                    return write!(f, "{name}: allowed are {least:.0} to {most:.0} {unit} by {step:.0}");
+                    return write!(f, "{name}: allowed are {min:.0} to {max:.0} {unit} by {step:.0}");
                 }
-                write!(f, "{name}: allowed are {least:.2} to {most:.2} {unit}")
+                write!(f, "{name}: allowed are {min:.2} to {max:.2} {unit}")
             }
             Self::ReadOnly(parameter) => write!(f, "{}: is read-only", parameter.row().name),
             Self::NothingBuilt(parameter) => write!(f, "{}: not yet", parameter.row().name),
@@ -88,7 +88,6 @@ impl fmt::Display for ValueRefusal {
 
 impl<M: RawMutex> Parameters<M> {
     /// The defaults.
-    #[must_use]
     pub const fn new() -> Self {
         let mut values = [const { AtomicU32::new(0) }; PARAMETERS.len()];
         let mut index = 0;
@@ -128,24 +127,20 @@ impl<M: RawMutex> Parameters<M> {
     }
 
     /// The present value; what was built, where that is a row of the configuration that was not set.
-    #[must_use]
     pub fn get(&self, name: Name) -> f32 {
         let value = self.raw(name);
         if value.is_nan() { self.built().and_then(|built| built.value(name)).unwrap_or(value) } else { value }
     }
 
     /// The present value as it is kept: no number for one that is as built.
-    #[must_use]
     pub fn raw(&self, name: Name) -> f32 {
         f32::from_bits(self.values[name as usize].load(Ordering::Relaxed))
     }
 
     /// Changes a value, to be saved when that is possible. One of the configuration is certified first, which takes
     /// long, with all others as they are; it counts from the next boot.
-    ///
-    /// # Errors
-    /// [`ValueRefusal`] for a value outside the table's range, not finite, between its steps, or with which the vehicle
-    /// could not fly.
+    /// Errors: [`ValueRefusal`] for a value outside the table's range, not finite, between its steps, or with which the
+    /// vehicle could not fly.
     pub fn set(&self, name: Name, value: f32) -> Result<(), ValueRefusal> {
         if name == Name::TunedOn {
             return Err(ValueRefusal::ReadOnly(name));
@@ -194,7 +189,6 @@ impl<M: RawMutex> Parameters<M> {
     }
 
     /// What was stored, cannot be read, and was not set since: the first such row, or all of them.
-    #[must_use]
     pub fn lost(&self) -> Option<&'static str> {
         // Control asks in every tick.
         if self.lost.iter().all(|word| word.load(Ordering::Relaxed) == 0) {
@@ -222,11 +216,5 @@ impl<M: RawMutex> Parameters<M> {
 
     fn put(&self, name: Name, value: f32) {
         self.values[name as usize].store(value.to_bits(), Ordering::Relaxed);
-    }
-}
-
-impl<M: RawMutex> Default for Parameters<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

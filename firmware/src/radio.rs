@@ -14,9 +14,9 @@
 //!   switch alone acts as it stands, and keeps its last received position when the receiver falls silent.
 //! - The sticks command velocities in the frame of the vehicle's heading ([`sticks`]), through the governor, as
 //!   setpoints; those of the link are then refused. On the ground they begin a flight when the stick is pushed up.
-//! - A transmitter counts as a ground station until it has been silent for [`RADIO_TIMEOUT_US`]. If its sticks flew, the vehicle
-//!   then holds, and nothing takes over by itself: setpoints of the link stay refused until a client requests to fly
-//!   them, or the radio is received again and its switch selects the link.
+//! - A transmitter counts as a ground station until it has been silent for [`RADIO_TIMEOUT_US`]. If its sticks flew,
+//!   the vehicle then holds, and nothing takes over by itself: setpoints of the link stay refused until a client
+//!   requests to fly them, or the radio is received again and its switch selects the link.
 //! - A receiver that goes on with the last or with set positions when it has lost its transmitter says so in its link
 //!   statistics: an uplink quality of 0. That counts as silence.
 
@@ -125,7 +125,6 @@ pub struct Radio<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Radio<'a, M> {
     /// Nothing received yet.
-    #[must_use]
     pub fn new(shared: RadioView<'a, M>) -> Self {
         Self {
             parser: CrsfParser::new(),
@@ -179,8 +178,8 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         let before = self.arm.get();
         if self.arm.take(frame.arm, now) && before.is_some() {
             match frame.arm {
-                Switch::High => self.ask(Request::Arm),
-                Switch::Low => self.ask(Request::Disarm),
+                Switch::High => self.request(Request::Arm),
+                Switch::Low => self.request(Request::Disarm),
                 Switch::Middle => {}
             }
         }
@@ -189,10 +188,10 @@ impl<'a, M: RawMutex> Radio<'a, M> {
             if before.is_none() {
                 self.shared.announce(Event::new(Severity::Information, "Radio received"));
             } else if frame.flies == Switch::Middle {
-                self.ask(Request::Hold);
+                self.request(Request::Hold);
             }
         }
-        self.push.take(frame.sticks.push(), now);
+        self.push.take(frame.sticks.vertical_push(), now);
         let Some(flies) = self.flies.get() else { return };
         self.shared.ground_station().put((), now);
         self.shared.sticks().put(flies == Switch::High, now);
@@ -218,7 +217,7 @@ impl<'a, M: RawMutex> Radio<'a, M> {
         }
         self.shared.announce(Event::new(Severity::Warning, "Radio lost"));
         if self.is_flown() && self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
-            self.ask(Request::Hold);
+            self.request(Request::Hold);
         }
     }
 
@@ -240,14 +239,14 @@ impl<'a, M: RawMutex> Radio<'a, M> {
             self.shared.setpoint().put(setpoint, now);
         }
         if begins || matches!(report.mode, Mode::Holding | Mode::TakingOff) && push != Push::None {
-            self.ask(Request::FlySetpoints);
+            self.request(Request::FlySetpoints);
         }
         if report.mode == Mode::Flying && push == Push::Down {
-            self.ask(Request::Land);
+            self.request(Request::Land);
         }
     }
 
-    fn ask(&self, request: Request) {
+    fn request(&self, request: Request) {
         self.shared.request(QueuedRequest { request, order: None, setpoints: None });
     }
 }

@@ -4,8 +4,9 @@
 //! control -> Tick -> Ring (memory that no start clears) -> ULog over the link (LOG_REQUEST_LIST, LOG_REQUEST_DATA)
 //! ```
 //!
-//! - A recording begins when the vehicle is armed and ends [`RECORDED_AFTERWARDS_US`] after it is disarmed or stopped. The one
-//!   before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be fetched.
+//! - A recording begins when the vehicle is armed and ends [`RECORDED_AFTERWARDS_US`] after it is disarmed or stopped.
+//!   The one before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be
+//!   fetched.
 //! - A record is of one tick. Up to 100 Hz each tick makes one, above that each second, third ...: records are
 //!   [`RECORD_SPACING_MIN_US`] or more apart, so that memory and card hold as long a flight at any rate.
 //! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was
@@ -51,7 +52,6 @@ pub struct Recorder<M: RawMutex>(Mutex<M, RefCell<Option<Recording>>>);
 
 impl<M: RawMutex> Recorder<M> {
     /// Without memory: it records nothing.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(RefCell::new(None)))
     }
@@ -71,7 +71,6 @@ impl<M: RawMutex> Recorder<M> {
     }
 
     /// What the vehicle is called.
-    #[must_use]
     pub fn vehicle(&self) -> &'static str {
         self.with(|recording| recording.vehicle).unwrap_or_default()
     }
@@ -85,7 +84,6 @@ impl<M: RawMutex> Recorder<M> {
     }
 
     /// The time between two records, us.
-    #[must_use]
     pub fn spacing(&self) -> u64 {
         self.with(|recording| recording.spacing).unwrap_or(RECORD_SPACING_MIN_US)
     }
@@ -108,14 +106,12 @@ impl<M: RawMutex> Recorder<M> {
     }
 
     /// The length of the last recording as a file, bytes; none while one is made, or without one.
-    #[must_use]
     pub fn size(&self) -> Option<u32> {
         let count = self.with(|recording| (recording.left == 0).then(|| recording.ring.len())).flatten();
         count.filter(|&count| count > 0).map(ulog::size)
     }
 
     /// Reads the file from `offset` on into `out`; how many bytes there were. None while a recording is made.
-    #[must_use]
     pub fn read(&self, offset: u32, out: &mut [u8]) -> usize {
         let read = |recording: &mut Recording| {
             let Recording { ring, vehicle, left, .. } = recording;
@@ -135,11 +131,5 @@ impl<M: RawMutex> Recorder<M> {
 
     fn with<T>(&self, act: impl FnOnce(&mut Recording) -> T) -> Option<T> {
         self.0.lock(|recording| recording.try_borrow_mut().ok().and_then(|mut recording| recording.as_mut().map(act)))
-    }
-}
-
-impl<M: RawMutex> Default for Recorder<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

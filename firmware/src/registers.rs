@@ -2,9 +2,9 @@
 //!
 //! An [`exchange`] is bounded in time. A power-up is a table of [`Step`]s. [`PowerUp`] does one of them at a time, when
 //! its time has come, so that a task with other work meanwhile does it. A setting is written, read back a millisecond
-//! later, and written again if it did not stick, up to [`WRITE_ATTEMPTS_MAX`] times: the BMI088's accelerometer is known to need
-//! that. Everything before a setting that failed for good is done again by the next attempt. After [`RESTART_AFTER_FAILURES`]
-//! faulty measurements in a row it is all done again.
+//! later, and written again if it did not stick, up to [`WRITE_ATTEMPTS_MAX`] times: the BMI088's accelerometer is
+//! known to need that. Everything before a setting that failed for good is done again by the next attempt. After
+//! [`RESTART_AFTER_FAILURES`] faulty measurements in a row it is all done again.
 
 use crate::deadline::within;
 use crate::hardware::{Clock, Fault};
@@ -36,17 +36,13 @@ pub const POWER_DELAY_US: u64 = 1_000;
 const WRITE_DELAY_US: u64 = 1_000;
 
 /// Exchanges `bytes` with `device`, within `limit`, us. The first of them is an address.
-///
-/// # Errors
-/// [`Fault`] if bus or chip select fail, or it takes longer.
+/// Errors: [`Fault`] if bus or chip select fail, or it takes longer.
 pub async fn exchange(device: &mut impl Device, clock: &impl Clock, limit: u64, bytes: &mut [u8]) -> Result<(), Fault> {
     within(clock, limit, device.exchange(bytes)).await?
 }
 
 /// Reads `N` bytes from `register` on, of which the first means nothing.
-///
-/// # Errors
-/// As [`exchange`]'s, within [`ACCESS_TIMEOUT_US`].
+/// Errors: as [`exchange`]'s, within [`ACCESS_TIMEOUT_US`].
 pub async fn read_many<const N: usize>(
     device: &mut impl Device,
     clock: &impl Clock,
@@ -59,13 +55,11 @@ pub async fn read_many<const N: usize>(
 }
 
 /// m/s^2 in one count of an accelerometer: so many standard gravities in 2^15 counts.
-#[must_use]
 pub const fn acceleration_per_count(gravities: f32) -> f32 {
     gravities / 32768.0 * 9.806_65
 }
 
 /// Three signed 16-bit numbers, low byte first.
-#[must_use]
 pub fn counts([xl, xh, yl, yh, zl, zh]: [u8; 6]) -> Vector3<f32> {
     let [x, y, z] = [[xl, xh], [yl, yh], [zl, zh]].map(|bytes| f32::from(i16::from_le_bytes(bytes)));
     Vector3::new(x, y, z)
@@ -123,9 +117,7 @@ impl PowerUp {
     }
 
     /// Counts a measurement, and begins anew at `time`, us, after too many faults.
-    ///
-    /// # Errors
-    /// The measurement's.
+    /// Errors: the measurement's.
     pub fn judge<T>(&mut self, measured: Result<T, Fault>, time: u64) -> Result<T, Fault> {
         self.faults = if measured.is_ok() { 0 } else { self.faults + 1 };
         if self.faults >= RESTART_AFTER_FAILURES {
@@ -135,9 +127,7 @@ impl PowerUp {
     }
 
     /// Does everything that is left, within [`POWER_UP_TIMEOUT_US`].
-    ///
-    /// # Errors
-    /// As [`Self::advance`]'s, or if it takes longer.
+    /// Errors: as [`Self::advance`]'s, or if it takes longer.
     pub async fn complete(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
         let end = clock.now() + POWER_UP_TIMEOUT_US;
         while !self.is_done(clock.now()) {
@@ -161,10 +151,8 @@ impl PowerUp {
     }
 
     /// Does what is due.
-    ///
-    /// # Errors
-    /// [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than [`POWER_DELAY_US`] from
-    /// now.
+    /// Errors: [`Fault`] if the device does not do what it should; it is begun anew then, no sooner than
+    /// [`POWER_DELAY_US`] from now.
     pub async fn advance(&mut self, device: &mut impl Registers, clock: &impl Clock) -> Result<(), Fault> {
         let Some(step) = self.steps.get(self.next).filter(|_| clock.now() >= self.not_before) else { return Ok(()) };
         let done = self.act(step, device, clock).await;

@@ -59,9 +59,7 @@ const REFERENCE: HarmonicParameters = HarmonicParameters {
 };
 
 /// The paper's vehicle, limits and Table I, for its own reference.
-///
-/// # Errors
-/// None on a machine that computes right.
+/// Never fails: a machine that computes right.
 pub fn papers() -> Result<Configuration, ParameterError> {
     let vehicle = Vehicle::new(VEHICLE)?;
     let limits = Limits::new(LIMITS, &vehicle)?;
@@ -71,7 +69,6 @@ pub fn papers() -> Result<Configuration, ParameterError> {
 
 /// The embedded scenario with commands a tick of `period` us late, as its file has them at 100 Hz. None if it is for
 /// another law.
-#[must_use]
 pub fn embedded_at(period: u64) -> Option<Configuration> {
     let embedded = configuration::embedded().ok()?;
     let LawParameters::Extended(law) = embedded.law() else { return None };
@@ -86,64 +83,66 @@ pub fn embedded_at(period: u64) -> Option<Configuration> {
 pub struct Replay {
     controller: Controller,
     reference: Harmonic,
-    hash: Sha256,
+    hash: Hash,
     tick: u64,
 }
 
 impl Replay {
     /// At the start; certifies Table I. None if that fails, which no machine that computes right sees.
-    #[must_use]
     pub fn new() -> Option<Self> {
         let certified = Certified::new(papers().ok()?).ok()?;
         let reference = Harmonic::new(REFERENCE).ok()?;
         let controller = Controller::new(&certified, PERIOD_US as f32 * 1e-6).ok()?;
-        Some(Self { controller, reference, hash: Sha256::new(), tick: 0 })
+        Some(Self { controller, reference, hash: Hash::default(), tick: 0 })
     }
 
     /// One tick at a recorded state. Returns the wrench.
-    ///
-    /// # Errors
-    /// The law's own, for a state that it cannot use.
+    /// Errors: the law's own, for a state that it cannot use.
     pub fn tick(&mut self, record: &[u8; STATE_BYTES]) -> Result<Wrench, InputError> {
         let (wrench, diagnostics) = self.controller.step(&state(record), &self.reference.at(self.tick * PERIOD_US))?;
         self.tick += 1;
         let memory = self.controller.memory();
-        self.add(&[wrench.thrust]);
-        self.add(wrench.torque.as_slice());
-        self.add(memory.filter.filtered.as_slice());
-        self.add(memory.filter.intermediate.as_slice());
+        self.hash.add(&[wrench.thrust]);
+        self.hash.add(wrench.torque.as_slice());
+        self.hash.add(memory.filter.filtered.as_slice());
+        self.hash.add(memory.filter.intermediate.as_slice());
         if let Some(lift) = memory.lift {
             let Quaternion { coords } = lift.memory;
-            self.add(&[coords.w, coords.x, coords.y, coords.z, lift.sign]);
+            self.hash.add(&[coords.w, coords.x, coords.y, coords.z, lift.sign]);
         }
-        self.add(diagnostics.mrp.as_slice());
-        self.add(diagnostics.desired_angular_velocity.as_slice());
-        self.add(diagnostics.desired_angular_acceleration.as_slice());
+        self.hash.add(diagnostics.mrp.as_slice());
+        self.hash.add(diagnostics.desired_angular_velocity.as_slice());
+        self.hash.add(diagnostics.desired_angular_acceleration.as_slice());
         Ok(wrench)
     }
 
-    fn add(&mut self, numbers: &[f32]) {
-        for number in numbers {
-            self.hash.update(number.to_le_bytes());
-        }
-    }
-
     /// The number, as 64 hexadecimal digits.
-    #[must_use]
     pub fn digest(self) -> heapless::String<64> {
-        digest(self.hash)
+        self.hash.digest()
     }
 }
 
-/// A hash as 64 hexadecimal digits.
-fn digest(hash: Sha256) -> heapless::String<64> {
-    const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
-    let nibbles = hash.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
-    nibbles.map(|nibble| DIGITS[usize::from(nibble)]).collect()
+/// The hash of a flight's numbers.
+#[derive(Default)]
+struct Hash(Sha256);
+
+impl Hash {
+    fn add(&mut self, numbers: &[f32]) {
+        numbers.iter().for_each(|number| self.0.update(number.to_le_bytes()));
+    }
+
+    fn add_byte(&mut self, byte: u8) {
+        self.0.update([byte]);
+    }
+
+    /// As 64 hexadecimal digits.
+    fn digest(self) -> heapless::String<64> {
+        let nibbles = self.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        nibbles.filter_map(|nibble| char::from_digit(nibble.into(), 16)).collect()
+    }
 }
 
 /// A state as it is recorded.
-#[must_use]
 pub fn record(state: &State) -> [u8; STATE_BYTES] {
     let State { position: p, velocity: v, attitude: q, angular_velocity: w } = state;
     let numbers: [f32; STATE_NUMBERS] = [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z];

@@ -132,7 +132,9 @@ values! {
     /// Poses in the order in which they came, with the times at which they were true;
     /// [`estimator`](estimation::estimator) decides how old they may be. Without room a pose is dropped: the next will
     /// do.
-    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES_CAPACITY> { Write: ReceiveView, SimulatorView; Take: ControlView }
+    pub poses: Queue<M, Stamped<PoseMeasurement>, POSES_CAPACITY> {
+        Write: ReceiveView, SimulatorView; Take: ControlView
+    }
     /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` gives.
     pub pose_delay_unknown: Flag { Write: ReceiveView; Read: ControlView }
     /// Its time is that of the last heartbeat of a ground station.
@@ -208,7 +210,7 @@ values! {
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
-    /// The memory card, where the board has one. Its task may be silent for [`CARD_SILENCE`].
+    /// The memory card, where the board has one. Its task may be silent for [`CARD_TIMEOUT_US`].
     pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
     /// The link's questions about the card's files.
     pub library: Library<M> { Write: CardView; Read: TransmitView }
@@ -219,7 +221,7 @@ values! {
 offers! {
     [M: RawMutex] SamplesView<'_, M> { fn increment(increment: Increment); }
     [M: RawMutex] ControlView<'_, M> {
-        fn pass(now: u64);
+        fn set_text_time(now: u64);
         fn answer(asked: &QueuedRequest, result: Result<(), Refusal>);
         fn is_busy() -> bool;
     }
@@ -296,8 +298,8 @@ impl<M: RawMutex> Values<M> {
     }
 
     /// Control's time, us, by which texts are held back.
-    pub fn pass(&self, now: u64) {
-        self.recent_texts.pass(now);
+    pub fn set_text_time(&self, now: u64) {
+        self.recent_texts.set_time(now);
     }
 
     /// Announces an event, unless it was announced within the last second, to the ground station, the log and the card.
@@ -321,19 +323,16 @@ impl<M: RawMutex> Values<M> {
     }
 
     /// Whether a task is busy with work during which no motor may start.
-    #[must_use]
     pub fn is_busy(&self) -> bool {
         [&self.saving, &self.judging, &self.restarting].iter().any(|flag| flag.is_raised())
     }
 
     /// Whether the law drives the motors, by the last report; false before the first.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed())
     }
 
     /// Whether a motor turns, or may within a tick, by the last report.
-    #[must_use]
     pub fn is_turning(&self) -> bool {
         self.report.get().is_some_and(|report| report.value.mode.is_armed() || report.value.mode == Mode::MotorTest)
     }
@@ -341,7 +340,6 @@ impl<M: RawMutex> Values<M> {
 
 impl<M: RawMutex> Shared<M> {
     /// No values yet, parameters at their defaults.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Values::new())
     }
@@ -349,7 +347,6 @@ impl<M: RawMutex> Shared<M> {
 
 impl<'a, M: RawMutex> ImuView<'a, M> {
     /// To pass samples on.
-    #[must_use]
     pub const fn samples(self) -> SamplesView<'a, M> {
         SamplesView(self.0)
     }
@@ -357,7 +354,6 @@ impl<'a, M: RawMutex> ImuView<'a, M> {
 
 impl<'a, M: RawMutex> SimulatorView<'a, M> {
     /// To pass samples on.
-    #[must_use]
     pub const fn samples(self) -> SamplesView<'a, M> {
         SamplesView(self.0)
     }
@@ -370,11 +366,5 @@ impl<M: RawMutex> core::ops::Deref for Shared<M> {
 
     fn deref(&self) -> &Values<M> {
         &self.0
-    }
-}
-
-impl<M: RawMutex> Default for Shared<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -42,8 +42,8 @@ const WARNING_INTERVAL_US: u64 = 10_000_000;
 /// The greatest age of a report that counts.
 pub const REPORT_AGE_MAX_US: u64 = 1_000_000;
 
-/// Whether the light is on at `now` (us), a multiple of [`LIGHT_STEP_US`] or close behind one; no mode without a fresh report.
-#[must_use]
+/// Whether the light is on at `now` (us), a multiple of [`LIGHT_STEP_US`] or close behind one; no mode without a fresh
+/// report.
 pub fn is_lit(mode: Option<Mode>, now: u64) -> bool {
     // Steps into the present second, 0 to 19.
     let step = now % 1_000_000 / LIGHT_STEP_US;

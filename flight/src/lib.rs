@@ -25,10 +25,10 @@
 //! setpoint keeps turning its rotors until a command to land.
 //!
 //! The estimate is flown, never a pose: a wrong pose affects a flight as a missing one does. The estimator refuses it,
-//! reports why, and goes on by IMU. The flight goes on with it for [`rules::COASTING_MAX`], then levels for
-//! [`rules::LEVELLING_MAX`], then goes down. Poses that are believed again are flown at once. Where the estimate jumps,
-//! because the sender reports a move of its frame or a lost body was found again, the reference jumps with it and
-//! brakes from there: the vehicle does not lurch.
+//! reports why, and goes on by IMU. The flight goes on with it for [`rules::COASTING_MAX_US`], then levels for
+//! [`rules::LEVELLING_MAX_US`], then goes down. Poses that are believed again are flown at once. Where the estimate
+//! jumps, because the sender reports a move of its frame or a lost body was found again, the reference jumps with it
+//! and brakes from there: the vehicle does not lurch.
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -79,7 +79,7 @@ pub use estimation::measurement::{
     DISTANCE_MAX_M, ImuSample, Pose, PoseError, QUATERNION_LENGTH_TOLERANCE, STAMP_LEAD_MAX_US, Stamped, Velocity,
 };
 pub use exchange::{Battery, Inputs, Outcome, Output};
-pub use mission::{ACCEPTANCE_RADIUS_M as MISSION_RADIUS, Leg, MissionItem, MissionRefusal, MissionStep};
+pub use mission::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal, MissionStep};
 pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;
 pub use policy::{Aboard, Guarded, Handover, NoPolicy, Shielded};

@@ -1,9 +1,9 @@
 //! Whether a vehicle that was armed where it stands has left the ground.
 //!
 //! What holds a standing vehicle up looks like a force and like more thrust than there is, so the law's estimates are
-//! held until the vehicle is [`LIFT_OFF_HEIGHT_M`] above where it was armed or faster than [`LIFT_OFF_SPEED_M_PER_S`] in any direction. A vehicle
-//! armed in the air falls faster than that within a few ticks if anything is left to be learnt. A later landing is
-//! for `detectors` to find.
+//! held until the vehicle is [`LIFT_OFF_HEIGHT_M`] above where it was armed or faster than [`LIFT_OFF_SPEED_M_PER_S`]
+//! in any direction. A vehicle armed in the air falls faster than that within a few ticks if anything is left to be
+//! learnt. A later landing is for `detectors` to find.
 
 use controller_core::state::State;
 use nalgebra::Vector3;

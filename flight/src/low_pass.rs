@@ -1,9 +1,9 @@
 //! The vehicle's motion without the vibration of its rotors, by a low-pass.
 //!
 //! Rotors out of balance vibrate a vehicle that stands or lies. A first-order low-pass, y += h / (T + h) (x - y) in
-//! ticks of h with T = [`TIME_CONSTANT_S`], reaches nine tenths of a change after 0.1 s and passes one eighth of a vibration at 25
-//! Hz. Accelerations vibrate most: theirs is of second order, which passes one sixtieth. A hit at speed would stay in
-//! it for too long: an acceleration counts up to [`ACCELERATION_MAX_M_PER_S2`] only.
+//! ticks of h with T = [`TIME_CONSTANT_S`], reaches nine tenths of a change after 0.1 s and passes one eighth of a
+//! vibration at 25 Hz. Accelerations vibrate most: theirs is of second order, which passes one sixtieth. A hit at speed
+//! would stay in it for too long: an acceleration counts up to [`ACCELERATION_MAX_M_PER_S2`] only.
 
 use controller_core::math;
 use controller_core::state::State;

@@ -55,31 +55,19 @@ pub struct MissionItem {
     pub hold: u64,
 }
 
-/// Why an item is not flown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum MissionRefusal {
-    /// There is no item of that number.
-    NoItem,
-    /// A number of it is not finite, or out of the governor's range.
-    Number,
-    /// It leads out of the fence.
-    OutsideFence,
-    /// It is lower than the place of arming.
-    BelowHome,
-    /// It takes off to no height of a take-off.
-    TakeOffHeight,
-}
-
-impl fmt::Display for MissionRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NoItem => "no such mission item",
-            Self::Number => "a number is out of range",
-            Self::OutsideFence => "outside the fence",
-            Self::BelowHome => "below the place of arming",
-            Self::TakeOffHeight => "take-off not 0.5 to 50 m high",
-        })
+estimation::worded! {
+    /// Why an item is not flown.
+    pub enum MissionRefusal {
+        /// There is no item of that number.
+        NoItem = "no such mission item",
+        /// A number of it is not finite, or out of the governor's range.
+        Number = "a number is out of range",
+        /// It leads out of the fence.
+        OutsideFence = "outside the fence",
+        /// It is lower than the place of arming.
+        BelowHome = "below the place of arming",
+        /// Its height is not one of a take-off.
+        TakeOffHeight = "take-off not 0.5 to 50 m high",
     }
 }
 

@@ -7,7 +7,7 @@ pub struct MotorTest {
     pub rotor: usize,
     /// Part of the command's range, in (0, [`super::rules::MOTOR_TEST_LEVEL_MAX`]].
     pub level: f32,
-    /// How long, us, in (0, [`super::rules::MOTOR_TEST_MAX`]].
+    /// How long, us, in (0, [`super::rules::MOTOR_TEST_MAX_US`]].
     pub duration: u64,
 }
 

@@ -50,31 +50,35 @@ pub struct Shielded {
     pub handover: Option<Handover>,
 }
 
-/// What may be aboard.
+/// What may be aboard; by default, no policy.
 pub trait Aboard {
     /// Whether there is a policy at all: without one the code for it falls away.
     const EXISTS: bool;
 
     /// Prepares for a configuration, with ticks `period` seconds apart.
-    fn fit(&mut self, configuration: &Configuration, period: f32);
+    fn fit(&mut self, _configuration: &Configuration, _period: f32) {}
 
     /// Lets it fly, with the box from `low` to `high`, to a goal, from a heading.
     ///
     /// # Errors
     /// Why it cannot.
-    fn begin(&mut self, corners: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal>;
+    fn begin(&mut self, _corners: [Vector3<f32>; 2], _goal: &Vector3<f32>, _heading: &Heading) -> Result<(), Refusal> {
+        Err(Refusal::NoPolicy)
+    }
 
     /// A person asks for it again while it is let fly.
-    fn ask_again(&mut self);
+    fn ask_again(&mut self) {}
 
     /// Gives it another goal.
-    fn go_to(&mut self, goal: &Vector3<f32>);
+    fn go_to(&mut self, _goal: &Vector3<f32>) {}
 
     /// One tick.
     ///
     /// # Errors
     /// As the law's.
-    fn fly(&mut self, law: &mut Law, state: &State) -> Result<Shielded, InputError>;
+    fn fly(&mut self, _law: &mut Law, _state: &State) -> Result<Shielded, InputError> {
+        Err(InputError::OutOfRange { field: "policy" })
+    }
 }
 
 /// No policy.
@@ -83,20 +87,6 @@ pub struct NoPolicy;
 
 impl Aboard for NoPolicy {
     const EXISTS: bool = false;
-
-    fn fit(&mut self, _: &Configuration, _: f32) {}
-
-    fn begin(&mut self, _: [Vector3<f32>; 2], _: &Vector3<f32>, _: &Heading) -> Result<(), Refusal> {
-        Err(Refusal::NoPolicy)
-    }
-
-    fn ask_again(&mut self) {}
-
-    fn go_to(&mut self, _: &Vector3<f32>) {}
-
-    fn fly(&mut self, _: &mut Law, _: &State) -> Result<Shielded, InputError> {
-        Err(InputError::OutOfRange { field: "policy" })
-    }
 }
 
 /// A policy and its shield.

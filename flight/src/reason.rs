@@ -28,7 +28,7 @@ estimation::worded! {
         MotorTestInterrupted = "Motor test stopped by another request",
         /// The motor test has had its time.
         MotorTestOver = "Motor test over",
-        /// No flight was requested for [`super::rules::IDLING_MAX`].
+        /// No flight was requested for [`super::rules::IDLING_MAX_US`].
         IdlingOver = "Disarmed: nothing commanded for 10 s",
         /// A take-off was requested and granted.
         TakeOffCommanded = "Taking off",
@@ -46,11 +46,11 @@ estimation::worded! {
         Landed = "Landed: disarmed",
         /// The vehicle lies on its back or its side.
         Crashed = "Stopped: lying on its back or side",
-        /// No IMU increment for [`super::rules::IMU_AGE_MAX`], or the estimator lost its state.
+        /// No IMU increment for [`super::rules::IMU_AGE_MAX_US`], or the estimator lost its state.
         ImuLost = "Stopped: no IMU for 20 ms, or its data broke off",
-        /// The law or the allocation refused its input for [`super::rules::REFUSAL_MAX`].
+        /// The law or the allocation refused its input for [`super::rules::REFUSAL_MAX_US`].
         ThrustsRefused = "Stopped: the law refused its input for 50 ms",
-        /// No pose was believed for [`super::rules::COASTING_MAX`] in flight, or the estimate became too uncertain.
+        /// No pose was believed for [`super::rules::COASTING_MAX_US`] in flight, or the estimate became too uncertain.
         PoseLost = "Pose lost: levelling for 1 s, then going down",
         /// The source of poses has been refused and found again too often in this flight.
         PosesGivenUp = "Poses given up: going down by the IMU",
@@ -64,9 +64,9 @@ estimation::worded! {
         PoseRegained = "Pose regained: braking to hold position",
         /// The same, of a vehicle that was landing or was commanded to land.
         LandingResumed = "Pose regained: landing",
-        /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX`].
+        /// Neither pose nor ground were found in [`super::rules::DESCENDING_MAX_US`].
         DescendingOver = "Stopped: neither pose nor ground found in 30 s",
-        /// The ground station was silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+        /// The ground station was silent for [`super::rules::GROUND_STATION_TIMEOUT_US`].
         GroundStationLost = "Ground station lost: holding position",
         /// The same, while idling.
         GroundStationLostOnGround = "Disarmed: ground station lost",

@@ -118,13 +118,13 @@ pub enum Refusal {
     MotorTestRunning,
     /// A disarm command came in the same tick.
     DisarmCommanded,
-    /// No IMU increment under [`super::rules::IMU_AGE_MAX`] old.
+    /// No IMU increment under [`super::rules::IMU_AGE_MAX_US`] old.
     ImuStale,
     /// Gyro or accelerometer fails, or did within a second.
     Imu(ImuFault),
     /// The estimate is not healthy: its worst fault.
     Estimator(Fault),
-    /// For less than [`super::SETTLED_AFTER`] the estimate has been healthy and every pose believed.
+    /// For less than [`super::SETTLED_AFTER_US`] the estimate has been healthy and every pose believed.
     PosesUnsettled,
     /// The vehicle moves, at 0.2 m/s or 0.2 rad/s or more.
     Moving,
@@ -132,7 +132,7 @@ pub enum Refusal {
     Gravity,
     /// Body z is 30 degrees or more from up.
     Tilted,
-    /// The ground station has been silent for [`super::rules::GROUND_STATION_SILENCE_MAX`].
+    /// The ground station has been silent for [`super::rules::GROUND_STATION_TIMEOUT_US`].
     GroundStationSilent,
     /// The governor cannot start at the vehicle: the field to blame.
     Reference(&'static str),
@@ -140,7 +140,7 @@ pub enum Refusal {
     NoSuchRotor,
     /// A test level outside (0, [`super::rules::MOTOR_TEST_LEVEL_MAX`]].
     MotorTestLevel,
-    /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX`]].
+    /// A test duration outside (0, [`super::rules::MOTOR_TEST_MAX_US`]].
     MotorTestDuration,
     /// A setpoint with a field that is not finite or out of range.
     Setpoint(&'static str),

@@ -16,8 +16,8 @@ pub enum Request {
     Disarm,
     /// Go up so high, m, or as high as the settings say; then hold.
     TakeOff(Option<f32>),
-    /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_REQUEST_MAX`] and
-    /// unless another request comes.
+    /// Fly the setpoints that come. While disarmed: from arming on, within [`super::rules::SETPOINTS_REQUEST_MAX_US`]
+    /// and unless another request comes.
     FlySetpoints,
     /// Come to rest and hold position.
     Hold,

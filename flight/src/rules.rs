@@ -40,8 +40,8 @@ pub const DESCENDING_MAX_US: u64 = 30_000_000;
 /// How long a landing may brake across before it goes down.
 pub const BRAKING_MAX_US: u64 = 5_000_000;
 
-/// How long a landing may take: this many times the time from its maximum height (at most the fence's) at its speed, and
-/// [`LANDING_TIMEOUT_EXTRA_S`]. After that its poses do not lead to the ground.
+/// How long a landing may take: this many times the time from its maximum height (at most the fence's) at its speed,
+/// and [`LANDING_TIMEOUT_EXTRA_S`]. After that its poses do not lead to the ground.
 pub const LANDING_TIMEOUT_FACTOR: f32 = 2.0;
 /// See [`LANDING_TIMEOUT_FACTOR`].
 pub const LANDING_TIMEOUT_EXTRA_S: f32 = 12.0;

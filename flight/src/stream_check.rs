@@ -1,8 +1,8 @@
 //! Whether a stream of setpoints is flown as it is sent, for the operator.
 //!
 //! The governor smooths what does not keep the bounds, and what it has not caught up with. That is said where the
-//! reference has been farther than [`FOLLOWED_DISTANCE_MAX_M`] from the stream for [`STREAM_DEBOUNCE_US`], and again every [`STREAM_REPORT_INTERVAL_US`]; and the end of
-//! it likewise, once.
+//! reference has been farther than [`FOLLOWED_DISTANCE_MAX_M`] from the stream for [`STREAM_DEBOUNCE_US`], and again
+//! every [`STREAM_REPORT_INTERVAL_US`]; and the end of it likewise, once.
 
 use controller_core::governor::FollowingReport;
 use core::fmt;

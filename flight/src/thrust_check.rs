@@ -2,8 +2,8 @@
 //!
 //! The law learns a steady lack of thrust as a vertical force and the rest as its thrust scale;
 //! `Chain::delivered_share` puts the two together. With a compensated battery, the right mass and the right curve the
-//! share stays near 1; vertical wind moves it by its acceleration over gravity. A share further off than [`THRUST_SHARE_ERROR_MAX`]
-//! for [`THRUST_DEBOUNCE_US`] is reported, before the estimates reach their limits.
+//! share stays near 1; vertical wind moves it by its acceleration over gravity. A share further off than
+//! [`THRUST_SHARE_ERROR_MAX`] for [`THRUST_DEBOUNCE_US`] is reported, before the estimates reach their limits.
 
 /// The distance of the share from 1 beyond which it is doubtful.
 pub const THRUST_SHARE_ERROR_MAX: f32 = 0.15;

@@ -8,8 +8,8 @@ use arbitrary::Arbitrary;
 use controller_core::governor::Motion;
 use controller_core::state::State;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use firmware::radio::debounced::{DEBOUNCE, FRAMES_MIN};
-use firmware::radio::{Radio, SILENCE};
+use firmware::radio::debounced::{FRAMES_MIN, SWITCH_DEBOUNCE_US};
+use firmware::radio::{RADIO_TIMEOUT_US, Radio};
 use firmware::shared::{Report, Shared};
 use flight::{Mode, Request};
 use libfuzzer_sys::fuzz_target;
@@ -17,7 +17,7 @@ use nalgebra::{Quaternion, Vector3};
 use uf_crsf::packets::{PacketAddress, RcChannelsPacked, write_packet_to_buffer};
 
 /// Above it a switch is high.
-const SWITCH_HIGH_MIN: u16 = 1402;
+const CHANNEL_HIGH: u16 = 1402;
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -53,13 +53,13 @@ fuzz_target!(|events: Vec<Event>| {
                 let length =
                     write_packet_to_buffer(&mut frame, PacketAddress::FlightController, &RcChannelsPacked(channels))
                         .unwrap();
-                let heard = last_frame.replace(now).is_some_and(|last| now - last <= SILENCE);
+                let heard = last_frame.replace(now).is_some_and(|last| now - last <= RADIO_TIMEOUT_US);
                 radio.feed(&frame[..length], now);
-                let kills = channels[6] >= SWITCH_HIGH_MIN;
+                let kills = channels[6] >= CHANNEL_HIGH;
                 killing = if killing.0 == kills { (kills, killing.1, killing.2 + 1) } else { (kills, now, 1) };
                 let moved =
                     shared.killed.get().filter(|killed| killed.time == now && last_killed != Some(killed.value));
-                let settled = killing.2 >= FRAMES_MIN.into() && now - killing.1 >= DEBOUNCE;
+                let settled = killing.2 >= FRAMES_MIN.into() && now - killing.1 >= SWITCH_DEBOUNCE_US;
                 assert!(!whole || moved.is_none_or(|moved| settled && moved.value == kills), "{channels:?}: {moved:?}");
                 last_killed = shared.killed.get().map(|killed| killed.value);
                 while let Some(asked) = shared.requests.take() {

@@ -27,23 +27,23 @@ mod target {
     fn replay() -> Result<(), &'static str> {
         let mut file = File::open(c"states.f32").map_err(|_| "states.f32: cannot be opened")?;
         let mut replay = Replay::new().ok_or("Table I is not certified on this machine")?;
-        let mut record = [0; RECORD];
-        for _ in 0..TICKS {
+        let mut record = [0; STATE_BYTES];
+        for _ in 0..FLIGHT_TICKS {
             file.read_exact(&mut record).map_err(|_| "states.f32: too short")?;
             replay.tick(&record).map_err(|_| "the law refuses a recorded state")?;
         }
         hprintln!("{}", replay.digest());
         let mut file = File::open(c"recovery.f32").map_err(|_| "recovery.f32: cannot be opened")?;
-        PERIODS.iter().try_for_each(|period| recover(&mut file, *period))
+        PERIODS_US.iter().try_for_each(|period| recover(&mut file, *period))
     }
 
     /// The recovery in ticks of `period` us.
     fn recover(file: &mut File, period: u64) -> Result<(), &'static str> {
-        let mut record = [0; RECORD];
+        let mut record = [0; STATE_BYTES];
         let mut recovery = Recovery::new(period).ok_or("the embedded scenario is not certified on this machine")?;
         let mut estimate = Estimate::new(period).ok_or("the estimator's figures are refused on this machine")?;
         let mut shielded = Shielded::new(period).ok_or("the embedded scenario is shielded on no machine")?;
-        for _ in 0..recovery::DURATION / period {
+        for _ in 0..recovery::RECOVERY_DURATION_US / period {
             file.read_exact(&mut record).map_err(|_| "recovery.f32: too short")?;
             estimate.tick(&record);
             recovery.tick(&record).map_err(|_| "the law refuses a recorded state of the recovery")?;

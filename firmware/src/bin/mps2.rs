@@ -55,7 +55,7 @@ mod target {
     async fn control(pilot: &'static mut Pilot, outputs: Outputs) {
         let shared = SHARED.for_control();
         let mut motors =
-            SelectedMotors { pins: NoMotors, hil: &HIL, wanted: shared.hil(), clock: BoardClock, period: PERIOD_US };
+            SelectedMotors { pins: NoMotors, hil: &HIL, requested: shared.hil(), clock: BoardClock, period: PERIOD_US };
         let mut watchdog = BoardWatchdog::start(WATCHDOG_TIMEOUT_US);
         Control::new(shared, pilot, outputs).run(&BoardClock, &mut motors, &mut watchdog).await;
     }

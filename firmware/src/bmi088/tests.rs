@@ -3,8 +3,8 @@
 mod bench;
 
 use super::*;
-use crate::bench::{Jumping, Pin, X_LEFT, on_one_bus};
 use crate::registers::RESTART_AFTER_FAILURES;
+use crate::tests::bench::{Jumping, Pin, X_LEFT, on_one_bus};
 use bench::{Bench, Part, Registers, bench};
 use core::cell::Cell;
 use core::future::{Future, pending};

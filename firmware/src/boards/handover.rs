@@ -70,7 +70,6 @@ const CACHE_BITS: u32 = 0b11 << 16;
 ///
 /// # Panics
 /// The second time.
-#[must_use]
 pub fn begin_anew(quiet: impl FnOnce(&mut Peripherals)) -> Peripherals {
     let mut core = Peripherals::take().expect("begun twice");
     // SAFETY: the runtime has set up memory and all handlers, and nothing else runs; from here on nothing is pending
@@ -104,7 +103,6 @@ const CORTEX_M7_PART: u32 = 0xC27;
 
 /// Turns the instruction cache on, where the core has one; whether it is as it should be then. One that is on already
 /// was emptied by the first instructions.
-#[must_use]
 pub fn cache_instructions(core: &mut Peripherals) -> bool {
     let has_cache = core.CPUID.base.read() >> 4 & 0xFFF == CORTEX_M7_PART;
     if has_cache {

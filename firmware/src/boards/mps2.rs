@@ -41,7 +41,6 @@ const LINE_PRIORITIES: [(Interrupt, u8); 7] = [
 ///
 /// # Panics
 /// The second time.
-#[must_use]
 pub fn begin() -> cortex_m::Peripherals {
     let mut core = handover::begin_anew(|_| ());
     guard::watch(&mut core.MPU);

@@ -11,9 +11,7 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 /// `None` without a recording, or if a flight has begun meanwhile, which ends it.
 ///
 /// A copy that a cut has shortened differs, and the next start makes another.
-///
-/// # Errors
-/// If there is no room for it, or the card fails.
+/// Fails if there is no room for it, or the card fails.
 pub fn copy<C: Card, M: RawMutex>(
     volume: &Volume<'_, C>,
     recorder: Read<'_, Recorder<M>>,

@@ -49,7 +49,6 @@ impl Numbers<'_> {
 }
 
 /// The first sector of the first partition, if the card's first sector describes one of a known kind.
-#[must_use]
 pub fn partition(table: &[u8; SECTOR_BYTES]) -> Option<u32> {
     let table = Numbers(table);
     let is_known =
@@ -62,7 +61,6 @@ pub fn partition(table: &[u8; SECTOR_BYTES]) -> Option<u32> {
 impl Geometry {
     /// Reads the first sector of a file system that begins at sector `start` of a card of `sectors`. None if it is not
     /// one that can be used.
-    #[must_use]
     pub fn read(first: &[u8; SECTOR_BYTES], start: u32, sectors: u32) -> Option<Self> {
         let first = Numbers(first);
         let nonzero = |short: u16, long: u32| if short > 0 { u32::from(short) } else { long };
@@ -74,13 +72,14 @@ impl Geometry {
         let data = table.checked_mul(tables)?.checked_add(reserved)?.checked_add(root)?;
         let end = start.checked_add(total).filter(|&end| end <= sectors)?;
         let clusters = total.checked_sub(data)?.checked_div(cluster)?;
+        let entry_bytes = if clusters < FAT32_CLUSTERS_MIN { 2 } else { 4 };
         let is_sound = first.short(SECTOR_BYTES - 2) == BOOT_SIGNATURE
             && first.short(11) == SECTOR_BYTES as u16
             && cluster.is_power_of_two()
             && reserved > 0
             && (1..=2).contains(&tables)
             // A table has room for every cluster, in 16 bits or 32.
-            && clusters + 2 <= table.saturating_mul(SECTOR_BYTES as u32 / if clusters < FAT32_CLUSTERS_MIN { 2 } else { 4 })
+            && clusters + 2 <= table.saturating_mul(SECTOR_BYTES as u32 / entry_bytes)
             && (clusters < FAT32_CLUSTERS_MIN || (2..clusters + 2).contains(&first.long(44)) && u32::from(first.short(48)) < reserved);
         is_sound.then(|| Self { tables: start + reserved..start + data - root, data: start + data..end })
     }

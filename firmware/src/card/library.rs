@@ -1,9 +1,9 @@
 //! The card's files, read over the link: counted, measured, read a chunk at a time, between two looks for records.
 //!
-//! Offered are the newest [`FILES_OFFERED_MAX`] files, in the order of their numbers, and behind them the flight recorder's
-//! recording. What a number stands for is settled when they are counted. Files are opened for reading only. One that
-//! cannot be read is reported as unreadable, and the card goes on logging: an old file's damage is no reason not to log
-//! the next flight.
+//! Offered are the newest [`FILES_OFFERED_MAX`] files, in the order of their numbers, and behind them the flight
+//! recorder's recording. What a number stands for is settled when they are counted. Files are opened for reading only.
+//! One that cannot be read is reported as unreadable, and the card goes on logging: an old file's damage is no reason
+//! not to log the next flight.
 
 use super::log;
 use super::volume::{Entry, File, Kind, Trouble, Volume};
@@ -40,7 +40,6 @@ struct Open {
 
 impl Library {
     /// Whether a client is reading at `now`, us.
-    #[must_use]
     pub fn is_busy(&self, now: u64) -> bool {
         now < self.busy_until
     }

@@ -2,13 +2,13 @@
 //!
 //! The file is made as long as a flight before the flight begins, so that in flight nothing is written but the sector
 //! that is due, over a blank one: neither a table nor the directory changes, and what power cuts short is that sector
-//! and no other. A longer flight lengthens its file by [`GROWTH_BYTES`] at a time; one that reaches [`SIZE_MAX_BYTES`] goes on in
-//! the next file.
+//! and no other. A longer flight lengthens its file by [`GROWTH_BYTES`] at a time; one that reaches [`SIZE_MAX_BYTES`]
+//! goes on in the next file.
 //!
 //! Every length that the directory ever notes is a multiple of 64 KB below 16 MB, which differs from the one before in
 //! one byte: no cut leaves a length that mixes two.
 
-use super::beginning::{Beginning, HEAD_SECTORS};
+use super::file_header::{FileHeader, HEAD_SECTORS};
 use super::sector::{BLANK_SECTOR, Content, SECTOR_CAPACITY_BYTES, Sector};
 use super::volume::{File, Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR_BYTES};
@@ -51,12 +51,10 @@ pub struct Log {
 impl Log {
     /// Takes the newest file if nothing was logged in it, and else makes a new one. The newest loses its last sector if
     /// that is torn.
-    ///
-    /// # Errors
-    /// If there is no room for it, or the card fails.
+    /// Fails if there is no room for it, or the card fails.
     pub fn prepare<C: Card, M: RawMutex>(
         volume: &Volume<'_, C>,
-        beginning: &Beginning<'_, M>,
+        beginning: &FileHeader<'_, M>,
     ) -> Result<Self, Trouble> {
         // A file that was cut short while it got its first length may be at odds with the tables: it is left alone.
         let newest = volume.newest(&[Kind::Log])?;
@@ -80,7 +78,7 @@ impl Log {
     fn begun<C: Card, M: RawMutex>(
         mut self,
         volume: &Volume<'_, C>,
-        beginning: &Beginning<'_, M>,
+        beginning: &FileHeader<'_, M>,
     ) -> Result<Self, Trouble> {
         if self.size < GROWTH_BYTES {
             self.lengthen(
@@ -96,46 +94,39 @@ impl Log {
     }
 
     /// Its number.
-    #[must_use]
     pub fn number(&self) -> u32 {
         self.number
     }
 
     /// Whether there is a record in it.
-    #[must_use]
     pub fn has_begun(&self) -> bool {
         self.written + self.pending > 0
     }
 
     /// Records that are on the card.
-    #[must_use]
     pub fn written(&self) -> u32 {
         self.written
     }
 
     /// Records that are not on the card yet.
-    #[must_use]
     pub fn pending(&self) -> u32 {
         self.pending
     }
 
     /// Bytes that it has, used or not.
-    #[must_use]
     pub fn size(&self) -> u32 {
         self.size
     }
 
     /// Whether it is to be finished: it may not become longer, and has room for no more than what is still to be
     /// written.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         self.next >= SIZE_MAX_BYTES - RESERVE_BYTES
     }
 
     /// Makes it longer, up to the next multiple of [`GROWTH_BYTES`].
-    ///
-    /// # Errors
-    /// [`Trouble::Full`] if there is no room. What there was room for is noted as well: nothing else can have it.
+    /// Errors: [`Trouble::Full`] if there is no room. What there was room for is noted as well: nothing else can have
+    /// it.
     pub fn grow<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
         self.lengthen(volume, |_| BLANK_SECTOR)
     }
@@ -160,13 +151,11 @@ impl Log {
     }
 
     /// Adds a record; before the first, what is to be said of the vehicle by now.
-    ///
-    /// # Errors
-    /// If a sector cannot be written.
+    /// Fails if a sector cannot be written.
     pub fn record<C: Card, M: RawMutex>(
         &mut self,
         volume: &Volume<'_, C>,
-        beginning: &Beginning<'_, M>,
+        beginning: &FileHeader<'_, M>,
         record: &[u8; tick::TICK_BYTES],
     ) -> Result<(), Trouble> {
         if !self.has_begun() {
@@ -182,9 +171,7 @@ impl Log {
     }
 
     /// Adds an event of `time`, us.
-    ///
-    /// # Errors
-    /// If a sector cannot be written.
+    /// Fails if a sector cannot be written.
     pub fn event<C: Card>(&mut self, volume: &Volume<'_, C>, time: u64, event: &Event) -> Result<(), Trouble> {
         let text = Text::new(event);
         // As syslog numbers them, in ASCII.
@@ -199,9 +186,7 @@ impl Log {
     }
 
     /// Notes that so many records, each `spacing` us after the last, are missing here.
-    ///
-    /// # Errors
-    /// If a sector cannot be written.
+    /// Fails if a sector cannot be written.
     pub fn gap<C: Card>(&mut self, volume: &Volume<'_, C>, missed: u32, spacing: u64) -> Result<(), Trouble> {
         let milliseconds = u64::from(missed) * spacing / 1_000;
         let duration = u16::try_from(milliseconds).unwrap_or(u16::MAX);
@@ -209,9 +194,7 @@ impl Log {
     }
 
     /// Writes what is still in the sector: the next message goes to the one behind it.
-    ///
-    /// # Errors
-    /// If it cannot be written.
+    /// Fails if it cannot be written.
     pub fn flush<C: Card>(&mut self, volume: &Volume<'_, C>) -> Result<(), Trouble> {
         if self.sector.is_empty() {
             return Ok(());
@@ -226,9 +209,7 @@ impl Log {
     }
 
     /// Writes what is left and closes the file.
-    ///
-    /// # Errors
-    /// If the card fails.
+    /// Fails if the card fails.
     pub fn finish<C: Card>(mut self, volume: &Volume<'_, C>) -> Result<u32, Trouble> {
         self.flush(volume)?;
         volume.close(self.file)?;
@@ -254,9 +235,7 @@ fn read<C: Card>(volume: &Volume<'_, C>, file: File, offset: u32) -> Result<Cont
 
 /// Where the blank end of a file of `size` bytes begins. Sectors are written in order, so half of the search
 /// can be left out at a time.
-///
-/// # Errors
-/// If the file cannot be read.
+/// Fails if the file cannot be read.
 pub fn end<C: Card>(volume: &Volume<'_, C>, file: File, size: u32) -> Result<u32, Trouble> {
     let (mut used, mut blank) = (HEAD_SECTORS as u32, size / SECTOR_STEP_BYTES);
     while used < blank {

@@ -19,7 +19,6 @@ pub const FILLER_KIND: u8 = b'Z';
 /// Bytes of a message's head.
 pub const MESSAGE_HEAD_BYTES: usize = 3;
 
-/// Bytes of the checksum.
 const CHECKSUM_BYTES: usize = 2;
 
 /// What the checksum begins with.
@@ -48,7 +47,6 @@ pub enum Content {
 
 impl Content {
     /// What is in these bytes.
-    #[must_use]
     pub fn from_bytes(bytes: &[u8; SECTOR_BYTES]) -> Self {
         if *bytes == BLANK_SECTOR {
             return Self::Blank;
@@ -69,20 +67,17 @@ pub struct Sector {
 
 impl Sector {
     /// Nothing in it yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self { bytes: BLANK_SECTOR, used: 0 }
     }
 
     /// Whether there is nothing in it.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.used == 0
     }
 
     /// Adds a message that consists of these parts, or leaves the sector as it is if there is no room; whether there
     /// was.
-    #[must_use]
     pub fn put(&mut self, parts: &[&[u8]]) -> bool {
         let length: usize = parts.iter().map(|part| part.len()).sum();
         if self.used + length > SECTOR_CAPACITY_BYTES {
@@ -95,9 +90,8 @@ impl Sector {
     }
 
     /// The sector as it is written, and a new one in its place.
-    #[must_use]
     pub fn finish(&mut self) -> [u8; SECTOR_BYTES] {
-        let Self { mut bytes, used } = core::mem::take(self);
+        let Self { mut bytes, used } = core::mem::replace(self, Self::new());
         let filler = ulog::head(FILLER_KIND, SECTOR_BYTES - used - MESSAGE_HEAD_BYTES);
         let mut filling = bytes.iter_mut().skip(used);
         filling.by_ref().zip(filler).for_each(|(to, from)| *to = from);
@@ -106,12 +100,6 @@ impl Sector {
             *checksum = calculate_crc(covered, CHECKSUM_SEED).to_le_bytes();
         }
         bytes
-    }
-}
-
-impl Default for Sector {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -9,8 +9,8 @@
 
 use super::geometry::{Geometry, partition};
 use crate::hardware::{Card, Fault, SECTOR_BYTES};
+use crate::words::worded;
 use core::cell::{Cell, RefCell};
-use core::fmt;
 use core::ops::ControlFlow;
 use embedded_sdmmc::{
     Block, BlockCount, BlockDevice, BlockIdx, ClusterId, DirEntry, Error, Mode, RawDirectory, RawFile, ShortFileName,
@@ -20,45 +20,27 @@ use embedded_sdmmc::{
 /// Files have numbers of five digits, from 1 on.
 pub const NUMBER_MAX: u32 = 99_999;
 
-/// Why flights are not logged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Trouble {
-    /// No card answers.
-    Absent,
-    /// It holds nothing that can be written to.
-    Foreign,
-    /// It has no room, or its root directory has none.
-    Full,
-    /// It failed.
-    Failed,
-}
-
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Absent => "No card: flights are not logged",
-            Self::Foreign => "Card unusable: format it as FAT32 (MBR)",
-            Self::Full => "Card full: move logs off it",
-            Self::Failed => "Card failed: flights are not logged",
-        })
+worded! {
+    /// Why flights are not logged.
+    pub enum Trouble {
+        /// No card answers.
+        Absent = "No card: flights are not logged",
+        /// It holds nothing that can be written to.
+        Foreign = "Card unusable: format it as FAT32 (MBR)",
+        /// It has no room, or its root directory has none.
+        Full = "Card full: move logs off it",
+        /// It failed.
+        Failed = "Card failed: flights are not logged",
     }
 }
 
-/// What went wrong with a card that was read from or written to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Denied {
-    /// It did not take it or give it.
-    Failed,
-    /// Nothing may be written there now.
-    Forbidden,
-}
-
-impl fmt::Display for Denied {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Failed => "the card failed",
-            Self::Forbidden => "the sector may not be written now",
-        })
+worded! {
+    /// What went wrong with a card that was read from or written to.
+    enum Denied {
+        /// It did not take it or give it.
+        Failed = "the card failed",
+        /// Nothing may be written there now.
+        Forbidden = "the sector may not be written now",
     }
 }
 
@@ -201,9 +183,7 @@ pub struct Volume<'c, C: Card> {
 
 impl<'c, C: Card> Volume<'c, C> {
     /// Opens the file system of a card that has started.
-    ///
-    /// # Errors
-    /// [`Trouble::Foreign`] if it has no usable file system, [`Trouble::Failed`] if the card fails.
+    /// Errors: [`Trouble::Foreign`] if it has no usable file system, [`Trouble::Failed`] if the card fails.
     pub fn open(card: &'c mut C) -> Result<Self, Trouble> {
         let mut sector = [0; SECTOR_BYTES];
         card.read(0, &mut sector)?;
@@ -218,18 +198,14 @@ impl<'c, C: Card> Volume<'c, C> {
     }
 
     /// Calls `each` with every file of this program's, until it breaks.
-    ///
-    /// # Errors
-    /// If the directory cannot be read.
+    /// Fails if the directory cannot be read.
     pub fn list(&self, mut each: impl FnMut(Entry) -> ControlFlow<()>) -> Result<(), Trouble> {
         let each = |entry: &DirEntry| Entry::read(entry).map_or(ControlFlow::Continue(()), &mut each);
         Ok(self.manager.iterate_dir(self.root, each)?)
     }
 
     /// The file with the greatest number, of these kinds.
-    ///
-    /// # Errors
-    /// If the directory cannot be read.
+    /// Fails if the directory cannot be read.
     pub fn newest(&self, kinds: &[Kind]) -> Result<Option<Entry>, Trouble> {
         let mut newest: Option<Entry> = None;
         self.list(|entry| {
@@ -242,9 +218,7 @@ impl<'c, C: Card> Volume<'c, C> {
     }
 
     /// Creates a file with the number after the greatest there is.
-    ///
-    /// # Errors
-    /// [`Trouble::Full`] if the root directory has no room or the numbers are used up.
+    /// Errors: [`Trouble::Full`] if the root directory has no room or the numbers are used up.
     pub fn create(&self, kind: Kind) -> Result<(File, u32), Trouble> {
         let newest = self.newest(&[Kind::Log, Kind::Recording])?;
         let number = newest.map_or(0, |newest| newest.number) + 1;
@@ -256,35 +230,27 @@ impl<'c, C: Card> Volume<'c, C> {
     }
 
     /// Opens a file that is there.
-    ///
-    /// # Errors
-    /// If it cannot be opened.
+    /// Fails if it cannot be opened.
     pub fn open_file(&self, kind: Kind, number: u32) -> Result<File, Trouble> {
         let name = name(kind, number)?;
         Ok(File(self.manager.open_file_in_dir(self.root, name, Mode::ReadWriteAppend)?))
     }
 
     /// Opens a file that is there, for reading only.
-    ///
-    /// # Errors
-    /// If it cannot be opened.
+    /// Fails if it cannot be opened.
     pub fn open_to_read(&self, kind: Kind, number: u32) -> Result<File, Trouble> {
         Ok(File(self.manager.open_file_in_dir(self.root, name(kind, number)?, Mode::ReadOnly)?))
     }
 
     /// Reads from `offset` on; how many bytes there were.
-    ///
-    /// # Errors
-    /// If the offset is beyond the file's end, or the card fails.
+    /// Fails if the offset is beyond the file's end, or the card fails.
     pub fn read(&self, file: File, offset: u32, out: &mut [u8]) -> Result<usize, Trouble> {
         self.manager.file_seek_from_start(file.0, offset)?;
         Ok(self.manager.read(file.0, out)?)
     }
 
     /// Writes a sector over one that the file has.
-    ///
-    /// # Errors
-    /// If the file has none there, or the card fails.
+    /// Fails if the file has none there, or the card fails.
     pub fn overwrite(&self, file: File, offset: u32, sector: &[u8; SECTOR_BYTES]) -> Result<(), Trouble> {
         if offset.saturating_add(SECTOR_BYTES as u32) > self.manager.file_length(file.0)? {
             return Err(Trouble::Failed);
@@ -297,26 +263,20 @@ impl<'c, C: Card> Volume<'c, C> {
     }
 
     /// Writes behind the file's end. The file is longer only once this is [noted](Self::note).
-    ///
-    /// # Errors
-    /// [`Trouble::Full`] if there is no room.
+    /// Errors: [`Trouble::Full`] if there is no room.
     pub fn append(&self, file: File, bytes: &[u8]) -> Result<(), Trouble> {
         self.manager.file_seek_from_end(file.0, 0)?;
         Ok(self.manager.write(file.0, bytes)?)
     }
 
     /// Notes in the directory how long a file is.
-    ///
-    /// # Errors
-    /// If the card fails.
+    /// Fails if the card fails.
     pub fn note(&self, file: File) -> Result<(), Trouble> {
         Ok(self.manager.flush_file(file.0)?)
     }
 
     /// Notes how long a file is, and closes it.
-    ///
-    /// # Errors
-    /// If the card fails; it is closed all the same.
+    /// Fails if the card fails; it is closed all the same.
     pub fn close(&self, file: File) -> Result<(), Trouble> {
         Ok(self.manager.close_file(file.0)?)
     }

@@ -1,7 +1,7 @@
 use super::*;
 
 /// Ticks of a bit on the MicoAir: 200 MHz / 300 kHz.
-const PERIOD: u16 = 666;
+const PERIOD_TICKS: u16 = 666;
 
 fn values(command: MotorCommand) -> [u16; MOTOR_COUNT] {
     frames(command).unwrap().map(|frame| frame.inner() >> 5)
@@ -10,7 +10,7 @@ fn values(command: MotorCommand) -> [u16; MOTOR_COUNT] {
 /// What a controller at the end of `channel` reads: a bit is one if it is high for more than half its time.
 fn read(waveform: &Waveform<u16>, channel: usize) -> u16 {
     let rows: &[[u16; MOTOR_COUNT]] = waveform.words().as_chunks().0;
-    let bit = |row: &[u16; MOTOR_COUNT]| u16::from(row[channel] > PERIOD / 2);
+    let bit = |row: &[u16; MOTOR_COUNT]| u16::from(row[channel] > PERIOD_TICKS / 2);
     rows[..FRAME_BITS].iter().fold(0, |frame, row| frame << 1 | bit(row))
 }
 
@@ -71,7 +71,7 @@ fn each_motors_frame_comes_out_of_its_channel() {
     let frames = frames(MotorCommand::Run([0.0, 0.3, 0.7, 1.0])).unwrap();
     let channels = [3, 2, 0, 1];
     let mut waveform = Waveform::silent();
-    waveform.draw(&frames, &channels.map(Some), PERIOD);
+    waveform.draw(&frames, &channels.map(Some), PERIOD_TICKS);
     for (frame, channel) in frames.iter().zip(channels) {
         assert_eq!(read(&waveform, channel.into()), frame.inner(), "channel {channel}");
     }
@@ -83,7 +83,7 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
     let wiring = [[Some(1), None, Some(2), None], [None, Some(0), None, Some(1)]];
     for channels in wiring {
         let mut waveform = Waveform::silent();
-        waveform.draw(&frames, &channels, PERIOD);
+        waveform.draw(&frames, &channels, PERIOD_TICKS);
         for channel in 0..4_u8 {
             let motor = channels.iter().position(|&on| on == Some(channel));
             let low = waveform.words().iter().skip(channel.into()).step_by(MOTOR_COUNT).all(|width| *width == 0);
@@ -97,19 +97,19 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
 #[test]
 fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
-    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
+    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD_TICKS);
     assert!((first - 0.75).abs() < 0.003, "{first}");
-    waveform.draw(&stop(), &[0, 1, 2, 3].map(Some), PERIOD);
-    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD);
+    waveform.draw(&stop(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
+    let first = f64::from(waveform.words()[0]) / f64::from(PERIOD_TICKS);
     assert!((first - 0.375).abs() < 0.003, "{first}");
-    assert!(waveform.words()[0].abs_diff(zero_width(PERIOD)) <= 1);
+    assert!(waveform.words()[0].abs_diff(zero_width(PERIOD_TICKS)) <= 1);
 }
 
 #[test]
 fn a_waveform_ends_silent_and_fills_whole_bursts() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD);
+    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
     let words = waveform.words();
     assert!(
         words[FRAME_BITS * MOTOR_COUNT..].iter().all(|word| *word == 0) && words.len() == WAVEFORM_ROWS * MOTOR_COUNT

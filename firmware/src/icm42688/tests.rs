@@ -1,9 +1,9 @@
 //! The driver against a device that follows the data sheet, or fails.
 
 use super::*;
-use crate::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
 use crate::bmi270;
 use crate::registers::{READ_BIT, RESTART_AFTER_FAILURES};
+use crate::tests::bench::{Device, Jumping, Line, Pin, Spi, X_LEFT, on_one_bus};
 use core::cell::{Cell, RefCell};
 use embassy_futures::block_on;
 use nalgebra::Vector3;

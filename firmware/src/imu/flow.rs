@@ -1,7 +1,7 @@
 //! A sensor's samples on their way to control: conditioned, and put down where control finds them.
 //!
-//! A fault is reported when it sets in, and again when it comes back after [`FAULT_REPORT_PAUSE_US`] without it: eight kinds of faults
-//! cannot flood the link.
+//! A fault is reported when it sets in, and again when it comes back after [`FAULT_REPORT_PAUSE_US`] without it: eight
+//! kinds of faults cannot flood the link.
 //!
 //! A simulator may send samples as seldom as control ticks. There is nothing between two of them to be filtered, and a
 //! low-pass made for 1 kHz would be late by many of them: they pass as they are. And a simulator's sensors may be free
@@ -29,9 +29,7 @@ pub struct Flow<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Flow<'a, M> {
     /// From a sensor of these parameters, to a control that ticks every `period` us.
-    ///
-    /// # Errors
-    /// Names the parameter that makes no sense.
+    /// An error names the parameter that makes no sense.
     pub fn new(
         shared: SamplesView<'a, M>,
         parameters: &ImuParameters,
@@ -43,9 +41,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     }
 
     /// From a simulator.
-    ///
-    /// # Errors
-    /// None: the parameters are good.
+    /// Never fails: the parameters are good.
     pub fn simulated(shared: SamplesView<'a, M>, period: u64) -> Result<Self, ParameterError> {
         Ok(Self { is_simulated: true, ..Self::new(shared, &ImuParameters::PROMPT, &Calibration::NONE, period)? })
     }
@@ -56,9 +52,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     }
 
     /// Goes on with another sensor's samples.
-    ///
-    /// # Errors
-    /// Names the parameter that makes no sense.
+    /// An error names the parameter that makes no sense.
     pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
         self.conditioner.take_over(parameters, calibration)
     }

@@ -35,9 +35,7 @@ impl Display for Problem {
 }
 
 /// What corrects a sensor that stood still so, `sides` being the six it has stood on.
-///
-/// # Errors
-/// Names what is implausible.
+/// An error names what is implausible.
 pub fn solve(
     procedure: Procedure,
     before: &Calibration,

@@ -28,7 +28,6 @@ impl Order {
     }
 
     /// The answer to it.
-    #[must_use]
     pub const fn answered(self, result: MavResult) -> Acknowledgement {
         Acknowledgement { order: self, result }
     }

@@ -14,7 +14,7 @@
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning; 3: into the chip's bootloader. Anything else is not done here |
 //! | 192 DO_REPOSITION | by COMMAND_INT: requests a flight to a latitude, longitude and altitude and to hold there |
-//! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`streams::STREAMS`]; 435 AVAILABLE_MODES on request |
+//! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`STREAMS`](super::telemetry::kind::STREAMS); 435 AVAILABLE_MODES on request |
 //! | any other | is answered as unsupported |
 
 #![expect(deprecated, reason = "superseded commands and frames: clients still send them")]
@@ -22,7 +22,6 @@
 use super::mission::MISSION_CAPACITY;
 use super::origin::{Origin, Place};
 use super::set_mode::SetMode;
-use super::streams;
 use super::telemetry::kind::Kind;
 use super::telemetry::vehicle;
 use crate::frames;
@@ -56,7 +55,7 @@ const RELATIVE_YAW: u32 = 2;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Put it to the flight rules, which answer.
-    Ask(Request),
+    Request(Request),
     /// Disarm at once, in the air as well, and acknowledge.
     ForceDisarm,
     /// Take sensors from a simulator from now on, and acknowledge.
@@ -114,30 +113,29 @@ impl From<&COMMAND_INT_DATA> for Call {
 }
 
 /// The action of a command while armed or not, where the local frame is at `origin` and home at `home`, m, NED.
-#[must_use]
 pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) -> Action {
     let [first, second, ..] = call.parameters;
     match call.command {
         MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => match first {
             0.0 if second == FORCE_NUMBER => Action::ForceDisarm,
-            0.0 => Action::Ask(Request::Disarm),
-            1.0 => Action::Ask(Request::Arm),
+            0.0 => Action::Request(Request::Disarm),
+            1.0 => Action::Request(Request::Arm),
             _ => denied("Arm: parameter 1 is 1 to arm, 0 to disarm"),
         },
         MavCmd::MAV_CMD_NAV_TAKEOFF => take_off(call, origin, home),
-        MavCmd::MAV_CMD_NAV_LAND => Action::Ask(Request::Land),
+        MavCmd::MAV_CMD_NAV_LAND => Action::Request(Request::Land),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
         MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call),
         MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
         MavCmd::MAV_CMD_MISSION_START => mission_start(call),
         MavCmd::MAV_CMD_DO_PAUSE_CONTINUE => match first {
-            0.0 => Action::Ask(Request::Hold),
-            1.0 => Action::Ask(Request::FlyMission(None)),
+            0.0 => Action::Request(Request::Hold),
+            1.0 => Action::Request(Request::FlyMission(None)),
             _ => denied("Pause: parameter 1 is 0, or 1 to go on"),
         },
         MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => match mission_item(first) {
-            Some(item) => Action::Ask(Request::SetMissionItem(item)),
+            Some(item) => Action::Request(Request::SetMissionItem(item)),
             None => denied("Mission item: parameter 1 is its number"),
         },
         MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION => calibration(call),
@@ -165,7 +163,6 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
     }
 }
 
-/// AVAILABLE_MODES.
 const AVAILABLE_MODES_NUMBER: f32 = 435.0;
 
 /// The longest time between heartbeats.
@@ -174,7 +171,7 @@ const HEARTBEAT_INTERVAL_MAX_US: f32 = 1e6;
 /// An action on the message of this number; unsupported if the vehicle does not send it.
 fn of_kind(number: f32, act: impl Fn(Kind) -> Action) -> Action {
     // NaN or a negative number becomes that of HEARTBEAT, which is not requested that way.
-    let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| streams::of_number(number as u32));
+    let kind = Some(number).filter(|number| *number >= 0.0).and_then(|number| Kind::from_number(number as u32));
     kind.map_or(Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED), act)
 }
 
@@ -213,7 +210,7 @@ fn take_off(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     {
         return denied("Take-off: from here, not from another place");
     }
-    Action::Ask(Request::TakeOff(is_named.then_some(height)))
+    Action::Request(Request::TakeOff(is_named.then_some(height)))
 }
 
 /// Flying to a place on the globe, given by COMMAND_INT; in a COMMAND_LONG it would be metres off. NaN leaves the
@@ -242,7 +239,7 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
     } else {
         HeadingSetpoint::Keep
     };
-    Action::Ask(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
+    Action::Request(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
 }
 
 const fn denied(words: &'static str) -> Action {
@@ -265,10 +262,10 @@ fn mission_start(call: &Call) -> Action {
         return denied("Mission start: parameter 2 is 0, no last item");
     }
     if first.is_nan() || first < 0.0 {
-        return Action::Ask(Request::FlyMission(None));
+        return Action::Request(Request::FlyMission(None));
     }
     match mission_item(first) {
-        Some(item) => Action::Ask(Request::FlyMission(Some(item))),
+        Some(item) => Action::Request(Request::FlyMission(Some(item))),
         None => denied("Mission start: parameter 1 is an item's number"),
     }
 }
@@ -282,7 +279,7 @@ fn motor_test(call: &Call) -> Action {
     match motor(number) {
         Some(rotor) if in_percent && is_one && throttle.is_finite() && seconds.is_finite() => {
             let (level, duration) = (throttle / 100.0, (seconds * 1e6) as u64);
-            Action::Ask(Request::MotorTest(MotorTest { rotor, level, duration }))
+            Action::Request(Request::MotorTest(MotorTest { rotor, level, duration }))
         }
         _ => denied("Motor test: one motor, 1 to 4, in percent"),
     }
@@ -302,7 +299,7 @@ fn configure_actuator(call: &Call) -> Action {
         return Action::Answer(MavResult::MAV_RESULT_UNSUPPORTED);
     };
     match motor(function) {
-        Some(rotor) => Action::Ask(Request::MotorSetting(MotorSetting { rotor, setting })),
+        Some(rotor) => Action::Request(Request::MotorSetting(MotorSetting { rotor, setting })),
         None => denied("Motor setting: parameter 5 is 1 to 4"),
     }
 }
@@ -355,12 +352,12 @@ fn set_mode(call: &Call, armed: bool) -> Action {
     let base = MavModeFlag::from_bits_retain(base as u8);
     if base.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
         return match (main, sub) {
-            (MAIN_OFFBOARD, _) => Action::Ask(Request::FlySetpoints),
-            (MAIN_AUTO, AUTO_LOITER) => Action::Ask(Request::Hold),
-            (MAIN_AUTO, AUTO_MISSION) => Action::Ask(Request::FlyMission(None)),
-            (MAIN_AUTO, AUTO_TAKEOFF) => Action::Ask(Request::TakeOff(None)),
-            (MAIN_AUTO, AUTO_LAND) => Action::Ask(Request::Land),
-            (MAIN_AUTO, AUTO_EXTERNAL1) => Action::Ask(Request::FlyPolicy),
+            (MAIN_OFFBOARD, _) => Action::Request(Request::FlySetpoints),
+            (MAIN_AUTO, AUTO_LOITER) => Action::Request(Request::Hold),
+            (MAIN_AUTO, AUTO_MISSION) => Action::Request(Request::FlyMission(None)),
+            (MAIN_AUTO, AUTO_TAKEOFF) => Action::Request(Request::TakeOff(None)),
+            (MAIN_AUTO, AUTO_LAND) => Action::Request(Request::Land),
+            (MAIN_AUTO, AUTO_EXTERNAL1) => Action::Request(Request::FlyPolicy),
             _ => NO_MODE,
         };
     }
@@ -368,5 +365,5 @@ fn set_mode(call: &Call, armed: bool) -> Action {
         return if armed { denied("A simulator: disarmed only") } else { Action::EnterHil };
     }
     let guided = base.contains(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED);
-    if guided { Action::Ask(Request::FlySetpoints) } else { NO_MODE }
+    if guided { Action::Request(Request::FlySetpoints) } else { NO_MODE }
 }

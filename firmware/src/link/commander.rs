@@ -2,8 +2,9 @@
 //!
 //! No other station may disarm it, not even by force; every station may request everything else. Where no ground
 //! station armed it but a companion computer, a ground station may as well: the operator overrides a program. A station
-//! that has been silent for [`COMMANDER_TIMEOUT_US`] commands no more: any other may then stop the motors, as any station may where
-//! a radio armed it. Control decides who armed, since many may have asked. A heartbeat shows who is a ground station.
+//! that has been silent for [`COMMANDER_TIMEOUT_US`] commands no more: any other may then stop the motors, as any
+//! station may where a radio armed it. Control decides who armed, since many may have asked. A heartbeat shows who is a
+//! ground station.
 
 use super::command::Call;
 use flight::Stamped;
@@ -54,8 +55,7 @@ impl Commander {
     }
 
     /// Whether a station may have this command acted on at `now`, us, while the vehicle is armed.
-    #[must_use]
-    pub fn may(&self, call: &Call, sender: Sender, armed: Armed, now: u64) -> bool {
+    pub fn may_command(&self, call: &Call, sender: Sender, armed: Armed, now: u64) -> bool {
         let [first, ..] = call.parameters;
         let stops = call.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM && first == 0.0;
         let other = armed.is_some_and(|Stamped { value, time }| {
@@ -69,39 +69,4 @@ impl Commander {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn call(first: f32) -> Call {
-        let mut parameters = [0.0; 7];
-        parameters[0] = first;
-        Call { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, parameters, place: None }
-    }
-
-    #[test]
-    fn only_the_station_that_armed_disarms_while_it_sends() {
-        let mut commander = Commander::default();
-        let armed = Some(Stamped { value: Some((255, 1)), time: 0 });
-        assert!(
-            !commander.may(&call(0.0), (254, 1), armed, 1_000) && commander.may(&call(0.0), (255, 1), armed, 1_000)
-        );
-        commander.receive((255, 1), armed, 2_000_000);
-        commander.receive((254, 1), armed, 2_000_001);
-        assert!(!commander.may(&call(0.0), (254, 1), armed, 2_000_000 + COMMANDER_TIMEOUT_US));
-        assert!(commander.may(&call(0.0), (254, 1), armed, 2_000_001 + COMMANDER_TIMEOUT_US));
-        // Arming counts as receiving it.
-        let later = Some(Stamped { value: Some((9, 1)), time: 9_000_000 });
-        assert!(!commander.may(&call(0.0), (255, 1), later, 9_000_000 + COMMANDER_TIMEOUT_US));
-    }
-
-    #[test]
-    fn any_station_may_send_other_requests_and_disarm_what_no_station_armed() {
-        let commander = Commander::default();
-        let armed = Some(Stamped { value: Some((255, 1)), time: 0 });
-        assert!(commander.may(&Call { command: MavCmd::MAV_CMD_NAV_LAND, ..call(0.0) }, (7, 1), armed, 0));
-        assert!(commander.may(&call(1.0), (7, 1), armed, 0));
-        for no_station in [None, Some(Stamped { value: None, time: 0 })] {
-            assert!(commander.may(&call(0.0), (7, 1), no_station, 0));
-        }
-    }
-}
+mod tests;

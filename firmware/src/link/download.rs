@@ -1,8 +1,8 @@
 //! Requested logs, a message at a time: their list, or one of them.
 //!
 //! Where a card is ready its task answers ([`Library`](crate::shared::Library)): a file is requested chunk by chunk,
-//! the next one while the last goes out. After [`ANSWER_TIMEOUT_US`] without an answer the download ends. Elsewhere there
-//! is the flight recorder's recording, which is in memory. Nothing goes out while the vehicle is armed.
+//! the next one while the last goes out. After [`ANSWER_TIMEOUT_US`] without an answer the download ends. Elsewhere
+//! there is the flight recorder's recording, which is in memory. Nothing goes out while the vehicle is armed.
 
 use crate::shared::{Answer, Bytes, CardState, Event, LOG_CHUNK_BYTES, Question, Severity, TransmitView};
 use core::fmt::Display;
@@ -47,7 +47,7 @@ pub struct Download {
     /// When the next message may go out, us.
     due: u64,
     /// The question to the card, and its timeout, us.
-    asked: Option<(Question, u64)>,
+    question: Option<(Question, u64)>,
     /// Whether nothing can go out before it answers.
     is_waiting: bool,
     /// Where the chunk at hand begins.
@@ -57,9 +57,8 @@ pub struct Download {
 
 impl Download {
     /// Nothing is wanted.
-    #[must_use]
     pub const fn new() -> Self {
-        Self { job: None, from_card: false, due: 0, asked: None, is_waiting: false, offset: 0, chunk: None }
+        Self { job: None, from_card: false, due: 0, question: None, is_waiting: false, offset: 0, chunk: None }
     }
 
     /// Entries of the list, by their numbers, at `now`, us.
@@ -83,9 +82,8 @@ impl Download {
     }
 
     /// When something is due, us: a message, or the end of the patience with the card.
-    #[must_use]
     pub fn due(&self) -> u64 {
-        match (self.job, self.asked) {
+        match (self.job, self.question) {
             (None, _) => u64::MAX,
             (Some(_), Some((_, until))) if self.is_waiting => until,
             (Some(_), _) => self.due,
@@ -153,7 +151,7 @@ impl Download {
                 Answer::Bytes(chunk) => {
                     let behind = next.saturating_add(chunk.len() as u32);
                     if chunk.is_full() && behind < end {
-                        self.ask(Question::Bytes { id, offset: behind }, now, shared);
+                        self.put_question(Question::Bytes { id, offset: behind }, now, shared);
                     }
                     (self.offset, self.chunk) = (next, Some(chunk));
                 }
@@ -184,37 +182,31 @@ impl Download {
         if !self.from_card {
             return Some(shared.recorder().answer(question));
         }
-        let Some((_, until)) = self.asked.filter(|(asked, _)| *asked == question) else {
-            self.ask(question, now, shared);
+        let Some((_, until)) = self.question.filter(|(asked, _)| *asked == question) else {
+            self.put_question(question, now, shared);
             self.is_waiting = true;
             return None;
         };
         let answer = shared.library().fetch(question);
         self.is_waiting = answer.is_none();
         if answer.is_some() {
-            self.asked = None;
+            self.question = None;
         } else if now >= until {
             self.give_up(shared, "Log: the card does not answer");
         }
         answer
     }
 
-    fn ask<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) {
+    fn put_question<M: RawMutex>(&mut self, question: Question, now: u64, shared: TransmitView<'_, M>) {
         if self.from_card {
-            shared.library().ask(question, now);
-            self.asked = Some((question, now.saturating_add(ANSWER_TIMEOUT_US)));
+            shared.library().put_question(question, now);
+            self.question = Some((question, now.saturating_add(ANSWER_TIMEOUT_US)));
         }
     }
 
     fn give_up<M: RawMutex>(&mut self, shared: TransmitView<'_, M>, words: impl Display) {
         self.end();
         shared.announce(Event::new(Severity::Warning, words));
-    }
-}
-
-impl Default for Download {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

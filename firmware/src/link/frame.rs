@@ -6,12 +6,12 @@
 //! - A frame of a message outside the dialect, or with an incompatibility flag that is not understood, is skipped
 //!   whole. It has no mark of its own, but where a frame has just ended, or been skipped, another begins.
 //! - Behind noise, and behind a frame whose checksum is wrong, a frame is taken only if it ends behind all that may
-//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX_BYTES`] bytes
-//!   at most.
+//!   have begun there. So a broken frame costs itself and what lies where the rest of it should, [`FRAME_MAX_BYTES`]
+//!   bytes at most.
 //!
 //! Every frame carries a time before which none of its bytes arrived: that of its first byte, or, for a frame found
-//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX_US`] are thrown away. So an
-//! old pose never comes out as a fresh one.
+//! behind a broken one, that of the broken one's first byte. Bytes older than [`FRAME_AGE_MAX_US`] are thrown away. So
+//! an old pose never comes out as a fresh one.
 //!
 //! Checksums need a number for each message that only the dialect defines, so frames of messages outside `common` look
 //! like noise. After a pause of [`FRAME_AGE_MAX_US`] within a frame, the sender is taken to begin anew.
@@ -85,7 +85,6 @@ pub struct Frame<'a> {
 impl Frame<'_> {
     /// The message, if it is of this type and its enumerations have values of the dialect. Version 2 cuts zeros off the
     /// end of a message; version 1 does not: there, a shorter payload is something else.
-    #[must_use]
     pub fn decode<D: MessageData>(&self) -> Option<D> {
         let is_whole = self.version == Version::V2 || self.payload.len() >= D::ENCODED_LEN;
         if self.message == D::ID && is_whole { D::deser(MavlinkVersion::V2, self.payload).ok() } else { None }
@@ -123,7 +122,6 @@ pub struct Parser {
 
 impl Parser {
     /// Nothing received yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self { buffer: [0; FRAME_MAX_BYTES], length: 0, taken: 0, is_aligned: true, barred: 0, since: 0, discarded: 0 }
     }
@@ -185,7 +183,6 @@ impl Parser {
     }
 
     /// Bytes so far that were part of no frame, modulo 2^32.
-    #[must_use]
     pub fn discarded(&self) -> u32 {
         self.discarded
     }
@@ -205,12 +202,6 @@ impl Parser {
             self.length = self.length.saturating_sub(count);
             self.barred = self.barred.saturating_sub(count);
         }
-    }
-}
-
-impl Default for Parser {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! | item | uses | refused |
 //! |---|---|---|
-//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`ACCEPTANCE_RADIUS_M`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
+//! | 16 NAV_WAYPOINT | 1 time to hold, s; 2 acceptance radius, m (NaN or 0: [`flight::ACCEPTANCE_RADIUS_M`]); 4 yaw from north, degrees (NaN keeps); place | 3, other than 0: no passing by |
 //! | 22 NAV_TAKEOFF, the first only | 4; altitude. Straight up | |
 //! | 21 NAV_LAND, the last only | 4; place, at the altitude that it has | 2, other than 0: no precision landing |
 //! | 20 NAV_RETURN_TO_LAUNCH, the last only | nothing | |
@@ -23,7 +23,7 @@ use super::origin::{Origin, Place};
 use crate::frames;
 use controller_core::governor::HeadingSetpoint;
 use core::fmt;
-use flight::{Leg, MISSION_RADIUS, MissionItem, MissionRefusal};
+use flight::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal};
 use mavlink::dialects::common::{MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult};
 use nalgebra::Vector3;
 
@@ -109,7 +109,6 @@ impl fmt::Display for ItemRefusal {
 
 impl ItemRefusal {
     /// MAVLink's number.
-    #[must_use]
     pub fn result(&self) -> MavMissionResult {
         match self {
             Self::Command(_) | Self::Place(_) => MavMissionResult::MAV_MISSION_UNSUPPORTED,
@@ -146,7 +145,6 @@ pub struct SentItem {
 
 impl SentItem {
     /// The fields of such a payload. Zeros at its end are cut off.
-    #[must_use]
     pub fn read(payload: &[u8], is_int: bool) -> Self {
         let byte = |place: usize| payload.get(place).copied().unwrap_or(0);
         let word = |place: usize| [0, 1, 2, 3].map(|next| byte(place + next));
@@ -165,9 +163,7 @@ impl SentItem {
     }
 
     /// The item, the last of its list or not.
-    ///
-    /// # Errors
-    /// What of it is not flown.
+    /// Errors: what of it is not flown.
     pub fn item(&self, is_last: bool) -> Result<Item, ItemRefusal> {
         let leg = self.leg(is_last)?;
         let [hold, radius, pass, yaw] =
@@ -254,7 +250,6 @@ impl SentItem {
 
 impl Item {
     /// As the pilot flies it, with the local frame at `origin` and armed at `home`, m, NED.
-    #[must_use]
     pub fn placed(&self, origin: &Origin, home: &Vector3<f32>) -> MissionItem {
         let local = [self.x, self.y].map(|units| units as f32 / UNITS_PER_M as f32);
         let on_the_globe =
@@ -277,13 +272,12 @@ impl Item {
             leg: self.leg,
             position: frames::world(&ned),
             turn,
-            radius: if self.radius == 0 { MISSION_RADIUS } else { f32::from(self.radius) * 0.01 },
+            radius: if self.radius == 0 { ACCEPTANCE_RADIUS_M } else { f32::from(self.radius) * 0.01 },
             hold: u64::from(self.hold) * 100_000,
         }
     }
 
     /// As it goes out, the one of this number, to a client: system and component.
-    #[must_use]
     pub fn message(&self, sequence: u16, (target_system, target_component): (u8, u8)) -> MISSION_ITEM_INT_DATA {
         let (command, frame) = (self.command(), self.frame());
         let [param1, param2, param3, param4] = self.parameters();
@@ -306,7 +300,6 @@ impl Item {
     }
 
     /// The same for clients that ask for MISSION_ITEM, with a place in single precision.
-    #[must_use]
     pub fn old_message(&self, sequence: u16, target: (u8, u8)) -> MISSION_ITEM_DATA {
         let message = self.message(sequence, target);
         let unit = if matches!(self.axes, Axes::Ned | Axes::Enu) { UNITS_PER_M } else { UNITS_PER_DEG };

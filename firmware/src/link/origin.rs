@@ -45,7 +45,6 @@ pub struct Place {
 
 impl Origin {
     /// One that a ground station has sent; none beyond 85 degrees of latitude, where this arithmetic ends.
-    #[must_use]
     pub fn new(latitude: i32, longitude: i32, altitude: i32) -> Option<Self> {
         let exists = latitude.unsigned_abs() <= LATITUDE_MAX.unsigned_abs()
             && longitude.unsigned_abs() <= LONGITUDE_MAX.unsigned_abs();
@@ -59,7 +58,6 @@ impl Origin {
     }
 
     /// A place of north, east, down, m.
-    #[must_use]
     pub fn place(&self, ned: &Vector3<f32>) -> Place {
         let units = |metres: f32, unit: f32| (metres / unit) as i32;
         Place {
@@ -70,7 +68,6 @@ impl Origin {
     }
 
     /// Where a place is, north, east, down, m.
-    #[must_use]
     pub fn local(&self, place: &Place) -> Vector3<f32> {
         let north = place.latitude.wrapping_sub(self.latitude) as f32 * M_PER_UNIT;
         let east = place.longitude.wrapping_sub(self.longitude) as f32 * self.metres_east();
@@ -79,33 +76,4 @@ impl Origin {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn there_and_back_is_within_a_centimetre_anywhere() {
-        for (latitude, longitude) in [(0, 0), (473_977_420, 85_455_940), (-337_000_000, -708_000_000), (840_000_000, 5)]
-        {
-            let origin = Origin::new(latitude, longitude, 488_000).unwrap();
-            for ned in [Vector3::new(3.0, -40.0, -2.5), Vector3::new(-100.0, 100.0, 7.0), Vector3::zeros()] {
-                let back = origin.local(&origin.place(&ned));
-                assert!((back - ned).norm() < 0.02, "{origin:?}: {ned} {back}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_degree_of_longitude_is_half_as_long_at_sixty_degrees() {
-        let origin = Origin::new(600_000_000, 0, 0).unwrap();
-        let place = Place { latitude: 600_000_000, longitude: 10_000, altitude: 0.0 };
-        let local = origin.local(&place);
-        assert!((local.y - 0.5 * 10_000.0 * M_PER_UNIT).abs() < 0.01, "{local}");
-        assert_eq!(local.x, 0.0);
-    }
-
-    #[test]
-    fn places_that_are_none_are_refused() {
-        assert!(Origin::new(860_000_000, 0, 0).is_none() && Origin::new(0, 1_900_000_000, 0).is_none());
-        assert!(Origin::new(i32::MIN, i32::MIN, 0).is_none());
-    }
-}
+mod tests;

@@ -12,9 +12,9 @@
 //! gives it. A message whose time does not advance, its sender's or the vehicle's, is a repetition, or was overtaken,
 //! and is dropped.
 //!
-//! One sender is listened to at a time, until it has been silent for [`SOURCE_TIMEOUT_US`]: two that disagree would look
-//! like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count. Velocities and body rates
-//! must be finite too, though the IMU's are flown (docs/mocap.md says why). Of the pose's covariance the greatest
+//! One sender is listened to at a time, until it has been silent for [`SOURCE_TIMEOUT_US`]: two that disagree would
+//! look like jumps. [`Pose::new`] checks the numbers; a message that it refuses does not count. Velocities and body
+//! rates must be finite too, though the IMU's are flown (docs/mocap.md says why). Of the pose's covariance the greatest
 //! variances of position and of attitude count, where they are positive (NaN means unknown, and zero that the sender
 //! left it out). Infinite ones mean that the sender has no pose, and are refused.
 
@@ -48,7 +48,6 @@ const QUALITY_OFFSET: usize = ODOMETRY_DATA::ENCODED_LEN + 2;
 const VISION_RESET_COUNTER_OFFSET: usize = VISION_POSITION_ESTIMATE_DATA::ENCODED_LEN + 84;
 
 /// Whether a message of this number is a pose.
-#[must_use]
 pub const fn is_pose(message: u32) -> bool {
     matches!(message, ODOMETRY_DATA::ID | ATT_POS_MOCAP_DATA::ID) || is_vision(message)
 }
@@ -69,7 +68,7 @@ pub enum PoseRefusal {
     Frame,
     /// The sender's time is not after that of its last message.
     Repeated,
-    /// It was under way for more than [`LATE_MAX`], by TIMESYNC.
+    /// It was under way for more than [`LATE_MAX_US`], by TIMESYNC.
     Late,
     /// It was under way for that much longer than others, or its sender's clock was set or stood still: without
     /// TIMESYNC the two look alike.
@@ -127,16 +126,13 @@ impl Poses {
     }
 
     /// Whether the poses' delay is known by TIMESYNC.
-    #[must_use]
     pub fn is_synchronised(&self) -> bool {
         self.source.as_ref().is_some_and(Source::is_synchronised)
     }
 
     /// The pose in `frame`; none in another message. Where the delay is unknown otherwise, it took `delay`, us, at
     /// least.
-    ///
-    /// # Errors
-    /// [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
+    /// Errors: [`PoseRefusal`] for a message that cannot be used; nothing of it is kept.
     pub fn take(&mut self, frame: &Frame<'_>, delay: u64) -> Result<Option<Stamped<PoseMeasurement>>, PoseRefusal> {
         let (value, time) = match frame.message {
             ODOMETRY_DATA::ID => {
@@ -258,9 +254,7 @@ impl Source {
 }
 
 /// The pose in an ODOMETRY message, which came in `frame`.
-///
-/// # Errors
-/// [`PoseRefusal::Frame`] or [`PoseRefusal::Numbers`].
+/// Errors: [`PoseRefusal::Frame`] or [`PoseRefusal::Numbers`].
 pub(crate) fn odometry(frame: &Frame<'_>, message: &ODOMETRY_DATA) -> Result<PoseMeasurement, PoseRefusal> {
     let &ODOMETRY_DATA { x, y, z, q, vx, vy, vz, frame_id, child_frame_id, .. } = message;
     if ![message.rollspeed, message.pitchspeed, message.yawspeed].iter().all(|rate| rate.is_finite()) {
@@ -301,9 +295,7 @@ fn vision(frame: &Frame<'_>, message: &VISION_POSITION_ESTIMATE_DATA) -> Result<
 }
 
 /// With the deviations of a covariance, if it is known.
-///
-/// # Errors
-/// [`PoseRefusal::Numbers`] if any variance is infinite.
+/// Errors: [`PoseRefusal::Numbers`] if any variance is infinite.
 fn deviations(measured: PoseMeasurement, covariance: &[f32; 21]) -> Result<PoseMeasurement, PoseRefusal> {
     // The diagonal of the upper triangle, row by row: x, y, z, roll, pitch, yaw.
     let [xx, .., yy, _, _, _, _, zz, _, _, _, rr, _, _, pp, _, hh] = *covariance;

@@ -14,12 +14,13 @@ use super::set_mode::SetMode;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Ping, ReceiveView, Reply, Severity, Traffic};
+use addressed::Addressed;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
-use explained::Explained;
+use foreign::Explained;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA,
@@ -31,8 +32,8 @@ use mavlink::dialects::common::{
 use senders::Senders;
 use upload::Upload;
 
+mod addressed;
 mod commands;
-mod explained;
 mod foreign;
 mod missions;
 mod parameters;
@@ -123,7 +124,6 @@ pub struct Receiver<'a, M: RawMutex> {
 
 impl<'a, M: RawMutex> Receiver<'a, M> {
     /// Nothing received yet.
-    #[must_use]
     pub fn new(shared: ReceiveView<'a, M>) -> Self {
         Self {
             shared,
@@ -161,35 +161,35 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     #[inline(never)]
     fn dispatch(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
-        self.chase_upload(frame.time);
+        self.retry_upload(frame.time);
         self.commander.receive(sender, self.shared.commander().get(), frame.time);
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             message if is_pose(message) => self.pose(frame),
-            SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.decoded(frame, Self::setpoint),
+            SET_POSITION_TARGET_LOCAL_NED_DATA::ID => self.addressed(frame, Self::setpoint),
             COMMAND_LONG_DATA::ID => self.command(frame, frame.decode::<COMMAND_LONG_DATA>().as_ref()),
             COMMAND_INT_DATA::ID => self.command(frame, frame.decode::<COMMAND_INT_DATA>().as_ref()),
             SetMode::ID => self.command(frame, Some(&SetMode::read(frame))),
-            SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.decoded(frame, Self::set_origin),
-            MISSION_COUNT_DATA::ID => self.decoded(frame, Self::mission_count),
+            SET_GPS_GLOBAL_ORIGIN_DATA::ID => self.addressed(frame, Self::set_origin),
+            MISSION_COUNT_DATA::ID => self.addressed(frame, Self::mission_count),
             MISSION_ITEM_INT_DATA::ID | MISSION_ITEM_DATA::ID => self.mission_item(frame),
-            MISSION_ACK_DATA::ID => self.decoded(frame, Self::mission_ack),
-            MISSION_REQUEST_DATA::ID => self.decoded(frame, Self::mission_request),
-            MISSION_REQUEST_INT_DATA::ID => self.decoded(frame, Self::mission_request_int),
-            MISSION_SET_CURRENT_DATA::ID => self.decoded(frame, Self::mission_set_current),
-            MISSION_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::mission_list),
-            MISSION_CLEAR_ALL_DATA::ID => self.decoded(frame, Self::mission_clear),
+            MISSION_ACK_DATA::ID => self.addressed(frame, Self::mission_ack),
+            MISSION_REQUEST_DATA::ID => self.addressed(frame, Self::mission_request),
+            MISSION_REQUEST_INT_DATA::ID => self.addressed(frame, Self::mission_request_int),
+            MISSION_SET_CURRENT_DATA::ID => self.addressed(frame, Self::mission_set_current),
+            MISSION_REQUEST_LIST_DATA::ID => self.addressed(frame, Self::mission_list),
+            MISSION_CLEAR_ALL_DATA::ID => self.addressed(frame, Self::mission_clear),
             FILE_TRANSFER_PROTOCOL_DATA::ID => self.file(frame),
             TIMESYNC_DATA::ID => self.decoded(frame, Self::time_sync),
-            SETUP_SIGNING_DATA::ID => self.decoded(frame, Self::set_up_signing),
+            SETUP_SIGNING_DATA::ID => self.addressed(frame, Self::set_up_signing),
             Ping::ID => self.decoded(frame, Self::ping),
-            PARAM_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_parameters),
-            PARAM_REQUEST_READ_DATA::ID => self.decoded(frame, Self::read_parameter),
-            LOG_REQUEST_LIST_DATA::ID => self.decoded(frame, Self::list_recordings),
-            LOG_REQUEST_DATA_DATA::ID => self.decoded(frame, Self::read_recording),
-            LOG_REQUEST_END_DATA::ID => self.decoded(frame, Self::end_reading),
-            LOG_ERASE_DATA::ID => self.decoded(frame, Self::erase_recordings),
-            PARAM_SET_DATA::ID => self.decoded(frame, Self::set_parameter),
+            PARAM_REQUEST_LIST_DATA::ID => self.addressed(frame, Self::list_parameters),
+            PARAM_REQUEST_READ_DATA::ID => self.addressed(frame, Self::read_parameter),
+            LOG_REQUEST_LIST_DATA::ID => self.addressed(frame, Self::list_recordings),
+            LOG_REQUEST_DATA_DATA::ID => self.addressed(frame, Self::read_recording),
+            LOG_REQUEST_END_DATA::ID => self.addressed(frame, Self::end_reading),
+            LOG_ERASE_DATA::ID => self.addressed(frame, Self::erase_recordings),
+            PARAM_SET_DATA::ID => self.addressed(frame, Self::set_parameter),
             _ => self.foreign(frame),
         }
     }
@@ -202,8 +202,18 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         }
     }
 
+    /// The same of a message that is for this vehicle or for everyone; others are left alone.
+    fn addressed<D: MessageData + Addressed>(&mut self, frame: &Frame<'_>, act: fn(&mut Self, &Frame<'_>, &D)) {
+        match frame.decode::<D>() {
+            Some(message) if self.is_target(message.target()) => act(self, frame, &message),
+            Some(_) => {}
+            None => self.refused(),
+        }
+    }
+
     /// Whether an addressee is this vehicle or everyone.
-    fn is_addressed(&self, system: u8, component: u8) -> bool {
+    #[inline(never)] // or each message would get a copy
+    fn is_target(&self, (system, component): (u8, u8)) -> bool {
         (system == 0 || system == self.own_system()) && (component == 0 || component == COMPONENT_ID)
     }
 

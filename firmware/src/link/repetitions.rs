@@ -39,7 +39,7 @@ pub enum Delivery {
 
 impl Repetitions {
     /// The kind of this frame of a command.
-    pub fn look(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
+    pub fn check(&mut self, frame: &Frame<'_>, command: u16) -> Delivery {
         let Frame { header, checksum, time, .. } = *frame;
         let is_same = |before: &Delivered| {
             (before.header, before.checksum) == (header, checksum)

@@ -16,10 +16,10 @@
 //!
 //! A time that does not advance is a frame sent again, or one overtaken: it is refused, for however long. So is one
 //! that would be more than [`LATE_MAX_US`] late, or that would bring o down by more than a line becomes quicker: by
-//! [`LEAD_MAX_US`] since the first message, and what two clocks part by. A clock that was set, back or forward, or stood
-//! still, or begins anew, goes on from frame to frame as the vehicle's does. After [`TRIAL_FRAMES`] such frames, and more
-//! than were taken meanwhile, it is believed, and o is found anew: forging fewer messages than are true does not
-//! suffice. A line that is that late from some time on looks the same; with TIMESYNC the caller must refuse its
+//! [`LEAD_MAX_US`] since the first message, and what two clocks part by. A clock that was set, back or forward, or
+//! stood still, or begins anew, goes on from frame to frame as the vehicle's does. After [`TRIAL_FRAMES`] such frames,
+//! and more than were taken meanwhile, it is believed, and o is found anew: forging fewer messages than are true does
+//! not suffice. A line that is that late from some time on looks the same; with TIMESYNC the caller must refuse its
 //! messages first.
 
 /// Frames that prove a clock that is not where it was: 50 ms at 100 Hz.
@@ -31,9 +31,9 @@ pub const LATE_MAX_US: u64 = 500_000;
 /// How much quicker a line may become than at its first message.
 pub const LEAD_MAX_US: u64 = 100_000;
 
-/// By how much the clocks may differ over the frames that prove another clock, and how much quicker than those a
-/// line may become. Frames that come too early may differ by [`LEAD_MAX_US`]: the first message may have been a slow one
-/// on a line whose delay varies.
+/// By how much the clocks may differ over the frames that prove another clock, and how much quicker than those a line
+/// may become. Frames that come too early may differ by [`LEAD_MAX_US`]: the first message may have been a slow one on
+/// a line whose delay varies.
 const SPACING_ERROR_MAX_US: u64 = 20_000;
 
 /// One over the drift between two clocks.
@@ -61,7 +61,7 @@ struct Trial {
     /// The sender's time of the last, us.
     last: u64,
     /// The least that o would be, us.
-    least: i128,
+    offset_min: i128,
     /// Frames of it, and frames that were taken meanwhile.
     count: u8,
     taken: u8,
@@ -69,7 +69,6 @@ struct Trial {
 
 impl SenderClock {
     /// From a sender's first message.
-    #[must_use]
     pub fn new(time: u64, arrived: u64) -> Self {
         Self {
             offset: difference(arrived, time),
@@ -81,29 +80,26 @@ impl SenderClock {
     }
 
     /// o, with what every message takes at least, us: the vehicle's clock less the sender's.
-    #[must_use]
     pub fn offset(&self) -> i128 {
         self.offset
     }
 
     /// When it was found, us. It changes when the sender's clock was set and is believed again.
-    #[must_use]
     pub fn begun(&self) -> u64 {
         self.begun
     }
 
     /// Whether a message of `time` comes after the last one by its sender's clock.
-    #[must_use]
     pub fn advances(&self, time: u64) -> bool {
         time > self.last.0
     }
 
-    /// Brings o back to `least`, us, the least that it can be, if the message of `time` that arrived at `arrived` keeps
+    /// Brings o back to `offset_min`, us, its minimum, if the message of `time` that arrived at `arrived` keeps
     /// to that.
-    pub fn restore(&mut self, least: i128, time: u64, arrived: u64) {
-        if self.offset < least && least <= difference(arrived, time) {
-            let raised = u64::try_from(least - self.offset).unwrap_or(u64::MAX);
-            *self = Self { offset: least, spare: self.spare.saturating_add(raised).min(LEAD_MAX_US), ..*self };
+    pub fn restore(&mut self, offset_min: i128, time: u64, arrived: u64) {
+        if self.offset < offset_min && offset_min <= difference(arrived, time) {
+            let raised = u64::try_from(offset_min - self.offset).unwrap_or(u64::MAX);
+            *self = Self { offset: offset_min, spare: self.spare.saturating_add(raised).min(LEAD_MAX_US), ..*self };
         }
     }
 
@@ -127,7 +123,7 @@ impl SenderClock {
             if trial.count < TRIAL_FRAMES {
                 return None;
             }
-            *self = Self { offset: trial.least, spare: SPACING_ERROR_MAX_US, ..Self::new(time, arrived) };
+            *self = Self { offset: trial.offset_min, spare: SPACING_ERROR_MAX_US, ..Self::new(time, arrived) };
         }
         u64::try_from(i128::from(time) + self.offset).ok()
     }
@@ -135,15 +131,15 @@ impl SenderClock {
 
 impl Trial {
     fn new(time: u64, arrived: u64) -> Self {
-        Self { first: (time, arrived), last: time, least: difference(arrived, time), count: 1, taken: 0 }
+        Self { first: (time, arrived), last: time, offset_min: difference(arrived, time), count: 1, taken: 0 }
     }
 
     /// With one more frame, if its clock has gone on as the vehicle's has.
     fn next(self, time: u64, arrived: u64, apart_max: u64) -> Option<Self> {
-        let Self { first, last, least, count, .. } = self;
+        let Self { first, last, offset_min, count, .. } = self;
         let apart = time.saturating_sub(first.0).abs_diff(arrived.saturating_sub(first.1));
-        let least = least.min(difference(arrived, time));
-        (time > last && apart < apart_max).then_some(Self { last: time, least, count: count + 1, ..self })
+        let offset_min = offset_min.min(difference(arrived, time));
+        (time > last && apart < apart_max).then_some(Self { last: time, offset_min, count: count + 1, ..self })
     }
 
     /// Another frame is taken: none, where more of those are than of its own.

@@ -20,7 +20,6 @@ impl SetMode {
     pub const ID: u32 = 11;
 
     /// The fields of a message of that number.
-    #[must_use]
     pub fn read(frame: &Frame<'_>) -> Self {
         // Zeros at the end are cut off.
         let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);

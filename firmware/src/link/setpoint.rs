@@ -21,37 +21,26 @@
 //! world's: there a setpoint ahead needs one across too.
 
 use crate::frames;
+use crate::words::worded;
 use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::math;
 use controller_core::state::State;
-use core::fmt;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
 use nalgebra::{RealField, UnitQuaternion, Vector2, Vector3};
 
-/// Why a setpoint was not taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SetpointRefusal {
-    /// A field in use is NaN or infinite.
-    NotFinite,
-    /// A combination of fields that the governor cannot fly.
-    Mask,
-    /// A frame that is not understood, or one that needs a position, without an estimate.
-    Frame,
-    /// A radio's sticks fly.
-    Sticks,
-    /// Another sender's setpoints are flown.
-    Others,
-}
-
-impl fmt::Display for SetpointRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a field is not finite",
-            Self::Mask => "type mask not supported",
-            Self::Frame => "frame not understood",
-            Self::Sticks => "the sticks fly",
-            Self::Others => "another sender's are flown",
-        })
+worded! {
+    /// Why a setpoint was not taken.
+    pub enum SetpointRefusal {
+        /// A field in use is NaN or infinite.
+        NotFinite = "a field is not finite",
+        /// A combination of fields that the governor cannot fly.
+        Mask = "type mask not supported",
+        /// A frame that is not understood, or one that needs a position, without an estimate.
+        Frame = "frame not understood",
+        /// A radio's sticks fly.
+        Sticks = "the sticks fly",
+        /// Another sender's setpoints are flown.
+        Others = "another sender's are flown",
     }
 }
 
@@ -76,7 +65,6 @@ pub struct Here {
 
 impl Here {
     /// Of a vehicle in this state; none where it points straight up or down.
-    #[must_use]
     pub fn at(state: &State) -> Option<Self> {
         let ahead = (UnitQuaternion::new_unchecked(state.attitude) * Vector3::x()).xy();
         let length = math::sqrt(ahead.norm_squared());
@@ -84,7 +72,6 @@ impl Here {
     }
 
     /// Ahead, left, up in the law's world.
-    #[must_use]
     pub fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
         let (cosine, sine) = (self.ahead.x, self.ahead.y);
         Vector3::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z)
@@ -127,9 +114,7 @@ fn axes(frame: MavFrame, here: Option<&Here>) -> Result<Axes<'_>, SetpointRefusa
 }
 
 /// The setpoint of a SET_POSITION_TARGET_LOCAL_NED, for a vehicle that is `here`.
-///
-/// # Errors
-/// [`SetpointRefusal`] for what cannot be done or is not finite.
+/// Errors: [`SetpointRefusal`] for what cannot be done or is not finite.
 pub fn setpoint(
     message: &SET_POSITION_TARGET_LOCAL_NED_DATA,
     here: Option<&Here>,

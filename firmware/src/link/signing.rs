@@ -5,15 +5,16 @@
 //! frame in counts only if its signature is right and its stamp is above that of the frame before it. Stamps rise for
 //! each stream (link, system, component) by itself. The vehicle's own clock of stamps has no calendar: it begins where
 //! it was left off, goes on with the time, and jumps to every accepted stamp that is ahead of it. One that is further
-//! ahead than [`LEAP_MAX`] is accepted only as the first since the start, and none from [`STAMP_MAX`] on: a sender whose clock
-//! is broken would deafen the vehicle to everybody else, or use up the 48 bits.
+//! ahead than [`LEAP_MAX`] is accepted only as the first since the start, and none from [`STAMP_MAX`] on: a sender
+//! whose clock is broken would deafen the vehicle to everybody else, or use up the 48 bits.
 //!
 //! A frame that was accepted once is refused for ever after, also from a stream that was forgotten for want of room and
 //! after a restart: stamps at or below a floor are refused from streams that are not known. The floor is the newest
-//! stamp of any forgotten stream, and at boot the one in flash. That is kept ahead of the clock, by [`KEPT_AHEAD`] when it
-//! is written and [`KEPT_AHEAD_MIN`] at least, because nothing can be written in flight.
+//! stamp of any forgotten stream, and at boot the one in flash. That is kept ahead of the clock, by [`KEPT_AHEAD`] when
+//! it is written and [`KEPT_AHEAD_MIN`] at least, because nothing can be written in flight.
 
 use super::frame::{FRAME_MAX_BYTES, Frame, SIGNED_FLAG, Version};
+use crate::words::worded;
 use core::cell::RefCell;
 use core::fmt;
 use embassy_sync::blocking_mutex::Mutex;
@@ -65,7 +66,6 @@ pub struct Key([u32; KEY_BYTES / size_of::<u32>()]);
 
 impl Key {
     /// The key of these bytes, if they are one.
-    #[must_use]
     pub fn new(bytes: [u8; KEY_BYTES]) -> Option<Self> {
         let mut words = [0; _];
         words.iter_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = u32::from_le_bytes(*bytes));
@@ -95,30 +95,19 @@ impl fmt::Debug for Key {
     }
 }
 
-/// Why a frame does not count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
-    /// It has no signature.
-    Unsigned,
-    /// It was signed with another key, or changed on its way.
-    Forged,
-    /// Its stamp is not above the last of its stream, or of the vehicle.
-    Replayed,
-    /// Its stamp is too far ahead: its sender's clock is wrong.
-    Ahead,
-    /// There was a key, and it cannot be read any more.
-    KeyLost,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Unsigned => "Refused: not signed",
-            Self::Forged => "Refused: signed with another key",
-            Self::Replayed => "Refused: its time stamp was used before",
-            Self::Ahead => "Refused: its time stamp is too far ahead",
-            Self::KeyLost => "Refused: signing key lost; set it over USB",
-        })
+worded! {
+    /// Why a frame does not count.
+    pub enum Refusal {
+        /// It has no signature.
+        Unsigned = "Refused: not signed",
+        /// It was signed with another key, or changed on its way.
+        Forged = "Refused: signed with another key",
+        /// Its stamp is not above the last of its stream, or of the vehicle.
+        Replayed = "Refused: its time stamp was used before",
+        /// Its stamp is too far ahead: its sender's clock is wrong.
+        Ahead = "Refused: its time stamp is too far ahead",
+        /// There was a key, and it cannot be read any more.
+        KeyLost = "Refused: signing key lost; set it over USB",
     }
 }
 
@@ -200,7 +189,6 @@ pub struct Signing<M: RawMutex>(Mutex<M, RefCell<State>>);
 
 impl<M: RawMutex> Signing<M> {
     /// No key.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(RefCell::new(State::new())))
     }
@@ -211,7 +199,6 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// The key, if there is one.
-    #[must_use]
     pub fn key(&self) -> Option<Key> {
         self.with(|state| state.key).flatten()
     }
@@ -229,9 +216,6 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// Whether a frame counts; where it need not be signed, one that is not does.
-    ///
-    /// # Errors
-    /// [`Refusal`].
     pub fn judge(&self, frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal> {
         let Some(key) = self.key() else {
             return if must_be_signed && self.is_lost() { Err(Refusal::KeyLost) } else { Ok(()) };
@@ -278,7 +262,6 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// What is to be written to flash at `now`, us, if it is not up to date there, or `is_endangered`.
-    #[must_use]
     pub fn unkept(&self, now: u64, is_endangered: bool) -> Option<[u32; KEPT_WORDS]> {
         self.with(|state| {
             let clock = state.clock(now);
@@ -307,7 +290,6 @@ impl<M: RawMutex> Signing<M> {
     }
 
     /// Whether that is so.
-    #[must_use]
     pub fn is_lost(&self) -> bool {
         self.with(|state| state.is_lost).unwrap_or(true)
     }

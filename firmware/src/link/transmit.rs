@@ -5,8 +5,8 @@
 use super::acknowledgement::{Acknowledgement, Order};
 use super::download::{Download, Message};
 use super::files::NoFiles;
+use super::mission_lists::About;
 use super::origin::Origin;
-use super::plans::About;
 use super::streams::{Schedule, interval_of_rate};
 use super::telemetry::kind::Kind;
 use super::telemetry::{View, vehicle};
@@ -53,10 +53,10 @@ const NO_ORDER: Order = Order { command: 0, sender: (0, 0), frame: 0 };
 /// Transmits for ever: in turn a message that is due and one that was requested, so that neither keeps the other from
 /// being sent, however slow the line.
 pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, shared: TransmitView<'_, M>) -> ! {
-    let mut speaker = Speaker::new(shared, clock.now());
+    let mut speaker = Transmitter::new(shared, clock.now());
     loop {
         let mut silent = true;
-        for turn in [Speaker::scheduled, Speaker::queued] {
+        for turn in [Transmitter::send_scheduled, Transmitter::send_queued] {
             if turn(&mut speaker, clock.now()) {
                 silent = false;
                 speaker.writer.sign(shared.signing(), clock.now());
@@ -71,7 +71,7 @@ pub async fn transmit<W: Write, M: RawMutex>(mut line: W, clock: &impl Clock, sh
 }
 
 /// Finds the next message and writes it. Nothing here waits, so there is one future for all messages.
-struct Speaker<'a, M: RawMutex> {
+struct Transmitter<'a, M: RawMutex> {
     shared: TransmitView<'a, M>,
     schedule: Schedule,
     /// The next of a list of parameters, and when it is due, us.
@@ -92,7 +92,7 @@ struct Speaker<'a, M: RawMutex> {
     next_owed: usize,
 }
 
-impl<'a, M: RawMutex> Speaker<'a, M> {
+impl<'a, M: RawMutex> Transmitter<'a, M> {
     fn new(shared: TransmitView<'a, M>, now: u64) -> Self {
         Self {
             shared,
@@ -113,7 +113,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         self.shared.parameters().get(Name::SystemId) as u8
     }
 
-    fn say(&mut self, message: &impl MessageData) {
+    fn send(&mut self, message: &impl MessageData) {
         self.writer.write(self.system(), message);
     }
 
@@ -129,25 +129,25 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     /// Writes the first message that is due; whether there is one.
-    fn scheduled(&mut self, now: u64) -> bool {
+    fn send_scheduled(&mut self, now: u64) -> bool {
         let telemetry = self.telemetry();
         while let Some(kind) = self.schedule.next_due(telemetry, now) {
-            if self.message(kind, now) {
+            if self.send_message(kind, now) {
                 return true;
             }
         }
-        self.followed() || self.listed(now) || self.downloaded(now)
+        self.send_mission_progress() || self.send_listed(now) || self.send_download(now)
     }
 
     /// Writes what the mission has done since: an item reached, or another current one.
-    fn followed(&mut self) -> bool {
+    fn send_mission_progress(&mut self) -> bool {
         let Some(mission) = self.shared.report().get().map(|report| report.value.mission) else { return false };
         if mission.done.1 != self.mission.done.1 {
             self.mission.done = mission.done;
-            self.say(&MISSION_ITEM_REACHED_DATA { seq: mission.done.0.into() });
+            self.send(&MISSION_ITEM_REACHED_DATA { seq: mission.done.0.into() });
         } else if mission.next != self.mission.next {
             self.mission.next = mission.next;
-            self.say(&MISSION_CURRENT_DATA { seq: mission.next.into() });
+            self.send(&MISSION_CURRENT_DATA { seq: mission.next.into() });
         } else {
             return false;
         }
@@ -155,27 +155,27 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     /// Writes the next of a list of parameters, if there is one and it is due.
-    fn listed(&mut self, now: u64) -> bool {
+    fn send_listed(&mut self, now: u64) -> bool {
         let Some((index, time)) = self.list.filter(|&(_, time)| now >= time) else { return false };
         let name = Name::from_index(index);
         self.list = name.map(|_| (index + 1, time.max(now.saturating_sub(LIST_INTERVAL_US)) + LIST_INTERVAL_US));
         let Some(name) = name else { return false };
-        self.parameter(name);
+        self.send_parameter(name);
         true
     }
 
     /// Writes the next message about the logs, if one is requested and due.
-    fn downloaded(&mut self, now: u64) -> bool {
+    fn send_download(&mut self, now: u64) -> bool {
         match self.download.next(now, self.shared) {
-            Some(Message::Entry(entry)) => self.say(&entry),
-            Some(Message::Data(data)) => self.say(&data),
+            Some(Message::Entry(entry)) => self.send(&entry),
+            Some(Message::Data(data)) => self.send(&data),
             None => return false,
         }
         true
     }
 
     /// Writes a message of the present state; whether there was a value to send.
-    fn message(&mut self, kind: Kind, now: u64) -> bool {
+    fn send_message(&mut self, kind: Kind, now: u64) -> bool {
         let shared = self.shared;
         let voltage = shared.voltage().get().filter(|voltage| voltage.age(now) <= REPORT_AGE_MAX_US);
         let view = View {
@@ -192,22 +192,22 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     /// Writes the next requested message, the vehicle's decisions first; whether there is one.
-    fn queued(&mut self, now: u64) -> bool {
+    fn send_queued(&mut self, now: u64) -> bool {
         let shared = self.shared;
-        if self.owed() {
+        if self.send_owed() {
             return true;
         }
         if let Some(answer) = shared.answers().take() {
             return self.reply(answer, now);
         }
         if let Some(event) = shared.events().take() {
-            self.say(&vehicle::text(&event));
+            self.send(&vehicle::text(&event));
             return true;
         }
         let lost = shared.lost_events().get().wrapping_sub(self.reported);
         if lost > 0 {
             self.reported = self.reported.wrapping_add(lost);
-            self.say(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
+            self.send(&vehicle::text(&Event::new(Severity::Warning, format_args!("{lost} events lost"))));
             return true;
         }
         // Not every event is sent.
@@ -220,7 +220,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     }
 
     /// Answers a command as the one that it is the same as, if that is answered; whether there was one.
-    fn owed(&mut self) -> bool {
+    fn send_owed(&mut self) -> bool {
         let answered = &self.answered;
         let found = self.owed.iter_mut().filter(|owed| owed.times > 0).find_map(|owed| {
             let answer = answered.iter().find(|answer| answer.order.frame == owed.of)?;
@@ -232,7 +232,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
 
     /// Answers a command and remembers what was answered.
     fn acknowledge(&mut self, acknowledgement: Acknowledgement) {
-        self.say(&acknowledgement);
+        self.send(&acknowledgement);
         let before = self.answered.iter().position(|before| before.order.frame == acknowledgement.order.frame);
         let place = before.unwrap_or_else(|| {
             self.next_answer = (self.next_answer + 1) % ANSWERS_REMEMBERED;
@@ -247,59 +247,33 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
     fn reply(&mut self, reply: Reply, now: u64) -> bool {
         match reply {
             Reply::Command(acknowledgement) => self.acknowledge(acknowledgement),
-            Reply::Likewise { order, of } => {
-                match self.owed.iter_mut().find(|owed| (owed.order.frame, owed.of) == (order.frame, of)) {
-                    Some(owed) => owed.times = owed.times.saturating_add(1),
-                    None => {
-                        self.next_owed = (self.next_owed + 1) % OWED_CAPACITY;
-                        if let Some(place) = self.owed.get_mut(self.next_owed) {
-                            *place = Owed { order, of, times: 1 };
-                        }
-                    }
-                }
-                return self.owed();
-            }
-            Reply::Ping(ping) => self.say(&ping),
-            Reply::TimeSync { asked } => self.say(&time_sync::answer(asked, now)),
-            Reply::Parameter(name) => self.parameter(name),
-            Reply::Message(kind) => return self.message(kind, now),
-            Reply::Requested(kind, order) => {
-                let is_said = self.message(kind, now);
-                let result =
-                    if is_said { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
-                self.shared.reply(Reply::Command(order.answered(result)));
-                return is_said;
-            }
-            Reply::Mode(index) => {
-                let system = self.system();
-                return self.writer.write_some(system, vehicle::available_mode(index));
-            }
+            Reply::Likewise { order, of } => return self.answer_alike(order, of),
+            Reply::Ping(ping) => self.send(&ping),
+            Reply::TimeSync { asked } => self.send(&time_sync::answer(asked, now)),
+            Reply::Parameter(name) => self.send_parameter(name),
+            Reply::Message(kind) => return self.send_message(kind, now),
+            Reply::Requested(kind, order) => return self.send_requested(kind, order, now),
+            Reply::Mode(index) => return self.writer.write_some(self.system(), vehicle::available_mode(index)),
             Reply::MissionCount(MissionList { sender: (target_system, target_component), list }, count) => {
-                self.say(&About { message: MISSION_COUNT_DATA { count, target_system, target_component }, list })
+                self.send(&About { message: MISSION_COUNT_DATA { count, target_system, target_component }, list })
             }
             Reply::MissionRequest(MissionList { sender: (target_system, target_component), list }, seq) => {
-                self.say(&About { message: MISSION_REQUEST_INT_DATA { seq, target_system, target_component }, list })
+                self.send(&About { message: MISSION_REQUEST_INT_DATA { seq, target_system, target_component }, list })
             }
             Reply::MissionItem { list: MissionList { sender, list }, number, is_int } => {
                 match self.shared.mission().item(number) {
-                    Some(item) if is_int => self.say(&About { message: item.message(number, sender), list }),
-                    Some(item) => self.say(&About { message: item.old_message(number, sender), list }),
+                    Some(item) if is_int => self.send(&About { message: item.message(number, sender), list }),
+                    Some(item) => self.send(&About { message: item.old_message(number, sender), list }),
                     // Its list was replaced meanwhile: the client asks again.
                     None => return false,
                 }
             }
             Reply::Mission(MissionList { sender: (target_system, target_component), list }, mavtype) => {
-                self.say(&About { message: MISSION_ACK_DATA { target_system, target_component, mavtype }, list })
+                self.send(&About { message: MISSION_ACK_DATA { target_system, target_component, mavtype }, list })
             }
-            Reply::NoFiles(request) => self.say(&NoFiles(request)),
-            Reply::IntervalOf(kind) => {
-                let interval = self.schedule.interval_of(kind, self.telemetry());
-                self.say(&MESSAGE_INTERVAL_DATA {
-                    interval_us: interval.map_or(-1, |interval| i32::try_from(interval).unwrap_or(i32::MAX)),
-                    message_id: kind.number() as u16,
-                });
-            }
-            Reply::NoLogs => self.say(&LOG_ENTRY_DATA::DEFAULT),
+            Reply::NoFiles(request) => self.send(&NoFiles(request)),
+            Reply::IntervalOf(kind) => self.send_interval(kind),
+            Reply::NoLogs => self.send(&LOG_ENTRY_DATA::DEFAULT),
             Reply::Logs { first, last } => {
                 self.download.list(first, last, now, self.shared);
                 return false;
@@ -313,7 +287,7 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
                 return false;
             }
             Reply::Interval { kind, interval } => {
-                self.schedule.ask(kind, interval, now);
+                self.schedule.set_interval(kind, interval, now);
                 return false;
             }
             Reply::AllParameters => {
@@ -324,7 +298,37 @@ impl<'a, M: RawMutex> Speaker<'a, M> {
         true
     }
 
-    fn parameter(&mut self, name: Name) {
-        self.say(&vehicle::parameter(name, self.shared.parameters().get(name)));
+    /// Answers a command as the one of the frame `of`, at once or when that is answered; whether there was an answer.
+    fn answer_alike(&mut self, order: Order, of: u32) -> bool {
+        match self.owed.iter_mut().find(|owed| (owed.order.frame, owed.of) == (order.frame, of)) {
+            Some(owed) => owed.times = owed.times.saturating_add(1),
+            None => {
+                self.next_owed = (self.next_owed + 1) % OWED_CAPACITY;
+                if let Some(place) = self.owed.get_mut(self.next_owed) {
+                    *place = Owed { order, of, times: 1 };
+                }
+            }
+        }
+        self.send_owed()
+    }
+
+    /// Writes a message that a command requested, and has that answered; whether there was a value to send.
+    fn send_requested(&mut self, kind: Kind, order: Order, now: u64) -> bool {
+        let is_said = self.send_message(kind, now);
+        let result = if is_said { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+        self.shared.reply(Reply::Command(order.answered(result)));
+        is_said
+    }
+
+    fn send_interval(&mut self, kind: Kind) {
+        let interval = self.schedule.interval_of(kind, self.telemetry());
+        self.send(&MESSAGE_INTERVAL_DATA {
+            interval_us: interval.map_or(-1, |interval| i32::try_from(interval).unwrap_or(i32::MAX)),
+            message_id: kind.number() as u16,
+        });
+    }
+
+    fn send_parameter(&mut self, name: Name) {
+        self.send(&vehicle::parameter(name, self.shared.parameters().get(name)));
     }
 }

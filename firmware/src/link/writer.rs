@@ -14,7 +14,6 @@ pub struct Writer {
 
 impl Writer {
     /// Nothing written yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self { frame: MAVLinkV2MessageRaw::new(), sequence: 0 }
     }
@@ -42,14 +41,7 @@ impl Writer {
     }
 
     /// The frame last written.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.frame.raw_bytes()
-    }
-}
-
-impl Default for Writer {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -25,9 +25,7 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
 }
 
 /// What corrects the samples of `unit`.
-///
-/// # Errors
-/// All of it but the level, where that is tilted by more than 5 degrees.
+/// Errors: all of it but the level, where that is tilted by more than 5 degrees.
 pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Result<Calibration, Calibration> {
     let mut values = [0.0; ROWS_OF_A_SENSOR];
     for (value, name) in values.iter_mut().zip(rows(unit)) {
@@ -43,9 +41,7 @@ pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Re
 }
 
 /// Keeps what corrects the samples of `unit`.
-///
-/// # Errors
-/// [`ValueRefusal`] names the first row that the table does not allow; those before it are changed.
+/// Errors: [`ValueRefusal`] names the first row that the table does not allow; those before it are changed.
 pub fn store<M: RawMutex>(
     parameters: Write<'_, Parameters<M>>,
     unit: Unit,

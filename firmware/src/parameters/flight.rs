@@ -8,7 +8,6 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 
 impl<M: RawMutex> Parameters<M> {
     /// What an operator chose about flights.
-    #[must_use]
     pub fn flight_settings(&self) -> FlightSettings {
         FlightSettings {
             take_off_height: self.get(Name::TakeOffHeight),
@@ -21,7 +20,6 @@ impl<M: RawMutex> Parameters<M> {
     }
 
     /// How fast the governor may be.
-    #[must_use]
     pub fn governor_limits(&self) -> GovernorLimits {
         GovernorLimits {
             horizontal_speed: self.get(Name::HorizontalSpeed),

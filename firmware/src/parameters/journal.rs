@@ -40,7 +40,6 @@ const HAS_OTHER_BIT: u32 = 1 << 31;
 const OTHER_LOST_BIT: u32 = 1 << 30;
 const OTHER_SHIFT: u32 = 14;
 
-/// Copies of a record.
 const RECORD_COPIES: usize = 2;
 
 /// What a record holds.
@@ -103,12 +102,12 @@ impl<F: Flash> Journal<F> {
             Self { flash, number: 0, newest: [None; 2], lost: [false; 2], sector: 0, next: 0, end: 0, is_blank: true };
         // Where each sector's used part ends.
         let mut ends = [0; 2];
-        for place in 0..2 * F::RECORDS {
+        for place in 0..2 * F::RECORDS_PER_SECTOR {
             let record = journal.flash.read(place);
             if record == Ok([BLANK_WORD; _]) {
                 continue;
             }
-            (ends[place / F::RECORDS], journal.is_blank) = (place + 1, false);
+            (ends[place / F::RECORDS_PER_SECTOR], journal.is_blank) = (place + 1, false);
             if let Ok(record) = record
                 && let Some(kind) = kind(&record)
             {
@@ -116,7 +115,7 @@ impl<F: Flash> Journal<F> {
             }
         }
         if journal.number > 0 {
-            (journal.next, journal.end) = (ends[journal.sector], (journal.sector + 1) * F::RECORDS);
+            (journal.next, journal.end) = (ends[journal.sector], (journal.sector + 1) * F::RECORDS_PER_SECTOR);
         }
         journal.lost = [Kind::Parameters, Kind::Signing].map(|kind| journal.has_lost(kind));
         journal
@@ -137,7 +136,8 @@ impl<F: Flash> Journal<F> {
         }
         // What is left of records behind the newest of all, less those that hold as many words as the other kind's.
         let newest = self.newest.iter().flatten().map(|newest| newest.place + 1);
-        let begin = newest.filter(|place| (place - 1) / F::RECORDS == self.sector).max().unwrap_or(self.next);
+        let begin =
+            newest.filter(|place| (place - 1) / F::RECORDS_PER_SECTOR == self.sector).max().unwrap_or(self.next);
         let is_others = |count: u32| match (this, other) {
             (Some(this), _) if this.count() == count => false,
             (_, Some(other)) => other.count() == count,
@@ -167,12 +167,11 @@ impl<F: Flash> Journal<F> {
             }
         }
         if number >= self.number {
-            (self.number, self.sector) = (number, place / F::RECORDS);
+            (self.number, self.sector) = (number, place / F::RECORDS_PER_SECTOR);
         }
     }
 
     /// Whether there was a record of a kind that cannot be read any more, and no other was written since.
-    #[must_use]
     pub fn is_lost(&self, kind: Kind) -> bool {
         self.lost[kind as usize]
     }
@@ -191,17 +190,14 @@ impl<F: Flash> Journal<F> {
 
     /// Whether one more damage would lose a kind's newest record, if there is one: it has no copy, or does not know of
     /// the other kind's.
-    #[must_use]
     pub fn is_endangered(&self, kind: Kind) -> bool {
         let has_other = self.newest(kind.other()).is_some();
         self.newest(kind).is_some_and(|newest| !newest.is_doubled || has_other && !newest.knows_other())
     }
 
     /// Writes a record of `words`, of which there are at most [`VALUES_MAX`].
-    ///
-    /// # Errors
-    /// [`Fault`] if the flash does not take both copies. The record before them, or the first of them, counts then; the
-    /// next goes to another place.
+    /// Errors: [`Fault`] if the flash does not take both copies. The record before them, or the first of them, counts
+    /// then; the next goes to another place.
     pub fn append(&mut self, kind: Kind, words: &[u32]) -> Result<(), Fault> {
         let mut record = [BLANK_WORD; _];
         record[1] = words.len() as u32;
@@ -236,16 +232,16 @@ impl<F: Flash> Journal<F> {
         if self.next + RECORD_COPIES > self.end {
             let other = 1 - self.sector;
             let newest = [Kind::Parameters, Kind::Signing].map(|kind| self.newest(kind));
-            if newest.iter().flatten().any(|newest| newest.place / F::RECORDS == other) {
+            if newest.iter().flatten().any(|newest| newest.place / F::RECORDS_PER_SECTOR == other) {
                 return Err(Fault);
             }
             if !self.is_blank {
                 self.flash.erase(other)?;
             }
-            (self.next, self.end) = (other * F::RECORDS, (other + 1) * F::RECORDS);
+            (self.next, self.end) = (other * F::RECORDS_PER_SECTOR, (other + 1) * F::RECORDS_PER_SECTOR);
         }
         match self.newest(left) {
-            Some(newest) if newest.place / F::RECORDS != self.next / F::RECORDS => {
+            Some(newest) if newest.place / F::RECORDS_PER_SECTOR != self.next / F::RECORDS_PER_SECTOR => {
                 let mut record = self.flash.read(newest.place)?;
                 (0..RECORD_COPIES).try_for_each(|_| self.write(left, &mut record))
             }

@@ -58,9 +58,7 @@ const LOOPS: ParameterError = ParameterError { field: "sampled loops", reason: R
 
 impl Built {
     /// The configuration with these values of the parameters; one that is no number is as built.
-    ///
-    /// # Errors
-    /// Values that the constructors refuse; or gains whose loops the build found without margin.
+    /// Errors: values that the constructors refuse; or gains whose loops the build found without margin.
     #[inline(never)] // its stack must not be beside that of certifying
     pub fn tuned(&self, value: impl Fn(Name) -> f32) -> Result<Configuration, ParameterError> {
         let mut tuning = Tuning { figures: Figures::from_configuration(&self.configuration), factors: Factors::BUILT };
@@ -83,9 +81,6 @@ impl Built {
     }
 
     /// Whether the configuration with these values may fly.
-    ///
-    /// # Errors
-    /// [`Unfit`].
     #[inline(never)] // its stack is that of booting
     pub fn judge(&self, value: impl Fn(Name) -> f32) -> Result<(), Unfit> {
         let configuration = self.tuned(value).map_err(Unfit::Parameter)?;
@@ -98,7 +93,6 @@ impl Built {
     }
 
     /// The value of a parameter as built; none of one that is no part of the configuration.
-    #[must_use]
     pub fn value(&self, name: Name) -> Option<f32> {
         let mut figures = Figures::from_configuration(&self.configuration);
         let factor = factor(&mut Factors::BUILT.clone(), name).map(|factor| factor.percent());
@@ -108,7 +102,7 @@ impl Built {
 
 /// The figure of a parameter, if it is one.
 fn figure(figures: &mut Figures, name: Name) -> Option<&mut f32> {
-    let Figures { mass, thrust_max, torque_max, bounds, rotor_thrust: [least, most] } = figures;
+    let Figures { mass, thrust_max, torque_max, bounds, rotor_thrust: [min, max] } = figures;
     Some(match name {
         Name::Mass => mass,
         Name::ThrustMax => thrust_max,
@@ -121,8 +115,8 @@ fn figure(figures: &mut Figures, name: Name) -> Option<&mut f32> {
         Name::Snap => &mut bounds.snap,
         Name::HeadingRate => &mut bounds.heading_rate,
         Name::HeadingAcceleration => &mut bounds.heading_second_derivative,
-        Name::RotorThrustMin => least,
-        Name::RotorThrustMax => most,
+        Name::RotorThrustMin => min,
+        Name::RotorThrustMax => max,
         _ => return None,
     })
 }

@@ -47,8 +47,7 @@ pub enum Push {
 
 impl Sticks {
     /// What they request beside a velocity.
-    #[must_use]
-    pub fn push(&self) -> Push {
+    pub fn vertical_push(&self) -> Push {
         match self.up {
             up if up < LANDING_STICK_MAX => Push::Down,
             up if up > TAKE_OFF_STICK_MIN => Push::Up,
@@ -58,7 +57,6 @@ impl Sticks {
     }
 
     /// Their setpoint for a vehicle in this state; none where it points straight up or down.
-    #[must_use]
     pub fn setpoint(&self, state: &State) -> Option<Setpoint> {
         // Ahead, left, up.
         let velocity = Vector3::new(live(self.forward), -live(self.right), 0.0) * SPEED_MAX_M_PER_S;

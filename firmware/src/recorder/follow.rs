@@ -45,7 +45,6 @@ pub enum Followed {
 
 impl<M: RawMutex> Recorder<M> {
     /// A reader of the records from now on.
-    #[must_use]
     pub fn follower(&self) -> Follower {
         let (flight, next) = self.with(|recording| recording.ring.position()).unwrap_or((0, 1));
         Follower { flight, next }

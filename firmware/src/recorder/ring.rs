@@ -55,7 +55,6 @@ pub struct Ring<'m> {
 
 impl<'m> Ring<'m> {
     /// Finds what `slots` have kept.
-    #[must_use]
     pub fn recover(slots: &'m mut [Slot]) -> Self {
         let labelled = slots.iter().enumerate().filter_map(|(index, slot)| Some((index, Label::read(slot)?)));
         let Some((newest, label)) = labelled.max_by_key(|(_, label)| label.number) else {
@@ -96,19 +95,16 @@ impl<'m> Ring<'m> {
     }
 
     /// How many records there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.count
     }
 
     /// Whether it is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
     /// A record, the oldest first.
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<&[u8; tick::TICK_BYTES]> {
         let back = self.count.checked_sub(index).filter(|&back| back > 0)?;
         let length = self.slots.len();
@@ -116,7 +112,6 @@ impl<'m> Ring<'m> {
     }
 
     /// The flight's number, and the number that the next record gets. Records count on from flight to flight.
-    #[must_use]
     pub fn position(&self) -> (u16, u32) {
         (self.label.flight, self.label.number.wrapping_add(1))
     }

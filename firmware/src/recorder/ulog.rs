@@ -100,10 +100,9 @@ pub fn definitions<'a>(time: &'a [u8], vehicle: &'a str) -> impl Iterator<Item =
 }
 
 /// The message after which data may come.
-pub const SUBSCRIBED: [&[u8]; 2] = [&SUBSCRIPTION_HEAD, NAME.as_bytes()];
+pub const SUBSCRIPTION_PARTS: [&[u8]; 2] = [&SUBSCRIPTION_HEAD, NAME.as_bytes()];
 
 /// Bytes of [`definitions`].
-#[must_use]
 pub fn definitions_size() -> usize {
     definitions(&[0; TIME_BYTES], "").map(<[u8]>::len).sum()
 }
@@ -114,7 +113,6 @@ fn beginning_size() -> usize {
 }
 
 /// Bytes of a file of so many records.
-#[must_use]
 pub fn size(records: usize) -> u32 {
     u32::try_from(beginning_size() + records * RECORD_BYTES).unwrap_or(u32::MAX)
 }
@@ -126,7 +124,7 @@ pub fn read(ring: &Ring<'_>, vehicle: &str, offset: usize, out: &mut [u8]) -> us
         |index| (index..ring.len()).filter_map(|index| ring.get(index)).flat_map(|record| [&DATA_HEAD[..], record]);
     match offset.checked_sub(beginning_size()) {
         Some(offset) => copy(from_data(offset / RECORD_BYTES), offset % RECORD_BYTES, out),
-        None => copy(definitions(&time, vehicle).chain(SUBSCRIBED).chain(from_data(0)), offset, out),
+        None => copy(definitions(&time, vehicle).chain(SUBSCRIPTION_PARTS).chain(from_data(0)), offset, out),
     }
 }
 

@@ -5,14 +5,13 @@
 //! from one state to the other, the force is what the change of velocity takes. Every `POSES_APART` a state is a
 //! pose, handed over `LATE` poses later.
 
-use super::{STATE_BYTES, digest, state};
+use super::{Hash, STATE_BYTES, state};
 use controller_core::state::State;
 use estimation::estimator::{EstimatedState, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use flight::{Pose, Stamped, Velocity};
 use heapless::Deque;
 use nalgebra::{UnitQuaternion, Vector3};
-use sha2::{Digest, Sha256};
 
 /// Time between poses, a whole number of ticks.
 const POSE_INTERVAL_US: u64 = 10_000;
@@ -32,13 +31,12 @@ pub struct Estimate {
     period: u64,
     now: u64,
     poses: Deque<Stamped<PoseMeasurement>, { POSES_LATE + 1 }>,
-    hash: Sha256,
+    hash: Hash,
 }
 
 impl Estimate {
     /// At the start, in ticks of `period` us. None where the sensors' figures are refused, which no machine that
     /// computes right sees.
-    #[must_use]
     pub fn new(period: u64) -> Option<Self> {
         let parameters = EstimatorParameters::BMI088;
         Some(Self {
@@ -49,7 +47,7 @@ impl Estimate {
             period,
             now: 0,
             poses: Deque::new(),
-            hash: Sha256::new(),
+            hash: Hash::default(),
         })
     }
 
@@ -64,13 +62,13 @@ impl Estimate {
         }
         if let Some(estimated) = self.estimated() {
             let State { position, velocity, attitude, angular_velocity } = estimated.state;
-            self.add(position.as_slice());
-            self.add(velocity.as_slice());
-            self.add(attitude.coords.as_slice());
-            self.add(angular_velocity.as_slice());
+            self.hash.add(position.as_slice());
+            self.hash.add(velocity.as_slice());
+            self.hash.add(attitude.coords.as_slice());
+            self.hash.add(angular_velocity.as_slice());
         }
         let (position, velocity, attitude) = self.estimator.health(self.now).deviations;
-        self.add(&[position, velocity, attitude]);
+        self.hash.add(&[position, velocity, attitude]);
     }
 
     /// A pose becomes true, another arrives.
@@ -84,7 +82,7 @@ impl Estimate {
             && let Some(pose) = self.poses.pop_front()
         {
             let taken = self.estimator.pose(&pose, self.now).is_ok();
-            self.hash.update([u8::from(taken)]);
+            self.hash.add_byte(taken.into());
         }
     }
 
@@ -109,13 +107,8 @@ impl Estimate {
         }
     }
 
-    fn add(&mut self, numbers: &[f32]) {
-        numbers.iter().for_each(|number| self.hash.update(number.to_le_bytes()));
-    }
-
     /// The number, as 64 hexadecimal digits; none if there has been no estimate at the end.
-    #[must_use]
     pub fn digest(self) -> Option<heapless::String<64>> {
-        self.estimated().map(|_| digest(self.hash))
+        self.estimated().map(|_| self.hash.digest())
     }
 }

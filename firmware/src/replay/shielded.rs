@@ -1,7 +1,7 @@
 //! The same recovery behind a shield, replayed: the law takes over from an upset start, and from half of the flight on
 //! a network flies. The same states, hence the same bits of the network's outputs and of the commands.
 
-use super::{STATE_BYTES, digest, embedded_at, state};
+use super::{Hash, STATE_BYTES, embedded_at, state};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
@@ -9,7 +9,6 @@ use controller_core::law::Law;
 use controller_core::shield::network::{INPUT_COUNT, Layer, Network, NetworkPolicy, OUTPUT_COUNT};
 use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
 use nalgebra::Vector3;
-use sha2::{Digest, Sha256};
 
 /// How long the law flies.
 const UPSET_TIME_US: u64 = 10_000_000;
@@ -31,18 +30,17 @@ const fn weights<const COUNT: usize>() -> [f32; COUNT] {
     weights
 }
 
-static FIRST: [f32; INPUT_COUNT * HIDDEN_OUTPUTS] = weights();
-static SECOND: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
-static THIRD: [f32; HIDDEN_OUTPUTS * OUTPUT_COUNT] = weights();
+static FIRST_WEIGHTS: [f32; INPUT_COUNT * HIDDEN_OUTPUTS] = weights();
+static SECOND_WEIGHTS: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
+static THIRD_WEIGHTS: [f32; HIDDEN_OUTPUTS * OUTPUT_COUNT] = weights();
 static BIASES: [f32; HIDDEN_OUTPUTS] = weights();
 static LAYERS: [Layer<'static>; 3] = [
-    Layer { weights: &FIRST, biases: &BIASES },
-    Layer { weights: &SECOND, biases: &BIASES },
-    Layer { weights: &THIRD, biases: &[0.1, -0.1, 0.05, -0.05] },
+    Layer { weights: &FIRST_WEIGHTS, biases: &BIASES },
+    Layer { weights: &SECOND_WEIGHTS, biases: &BIASES },
+    Layer { weights: &THIRD_WEIGHTS, biases: &[0.1, -0.1, 0.05, -0.05] },
 ];
 
 /// A network of 22, 32, 32 and 4. None on no machine.
-#[must_use]
 pub fn network() -> Option<Network<'static>> {
     Network::new(&LAYERS, [2.0, 2.0, 2.0, 0.5]).ok()
 }
@@ -52,7 +50,7 @@ pub struct Shielded {
     law: Law,
     shield: Shield,
     policy: NetworkPolicy<'static>,
-    hash: Sha256,
+    hash: Hash,
     period: u64,
     tick: u64,
     by_policy: u64,
@@ -61,7 +59,6 @@ pub struct Shielded {
 impl Shielded {
     /// At the start, in ticks of `period` us; certifies the embedded scenario. None if that fails, or if it is for
     /// another law.
-    #[must_use]
     pub fn new(period: u64) -> Option<Self> {
         let certified = Certified::new(embedded_at(period)?).ok()?;
         let (seconds, corner) = (period as f32 * 1e-6, Vector3::repeat(20.0));
@@ -69,7 +66,7 @@ impl Shielded {
             law: Law::new(&certified, seconds).ok()?,
             shield: Shield::new(certified.configuration(), &Settings::new(-corner, corner), seconds).ok()?,
             policy: NetworkPolicy::new(network()?),
-            hash: Sha256::new(),
+            hash: Hash::default(),
             period,
             tick: 0,
             by_policy: 0,
@@ -77,9 +74,7 @@ impl Shielded {
     }
 
     /// One tick at a recorded state.
-    ///
-    /// # Errors
-    /// The law's own, for a state that it cannot use.
+    /// Errors: the law's own, for a state that it cannot use.
     pub fn tick(&mut self, record: &[u8; STATE_BYTES]) -> Result<(), InputError> {
         if self.tick * self.period == UPSET_TIME_US {
             self.shield.reset(&Heading::FORWARD);
@@ -90,26 +85,21 @@ impl Shielded {
         let Some(law) = self.law.extended() else { return Ok(()) };
         let flown = self.shield.step(law, &state, offers.as_ref())?;
         if let Some(Demand::Acceleration { acceleration, yaw_rate }) = offers {
-            self.add(acceleration.as_slice());
-            self.add(&[yaw_rate]);
+            self.hash.add(acceleration.as_slice());
+            self.hash.add(&[yaw_rate]);
         }
-        self.add(&[flown.wrench.thrust]);
-        self.add(flown.wrench.torque.as_slice());
-        self.add(flown.reference.position.as_slice());
-        self.add(flown.reference.heading.direction().as_slice());
-        self.hash.update([flown.reason.map_or(0, |reason| reason as u8 + 1)]);
+        self.hash.add(&[flown.wrench.thrust]);
+        self.hash.add(flown.wrench.torque.as_slice());
+        self.hash.add(flown.reference.position.as_slice());
+        self.hash.add(flown.reference.heading.direction().as_slice());
+        self.hash.add_byte(flown.reason.map_or(0, |reason| reason as u8 + 1));
         self.by_policy += u64::from(flown.reason.is_none());
         self.tick += 1;
         Ok(())
     }
 
-    fn add(&mut self, numbers: &[f32]) {
-        numbers.iter().for_each(|number| self.hash.update(number.to_le_bytes()));
-    }
-
     /// The number, as 64 hexadecimal digits; none if law and network have not both flown.
-    #[must_use]
     pub fn digest(self) -> Option<heapless::String<64>> {
-        (0 < self.by_policy && self.by_policy < self.tick).then(|| digest(self.hash))
+        (0 < self.by_policy && self.by_policy < self.tick).then(|| self.hash.digest())
     }
 }

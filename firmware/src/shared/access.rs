@@ -121,11 +121,11 @@ offers! {
     }
     [] Write<'_, CardStatus> { fn set(state: CardState, now: u64); }
     [M: RawMutex] Read<'_, Library<M>> {
-        fn ask(question: Question, now: u64);
+        fn put_question(question: Question, now: u64);
         fn fetch(question: Question) -> Option<Answer>;
     }
     [M: RawMutex] Write<'_, Library<M>> {
-        fn asked() -> Option<Question>;
+        fn take_question() -> Option<Question>;
         fn answer(question: Question, answer: Answer);
     }
 }

@@ -30,7 +30,6 @@ pub struct CardStatus {
 
 impl CardStatus {
     /// No slot.
-    #[must_use]
     pub const fn new() -> Self {
         Self { state: AtomicU8::new(CardState::NoSlot as u8), updated: AtomicU32::new(0) }
     }
@@ -42,7 +41,6 @@ impl CardStatus {
     }
 
     /// How it is.
-    #[must_use]
     pub fn state(&self) -> CardState {
         let state = self.state.load(Ordering::Relaxed);
         [CardState::NoSlot, CardState::Absent, CardState::Failed, CardState::Ready]
@@ -52,26 +50,18 @@ impl CardStatus {
     }
 
     /// Whether its task has been silent for too long at `now`, us: the card, or its driver, blocks it.
-    #[must_use]
     pub fn is_silent(&self, now: u64) -> bool {
         let silence = milliseconds(now).wrapping_sub(self.updated.load(Ordering::Relaxed));
         self.state() != CardState::NoSlot && u64::from(silence) > CARD_TIMEOUT_US / 1_000
     }
 
     /// Whether flights are logged at `now`, us; none where there is no card that could.
-    #[must_use]
     pub fn health(&self, now: u64) -> Option<bool> {
         match self.state() {
             CardState::NoSlot | CardState::Absent => None,
             CardState::Failed => Some(false),
             CardState::Ready => Some(!self.is_silent(now)),
         }
-    }
-}
-
-impl Default for CardStatus {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

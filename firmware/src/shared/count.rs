@@ -8,7 +8,6 @@ pub struct Count(AtomicU32);
 
 impl Count {
     /// Never yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }
@@ -19,7 +18,6 @@ impl Count {
     }
 
     /// How often.
-    #[must_use]
     pub fn get(&self) -> u32 {
         self.0.load(Ordering::Relaxed)
     }

@@ -16,7 +16,6 @@ pub struct Text(heapless::String<TEXT_MAX>);
 
 impl Text {
     /// The words; what does not fit is cut off, and so is the rest of a character that fits in part.
-    #[must_use]
     pub fn new(words: impl fmt::Display) -> Self {
         let mut text = Self::default();
         // An error means that it is full.
@@ -25,7 +24,6 @@ impl Text {
     }
 
     /// The line.
-    #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }
@@ -70,7 +68,7 @@ pub enum Event {
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
     /// Who flies, the policy or the law.
-    Handed(Handover),
+    Handover(Handover),
     /// How a mission goes on.
     Mission(MissionStep),
     /// The motors' frames do not go out.
@@ -87,32 +85,30 @@ pub enum Event {
 
 impl Event {
     /// A text.
-    #[must_use]
     pub fn new(severity: Severity, words: impl fmt::Display) -> Self {
         Self::Words(severity, Text::new(words))
     }
 
     /// Transitions by failure are critical; commanded ones, and recoveries, are information.
-    #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
             Self::Mode(reason) if reason.is_own_doing() => Severity::Critical,
             Self::Input(_) | Self::MotorsLost | Self::RotorLost(_) | Self::Mission(MissionStep::Refused(..)) => {
                 Severity::Critical
             }
-            Self::Handed(Handover::ToLawForGood(_)) => Severity::Critical,
+            Self::Handover(Handover::ToLawForGood(_)) => Severity::Critical,
             Self::Mission(_)
             | Self::Mode(_)
             | Self::MotorsRegained
             | Self::Pose(Ok(_))
-            | Self::Handed(Handover::ToPolicy)
+            | Self::Handover(Handover::ToPolicy)
             | Self::Streamed(Streamed::AsSent) => Severity::Information,
             Self::Refused(_)
             | Self::Pose(Err(_))
             | Self::Estimator(_)
             | Self::Thrust(_)
             | Self::Streamed(_)
-            | Self::Handed(_)
+            | Self::Handover(_)
             | Self::BatteryMissing
             | Self::PoseDelayUnknown => Severity::Warning,
             Self::Words(severity, _) => *severity,
@@ -134,7 +130,7 @@ impl fmt::Display for Event {
                 write!(f, "Rotor {} lost: {:.0} % of its thrust left", rotor + 1, 100.0 * left)
             }
             Self::Streamed(streamed) => streamed.fmt(f),
-            Self::Handed(handed) => handed.fmt(f),
+            Self::Handover(handed) => handed.fmt(f),
             Self::Mission(step) => step.fmt(f),
             Self::MotorsLost => f.write_str("motors: a frame did not go out"),
             Self::MotorsRegained => f.write_str("motors: frames go out again"),

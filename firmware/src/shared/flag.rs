@@ -8,7 +8,6 @@ pub struct Flag(AtomicBool);
 
 impl Flag {
     /// Not raised.
-    #[must_use]
     pub const fn new() -> Self {
         Self(AtomicBool::new(false))
     }
@@ -24,7 +23,6 @@ impl Flag {
     }
 
     /// Whether it is raised.
-    #[must_use]
     pub fn is_raised(&self) -> bool {
         self.0.load(Ordering::Acquire)
     }

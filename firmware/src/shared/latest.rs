@@ -10,7 +10,6 @@ pub struct Latest<M: RawMutex, T: Copy>(Mutex<M, Cell<Option<Stamped<T>>>>);
 
 impl<M: RawMutex, T: Copy> Latest<M, T> {
     /// Nothing yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(Cell::new(None)))
     }
@@ -21,13 +20,11 @@ impl<M: RawMutex, T: Copy> Latest<M, T> {
     }
 
     /// The value with its time, left in place.
-    #[must_use]
     pub fn get(&self) -> Option<Stamped<T>> {
         self.0.lock(Cell::get)
     }
 
     /// The value, left in place, if it is at most so old at `now`, us.
-    #[must_use]
     pub fn recent(&self, age_max: u64, now: u64) -> Option<T> {
         self.get().filter(|value| value.age(now) <= age_max).map(|value| value.value)
     }
@@ -36,11 +33,5 @@ impl<M: RawMutex, T: Copy> Latest<M, T> {
     #[must_use]
     pub fn take(&self) -> Option<Stamped<T>> {
         self.0.lock(Cell::take)
-    }
-}
-
-impl<M: RawMutex, T: Copy> Default for Latest<M, T> {
-    fn default() -> Self {
-        Self::new()
     }
 }

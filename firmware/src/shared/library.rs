@@ -49,7 +49,6 @@ pub enum Answer {
 
 impl<M: RawMutex> Recorder<M> {
     /// Answers as if its recording were the only log.
-    #[must_use]
     pub fn answer(&self, question: Question) -> Answer {
         let size = self.size();
         match (question, size) {
@@ -73,20 +72,19 @@ pub struct Library<M: RawMutex> {
 
 impl<M: RawMutex> Library<M> {
     /// No question.
-    #[must_use]
     pub const fn new() -> Self {
         Self { question: Latest::new(), answers: Queue::new() }
     }
 
     /// The link's question, at `now`, us.
-    pub fn ask(&self, question: Question, now: u64) {
+    pub fn put_question(&self, question: Question, now: u64) {
         let _ = self.answers.take();
         self.question.put(question, now);
     }
 
     /// The card's task takes the open question.
     #[must_use]
-    pub fn asked(&self) -> Option<Question> {
+    pub fn take_question(&self) -> Option<Question> {
         self.question.take().map(|question| question.value)
     }
 
@@ -100,11 +98,5 @@ impl<M: RawMutex> Library<M> {
     #[must_use]
     pub fn fetch(&self, question: Question) -> Option<Answer> {
         self.answers.take().filter(|(answered, _)| *answered == question).map(|(_, answer)| answer)
-    }
-}
-
-impl<M: RawMutex> Default for Library<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

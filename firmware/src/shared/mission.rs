@@ -11,20 +11,17 @@ pub struct Mission<M: RawMutex>(Mutex<M, RefCell<Vec<Item, MISSION_CAPACITY>>>);
 
 impl<M: RawMutex> Mission<M> {
     /// No items.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(RefCell::new(Vec::new())))
     }
 
     /// How many items there are.
-    #[must_use]
     pub fn count(&self) -> u16 {
         // The mutex lets one in at a time, so the list is never borrowed.
         self.0.lock(|items| items.try_borrow().map_or(0, |items| items.len() as u16))
     }
 
     /// The item of this number, from 0.
-    #[must_use]
     pub fn item(&self, number: u16) -> Option<Item> {
         self.0.lock(|items| items.try_borrow().ok()?.get(usize::from(number)).copied())
     }
@@ -38,11 +35,5 @@ impl<M: RawMutex> Mission<M> {
                 let _ = items.extend_from_slice(by);
             }
         });
-    }
-}
-
-impl<M: RawMutex> Default for Mission<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

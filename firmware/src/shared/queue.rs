@@ -15,15 +15,12 @@ pub struct Full;
 
 impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
     /// Nothing waits.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(RefCell::new(Deque::new())))
     }
 
     /// Puts a value behind the others.
-    ///
-    /// # Errors
-    /// [`Full`] where there is no room; the value is lost.
+    /// Errors: [`Full`] where there is no room; the value is lost.
     pub fn put(&self, value: T) -> Result<(), Full> {
         // The mutex lets one in at a time, so the queue is never borrowed.
         self.0.lock(|queue| queue.try_borrow_mut().ok().and_then(|mut queue| queue.push_back(value).ok()).ok_or(Full))
@@ -33,11 +30,5 @@ impl<M: RawMutex, T, const ROOM: usize> Queue<M, T, ROOM> {
     #[must_use]
     pub fn take(&self) -> Option<T> {
         self.0.lock(|queue| queue.try_borrow_mut().ok()?.pop_front())
-    }
-}
-
-impl<M: RawMutex, T, const ROOM: usize> Default for Queue<M, T, ROOM> {
-    fn default() -> Self {
-        Self::new()
     }
 }

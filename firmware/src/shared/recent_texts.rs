@@ -8,7 +8,6 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
-/// Texts that are remembered.
 const TEXTS_REMEMBERED: usize = 8;
 
 /// How long a text is not sent again.
@@ -28,7 +27,7 @@ impl<M: RawMutex> RecentTexts<M> {
     }
 
     /// It is `now`, us.
-    pub fn pass(&self, now: u64) {
+    pub fn set_time(&self, now: u64) {
         self.now.store((now / 1_000) as u32, Ordering::Relaxed);
     }
 

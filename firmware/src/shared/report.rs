@@ -78,7 +78,6 @@ impl Report {
 
 impl Report {
     /// For the flight recorder: with the motors' command, and the battery's voltage, V.
-    #[must_use]
     pub fn tick(&self, time: u64, command: MotorCommand, voltage: Option<f32>) -> Tick {
         Tick {
             time,

@@ -22,7 +22,6 @@ pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<QueuedRequest, REQUESTS_
 
 impl<M: RawMutex> Requests<M> {
     /// None.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Mutex::new(RefCell::new(Deque::new())))
     }
@@ -93,11 +92,5 @@ const fn kind(request: &Request) -> u8 {
         Request::Land => 5,
         Request::MotorTest(_) | Request::MotorSetting(_) => 6,
         Request::SetMissionItem(_) => 7,
-    }
-}
-
-impl<M: RawMutex> Default for Requests<M> {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -11,7 +11,6 @@ pub struct SetpointOwner(AtomicU32);
 
 impl SetpointOwner {
     /// No sender.
-    #[must_use]
     pub const fn new() -> Self {
         Self(AtomicU32::new(NO_SENDER))
     }
@@ -23,15 +22,8 @@ impl SetpointOwner {
     }
 
     /// Who it is.
-    #[must_use]
     pub fn get(&self) -> Option<(u8, u8)> {
         let [system, component] = u16::try_from(self.0.load(Ordering::Acquire)).ok()?.to_be_bytes();
         Some((system, component))
-    }
-}
-
-impl Default for SetpointOwner {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -18,7 +18,6 @@ macro_rules! views {
 
         impl<M: RawMutex> Shared<M> {
             $(#[doc = concat!("[`", stringify!($view), "`] of all this.")]
-            #[must_use]
             pub const fn $of(&self) -> $view<'_, M> {
                 $view(&self.0)
             })*
@@ -44,7 +43,6 @@ macro_rules! values {
 
         $($($(impl<'a, M: RawMutex> $view<'a, M> {
             #[doc = concat!("[`", stringify!($access), "`] access to [`Values::", stringify!($field), "`].")]
-            #[must_use]
             pub fn $field(self) -> $access<'a, $type> {
                 (&self.0.$field).into()
             }

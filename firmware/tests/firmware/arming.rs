@@ -1,7 +1,7 @@
 //! What keeps a vehicle on the ground, and the tasks alone know of: a sensor that has failed, a battery without a
 //! reading, motors that are not reached.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
@@ -66,7 +66,7 @@ fn asked(shared: &Local, vehicle: &Vehicle, requests: &[(u64, Request)]) -> (Mod
     let clock = Simulated::default();
     let (pilot, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
     let mut control = Control::new(shared.for_control(), pilot, outputs);
-    let mut flow = Flow::new(shared.for_samples(), &ImuParameters::BMI088, &Calibration::NONE, PERIOD).unwrap();
+    let mut flow = Flow::new(shared.for_samples(), &ImuParameters::BMI088, &Calibration::NONE, PERIOD_US).unwrap();
     let mut frames = Frames(&clock, vehicle.frames);
     let mut seen = Vec::new();
     clock.run(4_000_000, control.run(&clock, &mut frames, &mut Patient), |now| {

@@ -4,7 +4,7 @@
 #![expect(clippy::single_range_in_vec_init, reason = "flights are lists of times, some with one")]
 
 use crate::support::Simulated;
-use crate::support::card::{Image, Parsed, START, Simulation, files, formatted, parsed, small};
+use crate::support::card::{Image, PARTITION_START, Parsed, Simulation, files, formatted, parsed, small};
 use crate::support::receiver::{Local, texts};
 use core::ops::Range;
 use fatfs::FatType;
@@ -19,17 +19,17 @@ use mavlink::dialects::common::MavSysStatusSensor;
 use proptest::prelude::*;
 
 /// A second, us.
-const SECOND: u64 = 1_000_000;
+const SECOND_US: u64 = 1_000_000;
 
 /// A tick, us.
-const TICK: u64 = 10_000;
+const TICK_US: u64 = 10_000;
 
 /// Ticks that the recorder holds.
-const ROOM: usize = 500;
+const RING_RECORDS: usize = 500;
 
 pub fn shared() -> Local {
     let shared = Shared::new();
-    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; ROOM].into_boxed_slice())), "mine");
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; RING_RECORDS].into_boxed_slice())), "mine");
     shared
 }
 
@@ -50,14 +50,14 @@ impl<'s> Ticks<'s> {
             let time = self.due;
             let tick = || Report::NONE.tick(time, MotorCommand::Stop, Some(11.1));
             self.shared.recorder.record(armed.iter().any(|range| range.contains(&time)), tick);
-            self.due += TICK;
+            self.due += TICK_US;
         }
     }
 }
 
 /// The times of the ticks of a flight, us: armed from `from` to `to`, and what is recorded afterwards.
 pub fn times(from: u64, to: u64) -> Vec<u64> {
-    (from..to + RECORDED_AFTERWARDS_US - TICK).step_by(TICK as usize).collect()
+    (from..to + RECORDED_AFTERWARDS_US - TICK_US).step_by(TICK_US as usize).collect()
 }
 
 /// Logs for `duration` us what flights there are in these times.
@@ -88,8 +88,8 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
         let (clock, shared) = (Simulated::default(), shared());
         let card = Simulation::new(image, sectors, &clock);
         let mut ticks = Ticks::new(&shared);
-        let flights = [SECOND..3 * SECOND, 6 * SECOND..7 * SECOND];
-        clock.run(10 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
+        let flights = [SECOND_US..3 * SECOND_US, 6 * SECOND_US..7 * SECOND_US];
+        clock.run(10 * SECOND_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
             ticks.until(now, &flights);
             if now == 900_000 || now == 2_000_000 {
                 shared.announce(Event::new(Severity::Critical, format_args!("said at {now}")));
@@ -106,11 +106,11 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
         // The third is the next flight's.
         assert_eq!(names, ["LOG00001.ULG", "LOG00002.ULG", "LOG00003.ULG"]);
         let first = &logs[0].1;
-        assert_eq!(first.ticks, times(SECOND, 3 * SECOND));
-        assert_eq!((first.time, first.is_whole, first.gaps.len()), (SECOND, true, 0));
+        assert_eq!(first.ticks, times(SECOND_US, 3 * SECOND_US));
+        assert_eq!((first.time, first.is_whole, first.gaps.len()), (SECOND_US, true, 0));
         let expected = [900_000, 2_000_000].map(|time| ('2', time, format!("said at {time}")));
         assert!(expected.iter().all(|text| first.texts.contains(text)), "{:?}", first.texts);
-        assert_eq!(logs[1].1.ticks, times(6 * SECOND, 7 * SECOND));
+        assert_eq!(logs[1].1.ticks, times(6 * SECOND_US, 7 * SECOND_US));
         assert!(logs[2].1.ticks.is_empty() && logs[2].1.is_whole);
         assert_eq!(
             texts(&shared)[2..],
@@ -131,25 +131,25 @@ fn a_file_without_a_flight_is_the_next_flights_whatever_restarts_come_between() 
     let card = Simulation::new(image, sectors, &clock);
     for restart in 0..3 {
         let shared = shared();
-        fly(&card, &clock, &shared, SECOND, &[]);
+        fly(&card, &clock, &shared, SECOND_US, &[]);
         assert_eq!(logs(&card).len(), 1, "{restart}");
     }
     let now = clock.0.get();
     let shared = shared();
-    fly(&card, &clock, &shared, 5 * SECOND, &[now + SECOND..now + 2 * SECOND]);
+    fly(&card, &clock, &shared, 5 * SECOND_US, &[now + SECOND_US..now + 2 * SECOND_US]);
     let logs = logs(&card);
-    assert_eq!((logs.len(), &logs[0].1.ticks), (2, &times(now + SECOND, now + 2 * SECOND)));
+    assert_eq!((logs.len(), &logs[0].1.ticks), (2, &times(now + SECOND_US, now + 2 * SECOND_US)));
 }
 
 #[test]
 fn in_flight_nothing_is_written_but_the_flights_own_sectors_in_order() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
     let card = Simulation::new(image, sectors, &clock);
-    fly(&card, &clock, &shared, SECOND, &[]);
+    fly(&card, &clock, &shared, SECOND_US, &[]);
     card.medium.borrow_mut().written.clear();
     let before = files(&mut card.medium.borrow_mut().image.clone(), sectors);
     // The task starts anew, and the card is as it was: the first thing it writes is the flight.
-    fly(&card, &clock, &shared, 2 * SECOND, &[SECOND..10 * SECOND]);
+    fly(&card, &clock, &shared, 2 * SECOND_US, &[SECOND_US..10 * SECOND_US]);
     let written: Vec<u32> = card.medium.borrow().written.iter().map(|(sector, _)| *sector).collect();
     let data = written[0]..written[0] + GROWTH_BYTES / SECTOR_BYTES as u32;
     assert!(written.len() > 60 && written.iter().all(|sector| data.contains(sector)), "{written:?}");
@@ -162,11 +162,11 @@ fn in_flight_nothing_is_written_but_the_flights_own_sectors_in_order() {
 fn a_flight_longer_than_its_file_makes_it_longer_and_then_goes_on_in_the_next() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat16, 80_000, 4_096));
     let card = Simulation::new(image, sectors, &clock);
-    let minutes = 18 * 60 * SECOND;
-    fly(&card, &clock, &shared, minutes + 5 * SECOND, &[SECOND..minutes]);
+    let minutes = 18 * 60 * SECOND_US;
+    fly(&card, &clock, &shared, minutes + 5 * SECOND_US, &[SECOND_US..minutes]);
     let logs = logs(&card);
     let ticks: Vec<u64> = logs.iter().flat_map(|(_, log)| log.ticks.clone()).collect();
-    assert!(ticks == times(SECOND, minutes), "{}", ticks.len());
+    assert!(ticks == times(SECOND_US, minutes), "{}", ticks.len());
     assert!(logs.iter().all(|(_, log)| log.is_whole && log.gaps.is_empty()));
     let sizes: Vec<usize> = files(&mut card.medium.borrow_mut().image, sectors).values().map(Vec::len).collect();
     assert_eq!((sizes.len(), sizes[0]), (3, SIZE_MAX_BYTES as usize));
@@ -175,22 +175,22 @@ fn a_flight_longer_than_its_file_makes_it_longer_and_then_goes_on_in_the_next() 
 
 #[test]
 fn a_slow_card_loses_nothing_until_the_recorder_is_full_and_the_loss_is_reported() {
-    for (stall, missed) in [(4 * SECOND, 0..1), (7 * SECOND, 150..260)] {
+    for (stall, missed) in [(4 * SECOND_US, 0..1), (7 * SECOND_US, 150..260)] {
         let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
         let card = Simulation::new(image, sectors, &clock);
-        fly(&card, &clock, &shared, SECOND, &[]);
+        fly(&card, &clock, &shared, SECOND_US, &[]);
         card.medium.borrow_mut().written.clear();
         // 2 ms each, and one of them seconds.
-        card.medium.borrow_mut().takes = Some(if stall > 5 * SECOND {
+        card.medium.borrow_mut().takes = Some(if stall > 5 * SECOND_US {
             |write| if write == 50 { 7_000_000 } else { 2_000 }
         } else {
             |write| if write == 50 { 4_000_000 } else { 2_000 }
         });
         let now = clock.0.get();
         let _ = texts(&shared);
-        fly(&card, &clock, &shared, 15 * SECOND, &[now + SECOND..now + 11 * SECOND]);
+        fly(&card, &clock, &shared, 15 * SECOND_US, &[now + SECOND_US..now + 11 * SECOND_US]);
         let (_, log) = logs(&card).swap_remove(0);
-        let all = times(now + SECOND, now + 11 * SECOND);
+        let all = times(now + SECOND_US, now + 11 * SECOND_US);
         let lost = all.len() - log.ticks.len();
         assert!(missed.contains(&lost), "{lost}");
         assert!(log.ticks.is_sorted() && log.is_whole);
@@ -208,10 +208,10 @@ fn a_card_that_fails_in_flight_is_reported_and_after_recovery_the_rest_goes_to_t
     let mut ticks = Ticks::new(&shared);
     let medium = card.medium.clone();
     let mut seen = vec![];
-    clock.run(12 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
-        ticks.until(now, &[SECOND..8 * SECOND]);
-        medium.borrow_mut().fails = (3 * SECOND..5 * SECOND).contains(&now);
-        if now == 4 * SECOND {
+    clock.run(12 * SECOND_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
+        ticks.until(now, &[SECOND_US..8 * SECOND_US]);
+        medium.borrow_mut().fails = (3 * SECOND_US..5 * SECOND_US).contains(&now);
+        if now == 4 * SECOND_US {
             seen.push(bits(&shared, now));
         }
     });
@@ -219,7 +219,7 @@ fn a_card_that_fails_in_flight_is_reported_and_after_recovery_the_rest_goes_to_t
     assert_eq!(bits(&shared, clock.0.get()), (true, true));
     let logs = logs(&card);
     let all: Vec<u64> = logs.iter().flat_map(|(_, log)| log.ticks.clone()).collect();
-    assert_eq!(all, times(SECOND, 8 * SECOND));
+    assert_eq!(all, times(SECOND_US, 8 * SECOND_US));
     assert!(logs.iter().all(|(_, log)| log.is_whole) && !logs[1].1.ticks.is_empty());
     let said = texts(&shared);
     assert_eq!(said.iter().filter(|text| *text == "Card failed: flights are not logged").count(), 1, "{said:?}");
@@ -239,7 +239,7 @@ fn a_missing_or_removed_card_is_reported_once_and_an_inserted_one_is_used() {
     ticks.due = begin;
     clock.run(4 * RETRY_INTERVAL_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
         medium.borrow_mut().is_absent = now < begin + 2 * RETRY_INTERVAL_US || now > begin + 3 * RETRY_INTERVAL_US;
-        ticks.until(now, &[begin + 3 * RETRY_INTERVAL_US - SECOND..u64::MAX]);
+        ticks.until(now, &[begin + 3 * RETRY_INTERVAL_US - SECOND_US..u64::MAX]);
     });
     assert_eq!(
         texts(&shared),
@@ -252,15 +252,15 @@ fn a_full_card_is_reported_keeps_its_files_and_gets_no_empty_ones() {
     // Room for the first chunk and a part of the second.
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat16, 4_400, 512));
     let card = Simulation::new(image, sectors, &clock);
-    let minutes = 10 * 60 * SECOND;
-    fly(&card, &clock, &shared, minutes + 30 * SECOND, &[SECOND..minutes]);
+    let minutes = 10 * 60 * SECOND_US;
+    fly(&card, &clock, &shared, minutes + 30 * SECOND_US, &[SECOND_US..minutes]);
     let said = texts(&shared);
     assert!(said.contains(&"Card full: move logs off it".into()), "{said:?}");
     assert_eq!(bits(&shared, clock.0.get()), (true, false));
     let before = files(&mut card.medium.borrow_mut().image, sectors);
     let ticks = &logs(&card)[0].1.ticks;
     assert!(before.len() <= 2 && ticks.len() > 4_000, "{} {}", before.len(), ticks.len());
-    assert_eq!(*ticks, times(SECOND, minutes)[..ticks.len()]);
+    assert_eq!(*ticks, times(SECOND_US, minutes)[..ticks.len()]);
     // With a recording that a reset has left, which finds no room either.
     fly(&card, &clock, &shared, 10 * RETRY_INTERVAL_US, &[]);
     let mut after = files(&mut card.medium.borrow_mut().image, sectors);
@@ -274,8 +274,8 @@ fn the_root_directory_is_never_made_longer() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), formatted(FatType::Fat32, 70_000, 512));
     let card = Simulation::new(image, sectors, &clock);
     // A sector has room for 16 names.
-    let flights: Vec<_> = (0..20).map(|flight| (4 * flight + 1) * SECOND..(4 * flight + 2) * SECOND).collect();
-    fly(&card, &clock, &shared, 85 * SECOND, &flights);
+    let flights: Vec<_> = (0..20).map(|flight| (4 * flight + 1) * SECOND_US..(4 * flight + 2) * SECOND_US).collect();
+    fly(&card, &clock, &shared, 85 * SECOND_US, &flights);
     assert_eq!(logs(&card).len(), 16);
     assert_eq!(bits(&shared, clock.0.get()), (true, false));
 }
@@ -288,7 +288,7 @@ fn a_card_with_a_foreign_format_is_reported_and_left_as_it_is() {
         change(&mut image);
         let (clock, shared) = (Simulated::default(), shared());
         let card = Simulation::new(image, sectors, &clock);
-        fly(&card, &clock, &shared, 2 * RETRY_INTERVAL_US, &[SECOND..2 * SECOND]);
+        fly(&card, &clock, &shared, 2 * RETRY_INTERVAL_US, &[SECOND_US..2 * SECOND_US]);
         assert_eq!(texts(&shared), ["Card unusable: format it as FAT32 (MBR)"]);
         assert!(card.medium.borrow().written.is_empty());
     };
@@ -296,13 +296,13 @@ fn a_card_with_a_foreign_format_is_reported_and_left_as_it_is() {
     // The kind of partition that exFAT has, and no table at all.
     foreign(&|image| image.get_mut(&0).unwrap()[446 + 4] = 0x07);
     foreign(&|image| {
-        let first = image[&START];
+        let first = image[&PARTITION_START];
         image.insert(0, first);
     });
     // Sectors of a cluster, sectors at all, bytes of a sector.
-    foreign(&|image| image.get_mut(&START).unwrap()[13] = 0);
-    foreign(&|image| image.get_mut(&START).unwrap()[19..21].fill(0xFF));
-    foreign(&|image| image.get_mut(&START).unwrap()[11..13].copy_from_slice(&1_024_u16.to_le_bytes()));
+    foreign(&|image| image.get_mut(&PARTITION_START).unwrap()[13] = 0);
+    foreign(&|image| image.get_mut(&PARTITION_START).unwrap()[19..21].fill(0xFF));
+    foreign(&|image| image.get_mut(&PARTITION_START).unwrap()[11..13].copy_from_slice(&1_024_u16.to_le_bytes()));
 }
 
 proptest! {
@@ -313,11 +313,11 @@ proptest! {
         damage in prop::collection::vec((0..SECTOR_BYTES, any::<u8>()), 1..6), is_table: bool,
     ) {
         let (mut image, sectors) = small();
-        let sector = image.get_mut(if is_table { &0 } else { &START }).unwrap();
+        let sector = image.get_mut(if is_table { &0 } else { &PARTITION_START }).unwrap();
         damage.iter().for_each(|(at, byte)| sector[if is_table { *at } else { *at % 64 }] = *byte);
         let (clock, shared) = (Simulated::default(), shared());
         let card = Simulation::new(image, sectors, &clock);
-        fly(&card, &clock, &shared, SECOND, &[300_000..SECOND]);
+        fly(&card, &clock, &shared, SECOND_US, &[300_000..SECOND_US]);
         prop_assert_eq!(texts(&shared).len(), 1);
     }
 }
@@ -326,12 +326,12 @@ proptest! {
 fn the_recording_that_a_reset_left_is_copied_once() {
     let (clock, shared, (image, sectors)) = (Simulated::default(), shared(), small());
     let mut ticks = Ticks::new(&shared);
-    ticks.until(4 * SECOND, &[SECOND..3 * SECOND / 2]);
+    ticks.until(4 * SECOND_US, &[SECOND_US..3 * SECOND_US / 2]);
     let mut whole = vec![0; shared.recorder.size().unwrap() as usize];
     assert_eq!(shared.recorder.read(0, &mut whole), whole.len());
     let card = Simulation::new(image, sectors, &clock);
     for restart in 0..3 {
-        fly(&card, &clock, &shared, SECOND, &[]);
+        fly(&card, &clock, &shared, SECOND_US, &[]);
         let files = files(&mut card.medium.borrow_mut().image, sectors);
         assert_eq!(files.keys().collect::<Vec<_>>(), ["LOG00002.ULG", "REC00001.ULG"], "{restart}");
         assert_eq!(files["REC00001.ULG"], whole);
@@ -339,8 +339,8 @@ fn the_recording_that_a_reset_left_is_copied_once() {
     }
     // Another recording is another file.
     let shared = self::shared();
-    Ticks::new(&shared).until(5 * SECOND, &[SECOND..2 * SECOND]);
-    fly(&card, &clock, &shared, SECOND, &[]);
+    Ticks::new(&shared).until(5 * SECOND_US, &[SECOND_US..2 * SECOND_US]);
+    fly(&card, &clock, &shared, SECOND_US, &[]);
     let files = files(&mut card.medium.borrow_mut().image, sectors);
     assert_eq!(files.keys().collect::<Vec<_>>(), ["LOG00002.ULG", "REC00001.ULG", "REC00003.ULG"]);
     assert_eq!(files["REC00001.ULG"], whole);
@@ -349,6 +349,6 @@ fn the_recording_that_a_reset_left_is_copied_once() {
 #[test]
 fn a_card_that_blocks_its_task_is_reported() {
     let shared = shared();
-    shared.card.set(CardState::Ready, 5 * SECOND);
-    assert_eq!((shared.card.health(14 * SECOND), shared.card.health(16 * SECOND)), (Some(true), Some(false)));
+    shared.card.set(CardState::Ready, 5 * SECOND_US);
+    assert_eq!((shared.card.health(14 * SECOND_US), shared.card.health(16 * SECOND_US)), (Some(true), Some(false)));
 }

@@ -12,11 +12,11 @@ use firmware::card::run;
 use firmware::hardware::SECTOR_BYTES;
 use std::collections::BTreeMap;
 
-const SECOND: u64 = 1_000_000;
+const SECOND_US: u64 = 1_000_000;
 
 /// Bytes of a torn sector that are new: in a name, a first cluster and a length of the directory's entries, in numbers
 /// of tables, in records.
-const TEARS: [usize; 5] = [1, 62, 131, 430, SECTOR_BYTES - 1];
+const TEAR_OFFSETS: [usize; 5] = [1, 62, 131, 430, SECTOR_BYTES - 1];
 
 /// Records in a sector: what a cut may lose of those that were written before.
 const SECTOR_RECORDS: usize = 3;
@@ -28,8 +28,8 @@ type Files = BTreeMap<String, Vec<u8>>;
 /// write began.
 fn flown(card: &Simulation, clock: &Simulated, shared: &Local) {
     let mut ticks = Ticks::new(shared);
-    clock.run(12 * SECOND, run(card.clone(), GROWTH_BYTES, clock, shared.for_card()), |now| {
-        ticks.until(now, &[SECOND..2 * SECOND, 5 * SECOND..9 * SECOND]);
+    clock.run(12 * SECOND_US, run(card.clone(), GROWTH_BYTES, clock, shared.for_card()), |now| {
+        ticks.until(now, &[SECOND_US..2 * SECOND_US, 5 * SECOND_US..9 * SECOND_US]);
     });
 }
 
@@ -41,7 +41,7 @@ fn check(image: &mut Image, sectors: u32, known: &Files, on_card: usize, what: &
     }
     // Of all that is on the card, in order: at most a sector's records more or fewer than were confirmed.
     let ticks: Vec<u64> = files.values().filter(|file| !file.is_empty()).flat_map(|file| parsed(file).ticks).collect();
-    let sound = ticks.windows(2).take_while(|pair| pair[0] < pair[1] && pair[1] < 20 * SECOND).count() + 1;
+    let sound = ticks.windows(2).take_while(|pair| pair[0] < pair[1] && pair[1] < 20 * SECOND_US).count() + 1;
     assert!(ticks.is_empty() && on_card == 0 || sound >= on_card, "{what}: {} of {on_card}", sound);
     assert!(ticks.len() <= on_card + SECTOR_RECORDS, "{what}: {} of {on_card}", ticks.len());
     files
@@ -68,7 +68,7 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
     for (index, (sector, data)) in written.iter().enumerate() {
         let old = image.get(sector).copied();
         let what = format!("write {index} of {}, sector {sector}", written.len());
-        for tear in TEARS {
+        for tear in TEAR_OFFSETS {
             let mut torn = old.unwrap_or([0; SECTOR_BYTES]);
             torn[..tear].copy_from_slice(&data[..tear]);
             image.insert(*sector, torn);
@@ -76,7 +76,7 @@ fn cut_everywhere(kind: FatType, sectors: u32, cluster: u32) {
         }
         // A start after the cut, now and then: it changes no file but the newest, and logs to one that it may log to.
         if index % 7 == 0 {
-            let tear = TEARS[index / 7 % TEARS.len()];
+            let tear = TEAR_OFFSETS[index / 7 % TEAR_OFFSETS.len()];
             let mut torn = old.unwrap_or([0; SECTOR_BYTES]);
             torn[..tear].copy_from_slice(&data[..tear]);
             image.insert(*sector, torn);
@@ -102,8 +102,8 @@ fn restart(image: Image, sectors: u32, known: &Files, what: &str) {
     let before = files(&mut image.clone(), sectors);
     let card = Simulation::new(image, sectors, &clock);
     let mut ticks = Ticks::new(&shared);
-    clock.run(4 * SECOND, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
-        ticks.until(now, &[SECOND..SECOND + 50_000])
+    clock.run(4 * SECOND_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
+        ticks.until(now, &[SECOND_US..SECOND_US + 50_000])
     });
     let after = files(&mut card.medium.borrow_mut().image, sectors);
     for (name, bytes) in known {

@@ -26,7 +26,7 @@ use mavlink::dialects::common::{
 use std::collections::BTreeMap;
 
 /// A second, us.
-const SECOND: u64 = 1_000_000;
+const SECOND_US: u64 = 1_000_000;
 
 /// A vehicle with a card, and a ground station on its line: the tasks of both, and control as far as the recorder knows
 /// it.
@@ -58,8 +58,8 @@ impl Bench {
     /// With two flights, of a second and of three, on the card.
     fn flown() -> Self {
         let mut bench = Self::new();
-        bench.armed = vec![SECOND..2 * SECOND, 5 * SECOND..8 * SECOND];
-        bench.run(12 * SECOND, |_, _| ());
+        bench.armed = vec![SECOND_US..2 * SECOND_US, 5 * SECOND_US..8 * SECOND_US];
+        bench.run(12 * SECOND_US, |_, _| ());
         bench
     }
 
@@ -87,7 +87,7 @@ impl Bench {
 
     /// A whole file, by a client that requests all of it at once.
     fn fetched(&mut self, id: u16) -> Vec<u8> {
-        let parts: Vec<LOG_DATA_DATA> = sent(&self.asked(4 * SECOND, |fed| fed.message(&part(id, 0, u32::MAX), 0)));
+        let parts: Vec<LOG_DATA_DATA> = sent(&self.asked(4 * SECOND_US, |fed| fed.message(&part(id, 0, u32::MAX), 0)));
         let mut file = vec![];
         for LOG_DATA_DATA { ofs, id: of, count, data } in &parts {
             assert_eq!((*ofs as usize, *of), (file.len(), id));
@@ -141,10 +141,10 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
         SECTOR_BYTES as u32 * 90 < sizes[0] && sizes[0] < sizes[1] && sizes[1] < files["LOG00002.ULG"].len() as u32
     );
     let all = [(0, 3, 2, sizes[0]), (1, 3, 2, sizes[1]), (2, 3, 2, sizes[2])];
-    assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))), all);
+    assert_eq!(entries(&bench.asked(SECOND_US, |fed| fed.message(&list(0, u16::MAX), 0))), all);
     // A lost part is requested again; a request beyond the end returns the end.
-    assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(1, 1), 0))), all[1..2]);
-    assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(9, 20), 0))), all[2..]);
+    assert_eq!(entries(&bench.asked(SECOND_US, |fed| fed.message(&list(1, 1), 0))), all[1..2]);
+    assert_eq!(entries(&bench.asked(SECOND_US, |fed| fed.message(&list(9, 20), 0))), all[2..]);
 
     for (id, name) in [(0, "LOG00001.ULG"), (1, "LOG00002.ULG")] {
         assert!(bench.fetched(id) == files[name][..sizes[usize::from(id)] as usize], "{name}");
@@ -158,27 +158,28 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
     for (offset, count, there) in
         [(9_000, 90, 90), (180, 90, 90), (7_001, 50, 50), (size - 10, 90, 10), (size, 90, 0), (u32::MAX - 1, 90, 0)]
     {
-        let parts: Vec<LOG_DATA_DATA> = sent(&bench.asked(SECOND, |fed| fed.message(&part(1, offset, count), 0)));
+        let parts: Vec<LOG_DATA_DATA> = sent(&bench.asked(SECOND_US, |fed| fed.message(&part(1, offset, count), 0)));
         assert_eq!(parts.iter().map(|part| (part.ofs, part.count)).collect::<Vec<_>>(), [(offset, there)]);
         let (from, to) = (offset.min(size) as usize, (offset.min(size) + u32::from(there)) as usize);
         assert_eq!(parts[0].data[..usize::from(there)], files["LOG00002.ULG"][from..to]);
     }
-    let beyond = bench.asked(SECOND, |fed| fed.message(&part(3, 0, 90), 0));
+    let beyond = bench.asked(SECOND_US, |fed| fed.message(&part(3, 0, 90), 0));
     assert!(sent::<LOG_DATA_DATA>(&beyond).is_empty());
     assert_eq!(texts_in(&beyond), ["Log 3: not found"]);
 
-    let begun = bench.asked(SECOND, |fed| {
+    let begun = bench.asked(SECOND_US, |fed| {
         fed.message(&part(1, 0, u32::MAX), 0);
         fed.message(&LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 }, 0);
     });
     assert!(sent::<LOG_DATA_DATA>(&begun).is_empty());
 
     // Erasing takes the recording and no file.
-    let erased = bench.asked(SECOND, |fed| fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 0));
+    let erased =
+        bench.asked(SECOND_US, |fed| fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 0));
     assert_eq!(texts_in(&erased), ["Log: files stay on the card; delete them there"]);
     assert!(bench.files() == files);
     assert_eq!(
-        entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))),
+        entries(&bench.asked(SECOND_US, |fed| fed.message(&list(0, u16::MAX), 0))),
         [(0, 2, 1, sizes[0]), (1, 2, 1, sizes[1])]
     );
 }
@@ -186,14 +187,14 @@ fn a_client_lists_the_files_fetches_them_fills_gaps_ends_and_erases() {
 #[test]
 fn a_card_without_files_has_no_logs() {
     let mut bench = Bench::new();
-    assert_eq!(entries(&bench.asked(SECOND, |fed| fed.message(&list(0, u16::MAX), 0))), [(0, 0, 0, 0)]);
+    assert_eq!(entries(&bench.asked(SECOND_US, |fed| fed.message(&list(0, u16::MAX), 0))), [(0, 0, 0, 0)]);
 }
 
 #[test]
 fn reading_writes_nothing_and_keeps_neither_telemetry_nor_parameters_waiting() {
     let mut bench = Bench::flown();
     bench.card.medium.borrow_mut().written.clear();
-    let written = bench.asked(SECOND, |fed| {
+    let written = bench.asked(SECOND_US, |fed| {
         fed.message(&list(0, u16::MAX), 0);
         fed.message(&part(1, 0, u32::MAX), 0);
         fed.message(&PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 }, 0);
@@ -210,27 +211,27 @@ fn reading_writes_nothing_and_keeps_neither_telemetry_nor_parameters_waiting() {
 fn nothing_is_served_while_armed_and_arming_ends_what_was_under_way() {
     let mut bench = Bench::flown();
     let begin = bench.clock.0.get();
-    let armed = begin + SECOND..begin + 3 * SECOND;
+    let armed = begin + SECOND_US..begin + 3 * SECOND_US;
     bench.armed = vec![armed.clone()];
     let mode = |now| if armed.contains(&now) { Mode::Flying } else { Mode::Ready };
     report(bench.shared, mode(begin), begin);
     Fed::new(bench.shared).message(&part(1, 0, u32::MAX), begin);
-    let before = bench.run(SECOND, |_, _| ());
+    let before = bench.run(SECOND_US, |_, _| ());
     assert!(sent::<LOG_DATA_DATA>(&before).len() > 400 && texts_in(&before).is_empty());
     let ended = bench.run(500_000, |now, shared| report(shared, mode(now), now));
     assert!(sent::<LOG_DATA_DATA>(&ended).is_empty());
     assert_eq!(texts_in(&ended), ["Log: not while armed"]);
     let mut fed = Fed::new(bench.shared);
     fed.message(&list(0, u16::MAX), 0);
-    fed.message(&part(1, 0, 90), SECOND);
-    fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 2 * SECOND);
+    fed.message(&part(1, 0, 90), SECOND_US);
+    fed.message(&LOG_ERASE_DATA { target_system: 1, target_component: 1 }, 2 * SECOND_US);
     let refused = bench.run(500_000, |now, shared| report(shared, mode(now), now));
     assert!(sent::<LOG_DATA_DATA>(&refused).is_empty());
     assert_eq!(texts_in(&refused), ["Log: not while armed"; 3]);
     assert_eq!(entries(&refused), [(0, 0, 0, 0)]);
     // Requested before the flight is over on the card: served then. The flight is there, whole.
-    bench.run(SECOND + 500_000, |now, shared| report(shared, mode(now), now));
-    let listed = bench.asked(4 * SECOND, |fed| fed.message(&list(2, 2), 0));
+    bench.run(SECOND_US + 500_000, |now, shared| report(shared, mode(now), now));
+    let listed = bench.asked(4 * SECOND_US, |fed| fed.message(&list(2, 2), 0));
     assert_eq!(entries(&listed).iter().map(|entry| entry.0).collect::<Vec<_>>(), [2]);
     assert_eq!(parsed(&bench.files()["LOG00003.ULG"]).ticks, times(armed.start, armed.end));
     assert_eq!(parsed(&bench.fetched(2)).ticks, times(armed.start, armed.end));
@@ -244,7 +245,7 @@ fn a_card_that_falls_silent_or_goes_ends_the_download_in_words() {
     let link = transmit(Outgoing { written: &written, at_once: 64 }, &clock, shared.for_transmit());
     Fed::new(&shared).message(&part(0, 0, 90), 0);
     let mut patient = true;
-    clock.run(ANSWER_TIMEOUT_US + 2 * SECOND, link, |now| {
+    clock.run(ANSWER_TIMEOUT_US + 2 * SECOND_US, link, |now| {
         patient &= now > ANSWER_TIMEOUT_US || texts_in(&written).is_empty();
     });
     assert!(patient);
@@ -254,7 +255,7 @@ fn a_card_that_falls_silent_or_goes_ends_the_download_in_words() {
     Fed::new(bench.shared).message(&part(1, 0, u32::MAX), 0);
     bench.run(200_000, |_, _| ());
     bench.card.medium.borrow_mut().is_absent = true;
-    let gone = bench.run(SECOND, |_, _| ());
+    let gone = bench.run(SECOND_US, |_, _| ());
     assert_eq!(texts_in(&gone), ["Log 1: cannot be read"]);
 }
 
@@ -263,7 +264,7 @@ fn what_the_card_offered_is_not_taken_for_the_recorders_when_the_card_goes() {
     let mut bench = Bench::flown();
     Fed::new(bench.shared).message(&part(0, 0, u32::MAX), 0);
     bench.run(50_000, |_, _| ());
-    let sent_after = bench.run(SECOND, |now, shared| shared.card.set(CardState::Failed, now));
+    let sent_after = bench.run(SECOND_US, |now, shared| shared.card.set(CardState::Failed, now));
     assert_eq!(texts_in(&sent_after), ["Log: the card has come or gone, list again"]);
     assert!(sent::<LOG_DATA_DATA>(&sent_after).len() < 20);
 }
@@ -273,25 +274,26 @@ fn an_unreadable_file_is_reported_and_the_next_flight_is_logged() {
     let mut bench = Bench::flown();
     let worn = bench.files()["LOG00001.ULG"][18 * SECTOR_BYTES..19 * SECTOR_BYTES].to_vec();
     bench.card.medium.borrow_mut().worn = Some(worn);
-    let failed = bench.asked(SECOND, |fed| fed.message(&part(0, 0, u32::MAX), 0));
+    let failed = bench.asked(SECOND_US, |fed| fed.message(&part(0, 0, u32::MAX), 0));
     assert!(sent::<LOG_DATA_DATA>(&failed).len() < 120);
     assert_eq!(texts_in(&failed), ["Log 0: cannot be read"]);
     assert!(!bench.fetched(1).is_empty());
     let begin = bench.clock.0.get();
-    let armed = begin + SECOND..begin + 2 * SECOND;
+    let armed = begin + SECOND_US..begin + 2 * SECOND_US;
     bench.armed = vec![armed];
-    bench.run(5 * SECOND, |_, _| ());
-    assert_eq!(parsed(&bench.files()["LOG00003.ULG"]).ticks, times(begin + SECOND, begin + 2 * SECOND));
+    bench.run(5 * SECOND_US, |_, _| ());
+    assert_eq!(parsed(&bench.files()["LOG00003.ULG"]).ticks, times(begin + SECOND_US, begin + 2 * SECOND_US));
 }
 
 #[test]
 fn of_many_files_the_newest_are_offered_in_their_order() {
     let mut bench = Bench::new();
     let flights = FILES_OFFERED_MAX as u64 + 3;
-    bench.armed = (0..flights).map(|flight| (1 + 4 * flight) * SECOND..(1 + 4 * flight) * SECOND + 50_000).collect();
-    bench.run((flights * 4 + 2) * SECOND, |_, _| ());
+    bench.armed =
+        (0..flights).map(|flight| (1 + 4 * flight) * SECOND_US..(1 + 4 * flight) * SECOND_US + 50_000).collect();
+    bench.run((flights * 4 + 2) * SECOND_US, |_, _| ());
     bench.shared.recorder.erase();
-    let listed = entries(&bench.asked(2 * SECOND, |fed| fed.message(&list(0, u16::MAX), 0)));
+    let listed = entries(&bench.asked(2 * SECOND_US, |fed| fed.message(&list(0, u16::MAX), 0)));
     assert_eq!(
         listed.iter().map(|entry| entry.0).collect::<Vec<_>>(),
         (0..FILES_OFFERED_MAX as u16).collect::<Vec<_>>()
@@ -299,6 +301,6 @@ fn of_many_files_the_newest_are_offered_in_their_order() {
     assert!(listed.iter().all(|entry| entry.1 == FILES_OFFERED_MAX as u16 && entry.3 > 0));
     for (id, flight) in [(0, 3), (FILES_OFFERED_MAX as u16 - 1, flights - 1)] {
         let file = parsed(&bench.fetched(id));
-        assert_eq!(file.time, (1 + 4 * flight) * SECOND, "{id}");
+        assert_eq!(file.time, (1 + 4 * flight) * SECOND_US, "{id}");
     }
 }

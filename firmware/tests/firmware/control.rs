@@ -1,6 +1,6 @@
 //! The control task's time: when ticks begin, and which of them feed the watchdog.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::Simulated;
 use crate::support::receiver::Local;
 use core::cell::{Cell, RefCell};
@@ -53,7 +53,7 @@ fn ticks(delay: u64) -> (Vec<u64>, Vec<u64>, u32) {
 
 #[test]
 fn a_tick_that_is_slow_but_in_time_is_a_tick_like_any_other() {
-    let (written, fed, missed) = ticks(PERIOD - 1_000);
+    let (written, fed, missed) = ticks(PERIOD_US - 1_000);
     assert_eq!(written, [10_000, 20_000, 30_000, 40_000, 50_000, 60_000, 70_000]);
     assert_eq!(fed, [10_000, 20_000, 39_000, 40_000, 50_000, 60_000, 70_000]);
     assert_eq!(missed, 0);
@@ -61,9 +61,9 @@ fn a_tick_that_is_slow_but_in_time_is_a_tick_like_any_other() {
 
 #[test]
 fn a_tick_that_ends_when_the_next_is_due_does_not_feed_the_watchdog_and_is_not_caught_up_with() {
-    for (delay, next) in [(PERIOD, 50_000), (PERIOD + 3_000, 50_000), (2 * PERIOD + 1_000, 60_000)] {
+    for (delay, next) in [(PERIOD_US, 50_000), (PERIOD_US + 3_000, 50_000), (2 * PERIOD_US + 1_000, 60_000)] {
         let (written, fed, missed) = ticks(delay);
-        let after: Vec<_> = (next..80_000).step_by(PERIOD as usize).collect();
+        let after: Vec<_> = (next..80_000).step_by(PERIOD_US as usize).collect();
         assert_eq!(written, [&[10_000, 20_000, 30_000][..], &after].concat(), "{delay}");
         assert_eq!(fed, [&[10_000, 20_000][..], &after].concat(), "{delay}");
         assert_eq!(missed, 1, "{delay}");

@@ -114,7 +114,7 @@ fn a_file_is_built_at_its_rate_unless_the_boards_processor_is_too_slow_for_it() 
         |rate: u32, rate_max: f64| embedded(&format!("{BARE}\n[control]\nrate = {rate}\n"), "pelican.toml", rate_max);
     for (rate, period) in [(50, 20_000), (100, 10_000), (500, 2_000), (1_000, 1_000)] {
         let source = at(rate, RATE_MAX).unwrap().source;
-        assert!(source.contains(&format!("pub const PERIOD: u64 = {period};")), "{rate} Hz");
+        assert!(source.contains(&format!("pub const PERIOD_US: u64 = {period};")), "{rate} Hz");
     }
     let refused = at(1_000, 500.0).unwrap_err();
     let expected = "pelican.toml: control.rate: this board's processor flies at up to 500 Hz, found 1000";

@@ -144,11 +144,11 @@ fn without(chip: &RefCell<Chip>, words: u8, records: usize) -> RefCell<Chip> {
 }
 
 /// Newest records that are damaged: both copies, and with them everything older.
-const DAMAGES: [usize; 2] = [2, usize::MAX];
+const DAMAGED_WORDS: [usize; 2] = [2, usize::MAX];
 
 #[test]
 fn with_both_copies_of_the_key_gone_nothing_counts_but_over_usb_until_it_is_set_again() {
-    for records in DAMAGES {
+    for records in DAMAGED_WORDS {
         let damaged = without(&chip(), OF_THE_KEY, records);
         // A restart does not forget it, whatever the vehicle finds out by itself.
         for _ in 0..2 {
@@ -172,7 +172,7 @@ fn with_both_copies_of_the_key_gone_nothing_counts_but_over_usb_until_it_is_set_
 
 #[test]
 fn with_both_copies_of_the_parameters_gone_it_does_not_arm_until_one_is_set_again() {
-    for records in DAMAGES {
+    for records in DAMAGED_WORDS {
         let damaged = without(&chip(), OF_PARAMETERS, records);
         for _ in 0..2 {
             let shared = booted(&damaged, 30_000_000, true);

@@ -1,9 +1,9 @@
 //! A simulator's line: what goes out on it, and what becomes of the exchange when the line fails.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::Local;
-use crate::support::simulator::{COMMANDED, Hil, Pins, commanded, now, sensor};
+use crate::support::simulator::{COMMANDED_US, Hil, Pins, commanded, now, sensor};
 use crate::support::{Simulated, v2};
 use core::cell::{Cell, RefCell};
 use core::future::pending;
@@ -29,17 +29,17 @@ fn transmitted(line: impl Write, commands: &[MotorCommand]) {
     let (clock, shared, hil, wanted) = (Simulated::default(), Local::new(), Hil::new(), Flag::new());
     wanted.raise();
     let mut commands = commands.iter();
-    let end = PERIOD * (commands.len() as u64);
-    clock.run(end, hil::transmit(&hil, line, &clock, shared.for_simulator(), PERIOD), |time| {
-        if time % PERIOD == 0 {
+    let end = PERIOD_US * (commands.len() as u64);
+    clock.run(end, hil::transmit(&hil, line, &clock, shared.for_simulator(), PERIOD_US), |time| {
+        if time % PERIOD_US == 0 {
             let board = Simulated::default();
             board.0.set(time);
             let mut motors = SelectedMotors {
                 pins: &mut Pins::default(),
                 hil: &hil,
-                wanted: (&wanted).into(),
+                requested: (&wanted).into(),
                 clock: board,
-                period: PERIOD,
+                period: PERIOD_US,
             };
             now(motors.write(*commands.next().unwrap())).unwrap();
         }
@@ -54,7 +54,7 @@ fn each_command_goes_out_once_with_its_time() {
     transmitted(Outgoing { written: &written, at_once: 7 }, &commands);
     let sent = sent(&written);
     let times: Vec<_> = sent.iter().map(|controls| controls.time_usec).collect();
-    assert_eq!(times, [0, PERIOD, 2 * PERIOD]);
+    assert_eq!(times, [0, PERIOD_US, 2 * PERIOD_US]);
     let levels: Vec<_> = sent.iter().map(|controls| controls.controls[..5].to_vec()).collect();
     assert_eq!(levels, [[0.0; 5], [0.1, 0.2, 0.3, 0.4, 0.0], [0.0, 0.0, 0.125, 0.0, 0.0]]);
     let armed = |controls: &HIL_ACTUATOR_CONTROLS_DATA| controls.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
@@ -105,7 +105,7 @@ fn a_line_in_trouble_loses_that_command_and_no_later_one() {
         let then = Outgoing { written: &written, at_once: 1_000 };
         transmitted(Recovering { trouble, times: 2, then }, &[MotorCommand::Stop; 4]);
         let times: Vec<_> = sent(&written).iter().map(|controls| controls.time_usec).collect();
-        assert_eq!(times, [2 * PERIOD, 3 * PERIOD], "{trouble:?}");
+        assert_eq!(times, [2 * PERIOD_US, 3 * PERIOD_US], "{trouble:?}");
     }
 }
 
@@ -136,7 +136,7 @@ fn a_line_that_delivers_nothing_is_asked_again_but_not_all_the_time() {
         let (clock, shared, asked) = (Simulated::default(), Local::new(), Cell::new(0));
         clock.run(
             1_000_000,
-            hil::receive(&commanded(), Mute(&asked, trouble), &clock, shared.for_simulator(), PERIOD),
+            hil::receive(&commanded(), Mute(&asked, trouble), &clock, shared.for_simulator(), PERIOD_US),
             |_| (),
         );
         assert!(attempts.contains(&asked.get()), "{trouble:?}: {}", asked.get());
@@ -146,10 +146,10 @@ fn a_line_that_delivers_nothing_is_asked_again_but_not_all_the_time() {
 #[test]
 fn an_answer_in_pieces_between_faults_is_taken() {
     let (clock, shared, hil, line) = (Simulated::default(), Local::new(), commanded(), Line::default());
-    clock.0.set(COMMANDED);
-    for piece in v2(1, &sensor(COMMANDED + PERIOD)).chunks(9) {
+    clock.0.set(COMMANDED_US);
+    for piece in v2(1, &sensor(COMMANDED_US + PERIOD_US)).chunks(9) {
         line.borrow_mut().extend([Delivery::Bytes(piece.to_vec()), Delivery::Fault, Delivery::End]);
     }
-    clock.run(50_000, hil::receive(&hil, Incoming(&line), &clock, shared.for_simulator(), PERIOD), |_| ());
-    assert_eq!(shared.imu.get().unwrap().time, COMMANDED + PERIOD);
+    clock.run(50_000, hil::receive(&hil, Incoming(&line), &clock, shared.for_simulator(), PERIOD_US), |_| ());
+    assert_eq!(shared.imu.get().unwrap().time, COMMANDED_US + PERIOD_US);
 }

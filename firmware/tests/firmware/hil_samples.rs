@@ -1,6 +1,6 @@
 //! A simulator's samples at 1 kHz: they become what a sensor's would, whatever the line does to their order and number.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
 use crate::support::simulator::{Hil, command, sensor};
@@ -15,10 +15,10 @@ use mavlink::dialects::common::HIL_SENSOR_DATA;
 use nalgebra::Vector3;
 
 /// Between two samples, us.
-const SAMPLE: u64 = 1_000;
+const SAMPLE_PERIOD_US: u64 = 1_000;
 
 /// The first command is given a period after boot, the last one this many later.
-const TICKS: u64 = 50;
+const FLIGHT_TICKS: u64 = 50;
 
 /// A motion that never repeats itself, about every axis.
 fn motion(time: u64) -> ImuSample {
@@ -38,7 +38,7 @@ fn sensor_at(time: u64) -> Vec<u8> {
 
 /// The times of a command's ten samples, us.
 fn times(commanded: u64) -> impl Iterator<Item = u64> {
-    (1..=10).map(move |sample| commanded + sample * SAMPLE)
+    (1..=10).map(move |sample| commanded + sample * SAMPLE_PERIOD_US)
 }
 
 /// What control gets.
@@ -56,15 +56,19 @@ fn drain(shared: &Local, increments: &mut Vec<Increment>) {
 fn simulated(answer: impl Fn(u64) -> Vec<u8>) -> Got {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
     let mut increments = Vec::new();
-    clock.run((TICKS + 2) * PERIOD, hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD), |now| {
-        drain(&shared, &mut increments);
-        if now % PERIOD == 0 && (PERIOD..=TICKS * PERIOD).contains(&now) {
-            // The answer to the command before was whole.
-            assert!(!hil.awaiting(), "{now}");
-            command(&hil, now);
-            line.say(&answer(now));
-        }
-    });
+    clock.run(
+        (FLIGHT_TICKS + 2) * PERIOD_US,
+        hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD_US),
+        |now| {
+            drain(&shared, &mut increments);
+            if now % PERIOD_US == 0 && (PERIOD_US..=FLIGHT_TICKS * PERIOD_US).contains(&now) {
+                // The answer to the command before was whole.
+                assert!(!hil.awaiting(), "{now}");
+                command(&hil, now);
+                line.say(&answer(now));
+            }
+        },
+    );
     assert!(!hil.awaiting());
     Got { increments, newest: shared.imu.get().unwrap(), texts: texts(&shared) }
 }
@@ -77,7 +81,7 @@ struct Real<'a> {
 
 impl Imu for Real<'_> {
     async fn sample(&mut self) -> Result<RawImu, Fault> {
-        let time = self.last.get() + SAMPLE;
+        let time = self.last.get() + SAMPLE_PERIOD_US;
         self.clock.until(time).await;
         self.last.set(time);
         let ImuSample { angular_velocity, specific_force } = motion(time);
@@ -95,10 +99,10 @@ impl Imu for Real<'_> {
 
 /// What control gets from that sensor.
 fn real() -> Got {
-    let (clock, shared, last) = (Simulated::default(), Local::new(), Cell::new(PERIOD));
+    let (clock, shared, last) = (Simulated::default(), Local::new(), Cell::new(PERIOD_US));
     let mut increments = Vec::new();
-    let end = (TICKS + 1) * PERIOD + SAMPLE / 2;
-    clock.run(end, imu::run(shared.for_imu(), &clock, &mut Real { clock: &clock, last: &last }, PERIOD), |_| {
+    let end = (FLIGHT_TICKS + 1) * PERIOD_US + SAMPLE_PERIOD_US / 2;
+    clock.run(end, imu::run(shared.for_imu(), &clock, &mut Real { clock: &clock, last: &last }, PERIOD_US), |_| {
         drain(&shared, &mut increments);
     });
     drain(&shared, &mut increments);
@@ -108,11 +112,11 @@ fn real() -> Got {
 #[test]
 fn ten_samples_a_tick_are_integrated_and_filtered_as_a_sensors() {
     let (simulated, real) = (simulated(|now| times(now).flat_map(sensor_at).collect()), real());
-    assert_eq!(real.newest.time, (TICKS + 1) * PERIOD);
+    assert_eq!(real.newest.time, (FLIGHT_TICKS + 1) * PERIOD_US);
     assert_eq!(simulated.increments, real.increments);
     assert_eq!(simulated.newest, real.newest);
     // Two a tick; the first sample begins the first of them.
-    assert_eq!(real.increments.len() as u64, 2 * TICKS - 1);
+    assert_eq!(real.increments.len() as u64, 2 * FLIGHT_TICKS - 1);
     assert_eq!((simulated.texts, real.texts), (vec![], vec![]));
 }
 
@@ -122,9 +126,9 @@ fn repeated_out_of_order_and_future_samples_change_nothing() {
     let twice = |time: u64| [sensor_at(time), sensor_at(time)].concat();
     let repeated = simulated(|now| times(now).flat_map(twice).collect());
     // The third comes again behind the fifth, then one of the period before, as old as that command.
-    let behind = |time: u64, now: u64| match (time - now) / SAMPLE {
-        5 => [sensor_at(time), sensor_at(time - 2 * SAMPLE)].concat(),
-        7 => [sensor_at(time), sensor_at(now - 4 * SAMPLE), sensor_at(now)].concat(),
+    let behind = |time: u64, now: u64| match (time - now) / SAMPLE_PERIOD_US {
+        5 => [sensor_at(time), sensor_at(time - 2 * SAMPLE_PERIOD_US)].concat(),
+        7 => [sensor_at(time), sensor_at(now - 4 * SAMPLE_PERIOD_US), sensor_at(now)].concat(),
         _ => sensor_at(time),
     };
     let overtaken = simulated(|now| times(now).flat_map(|time| behind(time, now)).collect());
@@ -134,7 +138,7 @@ fn repeated_out_of_order_and_future_samples_change_nothing() {
         assert_eq!(got.texts, ["IMU: samples out of order"]);
     }
     // A microsecond beyond the period, and a period: not taken in the first place.
-    let early = |now: u64| [sensor_at(now + PERIOD + 1), sensor_at(now + 2 * PERIOD)].concat();
+    let early = |now: u64| [sensor_at(now + PERIOD_US + 1), sensor_at(now + 2 * PERIOD_US)].concat();
     let hasty = simulated(|now| early(now).into_iter().chain(times(now).flat_map(sensor_at)).collect());
     assert_eq!((hasty.increments, hasty.newest), (clean.increments, clean.newest));
     assert_eq!(hasty.texts, [""; 0]);

@@ -1,6 +1,6 @@
 //! When a simulator takes over from sensors and motors, and what becomes of those.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::receiver::{Fed, Local, newest, ordered, texts};
 use crate::support::simulator::{Hil, Pins, now, odometry};
 use crate::support::{Simulated, v2};
@@ -43,7 +43,7 @@ fn the_vehicles_own_sensors_count_for_nothing_while_a_simulator_is_wanted() {
         if wanted {
             shared.hil.raise();
         }
-        clock.run(10_000, imu::run(shared.for_imu(), &clock, &mut Steady(&clock), PERIOD), |_| ());
+        clock.run(10_000, imu::run(shared.for_imu(), &clock, &mut Steady(&clock), PERIOD_US), |_| ());
         assert_eq!(shared.imu.get().is_none(), wanted);
         let mut fed = Fed::new(&shared);
         fed.message(&odometry(1_000), 10_000);
@@ -64,9 +64,9 @@ fn the_simulator_takes_over_at_a_stop_and_the_pins_carry_stop_from_then_on() {
     let mut motors = SelectedMotors {
         pins: &mut pins,
         hil: &hil,
-        wanted: (&wanted).into(),
+        requested: (&wanted).into(),
         clock: Simulated::default(),
-        period: PERIOD,
+        period: PERIOD_US,
     };
     for command in [MotorCommand::Stop, one, run] {
         now(motors.write(command)).unwrap();
@@ -113,9 +113,9 @@ fn handed_over(request: Request, asked: u64) -> (Vec<MotorCommand>, MavResult, V
     let mut motors = SelectedMotors {
         pins: &mut pins,
         hil: &hil,
-        wanted: (&shared.hil).into(),
+        requested: (&shared.hil).into(),
         clock: Simulated::default(),
-        period: PERIOD,
+        period: PERIOD_US,
     };
     let still = ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::z() * 9.81 };
     let mut control = Control::new(shared.for_control(), pilot, outputs);

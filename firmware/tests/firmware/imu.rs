@@ -1,6 +1,6 @@
 //! The IMU task on a sensor that faults, hangs or returns NaN or infinity.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::Simulated;
 use crate::support::receiver::{Local, texts};
 use core::future::pending;
@@ -57,7 +57,7 @@ fn sampled(trouble: Answer) -> (Vec<u64>, Vec<String>) {
     let (clock, shared) = (Simulated::default(), Local::new());
     let mut sensor = Sensor { clock: &clock, trouble, from: 50_000, to: 350_000 };
     let mut times = Vec::new();
-    clock.run(1_000_000, run(shared.for_imu(), &clock, &mut sensor, PERIOD), |_| {
+    clock.run(1_000_000, run(shared.for_imu(), &clock, &mut sensor, PERIOD_US), |_| {
         if let Some(sample) = shared.imu.get() {
             let numbers = sample.value.angular_velocity.iter().chain(&sample.value.specific_force);
             assert!(numbers.into_iter().all(|number| number.is_finite()));

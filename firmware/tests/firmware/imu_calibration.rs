@@ -1,7 +1,7 @@
 //! Calibration: by itself after boot, and on request; applied, kept, answered in words.
 
-use crate::support::PERIOD;
-use crate::support::bodies::{Body, Does, GRAVITY, RIGHT, Sensor, Wrong};
+use crate::support::PERIOD_US;
+use crate::support::bodies::{Body, Does, GRAVITY_M_PER_S2, RIGHT, Sensor, Wrong};
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, ordered, report, texts, whichever};
 use estimation::imu::Calibration;
@@ -35,7 +35,7 @@ const SECOND: Wrong = Wrong {
 /// The six sides, times g.
 fn sides() -> [Vector3<f32>; 6] {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-    [axes[0], -axes[0], axes[1], -axes[1], axes[2], -axes[2]].map(|axis| axis * GRAVITY)
+    [axes[0], -axes[0], axes[1], -axes[1], axes[2], -axes[2]].map(|axis| axis * GRAVITY_M_PER_S2)
 }
 
 /// Results for PREFLIGHT_CALIBRATION so far, taken away.
@@ -51,7 +51,7 @@ fn results(shared: &Local) -> Vec<MavResult> {
 /// Runs the task on a body's sensors for some seconds, with `each` in between.
 fn run(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
     let mut first = Sensor { body, wrong: FIRST, is_second: false };
-    body.clock.run(seconds * 1_000_000, imu::run(shared.for_imu(), &body.clock, &mut first, PERIOD), each);
+    body.clock.run(seconds * 1_000_000, imu::run(shared.for_imu(), &body.clock, &mut first, PERIOD_US), each);
 }
 
 /// The same with a second sensor that stands by.
@@ -60,7 +60,7 @@ fn run_both(body: &Body, shared: &Local, seconds: u64, each: impl FnMut(u64)) {
         (Sensor { body, wrong: FIRST, is_second: false }, Sensor { body, wrong: SECOND, is_second: true });
     body.clock.run(
         seconds * 1_000_000,
-        imu::run(shared.for_imu(), &body.clock, &mut Redundant::new(first, second), PERIOD),
+        imu::run(shared.for_imu(), &body.clock, &mut Redundant::new(first, second), PERIOD_US),
         each,
     );
 }
@@ -145,12 +145,12 @@ fn what_goes_wrong_is_answered_in_words_and_changes_nothing() {
         (Procedure::Gyro, |_, shared, _| shared.hil.raise(), "Calibration: a simulator has the sensors"),
         (
             Procedure::Level,
-            |body, _, _| body.up.set(Vector3::new(0.2, 0.0, 1.0) * GRAVITY),
+            |body, _, _| body.up.set(Vector3::new(0.2, 0.0, 1.0) * GRAVITY_M_PER_S2),
             "Not level: tilted by more than 5 degrees",
         ),
         (
             Procedure::OneSide,
-            |body, _, _| body.up.set(Vector3::new(0.1, 0.0, 1.0) * GRAVITY),
+            |body, _, _| body.up.set(Vector3::new(0.1, 0.0, 1.0) * GRAVITY_M_PER_S2),
             "Calibration: tilted, or offset over 0.8 m/s^2",
         ),
         (
@@ -200,7 +200,7 @@ fn one_calibration_at_a_time() {
 fn six_sides_and_a_level_calibrate_both_accelerometers() {
     let (body, shared) = (Body::new(), Local::new());
     // Sensors that sit 2 degrees askew in the vehicle.
-    let askew = Vector3::new(0.035, 0.0, 0.999_39) * GRAVITY;
+    let askew = Vector3::new(0.035, 0.0, 0.999_39) * GRAVITY_M_PER_S2;
     run_both(&body, &shared, 60, |now| match now / 1_000 {
         2_500 => shared.calibrations.put((Some(Procedure::SixSides), ASKER)).unwrap(),
         // Each side for 6 s; moved for the first of them.
@@ -226,11 +226,15 @@ fn six_sides_and_a_level_calibrate_both_accelerometers() {
         assert!((found.offset - wrong.offset).norm() < 2e-3, "{unit:?}: {}", found.offset);
         assert!((found.scale.component_mul(&wrong.factor) - Vector3::repeat(1.0)).norm() < 1e-3, "{unit:?}");
         let felt = askew.component_mul(&wrong.factor) + wrong.offset;
-        assert!((found.force(&felt) - Vector3::z() * GRAVITY).norm() < 5e-3, "{unit:?}: {}", found.force(&felt));
+        assert!(
+            (found.force(&felt) - Vector3::z() * GRAVITY_M_PER_S2).norm() < 5e-3,
+            "{unit:?}: {}",
+            found.force(&felt)
+        );
     }
     // And it is flown: the sample is the corrected one.
     let force = shared.imu.get().unwrap().value.specific_force;
-    assert!((force - Vector3::z() * GRAVITY).norm() < 6e-3, "{force}");
+    assert!((force - Vector3::z() * GRAVITY_M_PER_S2).norm() < 6e-3, "{force}");
 }
 
 #[test]
@@ -243,7 +247,7 @@ fn one_side_finds_the_offsets_of_a_level_vehicle() {
     });
     assert_eq!(texts(&shared), ["Accelerometer calibrated: now level"]);
     let force = shared.imu.get().unwrap().value.specific_force;
-    assert!((force - Vector3::z() * GRAVITY).norm() < 1e-3, "{force}");
+    assert!((force - Vector3::z() * GRAVITY_M_PER_S2).norm() < 1e-3, "{force}");
 }
 
 #[test]
@@ -280,9 +284,12 @@ fn what_was_found_survives_a_reboot_and_corrects_the_first_sample() {
     Storage::load(Words::<32>(&chip), shared.for_storage());
     assert_eq!(loaded(&shared, Unit::First), found);
     let mut sensor = Sensor { body: &body, wrong: FIRST, is_second: false };
-    body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |_| ());
+    body.clock.run(3_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD_US), |_| ());
     let sample = shared.imu.get().unwrap().value;
-    assert!(sample.angular_velocity.norm() < 1e-3 && (sample.specific_force.z - GRAVITY).abs() < 1e-3, "{sample:?}");
+    assert!(
+        sample.angular_velocity.norm() < 1e-3 && (sample.specific_force.z - GRAVITY_M_PER_S2).abs() < 1e-3,
+        "{sample:?}"
+    );
 }
 
 #[test]
@@ -297,9 +304,9 @@ fn stored_rows_and_calibration_are_the_same_thing() {
         shared.parameters.set(Name::Imu2LevelY, y).unwrap();
         let found = loaded(&shared, Unit::Second);
         // What the level vehicle feels comes out as straight up.
-        let up = Vector3::new(x, y, 1.0).normalize() * GRAVITY;
+        let up = Vector3::new(x, y, 1.0).normalize() * GRAVITY_M_PER_S2;
         let felt = up.component_div(&Vector3::new(1.02, 1.0, 1.0)) + Vector3::new(0.0, 0.0, -0.5);
-        assert!((found.force(&felt) - Vector3::z() * GRAVITY).norm() < 1e-4, "{x} {y}");
+        assert!((found.force(&felt) - Vector3::z() * GRAVITY_M_PER_S2).norm() < 1e-4, "{x} {y}");
         calibration::store((&shared.parameters).into(), Unit::Second, &found).unwrap();
         let again = loaded(&shared, Unit::Second);
         assert!((again.level - found.level).norm() < 1e-6);
@@ -365,6 +372,6 @@ fn it_is_refused_while_armed_and_with_a_simulator_in_words() {
 fn a_right_sensor_needs_no_correction() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = Sensor { body: &body, wrong: RIGHT, is_second: false };
-    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |_| ());
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD_US), |_| ());
     assert!(bias(&shared, Unit::First).norm() < 1e-5);
 }

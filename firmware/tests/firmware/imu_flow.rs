@@ -1,6 +1,6 @@
 //! From samples to control: every increment, the newest sample, faults in words, and the second sensor.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::bodies::{Body, Does, RIGHT, Sensor};
 use crate::support::line::Live;
 use crate::support::receiver::{Local, texts};
@@ -31,7 +31,7 @@ fn drain(shared: &Local) -> Vec<Increment> {
 fn flown(body: &Body, mut sensor: impl Imu, each: impl Fn(u64)) -> (Vec<Increment>, Vec<String>) {
     let shared = Local::new();
     let mut increments = Vec::new();
-    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
+    body.clock.run(2_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD_US), |now| {
         each(now);
         if now % 10_000 == 0 {
             increments.extend(drain(&shared));
@@ -65,7 +65,7 @@ fn control_gets_every_increment_of_5_ms() {
 fn the_newest_sample_is_the_sensors_last_and_low_passed() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
-    body.clock.run(1_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
+    body.clock.run(1_000_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD_US), |now| {
         // As often as control ticks, which would see it stand still.
         let phase = core::f32::consts::TAU * (now % 10_000) as f32 * 1e-4;
         body.rate.set(Vector3::x() * phase.sin());
@@ -82,7 +82,7 @@ fn increments_that_overflow_are_counted_and_leave_a_gap() {
     let (body, shared) = (Body::new(), Local::new());
     let mut sensor = first(&body);
     let mut increments = Vec::new();
-    body.clock.run(200_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD), |now| {
+    body.clock.run(200_000, imu::run(shared.for_imu(), &body.clock, &mut sensor, PERIOD_US), |now| {
         if !(50_000..150_000).contains(&now) {
             increments.extend(drain(&shared));
         }
@@ -146,13 +146,13 @@ fn a_second_sensor_that_does_not_answer_on_the_ground_is_reported_once_and_never
 fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise() {
     let (clock, shared, line, hil) = (Simulated::default(), Local::new(), Live::default(), Hil::new());
     // The same for half a second, then something else at each answer, which is true a period later.
-    let rate = |time: u64| if time < 500_000 { 0.5 } else { (time / PERIOD % 3) as f32 };
+    let rate = |time: u64| if time < 500_000 { 0.5 } else { (time / PERIOD_US % 3) as f32 };
     let mut increments = Vec::new();
     let mut late = 0;
-    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD), |now| {
-        if now % PERIOD == 0 && now > 0 {
+    clock.run(1_000_000, hil::receive(&hil, line.clone(), &clock, shared.for_simulator(), PERIOD_US), |now| {
+        if now % PERIOD_US == 0 && now > 0 {
             command(&hil, now);
-            let time = now + PERIOD;
+            let time = now + PERIOD_US;
             line.say(&v2(1, &HIL_SENSOR_DATA { xgyro: rate(time), ..sensor(time) }));
         }
         increments.extend(drain(&shared));
@@ -161,7 +161,7 @@ fn a_simulators_samples_go_the_same_way_at_its_own_rate_and_may_be_free_of_noise
     });
     // One for each answer but the first: they last a period, and the law's rate is not late.
     assert_eq!((increments.len(), gaps(&increments)), (98, 0));
-    assert!(increments.iter().all(|one| one.end - one.start == PERIOD) && late == 0);
-    assert_eq!(shared.imu.get().unwrap().value.angular_velocity.x, rate(990_000 + PERIOD));
+    assert!(increments.iter().all(|one| one.end - one.start == PERIOD_US) && late == 0);
+    assert_eq!(shared.imu.get().unwrap().value.angular_velocity.x, rate(990_000 + PERIOD_US));
     assert_eq!(texts(&shared), [""; 0]);
 }

@@ -1,6 +1,6 @@
 //! The journal under power cuts: after any of them, the value before or the new one, and room for the next.
 
-use crate::support::chip::{Chip, RECORDS, SECTOR, Torn, Words};
+use crate::support::chip::{Chip, FLASH_RECORDS, SECTOR_BYTES, Torn, Words};
 use firmware::parameters::journal::{Journal, Kept, Kind};
 use std::cell::RefCell;
 
@@ -46,7 +46,7 @@ fn cut_everywhere<const WORD: usize>(
 fn survives_cuts<const WORD: usize>(nested: bool) {
     // From blank flash to a second time through both sectors.
     let chip = Chip::erased();
-    for round in 0..RECORDS + 3 {
+    for round in 0..FLASH_RECORDS + 3 {
         let (before, new) = (round as f32, round as f32 + 1.0);
         for torn in TORN {
             cut_everywhere::<WORD>(&chip, torn, new, &|cut, done| {
@@ -85,19 +85,19 @@ fn flash_of_single_bytes_survives_a_cut_at_any_byte() {
 
 #[test]
 fn flash_that_wears_out_keeps_the_last_value_that_it_took() {
-    for round in 1..=2 * RECORDS {
+    for round in 1..=2 * FLASH_RECORDS {
         let chip = Chip::erased();
         for value in 1..=round {
             assert!(saved::<32>(&chip, value as f32));
         }
         chip.borrow_mut().worn = true;
         let (mut journal, _) = opened::<32>(&chip);
-        for _ in 0..5 * RECORDS {
+        for _ in 0..5 * FLASH_RECORDS {
             assert!(journal.append(Kind::Parameters, &[0; 5]).is_err());
         }
         assert_eq!(opened::<32>(&chip).1, round as f32);
         // Nor does a boot in between change that.
-        for _ in 0..5 * RECORDS {
+        for _ in 0..5 * FLASH_RECORDS {
             assert!(!saved::<32>(&chip, 0.0));
         }
         assert_eq!(opened::<32>(&chip).1, round as f32);
@@ -114,7 +114,7 @@ fn blank_flash_never_held_anything_and_any_other_without_a_record_has_lost_it() 
         kept
     };
     assert_eq!(kept(&chip), [Kept::Never; 2]);
-    for byte in 0..2 * SECTOR {
+    for byte in 0..2 * SECTOR_BYTES {
         let chip = chip.clone();
         chip.borrow_mut().bytes[byte] = 0;
         assert_eq!(kept(&chip), [Kept::Lost; 2], "byte {byte}");
@@ -125,7 +125,7 @@ fn blank_flash_never_held_anything_and_any_other_without_a_record_has_lost_it() 
 fn a_record_is_erased_no_sooner_than_there_is_no_other_place() {
     let chip = Chip::erased();
     // Two copies of each.
-    for value in 1..=RECORDS / 2 {
+    for value in 1..=FLASH_RECORDS / 2 {
         assert!(saved::<4>(&chip, value as f32));
     }
     let first = chip.borrow().bytes.clone();
@@ -146,11 +146,11 @@ fn either_kind_survives_a_cut_at_any_word_while_the_other_is_saved() {
         let mut journal = Journal::open(Words::<32>(chip));
         (0..2).any(|_| journal.append(kind, &[value; 3]).is_ok())
     }
-    const KEPT: u32 = 1_000;
+    const KEPT_VALUE: u32 = 1_000;
     for (kept, saved) in [(Kind::Signing, Kind::Parameters), (Kind::Parameters, Kind::Signing)] {
         let chip = Chip::erased();
-        assert!(save(&chip, kept, KEPT));
-        for round in 1..RECORDS as u32 + 3 {
+        assert!(save(&chip, kept, KEPT_VALUE));
+        for round in 1..FLASH_RECORDS as u32 + 3 {
             for torn in TORN {
                 for power in 1.. {
                     let cut = chip.clone();
@@ -159,10 +159,14 @@ fn either_kind_survives_a_cut_at_any_word_while_the_other_is_saved() {
                     let whole = cut.borrow().power > 0;
                     cut.borrow_mut().power = usize::MAX;
                     let found = read(&cut, saved);
-                    assert_eq!(read(&cut, kept), [KEPT; 3], "{torn:?}");
+                    assert_eq!(read(&cut, kept), [KEPT_VALUE; 3], "{torn:?}");
                     assert!(found == [round; 3] || found == [round - 1; 3] && !done, "{found:?}, {torn:?}");
-                    assert!(save(&cut, saved, round + KEPT), "no room after a cut, {torn:?}");
-                    assert_eq!((read(&cut, kept), read(&cut, saved)), ([KEPT; 3], [round + KEPT; 3]), "{torn:?}");
+                    assert!(save(&cut, saved, round + KEPT_VALUE), "no room after a cut, {torn:?}");
+                    assert_eq!(
+                        (read(&cut, kept), read(&cut, saved)),
+                        ([KEPT_VALUE; 3], [round + KEPT_VALUE; 3]),
+                        "{torn:?}"
+                    );
                     if whole {
                         break;
                     }

@@ -10,7 +10,7 @@ use firmware::frames;
 use firmware::link::mission::{Item, SentItem};
 use firmware::link::origin::Origin;
 use firmware::shared::{MissionList, MissionReport, Reply, Report};
-use flight::{Leg, MISSION_RADIUS, Mode, Request};
+use flight::{ACCEPTANCE_RADIUS_M, Leg, Mode, Request};
 use mavlink::dialects::common::{
     MISSION_ACK_DATA, MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
     MISSION_REQUEST_DATA, MISSION_REQUEST_INT_DATA, MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavCmd,
@@ -365,7 +365,7 @@ fn places_are_those_of_their_frames() {
     ] {
         let placed = item_of(&item, true).placed(&origin, &home);
         assert!((frames::world(&placed.position) - local).norm() < 0.02, "{item:?} {placed:?}");
-        assert_eq!((placed.leg, placed.turn, placed.radius), (Leg::Waypoint, HeadingSetpoint::Keep, MISSION_RADIUS));
+        assert_eq!((placed.leg, placed.turn, placed.radius), (Leg::Waypoint, HeadingSetpoint::Keep, ACCEPTANCE_RADIUS_M));
     }
     // Yaw is from north to the right, degrees; the law's heading from east to the left.
     let turned = MISSION_ITEM_INT_DATA { param1: 2.5, param2: 1.25, param4: 180.0, ..waypoint(0, 0.0, 0.0, -1.0) };

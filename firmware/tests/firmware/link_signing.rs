@@ -39,7 +39,7 @@ const ARM: &str = "fd20010001ffbe4c00000000803f000000000000000000000000000000000
 const STOP: &str = "fd20010002ffbe4c0000000000000098a546000000000000000000000000000000000000000090010101b7e1\
     0307040302010068953a1df0a4";
 /// The stamp of the first.
-const FIRST: Stamp = 0x01_0203_0405;
+const FIRST_STAMP: Stamp = 0x01_0203_0405;
 
 /// Frames of vehicle 1, component 1, on link 0.
 const OWN: [&str; 2] = [
@@ -48,7 +48,7 @@ const OWN: [&str; 2] = [
 ];
 
 /// Time of a test, us, long before the stamps' clock is a minute further.
-const NOW: u64 = 1_000;
+const NOW_US: u64 = 1_000;
 
 fn bytes(hexadecimal: &str) -> Vec<u8> {
     let digits: Vec<u8> = hexadecimal.bytes().map(|digit| (digit as char).to_digit(16).unwrap() as u8).collect();
@@ -63,7 +63,7 @@ fn key() -> Option<Key> {
 fn keyed() -> Local {
     let shared = Local::new();
     report(&shared, Mode::Ready, 0);
-    shared.signing.set(key(), FIRST - 1, 0);
+    shared.signing.set(key(), FIRST_STAMP - 1, 0);
     shared
 }
 
@@ -105,11 +105,11 @@ fn judged(signing: &Signing<NoopRawMutex>, frame: &[u8], now: u64) -> Result<(),
 fn what_pymavlink_signed_counts() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
-    fed.bytes(&bytes(HEARTBEAT), NOW);
+    fed.bytes(&bytes(HEARTBEAT), NOW_US);
     assert!(shared.ground_station.get().is_some());
-    fed.bytes(&bytes(ARM), NOW);
+    fed.bytes(&bytes(ARM), NOW_US);
     assert!(shared.requests.take().is_some());
-    fed.bytes(&bytes(STOP), NOW);
+    fed.bytes(&bytes(STOP), NOW_US);
     assert!(is_stopped(&shared));
     assert_eq!(texts(&shared), [""; 0]);
 }
@@ -124,7 +124,7 @@ fn the_vehicle_signs_as_pymavlink_does() {
         ..HEARTBEAT_DATA::DEFAULT
     };
     let text = STATUSTEXT_DATA { severity: MavSeverity::MAV_SEVERITY_WARNING, text: "Signing: off".into() };
-    let mut sender = Sender::new(1, key(), FIRST - 1);
+    let mut sender = Sender::new(1, key(), FIRST_STAMP - 1);
     (sender.header.component_id, sender.header.sequence) = (1, u8::MAX);
     assert_eq!(sender.say(&heartbeat, 0), bytes(OWN[0]));
     assert_eq!(sender.say(&text, 0), bytes(OWN[1]));
@@ -137,7 +137,7 @@ fn a_frame_with_any_bit_changed_does_nothing() {
             let shared = keyed();
             let mut changed = frame.clone();
             changed[bit / 8] ^= 1 << (bit % 8);
-            Fed::new(&shared).bytes(&changed, NOW);
+            Fed::new(&shared).bytes(&changed, NOW_US);
             let nothing = shared.ground_station.get().is_none() && shared.requests.take().is_none();
             assert!(nothing && !is_stopped(&shared) && replies(&shared).is_empty(), "bit {bit}");
         }
@@ -150,17 +150,17 @@ fn a_frame_that_is_not_signed_is_refused_in_words_as_the_parameter_says() {
         for (signed_only, taken) in [(1.0, false), (0.0, true)] {
             let shared = keyed();
             shared.parameters.set(Name::SignedOnly, signed_only).unwrap();
-            Fed::new(&shared).bytes(&frame, NOW);
+            Fed::new(&shared).bytes(&frame, NOW_US);
             assert_eq!((is_stopped(&shared), texts(&shared).is_empty()), (taken, taken));
         }
         let shared = keyed();
-        Fed::new(&shared).bytes(&frame, NOW);
+        Fed::new(&shared).bytes(&frame, NOW_US);
         assert_eq!(texts(&shared), ["Refused: not signed"]);
         assert_eq!(shared.replies.take(), None);
     }
     // Without a key nothing is, whatever the parameter.
     let shared = Local::new();
-    Fed::new(&shared).bytes(&v2(1, &disarm()), NOW);
+    Fed::new(&shared).bytes(&v2(1, &disarm()), NOW_US);
     assert!(is_stopped(&shared));
 }
 
@@ -168,8 +168,8 @@ fn a_frame_that_is_not_signed_is_refused_in_words_as_the_parameter_says() {
 fn heartbeats_and_radios_that_do_not_sign_are_passed_over_without_a_word() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
-    fed.message(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT }, NOW);
-    fed.message(&RADIO_STATUS_DATA::DEFAULT, NOW);
+    fed.message(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT }, NOW_US);
+    fed.message(&RADIO_STATUS_DATA::DEFAULT, NOW_US);
     assert_eq!(texts(&shared), [""; 0]);
     // A stranger's heartbeat must not keep the failsafe of a lost station asleep.
     assert!(shared.ground_station.get().is_none());
@@ -179,9 +179,9 @@ fn heartbeats_and_radios_that_do_not_sign_are_passed_over_without_a_word() {
 fn another_key_is_refused_wherever_unsigned_frames_are_not() {
     for signed_only in [1.0, 0.0] {
         let shared = Local::new();
-        shared.signing.set(Key::new([7; 32]), FIRST - 1, 0);
+        shared.signing.set(Key::new([7; 32]), FIRST_STAMP - 1, 0);
         shared.parameters.set(Name::SignedOnly, signed_only).unwrap();
-        Fed::new(&shared).bytes(&bytes(STOP), NOW);
+        Fed::new(&shared).bytes(&bytes(STOP), NOW_US);
         assert!(!is_stopped(&shared));
         assert_eq!(texts(&shared), ["Refused: signed with another key"]);
     }
@@ -192,7 +192,7 @@ fn refusals_are_reported_once_a_second() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
     for step in 0..300 {
-        fed.message(&disarm(), NOW + step * 10_000);
+        fed.message(&disarm(), NOW_US + step * 10_000);
     }
     assert_eq!(texts(&shared).len(), 3);
 }
@@ -203,11 +203,11 @@ fn a_signature_that_is_cut_off_is_no_frame_and_the_next_one_is_found() {
     for length in stop.len() - 13..stop.len() {
         let shared = keyed();
         let mut fed = Fed::new(&shared);
-        fed.bytes(&stop[..length], NOW);
+        fed.bytes(&stop[..length], NOW_US);
         assert!(!is_stopped(&shared), "{length} bytes");
         // The next frame fills it up to its length; what is left of that is noise, and the one after it counts.
-        fed.bytes(&bytes(HEARTBEAT), NOW);
-        fed.bytes(&stop, NOW + 200_000);
+        fed.bytes(&bytes(HEARTBEAT), NOW_US);
+        fed.bytes(&stop, NOW_US + 200_000);
         assert!(is_stopped(&shared), "{length} bytes");
     }
 }
@@ -216,11 +216,11 @@ fn a_signature_that_is_cut_off_is_no_frame_and_the_next_one_is_found() {
 fn a_frame_received_once_is_refused_for_ever() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
-    fed.bytes(&bytes(STOP), NOW);
+    fed.bytes(&bytes(STOP), NOW_US);
     assert!(is_stopped(&shared));
     // The same again, and one from before it that the line kept for a while.
     for old in [STOP, ARM, STOP] {
-        fed.bytes(&bytes(old), NOW + 2_000_000);
+        fed.bytes(&bytes(old), NOW_US + 2_000_000);
         assert!(!is_stopped(&shared) && shared.requests.take().is_none());
     }
     assert_eq!(texts(&shared), ["Refused: its time stamp was used before"]);
@@ -229,13 +229,13 @@ fn a_frame_received_once_is_refused_for_ever() {
 #[test]
 fn a_stream_that_was_forgotten_cannot_be_replayed() {
     let signing = Signing::new();
-    signing.set(key(), FIRST, 0);
-    let mut first = Sender::new(100, key(), FIRST);
+    signing.set(key(), FIRST_STAMP, 0);
+    let mut first = Sender::new(100, key(), FIRST_STAMP);
     let frames = first.say(&disarm(), 0);
     assert_eq!(judged(&signing, &frames, 0), Ok(()));
     // As many others as there is room for, all ahead of it.
     for system in 0..STREAMS_KNOWN as u32 {
-        let mut other = Sender::new(system + 1, key(), FIRST + 10);
+        let mut other = Sender::new(system + 1, key(), FIRST_STAMP + 10);
         assert_eq!(judged(&signing, &other.say(&disarm(), 0), 0), Ok(()), "{system}");
     }
     assert_eq!(judged(&signing, &frames, 0), Err(Refusal::Replayed));
@@ -261,10 +261,10 @@ fn streams_rise_each_by_itself_and_a_new_one_is_at_most_a_minute_behind() {
 #[test]
 fn a_forged_frame_moves_no_clock() {
     let signing = Signing::new();
-    signing.set(key(), FIRST, 0);
+    signing.set(key(), FIRST_STAMP, 0);
     let mut forged = Sender::new(100, Key::new([7; 32]), 1 << 47);
     assert_eq!(judged(&signing, &forged.say(&disarm(), 0), 0), Err(Refusal::Forged));
-    assert_eq!(judged(&signing, &Sender::new(100, key(), FIRST).say(&disarm(), 0), 0), Ok(()));
+    assert_eq!(judged(&signing, &Sender::new(100, key(), FIRST_STAMP).say(&disarm(), 0), 0), Ok(()));
 }
 
 #[test]
@@ -298,15 +298,15 @@ fn stamped(system: u32, stamp: Stamp) -> Vec<u8> {
 #[test]
 fn one_stamp_far_ahead_blocks_no_other_sender() {
     let signing = Signing::<NoopRawMutex>::new();
-    signing.set(key(), FIRST, 0);
+    signing.set(key(), FIRST_STAMP, 0);
     let year = LEAP_MAX;
     // The first frame since the start may set the clock, but not beyond what 48 bits last for.
     for stamp in [STAMP_MAX, (1 << 48) - 5_000, (1 << 48) - 1] {
         assert_eq!(judged(&signing, &stamped(7, stamp), 0), Err(Refusal::Ahead));
     }
-    assert_eq!(judged(&signing, &stamped(7, FIRST + 9 * year), 0), Ok(()));
+    assert_eq!(judged(&signing, &stamped(7, FIRST_STAMP + 9 * year), 0), Ok(()));
     // After that a clock that is wrong by years is refused, of a stream that is known and of another.
-    let now = FIRST + 9 * year;
+    let now = FIRST_STAMP + 9 * year;
     for (system, stamp) in [(7, now + year + 1), (8, now + 2 * year), (8, STAMP_MAX - 1)] {
         assert_eq!(judged(&signing, &stamped(system, stamp), 0), Err(Refusal::Ahead));
     }
@@ -316,11 +316,11 @@ fn one_stamp_far_ahead_blocks_no_other_sender() {
     assert_eq!(judged(&signing, &stamped(9, now + year), 0), Ok(()));
     // A key may come with any stamp.
     signing.set(Key::new([9; 32]), Stamp::MAX, 0);
-    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST);
+    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST_STAMP);
     assert_eq!(judged(&signing, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
     // After a start it may be set once more.
     let started = Signing::<NoopRawMutex>::new();
     started.restore(&signing.unkept(0, false).unwrap());
-    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST + 9 * year);
+    let mut sender = Sender::new(9, Key::new([9; 32]), FIRST_STAMP + 9 * year);
     assert_eq!(judged(&started, &sender.say(&HEARTBEAT_DATA::DEFAULT, 0), 0), Ok(()));
 }

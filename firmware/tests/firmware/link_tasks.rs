@@ -2,7 +2,7 @@
 
 use crate::support::line::{Delivery, Incoming, Line, Outgoing};
 use crate::support::receiver::{Local, ordered, report};
-use crate::support::{PERIOD, Simulated, sent, v2};
+use crate::support::{PERIOD_US, Simulated, sent, v2};
 use controller_core::state::State;
 use core::cell::RefCell;
 use embassy_futures::join::join;
@@ -103,7 +103,7 @@ fn flying(shared: &Local, time: u64) {
         attitude: Quaternion::identity(),
         angular_velocity: Vector3::new(0.5, 0.25, 0.125),
     };
-    let timing = Timing { period: PERIOD, worst_duration: 2_500, ..Default::default() };
+    let timing = Timing { period: PERIOD_US, worst_duration: 2_500, ..Default::default() };
     shared.report.put(Report { mode: Mode::Flying, state: Some(state), timing, ..Report::NONE }, time);
 }
 

@@ -189,13 +189,13 @@ fn modes_have_names_and_the_heartbeat_says_the_same_number() {
     assert!(vehicle::available_mode(0).is_none() && vehicle::available_mode(vehicle::MODE_COUNT + 1).is_none());
     let flown = [Mode::Flying, Mode::Holding, Mode::TakingOff, Mode::Landing].map(|mode| (mode, false));
     for (mode, mission) in flown.into_iter().chain([(Mode::Flying, true)]) {
-        let shown = vehicle::FlownMode { mode, mission, policy: false };
+        let shown = vehicle::ModeReport { mode, mission, policy: false };
         let number = vehicle::heartbeat(Some(shown), false).custom_mode;
         assert!(named.iter().any(|named| named.custom_mode == number), "{mode:?}");
         assert_eq!(vehicle::current_mode(&shown).custom_mode, number);
     }
     // PX4's AUTO, EXTERNAL1: named only where a policy is built in.
-    let shown = vehicle::FlownMode { mode: Mode::Flying, mission: false, policy: true };
+    let shown = vehicle::ModeReport { mode: Mode::Flying, mission: false, policy: true };
     let number = vehicle::heartbeat(Some(shown), false).custom_mode;
     assert_eq!(number, 4 << 16 | 11 << 24);
     assert_eq!(named.iter().any(|named| named.custom_mode == number), option_env!("POLICY").is_some());

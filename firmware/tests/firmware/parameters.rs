@@ -1,7 +1,7 @@
 //! Parameters over a reboot, in flash like that of the boards, and in flash that fails.
 
 use crate::support::Simulated;
-use crate::support::chip::{Chip, RECORDS, Words};
+use crate::support::chip::{Chip, FLASH_RECORDS, Words};
 use crate::support::receiver::{Local, report, texts};
 use firmware::hardware::{Fault, Flash, Record};
 use firmware::outputs::wiring;
@@ -32,7 +32,7 @@ fn values_survive_a_reboot<const WORD: usize>() {
         shared.parameters.set(Name::HorizontalSpeed, 1.0 + now as f32 * 1e-5).unwrap();
         shared.parameters.set(Name::SystemId, 42.0).unwrap();
     });
-    assert!(chip.borrow().writes > 2 * RECORDS);
+    assert!(chip.borrow().writes > 2 * FLASH_RECORDS);
     let last = shared.parameters.get(Name::HorizontalSpeed);
     let shared = booted::<WORD>(&chip);
     assert_eq!(shared.parameters.get(Name::SystemId), 42.0);
@@ -78,7 +78,7 @@ impl Watched<'_> {
 }
 
 impl Flash for Watched<'_> {
-    const RECORDS: usize = RECORDS;
+    const RECORDS_PER_SECTOR: usize = FLASH_RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         self.words.read(place)
@@ -104,7 +104,7 @@ fn control_is_warned_while_flash_is_written() {
     clock.run(600_000, storage.keep(&clock, shared.for_storage()), |now| {
         shared.parameters.set(Name::HorizontalSpeed, 1.0 + now as f32 * 1e-5).unwrap();
     });
-    assert!(chip.borrow().writes > 2 * RECORDS, "{opened}");
+    assert!(chip.borrow().writes > 2 * FLASH_RECORDS, "{opened}");
     assert_eq!(unwarned.get(), 0);
     assert!(!shared.saving.is_raised());
 }
@@ -222,7 +222,7 @@ fn a_value_that_could_not_be_saved_is_not_tried_again_and_again() {
 fn the_table_is_in_order_and_within_mavlinks_limits() {
     for (index, row) in PARAMETERS.iter().enumerate() {
         assert_eq!(row.parameter as usize, index);
-        assert!(row.name.len() <= 16 && row.least < row.most, "{row:?}");
+        assert!(row.name.len() <= 16 && row.min < row.max, "{row:?}");
         assert!(if row.parameter.is_tuned() { row.default.is_nan() } else { row.allows(row.default) }, "{row:?}");
         assert!(PARAMETERS.iter().filter(|other| other.name == row.name).count() == 1);
         assert_eq!(Name::from_name(row.name), Some(row.parameter));

@@ -13,7 +13,7 @@ use flight::Mode;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavType, SETUP_SIGNING_DATA};
 
 /// A second, us.
-const SECOND: u64 = 1_000_000;
+const SECOND_US: u64 = 1_000_000;
 
 struct Opened(Cell<bool>);
 
@@ -73,12 +73,12 @@ impl Bench {
 
 #[test]
 fn the_link_is_on_the_serial_line_until_the_port_is_opened_and_again_when_it_is_closed() {
-    let bench = Bench::new(true, 30 * SECOND, |bench, now| {
-        bench.port.0.set((10 * SECOND..20 * SECOND).contains(&now));
-        if now.is_multiple_of(SECOND) {
+    let bench = Bench::new(true, 30 * SECOND_US, |bench, now| {
+        bench.port.0.set((10 * SECOND_US..20 * SECOND_US).contains(&now));
+        if now.is_multiple_of(SECOND_US) {
             // Ten, twenty and ten seconds' worth of sequence numbers.
-            bench.incoming[0].say(&heartbeat((now / SECOND) as u8));
-            bench.incoming[1].say(&heartbeat((now / SECOND) as u8 + 100));
+            bench.incoming[0].say(&heartbeat((now / SECOND_US) as u8));
+            bench.incoming[1].say(&heartbeat((now / SECOND_US) as u8 + 100));
         }
     });
     let (serial, port) = bench.heartbeats();
@@ -91,10 +91,10 @@ fn the_link_is_on_the_serial_line_until_the_port_is_opened_and_again_when_it_is_
 #[test]
 fn nothing_is_received_from_the_line_that_is_not_the_link() {
     for open in [false, true] {
-        let bench = Bench::new(true, 5 * SECOND, |bench, now| {
+        let bench = Bench::new(true, 5 * SECOND_US, |bench, now| {
             bench.port.0.set(open);
-            if now > SECOND && now.is_multiple_of(SECOND) {
-                bench.incoming[usize::from(!open)].say(&heartbeat((now / SECOND) as u8));
+            if now > SECOND_US && now.is_multiple_of(SECOND_US) {
+                bench.incoming[usize::from(!open)].say(&heartbeat((now / SECOND_US) as u8));
             }
         });
         assert_eq!(bench.frames(), 0, "{open}");
@@ -107,13 +107,13 @@ fn nothing_is_received_from_the_line_that_is_not_the_link() {
 fn it_does_not_move_while_a_motor_turns() {
     for mode in Mode::ALL {
         let turns = mode.is_armed() || mode == Mode::MotorTest;
-        let bench = Bench::new(false, 2 * SECOND, |bench, now| {
+        let bench = Bench::new(false, 2 * SECOND_US, |bench, now| {
             report(&bench.shared, mode, now);
-            bench.port.0.set(now > SECOND);
+            bench.port.0.set(now > SECOND_US);
         });
         assert_eq!(bench.shared.on_port.is_raised(), !turns, "{mode:?}");
-        let bench = Bench::new(false, 2 * SECOND, |bench, now| {
-            bench.port.0.set(now < SECOND);
+        let bench = Bench::new(false, 2 * SECOND_US, |bench, now| {
+            bench.port.0.set(now < SECOND_US);
             report(&bench.shared, if now < PORT_POLL_INTERVAL_US { Mode::Ready } else { mode }, now);
         });
         assert_eq!(bench.shared.on_port.is_raised(), turns, "{mode:?}");
@@ -122,10 +122,10 @@ fn it_does_not_move_while_a_motor_turns() {
 
 #[test]
 fn a_board_without_the_port_keeps_the_serial_line() {
-    let bench = Bench::new(false, 5 * SECOND, |bench, now| {
+    let bench = Bench::new(false, 5 * SECOND_US, |bench, now| {
         bench.port.0.set(true);
-        if now.is_multiple_of(SECOND) {
-            bench.incoming[0].say(&heartbeat((now / SECOND) as u8));
+        if now.is_multiple_of(SECOND_US) {
+            bench.incoming[0].say(&heartbeat((now / SECOND_US) as u8));
         }
     });
     assert_eq!((bench.frames(), bench.heartbeats().1), (5, 0));
@@ -134,8 +134,8 @@ fn a_board_without_the_port_keeps_the_serial_line() {
 #[test]
 fn every_frame_move_is_reported_once() {
     let (clock, shared, port) = (Simulated::default(), Local::new(), Opened(Cell::new(false)));
-    clock.run(4 * SECOND, watch(&port, &clock, shared.for_port()), |now| {
-        port.0.set((SECOND..2 * SECOND).contains(&now))
+    clock.run(4 * SECOND_US, watch(&port, &clock, shared.for_port()), |now| {
+        port.0.set((SECOND_US..2 * SECOND_US).contains(&now))
     });
     assert_eq!(texts(&shared), ["Link: on USB, the serial line is ignored", "Link: on the serial line"]);
 }
@@ -154,7 +154,7 @@ fn key() -> Vec<u8> {
 #[test]
 fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     // Who waits on the serial line when the port is opened still reads what comes there next.
-    let bench = Bench::new(true, SECOND, |bench, now| {
+    let bench = Bench::new(true, SECOND_US, |bench, now| {
         bench.port.0.set(true);
         if now == PORT_POLL_INTERVAL_US {
             bench.incoming[0].say(&key());
@@ -163,7 +163,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     assert!(bench.shared.on_port.is_raised());
     assert_eq!(bench.shared.signing.unkept(0, false), None);
     // All of it but its last byte before the port is opened, and a frame from there.
-    let bench = Bench::new(true, SECOND, |bench, now| {
+    let bench = Bench::new(true, SECOND_US, |bench, now| {
         bench.port.0.set(now > PORT_POLL_INTERVAL_US);
         if now == PORT_POLL_INTERVAL_US {
             bench.incoming[0].say(&key()[..key().len() - 1]);
@@ -177,7 +177,7 @@ fn a_key_from_the_serial_line_is_none_while_the_link_moves_to_the_port() {
     assert_eq!(bench.frames(), 1);
     assert_eq!(bench.shared.signing.unkept(0, false), None);
     // It would have counted there.
-    let bench = Bench::new(true, 2 * SECOND, |bench, now| {
+    let bench = Bench::new(true, 2 * SECOND_US, |bench, now| {
         bench.port.0.set(true);
         if now == PORT_POLL_INTERVAL_US {
             bench.incoming[1].say(&key());

@@ -20,20 +20,20 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 
 /// Channel values at the ends and in the middle.
-const LOW: u16 = 172;
-const MIDDLE: u16 = 992;
-const HIGH: u16 = 1811;
+const CHANNEL_LOW: u16 = 172;
+const CHANNEL_MIDDLE: u16 = 992;
+const CHANNEL_HIGH: u16 = 1811;
 
 /// Sticks at rest; armed, flown by and killed by switches.
 fn channels(arm: u16, flies: u16, kill: u16) -> [u16; 16] {
-    let mut channels = [MIDDLE; 16];
+    let mut channels = [CHANNEL_MIDDLE; 16];
     channels[4..7].copy_from_slice(&[arm, flies, kill]);
     channels
 }
 
 const AT_REST: [u16; 16] = {
-    let mut channels = [MIDDLE; 16];
-    (channels[4], channels[5], channels[6]) = (LOW, LOW, LOW);
+    let mut channels = [CHANNEL_MIDDLE; 16];
+    (channels[4], channels[5], channels[6]) = (CHANNEL_LOW, CHANNEL_LOW, CHANNEL_LOW);
     channels
 };
 
@@ -96,7 +96,7 @@ fn report(shared: &Local, mode: Mode, is_airborne: bool) {
 fn bytes_in_pieces_with_noise_between_them_become_switches() {
     for (broken, killed) in [(0, Some(true)), (1, None)] {
         let (clock, shared, line) = (Simulated::default(), Local::new(), Live::default());
-        let mut bytes = frame(&channels(LOW, LOW, HIGH));
+        let mut bytes = frame(&channels(CHANNEL_LOW, CHANNEL_LOW, CHANNEL_HIGH));
         // One with a wrong checksum does not count.
         *bytes.last_mut().unwrap() ^= broken;
         clock.run(200_000, receive(line.clone(), &clock, shared.for_radio()), |now| {
@@ -116,16 +116,19 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     // Turned on with the arm switch up.
-    let mut now = held(&mut radio, &channels(HIGH, LOW, LOW), 0);
+    let mut now = held(&mut radio, &channels(CHANNEL_HIGH, CHANNEL_LOW, CHANNEL_LOW), 0);
     assert!(requests(&shared).is_empty());
-    for (arm, flies, request) in [(LOW, LOW, Request::Disarm), (HIGH, LOW, Request::Arm), (HIGH, MIDDLE, Request::Hold)]
-    {
-        now = held(&mut radio, &channels(arm, flies, LOW), now);
+    for (arm, flies, request) in [
+        (CHANNEL_LOW, CHANNEL_LOW, Request::Disarm),
+        (CHANNEL_HIGH, CHANNEL_LOW, Request::Arm),
+        (CHANNEL_HIGH, CHANNEL_MIDDLE, Request::Hold),
+    ] {
+        now = held(&mut radio, &channels(arm, flies, CHANNEL_LOW), now);
         assert_eq!(requests(&shared), [request]);
     }
     // Silent for a while, it is as if it were turned on again.
     radio.check_silence(now + RADIO_TIMEOUT_US);
-    held(&mut radio, &channels(LOW, LOW, LOW), 1_000_000);
+    held(&mut radio, &channels(CHANNEL_LOW, CHANNEL_LOW, CHANNEL_LOW), 1_000_000);
     assert!(requests(&shared).is_empty());
     assert_eq!(texts(&shared), ["Radio received", "Radio lost", "Radio received"]);
 }
@@ -134,7 +137,7 @@ fn switches_act_when_they_are_moved_and_not_where_they_are_found() {
 fn the_kill_switch_keeps_its_last_received_position() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    held(&mut radio, &channels(LOW, LOW, HIGH), 0);
+    held(&mut radio, &channels(CHANNEL_LOW, CHANNEL_LOW, CHANNEL_HIGH), 0);
     radio.check_silence(10_000_000);
     assert!(shared.killed.get().unwrap().value);
     held(&mut radio, &AT_REST, 20_000_000);
@@ -151,7 +154,7 @@ fn slowest_kill(rate: u64) -> u64 {
     // Moved right after the last of these.
     let moved = frames(rate - 1);
     let stopped = (rate..2 * rate).map(frames).find(|&now| {
-        radio.take(&channels(LOW, LOW, HIGH), now);
+        radio.take(&channels(CHANNEL_LOW, CHANNEL_LOW, CHANNEL_HIGH), now);
         shared.killed.get().is_some_and(|killed| killed.value)
     });
     stopped.unwrap() - moved
@@ -171,7 +174,7 @@ fn corrupted(seed: &mut u64) -> [u16; 16] {
     [(); 16].map(|()| {
         // A linear congruential generator's upper bits.
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        [LOW, MIDDLE, HIGH, (*seed >> 40) as u16 % 2048][(*seed >> 60) as usize % 4]
+        [CHANNEL_LOW, CHANNEL_MIDDLE, CHANNEL_HIGH, (*seed >> 40) as u16 % 2048][(*seed >> 60) as usize % 4]
     })
 }
 
@@ -181,13 +184,14 @@ fn corrupted_frames_whose_checksum_passes_move_no_switch_wherever_they_come() {
     let modes = [Mode::Ready, Mode::Idling, Mode::TakingOff, Mode::Flying, Mode::Holding];
     for (rate, burst) in [(50, 1), (50, 2), (150, 4), (500, 20)] {
         for (place, mode) in (0..12).flat_map(|place| modes.map(|mode| (place, mode))) {
-            for flies in [LOW, MIDDLE, HIGH] {
+            for flies in [CHANNEL_LOW, CHANNEL_MIDDLE, CHANNEL_HIGH] {
                 let shared = Local::new();
                 report(&shared, mode, mode.flies());
                 let mut radio = Radio::new(shared.for_radio());
                 for count in 0..rate {
                     let is_corrupted = (place..place + burst).contains(&(count % 60));
-                    let channels = if is_corrupted { corrupted(&mut seed) } else { channels(LOW, flies, LOW) };
+                    let channels =
+                        if is_corrupted { corrupted(&mut seed) } else { channels(CHANNEL_LOW, flies, CHANNEL_LOW) };
                     radio.feed(&frame(&channels), count * 1_000_000 / rate);
                 }
                 let killed = shared.killed.get().is_some_and(|killed| killed.value);
@@ -205,7 +209,7 @@ fn a_receiver_that_has_lost_its_transmitter_and_repeats_its_frames_is_silent() {
     let mut radio = Radio::new(shared.for_radio());
     let mut run = |seconds: Range<u64>, quality: u8| {
         for now in (seconds.start * 1_000_000..seconds.end * 1_000_000).step_by(FRAME_PERIOD as usize) {
-            radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
+            radio.feed(&frame(&channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW)), now);
             if now.is_multiple_of(200_000) {
                 radio.feed(&statistics(quality), now);
             }
@@ -223,7 +227,7 @@ fn a_receiver_that_has_lost_its_transmitter_and_repeats_its_frames_is_silent() {
     radio.feed(&statistics(100), 6_000_000);
     let (asked, words, received) = {
         for now in (6_000_000..7_000_000).step_by(FRAME_PERIOD as usize) {
-            radio.feed(&frame(&channels(HIGH, HIGH, LOW)), now);
+            radio.feed(&frame(&channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW)), now);
         }
         (requests(&shared), texts(&shared), shared.ground_station.get().unwrap().time)
     };
@@ -235,9 +239,9 @@ fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>
     let shared = Local::new();
     report(&shared, mode, is_airborne);
     let mut radio = Radio::new(shared.for_radio());
-    let mut channels = channels(HIGH, HIGH, LOW);
+    let mut channels = channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW);
     for (channel, stick) in channels.iter_mut().zip(sticks) {
-        *channel = (f32::from(MIDDLE) + stick * 819.0).round() as u16;
+        *channel = (f32::from(CHANNEL_MIDDLE) + stick * 819.0).round() as u16;
     }
     held(&mut radio, &channels, 5);
     let mut requests = requests(&shared);
@@ -303,7 +307,7 @@ fn offboard() -> COMMAND_LONG_DATA {
 #[test]
 fn while_the_sticks_fly_no_other_source_does() {
     let shared = Local::new();
-    held(&mut Radio::new(shared.for_radio()), &channels(HIGH, HIGH, LOW), 0);
+    held(&mut Radio::new(shared.for_radio()), &channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW), 0);
     let target = target();
     let mut fed = Fed::new(&shared);
     fed.message(&target, 100_000);
@@ -325,7 +329,7 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
     let mut fed = Fed::new(&shared);
-    held(&mut radio, &channels(HIGH, HIGH, LOW), 0);
+    held(&mut radio, &channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW), 0);
     fed.message(&target(), 100_000);
     fed.message(&offboard(), RADIO_TIMEOUT_US);
     fed.message(&target(), RADIO_TIMEOUT_US + 100_000);
@@ -341,7 +345,7 @@ fn flying_sticks_keep_control_when_a_client_asks_for_it() {
 fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    let heard = held(&mut radio, &channels(HIGH, flies, LOW), 0) - FRAME_PERIOD;
+    let heard = held(&mut radio, &channels(CHANNEL_HIGH, flies, CHANNEL_LOW), 0) - FRAME_PERIOD;
     report(&shared, mode, true);
     radio.check_silence(heard + RADIO_TIMEOUT_US);
     assert!(requests(&shared).is_empty());
@@ -353,13 +357,13 @@ fn requests_in_silence(mode: Mode, flies: u16) -> Vec<Request> {
 fn sticks_that_flew_and_fall_silent_request_a_hold_once() {
     for mode in Mode::ALL {
         let flown = matches!(mode, Mode::Flying | Mode::TakingOff);
-        assert_eq!(requests_in_silence(mode, HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
-        assert_eq!(requests_in_silence(mode, LOW), [], "{mode:?}");
+        assert_eq!(requests_in_silence(mode, CHANNEL_HIGH), [Request::Hold][..usize::from(flown)], "{mode:?}");
+        assert_eq!(requests_in_silence(mode, CHANNEL_LOW), [], "{mode:?}");
     }
     // Whatever the link requests meanwhile.
     let shared = Local::new();
     let mut radio = Radio::new(shared.for_radio());
-    let heard = held(&mut radio, &channels(HIGH, HIGH, LOW), 0) - FRAME_PERIOD;
+    let heard = held(&mut radio, &channels(CHANNEL_HIGH, CHANNEL_HIGH, CHANNEL_LOW), 0) - FRAME_PERIOD;
     report(&shared, Mode::Flying, true);
     let land = command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 5]);
     let mut fed = Fed::new(&shared);
@@ -380,8 +384,9 @@ fn a_companion_does_not_take_over_from_a_radio_that_falls_silent() {
             shared.ground_station.put((), now);
             fed.message(&companion, now);
             if is_received {
-                let mut channels = channels(if tick < 220 { LOW } else { HIGH }, HIGH, LOW);
-                channels[2] = if (230..240).contains(&tick) { 1400 } else { MIDDLE };
+                let mut channels =
+                    channels(if tick < 220 { CHANNEL_LOW } else { CHANNEL_HIGH }, CHANNEL_HIGH, CHANNEL_LOW);
+                channels[2] = if (230..240).contains(&tick) { 1400 } else { CHANNEL_MIDDLE };
                 radio.take(&channels, now);
             }
             radio.check_silence(now);

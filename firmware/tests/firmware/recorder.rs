@@ -15,15 +15,15 @@ use mavlink::dialects::common::{
     STATUSTEXT_DATA,
 };
 
-const ROOM: usize = 500;
+const RING_RECORDS: usize = 500;
 
 /// Ticks that are recorded after a flight, with the one in which it ends.
-const AFTER: u64 = RECORDED_AFTERWARDS_US / RECORD_SPACING_MIN_US;
+const TICKS_AFTERWARDS: u64 = RECORDED_AFTERWARDS_US / RECORD_SPACING_MIN_US;
 
-/// Shared, with a recorder for [`ROOM`] ticks.
+/// Shared, with a recorder for [`RING_RECORDS`] ticks.
 fn shared() -> Local {
     let shared = Local::new();
-    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; ROOM].into_boxed_slice())), "mine");
+    shared.recorder.attach(Ring::recover(Box::leak(vec![[0; SLOT_BYTES]; RING_RECORDS].into_boxed_slice())), "mine");
     shared
 }
 
@@ -65,14 +65,14 @@ fn a_flight_and_two_seconds_after_it_are_recorded_and_the_next_one_replaces_it()
     ticks(&shared, true, 10, 50);
     assert_eq!((shared.recorder.size(), shared.recorder.read(0, &mut [0; 90])), (None, 0));
     ticks(&shared, false, 60, 1_000);
-    let recorded = 50 + AFTER as usize - 1;
+    let recorded = 50 + TICKS_AFTERWARDS as usize - 1;
     assert_eq!(shared.recorder.size(), Some(ulog::size(recorded)));
     // The time of the first record stands in the file's head.
     let mut head = [0; 16];
     assert_eq!((shared.recorder.read(0, &mut head), &head[8..]), (16, &100_000_u64.to_le_bytes()[..]));
     ticks(&shared, true, 2_000, 5);
     ticks(&shared, false, 2_005, 1_000);
-    assert_eq!(shared.recorder.size(), Some(ulog::size(5 + AFTER as usize - 1)));
+    assert_eq!(shared.recorder.size(), Some(ulog::size(5 + TICKS_AFTERWARDS as usize - 1)));
 }
 
 #[test]
@@ -101,8 +101,8 @@ fn a_ground_station_lists_it_fetches_it_and_erases_it() {
     assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT);
     ticks(&shared, true, 0, 100);
     assert_eq!(entry(&shared), LOG_ENTRY_DATA::DEFAULT, "while it is made");
-    ticks(&shared, false, 100, AFTER);
-    let size = ulog::size(99 + AFTER as usize);
+    ticks(&shared, false, 100, TICKS_AFTERWARDS);
+    let size = ulog::size(99 + TICKS_AFTERWARDS as usize);
     assert_eq!(entry(&shared), LOG_ENTRY_DATA { size, num_logs: 1, ..LOG_ENTRY_DATA::DEFAULT });
 
     let mut fed = Fed::new(&shared);

@@ -1,6 +1,6 @@
 //! Motor commands repeated: how often, how long, and what a task that hangs leaves of them.
 
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::Simulated;
 use core::cell::{Cell, RefCell};
 use core::future::{Future, pending};
@@ -70,8 +70,9 @@ async fn flies(clock: &Simulated, repeated: &Repeated<NoopRawMutex>, period: u64
 
 #[test]
 fn a_command_goes_out_at_once_and_again_every_millisecond() {
-    let frames =
-        frames(100_000, &Cell::new(Does::Well), PERIOD, |clock, repeated| flies(clock, repeated, PERIOD, 200_000));
+    let frames = frames(100_000, &Cell::new(Does::Well), PERIOD_US, |clock, repeated| {
+        flies(clock, repeated, PERIOD_US, 200_000)
+    });
     assert!((95..=112).contains(&frames.len()), "{}", frames.len());
     assert!(frames.windows(2).all(|pair| pair[1].0 - pair[0].0 <= 2_000), "{frames:?}");
     for tick in 1..10 {
@@ -93,7 +94,8 @@ fn a_control_task_that_hangs_silences_the_motors_within_20_ms_or_two_slow_ticks(
 
 #[test]
 fn nothing_is_sent_before_the_first_command() {
-    let frames = frames(50_000, &Cell::new(Does::Well), PERIOD, |clock, _| async move { clock.until(u64::MAX).await });
+    let frames =
+        frames(50_000, &Cell::new(Does::Well), PERIOD_US, |clock, _| async move { clock.until(u64::MAX).await });
     assert!(frames.is_empty());
 }
 
@@ -102,7 +104,7 @@ fn control_receives_the_fault_of_a_frame_that_failed_or_hung() {
     for wrong in [Does::Fail, Does::Hang] {
         let does = Cell::new(wrong);
         let results = RefCell::new(Vec::new());
-        let sent = frames(30_000, &does, PERIOD, |clock, repeated| {
+        let sent = frames(30_000, &does, PERIOD_US, |clock, repeated| {
             let (does, results) = (&does, &results);
             async move {
                 let mut repeater = Repeater { repeated, clock };

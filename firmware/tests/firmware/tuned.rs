@@ -2,7 +2,7 @@
 
 use crate::hil_takeover::increment;
 use crate::parameters::chip_with;
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use crate::support::Simulated;
 use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, replies, report, texts};
@@ -82,7 +82,7 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
         configuration: configuration::embedded().unwrap(),
         loops: &configuration::LOOPS,
         identity: configuration::IDENTITY,
-        period: PERIOD,
+        period: PERIOD_US,
     };
     let flown = built.tuned(|name| again.parameters.raw(name)).unwrap();
     assert_eq!(flown.vehicle().mass, 0.4);
@@ -127,7 +127,7 @@ fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
 fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certificate_says() {
     let shared = Local::new();
     let configuration = configuration::embedded().unwrap();
-    let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7, period: PERIOD };
+    let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7, period: PERIOD_US };
     boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap();
     let words = texts_of_setting(&shared, Name::GainRate, 110.0);
     assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
@@ -141,7 +141,7 @@ fn what_was_built_for_no_vehicle_never_arms_and_says_what_to_do() {
         configuration: configuration::embedded().unwrap(),
         loops: &configuration::LOOPS,
         identity: 7,
-        period: PERIOD,
+        period: PERIOD_US,
     };
     let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, _) = boot::start_named(place, shared.for_boot(), built, false).unwrap();

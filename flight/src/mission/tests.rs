@@ -1,11 +1,11 @@
 use super::*;
 
-const HOME: Vector3<f32> = Vector3::new(10.0, -20.0, 1.0);
+const HOME_M: Vector3<f32> = Vector3::new(10.0, -20.0, 1.0);
 
 fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
     MissionItem {
         leg,
-        position: HOME + Vector3::new(x, y, z),
+        position: HOME_M + Vector3::new(x, y, z),
         turn: HeadingSetpoint::Keep,
         radius: ACCEPTANCE_RADIUS_M,
         hold: 0,
@@ -13,7 +13,7 @@ fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
 }
 
 fn checked(item: &MissionItem) -> Result<(), MissionRefusal> {
-    item.check(&HOME, &FlightSettings { fence_radius: 5.0, fence_height: 4.0, ..FlightSettings::DEFAULT })
+    item.check(&HOME_M, &FlightSettings { fence_radius: 5.0, fence_height: 4.0, ..FlightSettings::DEFAULT })
 }
 
 #[test]

@@ -31,9 +31,9 @@ estimation::listed! {
         HoldRequested,
         /// Landing was requested and granted.
         LandRequested,
-        /// Idling has lasted [`super::IDLING_MAX`].
+        /// Idling has lasted [`super::IDLING_MAX_US`].
         IdlingOver,
-        /// The vehicle stands where it was armed, and holds, or has done what it does for [`super::IDLING_MAX`].
+        /// The vehicle stands where it was armed, and holds, or has done what it does for [`super::IDLING_MAX_US`].
         HeldOnGround,
         /// The reference has come to rest at the height of the take-off.
         TakenOff,
@@ -41,11 +41,11 @@ estimation::listed! {
         Landed,
         /// The vehicle lies on its back or its side and does not move.
         Crashed,
-        /// The IMU's last increment is older than [`super::IMU_AGE_MAX`], or the estimator has lost its state.
+        /// The IMU's last increment is older than [`super::IMU_AGE_MAX_US`], or the estimator has lost its state.
         ImuStale,
-        /// No tick of the last [`super::REFUSAL_MAX`] brought new thrusts.
+        /// No tick of the last [`super::REFUSAL_MAX_US`] brought new thrusts.
         ThrustsRefused,
-        /// No pose has been believed for [`super::COASTING_MAX`], or the estimate is too uncertain.
+        /// No pose has been believed for [`super::COASTING_MAX_US`], or the estimate is too uncertain.
         EstimateLost,
         /// The source of poses has been refused and found again too often in this flight.
         PosesGivenUp,
@@ -57,28 +57,28 @@ estimation::listed! {
         PoseRegained,
         /// The same, of a vehicle that was landing when it lost them, or was commanded to land since.
         PoseRegainedToLand,
-        /// Descending has lasted [`super::DESCENDING_MAX`].
+        /// Descending has lasted [`super::DESCENDING_MAX_US`].
         DescendingOver,
-        /// The ground station has been silent for [`super::GROUND_STATION_SILENCE_MAX`].
+        /// The ground station has been silent for [`super::GROUND_STATION_TIMEOUT_US`].
         GroundStationSilent,
         /// It has been silent for as long as a vehicle holds before it lands.
         GroundStationGone,
         /// A setpoint that must be renewed was not.
         SetpointsLost,
-        /// The battery has been low for [`super::BATTERY_DEBOUNCE`].
+        /// The battery has been low for [`super::BATTERY_DEBOUNCE_US`].
         BatteryLow,
         /// It has been critical for as long.
         BatteryCritical,
         /// The vehicle is outside the fence.
         FenceBreached,
-        /// The vehicle has been too far from its reference for [`super::TRACKING_DEBOUNCE`], or was struck and thrown
-        /// out of its place.
+        /// The vehicle has been too far from its reference for [`super::TRACKING_DEBOUNCE_US`], or was struck and
+        /// thrown out of its place.
         TrackingLost,
         /// A rotor has failed, and the vehicle is where it may land.
         RotorLost,
-        /// The rotors have not delivered the commanded wrench during [`super::SATURATION_DEBOUNCE`].
+        /// The rotors have not delivered the commanded wrench during [`super::SATURATION_DEBOUNCE_US`].
         Saturated,
-        /// Control has been late for [`super::OVERRUN_DEBOUNCE`].
+        /// Control has been late for [`super::OVERRUN_DEBOUNCE_US`].
         Overrun,
     }
 }

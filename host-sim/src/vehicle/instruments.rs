@@ -97,7 +97,7 @@ pub struct Instruments {
 
 impl Instruments {
     /// Sensors as `what` describes them, under `gravity`, m/s^2, of a vehicle that has this velocity, m/s, a
-    /// millisecond before the first sample. Outages count from `beginning`, us after that.
+    /// millisecond before the first sample. Outages count from `file_header`, us after that.
     #[must_use]
     pub fn new(what: &Estimator, gravity: f64, velocity: Vector3<f64>, beginning: u64) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(what.seed);

@@ -1,7 +1,7 @@
 //! The flights that are measured, and the table.
 
 use crate::body;
-use crate::count::{CLOCKS, Cost};
+use crate::count::{CLOCKS_MHZ, Cost};
 use crate::counter::Counter;
 use crate::estimation;
 use crate::stack;
@@ -123,7 +123,7 @@ fn certified(counter: &Counter, configuration: &Configuration) -> Option<Certifi
         hprintln!("the certificate takes more instructions than the timer counts");
         return None;
     };
-    let [bolt, h743] = CLOCKS.map(|clock| instructions / clock * 1e-6);
+    let [bolt, h743] = CLOCKS_MHZ.map(|clock| instructions / clock * 1e-6);
     hprintln!("certificate: {:.0} instructions, {:.2} s at 168 MHz, {:.2} s at 400 MHz", instructions, bolt, h743);
     hprintln!("             {} B of stack beside the result's {} B", bytes, size_of::<Certified>());
     Some(certified)

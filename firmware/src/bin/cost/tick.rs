@@ -5,7 +5,7 @@
 //! second. Its IMU samples at 1 kHz, its poses come 20 ms late, a hundred a second, whatever the rate of control.
 
 use crate::body;
-use crate::count::{CLOCKS, Cost};
+use crate::count::{CLOCKS_MHZ, Cost};
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
 use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
@@ -85,7 +85,7 @@ impl Flown {
         };
         self.ticks.print(&label("whole control tick"));
         // Instructions a microsecond, over those that the clock has: percent, at each clock.
-        let percent = |each: f64| CLOCKS.map(|clock| 100.0 * each / clock);
+        let percent = |each: f64| CLOCKS_MHZ.map(|clock| 100.0 * each / clock);
         let (period, between) = (period as f64, SAMPLE_PERIOD_US as f64);
         for (what, [bolt, h743]) in [
             ("worst tick of its period, %", percent(self.ticks.worst() / period)),

@@ -1,7 +1,7 @@
 //! A register file that follows the data sheet.
 
 use super::super::*;
-use crate::bench::{self, Jumping, Line, Pin, Spi, on_one_bus};
+use crate::tests::bench::{self, Jumping, Line, Pin, Spi, on_one_bus};
 use core::cell::{Cell, RefCell};
 use embassy_futures::block_on;
 use std::rc::Rc;

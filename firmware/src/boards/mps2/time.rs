@@ -19,7 +19,6 @@ const CYCLES_PER_US: u64 = CLOCK_HZ as u64 / 1_000_000;
 /// Microseconds in one round of SysTick: whole, and as many cycles as its 24 bits hold.
 const ROUND_US: u64 = 500_000;
 
-/// Cycles in one round.
 const ROUND_CYCLES: u64 = ROUND_US * CYCLES_PER_US;
 
 const _: () = assert!(ROUND_CYCLES <= 1 << 24);

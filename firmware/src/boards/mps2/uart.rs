@@ -67,13 +67,11 @@ impl Uart {
     }
 
     /// Both directions of the stream. The buffers are shared: one reader and one writer at a time make sense of it.
-    #[must_use]
     pub fn split(&'static self) -> (Receiver, Sender) {
         (Receiver(self), Sender(self))
     }
 
     /// Bytes lost since boot.
-    #[must_use]
     pub fn lost(&self) -> u32 {
         self.lost.lock(Cell::get)
     }

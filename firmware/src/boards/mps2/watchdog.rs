@@ -4,7 +4,7 @@
 //! emulator is worth going on with after that, and a test must see it.
 
 use super::exit;
-use super::lines::CLOCK;
+use super::lines::CLOCK_HZ;
 
 const LOAD: *mut u32 = 0x4000_8000 as *mut u32;
 const CONTROL: *mut u32 = 0x4000_8008 as *mut u32;
@@ -16,11 +16,10 @@ pub struct BoardWatchdog(());
 
 impl BoardWatchdog {
     /// Starts it: from now on it wants to be fed every `microseconds` (up to 171 s).
-    #[must_use]
     pub fn start(microseconds: u32) -> Self {
         // SAFETY: these are the watchdog's registers, and only this module touches them.
         unsafe {
-            LOAD.write_volatile(microseconds.saturating_mul(CLOCK / 1_000_000));
+            LOAD.write_volatile(microseconds.saturating_mul(CLOCK_HZ / 1_000_000));
             CONTROL.write_volatile(INTERRUPT_ENABLE);
         }
         Self(())

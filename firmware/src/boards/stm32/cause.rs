@@ -34,7 +34,6 @@ pub struct Flags {
 
 impl Cause {
     /// The most telling of the flags.
-    #[must_use]
     pub fn first(flags: Flags) -> Self {
         match flags {
             Flags { power: true, .. } => Self::Power,
@@ -47,13 +46,11 @@ impl Cause {
     }
 
     /// Whether the memory has been without power, or may have been.
-    #[must_use]
     pub fn is_power(self) -> bool {
         matches!(self, Self::Power | Self::BrownOut)
     }
 
     /// The report where no words were kept.
-    #[must_use]
     pub fn words(self) -> Option<&'static str> {
         match self {
             Self::BrownOut => Some("brown-out, supply too low"),

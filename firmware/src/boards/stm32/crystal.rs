@@ -7,7 +7,6 @@ use embassy_stm32::pac::RCC;
 const POLLS_MAX: u32 = 1_600_000;
 
 /// Starts the crystal; whether it runs. Before the clocks are set, once.
-#[must_use]
 pub fn starts() -> bool {
     RCC.cr().modify(|w| w.set_hseon(true));
     let runs = (0..POLLS_MAX).any(|_| RCC.cr().read().hserdy());

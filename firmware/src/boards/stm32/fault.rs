@@ -1,6 +1,6 @@
 //! The last thing a board does: stop the motors, report why, restart.
 //!
-//! Panics, faults and unhandled interrupts end here, in the order of [`Ending`]:
+//! Panics, faults and unhandled interrupts end here, in the order of [`StopSequence`]:
 //!
 //! 1. interrupts go off, and stop frames go out: by polling the motors' timers alone, whose registers say themselves
 //!    whether they were ever set up. Nothing that may be broken is used: no heap, no executor, no DMA, no interrupt, no
@@ -34,9 +34,9 @@ use crate::boards::chosen::MOTOR_TIMERS;
 use crate::boards::fault::Fault;
 use crate::boards::kept;
 use crate::dshot::{FRAME_BITS, zero_width};
-use crate::ending::{Ending, STOP_FRAMES_AFTER, STOP_FRAMES_BEFORE};
 use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
+use crate::stop_sequence::{STOP_FRAMES_AFTER, STOP_FRAMES_BEFORE, StopSequence};
 use core::panic::PanicInfo;
 use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
@@ -50,7 +50,7 @@ const PERIOD_POLLS_MAX: usize = 10_000;
 /// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
 const _: () = assert!((STOP_FRAMES_BEFORE + STOP_FRAMES_AFTER) * 140 < 34_000);
 
-static ENDING: Ending = Ending::new();
+static STOP_SEQUENCE: StopSequence = StopSequence::new();
 
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
@@ -70,7 +70,7 @@ unsafe fn DefaultHandler(interrupt: i16) -> ! {
 fn end(words: impl FnOnce() -> LastWords) -> ! {
     cortex_m::interrupt::disable();
     WATCHDOG.kr().write(|w| w.set_key(Key::RESET));
-    ENDING.act(stop, || {
+    STOP_SEQUENCE.act(stop, || {
         let words = words();
         kept::keep(&words);
         defmt::error!("{=str}", words.as_str());

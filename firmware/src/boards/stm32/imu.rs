@@ -94,7 +94,6 @@ pub type BoardIcm42688 = Icm42688<Device, StampedPin, SystemClock>;
 const BUS_FREQUENCY: Hertz = Hertz(6_000_000);
 
 /// SPI mode 0, as the bus driver has it by default.
-#[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.frequency = BUS_FREQUENCY;

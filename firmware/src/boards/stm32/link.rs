@@ -26,7 +26,6 @@ pub type RadioReceiver = BufferedUartRx<'static>;
 /// Bytes that leave for a simulator.
 pub type SimulatorTransmitter = BufferedUartTx<'static>;
 
-/// Bytes of the ring.
 const RING_BYTES: usize = 2048;
 
 /// Bytes on their way to a simulator and from it: more than a tick's messages.
@@ -50,7 +49,6 @@ pub fn radio_rings() -> (&'static mut [u8], &'static mut [u8]) {
 }
 
 /// 420,000 baud, as receivers of CRSF speak.
-#[must_use]
 pub fn radio_config() -> Config {
     let mut config = config();
     config.baudrate = 420_000;
@@ -64,7 +62,6 @@ pub fn simulator_halves(uart: BufferedUart<'static>) -> (SimulatorReceiver, Simu
 }
 
 /// 921,600 baud, eight bits, no parity, one stop bit. Pulled up: an undriven line must not look like bytes.
-#[must_use]
 pub fn config() -> Config {
     let mut config = Config::default();
     config.baudrate = 921_600;

@@ -22,7 +22,6 @@ impl Restart for Chip {
 }
 
 /// Reads the flags and clears them, so that the next start reports its own.
-#[must_use]
 pub fn cause() -> Cause {
     let cause = chip::flags();
     chip::clear_flags();

@@ -23,7 +23,6 @@ mod chip;
 #[path = "storage/h743.rs"]
 mod chip;
 
-/// Bytes of a sector.
 const SECTOR_BYTES: usize = 128 * 1024;
 
 /// What opens the control register.
@@ -44,7 +43,7 @@ impl ParameterFlash {
 
 /// The first word of a place.
 fn words(place: usize) -> Result<*mut u32, Fault> {
-    let inside = place < 2 * ParameterFlash::RECORDS;
+    let inside = place < 2 * ParameterFlash::RECORDS_PER_SECTOR;
     if inside { Ok((chip::FIRST_ADDRESS + place * size_of::<Record>()) as *mut u32) } else { Err(Fault) }
 }
 
@@ -63,7 +62,7 @@ fn opened(work: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
 }
 
 impl Flash for ParameterFlash {
-    const RECORDS: usize = SECTOR_BYTES / size_of::<Record>();
+    const RECORDS_PER_SECTOR: usize = SECTOR_BYTES / size_of::<Record>();
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         let mut word = words(place)?;
@@ -94,7 +93,7 @@ impl Flash for ParameterFlash {
     }
 
     fn erase(&mut self, sector: usize) -> Result<(), Fault> {
-        words(sector * Self::RECORDS)?;
+        words(sector * Self::RECORDS_PER_SECTOR)?;
         let _patience = Patience::new(WATCHDOG);
         #[cfg(feature = "stm32f405")]
         let _halted = super::clock::halt();

@@ -127,7 +127,7 @@ async fn control(
     mut watchdog: ChipWatchdog,
 ) {
     let pins = Repeater { repeated, clock: SystemClock };
-    let mut motors = SelectedMotors { pins, hil, wanted: shared.hil(), clock: SystemClock, period: PERIOD_US };
+    let mut motors = SelectedMotors { pins, hil, requested: shared.hil(), clock: SystemClock, period: PERIOD_US };
     Control::new(shared, pilot, outputs).run(&SystemClock, &mut motors, &mut watchdog).await;
 }
 

@@ -28,9 +28,7 @@ pub fn begin() -> Begun {
 
 impl Begun {
     /// Whether no stream has failed since then.
-    ///
-    /// # Errors
-    /// [`Fault`] if one has.
+    /// Errors: [`Fault`] if one has.
     pub fn whole(&self) -> Result<(), Fault> {
         if ERRORS.load(Ordering::Relaxed) == self.0 { Ok(()) } else { Err(Fault) }
     }

@@ -42,7 +42,6 @@ pub struct Usb {
 pub type Device = UsbDevice<'static, Controller>;
 
 /// How the driver is set up: no pin senses the host's voltage.
-#[must_use]
 pub fn config() -> usb::Config {
     let mut config = usb::Config::default();
     config.vbus_detection = false;

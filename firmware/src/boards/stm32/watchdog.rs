@@ -48,7 +48,6 @@ pub struct Patience {
 
 impl Patience {
     /// Half a minute from now, by the watchdog's clock.
-    #[must_use]
     pub fn new(registers: Iwdg) -> Self {
         let (prescaler, reload) = (registers.pr().read().pr(), registers.rlr().read().rl());
         set(registers, Pr::DIVIDE_BY256, 0xFFF);

@@ -18,7 +18,7 @@ fn messages(size: u32, offset: u32, wanted: u32) -> (Vec<Message>, u64) {
             messages.extend(download.next(now, shared.for_transmit()));
         }
         is_answered = false;
-        if let Some(question) = shared.library.asked() {
+        if let Some(question) = shared.library.take_question() {
             let answer = match question {
                 Question::Count => Answer::Count(1),
                 Question::Size(0) => Answer::Size(size),

@@ -1,43 +1,19 @@
 //! Commands in: their target, their sender's permission, and their answer.
 
 use super::Receiver;
+use super::addressed::Addressed;
 use crate::frames;
 use crate::link::acknowledgement::{Order, command_of};
 use crate::link::command::{Action, Call, action};
 use crate::link::frame::Frame;
 use crate::link::origin::Origin;
 use crate::link::repetitions::Delivery;
-use crate::link::set_mode::SetMode;
 use crate::link::telemetry::vehicle;
 use crate::shared::{Calibration, Event, QueuedRequest, Reply, Severity};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Request;
-use mavlink::dialects::common::{COMMAND_INT_DATA, COMMAND_LONG_DATA, MavResult};
+use mavlink::dialects::common::MavResult;
 use nalgebra::Vector3;
-
-/// A message with a target.
-pub(super) trait Addressed {
-    /// System and component.
-    fn target(&self) -> (u8, u8);
-}
-
-impl Addressed for COMMAND_LONG_DATA {
-    fn target(&self) -> (u8, u8) {
-        (self.target_system, self.target_component)
-    }
-}
-
-impl Addressed for COMMAND_INT_DATA {
-    fn target(&self) -> (u8, u8) {
-        (self.target_system, self.target_component)
-    }
-}
-
-impl Addressed for SetMode {
-    fn target(&self) -> (u8, u8) {
-        (self.system, 0)
-    }
-}
 
 impl<M: RawMutex> Receiver<'_, M> {
     /// Acts on a command, if the message is one of the dialect's; another is answered by its number.
@@ -46,8 +22,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         for<'m> Call: From<&'m D>,
     {
         let Some(message) = message else { return self.unknown(frame) };
-        let (system, component) = message.target();
-        if self.is_addressed(system, component) {
+        if self.is_target(message.target()) {
             self.call(frame, &Call::from(message));
         }
     }
@@ -56,7 +31,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     #[inline(never)]
     fn unknown(&mut self, frame: &Frame<'_>) {
         let unknown = command_of(frame.message, frame.payload);
-        match unknown.filter(|(_, [system, component])| self.is_addressed(*system, *component)) {
+        match unknown.filter(|(_, target)| self.is_target((*target).into())) {
             Some((command, _)) => {
                 let order = Order::read(command, frame);
                 self.shared.reply(Reply::Command(order.answered(MavResult::MAV_RESULT_UNSUPPORTED)));
@@ -69,7 +44,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     #[inline(never)]
     pub(super) fn call(&mut self, frame: &Frame<'_>, call: &Call) {
         let (order, armed) = (Order::read(call.command as u16, frame), self.shared.commander().get());
-        let delivery = self.repetitions.look(frame, order.command);
+        let delivery = self.repetitions.check(frame, order.command);
         if delivery != Delivery::New {
             self.traffic.repeated = self.traffic.repeated.wrapping_add(1);
             self.shared.reply(match delivery {
@@ -78,7 +53,7 @@ impl<M: RawMutex> Receiver<'_, M> {
             });
             return;
         }
-        let result = if !self.shared.is_armed() || self.commander.may(call, order.sender, armed, frame.time) {
+        let result = if !self.shared.is_armed() || self.commander.may_command(call, order.sender, armed, frame.time) {
             match self.act(call, order, frame.time) {
                 Some(result) => result,
                 None => return,
@@ -96,14 +71,14 @@ impl<M: RawMutex> Receiver<'_, M> {
         let home = report.and_then(|report| report.value.home).map_or_else(Vector3::zeros, |home| frames::world(&home));
         let origin = self.shared.origin().get().map_or_else(Origin::default, |origin| origin.value);
         match action(call, self.shared.is_armed(), &origin, &home) {
-            Action::Ask(request) => {
+            Action::Request(request) => {
                 if let (Request::FlyMission(_), Err((number, refusal))) = (&request, self.check_mission()) {
                     let words = format_args!("Mission item {number}: {refusal}");
                     self.shared.announce(Event::new(Severity::Warning, words));
                     return Some(MavResult::MAV_RESULT_DENIED);
                 }
                 let setpoints = if request == Request::FlySetpoints {
-                    match self.take_over(order.sender, now) {
+                    match self.claim_setpoints(order.sender, now) {
                         Ok(sender) => Some(sender),
                         Err(others) => {
                             let words = format_args!("No OFFBOARD by {others}");

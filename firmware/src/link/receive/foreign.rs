@@ -33,13 +33,22 @@ const FLOWN_MESSAGES: usize = 5;
 /// Behind every payload: for every system.
 const FOR_ALL: usize = 255;
 
+/// Which of them were explained.
+#[derive(Debug, Default)]
+pub(super) struct Explained {
+    /// A bit for each, in the order of the list.
+    explained: u16,
+    /// The last setpoint's name.
+    setpoint: Option<Stamped<&'static str>>,
+}
+
 impl<M: RawMutex> Receiver<'_, M> {
     /// Explains a message that is not understood.
     pub(super) fn foreign(&mut self, frame: &Frame<'_>) {
         // Zeros at the end are cut off.
         let byte = |place: usize| frame.payload.get(place).copied().unwrap_or(0);
         let found = NOT_USED.iter().enumerate().find(|(_, (message, ..))| *message == frame.message);
-        let Some((index, &(.., name))) = found.filter(|(_, (_, target, _))| self.is_addressed(byte(*target), 0)) else {
+        let Some((index, &(.., name))) = found.filter(|(_, (_, target, _))| self.is_target((byte(*target), 0))) else {
             return;
         };
         self.refused();

@@ -15,8 +15,8 @@ use super::upload::Upload;
 use crate::link::command::Call;
 use crate::link::frame::Frame;
 use crate::link::mission::{Item, ItemRefusal, MISSION_CAPACITY, SentItem};
+use crate::link::mission_lists::list_of;
 use crate::link::origin::Origin;
-use crate::link::plans::list_of;
 use crate::shared::{Event, MissionList, QueuedRequest, Reply, Severity};
 use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -39,16 +39,16 @@ const LIST_ALL: u8 = 255;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn mission_count(&mut self, frame: &Frame<'_>, message: &MISSION_COUNT_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) || self.is_again(frame) {
+        if self.is_repeated(frame) {
             return;
         }
-        let list = asked(frame, message);
+        let list = requested_list(frame, message);
         let result = if list.list != LIST_MISSION {
             MavMissionResult::MAV_MISSION_UNSUPPORTED
         } else if let Err(result) = self.may_change(list.sender) {
             result
         } else if usize::from(message.count) > MISSION_CAPACITY {
-            self.say(format_args!("Mission: {} items, {MISSION_CAPACITY} at most", message.count));
+            self.warn(format_args!("Mission: {} items, {MISSION_CAPACITY} at most", message.count));
             MavMissionResult::MAV_MISSION_NO_SPACE
         } else if message.count == 0 {
             self.change(&[]);
@@ -62,7 +62,7 @@ impl<M: RawMutex> Receiver<'_, M> {
                 taken: self.upload.taken,
                 ..Upload::default()
             };
-            return self.ask_for_next(list.sender, frame.time);
+            return self.request_next(list.sender, frame.time);
         };
         self.shared.reply(Reply::Mission(list, result));
     }
@@ -70,8 +70,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     /// MISSION_ITEM_INT and MISSION_ITEM.
     pub(super) fn mission_item(&mut self, frame: &Frame<'_>) {
         let sent = SentItem::read(frame.payload, frame.message == MISSION_ITEM_INT_DATA::ID);
-        let [system, component] = sent.target;
-        if !self.is_addressed(system, component) || self.is_again(frame) {
+        if !self.is_target(sent.target.into()) || self.is_repeated(frame) {
             return;
         }
         let list = MissionList { sender: sender(frame), list: sent.list };
@@ -84,11 +83,11 @@ impl<M: RawMutex> Receiver<'_, M> {
             }
             (self.upload.progressed, self.upload.is_out_of_sequence) = (frame.time, false);
             match self.take_item(&sent) {
-                Ok(false) => return self.ask_for_next(list.sender, frame.time),
+                Ok(false) => return self.request_next(list.sender, frame.time),
                 Ok(true) => self.finish(list.sender),
                 Err(refusal) => {
                     self.upload.client = None;
-                    self.say(format_args!("Mission item {}: {refusal}", sent.sequence));
+                    self.warn(format_args!("Mission item {}: {refusal}", sent.sequence));
                     refusal.result()
                 }
             }
@@ -133,11 +132,11 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Requests an item again that has not come by `now`, us, or gives the upload up.
-    pub(super) fn chase_upload(&mut self, now: u64) {
+    pub(super) fn retry_upload(&mut self, now: u64) {
         let Some(client) = self.upload.client else { return };
         if now.saturating_sub(self.upload.progressed) < ITEM_TIMEOUT_US {
             if now.saturating_sub(self.upload.requested) >= ITEM_RETRY_INTERVAL_US {
-                self.ask_for_next(client, now);
+                self.request_next(client, now);
             }
             return;
         }
@@ -147,38 +146,29 @@ impl<M: RawMutex> Receiver<'_, M> {
         } else {
             (MavMissionResult::MAV_MISSION_OPERATION_CANCELLED, "Mission: upload broken off, nothing changed")
         };
-        self.say(words);
+        self.warn(words);
         self.shared.reply(Reply::Mission(MissionList { sender: client, list: LIST_MISSION }, result));
     }
 
     /// A client breaks its upload off.
-    pub(super) fn mission_ack(&mut self, frame: &Frame<'_>, message: &MISSION_ACK_DATA) {
-        if self.is_addressed(message.target_system, message.target_component)
-            && self.upload.client == Some(sender(frame))
-            && list_of::<MISSION_ACK_DATA>(frame) == LIST_MISSION
-        {
+    pub(super) fn mission_ack(&mut self, frame: &Frame<'_>, _: &MISSION_ACK_DATA) {
+        if self.upload.client == Some(sender(frame)) && list_of::<MISSION_ACK_DATA>(frame) == LIST_MISSION {
             self.upload.client = None;
         }
     }
 
     pub(super) fn mission_list(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_LIST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let list = asked(frame, message);
-            let count = if list.list == LIST_MISSION { self.shared.mission().count() } else { 0 };
-            self.shared.reply(Reply::MissionCount(list, count));
-        }
+        let list = requested_list(frame, message);
+        let count = if list.list == LIST_MISSION { self.shared.mission().count() } else { 0 };
+        self.shared.reply(Reply::MissionCount(list, count));
     }
 
     pub(super) fn mission_request(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.send_item(asked(frame, message), message.seq, false);
-        }
+        self.send_item(requested_list(frame, message), message.seq, false);
     }
 
     pub(super) fn mission_request_int(&mut self, frame: &Frame<'_>, message: &MISSION_REQUEST_INT_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.send_item(asked(frame, message), message.seq, true);
-        }
+        self.send_item(requested_list(frame, message), message.seq, true);
     }
 
     fn send_item(&self, list: MissionList, number: u16, is_int: bool) {
@@ -191,18 +181,13 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// The older way to send command 224, and answered as that.
     pub(super) fn mission_set_current(&mut self, frame: &Frame<'_>, message: &MISSION_SET_CURRENT_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let command = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
-            let parameters = [f32::from(message.seq), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            self.call(frame, &Call { command, parameters, place: None });
-        }
+        let command = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
+        let parameters = [f32::from(message.seq), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        self.call(frame, &Call { command, parameters, place: None });
     }
 
     pub(super) fn mission_clear(&mut self, frame: &Frame<'_>, message: &MISSION_CLEAR_ALL_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
-            return;
-        }
-        let list = asked(frame, message);
+        let list = requested_list(frame, message);
         let result = match list.list {
             LIST_MISSION | LIST_ALL => self.may_change(list.sender).err().unwrap_or_else(|| {
                 self.change(&[]);
@@ -215,9 +200,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Whether the whole mission may be flown from here.
-    ///
-    /// # Errors
-    /// The first item that may not, and why.
+    /// Errors: the first item that may not, and why.
     pub(super) fn check_mission(&self) -> Result<(), (u16, MissionRefusal)> {
         let mission = self.shared.mission();
         let count = mission.count();
@@ -242,23 +225,23 @@ impl<M: RawMutex> Receiver<'_, M> {
     fn may_change(&self, client: Sender) -> Result<(), MavMissionResult> {
         let is_flown = self.shared.report().get().is_some_and(|report| report.value.mission.is_flown);
         if is_flown {
-            self.say("Mission: not changed while it is flown");
+            self.warn("Mission: not changed while it is flown");
         } else if self.upload.client.is_some_and(|other| other != client) {
-            self.say("Mission: another station sends one");
+            self.warn("Mission: another station sends one");
         } else {
             return Ok(());
         }
         Err(MavMissionResult::MAV_MISSION_DENIED)
     }
 
-    fn ask_for_next(&mut self, client: Sender, now: u64) {
+    fn request_next(&mut self, client: Sender, now: u64) {
         self.upload.requested = now;
         let list = MissionList { sender: client, list: LIST_MISSION };
         self.shared.reply(Reply::MissionRequest(list, self.upload.items.len() as u16));
     }
 
     /// Whether this frame of an upload was the last one as well.
-    fn is_again(&mut self, frame: &Frame<'_>) -> bool {
+    fn is_repeated(&mut self, frame: &Frame<'_>) -> bool {
         let this = Some((frame.header.sequence, frame.checksum));
         let is_again = self.upload.last == this;
         self.upload.last = this;
@@ -268,7 +251,7 @@ impl<M: RawMutex> Receiver<'_, M> {
         is_again
     }
 
-    fn say(&self, words: impl Display) {
+    fn warn(&self, words: impl Display) {
         self.shared.announce(Event::new(Severity::Warning, words));
     }
 }
@@ -278,6 +261,6 @@ fn sender(frame: &Frame<'_>) -> Sender {
 }
 
 /// The client, and its list.
-fn asked<D: MessageData>(frame: &Frame<'_>, _: &D) -> MissionList {
+fn requested_list<D: MessageData>(frame: &Frame<'_>, _: &D) -> MissionList {
     MissionList { sender: sender(frame), list: list_of::<D>(frame) }
 }

@@ -11,34 +11,28 @@ use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::dialects::common::{MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA};
 
 impl<M: RawMutex> Receiver<'_, M> {
-    pub(super) fn list_parameters(&mut self, _: &Frame<'_>, message: &PARAM_REQUEST_LIST_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::AllParameters);
-        }
+    pub(super) fn list_parameters(&mut self, _: &Frame<'_>, _: &PARAM_REQUEST_LIST_DATA) {
+        self.shared.reply(Reply::AllParameters);
     }
 
     pub(super) fn read_parameter(&mut self, frame: &Frame<'_>, message: &PARAM_REQUEST_READ_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            // A negative index: by name.
-            let name = match usize::try_from(message.param_index) {
-                Ok(index) => Name::from_index(index),
-                Err(_) => message.param_id.to_str().ok().and_then(Name::from_name),
-            };
-            match message.param_index {
-                index @ 0.. => self.reply_with_parameter(name, frame.time, index),
-                _ => self.reply_with_parameter(name, frame.time, message.param_id.to_str().unwrap_or("")),
+        // A negative index: by name.
+        match usize::try_from(message.param_index) {
+            Ok(index) => self.reply_with_parameter(Name::from_index(index), frame.time, index),
+            Err(_) => {
+                let name = message.param_id.to_str().unwrap_or("");
+                self.reply_with_parameter(Name::from_name(name), frame.time, name);
             }
         }
     }
 
     pub(super) fn set_parameter(&mut self, frame: &Frame<'_>, message: &PARAM_SET_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            let name = message.param_id.to_str().ok().and_then(Name::from_name);
-            if let Some(name) = name {
-                self.set(name, message.param_value, message.param_type);
-            }
-            self.reply_with_parameter(name, frame.time, message.param_id.to_str().unwrap_or(""));
+        let text = message.param_id.to_str().unwrap_or("");
+        let name = Name::from_name(text);
+        if let Some(name) = name {
+            self.set(name, message.param_value, message.param_type);
         }
+        self.reply_with_parameter(name, frame.time, text);
     }
 
     /// Its value, as it is now, answers every question about a parameter. Of one that is not there nothing can be sent:

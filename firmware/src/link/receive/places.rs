@@ -11,10 +11,7 @@ use mavlink::dialects::common::SET_GPS_GLOBAL_ORIGIN_DATA;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn set_origin(&mut self, frame: &Frame<'_>, message: &SET_GPS_GLOBAL_ORIGIN_DATA) {
-        let SET_GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude, target_system } = *message;
-        if !self.is_addressed(target_system, 0) {
-            return;
-        }
+        let SET_GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude, .. } = *message;
         match Origin::new(latitude, longitude, altitude) {
             Some(origin) => {
                 self.shared.origin().put(origin, frame.time);
@@ -26,9 +23,7 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// There are no files.
     pub(super) fn file(&mut self, frame: &Frame<'_>) {
-        if let Some((request, _)) =
-            FileRequest::read(frame).filter(|(_, [system, component])| self.is_addressed(*system, *component))
-        {
+        if let Some((request, _)) = FileRequest::read(frame).filter(|(_, target)| self.is_target((*target).into())) {
             self.shared.reply(Reply::NoFiles(request));
         }
     }

@@ -19,9 +19,6 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     pub(super) fn list_recordings(&mut self, frame: &Frame<'_>, message: &LOG_REQUEST_LIST_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
-            return;
-        }
         // A client that gets an empty list stops; one that wants a part and gets nothing repeats its request, and gets
         // it after landing.
         let list = Reply::Logs { first: message.start, last: message.end };
@@ -29,20 +26,18 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     pub(super) fn read_recording(&mut self, frame: &Frame<'_>, message: &LOG_REQUEST_DATA_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) && self.may_read(frame) {
+        if self.may_read(frame) {
             self.shared.reply(Reply::LogData { id: message.id, offset: message.ofs, count: message.count });
         }
     }
 
-    pub(super) fn end_reading(&mut self, _: &Frame<'_>, message: &LOG_REQUEST_END_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) {
-            self.shared.reply(Reply::LogEnd);
-        }
+    pub(super) fn end_reading(&mut self, _: &Frame<'_>, _: &LOG_REQUEST_END_DATA) {
+        self.shared.reply(Reply::LogEnd);
     }
 
     /// The recorder's recording goes; files stay, because nothing on a vehicle deletes a file.
-    pub(super) fn erase_recordings(&mut self, frame: &Frame<'_>, message: &LOG_ERASE_DATA) {
-        if self.is_addressed(message.target_system, message.target_component) && self.may_read(frame) {
+    pub(super) fn erase_recordings(&mut self, frame: &Frame<'_>, _: &LOG_ERASE_DATA) {
+        if self.may_read(frame) {
             self.shared.recorder().erase();
             if self.shared.card().state() == CardState::Ready {
                 let words = "Log: files stay on the card; delete them there";

@@ -1,8 +1,8 @@
 //! Setpoints in, and whose are flown: those of the sender that requested OFFBOARD; before such a request, those of the
 //! first sender.
 //!
-//! A sender counts while its newest setpoint that can be flown is not older than [`SETPOINT_AGE_MAX_US`]. The sender of an
-//! OFFBOARD command has its own setpoints flown once control grants it. If it sends none, another component of its
+//! A sender counts while its newest setpoint that can be flown is not older than [`SETPOINT_AGE_MAX_US`]. The sender of
+//! an OFFBOARD command has its own setpoints flown once control grants it. If it sends none, another component of its
 //! system may send them, as the only sender; otherwise the command is denied.
 
 use super::Receiver;
@@ -17,9 +17,7 @@ use mavlink::dialects::common::SET_POSITION_TARGET_LOCAL_NED_DATA;
 
 impl<M: RawMutex> Receiver<'_, M> {
     pub(super) fn setpoint(&mut self, frame: &Frame<'_>, message: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
-        if self.is_addressed(message.target_system, message.target_component)
-            && let Err(refusal) = self.take_setpoint(frame, message)
-        {
+        if let Err(refusal) = self.take_setpoint(frame, message) {
             self.refused();
             self.setpoint_refused.warn(self.shared, frame.time, format_args!("Setpoint refused: {refusal}"));
         }
@@ -52,11 +50,9 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// A client requests to fly setpoints at `now`, us: whose they will be. Silent sticks give way, and setpoints sent
     /// meanwhile count.
-    ///
-    /// # Errors
-    /// What comes instead, in words.
-    pub(super) fn take_over(&mut self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
-        let sender = self.whose(asker, now)?;
+    /// Errors: what comes instead, in words.
+    pub(super) fn claim_setpoints(&mut self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
+        let sender = self.setpoint_sender(asker, now)?;
         self.setpoints.taken = Stamped { value: sender, time: now };
         let sticks = self.shared.sticks().get();
         if sticks.is_some_and(|sticks| sticks.value && sticks.age(now) > RADIO_SILENCE) {
@@ -71,7 +67,7 @@ impl<M: RawMutex> Receiver<'_, M> {
     }
 
     /// Whose setpoints are flown if this sender requests it; its own if it sends none yet.
-    fn whose(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
+    fn setpoint_sender(&self, asker: Sender, now: u64) -> Result<Sender, &'static str> {
         let mut senders = self.setpoints.senders.iter().filter(|sender| counts(sender, now)).map(|sender| sender.value);
         if senders.clone().any(|sender| sender == asker) {
             return Ok(asker);

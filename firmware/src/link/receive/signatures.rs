@@ -32,9 +32,6 @@ impl<M: RawMutex> Receiver<'_, M> {
 
     /// A key of zeros ends signing.
     pub(super) fn set_up_signing(&mut self, frame: &Frame<'_>, message: &SETUP_SIGNING_DATA) {
-        if !self.is_addressed(message.target_system, message.target_component) {
-            return;
-        }
         let shared = self.shared;
         let key = Key::new(message.secret_key);
         let (severity, words) = if !shared.on_port().is_raised() {

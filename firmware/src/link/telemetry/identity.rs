@@ -18,7 +18,6 @@ const fn number(text: &str) -> u32 {
 }
 
 /// What it understands: versions 1 and 2, parameters as floats, setpoints, COMMAND_INT, missions. No files.
-#[must_use]
 pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     AUTOPILOT_VERSION_DATA {
         capabilities: MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
@@ -31,11 +30,7 @@ pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     }
 }
 
-/// PROTOCOL_VERSION.
-pub type ProtocolVersion = PROTOCOL_VERSION_DATA;
-
 /// Versions of MAVLink: 1 and 2.
-#[must_use]
-pub fn protocol_version() -> ProtocolVersion {
+pub fn protocol_version() -> PROTOCOL_VERSION_DATA {
     PROTOCOL_VERSION_DATA { version: 200, min_version: 100, max_version: 200, ..PROTOCOL_VERSION_DATA::DEFAULT }
 }

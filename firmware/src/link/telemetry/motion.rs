@@ -20,7 +20,6 @@ fn milliseconds(time: u64) -> u32 {
 }
 
 /// Attitude as angles, and body rates, at `time`, us; none without an estimate, as everything here.
-#[must_use]
 pub fn attitude(time: u64, report: &Report) -> Option<ATTITUDE_DATA> {
     let state = report.state.as_ref()?;
     let angles = euler(&frames::attitude(&state.attitude));
@@ -37,7 +36,6 @@ pub fn attitude(time: u64, report: &Report) -> Option<ATTITUDE_DATA> {
 }
 
 /// Attitude and body rates.
-#[must_use]
 pub fn attitude_quaternion(time: u64, report: &Report) -> Option<ATTITUDE_QUATERNION_DATA> {
     let state = report.state.as_ref()?;
     let q = frames::attitude(&state.attitude);
@@ -55,7 +53,6 @@ pub fn attitude_quaternion(time: u64, report: &Report) -> Option<ATTITUDE_QUATER
 }
 
 /// Position and velocity.
-#[must_use]
 pub fn position(time: u64, report: &Report) -> Option<LOCAL_POSITION_NED_DATA> {
     let state = report.state.as_ref()?;
     let (p, v) = (frames::world(&state.position), frames::world(&state.velocity));
@@ -71,7 +68,6 @@ pub fn position(time: u64, report: &Report) -> Option<LOCAL_POSITION_NED_DATA> {
 }
 
 /// The same on the globe, as far as its origin means anything.
-#[must_use]
 pub fn global_position(time: u64, report: &Report, origin: &Origin) -> Option<GLOBAL_POSITION_INT_DATA> {
     let state = report.state.as_ref()?;
     let (p, v) = (frames::world(&state.position), frames::world(&state.velocity));
@@ -94,7 +90,6 @@ pub fn global_position(time: u64, report: &Report, origin: &Origin) -> Option<GL
 }
 
 /// Position, attitude, velocity and rates, with the estimator's uncertainty.
-#[must_use]
 pub fn odometry(time: u64, report: &Report) -> Option<ODOMETRY_DATA> {
     let state = report.state.as_ref()?;
     let q = frames::attitude(&state.attitude);
@@ -135,7 +130,6 @@ fn diagonal(first: f32, second: f32) -> [f32; 21] {
 }
 
 /// The reference that is flown. By the IMU alone it has no position: the vehicle is held level and goes down so fast.
-#[must_use]
 pub fn position_target(time: u64, report: &Report) -> Option<POSITION_TARGET_LOCAL_NED_DATA> {
     let reference = report.reference.as_ref()?;
     let [p, v, a] = [&reference.position, &reference.velocity, &reference.acceleration].map(frames::world);
@@ -166,7 +160,6 @@ const NO_PLACE: PositionTargetTypemask = PositionTargetTypemask::POSITION_TARGET
     .union(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
 
 /// Where the vehicle was armed; before that, where it stands.
-#[must_use]
 pub fn home(report: &Report, origin: &Origin) -> Option<HOME_POSITION_DATA> {
     let home = frames::world(report.home.as_ref()?);
     let place = origin.place(&home);
@@ -183,14 +176,12 @@ pub fn home(report: &Report, origin: &Origin) -> Option<HOME_POSITION_DATA> {
 }
 
 /// Where the local frame's origin is.
-#[must_use]
 pub fn origin(origin: &Origin) -> GPS_GLOBAL_ORIGIN_DATA {
     let Origin { latitude, longitude, altitude } = *origin;
     GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, altitude }
 }
 
 /// The estimate's health. Ratios are 1 where the estimator would call its poses inconsistent.
-#[must_use]
 pub fn estimator_status(time: u64, report: &Report) -> ESTIMATOR_STATUS_DATA {
     use EstimatorStatusFlags as Flags;
     let Health { faults, pose_age, deviations: (position, ..), nis, .. } = report.health;
@@ -216,7 +207,6 @@ pub fn estimator_status(time: u64, report: &Report) -> ESTIMATOR_STATUS_DATA {
 }
 
 /// The time since boot; the time of day is unknown.
-#[must_use]
 pub fn system_time(now: u64) -> SYSTEM_TIME_DATA {
     SYSTEM_TIME_DATA { time_unix_usec: 0, time_boot_ms: milliseconds(now) }
 }

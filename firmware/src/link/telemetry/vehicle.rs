@@ -18,7 +18,7 @@ const PROTOCOL_VERSION: u8 = 3;
 
 /// A mode, and whether a mission is flown in it, or a policy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlownMode {
+pub struct ModeReport {
     /// The mode.
     pub mode: Mode,
     /// Whether a mission is flown.
@@ -27,7 +27,7 @@ pub struct FlownMode {
     pub policy: bool,
 }
 
-impl From<&Report> for FlownMode {
+impl From<&Report> for ModeReport {
     fn from(report: &Report) -> Self {
         Self { mode: report.mode, mission: report.mission.is_flown, policy: report.flies_policy }
     }
@@ -44,8 +44,8 @@ const AUTO_EXTERNAL1: u32 = MAIN_AUTO | 11 << 24;
 const MAIN_OFFBOARD: u32 = 6 << 16;
 
 /// PX4's number for the mode that comes nearest.
-fn custom_mode(shown: &FlownMode) -> u32 {
-    let FlownMode { mode, mission, policy } = *shown;
+fn custom_mode(shown: &ModeReport) -> u32 {
+    let ModeReport { mode, mission, policy } = *shown;
     match mode {
         Mode::Boot | Mode::Checks | Mode::Ready | Mode::MotorTest => AUTO_READY,
         Mode::Idling | Mode::Stopped | Mode::Locked => AUTO_READY,
@@ -72,7 +72,6 @@ const SELECTABLE_MODES: [(u32, &str, MavStandardMode); 6] = [
 pub const MODE_COUNT: u8 = SELECTABLE_MODES.len() as u8 - !configuration::Policy::EXISTS as u8;
 
 /// The mode of this number, from 1 on, with its name.
-#[must_use]
 pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
     let index = Some(index).filter(|index| *index <= MODE_COUNT)?;
     let &(custom_mode, name, standard_mode) = SELECTABLE_MODES.get(usize::from(index).checked_sub(1)?)?;
@@ -87,8 +86,7 @@ pub fn available_mode(index: u8) -> Option<AVAILABLE_MODES_DATA> {
 }
 
 /// The mode that is flown.
-#[must_use]
-pub fn current_mode(shown: &FlownMode) -> CURRENT_MODE_DATA {
+pub fn current_mode(shown: &ModeReport) -> CURRENT_MODE_DATA {
     let custom_mode = custom_mode(shown);
     let standard = SELECTABLE_MODES.iter().find(|(custom, ..)| *custom == custom_mode);
     let standard_mode = standard.map_or(MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD, |(.., standard)| *standard);
@@ -96,14 +94,12 @@ pub fn current_mode(shown: &FlownMode) -> CURRENT_MODE_DATA {
 }
 
 /// The mission's item that is flown, or will be.
-#[must_use]
 pub fn mission_current(report: &Report) -> MISSION_CURRENT_DATA {
     MISSION_CURRENT_DATA { seq: report.mission.next.into() }
 }
 
 /// Whether it is on the ground; unknown of a vehicle that was stopped in the air or may still fall, and before there is
 /// an estimate.
-#[must_use]
 pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
     let landed_state = match report.mode {
         Mode::Boot | Mode::Stopped => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
@@ -117,8 +113,7 @@ pub fn extended_state(report: &Report) -> EXTENDED_SYS_STATE_DATA {
 }
 
 /// The vehicle's type and state; no mode without a fresh report.
-#[must_use]
-pub fn heartbeat(shown: Option<FlownMode>, hil: bool) -> HEARTBEAT_DATA {
+pub fn heartbeat(shown: Option<ModeReport>, hil: bool) -> HEARTBEAT_DATA {
     let mode = shown.map(|shown| shown.mode);
     let system_status = match mode {
         None | Some(Mode::Boot) => MavState::MAV_STATE_BOOT,
@@ -151,7 +146,6 @@ pub fn heartbeat(shown: Option<FlownMode>, hil: bool) -> HEARTBEAT_DATA {
 /// Clients know sensors that this vehicle has not, and wait for them. What a magnetometer is there for, a heading, and
 /// what GPS is there for, a place, comes from the poses here; so both bits show, like that of a vision system, whether
 /// poses are believed.
-#[must_use]
 pub fn status(
     voltage: Option<f32>,
     report: Option<&Report>,
@@ -211,7 +205,6 @@ pub fn status(
 }
 
 /// The battery's voltage; nothing else of it is measured.
-#[must_use]
 pub fn battery(voltage: Option<f32>) -> BATTERY_STATUS_DATA {
     let mut voltages = [u16::MAX; 10];
     if let (Some(first), Some(volts)) = (voltages.first_mut(), voltage) {
@@ -231,7 +224,6 @@ pub fn battery(voltage: Option<f32>) -> BATTERY_STATUS_DATA {
 }
 
 /// An event in words.
-#[must_use]
 pub fn text(event: &Event) -> STATUSTEXT_DATA {
     let severity = match event.severity() {
         Severity::Information => MavSeverity::MAV_SEVERITY_INFO,
@@ -242,7 +234,6 @@ pub fn text(event: &Event) -> STATUSTEXT_DATA {
 }
 
 /// A parameter's present value.
-#[must_use]
 pub fn parameter(name: Name, value: f32) -> PARAM_VALUE_DATA {
     PARAM_VALUE_DATA {
         param_value: value,

@@ -16,12 +16,12 @@ fn a_key_is_taken_over_usb_while_disarmed_and_nowhere_else() {
         if on_port {
             shared.on_port.raise();
         }
-        Fed::new(&shared).message(message, NOW);
+        Fed::new(&shared).message(message, NOW_US);
         shared.on_port.lower();
-        report(&shared, Mode::Ready, NOW);
+        report(&shared, Mode::Ready, NOW_US);
         let said = texts(&shared);
         // With the key, a frame that is not signed counts no more.
-        Fed::new(&shared).message(&disarm(), NOW);
+        Fed::new(&shared).message(&disarm(), NOW_US);
         (!is_stopped(&shared), said)
     };
     let said = |words: &str| vec![words.to_owned()];
@@ -40,12 +40,12 @@ fn over_usb_frames_need_no_signature_and_a_lost_key_is_replaced() {
     let shared = keyed();
     shared.on_port.raise();
     let mut fed = Fed::new(&shared);
-    fed.message(&disarm(), NOW);
+    fed.message(&disarm(), NOW_US);
     assert!(is_stopped(&shared));
     // Also by a station that has signed with its new key already.
-    fed.bytes(&Sender::new(255, Key::new([7; 32]), 0).say(&setup([7; 32], FIRST), 0), NOW);
+    fed.bytes(&Sender::new(255, Key::new([7; 32]), 0).say(&setup([7; 32], FIRST_STAMP), 0), NOW_US);
     shared.on_port.lower();
-    fed.bytes(&Sender::new(255, Key::new([7; 32]), FIRST + 1).say(&disarm(), 0), NOW);
+    fed.bytes(&Sender::new(255, Key::new([7; 32]), FIRST_STAMP + 1).say(&disarm(), 0), NOW_US);
     assert!(is_stopped(&shared));
 }
 
@@ -53,10 +53,10 @@ fn over_usb_frames_need_no_signature_and_a_lost_key_is_replaced() {
 fn the_same_key_again_makes_nothing_new_that_is_old() {
     let shared = keyed();
     let mut fed = Fed::new(&shared);
-    fed.bytes(&bytes(STOP), NOW);
+    fed.bytes(&bytes(STOP), NOW_US);
     assert!(is_stopped(&shared));
-    shared.set_signing(key(), 0, NOW);
-    fed.bytes(&bytes(STOP), NOW);
+    shared.set_signing(key(), 0, NOW_US);
+    fed.bytes(&bytes(STOP), NOW_US);
     assert!(!is_stopped(&shared));
 }
 
@@ -67,8 +67,8 @@ fn a_key_is_shown_nowhere() {
     shared.on_port.raise();
     let secret: [u8; 32] = core::array::from_fn(|index| 0xA0 + index as u8);
     let mut fed = Fed::new(&shared);
-    fed.message(&setup(secret, 5), NOW);
-    fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [SETUP_SIGNING_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0]), NOW);
+    fed.message(&setup(secret, 5), NOW_US);
+    fed.message(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [SETUP_SIGNING_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0]), NOW_US);
     shared.reply(Reply::AllParameters);
     assert_eq!(format!("{:?}", Key::new(secret)), "Some(Key)");
     let (clock, written) = (Simulated::default(), RefCell::new(Vec::new()));
@@ -95,9 +95,9 @@ fn kept(chip: &RefCell<Chip>, shared: &Local, clock: &Simulated, duration: u64) 
 fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
     let mut storage = Storage::load(Words::<32>(&chip), shared.for_storage());
-    shared.set_signing(key(), FIRST - 1, 0);
+    shared.set_signing(key(), FIRST_STAMP - 1, 0);
     clock.run(100_000, storage.keep(&clock, shared.for_storage()), |_| ());
-    let mut station = Sender::new(255, key(), FIRST);
+    let mut station = Sender::new(255, key(), FIRST_STAMP);
     let mut vehicle = shared;
     // Restarted in flight, twice: the second time it had taken off at once. Nothing can be kept in a flight, which
     // lasts as long as what was kept before it.
@@ -127,7 +127,7 @@ fn a_restart_keeps_the_key_and_opens_nothing_to_replays() {
 #[test]
 fn stamps_are_kept_twice_an_hour_at_most_and_never_while_a_motor_turns() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
-    shared.signing.set(key(), FIRST, 0);
+    shared.signing.set(key(), FIRST_STAMP, 0);
     let hour = 3_600_000_000;
     kept(&chip, &shared, &clock, hour / 2);
     let ready = chip.borrow().writes;
@@ -148,7 +148,7 @@ fn a_key_that_cannot_be_stored_is_reported() {
     let (chip, shared, clock) = (Chip::erased(), Local::new(), Simulated::default());
     chip.borrow_mut().worn = true;
     report(&shared, Mode::Ready, 0);
-    shared.set_signing(key(), FIRST, 0);
+    shared.set_signing(key(), FIRST_STAMP, 0);
     kept(&chip, &shared, &clock, 60_000_000);
     assert_eq!(texts(&shared), ["Signing: key or stamps could not be saved"]);
     assert_eq!(chip.borrow().writes, 2);
@@ -160,11 +160,11 @@ fn signing_that_was_turned_off_stays_off_after_a_restart() {
     let mut storage = Storage::load(Words::<32>(&chip), shared.for_storage());
     report(&shared, Mode::Ready, 0);
     for key in [key(), None] {
-        shared.set_signing(key, FIRST, 0);
+        shared.set_signing(key, FIRST_STAMP, 0);
         clock.run(100_000, storage.keep(&clock, shared.for_storage()), |_| ());
     }
     let again = Local::new();
     Storage::load(Words::<32>(&chip), again.for_storage());
-    Fed::new(&again).message(&disarm(), NOW);
+    Fed::new(&again).message(&disarm(), NOW_US);
     assert!(is_stopped(&again));
 }

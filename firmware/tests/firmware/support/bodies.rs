@@ -49,7 +49,7 @@ pub struct Body {
 }
 
 /// A standard gravity, m/s^2.
-pub const GRAVITY: f32 = 9.806_65;
+pub const GRAVITY_M_PER_S2: f32 = 9.806_65;
 
 impl Body {
     /// At rest, level, with sensors that work.
@@ -57,7 +57,7 @@ impl Body {
         Self {
             clock: Simulated::default(),
             rate: Cell::default(),
-            up: Cell::new(Vector3::z() * GRAVITY),
+            up: Cell::new(Vector3::z() * GRAVITY_M_PER_S2),
             shaken: Cell::default(),
             first: Cell::new(Does::Well),
             second: Cell::new(Does::Well),

@@ -11,7 +11,7 @@ use std::io::{Error, Read, Result, Seek, SeekFrom, Write};
 use std::rc::Rc;
 
 /// Where the partition begins.
-pub const START: u32 = 64;
+pub const PARTITION_START: u32 = 64;
 
 /// Sectors that are not zero, by their numbers.
 pub type Image = HashMap<u32, [u8; SECTOR_BYTES]>;
@@ -88,7 +88,7 @@ impl Partition<'_> {
     fn place(&self, bytes: usize) -> (u32, usize, usize) {
         let (sector, offset) = (self.at / SECTOR_BYTES as u64, (self.at % SECTOR_BYTES as u64) as usize);
         let left = if sector < u64::from(self.sectors) { SECTOR_BYTES - offset } else { 0 };
-        (START + sector as u32, offset, left.min(bytes))
+        (PARTITION_START + sector as u32, offset, left.min(bytes))
     }
 }
 
@@ -140,11 +140,11 @@ pub fn formatted(kind: FatType, sectors: u32, cluster: u32) -> (Image, u32) {
     format_volume(Partition { image: &mut image, sectors, at: 0 }, options).unwrap();
     let mut table = [0; SECTOR_BYTES];
     table[446 + 4] = if kind == FatType::Fat32 { 0x0C } else { 0x06 };
-    table[446 + 8..446 + 12].copy_from_slice(&START.to_le_bytes());
+    table[446 + 8..446 + 12].copy_from_slice(&PARTITION_START.to_le_bytes());
     table[446 + 12..446 + 16].copy_from_slice(&sectors.to_le_bytes());
     table[510..].copy_from_slice(&[0x55, 0xAA]);
     image.insert(0, table);
-    (image, START + sectors)
+    (image, PARTITION_START + sectors)
 }
 
 /// A small card of FAT16.
@@ -154,7 +154,7 @@ pub fn small() -> (Image, u32) {
 
 /// Every file in the root directory with its bytes, as `fatfs` reads them.
 pub fn files(image: &mut Image, sectors: u32) -> BTreeMap<String, Vec<u8>> {
-    let partition = Partition { image, sectors: sectors - START, at: 0 };
+    let partition = Partition { image, sectors: sectors - PARTITION_START, at: 0 };
     let system = FileSystem::new(partition, FsOptions::new()).unwrap();
     let mut files = BTreeMap::new();
     for entry in system.root_dir().iter() {

@@ -5,9 +5,9 @@ use firmware::hardware::{Fault, Flash, Record};
 use std::cell::RefCell;
 
 /// Records in a sector of the test's flash, and its bytes.
-pub const RECORDS: usize = 6;
-pub const SECTOR: usize = RECORDS * RECORD;
-const RECORD: usize = size_of::<Record>();
+pub const FLASH_RECORDS: usize = 6;
+pub const SECTOR_BYTES: usize = FLASH_RECORDS * RECORD_BYTES;
+const RECORD_BYTES: usize = size_of::<Record>();
 
 /// What a power cut leaves of the word that was being programmed or erased.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,14 +45,14 @@ impl Chip {
     /// As it comes from the factory.
     pub fn erased() -> RefCell<Self> {
         RefCell::new(Self {
-            bytes: vec![0xFF; 2 * SECTOR],
+            bytes: vec![0xFF; 2 * SECTOR_BYTES],
             fails: false,
             worn: false,
             writes: 0,
             power: usize::MAX,
             torn: Torn::Bits,
-            unreadable: vec![false; 2 * SECTOR],
-            bad: vec![false; 2 * SECTOR],
+            unreadable: vec![false; 2 * SECTOR_BYTES],
+            bad: vec![false; 2 * SECTOR_BYTES],
         })
     }
 
@@ -89,11 +89,11 @@ impl Chip {
 pub struct Words<'a, const WORD: usize>(pub &'a RefCell<Chip>);
 
 impl<const WORD: usize> Flash for Words<'_, WORD> {
-    const RECORDS: usize = RECORDS;
+    const RECORDS_PER_SECTOR: usize = FLASH_RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         let chip = self.0.borrow();
-        let bytes = place * RECORD..(place + 1) * RECORD;
+        let bytes = place * RECORD_BYTES..(place + 1) * RECORD_BYTES;
         if chip.fails || chip.unreadable[bytes.clone()].contains(&true) {
             return Err(Fault);
         }
@@ -108,10 +108,10 @@ impl<const WORD: usize> Flash for Words<'_, WORD> {
             return Err(Fault);
         }
         let bytes: Vec<u8> = record.iter().flat_map(|word| word.to_le_bytes()).collect();
-        let blank = chip.bytes[place * RECORD..(place + 1) * RECORD].iter().all(|&byte| byte == 0xFF);
+        let blank = chip.bytes[place * RECORD_BYTES..(place + 1) * RECORD_BYTES].iter().all(|&byte| byte == 0xFF);
         assert!(blank || chip.power == 0, "written twice");
         for (index, word) in bytes.chunks(WORD).enumerate() {
-            chip.work(place * RECORD + index * WORD, word, false)?;
+            chip.work(place * RECORD_BYTES + index * WORD, word, false)?;
         }
         Ok(())
     }
@@ -121,7 +121,7 @@ impl<const WORD: usize> Flash for Words<'_, WORD> {
         if chip.fails {
             return Err(Fault);
         }
-        for start in (sector * SECTOR..(sector + 1) * SECTOR).step_by(WORD) {
+        for start in (sector * SECTOR_BYTES..(sector + 1) * SECTOR_BYTES).step_by(WORD) {
             chip.work(start, &[0xFF; WORD], true)?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! A vehicle on a desk: it never moves, whatever the motors' command, and its sensors and poses show that.
 
 use super::receiver::Local;
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use estimation::estimator::{Clipped, Increment, PoseMeasurement};
 use firmware::boot;
@@ -28,16 +28,16 @@ impl<'a> Desk<'a> {
     /// One tick on, with the IMU's and a camera's measurements of a vehicle at rest.
     pub fn tick(&mut self) -> MotorCommand {
         let zero = Vector3::zeros();
-        for start in [self.now, self.now + PERIOD / 2] {
+        for start in [self.now, self.now + PERIOD_US / 2] {
             self.shared.increment(Increment {
                 start,
-                end: start + PERIOD / 2,
+                end: start + PERIOD_US / 2,
                 delta_angle: zero,
                 delta_velocity: Vector3::new(0.0, 0.0, 9.81 * 5e-3),
                 clipped: Clipped::NEITHER,
             });
         }
-        self.now += PERIOD;
+        self.now += PERIOD_US;
         let sample = ImuSample { angular_velocity: zero, specific_force: Vector3::z() * 9.81 };
         self.shared.imu.put(sample, self.now);
         let pose = Pose::new(zero, Velocity::World(zero), Quaternion::identity()).unwrap();

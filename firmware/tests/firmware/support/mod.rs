@@ -18,7 +18,7 @@ use firmware::link::frame::Parser;
 use mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 
 /// The time between control ticks, us.
-pub const PERIOD: u64 = 10_000;
+pub const PERIOD_US: u64 = 10_000;
 
 /// The ground station of the tests.
 pub const GROUND: MavHeader = MavHeader { system_id: 255, component_id: 190, sequence: 0 };

@@ -1,7 +1,7 @@
 //! The firmware's side of a simulator: commands it was given, pins beside it, what it may answer.
 
 use super::Simulated;
-use crate::support::PERIOD;
+use crate::support::PERIOD_US;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::hardware::{Fault, MotorCommand, Motors};
 use firmware::hil::{self, SelectedMotors};
@@ -12,7 +12,7 @@ use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame
 pub type Hil = hil::Hil<NoopRawMutex>;
 
 /// When the simulator got its command, us; it answers a few milliseconds later, of the period that follows.
-pub const COMMANDED: u64 = 40_000;
+pub const COMMANDED_US: u64 = 40_000;
 
 /// Pins that record their commands.
 #[derive(Default)]
@@ -30,10 +30,10 @@ pub fn now<T>(future: impl Future<Output = T>) -> T {
     embassy_futures::block_on(future)
 }
 
-/// A simulator that has been given a command at [`COMMANDED`] and has not answered.
+/// A simulator that has been given a command at [`COMMANDED_US`] and has not answered.
 pub fn commanded() -> Hil {
     let hil = Hil::new();
-    command(&hil, COMMANDED);
+    command(&hil, COMMANDED_US);
     hil
 }
 
@@ -42,7 +42,7 @@ pub fn command(hil: &Hil, time: u64) {
     let (wanted, clock) = (Flag::new(), Simulated::default());
     wanted.raise();
     clock.0.set(time);
-    now(SelectedMotors { pins: &mut Pins::default(), hil, wanted: (&wanted).into(), clock, period: PERIOD }
+    now(SelectedMotors { pins: &mut Pins::default(), hil, requested: (&wanted).into(), clock, period: PERIOD_US }
         .write(MotorCommand::Stop))
     .unwrap();
 }

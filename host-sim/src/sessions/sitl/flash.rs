@@ -73,7 +73,7 @@ impl DeskFlash {
 }
 
 impl Flash for DeskFlash {
-    const RECORDS: usize = SECTOR_RECORDS;
+    const RECORDS_PER_SECTOR: usize = SECTOR_RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         self.records.borrow().get(place).copied().ok_or(Fault)

@@ -35,7 +35,6 @@ pub const BOOTLOADER_ADDRESS: u32 = 0x1FFF_0000;
 ///
 /// # Panics
 /// The second time.
-#[must_use]
 pub fn start() -> (Peripherals, bool) {
     let has_crystal = crystal::starts();
     let peripherals = embassy_stm32::init(clocks(has_crystal));
@@ -89,7 +88,6 @@ pub fn clear_flags() {
 }
 
 /// Whether the chip is not held in reset while its supply is too low for it: an option, which comes off.
-#[must_use]
 pub fn has_no_brown_out() -> bool {
     FLASH.optcr().read().bor_lev() == 0b11
 }

@@ -41,7 +41,6 @@ const CLOCK_POLLS_MAX: usize = 100_000;
 ///
 /// # Panics
 /// The second time.
-#[must_use]
 pub fn start() -> (Peripherals, bool) {
     spare_revision_y();
     let has_crystal = crystal::starts();
@@ -122,7 +121,6 @@ pub fn clear_flags() {
 }
 
 /// Whether the chip is not held in reset while its supply is too low for it: an option, which comes off.
-#[must_use]
 pub fn has_no_brown_out() -> bool {
     FLASH.optsr_cur().read().bor_lev() == 0
 }
@@ -170,7 +168,6 @@ fn quiet_peripherals() {
 pub fn map_bootloader() {}
 
 /// Whether the USB port's own supply comes up, which its driver would wait for without end.
-#[must_use]
 pub fn has_usb_supply() -> bool {
     /// Each takes 20 ns or more.
     const SUPPLY_POLLS_MAX: u32 = 1_000_000;

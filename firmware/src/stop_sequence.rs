@@ -13,11 +13,10 @@ pub const STOP_FRAMES_BEFORE: usize = 10;
 pub const STOP_FRAMES_AFTER: usize = 200;
 
 /// Whether the last acts have begun.
-pub struct Ending(AtomicBool);
+pub struct StopSequence(AtomicBool);
 
-impl Ending {
+impl StopSequence {
     /// Not yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self(AtomicBool::new(false))
     }
@@ -32,32 +31,5 @@ impl Ending {
     }
 }
 
-impl Default for Ending {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::cell::RefCell;
-
-    #[test]
-    fn motors_are_stopped_before_anything_is_reported() {
-        let acts = RefCell::new(Vec::new());
-        Ending::new()
-            .act(|frames| acts.borrow_mut().push(format!("stop {frames}")), || acts.borrow_mut().push("say".into()));
-        assert_eq!(*acts.borrow(), ["stop 10", "say", "stop 200"]);
-    }
-
-    #[test]
-    fn a_panic_while_reporting_is_not_reported_again() {
-        let (acts, ending) = (RefCell::new(Vec::new()), Ending::new());
-        let stop = |frames| acts.borrow_mut().push(format!("stop {frames}"));
-        let reported_again = || panic!("reported again");
-        // As on a board: a panic in there comes back to the same acts, and a restart follows them.
-        ending.act(stop, || ending.act(stop, reported_again));
-        assert_eq!(*acts.borrow(), ["stop 10", "stop 200"]);
-    }
-}
+mod tests;

@@ -36,21 +36,21 @@ const _: () = {
     assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINITION_SECTORS) * CONSTANTS_PER_SECTOR);
     let message = MESSAGE_HEAD_BYTES + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
     assert!(
-        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIBED[0].len() + ulog::SUBSCRIBED[1].len() <= SECTOR_CAPACITY_BYTES
+        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIPTION_PARTS[0].len() + ulog::SUBSCRIPTION_PARTS[1].len()
+            <= SECTOR_CAPACITY_BYTES
     );
 };
 
 /// What a file says of the vehicle.
-pub struct Beginning<'a, M: RawMutex> {
+pub struct FileHeader<'a, M: RawMutex> {
     /// What it is called.
     pub vehicle: &'static str,
     /// Their present values.
     pub parameters: Read<'a, Parameters<M>>,
 }
 
-impl<M: RawMutex> Beginning<'_, M> {
+impl<M: RawMutex> FileHeader<'_, M> {
     /// One of its sectors, of a file whose first record is of `time`.
-    #[must_use]
     pub fn sector(&self, place: usize, time: u64) -> [u8; SECTOR_BYTES] {
         match place.checked_sub(DEFINITION_SECTORS) {
             None => self.defined(place, time),
@@ -80,45 +80,11 @@ impl<M: RawMutex> Beginning<'_, M> {
             let _ = sector.put(&[&head, &[length as u8], KIND.as_bytes(), name.as_bytes(), &value.to_le_bytes()]);
         }
         if place + DEFINITION_SECTORS + 1 == HEAD_SECTORS {
-            let _ = sector.put(&ulog::SUBSCRIBED);
+            let _ = sector.put(&ulog::SUBSCRIPTION_PARTS);
         }
         sector.finish()
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::parameters::table::Name;
-    use crate::shared::Shared;
-    use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-
-    #[test]
-    fn it_is_whole_messages_with_every_number_before_the_subscription() {
-        let shared = Shared::<NoopRawMutex>::new();
-        shared.parameters.set(Name::MotorIdle, 0.0625).unwrap();
-        let beginning = Beginning { vehicle: "mine", parameters: shared.for_card().parameters() };
-        let time = 0x0123_4567_89AB_CDEF;
-        let bytes: Vec<u8> = (0..HEAD_SECTORS).flat_map(|place| beginning.sector(place, time)).collect();
-        assert_eq!((&bytes[8..16], bytes.len()), (&time.to_le_bytes()[..], HEAD_SECTORS * SECTOR_BYTES));
-        let (mut at, mut kinds, mut idle) = (16, String::new(), None);
-        while at < bytes.len() {
-            let length = usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
-            let body = &bytes[at + MESSAGE_HEAD_BYTES..at + MESSAGE_HEAD_BYTES + length];
-            kinds.push(char::from(bytes[at + 2]));
-            if body.starts_with(b"\x0Efloat MOT_IDLE") {
-                idle = body[15..].try_into().ok().map(f32::from_le_bytes);
-            }
-            at += MESSAGE_HEAD_BYTES + length;
-        }
-        assert_eq!((at, idle), (bytes.len(), Some(0.0625)));
-        let count = PARAMETERS.len() + CONSTANTS.len();
-        assert_eq!(kinds.replace('Z', ""), format!("BIIIIIF{}A", "P".repeat(count)));
-    }
-
-    #[test]
-    fn no_name_is_too_long() {
-        let names = PARAMETERS.iter().map(|row| row.name).chain(CONSTANTS.map(|(name, _)| name));
-        names.for_each(|name| assert!(name.len() <= NAME_MAX, "{name}"));
-    }
-}
+mod tests;
