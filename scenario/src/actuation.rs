@@ -14,7 +14,7 @@ use controller_core::vehicle::Vehicle;
 use propulsion::Propulsion;
 use toml::Value;
 
-/// Longest lag and delay, s: slower actuators fly no multirotor.
+/// Slower actuators fly no multirotor.
 const LAG_OR_DELAY_MAX_S: f64 = 1.0;
 
 const LAG_OR_DELAY: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
@@ -93,10 +93,10 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
     rotors.check_hover(hover).map_err(|error| {
         let field = each.in_file(error).field;
         let found = root.lookup(field).unwrap_or_default();
-        let (least, greatest) = rotors.thrust_together();
+        let (min, max) = rotors.thrust_together();
         let problem = format!(
             "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} {}: \
-             {least} to {greatest} N{}",
+             {min} to {max} N{}",
             each.unit(),
             likely_slip(root, vehicle, Some(&rotors))
         );
@@ -114,9 +114,9 @@ pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
         return Ok(0);
     };
     let delay = read_time(&section, "delay")?;
-    let greatest = f64::from(DELAY_MAX_SAMPLES) * timing.period();
-    if delay > greatest {
-        let problem = format!("must be at most {DELAY_MAX_SAMPLES} control periods, {greatest} s, found {delay}");
+    let max = f64::from(DELAY_MAX_SAMPLES) * timing.period();
+    if delay > max {
+        let problem = format!("must be at most {DELAY_MAX_SAMPLES} control periods, {max} s, found {delay}");
         return Err(FieldError::new(section.path_of("delay"), problem));
     }
     let steps = delay / timing.step();

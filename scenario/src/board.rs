@@ -6,7 +6,7 @@
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
 //! of factors is judged here.
 //!
-//! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built
+//! The firmware's build and `host-sim sitl` ask the same question here, so that each scenario that flies on a desk can be built
 //! for a board.
 
 use crate::file::Scenario;
@@ -36,8 +36,8 @@ pub const ROTOR_COUNT: usize = 4;
 pub fn fits(scenario: &Scenario, name: &str) -> Result<(), String> {
     let rate = 1.0 / scenario.timing.period();
     if !CONTROL_RATES_HZ.contains(&rate) {
-        let (least, most) = (CONTROL_RATES_HZ.start(), CONTROL_RATES_HZ.end());
-        return Err(format!("{name}: control.rate: the firmware flies at {least} to {most} Hz, found {rate}"));
+        let (min, max) = (CONTROL_RATES_HZ.start(), CONTROL_RATES_HZ.end());
+        return Err(format!("{name}: control.rate: the firmware flies at {min} to {max} Hz, found {rate}"));
     }
     if matches!(scenario.configuration.law(), LawParameters::Paper(_)) && rate != PAPER_LAW_RATE_HZ {
         let problem = format!("the firmware flies the paper's law at {PAPER_LAW_RATE_HZ} Hz, found {rate}");

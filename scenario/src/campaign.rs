@@ -1,11 +1,11 @@
 //! `[campaign]`: how far the circumstances of a campaign's flights may differ. Only `host-sim campaign` reads it.
 //!
-//! Each number is the greatest value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
+//! Each number is the maximum value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
 //! either side; `rotor_failures` is a share of the flights. Every key may be left out. The defaults of `duration` and
 //! `wind` ([`default_wind`]) depend on the law.
 
 use crate::body::ROTATION_PER_STEP_MAX_RAD;
-use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED, Values};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use controller_core::configuration::{Configuration, LawParameters};
@@ -31,7 +31,7 @@ pub struct Ranges {
     pub reference: Task,
     /// Whether attitudes are drawn, of all attitudes alike; otherwise flights start in the file's.
     pub attitude: bool,
-    /// Greatest distance from the reference's first point, m.
+    /// Maximum distance from the reference's first point, m.
     pub offset: f64,
     /// m/s.
     pub velocity: f64,
@@ -64,7 +64,7 @@ pub enum Task {
     InTurn,
 }
 
-/// Greatest standard deviations of the measurements, and how late it may come.
+/// Maximum standard deviations of the measurements, and how late it may come.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseRanges {
     /// rad/s.
@@ -77,7 +77,7 @@ pub struct NoiseRanges {
     pub delay: f64,
 }
 
-/// Greatest errors of the model, as shares of its values but for the centre of mass.
+/// Maximum errors of the model, as shares of its values but for the centre of mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ModelRanges {
     /// Part of the mass.
@@ -97,7 +97,7 @@ pub struct ModelRanges {
 pub struct FailureRanges {
     /// Share of the flights in which one does.
     pub flights: f64,
-    /// Least and greatest share of its commanded thrust that it delivers from then on.
+    /// Minimum and maximum share of its commanded thrust that it delivers from then on.
     pub thrust_left: [f64; 2],
 }
 
@@ -106,7 +106,7 @@ impl FailureRanges {
     pub const DEFAULT: Self = Self { flights: 0.0, thrust_left: [0.0, 0.7] };
 }
 
-/// The greatest body rate that the plant can follow, rad/s.
+/// The maximum body rate that the plant can follow, rad/s.
 fn angular_velocity_max(timing: &Timing) -> f64 {
     ROTATION_PER_STEP_MAX_RAD / timing.step()
 }
@@ -206,7 +206,7 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         let problem = format!("must be a whole number from 1 to {FLIGHTS_MAX}, found {flights}");
         return Err(FieldError::new(section.path_of("flights"), problem));
     }
-    Ok(Campaign { flights: flights as u64, seed: read_seed(&section)?, ranges })
+    Ok(Campaign { flights: flights as u64, seed: section.seed()?, ranges })
 }
 
 fn read_ranges(section: &Section, timing: &Timing, configuration: &Configuration) -> Result<Ranges, FieldError> {
@@ -248,13 +248,13 @@ fn read_ranges(section: &Section, timing: &Timing, configuration: &Configuration
     })
 }
 
-/// The least and the greatest share of its thrust that a failing rotor has left.
+/// The minimum and the maximum share of its thrust that a failing rotor has left.
 fn read_thrust_left(section: &Section, default: [f64; 2]) -> Result<[f64; 2], FieldError> {
     const REQUIREMENT: &str = "[least, greatest], 0 <= least <= greatest < 1";
     if !section.has("thrust_left") {
         return Ok(default);
     }
-    section.range("thrust_left", REQUIREMENT, |least, greatest| 0.0 <= least && least <= greatest && greatest < 1.0)
+    section.range("thrust_left", REQUIREMENT, |min, max| 0.0 <= min && min <= max && max < 1.0)
 }
 
 const TASK_NAMES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];

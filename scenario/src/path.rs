@@ -12,7 +12,7 @@ use std::fmt;
 /// Instants looked at on each leg: a peak between two of them is missed by less than 1e-4 of the leg's swing.
 const INSTANTS_PER_LEG: u32 = 256;
 
-/// The greatest distance that is not reported, and the rounding of single precision, m.
+/// Also the rounding of single precision.
 const DISTANCE_TOLERANCE_M: f64 = 0.01;
 
 /// A path that goes deeper than this, m, and less than this share of that above zero, has its z axis downwards.
@@ -44,9 +44,9 @@ impl Swing {
     pub fn find(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
         let ReferenceKind::Route(Route { points, way: Way::Smooth, .. }) = reference else { return None };
         let positions = || points.iter().map(|point| Vector3::from(point.position));
-        let (least, greatest) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
+        let (min, max) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
         let swings = places(points, trajectory).map(|at| {
-            let nearest = at.position.sup(&least).inf(&greatest);
+            let nearest = at.position.sup(&min).inf(&max);
             Self { distance: (at.position - nearest).norm(), at }
         });
         swings.max_by(|a, b| a.distance.total_cmp(&b.distance)).filter(|swing| swing.distance > DISTANCE_TOLERANCE_M)

@@ -37,14 +37,14 @@ use law::{Law, Tracker};
 use slopes::Slopes;
 pub(crate) use spectral_radius::spectral_radius;
 
-/// The longest period between ticks, s; the law's own limit.
+/// The law's own limit.
 const PERIOD_MAX_S: f32 = 0.1;
 
 /// The factors on the lag that are looked at: powers of this, and of its inverse.
 const LAG_FACTOR_STEP: f64 = 1.05;
 const LAG_FACTOR_STEPS: i32 = 47;
 
-/// The greatest delay looked at, samples: the delay line is part of the matrix.
+/// The maximum delay looked at, samples: the delay line is part of the matrix.
 pub const DELAY_MAX_SAMPLES: f32 = 64.0;
 
 /// When commands are computed and how they reach the vehicle.
@@ -96,11 +96,11 @@ impl Axis {
 /// How far a stable loop is from instability, each margin alone and taken at the actuator's command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// Least factor > 1 on the loop's gain that destabilises it; infinite if none does.
+    /// Minimum factor > 1 on the loop's gain that destabilises it; infinite if none does.
     pub gain_up: f64,
-    /// Greatest factor < 1 that destabilises it; zero if none does.
+    /// Maximum factor < 1 that destabilises it; zero if none does.
     pub gain_down: f64,
-    /// Least additional delay that destabilises it, s.
+    /// Minimum additional delay that destabilises it, s.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one, rad/s.
     pub crossover: f64,
@@ -180,7 +180,7 @@ impl LoopModel {
         LoopReport { axis, spectral_radius, margins }
     }
 
-    /// The least and the greatest factor on the rotors' lag, while the law believes in the one it was given, between
+    /// The minimum and the maximum factor on the rotors' lag, while the law believes in the one it was given, between
     /// which every loop is stable; zero or infinite where none destabilises it.
     #[must_use]
     pub fn lag_factors(&self) -> [f64; 2] {

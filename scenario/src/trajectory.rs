@@ -133,7 +133,7 @@ pub enum Way {
     },
     /// Near the points.
     Near {
-        /// The greatest distance, m, and of which point, s.
+        /// The maximum distance, m, and of which point, s.
         farthest: (f64, f64),
         /// How long after the start the first point is passed, s: what it takes to get there in motion.
         lead_in: f64,
@@ -219,8 +219,8 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
     }
     let own = |row: &Row| row.speed.map_or(speed, |own| own.min(speed));
     let points: Vec<Point> = rows.iter().map(|row| Point { place: place(row), speed: own(row) }).collect();
-    let greatest = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let Paced { knots, times } = pace::paced(&points, corridor, greatest, &limits).map_err(|problem| {
+    let max = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let Paced { knots, times } = pace::paced(&points, corridor, max, &limits).map_err(|problem| {
         let problem = match problem {
             Problem::Legs(legs) => format!(
                 "has {legs} straight legs, and at most {} can be searched: widen the corridor, leave points out, or \

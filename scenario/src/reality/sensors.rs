@@ -3,7 +3,7 @@
 //! Every key may be left out, for perfect, immediate sensors. Noise is white and normal, on each axis alone; the number
 //! is its standard deviation.
 
-use crate::key::{Bounds, Key, Layout, SEED, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED};
 use crate::sampled_loop::DELAY_MAX_SAMPLES;
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
@@ -120,7 +120,7 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         delay_ticks: read_delay(&section, timing, sampling)?,
         pose_delay_ticks: 0,
         imu_delay: 0.0,
-        seed: read_seed(&section)?,
+        seed: section.seed()?,
     }))
 }
 
@@ -147,7 +147,7 @@ fn read_velocity(section: &Section) -> Result<VelocitySource, FieldError> {
     })
 }
 
-/// How far from a whole number a quotient of the file's decimal fractions may be, relative.
+/// Relative, of a quotient of the file's decimal fractions.
 const WHOLE_TOLERANCE: f64 = 1e-6;
 
 fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError> {
@@ -169,8 +169,8 @@ fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError>
 /// Together with `sampling`, control periods, no longer than the sampled loops can be judged with.
 fn read_delay(section: &Section, timing: &Timing, sampling: f64) -> Result<u64, FieldError> {
     let period = timing.period();
-    let greatest = (f64::from(DELAY_MAX_SAMPLES) - sampling).floor() * period;
-    let delay = Bounds::between(0.0, greatest, "s").check(section.path_of("delay"), section.number("delay")?)?;
+    let max = (f64::from(DELAY_MAX_SAMPLES) - sampling).floor() * period;
+    let delay = Bounds::between(0.0, max, "s").check(section.path_of("delay"), section.number("delay")?)?;
     let ticks = delay / period;
     let whole = ticks.round();
     if (ticks - whole).abs() > WHOLE_TOLERANCE * ticks.max(1.0) {

@@ -9,7 +9,7 @@
 //! and for the wind at 20 feet (m/s) that states its strength. The pattern of the air drifts past the vehicle with
 //! `airspeed` (m/s; left out: the steady wind's, which is what a hovering vehicle feels).
 
-use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED, Values};
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 
@@ -31,7 +31,7 @@ pub struct Gust {
     pub shape: Shape,
     /// When it begins, s.
     pub start: f64,
-    /// Its greatest velocity, m/s, world.
+    /// Its maximum velocity, m/s, world.
     pub velocity: Vector3<f64>,
 }
 
@@ -136,6 +136,6 @@ fn read_turbulence(section: &Section, steady: &Vector3<f64>) -> Result<Turbulenc
         wind_at_20_feet: section.number("wind_at_20_feet")?,
         altitude: section.number("altitude")?,
         airspeed,
-        seed: read_seed(section)?,
+        seed: section.seed()?,
     })
 }

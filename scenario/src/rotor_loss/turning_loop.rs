@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Quaternion, SMatrix, UnitQuaternion, V
 const TILT_STEP_RAD: f64 = 5e-3;
 const RATE_STEP_RAD_PER_S: f64 = 0.05;
 
-/// The least lag, in periods: below it a rotor is at its thrust long before the next tick.
+/// The minimum lag, in periods: below it a rotor is at its thrust long before the next tick.
 const LAG_MIN_PERIODS: f64 = 0.01;
 
 /// The states between ticks: epsilon, delta, tau, two of each.

@@ -30,9 +30,9 @@ use way::Way;
 /// Corridors and speeds, times a power of ten, m and m/s. A path keeps to the widest corridor of these that is no wider
 /// than what is given, so that a wider one never takes longer.
 const SERIES_PER_DECADE: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
-/// The narrowest corridor that is tried in place of a wider one, m.
+/// The narrowest that is tried in place of a wider one.
 const CORRIDOR_MIN_M: f64 = 0.05;
-/// The least power of ten, where what is given is no less.
+/// The minimum power of ten, where what is given is no less.
 const SERIES_POWER_MIN: i32 = -3;
 /// A search through more of them would take minutes.
 pub const LEGS_MAX: usize = 300;
@@ -108,14 +108,14 @@ pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Re
     Ok(Paced { knots: way.knots(), times: times(&way, points, &kept) })
 }
 
-/// Those of [`SERIES_PER_DECADE`] from `least` to `most`, greatest first; `most` itself where there is none.
-fn below(most: f64, least: f64) -> Vec<f64> {
-    let power = most.log10().floor() as i32;
+/// Those of [`SERIES_PER_DECADE`] from `min` to `max`, descending; `max` itself where there is none.
+fn below(max: f64, min: f64) -> Vec<f64> {
+    let power = max.log10().floor() as i32;
     let all = (power.min(SERIES_POWER_MIN)..=power)
         .flat_map(|power| SERIES_PER_DECADE.map(|number| number * 10.0_f64.powi(power)));
-    let mut found: Vec<f64> = all.filter(|number| (0.999 * least..=1.001 * most).contains(number)).collect();
+    let mut found: Vec<f64> = all.filter(|number| (0.999 * min..=1.001 * max).contains(number)).collect();
     found.reverse();
-    if found.is_empty() { vec![most] } else { found }
+    if found.is_empty() { vec![max] } else { found }
 }
 
 /// What has been found.

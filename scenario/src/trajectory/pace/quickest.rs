@@ -25,12 +25,12 @@ const BARRIER_GROWTH: f64 = 4.0;
 const NEWTON_STEPS_MAX: usize = 20;
 /// What the value falls by for each place in a step that is worth another.
 const DECREASE_PER_PLACE_MIN: f64 = 1e-3;
-/// The greatest and, inverse, the least duration of a leg from rest to rest, s.
+/// The maximum and, inverse, the minimum duration of a leg from rest to rest, s.
 const LEG_DURATION_MAX_S: f64 = 1e3;
 /// How often a step is halved, and damped ten times more.
 const STEP_HALVINGS_MAX: u32 = 3;
 const DAMPINGS_MAX: u32 = 12;
-/// The least damping, and that of unknowns that no row depends on.
+/// The minimum damping, and that of unknowns that no row depends on.
 const DAMPING_MIN: f64 = 1e-9;
 
 /// What is looked for, and where it is looked at.
@@ -68,7 +68,7 @@ impl<'a> Search<'a> {
         (0..way.pieces.len()).all(slow)
     }
 
-    /// The greatest share at the places.
+    /// The maximum share at the places.
     pub fn most(&self, way: &Way) -> f64 {
         self.shares(way).into_iter().fold(0.0, f64::max)
     }
