@@ -11,7 +11,7 @@
 
 use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;
-use crate::sampled_loop::{Axis, LoopModel, Timing};
+use crate::sampled_loop::{Axis, LoopModel, LoopTiming};
 use crate::stability::LoopMargin;
 use crate::verdict::{Refusal, Verdict};
 use controller_core::allocation::{Rotor, Spin};
@@ -81,10 +81,10 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
 }
 
 /// The scenario's timing on a board.
-fn timing(scenario: &Scenario) -> Timing {
+fn timing(scenario: &Scenario) -> LoopTiming {
     let timing = scenario.loop_timing();
     let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay(&scenario.timing) };
-    Timing { delay_samples: timing.delay_samples + late / timing.period, ..timing }
+    LoopTiming { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
 /// The loops that only the attitude's factors change, and those that these and the position's across change; under the
@@ -124,7 +124,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
 /// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
-    let Timing { period, rotor_lag, delay_samples } = timing(scenario);
+    let LoopTiming { period, rotor_lag, delay_samples } = timing(scenario);
     let mut numbers = numbers(&scenario.configuration);
     numbers.extend([period, rotor_lag, delay_samples]);
     hash(&numbers)

@@ -140,8 +140,8 @@ const DURATION_MIN_S: f64 = 1.0;
 /// The keys of `[campaign]`.
 pub const LAYOUT: Layout = Layout {
     name: "campaign",
-    about: "How far the circumstances of the flights of `host-sim campaign` may differ: each number is the greatest \
-            value that is drawn.",
+    about: "How far the circumstances of the flights of `host-sim campaign` may differ: each number is the \
+            maximum of what is drawn.",
     keys: &[
         Key::new("flights", Values::Whole(Bounds::between(1.0, FLIGHTS_MAX, "")), "How many.").or(1000.0),
         SEED,

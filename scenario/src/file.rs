@@ -11,7 +11,7 @@ use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
-use crate::trajectory::vehicle::Vehicle;
+use crate::trajectory::vehicle::PathVehicle;
 use crate::trajectory::{Directory, FORCE_KEPT, TOLERANCE};
 use crate::{actuation, initial, plausibility, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
@@ -121,7 +121,7 @@ impl Scenario {
         let force_kept = ReferenceKind::number(root, &FORCE_KEPT)? as f32;
         let allow = || {
             let configuration = configuration(&ReferenceBounds::REST)?;
-            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
+            Ok(PathVehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
         };
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::number(root, &TOLERANCE)?;
@@ -184,10 +184,10 @@ impl Scenario {
 
     /// When commands are computed and how they reach the vehicle, for its sampled loops.
     #[must_use]
-    pub fn loop_timing(&self) -> sampled_loop::Timing {
+    pub fn loop_timing(&self) -> sampled_loop::LoopTiming {
         let period = self.timing.period();
         let delay_samples = (self.delay() + self.input_delay()) / period;
-        sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples }
+        sampled_loop::LoopTiming { period, rotor_lag: self.rotor_lag, delay_samples }
     }
 
     /// What the extended law's constants follow from where the file leaves them out; none under the paper's law.

@@ -17,7 +17,7 @@
 pub mod on_path;
 
 use crate::body::BodyState;
-use crate::sampled_loop::Timing;
+use crate::sampled_loop::LoopTiming;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -106,7 +106,7 @@ impl fmt::Display for NotArrived {
 ///
 /// # Errors
 /// If the law refuses the period or the delay.
-pub fn flown(certified: &Certified, timing: &Timing) -> Result<Result<Farthest, NotArrived>, ParameterError> {
+pub fn flown(certified: &Certified, timing: &LoopTiming) -> Result<Result<Farthest, NotArrived>, ParameterError> {
     let law = Law::new(certified, timing.period as f32)?;
     let vehicle = certified.configuration().vehicle();
     Ok(STARTS.iter().try_fold(Farthest { start: "", distance: 0.0 }, |farthest, start| {
@@ -135,7 +135,7 @@ struct Model {
 }
 
 impl Model {
-    fn new(vehicle: &Vehicle, timing: &Timing, start: &Start) -> Self {
+    fn new(vehicle: &Vehicle, timing: &LoopTiming, start: &Start) -> Self {
         let steps = (timing.period / STEP_MAX_S).ceil();
         let step = timing.period / steps;
         let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);

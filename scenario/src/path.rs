@@ -3,7 +3,7 @@
 use crate::reality::ground::Ground;
 use crate::reference::ReferenceKind;
 use crate::section::FieldError;
-use crate::trajectory::{Route, Way};
+use crate::trajectory::{Route, RouteWay};
 use controller_core::reference::Trajectory;
 use controller_core::reference::waypoints::Waypoint;
 use nalgebra::Vector3;
@@ -42,7 +42,7 @@ impl Swing {
     /// there are none.
     #[must_use]
     pub fn find(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
-        let ReferenceKind::Route(Route { points, way: Way::Smooth, .. }) = reference else { return None };
+        let ReferenceKind::Route(Route { points, way: RouteWay::Smooth, .. }) = reference else { return None };
         let positions = || points.iter().map(|point| Vector3::from(point.position));
         let (min, max) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
         let swings = places(points, trajectory).map(|at| {
@@ -90,9 +90,9 @@ pub fn check_ground(
         ReferenceKind::Route(Route { points, way, name, .. }) => {
             let lowest = places(points, trajectory).min_by(|a, b| a.position.z.total_cmp(&b.position.z));
             let remedy = match way {
-                Way::Smooth => "take path = \"inside\", or raise the points",
-                Way::Paced { .. } => "narrow the corridor, or raise the points",
-                Way::Inside | Way::Near { .. } => "raise the points",
+                RouteWay::Smooth => "take path = \"inside\", or raise the points",
+                RouteWay::Paced { .. } => "narrow the corridor, or raise the points",
+                RouteWay::Inside | RouteWay::Near { .. } => "raise the points",
             };
             let highest = points.iter().map(|point| point.position[2]).fold(f64::NEG_INFINITY, f64::max);
             (name.as_str(), lowest.unwrap_or_else(|| at(0.0)), highest, remedy)

@@ -49,7 +49,7 @@ pub const DELAY_MAX_SAMPLES: f32 = 64.0;
 
 /// When commands are computed and how they reach the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timing {
+pub struct LoopTiming {
     /// Time h between ticks, s, in (0, 0.1].
     pub period: f64,
     /// Time constant of the rotors' thrust, s; zero for ideal ones.
@@ -121,7 +121,7 @@ pub struct LoopReport {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopModel {
     slopes: Slopes,
-    timing: Timing,
+    timing: LoopTiming,
     /// Of the filter that the velocity comes from, rad/s; none if it is known.
     velocity_bandwidth: Option<f64>,
 }
@@ -131,8 +131,8 @@ impl LoopModel {
     ///
     /// # Errors
     /// Names `control.period`, `rotors.lag` or `sampling.delay` if it is not finite or outside its range.
-    pub fn new(vehicle: &Vehicle, law: &LawParameters, timing: Timing) -> Result<Self, ParameterError> {
-        let Timing { period, rotor_lag, delay_samples } = timing;
+    pub fn new(vehicle: &Vehicle, law: &LawParameters, timing: LoopTiming) -> Result<Self, ParameterError> {
+        let LoopTiming { period, rotor_lag, delay_samples } = timing;
         for (value, field) in [(period, "control.period"), (rotor_lag, "rotors.lag"), (delay_samples, "sampling.delay")]
         {
             require(value.is_finite(), field, Reason::NotFinite)?;
@@ -163,7 +163,7 @@ impl LoopModel {
     /// Spectral radius and margins of one loop.
     #[must_use]
     pub fn report(&self, axis: Axis) -> LoopReport {
-        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let LoopTiming { period, rotor_lag, delay_samples } = self.timing;
         let law = self.law(axis);
         let compensator = law.compensator();
         let chain = SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples);
@@ -185,7 +185,7 @@ impl LoopModel {
     #[must_use]
     pub fn lag_factors(&self) -> [f64; 2] {
         let is_stable = |factor: f64| {
-            let timing = Timing { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
+            let timing = LoopTiming { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
             Axis::ALL.into_iter().all(|axis| Self { timing, ..*self }.spectral_radius(axis) < 1.0)
         };
         let first_unstable =
@@ -202,7 +202,7 @@ impl LoopModel {
     /// The spectral radius of one loop alone: a fraction of a report's cost.
     #[must_use]
     pub fn spectral_radius(&self, axis: Axis) -> f64 {
-        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let LoopTiming { period, rotor_lag, delay_samples } = self.timing;
         let law = self.law(axis);
         let compensator = law.compensator();
         SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples).spectral_radius()

@@ -19,10 +19,10 @@ mod sloped;
 mod way;
 
 use controller_core::reference::knot::Knot;
-use limits::Limits;
+use limits::PathLimits;
 use merge::{Leg, Point, merged};
 use nalgebra::Vector3;
-use piece::Place;
+use piece::PiecePlace;
 use quickest::Search;
 use std::ops::ControlFlow;
 use way::Way;
@@ -81,7 +81,7 @@ pub enum Problem {
 ///
 /// # Errors
 /// Why there is none.
-pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Result<Paced, Problem> {
+pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &PathLimits) -> Result<Paced, Problem> {
     let mut tries =
         Tries { points, limits, searches: PLACES_PER_PIECE.map(|places| Search::new(limits, places)), best: None };
     let corridors = below(corridor, CORRIDOR_MIN_M);
@@ -121,7 +121,7 @@ fn below(max: f64, min: f64) -> Vec<f64> {
 /// What has been found.
 struct Tries<'a> {
     points: &'a [Point],
-    limits: &'a Limits,
+    limits: &'a PathLimits,
     searches: [Search<'a>; 2],
     /// The quickest, and which points it passes exactly.
     best: Option<(Way, Vec<usize>)>,
@@ -214,8 +214,8 @@ fn within(search: &Search, way: &Way) -> Option<Way> {
 /// When each point is passed, s: those between two that are kept, where the path is nearest to them.
 fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
     const PLACES_CHECKED_PER_PIECE: usize = 64;
-    let places: Vec<Place> = (0..=PLACES_CHECKED_PER_PIECE)
-        .map(|place| Place::new(place as f64 / PLACES_CHECKED_PER_PIECE as f64))
+    let places: Vec<PiecePlace> = (0..=PLACES_CHECKED_PER_PIECE)
+        .map(|place| PiecePlace::new(place as f64 / PLACES_CHECKED_PER_PIECE as f64))
         .collect();
     let mut times = Vec::with_capacity(points.len());
     let (mut start, mut time) = (0.0, 0.0_f64);

@@ -39,6 +39,7 @@ pub fn searched(paper: &Scenario) -> Result<[f64; 10], Box<dyn Error>> {
 }
 
 /// A law's figures in the paper's Section VI.
+#[derive(Default)]
 pub struct SectionSix {
     thrust: (f64, f64),
     torque: Vector3<f64>,
@@ -59,18 +60,7 @@ pub struct SectionSix {
 impl SectionSix {
     /// Flies it.
     pub fn simulate(paper: &Scenario, mut flight: Flight) -> Result<Self, Box<dyn Error>> {
-        let mut shown = Self {
-            thrust: (f64::INFINITY, 0.0),
-            torque: Vector3::zeros(),
-            rate: 0.0,
-            settled: 0.0,
-            height_lost: 0.0,
-            steady: (0.0, 0.0),
-            thrusts: Vec::new(),
-            torques: Vec::new(),
-            errors: Vec::new(),
-            yaws: Vec::new(),
-        };
+        let mut shown = Self { thrust: (f64::INFINITY, 0.0), ..Self::default() };
         let duration = paper.timing.duration();
         for _ in 0..paper.timing.ticks {
             let tick = flight.tick()?;

@@ -1,7 +1,7 @@
 //! The quickest motion along legs that takes no more of any row than there is: descent with a barrier.
 //!
 //! Free are how each knot is passed (velocity to snap; between the points also where) and the duration of each piece.
-//! At some places of each piece, denser towards its ends, the rows' shares s of [`Limits`] and of the corridor,
+//! At some places of each piece, denser towards its ends, the rows' shares s of [`PathLimits`] and of the corridor,
 //! (distance / corridor)^2, are below one, and
 //!
 //! rho times the whole duration + sum of b(s), b(s) = -ln(1 - x) - x - x^2 / 2, x = (s - [`IDLE`]) / (1 - [`IDLE`]),
@@ -14,7 +14,7 @@
 
 use super::blocks::Part;
 use super::equations::{DURATION_UNKNOWN, IDLE_SHARE, SHARE_COUNT, barrier, equations};
-use super::limits::Limits;
+use super::limits::PathLimits;
 use super::merge::Leg;
 use super::piece::Motion;
 use super::places::Places;
@@ -35,13 +35,13 @@ const DAMPING_MIN: f64 = 1e-9;
 
 /// What is looked for, and where it is looked at.
 pub struct Search<'a> {
-    limits: &'a Limits,
+    limits: &'a PathLimits,
     places: Places,
 }
 
 impl<'a> Search<'a> {
     /// Within `limits`, with so many `places` of each piece.
-    pub fn new(limits: &'a Limits, places: usize) -> Self {
+    pub fn new(limits: &'a PathLimits, places: usize) -> Self {
         Self { limits, places: Places::new(places) }
     }
 
