@@ -17,7 +17,7 @@ use toml::Value;
 /// Slower actuators fly no multirotor.
 const LAG_OR_DELAY_MAX_S: f64 = 1.0;
 
-const LAG_OR_DELAY: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
+const LAG_OR_DELAY_BOUNDS: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
 
 /// The keys of `[rotors]`.
 pub const ROTORS: Layout = Layout {
@@ -27,7 +27,7 @@ pub const ROTORS: Layout = Layout {
     keys: &[
         Key::new("position", Values::List(&Values::Vector(Bounds::any("m"))), "Of each rotor, m, body."),
         Key::new("spin", Values::List(&Values::Choice(&["cw", "ccw"])), "Of each rotor, seen from above."),
-        Key::number("lag", LAG_OR_DELAY, "First-order, of the speeds."),
+        Key::number("lag", LAG_OR_DELAY_BOUNDS, "First-order, of the speeds."),
         propulsion::SPEED_KEYS[0],
         propulsion::SPEED_KEYS[1],
         propulsion::SPEED_KEYS[2],
@@ -41,7 +41,8 @@ pub const ROTORS: Layout = Layout {
 pub const SAMPLING: Layout = Layout {
     name: "sampling",
     about: "When commands act.",
-    keys: &[Key::number("delay", LAG_OR_DELAY, "From a tick to the moment its wrench acts; whole plant steps.").or(0.0)],
+    keys: &[Key::number("delay", LAG_OR_DELAY_BOUNDS, "From a tick to the moment its wrench acts; whole plant steps.")
+        .or(0.0)],
 };
 
 /// Reads the first-order lag of the rotors' speeds, s; zero without `[rotors]`.

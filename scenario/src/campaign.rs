@@ -126,10 +126,10 @@ pub fn default_wind(configuration: &Configuration) -> f64 {
     }
 }
 
-const DURATION: Bounds = Bounds::between(DURATION_MIN_S, 1e5, "s");
-const ANGULAR_RATE: Bounds = Bounds::not_negative("rad/s").checked_later();
-const WIND_SPEED: Bounds = Bounds::between(0.0, 100.0, "m/s");
-const SHARE: Bounds = Bounds::between(0.0, 0.9, "");
+const DURATION_BOUNDS: Bounds = Bounds::between(DURATION_MIN_S, 1e5, "s");
+const ANGULAR_RATE_BOUNDS: Bounds = Bounds::not_negative("rad/s").checked_later();
+const WIND_SPEED_BOUNDS: Bounds = Bounds::between(0.0, 100.0, "m/s");
+const MODEL_SHARE_BOUNDS: Bounds = Bounds::between(0.0, 0.9, "");
 
 /// The most flights of a campaign.
 pub const FLIGHTS_MAX: f64 = 1e8;
@@ -145,25 +145,27 @@ pub const LAYOUT: Layout = Layout {
     keys: &[
         Key::new("flights", Values::Whole(Bounds::between(1.0, FLIGHTS_MAX, "")), "How many.").or(1000.0),
         SEED,
-        Key::number("duration", DURATION, "Of each; left out: 60, under the paper's law 180.").optional(),
+        Key::number("duration", DURATION_BOUNDS, "Of each; left out: 60, under the paper's law 180.").optional(),
         Key::choice("reference", &["in-turn", "file", "hover"], "Left out: \"hover\" and \"file\" in order."),
         Key::choice("attitude", &["uniform", "file"], "Left out: of all alike; or that of [initial]."),
         Key::number("offset", Bounds::between(0.0, 1e4, "m"), "From the reference's first point.").or(10.0),
         Key::number("velocity", Bounds::between(0.0, 1e3, "m/s"), "In any direction.").or(5.0),
-        Key::number("rate", ANGULAR_RATE, "About body x and y; left out: 15, or what plant.step allows.").optional(),
-        Key::number("yaw_rate", ANGULAR_RATE, "About body z; left out: 6, or what plant.step allows.").optional(),
-        Key::number("wind", WIND_SPEED, "Steady, level; left out: what the law bears, at most 5.").optional(),
-        Key::number("gust", WIND_SPEED, "Level, a step within the first half of the flight.").or(0.0),
-        Key::number("turbulence", WIND_SPEED, "Wind at 20 feet.").or(0.0),
+        Key::number("rate", ANGULAR_RATE_BOUNDS, "About body x and y; left out: 15, or what plant.step allows.")
+            .optional(),
+        Key::number("yaw_rate", ANGULAR_RATE_BOUNDS, "About body z; left out: 6, or what plant.step allows.")
+            .optional(),
+        Key::number("wind", WIND_SPEED_BOUNDS, "Steady, level; left out: what the law bears, at most 5.").optional(),
+        Key::number("gust", WIND_SPEED_BOUNDS, "Level, a step within the first half of the flight.").or(0.0),
+        Key::number("turbulence", WIND_SPEED_BOUNDS, "Wind at 20 feet.").or(0.0),
         Key::number("gyro_noise", Bounds::between(0.0, 10.0, "rad/s"), "Standard deviation.").or(0.01),
         Key::number("position_noise", Bounds::between(0.0, 100.0, "m"), "Standard deviation.").or(2e-3),
         Key::number("attitude_noise_deg", Bounds::between(0.0, 30.0, "degrees"), "Standard deviation.").or(0.2),
         Key::number("pose_delay", Bounds::between(0.0, 1.0, "s"), "Of all that is measured.").or(0.0),
-        Key::number("mass", SHARE, "Share of vehicle.mass, more or less.").or(0.0),
-        Key::number("inertia", SHARE, "Share of vehicle.inertia, more or less.").or(0.0),
+        Key::number("mass", MODEL_SHARE_BOUNDS, "Share of vehicle.mass, more or less.").or(0.0),
+        Key::number("inertia", MODEL_SHARE_BOUNDS, "Share of vehicle.inertia, more or less.").or(0.0),
         Key::number("centre_of_mass", Bounds::between(0.0, 10.0, "m"), "Body.").or(0.0),
-        Key::number("thrust_scale", SHARE, "Share of all rotors' thrust, more or less.").or(0.0),
-        Key::number("rotor_scales", SHARE, "Share of each rotor's thrust, more or less.").or(0.0),
+        Key::number("thrust_scale", MODEL_SHARE_BOUNDS, "Share of all rotors' thrust, more or less.").or(0.0),
+        Key::number("rotor_scales", MODEL_SHARE_BOUNDS, "Share of each rotor's thrust, more or less.").or(0.0),
         Key::number("rotor_failures", Bounds::SHARE, "Share of the flights in which a rotor fails.").or(0.0),
         Key::new("thrust_left", Values::Range(Bounds::SHARE), "Of such a rotor; left out: [0, 0.7].").optional(),
     ],

@@ -34,7 +34,7 @@ const STEPS_PER_TICK_MAX: f64 = 1e5;
 /// Relative, of a quotient of the file's decimal fractions.
 const WHOLE_TOLERANCE: f64 = 1e-9;
 
-const RATE: Bounds = Bounds::between(CONTROL_RATE_MIN_HZ, CONTROL_RATE_MAX_HZ, "Hz").checked_later();
+const RATE_BOUNDS: Bounds = Bounds::between(CONTROL_RATE_MIN_HZ, CONTROL_RATE_MAX_HZ, "Hz").checked_later();
 
 /// The key `duration`.
 pub const DURATION: Key = Key::number(
@@ -50,7 +50,7 @@ pub const CONTROL: Layout = Layout {
     about: "The law, and how often it acts.",
     keys: &[
         Key::choice("law", &["paper", "extended"], "Left out: \"paper\" beside a gain of that law alone."),
-        Key::number("rate", RATE, "1/rate: whole microseconds.").or(DEFAULT_CONTROL_RATE_HZ),
+        Key::number("rate", RATE_BOUNDS, "1/rate: whole microseconds.").or(DEFAULT_CONTROL_RATE_HZ),
         Key::number("thrust_floor", Bounds::physical("N"), "The least thrust, under the paper's law only.").optional(),
     ],
 };

@@ -36,11 +36,9 @@ pub use source::Directory;
 use source::Source;
 use vehicle::PathVehicle;
 
-const KIND: &str = "kind";
-
 /// The key that says of which kind a reference is.
 pub const fn kind(names: &'static [&'static str]) -> Key {
-    Key::new(KIND, Values::Choice(names), "How the reference is given.")
+    Key::new("kind", Values::Choice(names), "How the reference is given.")
 }
 
 /// How far a flight may stray from its reference once it is there.

@@ -123,16 +123,16 @@ fn read_speeds(section: &Section) -> Result<Propulsion, FieldError> {
 }
 
 fn read_thrusts(section: &Section) -> Result<Propulsion, FieldError> {
-    const LEVER: &str = "torque_per_thrust";
+    const KEY: &str = "torque_per_thrust";
     let thrust_max = section.number("thrust_max")?;
     let thrust_min = section.number("thrust_min")? as f32;
-    if !section.has(LEVER) {
+    if !section.has(KEY) {
         let problem = "missing, must be the propeller's drag torque over its thrust, m: yaw cannot be known without it \
                        (a thrust stand or the propeller's data have it)";
-        return Err(FieldError::new(section.path_of(LEVER), problem));
+        return Err(FieldError::new(section.path_of(KEY), problem));
     }
     let thrust_coefficient = thrust_max / (NOMINAL_SPEED_RAD_PER_S * NOMINAL_SPEED_RAD_PER_S);
-    let drag_coefficient = (section.number(LEVER)? * thrust_coefficient) as f32;
+    let drag_coefficient = (section.number(KEY)? * thrust_coefficient) as f32;
     let (thrust_coefficient, thrust_max) = (thrust_coefficient as f32, thrust_max as f32);
     Ok(Propulsion { form: Form::Thrusts, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
 }

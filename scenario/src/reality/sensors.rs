@@ -60,9 +60,9 @@ pub enum VelocitySource {
     },
 }
 
-const POSE_RATE: Bounds = Bounds::between(0.1, 4000.0, "Hz").checked_later();
-const DELAY: Bounds = Bounds::not_negative("s").checked_later();
-const ACCELERATION: Bounds = Bounds::between(-100.0, 100.0, "m/s^2");
+const POSE_RATE_BOUNDS: Bounds = Bounds::between(0.1, 4000.0, "Hz").checked_later();
+const DELAY_BOUNDS: Bounds = Bounds::not_negative("s").checked_later();
+const ACCELERATION_BOUNDS: Bounds = Bounds::between(-100.0, 100.0, "m/s^2");
 
 /// The keys of `[sensors]`.
 pub const LAYOUT: Layout = Layout {
@@ -78,10 +78,10 @@ pub const LAYOUT: Layout = Layout {
         Key::number("velocity_noise", Bounds::between(0.0, 100.0, "m/s"), "Only of \"exact\".").or(0.0),
         Key::number("velocity_bandwidth", Bounds::between(0.01, 1e4, "rad/s"), "Not of \"exact\".").optional(),
         Key::number("accelerometer_noise", Bounds::between(0.0, 100.0, "m/s^2"), "Only of \"observer\".").or(0.0),
-        Key::vector("accelerometer_bias", ACCELERATION, "Body; only of \"observer\".").or(0.0),
-        Key::number("pose_rate", POSE_RATE, "control.rate over a whole number.").optional(),
+        Key::vector("accelerometer_bias", ACCELERATION_BOUNDS, "Body; only of \"observer\".").or(0.0),
+        Key::number("pose_rate", POSE_RATE_BOUNDS, "control.rate over a whole number.").optional(),
         Key::number("dropout", Bounds::between(0.0, 0.99, ""), "The share of the poses that never arrive.").or(0.0),
-        Key::number("delay", DELAY, "Of all; a whole number of control periods.").or(0.0),
+        Key::number("delay", DELAY_BOUNDS, "Of all; a whole number of control periods.").or(0.0),
         SEED,
     ],
 };
