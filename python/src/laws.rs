@@ -20,7 +20,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 use scenario::timing::check_period;
-use std::fmt::Display;
 
 /// Rows that one core takes at a time: fewer are not worth waking another for.
 pub const ROWS_PER_TASK: usize = 256;
@@ -175,9 +174,6 @@ pub fn named<'py>(py: Python<'py>, d: &Diagnostics) -> PyResult<Bound<'py, PyDic
     Ok(named)
 }
 
-/// A law after a step, and its wrench.
-type Stepped = (law::Law, [f32; WRENCH_COLUMNS]);
-
 /// The law of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 #[pyclass(module = "saturated_hybrid")]
 pub struct LawRows {
@@ -233,19 +229,9 @@ impl LawRows {
         let count = self.laws.len();
         let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let references = rows::<REFERENCE_COLUMNS>(references, count, "references")?;
-        let laws = &self.laws;
-        let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
-            let given = laws.par_iter().zip(&states).zip(&references).enumerate().with_min_len(ROWS_PER_TASK);
-            let one = |(number, ((law, state), reference)): (usize, ((&law::Law, _), _))| {
-                let mut law = law.clone();
-                let (wrench, _) = step(&mut law, state, reference).map_err(|error| format!("row {number}: {error}"))?;
-                Ok((law, of_wrench(&wrench)))
-            };
-            let all = || given.map(one).collect();
-            // Each core works on its own rows.
-            if count > ROWS_PER_TASK { shared(all) } else { Ok(all()) }
-        });
-        let (laws, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
+        let (laws, wrenches) = step_rows(py, &self.laws, |law, number| {
+            step(law, &states[number], &references[number]).map(|(wrench, _)| of_wrench(&wrench))
+        })?;
         self.laws = laws;
         array(py, wrenches)
     }
@@ -273,6 +259,27 @@ impl LawRows {
     }
 }
 
+/// Steps every row, on all cores: the rows after it, and their wrenches.
+///
+/// # Errors
+/// Names a row whose step is refused.
+pub fn step_rows<R: Clone + Send + Sync>(
+    py: Python<'_>,
+    rows: &[R],
+    step: impl Fn(&mut R, usize) -> Result<[f32; WRENCH_COLUMNS], String> + Send + Sync,
+) -> PyResult<(Vec<R>, Vec<[f32; WRENCH_COLUMNS]>)> {
+    let one = |(number, row): (usize, &R)| {
+        let mut row = row.clone();
+        let wrench = step(&mut row, number).map_err(|error| format!("row {number}: {error}"))?;
+        Ok((row, wrench))
+    };
+    let stepped: PyResult<Result<Vec<_>, String>> = py.detach(|| {
+        let all = || rows.par_iter().enumerate().with_min_len(ROWS_PER_TASK).map(one).collect();
+        if rows.len() > ROWS_PER_TASK { shared(all) } else { Ok(all()) }
+    });
+    Ok(stepped?.map_err(refused)?.into_iter().unzip())
+}
+
 /// The rotors' command, as in flights and on boards.
 pub fn for_rotors(law: &law::Law, wrench: &Wrench) -> Wrench {
     wrench.scaled(1.0 / law.thrust_scale())
@@ -296,7 +303,6 @@ fn step(
     state: &[f64; STATE_COLUMNS],
     reference: &[f64; REFERENCE_COLUMNS],
 ) -> Result<(Wrench, Diagnostics), String> {
-    let said = |error: &dyn Display| error.to_string();
     let reference = reference_of(reference).map_err(|error| format!("reference.{error}"))?;
-    law.step(&measured(state), &reference).map_err(|error| said(&error))
+    law.step(&measured(state), &reference).map_err(|error| error.to_string())
 }

@@ -52,14 +52,24 @@ fn numbers(array: &Bound<'_, PyAny>, field: &str) -> PyResult<(Vec<f64>, Vec<usi
     Ok((read.as_array().iter().copied().collect(), read.shape().to_vec()))
 }
 
+/// The numbers of an array whose shape `fits`, as `allowed` says.
+fn shaped(array: &Bound<'_, PyAny>, field: &str, allowed: &str, fits: impl Fn(&[usize]) -> bool) -> PyResult<Vec<f64>> {
+    let (values, shape) = numbers(array, field)?;
+    if fits(&shape) {
+        return Ok(values);
+    }
+    let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+    let found = if let [size] = sizes.as_slice() { format!("({size},)") } else { format!("({})", sizes.join(", ")) };
+    Err(refused_field(field, format!("must have shape {allowed}, found {found}")))
+}
+
 /// One row.
 ///
 /// # Errors
 /// Names `field` if it has another shape.
 pub fn row<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<[f64; N]> {
-    let (values, shape) = numbers(array, field)?;
-    let other = |_| refused_field(field, format!("must have shape ({N},), found {}", shown(&shape)));
-    if shape.len() == 1 { values.try_into().map_err(other) } else { Err(other(values)) }
+    let values = shaped(array, field, &format!("({N},)"), |shape| *shape == [N])?;
+    Ok(core::array::from_fn(|place| values[place]))
 }
 
 /// So many rows.
@@ -67,12 +77,8 @@ pub fn row<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<[f
 /// # Errors
 /// Names `field` if it has another shape.
 pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyResult<Rows<N>> {
-    let (values, shape) = numbers(array, field)?;
-    if shape != [count, N] {
-        return Err(refused_field(field, format!("must have shape ({count}, {N}), found {}", shown(&shape))));
-    }
-    let (rows, _) = values.as_chunks();
-    Ok(rows.to_vec())
+    let values = shaped(array, field, &format!("({count}, {N})"), |shape| *shape == [count, N])?;
+    Ok(values.as_chunks().0.to_vec())
 }
 
 /// Rows of any number.
@@ -80,12 +86,8 @@ pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, count: usize, field: &str)
 /// # Errors
 /// Names `field` if it has another shape.
 pub fn counted<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Rows<N>> {
-    let (values, shape) = numbers(array, field)?;
-    if shape.len() != 2 || shape[1] != N {
-        return Err(refused_field(field, format!("must have shape (n, {N}), found {}", shown(&shape))));
-    }
-    let (rows, _) = values.as_chunks();
-    Ok(rows.to_vec())
+    let values = shaped(array, field, &format!("(n, {N})"), |shape| matches!(shape, [_, columns] if *columns == N))?;
+    Ok(values.as_chunks().0.to_vec())
 }
 
 /// Numbers of any count.
@@ -93,17 +95,7 @@ pub fn counted<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResul
 /// # Errors
 /// Names `field` if it is not one-dimensional.
 pub fn vector(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vec<f64>> {
-    let (values, shape) = numbers(array, field)?;
-    if shape.len() == 1 {
-        Ok(values)
-    } else {
-        Err(refused_field(field, format!("must have shape (n,), found {}", shown(&shape))))
-    }
-}
-
-fn shown(shape: &[usize]) -> String {
-    let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
-    if let [size] = sizes.as_slice() { format!("({size},)") } else { format!("({})", sizes.join(", ")) }
+    shaped(array, field, "(n,)", |shape| shape.len() == 1)
 }
 
 /// Rows as an array.
@@ -143,8 +135,13 @@ pub fn of_body(state: &BodyState) -> [f64; STATE_COLUMNS] {
 
 /// The law's input state as a row.
 pub fn of_measured(state: &State) -> [f64; STATE_COLUMNS] {
-    let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
-    [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z].map(f64::from)
+    let State { position, velocity, attitude, angular_velocity } = state;
+    of_body(&BodyState {
+        position: position.cast(),
+        velocity: velocity.cast(),
+        attitude: Quaternion::from(attitude.coords.cast()),
+        angular_velocity: angular_velocity.cast(),
+    })
 }
 
 /// The reference of a row.
@@ -211,9 +208,8 @@ fn demand(row: &[f64]) -> Option<Demand> {
 /// # Errors
 /// Names `field` if it has another shape.
 pub fn demand_row(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Demand> {
-    let (values, shape) = numbers(array, field)?;
-    let given = if shape.len() == 1 { demand(&values) } else { None };
-    given.ok_or_else(|| refused_field(field, format!("must have shape (4,) or (5,), found {}", shown(&shape))))
+    let values = shaped(array, field, "(4,) or (5,)", |shape| matches!(shape, [4 | 5]))?;
+    demand(&values).ok_or_else(|| refused_field(field, "must have shape (4,) or (5,)"))
 }
 
 /// The demands of so many rows.
@@ -221,15 +217,9 @@ pub fn demand_row(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Demand> {
 /// # Errors
 /// Names `field` if it has another shape.
 pub fn demand_rows(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyResult<Vec<Demand>> {
-    let (values, shape) = numbers(array, field)?;
-    let wanted = format!("must have shape ({count}, 4) or ({count}, 5)");
-    let other = || refused_field(field, format!("{wanted}, found {}", shown(&shape)));
-    match *shape {
-        [rows, columns @ (4 | 5)] if rows == count => {
-            values.chunks_exact(columns).map(demand).collect::<Option<_>>().ok_or_else(other)
-        }
-        _ => Err(other()),
-    }
+    let allowed = format!("({count}, 4) or ({count}, 5)");
+    let values = shaped(array, field, &allowed, |shape| matches!(shape, [rows, 4 | 5] if *rows == count))?;
+    Ok(values.chunks_exact(if values.len() == 4 * count { 4 } else { 5 }).filter_map(demand).collect())
 }
 
 /// A wrench as a row.

@@ -4,13 +4,12 @@
 //! that cannot be used hands over to the law.
 
 use crate::errors::{in_flight, refused};
-use crate::laws::{ROWS_MAX, ROWS_PER_TASK, for_rotors, named, numbers};
+use crate::laws::{ROWS_MAX, for_rotors, named, numbers, step_rows};
 use crate::rows::{
     REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, measured, of_reference,
     of_wrench, row, rows, wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
-use crate::threads::shared;
 use crate::whole_number::Whole;
 use controller_core::controller::Diagnostics;
 use controller_core::heading::Heading;
@@ -23,7 +22,6 @@ use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 
 /// A law, its shield, and what became of the last step.
 #[derive(Clone)]
@@ -250,9 +248,6 @@ hand_overs=10)")]
     }
 }
 
-/// A law and its shield after a step, and the wrench.
-type Stepped = (ShieldRow, [f32; WRENCH_COLUMNS]);
-
 /// The shields of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 ///
 /// Arguments as of `Shield`.
@@ -341,21 +336,10 @@ hand_overs=10)")]
         let count = self.ones.len();
         let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let demands = demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?;
-        let (ones, demands) = (&self.ones, demands.as_deref());
-        let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
-            let given = ones.par_iter().zip(&states).enumerate().with_min_len(ROWS_PER_TASK);
-            let one = |(number, (one, state)): (usize, (&ShieldRow, &[f64; STATE_COLUMNS]))| {
-                let mut one = one.clone();
-                let demand = demands.and_then(|demands| demands.get(number));
-                let stepped = one.step(&measured(state), demand);
-                let (wrench, _) = stepped.map_err(|error| format!("row {number}: {error}"))?;
-                Ok((one, wrench))
-            };
-            let all = || given.map(one).collect();
-            // Each core works on its own rows.
-            if count > ROWS_PER_TASK { shared(all) } else { Ok(all()) }
-        });
-        let (ones, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
+        let (ones, wrenches) = step_rows(py, &self.ones, |one, number| {
+            let demand = demands.as_ref().and_then(|demands| demands.get(number));
+            one.step(&measured(&states[number]), demand).map(|(wrench, _)| wrench)
+        })?;
         self.ones = ones;
         array(py, wrenches)
     }

@@ -14,10 +14,10 @@ use controller_core::vehicle::Vehicle;
 use propulsion::Propulsion;
 use toml::Value;
 
-/// Longest lag and delay, s: slower actuators fly no multirotor.
+/// Slower actuators fly no multirotor.
 const LAG_OR_DELAY_MAX_S: f64 = 1.0;
 
-const LAG_OR_DELAY: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
+const LAG_OR_DELAY_BOUNDS: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
 
 /// The keys of `[rotors]`.
 pub const ROTORS: Layout = Layout {
@@ -27,7 +27,7 @@ pub const ROTORS: Layout = Layout {
     keys: &[
         Key::new("position", Values::List(&Values::Vector(Bounds::any("m"))), "Of each rotor, m, body."),
         Key::new("spin", Values::List(&Values::Choice(&["cw", "ccw"])), "Of each rotor, seen from above."),
-        Key::number("lag", LAG_OR_DELAY, "First-order, of the speeds."),
+        Key::number("lag", LAG_OR_DELAY_BOUNDS, "First-order, of the speeds."),
         propulsion::SPEED_KEYS[0],
         propulsion::SPEED_KEYS[1],
         propulsion::SPEED_KEYS[2],
@@ -41,7 +41,8 @@ pub const ROTORS: Layout = Layout {
 pub const SAMPLING: Layout = Layout {
     name: "sampling",
     about: "When commands act.",
-    keys: &[Key::number("delay", LAG_OR_DELAY, "From a tick to the moment its wrench acts; whole plant steps.").or(0.0)],
+    keys: &[Key::number("delay", LAG_OR_DELAY_BOUNDS, "From a tick to the moment its wrench acts; whole plant steps.")
+        .or(0.0)],
 };
 
 /// Reads the first-order lag of the rotors' speeds, s; zero without `[rotors]`.
@@ -93,10 +94,10 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
     rotors.check_hover(hover).map_err(|error| {
         let field = each.in_file(error).field;
         let found = root.lookup(field).unwrap_or_default();
-        let (least, greatest) = rotors.thrust_together();
+        let (min, max) = rotors.thrust_together();
         let problem = format!(
             "cannot hover: must let the rotors' thrust together reach from below to above {hover} N, found {found} {}: \
-             {least} to {greatest} N{}",
+             {min} to {max} N{}",
             each.unit(),
             likely_slip(root, vehicle, Some(&rotors))
         );
@@ -114,9 +115,9 @@ pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
         return Ok(0);
     };
     let delay = read_time(&section, "delay")?;
-    let greatest = f64::from(DELAY_MAX_SAMPLES) * timing.period();
-    if delay > greatest {
-        let problem = format!("must be at most {DELAY_MAX_SAMPLES} control periods, {greatest} s, found {delay}");
+    let max = f64::from(DELAY_MAX_SAMPLES) * timing.period();
+    if delay > max {
+        let problem = format!("must be at most {DELAY_MAX_SAMPLES} control periods, {max} s, found {delay}");
         return Err(FieldError::new(section.path_of("delay"), problem));
     }
     let steps = delay / timing.step();

@@ -17,7 +17,7 @@ use controller_core::reference::{Reference, ReferenceBounds, Trajectory};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// The greatest stretch that is looked for, how finely it and the force are looked for.
+/// The maximum stretch that is looked for, how finely it and the force are looked for.
 const STRETCH_MAX: f64 = 50.0;
 const HALVINGS_MAX: u32 = 12;
 
@@ -84,7 +84,7 @@ impl Along {
     }
 }
 
-/// The least number from one that is not `enough` to one that may be; none where `most` is not.
+/// The smallest number that is `enough`, from `few`, which is not, to `most`; none where that is not either.
 fn least(few: f64, most: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
     if !enough(most) {
         return None;

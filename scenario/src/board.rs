@@ -6,12 +6,12 @@
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
 //! of factors is judged here.
 //!
-//! The firmware's build and `host-sim sitl` ask the same question here, so that whatever flies on a desk can be built
+//! The firmware's build and `host-sim sitl` ask the same question here, so that each scenario that flies on a desk can be built
 //! for a board.
 
 use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;
-use crate::sampled_loop::{Axis, LoopModel, Timing};
+use crate::sampled_loop::{Axis, LoopModel, LoopTiming};
 use crate::stability::LoopMargin;
 use crate::verdict::{Refusal, Verdict};
 use controller_core::allocation::{Rotor, Spin};
@@ -36,8 +36,8 @@ pub const ROTOR_COUNT: usize = 4;
 pub fn fits(scenario: &Scenario, name: &str) -> Result<(), String> {
     let rate = 1.0 / scenario.timing.period();
     if !CONTROL_RATES_HZ.contains(&rate) {
-        let (least, most) = (CONTROL_RATES_HZ.start(), CONTROL_RATES_HZ.end());
-        return Err(format!("{name}: control.rate: the firmware flies at {least} to {most} Hz, found {rate}"));
+        let (min, max) = (CONTROL_RATES_HZ.start(), CONTROL_RATES_HZ.end());
+        return Err(format!("{name}: control.rate: the firmware flies at {min} to {max} Hz, found {rate}"));
     }
     if matches!(scenario.configuration.law(), LawParameters::Paper(_)) && rate != PAPER_LAW_RATE_HZ {
         let problem = format!("the firmware flies the paper's law at {PAPER_LAW_RATE_HZ} Hz, found {rate}");
@@ -81,10 +81,10 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
 }
 
 /// The scenario's timing on a board.
-fn timing(scenario: &Scenario) -> Timing {
+fn timing(scenario: &Scenario) -> LoopTiming {
     let timing = scenario.loop_timing();
     let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay(&scenario.timing) };
-    Timing { delay_samples: timing.delay_samples + late / timing.period, ..timing }
+    LoopTiming { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
 /// The loops that only the attitude's factors change, and those that these and the position's across change; under the
@@ -124,7 +124,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
 /// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the other's.
 #[must_use]
 pub fn identity(scenario: &Scenario) -> u32 {
-    let Timing { period, rotor_lag, delay_samples } = timing(scenario);
+    let LoopTiming { period, rotor_lag, delay_samples } = timing(scenario);
     let mut numbers = numbers(&scenario.configuration);
     numbers.extend([period, rotor_lag, delay_samples]);
     hash(&numbers)

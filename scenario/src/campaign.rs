@@ -1,11 +1,11 @@
 //! `[campaign]`: how far the circumstances of a campaign's flights may differ. Only `host-sim campaign` reads it.
 //!
-//! Each number is the greatest value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
+//! Each number is the maximum value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
 //! either side; `rotor_failures` is a share of the flights. Every key may be left out. The defaults of `duration` and
 //! `wind` ([`default_wind`]) depend on the law.
 
 use crate::body::ROTATION_PER_STEP_MAX_RAD;
-use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED, Values};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use controller_core::configuration::{Configuration, LawParameters};
@@ -31,7 +31,7 @@ pub struct Ranges {
     pub reference: Task,
     /// Whether attitudes are drawn, of all attitudes alike; otherwise flights start in the file's.
     pub attitude: bool,
-    /// Greatest distance from the reference's first point, m.
+    /// Maximum distance from the reference's first point, m.
     pub offset: f64,
     /// m/s.
     pub velocity: f64,
@@ -64,7 +64,7 @@ pub enum Task {
     InTurn,
 }
 
-/// Greatest standard deviations of the measurements, and how late it may come.
+/// Maximum standard deviations of the measurements, and how late it may come.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseRanges {
     /// rad/s.
@@ -77,7 +77,7 @@ pub struct NoiseRanges {
     pub delay: f64,
 }
 
-/// Greatest errors of the model, as shares of its values but for the centre of mass.
+/// Maximum errors of the model, as shares of its values but for the centre of mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ModelRanges {
     /// Part of the mass.
@@ -97,7 +97,7 @@ pub struct ModelRanges {
 pub struct FailureRanges {
     /// Share of the flights in which one does.
     pub flights: f64,
-    /// Least and greatest share of its commanded thrust that it delivers from then on.
+    /// Minimum and maximum share of its commanded thrust that it delivers from then on.
     pub thrust_left: [f64; 2],
 }
 
@@ -106,7 +106,7 @@ impl FailureRanges {
     pub const DEFAULT: Self = Self { flights: 0.0, thrust_left: [0.0, 0.7] };
 }
 
-/// The greatest body rate that the plant can follow, rad/s.
+/// The maximum body rate that the plant can follow, rad/s.
 fn angular_velocity_max(timing: &Timing) -> f64 {
     ROTATION_PER_STEP_MAX_RAD / timing.step()
 }
@@ -126,10 +126,10 @@ pub fn default_wind(configuration: &Configuration) -> f64 {
     }
 }
 
-const DURATION: Bounds = Bounds::between(DURATION_MIN_S, 1e5, "s");
-const ANGULAR_RATE: Bounds = Bounds::not_negative("rad/s").checked_later();
-const WIND_SPEED: Bounds = Bounds::between(0.0, 100.0, "m/s");
-const SHARE: Bounds = Bounds::between(0.0, 0.9, "");
+const DURATION_BOUNDS: Bounds = Bounds::between(DURATION_MIN_S, 1e5, "s");
+const ANGULAR_RATE_BOUNDS: Bounds = Bounds::not_negative("rad/s").checked_later();
+const WIND_SPEED_BOUNDS: Bounds = Bounds::between(0.0, 100.0, "m/s");
+const MODEL_SHARE_BOUNDS: Bounds = Bounds::between(0.0, 0.9, "");
 
 /// The most flights of a campaign.
 pub const FLIGHTS_MAX: f64 = 1e8;
@@ -140,30 +140,32 @@ const DURATION_MIN_S: f64 = 1.0;
 /// The keys of `[campaign]`.
 pub const LAYOUT: Layout = Layout {
     name: "campaign",
-    about: "How far the circumstances of the flights of `host-sim campaign` may differ: each number is the greatest \
-            value that is drawn.",
+    about: "How far the circumstances of the flights of `host-sim campaign` may differ: each number is the \
+            maximum of what is drawn.",
     keys: &[
         Key::new("flights", Values::Whole(Bounds::between(1.0, FLIGHTS_MAX, "")), "How many.").or(1000.0),
         SEED,
-        Key::number("duration", DURATION, "Of each; left out: 60, under the paper's law 180.").optional(),
+        Key::number("duration", DURATION_BOUNDS, "Of each; left out: 60, under the paper's law 180.").optional(),
         Key::choice("reference", &["in-turn", "file", "hover"], "Left out: \"hover\" and \"file\" in order."),
         Key::choice("attitude", &["uniform", "file"], "Left out: of all alike; or that of [initial]."),
         Key::number("offset", Bounds::between(0.0, 1e4, "m"), "From the reference's first point.").or(10.0),
         Key::number("velocity", Bounds::between(0.0, 1e3, "m/s"), "In any direction.").or(5.0),
-        Key::number("rate", ANGULAR_RATE, "About body x and y; left out: 15, or what plant.step allows.").optional(),
-        Key::number("yaw_rate", ANGULAR_RATE, "About body z; left out: 6, or what plant.step allows.").optional(),
-        Key::number("wind", WIND_SPEED, "Steady, level; left out: what the law bears, at most 5.").optional(),
-        Key::number("gust", WIND_SPEED, "Level, a step within the first half of the flight.").or(0.0),
-        Key::number("turbulence", WIND_SPEED, "Wind at 20 feet.").or(0.0),
+        Key::number("rate", ANGULAR_RATE_BOUNDS, "About body x and y; left out: 15, or what plant.step allows.")
+            .optional(),
+        Key::number("yaw_rate", ANGULAR_RATE_BOUNDS, "About body z; left out: 6, or what plant.step allows.")
+            .optional(),
+        Key::number("wind", WIND_SPEED_BOUNDS, "Steady, level; left out: what the law bears, at most 5.").optional(),
+        Key::number("gust", WIND_SPEED_BOUNDS, "Level, a step within the first half of the flight.").or(0.0),
+        Key::number("turbulence", WIND_SPEED_BOUNDS, "Wind at 20 feet.").or(0.0),
         Key::number("gyro_noise", Bounds::between(0.0, 10.0, "rad/s"), "Standard deviation.").or(0.01),
         Key::number("position_noise", Bounds::between(0.0, 100.0, "m"), "Standard deviation.").or(2e-3),
         Key::number("attitude_noise_deg", Bounds::between(0.0, 30.0, "degrees"), "Standard deviation.").or(0.2),
         Key::number("pose_delay", Bounds::between(0.0, 1.0, "s"), "Of all that is measured.").or(0.0),
-        Key::number("mass", SHARE, "Share of vehicle.mass, more or less.").or(0.0),
-        Key::number("inertia", SHARE, "Share of vehicle.inertia, more or less.").or(0.0),
+        Key::number("mass", MODEL_SHARE_BOUNDS, "Share of vehicle.mass, more or less.").or(0.0),
+        Key::number("inertia", MODEL_SHARE_BOUNDS, "Share of vehicle.inertia, more or less.").or(0.0),
         Key::number("centre_of_mass", Bounds::between(0.0, 10.0, "m"), "Body.").or(0.0),
-        Key::number("thrust_scale", SHARE, "Share of all rotors' thrust, more or less.").or(0.0),
-        Key::number("rotor_scales", SHARE, "Share of each rotor's thrust, more or less.").or(0.0),
+        Key::number("thrust_scale", MODEL_SHARE_BOUNDS, "Share of all rotors' thrust, more or less.").or(0.0),
+        Key::number("rotor_scales", MODEL_SHARE_BOUNDS, "Share of each rotor's thrust, more or less.").or(0.0),
         Key::number("rotor_failures", Bounds::SHARE, "Share of the flights in which a rotor fails.").or(0.0),
         Key::new("thrust_left", Values::Range(Bounds::SHARE), "Of such a rotor; left out: [0, 0.7].").optional(),
     ],
@@ -206,7 +208,7 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         let problem = format!("must be a whole number from 1 to {FLIGHTS_MAX}, found {flights}");
         return Err(FieldError::new(section.path_of("flights"), problem));
     }
-    Ok(Campaign { flights: flights as u64, seed: read_seed(&section)?, ranges })
+    Ok(Campaign { flights: flights as u64, seed: section.seed()?, ranges })
 }
 
 fn read_ranges(section: &Section, timing: &Timing, configuration: &Configuration) -> Result<Ranges, FieldError> {
@@ -248,13 +250,13 @@ fn read_ranges(section: &Section, timing: &Timing, configuration: &Configuration
     })
 }
 
-/// The least and the greatest share of its thrust that a failing rotor has left.
+/// The minimum and the maximum share of its thrust that a failing rotor has left.
 fn read_thrust_left(section: &Section, default: [f64; 2]) -> Result<[f64; 2], FieldError> {
     const REQUIREMENT: &str = "[least, greatest], 0 <= least <= greatest < 1";
     if !section.has("thrust_left") {
         return Ok(default);
     }
-    section.range("thrust_left", REQUIREMENT, |least, greatest| 0.0 <= least && least <= greatest && greatest < 1.0)
+    section.range("thrust_left", REQUIREMENT, |min, max| 0.0 <= min && min <= max && max < 1.0)
 }
 
 const TASK_NAMES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];

@@ -8,7 +8,7 @@ use controller_core::certificate::Certificate;
 use controller_core::reference::{Reference, ReferenceBounds};
 use std::fmt;
 
-/// The greatest stretch that is looked for, and how finely.
+/// The maximum stretch that is looked for, and how finely.
 const STRETCH_MAX: f64 = 50.0;
 const HALVINGS_MAX: u32 = 12;
 /// Instants looked at.

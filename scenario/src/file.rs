@@ -1,25 +1,25 @@
 //! A whole scenario file: its sections, read into one flight that can be flown.
 
+mod layout;
+
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
-use crate::key::{Key, Layout, Values};
 use crate::path;
 use crate::reality::sensors::{self, VelocitySource};
-use crate::reality::{self, Reality, estimator};
-use crate::reference::{LAYOUTS, ReferenceKind};
+use crate::reality::{Reality, estimator};
+use crate::reference::ReferenceKind;
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
-use crate::timing::{self, DURATION, Timing};
-use crate::trajectory::vehicle::Vehicle;
+use crate::timing::Timing;
+use crate::trajectory::vehicle::PathVehicle;
 use crate::trajectory::{Directory, FORCE_KEPT, TOLERANCE};
 use crate::{actuation, initial, plausibility, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;
-use controller_core::extended::parameters::ExtendedParameters;
-use controller_core::gains::GainParameters;
 use controller_core::reference::{ReferenceBounds, Trajectory};
+pub use layout::LAYOUT;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -30,54 +30,6 @@ pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// The firmware's default vehicle, built in.
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
-
-/// A scenario file: its sections in the order in which errors list them.
-pub const LAYOUT: Layout = Layout {
-    name: "",
-    about: "A flight: a vehicle, its limits and gains, where it starts and its reference. SI units, world z up, body x \
-            forward, y left, z up.",
-    keys: &[
-        Key::new("name", Values::Text, "Names the flight: 1 to 64 letters, digits, '-', '_' or '.'."),
-        DURATION,
-        Key::new("vehicle", Values::Table(&vehicle::VEHICLE), vehicle::VEHICLE.about),
-        Key::table(&vehicle::LIMITS),
-        Key::new(
-            "gains",
-            Values::Constants("gains", &[&ExtendedParameters::TABLE, &GainParameters::TABLE]),
-            "The gains of a law: of the extended one each may be left out, of the paper's none.",
-        )
-        .optional(),
-        Key::new(
-            "estimates",
-            Values::Constants("estimates", &[&ExtendedParameters::TABLE]),
-            "The estimates of the extended law; what is left out follows from the vehicle's numbers.",
-        )
-        .optional(),
-        Key::table(&timing::CONTROL),
-        Key::table(&timing::PLANT),
-        Key::table(&actuation::ROTORS),
-        Key::table(&actuation::SAMPLING),
-        Key::table(&initial::LAYOUT),
-        Key::new("reference", Values::Kinds(&LAYOUTS), "Left out: hover where the flight starts.").optional(),
-        Key::new(
-            "reference_bounds",
-            Values::Constants("reference_bounds", &[&ReferenceBounds::TABLE]),
-            "The references that the certificate is to cover; what is left out follows from the vehicle or the \
-             reference.",
-        )
-        .optional(),
-        Key::table(&campaign::LAYOUT),
-        Key::table(&reality::truth::LAYOUT),
-        Key::table(&reality::drag::LAYOUT),
-        Key::table(&reality::wind::LAYOUT),
-        Key::table(&reality::disturbance::LAYOUT),
-        Key::table(&reality::battery::LAYOUT),
-        Key::table(&reality::failure::LAYOUT),
-        Key::table(&reality::ground::LAYOUT),
-        Key::table(&sensors::LAYOUT),
-        Key::table(&estimator::LAYOUT),
-    ],
-};
 
 /// After the last of a path's points, if the file has no duration.
 const HOLD_AFTER_LAST_POINT_S: f64 = 5.0;
@@ -169,7 +121,7 @@ impl Scenario {
         let force_kept = ReferenceKind::number(root, &FORCE_KEPT)? as f32;
         let allow = || {
             let configuration = configuration(&ReferenceBounds::REST)?;
-            Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
+            Ok(PathVehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
         };
         let reference = ReferenceKind::read(root, directory, &allow)?;
         let tolerance = ReferenceKind::number(root, &TOLERANCE)?;
@@ -225,17 +177,17 @@ impl Scenario {
         let known = LoopModel::new(self.configuration.vehicle(), self.configuration.law(), self.loop_timing())?;
         Ok(match self.reality.sensors.map(|sensors| sensors.velocity) {
             Some(VelocitySource::AlphaBeta { bandwidth }) => known.with_velocity_from_positions(bandwidth),
-            // An observer with an accelerometer errs by itself, whatever the vehicle does.
+            // An observer with an accelerometer errs by itself, independently of the vehicle.
             _ => known,
         })
     }
 
     /// When commands are computed and how they reach the vehicle, for its sampled loops.
     #[must_use]
-    pub fn loop_timing(&self) -> sampled_loop::Timing {
+    pub fn loop_timing(&self) -> sampled_loop::LoopTiming {
         let period = self.timing.period();
         let delay_samples = (self.delay() + self.input_delay()) / period;
-        sampled_loop::Timing { period, rotor_lag: self.rotor_lag, delay_samples }
+        sampled_loop::LoopTiming { period, rotor_lag: self.rotor_lag, delay_samples }
     }
 
     /// What the extended law's constants follow from where the file leaves them out; none under the paper's law.
@@ -289,7 +241,7 @@ impl fmt::Display for ScenarioError {
 
 impl std::error::Error for ScenarioError {}
 
-/// A file's name without line ends, and whatever else a terminal acts on.
+/// A file's name without line ends and other control characters.
 fn one_line(name: &str) -> String {
     let shown = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
     name.chars().map(shown).collect()

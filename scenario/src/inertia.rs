@@ -10,7 +10,7 @@ use controller_core::vehicle::Vehicle;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use toml::Value;
 
-/// Products of inertia that count as zero, relative to the greatest moment: a file's rounding.
+/// Products of inertia that count as zero, relative to the maximum moment: a file's rounding.
 const NEGLIGIBLE_PRODUCT_SHARE: f64 = 1e-6;
 
 /// What a file may write: moments, or a matrix.
@@ -105,8 +105,8 @@ fn right_handed(mut axes: Matrix3<f64>) -> Matrix3<f64> {
         }
     }
     if axes.determinant() < 0.0 {
-        let least = axes.diagonal().imin();
-        axes.column_mut(least).neg_mut();
+        let min = axes.diagonal().imin();
+        axes.column_mut(min).neg_mut();
     }
     axes
 }
@@ -127,13 +127,13 @@ pub fn impossible(path: &str, moments: &Vector3<f64>, error: &ParameterError) ->
         return None;
     }
     let axis = moments.imax();
-    let (greatest, one, other) = (moments[axis], moments[(axis + 1) % 3], moments[(axis + 2) % 3]);
+    let (max, one, other) = (moments[axis], moments[(axis + 1) % 3], moments[(axis + 2) % 3]);
     let (one, other) = (one.min(other), one.max(other));
     let problem = format!(
-        "{}: [{axis}] = {greatest} is {:.1} % above {one} + {other}, and at most {} % are let pass; measure it again \
+        "{}: [{axis}] = {max} is {:.1} % above {one} + {other}, and at most {} % are let pass; measure it again \
          or take the sum, {}",
         error.reason,
-        100.0 * (greatest / (one + other) - 1.0),
+        100.0 * (max / (one + other) - 1.0),
         100.0 * Vehicle::INERTIA_ALLOWANCE,
         (one + other) as f32
     );

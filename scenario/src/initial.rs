@@ -51,9 +51,9 @@ pub fn read_initial(root: &Section, on_reference: Vector3<f64>, step: f64) -> Re
     }
     let euler = section.vector("euler_deg")?.map(f64::to_radians);
     let angular_velocity = section.vector("angular_velocity")?;
-    let greatest = ROTATION_PER_STEP_MAX_RAD / step;
-    if angular_velocity.norm() > greatest {
-        let problem = format!("must be at most {greatest:.4} rad/s for plant.step = {step} s (or take a smaller step)");
+    let max = ROTATION_PER_STEP_MAX_RAD / step;
+    if angular_velocity.norm() > max {
+        let problem = format!("must be at most {max:.4} rad/s for plant.step = {step} s (or take a smaller step)");
         return Err(FieldError::new(section.path_of("angular_velocity"), problem));
     }
     let attitude = attitude_from_euler(euler.x, euler.y, euler.z);

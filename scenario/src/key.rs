@@ -1,7 +1,7 @@
 //! The keys of scenario files. Each is declared once, with its values, its default and its meaning: readers check what
 //! they read by it ([`crate::section`]), and [`crate::schema`] prints it.
 
-use crate::section::{FieldError, Section};
+use crate::field_error::FieldError;
 use controller_core::constants::Constant;
 
 /// The keys of a section, or of a table in one.
@@ -37,7 +37,7 @@ pub enum Values {
     Whole(Bounds),
     /// Three numbers.
     Vector(Bounds),
-    /// A least and a greatest number.
+    /// A minimum and a maximum number.
     Range(Bounds),
     /// Any number of values.
     List(&'static Values),
@@ -124,11 +124,11 @@ impl Key {
 /// The bounds of a number, and its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The least.
+    /// The minimum.
     pub min: f64,
-    /// The greatest.
+    /// The maximum.
     pub max: f64,
-    /// Whether the number is greater than the least.
+    /// Whether the number is greater than the minimum.
     pub above_min: bool,
     /// Empty without one.
     pub unit: &'static str,
@@ -196,21 +196,8 @@ impl Bounds {
 }
 
 /// Whole numbers beyond this are not exact in double precision.
-const EXACT_WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
+pub const EXACT_WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
 
 /// The seed of a random generator.
 pub const SEED: Key =
     Key::new("seed", Values::Whole(Bounds::between(0.0, EXACT_WHOLE_MAX, "")), "Of the random generator.").or(0.0);
-
-/// Reads [`SEED`].
-///
-/// # Errors
-/// If it is no whole number from 0 to 2^53.
-pub fn read_seed(section: &Section) -> Result<u64, FieldError> {
-    let seed = section.number(SEED.name)?;
-    if seed.fract() == 0.0 && (0.0..=EXACT_WHOLE_MAX).contains(&seed) {
-        return Ok(seed as u64);
-    }
-    let problem = format!("must be a whole number from 0 to {EXACT_WHOLE_MAX}, found {seed}");
-    Err(FieldError::new(section.path_of(SEED.name), problem))
-}

@@ -17,7 +17,7 @@
 pub mod on_path;
 
 use crate::body::BodyState;
-use crate::sampled_loop::Timing;
+use crate::sampled_loop::LoopTiming;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -56,7 +56,7 @@ const STARTS: [Start; 11] = [
     Start { name: "a spin upside down", turned: [2.8, 0.4, 0.0], turning: [-2.0, 4.0, -15.0], ..AT_REST },
 ];
 
-/// s. Most arrive in seconds; a weak vehicle that starts spinning falls for minutes, and then has far to come.
+/// Most arrive in seconds; a weak vehicle that starts spinning falls for minutes, and then has far to come.
 const FLIGHT_DURATION_MAX_S: f64 = 1800.0;
 
 /// So near the target, m and m/s, and so near upright and its heading, rad, for so long, s, a vehicle has arrived.
@@ -65,7 +65,6 @@ const ARRIVAL_SPEED_M_PER_S: f64 = 0.1;
 const ARRIVAL_ANGLE_RAD: f64 = 0.05;
 const ARRIVAL_TIME_S: f64 = 1.0;
 
-/// The model's longest step, s.
 const STEP_MAX_S: f64 = 2e-3;
 
 /// The flight that was farthest from its target on the way.
@@ -107,7 +106,7 @@ impl fmt::Display for NotArrived {
 ///
 /// # Errors
 /// If the law refuses the period or the delay.
-pub fn flown(certified: &Certified, timing: &Timing) -> Result<Result<Farthest, NotArrived>, ParameterError> {
+pub fn flown(certified: &Certified, timing: &LoopTiming) -> Result<Result<Farthest, NotArrived>, ParameterError> {
     let law = Law::new(certified, timing.period as f32)?;
     let vehicle = certified.configuration().vehicle();
     Ok(STARTS.iter().try_fold(Farthest { start: "", distance: 0.0 }, |farthest, start| {
@@ -136,7 +135,7 @@ struct Model {
 }
 
 impl Model {
-    fn new(vehicle: &Vehicle, timing: &Timing, start: &Start) -> Self {
+    fn new(vehicle: &Vehicle, timing: &LoopTiming, start: &Start) -> Self {
         let steps = (timing.period / STEP_MAX_S).ceil();
         let step = timing.period / steps;
         let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);

@@ -41,6 +41,7 @@ pub mod campaign;
 pub mod constants;
 pub mod excess;
 pub mod extended;
+pub mod field_error;
 pub mod file;
 pub mod inertia;
 pub mod initial;

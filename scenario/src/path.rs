@@ -3,7 +3,7 @@
 use crate::reality::ground::Ground;
 use crate::reference::ReferenceKind;
 use crate::section::FieldError;
-use crate::trajectory::{Route, Way};
+use crate::trajectory::{Route, RouteWay};
 use controller_core::reference::Trajectory;
 use controller_core::reference::waypoints::Waypoint;
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use std::fmt;
 /// Instants looked at on each leg: a peak between two of them is missed by less than 1e-4 of the leg's swing.
 const INSTANTS_PER_LEG: u32 = 256;
 
-/// The greatest distance that is not reported, and the rounding of single precision, m.
+/// Also the rounding of single precision.
 const DISTANCE_TOLERANCE_M: f64 = 0.01;
 
 /// A path that goes deeper than this, m, and less than this share of that above zero, has its z axis downwards.
@@ -42,11 +42,11 @@ impl Swing {
     /// there are none.
     #[must_use]
     pub fn find(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
-        let ReferenceKind::Route(Route { points, way: Way::Smooth, .. }) = reference else { return None };
+        let ReferenceKind::Route(Route { points, way: RouteWay::Smooth, .. }) = reference else { return None };
         let positions = || points.iter().map(|point| Vector3::from(point.position));
-        let (least, greatest) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
+        let (min, max) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
         let swings = places(points, trajectory).map(|at| {
-            let nearest = at.position.sup(&least).inf(&greatest);
+            let nearest = at.position.sup(&min).inf(&max);
             Self { distance: (at.position - nearest).norm(), at }
         });
         swings.max_by(|a, b| a.distance.total_cmp(&b.distance)).filter(|swing| swing.distance > DISTANCE_TOLERANCE_M)
@@ -90,9 +90,9 @@ pub fn check_ground(
         ReferenceKind::Route(Route { points, way, name, .. }) => {
             let lowest = places(points, trajectory).min_by(|a, b| a.position.z.total_cmp(&b.position.z));
             let remedy = match way {
-                Way::Smooth => "take path = \"inside\", or raise the points",
-                Way::Paced { .. } => "narrow the corridor, or raise the points",
-                Way::Inside | Way::Near { .. } => "raise the points",
+                RouteWay::Smooth => "take path = \"inside\", or raise the points",
+                RouteWay::Paced { .. } => "narrow the corridor, or raise the points",
+                RouteWay::Inside | RouteWay::Near { .. } => "raise the points",
             };
             let highest = points.iter().map(|point| point.position[2]).fold(f64::NEG_INFINITY, f64::max);
             (name.as_str(), lowest.unwrap_or_else(|| at(0.0)), highest, remedy)

@@ -15,13 +15,11 @@ use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Where to hover if the file says nothing of it, m.
 const DEFAULT_POSITION_M: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 
 /// What to do about a place that is too far away.
 const COUNT_FROM_NEAR: &str = "count all positions from an origin nearby";
 
-/// The greatest angle of a harmonic, turns.
 const ANGLE_MAX_TURNS: f64 = 2.0;
 
 /// The keys of `[reference]`, by its kind.

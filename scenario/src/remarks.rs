@@ -4,7 +4,7 @@ use crate::excess::Excess;
 use crate::file::Scenario;
 use crate::path::Swing;
 use crate::reference::ReferenceKind;
-use crate::trajectory::{Route, Way};
+use crate::trajectory::{Route, RouteWay};
 
 /// Of the vehicle of a scenario: which of its numbers are unusual. Of the reference: where it swings out, how near it
 /// is to the rows of a file, and where it is too fast.
@@ -26,14 +26,14 @@ pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
 fn summary(route: &Route) -> Option<String> {
     let (points, duration) = (route.points.len(), route.duration());
     match route.way {
-        Way::Near { farthest: (distance, time), lead_in } => Some(format!(
+        RouteWay::Near { farthest: (distance, time), lead_in } => Some(format!(
             "{points} rows, each within {:.1} mm (most at {time:.2} s); the first is passed {lead_in:.2} s after the \
              start, the end is at {duration:.2} s",
             1e3 * distance
         )),
-        Way::Paced { corridor } => {
+        RouteWay::Paced { corridor } => {
             Some(format!("{points} points in {duration:.2} s, at most {corridor} m beside the straight legs"))
         }
-        Way::Smooth | Way::Inside => None,
+        RouteWay::Smooth | RouteWay::Inside => None,
     }
 }

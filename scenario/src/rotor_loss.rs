@@ -22,7 +22,7 @@ use nalgebra::{Quaternion, Vector3, Vector4};
 /// How near its place a vehicle without a rotor must stay not to count as lost, m.
 pub const PLACE_HELD_DISTANCE_M: f64 = 3.0;
 
-/// The greatest speed of its soft landing, m/s.
+/// The maximum.
 pub const SOFT_LANDING_SPEED_M_PER_S: f64 = 1.0;
 
 /// The law of a vehicle without one of its rotors, before its first tick.

@@ -37,19 +37,19 @@ use law::{Law, Tracker};
 use slopes::Slopes;
 pub(crate) use spectral_radius::spectral_radius;
 
-/// The longest period between ticks, s; the law's own limit.
+/// The law's own limit.
 const PERIOD_MAX_S: f32 = 0.1;
 
 /// The factors on the lag that are looked at: powers of this, and of its inverse.
 const LAG_FACTOR_STEP: f64 = 1.05;
 const LAG_FACTOR_STEPS: i32 = 47;
 
-/// The greatest delay looked at, samples: the delay line is part of the matrix.
+/// The maximum delay looked at, samples: the delay line is part of the matrix.
 pub const DELAY_MAX_SAMPLES: f32 = 64.0;
 
 /// When commands are computed and how they reach the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timing {
+pub struct LoopTiming {
     /// Time h between ticks, s, in (0, 0.1].
     pub period: f64,
     /// Time constant of the rotors' thrust, s; zero for ideal ones.
@@ -96,11 +96,11 @@ impl Axis {
 /// How far a stable loop is from instability, each margin alone and taken at the actuator's command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// Least factor > 1 on the loop's gain that destabilises it; infinite if none does.
+    /// Minimum factor > 1 on the loop's gain that destabilises it; infinite if none does.
     pub gain_up: f64,
-    /// Greatest factor < 1 that destabilises it; zero if none does.
+    /// Maximum factor < 1 that destabilises it; zero if none does.
     pub gain_down: f64,
-    /// Least additional delay that destabilises it, s.
+    /// Minimum additional delay that destabilises it, s.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one, rad/s.
     pub crossover: f64,
@@ -121,7 +121,7 @@ pub struct LoopReport {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopModel {
     slopes: Slopes,
-    timing: Timing,
+    timing: LoopTiming,
     /// Of the filter that the velocity comes from, rad/s; none if it is known.
     velocity_bandwidth: Option<f64>,
 }
@@ -131,8 +131,8 @@ impl LoopModel {
     ///
     /// # Errors
     /// Names `control.period`, `rotors.lag` or `sampling.delay` if it is not finite or outside its range.
-    pub fn new(vehicle: &Vehicle, law: &LawParameters, timing: Timing) -> Result<Self, ParameterError> {
-        let Timing { period, rotor_lag, delay_samples } = timing;
+    pub fn new(vehicle: &Vehicle, law: &LawParameters, timing: LoopTiming) -> Result<Self, ParameterError> {
+        let LoopTiming { period, rotor_lag, delay_samples } = timing;
         for (value, field) in [(period, "control.period"), (rotor_lag, "rotors.lag"), (delay_samples, "sampling.delay")]
         {
             require(value.is_finite(), field, Reason::NotFinite)?;
@@ -163,7 +163,7 @@ impl LoopModel {
     /// Spectral radius and margins of one loop.
     #[must_use]
     pub fn report(&self, axis: Axis) -> LoopReport {
-        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let LoopTiming { period, rotor_lag, delay_samples } = self.timing;
         let law = self.law(axis);
         let compensator = law.compensator();
         let chain = SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples);
@@ -180,12 +180,12 @@ impl LoopModel {
         LoopReport { axis, spectral_radius, margins }
     }
 
-    /// The least and the greatest factor on the rotors' lag, while the law believes in the one it was given, between
+    /// The minimum and the maximum factor on the rotors' lag, while the law believes in the one it was given, between
     /// which every loop is stable; zero or infinite where none destabilises it.
     #[must_use]
     pub fn lag_factors(&self) -> [f64; 2] {
         let is_stable = |factor: f64| {
-            let timing = Timing { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
+            let timing = LoopTiming { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
             Axis::ALL.into_iter().all(|axis| Self { timing, ..*self }.spectral_radius(axis) < 1.0)
         };
         let first_unstable =
@@ -202,7 +202,7 @@ impl LoopModel {
     /// The spectral radius of one loop alone: a fraction of a report's cost.
     #[must_use]
     pub fn spectral_radius(&self, axis: Axis) -> f64 {
-        let Timing { period, rotor_lag, delay_samples } = self.timing;
+        let LoopTiming { period, rotor_lag, delay_samples } = self.timing;
         let law = self.law(axis);
         let compensator = law.compensator();
         SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples).spectral_radius()

@@ -32,11 +32,13 @@ fn table(layout: &Layout) -> Value {
 
 fn property(key: &Key) -> Value {
     let mut schema = values(&key.values);
-    let unit = match key.values {
-        Values::Number(bounds) | Values::Vector(bounds) if !bounds.unit.is_empty() => format!(" ({})", bounds.unit),
-        _ => String::new(),
+    let description = match key.values {
+        Values::Number(bounds) | Values::Vector(bounds) if !bounds.unit.is_empty() => {
+            format!("{} ({}).", key.about.trim_end_matches('.'), bounds.unit)
+        }
+        _ => key.about.to_owned(),
     };
-    schema["description"] = json!(format!("{}{unit}", key.about));
+    schema["description"] = json!(description);
     match (key.left_out, key.values) {
         (LeftOut::Default(default), Values::Vector(_)) => schema["default"] = json!(vec![default; 3]),
         (LeftOut::Default(default), _) => schema["default"] = json!(default),

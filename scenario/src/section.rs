@@ -4,11 +4,15 @@
 //! the nearest known one, before the key it stands for is reported missing. Numbers must be finite and fit single
 //! precision.
 
-use crate::key::{Key, Layout, LeftOut, Values};
+mod values;
+
+pub use crate::field_error::FieldError;
+use crate::key::{EXACT_WHOLE_MAX, Key, Layout, LeftOut, SEED, Values};
 use controller_core::error::ParameterError;
 use nalgebra::Vector3;
-use std::fmt;
 use toml::{Table, Value};
+use values::{THREE_NUMBERS, element, finite};
+pub use values::{in_line, vector_at};
 
 /// The longest key that may be a misspelt one, bytes: the time to compare two keys grows with the product of their
 /// lengths.
@@ -16,39 +20,6 @@ const MISSPELT_KEY_MAX_BYTES: usize = 200;
 
 /// What stands in place of a number that is not known yet: `host-sim vehicle` writes it.
 pub const MISSING: &str = "missing";
-
-/// A field that was refused, and why; `problem` also says what is allowed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FieldError {
-    /// Dotted path in the file, e.g. `vehicle.inertia[2]`.
-    pub field: String,
-    /// The error and the allowed values, in one line.
-    pub problem: String,
-}
-
-impl FieldError {
-    /// Refuses `field`. Both texts lose their middle where a key or a value of the file makes them endless.
-    pub fn new(field: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self { field: shortened(field.into(), 200), problem: shortened(problem.into(), 2000) }
-    }
-}
-
-/// `text` without its middle where it has more than `longest` characters.
-fn shortened(text: String, longest: usize) -> String {
-    let length = text.chars().count();
-    if length <= longest {
-        return text;
-    }
-    let part = longest / 2;
-    let head: String = text.chars().take(part).collect();
-    head + "…" + &text.chars().skip(length - part).collect::<String>()
-}
-
-impl fmt::Display for FieldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.field, self.problem)
-    }
-}
 
 /// One table of the file and where it stands in it.
 #[derive(Debug, Clone)]
@@ -84,7 +55,7 @@ impl<'a> Section<'a> {
                 let nearest = nearest.map_or(String::new(), |nearest| format!(", did you mean \"{nearest}\"?"));
                 let all = known.join(", ");
                 Err(FieldError::new(
-                    // A key may hold line ends, and whatever else a terminal acts on.
+                    // A key may hold line ends and other control characters.
                     self.path_of(&key.escape_debug().to_string()),
                     format!("unknown key{nearest} (allowed: {all})"),
                 ))
@@ -120,10 +91,9 @@ impl<'a> Section<'a> {
     /// # Errors
     /// If any is.
     pub fn require_all(&self, keys: &[&str]) -> Result<(), FieldError> {
-        let mut missing = keys.iter().filter(|key| !self.has(key));
-        let (Some(first), rest) = (missing.next(), missing.copied().collect::<Vec<_>>()) else { return Ok(()) };
-        let others = if rest.is_empty() { String::new() } else { format!(", as are {}", rest.join(", ")) };
-        Err(FieldError::new(self.path_of(first), format!("missing{others}")))
+        let missing = keys.iter().filter(|key| !self.has(key)).map(|key| (*key).to_owned());
+        first_and_others(missing)
+            .map_or(Ok(()), |(first, others)| Err(FieldError::new(self.path_of(&first), format!("missing{others}"))))
     }
 
     /// Refuses sections with numbers that are not known yet, all of them in one line.
@@ -136,9 +106,8 @@ impl<'a> Section<'a> {
             let keys = section.iter().filter(|(_, value)| value.as_str() == Some(MISSING));
             keys.map(move |(key, _)| format!("{name}.{key}"))
         });
-        let mut marked = marked.map(|path| path.escape_debug().to_string());
-        let (Some(first), others) = (marked.next(), marked.collect::<Vec<_>>()) else { return Ok(()) };
-        let others = if others.is_empty() { String::new() } else { format!(", as are {}", others.join(", ")) };
+        let marked = marked.map(|path| path.escape_debug().to_string());
+        let Some((first, others)) = first_and_others(marked) else { return Ok(()) };
         let problem = format!(
             "marked \"{MISSING}\"{others}: measure it and write the number, as the file's comments and \
              docs/identify.md say"
@@ -243,13 +212,12 @@ impl<'a> Section<'a> {
     /// # Errors
     /// If it is missing without a default, no number, not finite, beyond single precision, or outside its bounds.
     pub fn number(&self, key: &str) -> Result<f64, FieldError> {
-        let declared = self.declared(key);
-        if let (false, Some(LeftOut::Default(default))) = (self.has(key), declared.map(|key| key.left_out)) {
+        if let Some(default) = self.default(key) {
             return Ok(default);
         }
         let number = finite(self.require(key, "a number")?);
         let number = number.map_err(|problem| FieldError::new(self.path_of(key), problem))?;
-        match declared.map(|key| key.values) {
+        match self.declared(key).map(|key| key.values) {
             Some(Values::Number(bounds)) => bounds.check(self.path_of(key), number),
             _ => Ok(number),
         }
@@ -271,17 +239,29 @@ impl<'a> Section<'a> {
         if self.has(key) { self.number(key) } else { Ok(default) }
     }
 
+    /// A whole number from 0 to 2^53 under [`SEED`], or its default.
+    ///
+    /// # Errors
+    /// If it is anything else.
+    pub fn seed(&self) -> Result<u64, FieldError> {
+        let seed = self.number(SEED.name)?;
+        if seed.fract() == 0.0 && (0.0..=EXACT_WHOLE_MAX).contains(&seed) {
+            return Ok(seed as u64);
+        }
+        let problem = format!("must be a whole number from 0 to {EXACT_WHOLE_MAX}, found {seed}");
+        Err(FieldError::new(self.path_of(SEED.name), problem))
+    }
+
     /// Three finite numbers, each within the declared bounds, or their default.
     ///
     /// # Errors
     /// If they are missing without a default, not three, or one of them is refused as in [`Self::number`].
     pub fn vector(&self, key: &str) -> Result<Vector3<f64>, FieldError> {
-        let declared = self.declared(key);
-        if let (false, Some(LeftOut::Default(default))) = (self.has(key), declared.map(|key| key.left_out)) {
+        if let Some(default) = self.default(key) {
             return Ok(Vector3::repeat(default));
         }
         let vector = vector_at(&self.path_of(key), self.require(key, THREE_NUMBERS)?)?;
-        if let Some(Values::Vector(bounds)) = declared.map(|key| key.values) {
+        if let Some(Values::Vector(bounds)) = self.declared(key).map(|key| key.values) {
             for (index, value) in vector.iter().enumerate() {
                 bounds.check(format!("{}[{index}]", self.path_of(key)), *value)?;
             }
@@ -316,11 +296,11 @@ impl<'a> Section<'a> {
         let elements = self.elements(key, requirement)?;
         let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         match elements[..] {
-            [(_, least), (_, greatest)]
-                if let (Some(least), Some(greatest)) = (number(least), number(greatest))
-                    && allowed(least, greatest) =>
+            [(_, min), (_, max)]
+                if let (Some(min), Some(max)) = (number(min), number(max))
+                    && allowed(min, max) =>
             {
-                Ok([least, greatest])
+                Ok([min, max])
             }
             _ => {
                 let found = elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
@@ -333,6 +313,14 @@ impl<'a> Section<'a> {
         self.keys.iter().find(|declared| declared.name == key)
     }
 
+    /// The declared default of a key that is left out.
+    fn default(&self, key: &str) -> Option<f64> {
+        match self.declared(key)?.left_out {
+            LeftOut::Default(default) if !self.has(key) => Some(default),
+            _ => None,
+        }
+    }
+
     fn require(&self, key: &str, requirement: &str) -> Result<&'a Value, FieldError> {
         self.table.get(key).ok_or_else(|| FieldError::new(self.path_of(key), format!("missing, must be {requirement}")))
     }
@@ -342,60 +330,11 @@ impl<'a> Section<'a> {
     }
 }
 
-/// A value as TOML has it, in one line: a text may hold line ends, and whatever else a terminal acts on.
-#[must_use]
-pub fn in_line(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("{text:?}"),
-        Value::Array(elements) => format!("[{}]", elements.iter().map(in_line).collect::<Vec<_>>().join(", ")),
-        Value::Table(_) => "a table".to_owned(),
-        other => other.to_string(),
-    }
-}
-
-/// A table's value at `key` or, with an index, at `key[index]`.
-fn element<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
-    match key.strip_suffix(']').and_then(|key| key.split_once('[')) {
-        Some((key, index)) => table.get(key)?.get(index.parse::<usize>().ok()?),
-        None => table.get(key),
-    }
-}
-
-/// The requirement on a vector.
-const THREE_NUMBERS: &str = "a list of three numbers";
-
-/// Three finite numbers at `path`.
-///
-/// # Errors
-/// Names the element that is refused, or `path` if there are not three.
-pub fn vector_at(path: &str, value: &Value) -> Result<Vector3<f64>, FieldError> {
-    let Value::Array(elements) = value else {
-        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", value.type_str())));
-    };
-    if elements.len() != 3 {
-        return Err(FieldError::new(path, format!("must be {THREE_NUMBERS}, found {}", elements.len())));
-    }
-    let mut vector = Vector3::zeros();
-    for (index, (component, value)) in vector.iter_mut().zip(elements).enumerate() {
-        *component = finite(value).map_err(|problem| FieldError::new(format!("{path}[{index}]"), problem))?;
-    }
-    Ok(vector)
-}
-
-/// A number that single precision can hold, or what is wrong with it.
-fn finite(value: &Value) -> Result<f64, String> {
-    let number = match value {
-        Value::Float(number) => *number,
-        Value::Integer(number) => *number as f64,
-        other => return Err(format!("must be a number, found {}", other.type_str())),
-    };
-    if !number.is_finite() {
-        Err(format!("must be a finite number, found {number}"))
-    } else if number.abs() > f64::from(f32::MAX) {
-        Err(format!("must be within ±{:e}, found {number:e}", f32::MAX))
-    } else {
-        Ok(number)
-    }
+/// The first of some names, and the end of a sentence about the others.
+fn first_and_others(mut names: impl Iterator<Item = String>) -> Option<(String, String)> {
+    let first = names.next()?;
+    let others: Vec<String> = names.collect();
+    Some((first, if others.is_empty() { String::new() } else { format!(", as are {}", others.join(", ")) }))
 }
 
 #[cfg(test)]

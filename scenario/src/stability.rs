@@ -16,7 +16,7 @@ pub struct LoopMargin {
 }
 
 impl LoopMargin {
-    /// The least margin to fly.
+    /// The minimum margin to fly.
     ///
     /// *Gain, 1.5*: a loop's gain is proportional to the rotors' thrust coefficient and to one over the inertia. Data
     /// sheets, air density and a fresh or a worn propeller move the first by a fifth, an estimate of the inertia is
@@ -27,7 +27,7 @@ impl LoopMargin {
     /// tick's own work, the frame to the motor controllers and their next step take most of another.
     pub const FLYABLE_MIN: Self = Self { gain: 1.5, delay: 2e-3 };
 
-    /// The greatest shortfall of `report`'s loop from this margin; none if it has all of it.
+    /// The maximum shortfall of `report`'s loop from this margin; none if it has all of it.
     #[must_use]
     pub fn lacking(&self, report: &LoopReport) -> Option<Lack> {
         let axis = report.axis;

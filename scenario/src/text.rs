@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest file of settings, bytes: thousands of times a scenario.
+/// Thousands of times a scenario.
 pub const FILE_MAX_BYTES: u64 = 4 << 20;
 
 /// The text of `path`.

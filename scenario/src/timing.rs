@@ -18,26 +18,23 @@ pub struct Timing {
     pub steps_per_tick: u32,
 }
 
-/// Longest flight, s: nearly four months.
+/// Nearly four months.
 const DURATION_MAX_S: f64 = 1e7;
-/// Time between two ticks, shortest and longest, s.
+/// Between two ticks.
 const CONTROL_PERIODS_S: RangeInclusive<f64> = 1.0 / CONTROL_RATE_MAX_HZ..=1.0 / CONTROL_RATE_MIN_HZ;
-/// Duration where it is left out, s.
 const DEFAULT_DURATION_S: f64 = 20.0;
 /// The filters advance by at most a tenth of a second at a time.
 const CONTROL_RATE_MIN_HZ: f64 = 10.0;
 /// Beyond it the certificate's allowance does not cover what the rounding of the filters adds up to.
 const CONTROL_RATE_MAX_HZ: f64 = 4000.0;
-/// Rate where `[control]` is left out, Hz.
 const DEFAULT_CONTROL_RATE_HZ: f64 = 100.0;
-/// Longest plant step where `[plant]` is left out, s.
 const DEFAULT_PLANT_STEP_MAX_S: f64 = 1e-3;
 /// More plant steps than this between two ticks are a slip of the pen.
 const STEPS_PER_TICK_MAX: f64 = 1e5;
-/// How far from a whole number a quotient of the file's decimal fractions may be, relative.
+/// Relative, of a quotient of the file's decimal fractions.
 const WHOLE_TOLERANCE: f64 = 1e-9;
 
-const RATE: Bounds = Bounds::between(CONTROL_RATE_MIN_HZ, CONTROL_RATE_MAX_HZ, "Hz").checked_later();
+const RATE_BOUNDS: Bounds = Bounds::between(CONTROL_RATE_MIN_HZ, CONTROL_RATE_MAX_HZ, "Hz").checked_later();
 
 /// The key `duration`.
 pub const DURATION: Key = Key::number(
@@ -53,7 +50,7 @@ pub const CONTROL: Layout = Layout {
     about: "The law, and how often it acts.",
     keys: &[
         Key::choice("law", &["paper", "extended"], "Left out: \"paper\" beside a gain of that law alone."),
-        Key::number("rate", RATE, "1/rate: whole microseconds.").or(DEFAULT_CONTROL_RATE_HZ),
+        Key::number("rate", RATE_BOUNDS, "1/rate: whole microseconds.").or(DEFAULT_CONTROL_RATE_HZ),
         Key::number("thrust_floor", Bounds::physical("N"), "The least thrust, under the paper's law only.").optional(),
     ],
 };
@@ -170,10 +167,10 @@ fn read_steps(root: &Section, period_us: u64) -> Result<u32, FieldError> {
         return Ok((period / DEFAULT_PLANT_STEP_MAX_S * (1.0 - WHOLE_TOLERANCE)).ceil() as u32);
     };
     let step = plant.number("step")?;
-    let least = period / STEPS_PER_TICK_MAX;
-    if step < least || step <= 0.0 {
+    let min = period / STEPS_PER_TICK_MAX;
+    if step < min || step <= 0.0 {
         let allowed =
-            format!("must be greater than zero and at least 1/{STEPS_PER_TICK_MAX:e} of 1/control.rate, {least:e} s");
+            format!("must be greater than zero and at least 1/{STEPS_PER_TICK_MAX:e} of 1/control.rate, {min:e} s");
         return Err(FieldError::new(FIELD, format!("{allowed}, found {step}")));
     }
     let steps = period / step;

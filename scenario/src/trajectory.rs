@@ -28,19 +28,17 @@ use controller_core::reference::inside;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};
 use controller_core::reference::waypoints::Waypoint;
-use pace::limits::Limits;
+use pace::limits::PathLimits;
 use pace::merge::Point;
 use pace::{Paced, Problem};
 use row::Row;
 pub use source::Directory;
 use source::Source;
-use vehicle::Vehicle;
-
-const KIND: &str = "kind";
+use vehicle::PathVehicle;
 
 /// The key that says of which kind a reference is.
 pub const fn kind(names: &'static [&'static str]) -> Key {
-    Key::new(KIND, Values::Choice(names), "How the reference is given.")
+    Key::new("kind", Values::Choice(names), "How the reference is given.")
 }
 
 /// How far a flight may stray from its reference once it is there.
@@ -97,7 +95,7 @@ pub struct Route {
     /// How it is passed along.
     pub knots: Vec<Knot>,
     /// Which way between the points.
-    pub way: Way,
+    pub way: RouteWay,
     /// The field that has them, with the name of the file if they are in one.
     pub name: String,
     /// What there is to say of where they come from.
@@ -121,7 +119,7 @@ impl Route {
 
 /// The way between points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum RouteWay {
     /// The smoothest.
     Smooth,
     /// Inside the box of each leg's two points.
@@ -133,7 +131,7 @@ pub enum Way {
     },
     /// Near the points.
     Near {
-        /// The greatest distance, m, and of which point, s.
+        /// The maximum distance, m, and of which point, s.
         farthest: (f64, f64),
         /// How long after the start the first point is passed, s: what it takes to get there in motion.
         lead_in: f64,
@@ -141,7 +139,7 @@ pub enum Way {
 }
 
 /// What the vehicle may fly, which is worked out only where it matters.
-pub type Allowed<'a> = &'a dyn Fn() -> Result<Vehicle, FieldError>;
+pub type Allowed<'a> = &'a dyn Fn() -> Result<PathVehicle, FieldError>;
 
 /// Reads a `[reference]` of points that are passed; what the bounds `allow` matters where only a speed is given.
 ///
@@ -154,7 +152,8 @@ pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -
     }
     source.check_times(1.0)?;
     let Source { rows, field, name, remarks, .. } = source;
-    let way = if section.has("path") && section.choice("path")? == "inside" { Way::Inside } else { Way::Smooth };
+    let way =
+        if section.has("path") && section.choice("path")? == "inside" { RouteWay::Inside } else { RouteWay::Smooth };
     if section.has("corridor") {
         let problem = "goes with speed; points with times are passed at these, on the way that path says";
         return Err(FieldError::new(section.path_of("corridor"), problem));
@@ -172,7 +171,7 @@ pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -
         points.push(point);
     }
     match way {
-        Way::Inside => inside::solve(&mut knots),
+        RouteWay::Inside => inside::solve(&mut knots),
         _ => {
             let mut stages = vec![Stage::EMPTY; knots.len()];
             spline::solve(&mut knots, &mut stages);
@@ -190,7 +189,7 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 }
 
 /// Times for points that are to be passed with a speed at most.
-fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, FieldError> {
+fn paced(section: &Section, source: Source, vehicle: &PathVehicle) -> Result<Route, FieldError> {
     let Source { rows, field, name, remarks, .. } = source;
     let corridor = section.number("corridor")?;
     let speed = section.number_or("speed", f64::INFINITY)?;
@@ -211,7 +210,7 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
         let problem = "is the same as the one before: leave it out or, to wait, give times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
-    let limits = Limits::for_vehicle(vehicle);
+    let limits = PathLimits::for_vehicle(vehicle);
     if limits.bounds().values().iter().any(|bound| *bound <= 0.0) {
         let problem =
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
@@ -219,8 +218,8 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
     }
     let own = |row: &Row| row.speed.map_or(speed, |own| own.min(speed));
     let points: Vec<Point> = rows.iter().map(|row| Point { place: place(row), speed: own(row) }).collect();
-    let greatest = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let Paced { knots, times } = pace::paced(&points, corridor, greatest, &limits).map_err(|problem| {
+    let max = points.iter().map(|point| point.speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let Paced { knots, times } = pace::paced(&points, corridor, max, &limits).map_err(|problem| {
         let problem = match problem {
             Problem::Legs(legs) => format!(
                 "has {legs} straight legs, and at most {} can be searched: widen the corridor, leave points out, or \
@@ -232,7 +231,7 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
         FieldError::new(field, problem)
     })?;
     let points = times.into_iter().zip(&rows).map(|(time, row)| waypoint(time, row)).collect();
-    Ok(Route { points, knots, way: Way::Paced { corridor }, name, remarks })
+    Ok(Route { points, knots, way: RouteWay::Paced { corridor }, name, remarks })
 }
 
 fn waypoint(time: f64, row: &Row) -> Waypoint {
@@ -272,7 +271,7 @@ pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) 
     Ok(Route {
         points: points.collect(),
         knots,
-        way: Way::Near { farthest: found.farthest, lead_in: led_in },
+        way: RouteWay::Near { farthest: found.farthest, lead_in: led_in },
         name,
         remarks,
     })

@@ -1,7 +1,7 @@
 //! `[vehicle]`, `[limits]` and `[gains]`: what the law and its certificate are about.
 //!
 //! `[vehicle] gravity` is 9.81 m/s^2 where it is left out. `[limits]`, or a key of it, may be left out beside
-//! `[rotors]`: then the limits are what the rotors can give, all their greatest thrusts together and
+//! `[rotors]`: then the limits are what the rotors can give, all their maximum thrusts together and
 //! [`greatest_torques`].
 //!
 //! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]). Left out it is the paper's where `[gains]` has a
@@ -19,6 +19,7 @@ use crate::timing::CONTROL;
 use controller_core::allocation::{Rotors, max_torques};
 use controller_core::certificate::airframe::flyable;
 use controller_core::configuration::Configuration;
+use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;
 use controller_core::extended::parameters::ExtendedParameters;
@@ -27,7 +28,6 @@ use controller_core::reference::ReferenceBounds;
 use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParameters};
 use nalgebra::Vector3;
 
-/// Gravity where the file leaves it out, m/s^2.
 const DEFAULT_GRAVITY_M_PER_S2: f64 = 9.81;
 
 /// The keys of `[vehicle]`.
@@ -65,54 +65,27 @@ pub fn read_configuration(
     actuators: ActuatorParameters,
     period: f64,
 ) -> Result<Configuration, FieldError> {
-    let name = match named_law(root)? {
-        None if has_papers_gains(root)? => LawName::Paper,
-        None => LawName::Extended,
-        Some(name) => name,
-    };
-    let (configuration, bounds) = match name {
-        LawName::Extended => {
-            rotors.iter().try_for_each(check_lifted)?;
-            let drag = drag::read(root, rotors.is_some())?;
-            let drag = drag.map_or(0.0, |drag| known_drag(&drag, &vehicle, rotors.as_ref()));
-            let period = period as f32;
-            let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
-            let airframe = Airframe { vehicle, limits, rotors, actuators, period, drag };
-            let law = read_extended(root, &airframe)?;
-            let bounds = read_bounds(root, &ReferenceBounds::REST, || flyable(&airframe, law))?;
-            (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
-        }
-        LawName::Paper if root.has("estimates") => {
+    let (configuration, bounds) = if is_papers_law(root)? {
+        if root.has("estimates") {
             let problem = "only the extended law estimates: set control.law = \"extended\", or leave the section out";
             return Err(FieldError::new("estimates", problem));
         }
-        LawName::Paper => {
-            let gains = read_gains(root, &vehicle)?;
-            let bounds = read_bounds(root, own, || {
-                own.covering(&ReferenceBounds { horizontal_speed: DEFAULT_SPEED_M_PER_S, ..ReferenceBounds::REST })
-            })?;
-            (Configuration::new(vehicle, limits, gains, bounds), bounds)
-        }
+        let gains = read_gains(root, &vehicle)?;
+        let bounds = read_bounds(root, own, || {
+            own.covering(&ReferenceBounds { horizontal_speed: DEFAULT_SPEED_M_PER_S, ..ReferenceBounds::REST })
+        })?;
+        (Configuration::new(vehicle, limits, gains, bounds), bounds)
+    } else {
+        rotors.iter().try_for_each(check_lifted)?;
+        let drag = drag::read(root, rotors.is_some())?;
+        let drag = drag.map_or(0.0, |drag| known_drag(&drag, &vehicle, rotors.as_ref()));
+        let (rotors, vehicle, limits) = (rotors.as_ref(), &vehicle, &limits);
+        let airframe = Airframe { vehicle, limits, rotors, actuators, period: period as f32, drag };
+        let law = read_extended(root, &airframe)?;
+        let bounds = read_bounds(root, &ReferenceBounds::REST, || flyable(&airframe, law))?;
+        (Configuration::extended(*vehicle, *limits, law, bounds), bounds)
     };
-    let configuration = configuration.map_err(|error| {
-        if root.value(error.field).is_none() && root.has("reference_bounds") {
-            let field = "reference_bounds.vertical_acceleration";
-            let found = bounds.vertical_acceleration;
-            let left = vehicle.gravity - found;
-            let problem = format!(
-                "leaves {left} m/s^2 of vehicle.gravity to fall with, and {} needs more (left out: 0.63 of it), found \
-                 {found}",
-                error.field
-            );
-            return FieldError::new(field, problem);
-        }
-        let refused = root.refused(&error);
-        let problem = format!(
-            "{} (vehicle.gravity less the reference's vertical acceleration K_a3 = {})",
-            refused.problem, bounds.vertical_acceleration
-        );
-        FieldError::new(refused.field, problem)
-    })?;
+    let configuration = configuration.map_err(|error| undefined(root, &vehicle, &bounds, &error))?;
     let configuration = match root.open(&CONTROL)? {
         Some(control) if control.has("thrust_floor") => {
             let floor = control.number("thrust_floor")? as f32;
@@ -137,25 +110,30 @@ fn check_lifted(rotors: &Rotors) -> Result<(), FieldError> {
     Err(FieldError::new("rotors.position", problem))
 }
 
-/// The laws that a file can name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum LawName {
-    Paper,
-    Extended,
+/// The error of a law that is undefined for references within `bounds`, whose vertical acceleration takes of gravity.
+fn undefined(root: &Section, vehicle: &Vehicle, bounds: &ReferenceBounds, error: &ParameterError) -> FieldError {
+    let taken = bounds.vertical_acceleration;
+    if root.value(error.field).is_none() && root.has("reference_bounds") {
+        let left = vehicle.gravity - taken;
+        let problem = format!(
+            "leaves {left} m/s^2 of vehicle.gravity to fall with, and {} needs more (left out: 0.63 of it), found {taken}",
+            error.field
+        );
+        return FieldError::new("reference_bounds.vertical_acceleration", problem);
+    }
+    let FieldError { field, problem } = root.refused(error);
+    let why = format!("(vehicle.gravity less the reference's vertical acceleration K_a3 = {taken})");
+    FieldError::new(field, format!("{problem} {why}"))
 }
 
-/// Whether `[gains]` has a gain of the paper's law that the extended one does not have.
-fn has_papers_gains(root: &Section) -> Result<bool, FieldError> {
+/// Whether the law is the paper's: by `[control] law`, or by a gain in `[gains]` that the extended law does not have.
+fn is_papers_law(root: &Section) -> Result<bool, FieldError> {
+    if let Some(control) = root.open(&CONTROL)?.filter(|control| control.has("law")) {
+        return Ok(control.choice("law")? == "paper");
+    }
     let extended = constants::keys(&ExtendedParameters::TABLE, "gains");
     let own = constants::keys(&GainParameters::TABLE, "gains").into_iter().filter(|key| !extended.contains(key));
     Ok(root.optional_section("gains")?.is_some_and(|gains| own.into_iter().any(|key| gains.has(key))))
-}
-
-/// `[control] law`; none where it is left out.
-fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
-    let control = root.open(&CONTROL)?.filter(|control| control.has("law"));
-    let name = control.map(|control| control.choice("law")).transpose()?;
-    Ok(name.map(|name| if name == "paper" { LawName::Paper } else { LawName::Extended }))
 }
 
 /// The drag across from the file's `[drag]`, per velocity and mass at hover, 1/s.
@@ -221,7 +199,7 @@ pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
     Limits::new(LimitParameters { thrust_max, torque_max }, vehicle).map_err(|error| root.refused(&error))
 }
 
-/// The greatest torque of `rotors` about each axis alone, N m.
+/// The maximum torque of `rotors` about each axis alone, N m.
 fn rotors_torque_max(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
     let torques = max_torques(rotors);
     if torques.min() > 0.0 {

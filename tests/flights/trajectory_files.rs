@@ -9,7 +9,7 @@ use host_sim::flight::Flight;
 use host_sim::reports::reference_rows::FOLLOWED_WITHIN_2_CM_FACTOR;
 use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
-use scenario::trajectory::{Route, Way};
+use scenario::trajectory::{Route, RouteWay};
 use scenario::verdict::Verdict;
 use scenario::{Scenario, self_contained};
 use std::fs;
@@ -81,7 +81,8 @@ fn files_of_rows_pieces_and_points_are_certified_and_flown_near_what_they_say() 
         let (missed, off) = flown(&scenario);
         println!("{}: {missed:.4} m from its points at worst, {off:.4} m from its reference", scenario.name);
         assert!(missed < most, "{}: {missed} m from its points", scenario.name);
-        if let ReferenceKind::Route(Route { way: Way::Near { farthest: (distance, _), .. }, .. }) = &scenario.reference
+        if let ReferenceKind::Route(Route { way: RouteWay::Near { farthest: (distance, _), .. }, .. }) =
+            &scenario.reference
         {
             assert!(missed <= distance + off + 1e-3, "{}: {missed} of {distance} and {off} m", scenario.name);
         }

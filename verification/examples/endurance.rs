@@ -37,8 +37,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{missions} missions, the frame moved {moves} times, {refusals} requests to be asked again; shortest and longest delays, ticks: {extremes:?}"
     );
     for (what, unit, obeyed) in [("take-off", "m", &flown.heights), ("landing", "m/s", &flown.speeds)] {
-        for ParameterEffect { chosen, found: (least, most), .. } in obeyed {
-            println!("{what}: {chosen} {unit} chosen on the ground, {least:.3} to {most:.3} {unit} found");
+        for ParameterEffect { chosen, found: (min, max), .. } in obeyed {
+            println!("{what}: {chosen} {unit} chosen on the ground, {min:.3} to {max:.3} {unit} found");
         }
     }
     let sizes = [size_of::<Pilot>(), size_of::<Estimator>(), size_of::<Memory>()];

@@ -30,7 +30,7 @@ const LAST_DISTANCE_MAX_M: f64 = 1.0;
 
 /// What a flight showed.
 struct Flown {
-    /// The greatest distance from the reference once it has arrived, and that at the end, m.
+    /// The maximum distance from the reference once it has arrived, and that at the end, m.
     farthest: f64,
     last: f64,
     /// When the fallback came, s.

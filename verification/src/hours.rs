@@ -191,7 +191,7 @@ struct Course {
     reasons: Vec<Reason>,
     /// When the take-off was commanded, ticks.
     up: u64,
-    /// The greatest speed downwards while landing, m/s.
+    /// The maximum speed downwards while landing, m/s.
     sinking: f64,
 }
 

@@ -152,9 +152,9 @@ impl Truths {
         let mass = f64::from(vehicle.mass) * about(0.2);
         let inertia = loop {
             let drawn: [f64; 3] = std::array::from_fn(|axis| f64::from(vehicle.inertia[axis]) * about(0.2));
-            let greatest = drawn.iter().copied().fold(0.0, f64::max);
+            let max = drawn.iter().copied().fold(0.0, f64::max);
             // A body that can exist.
-            if 2.0 * greatest < drawn.iter().sum::<f64>() {
+            if 2.0 * max < drawn.iter().sum::<f64>() {
                 break drawn;
             }
         };

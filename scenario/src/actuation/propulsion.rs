@@ -2,7 +2,7 @@
 //! known, thrusts and the torque for each newton of them.
 //!
 //! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED_RAD_PER_S`]
-//! at its greatest thrust: k_eta = thrust_max / [`NOMINAL_SPEED_RAD_PER_S`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
+//! at its maximum thrust: k_eta = thrust_max / [`NOMINAL_SPEED_RAD_PER_S`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
 //! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power
 //! that it draws from a `[battery]` do.
 
@@ -10,7 +10,7 @@ use crate::key::{Bounds, Key, Values};
 use crate::section::{FieldError, Section};
 use controller_core::error::{ParameterError, Reason};
 
-/// The speed of a rotor of the second form at its greatest thrust, rad/s.
+/// The speed of a rotor of the second form at its maximum thrust, rad/s.
 pub const NOMINAL_SPEED_RAD_PER_S: f64 = 1000.0;
 
 /// The keys of the first form.
@@ -36,9 +36,9 @@ pub struct Propulsion {
     pub thrust_coefficient: f32,
     /// k_m, N m/(rad/s)^2.
     pub drag_coefficient: f32,
-    /// Least thrust while flying, N.
+    /// Minimum thrust while flying, N.
     pub thrust_min: f32,
-    /// Greatest thrust, N.
+    /// Maximum thrust, N.
     pub thrust_max: f32,
 }
 
@@ -123,24 +123,23 @@ fn read_speeds(section: &Section) -> Result<Propulsion, FieldError> {
 }
 
 fn read_thrusts(section: &Section) -> Result<Propulsion, FieldError> {
-    const LEVER: &str = "torque_per_thrust";
+    const KEY: &str = "torque_per_thrust";
     let thrust_max = section.number("thrust_max")?;
     let thrust_min = section.number("thrust_min")? as f32;
-    if !section.has(LEVER) {
+    if !section.has(KEY) {
         let problem = "missing, must be the propeller's drag torque over its thrust, m: yaw cannot be known without it \
                        (a thrust stand or the propeller's data have it)";
-        return Err(FieldError::new(section.path_of(LEVER), problem));
+        return Err(FieldError::new(section.path_of(KEY), problem));
     }
     let thrust_coefficient = thrust_max / (NOMINAL_SPEED_RAD_PER_S * NOMINAL_SPEED_RAD_PER_S);
-    let drag_coefficient = (section.number(LEVER)? * thrust_coefficient) as f32;
+    let drag_coefficient = (section.number(KEY)? * thrust_coefficient) as f32;
     let (thrust_coefficient, thrust_max) = (thrust_coefficient as f32, thrust_max as f32);
     Ok(Propulsion { form: Form::Thrusts, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
 }
 
 fn read_range(section: &Section) -> Result<[f64; 2], FieldError> {
     const SPEED_REQUIREMENT: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
-    section
-        .range("speed", SPEED_REQUIREMENT, |least, greatest| 0.0 <= least && least < greatest && greatest.is_finite())
+    section.range("speed", SPEED_REQUIREMENT, |min, max| 0.0 <= min && min < max && max.is_finite())
 }
 
 #[cfg(test)]

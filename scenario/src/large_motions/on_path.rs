@@ -6,7 +6,7 @@
 //! A motion that repeats is measured once it has flown for `SETTLING_TIME_S`.
 
 use super::{AT_REST, Model, NotArrived, Start};
-use crate::sampled_loop::Timing;
+use crate::sampled_loop::LoopTiming;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
@@ -49,7 +49,11 @@ impl Path<'_> {
     ///
     /// # Errors
     /// If the law refuses the period or the delay.
-    pub fn flown(&self, certified: &Certified, timing: &Timing) -> Result<Result<OnPath, NotArrived>, ParameterError> {
+    pub fn flown(
+        &self,
+        certified: &Certified,
+        timing: &LoopTiming,
+    ) -> Result<Result<OnPath, NotArrived>, ParameterError> {
         let mut law = Law::new(certified, timing.period as f32)?;
         let begin = self.trajectory.at(0);
         let [x, y] = begin.heading.direction().map(f64::from).into();

@@ -22,20 +22,20 @@ pub struct Battery {
     pub nominal_voltage: f64,
 }
 
-const VOLTAGE: Bounds = Bounds::between(0.1, 1e3, "V");
+const VOLTAGE_BOUNDS: Bounds = Bounds::between(0.1, 1e3, "V");
 
 /// The keys of `[battery]`.
 pub const LAYOUT: Layout = Layout {
     name: "battery",
     about: "A voltage that sags under load and falls as the battery empties. Needs [rotors].",
     keys: &[
-        Key::number("full_voltage", VOLTAGE, "Open circuit, full."),
-        Key::number("empty_voltage", VOLTAGE, "Open circuit, empty."),
+        Key::number("full_voltage", VOLTAGE_BOUNDS, "Open circuit, full."),
+        Key::number("empty_voltage", VOLTAGE_BOUNDS, "Open circuit, empty."),
         Key::number("resistance", Bounds::between(0.0, 10.0, "ohm"), "Of battery and leads."),
         Key::number("capacity", Bounds::between(1e-3, 1e3, "A h"), "Of the full battery."),
         Key::number("charge", Bounds::SHARE, "At the start, as a share of the capacity.").or(1.0),
         Key::number("efficiency", Bounds::between(0.01, 1.0, ""), "Shaft power over electrical power.").or(1.0),
-        Key::number("nominal_voltage", VOLTAGE, "At which [rotors] holds; left out: full_voltage.").optional(),
+        Key::number("nominal_voltage", VOLTAGE_BOUNDS, "At which [rotors] holds; left out: full_voltage.").optional(),
     ],
 };
 

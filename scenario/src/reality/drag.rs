@@ -21,19 +21,19 @@ pub struct Drag {
     pub flapping: f64,
 }
 
-const COEFFICIENT: Bounds = Bounds::between(0.0, 1e3, "");
+const COEFFICIENT_BOUNDS: Bounds = Bounds::between(0.0, 1e3, "");
 
 /// The keys of `[drag]`; those from the third on are the rotors'.
 pub const LAYOUT: Layout = Layout {
     name: "drag",
     about: "The air's forces on a vehicle that moves through it.",
     keys: &[
-        Key::vector("linear", COEFFICIENT, "kg/s, body axes: the whole vehicle at hover, N per m/s.").or(0.0),
-        Key::vector("frame", COEFFICIENT, "N/(m/s)^2, body axes: RotorPy's c_Dx, c_Dy, c_Dz.").or(0.0),
-        Key::number("rotor_across", COEFFICIENT, "kg/rad, each rotor, across its axis: k_d.").or(0.0),
-        Key::number("rotor_along", COEFFICIENT, "kg/rad, each rotor, along its axis: k_z.").or(0.0),
-        Key::number("translational_lift", COEFFICIENT, "N/(m/s)^2, each rotor: k_h.").or(0.0),
-        Key::number("flapping", COEFFICIENT, "N m per (rad/s)(m/s), each rotor: k_flap.").or(0.0),
+        Key::vector("linear", COEFFICIENT_BOUNDS, "kg/s, body axes: the whole vehicle at hover, N per m/s.").or(0.0),
+        Key::vector("frame", COEFFICIENT_BOUNDS, "N/(m/s)^2, body axes: RotorPy's c_Dx, c_Dy, c_Dz.").or(0.0),
+        Key::number("rotor_across", COEFFICIENT_BOUNDS, "kg/rad, each rotor, across its axis: k_d.").or(0.0),
+        Key::number("rotor_along", COEFFICIENT_BOUNDS, "kg/rad, each rotor, along its axis: k_z.").or(0.0),
+        Key::number("translational_lift", COEFFICIENT_BOUNDS, "N/(m/s)^2, each rotor: k_h.").or(0.0),
+        Key::number("flapping", COEFFICIENT_BOUNDS, "N m per (rad/s)(m/s), each rotor: k_flap.").or(0.0),
     ],
 };
 

@@ -3,16 +3,16 @@
 //! Every key may be left out. The estimator believes a BMI088 and the
 //! poses' noise as given. Instead of `[sensors]`, which has no estimator: a file has one of the two.
 
-use crate::key::{Bounds, Key, Layout, SEED, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use estimation::estimator::EstimatorParameters;
 use estimation::imu::ImuParameters;
 
-/// Samples of the IMU each second.
+/// Of its samples.
 pub const IMU_RATE_HZ: f64 = 1e3;
 
-/// Noise of a pose's attitude where the file says nothing, degrees.
+/// The default of a pose.
 const ATTITUDE_NOISE_DEG: f64 = 0.3;
 
 /// The estimator's inputs.
@@ -64,7 +64,7 @@ impl Estimator {
     /// The estimator's model of its sensors, for a vehicle under `gravity`, m/s^2.
     #[must_use]
     pub fn believed(&self, gravity: f32) -> EstimatorParameters {
-        /// The least that single precision separates from zero, with room to spare.
+        /// The minimum that single precision separates from zero, with room to spare.
         const NOISE_MIN: f64 = 1e-4;
         EstimatorParameters {
             position_noise: self.position_noise.max(NOISE_MIN) as f32,
@@ -75,7 +75,7 @@ impl Estimator {
     }
 }
 
-/// The greatest delay of the law's body rates, s: [`ImuParameters::rates_late`].
+/// The maximum delay of the law's body rates, s: [`ImuParameters::rates_late`].
 #[must_use]
 pub fn rates_delay(timing: &Timing) -> f64 {
     ImuParameters::BMI088.rates_late(timing.period_us).into()
@@ -141,7 +141,7 @@ pub fn read(root: &Section, timing: &Timing) -> Result<Option<Estimator>, FieldE
         attitude_noise: section.number("attitude_noise_deg")?.to_radians(),
         dropout: section.number("dropout")?,
         outage: outage.transpose()?,
-        seed: read_seed(&section)?,
+        seed: section.seed()?,
     }))
 }
 

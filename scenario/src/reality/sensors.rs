@@ -3,7 +3,7 @@
 //! Every key may be left out, for perfect, immediate sensors. Noise is white and normal, on each axis alone; the number
 //! is its standard deviation.
 
-use crate::key::{Bounds, Key, Layout, SEED, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED};
 use crate::sampled_loop::DELAY_MAX_SAMPLES;
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
@@ -60,9 +60,9 @@ pub enum VelocitySource {
     },
 }
 
-const POSE_RATE: Bounds = Bounds::between(0.1, 4000.0, "Hz").checked_later();
-const DELAY: Bounds = Bounds::not_negative("s").checked_later();
-const ACCELERATION: Bounds = Bounds::between(-100.0, 100.0, "m/s^2");
+const POSE_RATE_BOUNDS: Bounds = Bounds::between(0.1, 4000.0, "Hz").checked_later();
+const DELAY_BOUNDS: Bounds = Bounds::not_negative("s").checked_later();
+const ACCELERATION_BOUNDS: Bounds = Bounds::between(-100.0, 100.0, "m/s^2");
 
 /// The keys of `[sensors]`.
 pub const LAYOUT: Layout = Layout {
@@ -78,10 +78,10 @@ pub const LAYOUT: Layout = Layout {
         Key::number("velocity_noise", Bounds::between(0.0, 100.0, "m/s"), "Only of \"exact\".").or(0.0),
         Key::number("velocity_bandwidth", Bounds::between(0.01, 1e4, "rad/s"), "Not of \"exact\".").optional(),
         Key::number("accelerometer_noise", Bounds::between(0.0, 100.0, "m/s^2"), "Only of \"observer\".").or(0.0),
-        Key::vector("accelerometer_bias", ACCELERATION, "Body; only of \"observer\".").or(0.0),
-        Key::number("pose_rate", POSE_RATE, "control.rate over a whole number.").optional(),
+        Key::vector("accelerometer_bias", ACCELERATION_BOUNDS, "Body; only of \"observer\".").or(0.0),
+        Key::number("pose_rate", POSE_RATE_BOUNDS, "control.rate over a whole number.").optional(),
         Key::number("dropout", Bounds::between(0.0, 0.99, ""), "The share of the poses that never arrive.").or(0.0),
-        Key::number("delay", DELAY, "Of all; a whole number of control periods.").or(0.0),
+        Key::number("delay", DELAY_BOUNDS, "Of all; a whole number of control periods.").or(0.0),
         SEED,
     ],
 };
@@ -120,7 +120,7 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         delay_ticks: read_delay(&section, timing, sampling)?,
         pose_delay_ticks: 0,
         imu_delay: 0.0,
-        seed: read_seed(&section)?,
+        seed: section.seed()?,
     }))
 }
 
@@ -147,7 +147,7 @@ fn read_velocity(section: &Section) -> Result<VelocitySource, FieldError> {
     })
 }
 
-/// How far from a whole number a quotient of the file's decimal fractions may be, relative.
+/// Relative, of a quotient of the file's decimal fractions.
 const WHOLE_TOLERANCE: f64 = 1e-6;
 
 fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError> {
@@ -169,8 +169,8 @@ fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError>
 /// Together with `sampling`, control periods, no longer than the sampled loops can be judged with.
 fn read_delay(section: &Section, timing: &Timing, sampling: f64) -> Result<u64, FieldError> {
     let period = timing.period();
-    let greatest = (f64::from(DELAY_MAX_SAMPLES) - sampling).floor() * period;
-    let delay = Bounds::between(0.0, greatest, "s").check(section.path_of("delay"), section.number("delay")?)?;
+    let max = (f64::from(DELAY_MAX_SAMPLES) - sampling).floor() * period;
+    let delay = Bounds::between(0.0, max, "s").check(section.path_of("delay"), section.number("delay")?)?;
     let ticks = delay / period;
     let whole = ticks.round();
     if (ticks - whole).abs() > WHOLE_TOLERANCE * ticks.max(1.0) {

@@ -54,7 +54,7 @@ impl Truth {
     }
 }
 
-const SCALE: Bounds = Bounds::between(0.0, 10.0, "");
+const SCALE_BOUNDS: Bounds = Bounds::between(0.0, 10.0, "");
 
 /// How many keys of [`LAYOUT`] come before those of the rotors.
 const BODY_KEYS: usize = 4;
@@ -68,8 +68,9 @@ pub const LAYOUT: Layout = Layout {
         Key::new("inertia", inertia::VALUES, "About the true centre of mass, kg m^2; left out: vehicle.inertia.")
             .optional(),
         Key::vector("centre_of_mass", Bounds::between(-100.0, 100.0, "m"), "Body, from the model's.").or(0.0),
-        Key::number("thrust_scale", SCALE, "Of every rotor's thrust and drag torque.").or(1.0),
-        Key::new("rotor_scales", Values::List(&Values::Number(SCALE)), "Of each, besides; left out: 1.").optional(),
+        Key::number("thrust_scale", SCALE_BOUNDS, "Of every rotor's thrust and drag torque.").or(1.0),
+        Key::new("rotor_scales", Values::List(&Values::Number(SCALE_BOUNDS)), "Of each, besides; left out: 1.")
+            .optional(),
         Key::number("thrust_curve", Bounds::SHARE, "a of the thrust a u + (1 - a) u^2 of a command u.").or(0.0),
         Key::number("lag", Bounds::between(0.0, 1.0, "s"), "Of the rotors' speeds; left out: rotors.lag.").optional(),
         Key::number("rotor_inertia", Bounds::between(0.0, 1.0, "kg m^2"), "Of each rotor about its axis.").or(0.0),
@@ -141,7 +142,7 @@ fn read_rotor_scales(section: &Section, rotors: usize) -> Result<Vec<f64>, Field
     let number = |(path, value): (String, &toml::Value)| {
         let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         let found = number.ok_or_else(|| FieldError::new(&path, format!("must be a number, found {value}")))?;
-        SCALE.check(path, found)
+        SCALE_BOUNDS.check(path, found)
     };
     elements.into_iter().map(number).collect()
 }

@@ -9,7 +9,7 @@
 //! and for the wind at 20 feet (m/s) that states its strength. The pattern of the air drifts past the vehicle with
 //! `airspeed` (m/s; left out: the steady wind's, which is what a hovering vehicle feels).
 
-use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
+use crate::key::{Bounds, Key, Layout, SEED, Values};
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 
@@ -31,7 +31,7 @@ pub struct Gust {
     pub shape: Shape,
     /// When it begins, s.
     pub start: f64,
-    /// Its greatest velocity, m/s, world.
+    /// Its maximum velocity, m/s, world.
     pub velocity: Vector3<f64>,
 }
 
@@ -60,13 +60,17 @@ pub struct Turbulence {
 }
 
 /// Winds that a vehicle may be simulated in.
-const SPEED: Bounds = Bounds::between(-100.0, 100.0, "m/s");
+const SPEED_BOUNDS: Bounds = Bounds::between(-100.0, 100.0, "m/s");
 
 /// The keys of `[wind]`.
 pub const LAYOUT: Layout = Layout {
     name: "wind",
     about: "How the air moves, world frame, z up; where it goes to. Needs [drag].",
-    keys: &[Key::vector("steady", SPEED, "The steady wind.").or(0.0), Key::table(&GUST), Key::table(&TURBULENCE)],
+    keys: &[
+        Key::vector("steady", SPEED_BOUNDS, "The steady wind.").or(0.0),
+        Key::table(&GUST),
+        Key::table(&TURBULENCE),
+    ],
 };
 
 const GUST: Layout = Layout {
@@ -75,7 +79,7 @@ const GUST: Layout = Layout {
     keys: &[
         Key::new("kind", Values::Choice(&["step", "one-cosine", "pulse"]), "At once; rising; rising and falling."),
         Key::number("start", Bounds::between(0.0, 1e7, "s"), "When it begins."),
-        Key::vector("velocity", SPEED, "The greatest one."),
+        Key::vector("velocity", SPEED_BOUNDS, "The greatest one."),
         Key::number("duration", Bounds::between(1e-3, 1e4, "s"), "Of the rise, or of the pulse; a step has none.")
             .optional(),
     ],
@@ -87,13 +91,13 @@ const TURBULENCE: Layout = Layout {
     keys: &[
         Key::number("wind_at_20_feet", Bounds::between(0.0, 100.0, "m/s"), "States its strength."),
         Key::number("altitude", Bounds::between(3.048, 304.8, "m"), "Above ground."),
-        Key::number("airspeed", AIRSPEED, "Past the vehicle; left out: the steady wind's.").optional(),
+        Key::number("airspeed", AIRSPEED_BOUNDS, "Past the vehicle; left out: the steady wind's.").optional(),
         SEED,
     ],
 };
 
 const AIRSPEED_MIN_M_PER_S: f64 = 0.01;
-const AIRSPEED: Bounds = Bounds::between(AIRSPEED_MIN_M_PER_S, 100.0, "m/s");
+const AIRSPEED_BOUNDS: Bounds = Bounds::between(AIRSPEED_MIN_M_PER_S, 100.0, "m/s");
 
 /// Reads `[wind]`.
 ///
@@ -136,6 +140,6 @@ fn read_turbulence(section: &Section, steady: &Vector3<f64>) -> Result<Turbulenc
         wind_at_20_feet: section.number("wind_at_20_feet")?,
         altitude: section.number("altitude")?,
         airspeed,
-        seed: read_seed(section)?,
+        seed: section.seed()?,
     })
 }

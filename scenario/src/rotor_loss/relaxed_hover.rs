@@ -15,7 +15,7 @@
 //! n = z cos phi + sin phi a and J_1 = J_2 the tilt's torque is (J_3 - J_1) Omega^2 sin phi cos phi, that of the rotor
 //! opposite the failed one; so it turns faster until that rotor's drag, with the hubs', balances the other two's.
 //!
-//! Left out: the circle that its centre makes, g tan(phi) / Omega^2 in radius (2 cm at 13 rad/s), and what the least
+//! Left out: the circle that its centre makes, g tan(phi) / Omega^2 in radius (2 cm at 13 rad/s), and what the minimum
 //! thrust of a rotor forbids.
 
 use crate::reality::drag::Drag;

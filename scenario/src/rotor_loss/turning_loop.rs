@@ -15,7 +15,7 @@
 //! every bound: at its ends a rotor pushes one way only.
 
 use super::WithoutARotor;
-use crate::sampled_loop::{Timing, spectral_radius};
+use crate::sampled_loop::{LoopTiming, spectral_radius};
 use controller_core::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector2, Vector3, Vector4};
 
@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Quaternion, SMatrix, UnitQuaternion, V
 const TILT_STEP_RAD: f64 = 5e-3;
 const RATE_STEP_RAD_PER_S: f64 = 0.05;
 
-/// The least lag, in periods: below it a rotor is at its thrust long before the next tick.
+/// The minimum lag, in periods: below it a rotor is at its thrust long before the next tick.
 const LAG_MIN_PERIODS: f64 = 0.01;
 
 /// The states between ticks: epsilon, delta, tau, two of each.
@@ -40,8 +40,8 @@ type State = SMatrix<f64, STATES_AND_COMMAND, STATES_AND_COMMAND>;
 /// The largest magnitude of an eigenvalue of one tick: small motions of `vehicle` under `law`, as it turns at `rate`,
 /// rad/s, die out below one.
 #[must_use]
-pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing) -> f64 {
-    let Timing { period, rotor_lag, delay_samples } = *timing;
+pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &LoopTiming) -> f64 {
+    let LoopTiming { period, rotor_lag, delay_samples } = *timing;
     let lag = rotor_lag.max(LAG_MIN_PERIODS * period);
     let (whole, fraction) = (delay_samples.floor() as usize, delay_samples.fract());
     let axis = law.axis();

@@ -1,4 +1,4 @@
-//! A law near the origin as what it is: a linear system that measures and commands.
+//! A law near the origin: a linear system from measurements to commands.
 //!
 //! ```text
 //! x+ = A x + B y,   w = C x + D y

@@ -27,7 +27,7 @@ const ANGLE_MIN_RAD: f64 = 3e-5;
 /// The highest one. At pi itself the response is real, so the sign of its imaginary part there would be rounding's.
 const ANGLE_MAX_RAD: f64 = PI * (1.0 - 1e-4);
 
-/// Greatest ratio of neighbouring frequencies less one.
+/// Maximum ratio of neighbouring frequencies less one.
 const GRID_SPACING: f64 = 0.1;
 
 /// How near to zero a measure of the response has to turn back to be looked at more closely.
@@ -36,11 +36,11 @@ const TURN_BACK_MAX: f64 = 0.5;
 /// The margins of a stable loop, in samples and radians per sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SampleMargins {
-    /// Least factor above one at which stability is lost; infinite if none.
+    /// Minimum factor above one at which stability is lost; infinite if none.
     pub gain_up: f64,
-    /// Greatest factor below one at which stability is lost; zero if none.
+    /// Maximum factor below one at which stability is lost; zero if none.
     pub gain_down: f64,
-    /// Least further delay at which stability is lost. Zero for a loop slower than [`FREQUENCY_MIN_RAD_PER_S`], which is not looked at.
+    /// Minimum further delay at which stability is lost. Zero for a loop slower than [`FREQUENCY_MIN_RAD_PER_S`], which is not looked at.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one.
     pub crossover: f64,
@@ -70,7 +70,7 @@ fn phase(response: Complex<f64>) -> f64 {
     response.im / response.norm_sqr().sqrt()
 }
 
-/// The least further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
+/// The minimum further delay, in samples, at which the response passes through -1. The undelayed loop has unit gain at
 /// `unit_gain` and nowhere below.
 fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64) -> f64 {
     /// Brackets are found in a few steps.

@@ -33,9 +33,8 @@ const BASIS_TIMES_120: [[f64; 6]; 6] = [
 ];
 /// The weight of the fifth differences beside that of a row.
 const SMOOTHNESS_WEIGHT: f64 = 1e-6;
-/// How near the heading is to be, rad.
 const HEADING_TOLERANCE_RAD: f64 = 0.05;
-/// The first number of intervals, by how much it grows, and the greatest.
+/// The first number of intervals, by how much it grows, and the maximum.
 const INTERVALS_MIN: usize = 4;
 const INTERVALS_GROWTH: f64 = 1.3;
 const INTERVALS_MAX: usize = 20_000;
@@ -45,7 +44,7 @@ const INTERVALS_MAX: usize = 20_000;
 pub struct Fit {
     /// How each of the spline's joints is passed, times from zero; at rest at neither end if the rows are not.
     pub knots: Vec<Knot>,
-    /// The greatest distance of a row from it, m, and the row's time, s.
+    /// The maximum distance of a row from it, m, and the row's time, s.
     pub farthest: (f64, f64),
 }
 

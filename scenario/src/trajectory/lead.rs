@@ -1,6 +1,6 @@
 //! From rest onto a path that begins in motion, and to rest from one that ends so.
 //!
-//! Of all motions of duration T from rest to velocity v, acceleration a, jerk j and snap s, the one with the least
+//! Of all motions of duration T from rest to velocity v, acceleration a, jerk j and snap s, the one with the minimum
 //! squared fifth derivative begins
 //!
 //! v T/2 - 3/28 a T^2 + j T^3/84 - s T^4/1680

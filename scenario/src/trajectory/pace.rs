@@ -19,10 +19,10 @@ mod sloped;
 mod way;
 
 use controller_core::reference::knot::Knot;
-use limits::Limits;
+use limits::PathLimits;
 use merge::{Leg, Point, merged};
 use nalgebra::Vector3;
-use piece::Place;
+use piece::PiecePlace;
 use quickest::Search;
 use std::ops::ControlFlow;
 use way::Way;
@@ -30,9 +30,9 @@ use way::Way;
 /// Corridors and speeds, times a power of ten, m and m/s. A path keeps to the widest corridor of these that is no wider
 /// than what is given, so that a wider one never takes longer.
 const SERIES_PER_DECADE: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
-/// The narrowest corridor that is tried in place of a wider one, m.
+/// The narrowest that is tried in place of a wider one.
 const CORRIDOR_MIN_M: f64 = 0.05;
-/// The least power of ten, where what is given is no less.
+/// The minimum power of ten, where what is given is no less.
 const SERIES_POWER_MIN: i32 = -3;
 /// A search through more of them would take minutes.
 pub const LEGS_MAX: usize = 300;
@@ -81,7 +81,7 @@ pub enum Problem {
 ///
 /// # Errors
 /// Why there is none.
-pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Result<Paced, Problem> {
+pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &PathLimits) -> Result<Paced, Problem> {
     let mut tries =
         Tries { points, limits, searches: PLACES_PER_PIECE.map(|places| Search::new(limits, places)), best: None };
     let corridors = below(corridor, CORRIDOR_MIN_M);
@@ -108,20 +108,20 @@ pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Re
     Ok(Paced { knots: way.knots(), times: times(&way, points, &kept) })
 }
 
-/// Those of [`SERIES_PER_DECADE`] from `least` to `most`, greatest first; `most` itself where there is none.
-fn below(most: f64, least: f64) -> Vec<f64> {
-    let power = most.log10().floor() as i32;
+/// Those of [`SERIES_PER_DECADE`] from `min` to `max`, descending; `max` itself where there is none.
+fn below(max: f64, min: f64) -> Vec<f64> {
+    let power = max.log10().floor() as i32;
     let all = (power.min(SERIES_POWER_MIN)..=power)
         .flat_map(|power| SERIES_PER_DECADE.map(|number| number * 10.0_f64.powi(power)));
-    let mut found: Vec<f64> = all.filter(|number| (0.999 * least..=1.001 * most).contains(number)).collect();
+    let mut found: Vec<f64> = all.filter(|number| (0.999 * min..=1.001 * max).contains(number)).collect();
     found.reverse();
-    if found.is_empty() { vec![most] } else { found }
+    if found.is_empty() { vec![max] } else { found }
 }
 
 /// What has been found.
 struct Tries<'a> {
     points: &'a [Point],
-    limits: &'a Limits,
+    limits: &'a PathLimits,
     searches: [Search<'a>; 2],
     /// The quickest, and which points it passes exactly.
     best: Option<(Way, Vec<usize>)>,
@@ -214,8 +214,8 @@ fn within(search: &Search, way: &Way) -> Option<Way> {
 /// When each point is passed, s: those between two that are kept, where the path is nearest to them.
 fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
     const PLACES_CHECKED_PER_PIECE: usize = 64;
-    let places: Vec<Place> = (0..=PLACES_CHECKED_PER_PIECE)
-        .map(|place| Place::new(place as f64 / PLACES_CHECKED_PER_PIECE as f64))
+    let places: Vec<PiecePlace> = (0..=PLACES_CHECKED_PER_PIECE)
+        .map(|place| PiecePlace::new(place as f64 / PLACES_CHECKED_PER_PIECE as f64))
         .collect();
     let mut times = Vec::with_capacity(points.len());
     let (mut start, mut time) = (0.0, 0.0_f64);

@@ -10,9 +10,8 @@ use nalgebra::Vector3;
 
 /// Coefficients of one axis.
 const COEFFICIENT_COUNT: usize = 8;
-/// Between two instants at most, s.
 const INTERVAL_MAX_S: f64 = 0.02;
-/// The longest of all pieces together, s.
+/// Of all pieces together.
 const DURATION_MAX_S: f64 = 1800.0;
 
 /// Rows along the pieces in `lines`, each with its number in the file.

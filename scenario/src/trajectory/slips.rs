@@ -5,15 +5,15 @@
 use super::row::Row;
 use std::f64::consts::TAU;
 
-/// A path that is nowhere as fast is flown by nobody, m/s.
+/// No vehicle flies a path that is slower everywhere.
 const FLOWN_SPEED_MIN_M_PER_S: f64 = 0.02;
-/// What is shorter may stand still, m.
+/// A shorter path may stand still.
 const MOVING_DISTANCE_MIN_M: f64 = 0.1;
-/// The least speed at which such a path makes sense, m/s.
+/// The minimum speed of a plausible path.
 const PLAUSIBLE_SPEED_MIN_M_PER_S: f64 = 0.05;
-/// A heading that swings by less may be in degrees, degrees.
+/// A heading that swings by less may be in degrees.
 const HEADING_SWING_MIN_DEG: f64 = 1.5;
-/// What rounding may add to a turn, rad.
+/// For rounding.
 const HALF_ROTATION_TOLERANCE_RAD: f64 = 0.01;
 
 /// In what times are counted, if they are so great that they count from 1970, and that in s.
@@ -51,7 +51,7 @@ impl TooSlow {
     }
 }
 
-/// The greatest of headings in rad, if it is so great that they are probably degrees.
+/// The maximum of headings in rad, if it is so great that they are probably degrees.
 pub fn degrees_as_radians(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let most = headings.map(f64::abs).fold(0.0, f64::max);
     (most > TAU + HALF_ROTATION_TOLERANCE_RAD).then_some(most)

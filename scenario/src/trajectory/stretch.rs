@@ -12,7 +12,7 @@ use controller_core::reference::{ReferenceBounds, Trajectory};
 /// The order of each bound of [`ReferenceBounds`]: speed, both accelerations, jerk, snap, the heading's two.
 const BOUND_ORDERS: [i32; ReferenceBounds::COUNT] = [1, 2, 2, 3, 4, 1, 2];
 
-/// The least k >= 0 with which `own` lies within `allowed`; infinite if one of these is zero and is needed.
+/// The minimum k >= 0 with which `own` lies within `allowed`; infinite if one of these is zero and is needed.
 #[must_use]
 pub fn stretch(own: &ReferenceBounds, allowed: &ReferenceBounds) -> f64 {
     let each = own.values().into_iter().zip(allowed.values()).zip(BOUND_ORDERS).map(|((own, allowed), order)| {

@@ -8,7 +8,7 @@
 //! | `qw`, `qx`, `qy`, `qz` | attitude, body to world; only its heading is used | all or none |
 //! | `vx`, `vy`, `vz` | velocity, m/s | all or none |
 //! | `ax`, `ay`, `az` | acceleration, m/s^2 | all or none |
-//! | `speed` | the greatest speed up to the next row, m/s | as the scenario says |
+//! | `speed` | the maximum speed up to the next row, m/s | as the scenario says |
 //!
 //! Or the polynomial pieces that Crazyswarm and the Crazyflie's `uav_trajectories` fly ([`super::pieces`]). `cells`
 //! finds the cells, `column` knows names and units, and [`super::slips`] what is probably not meant.

@@ -1,6 +1,6 @@
 use crate::Scenario;
 use crate::reference::ReferenceKind;
-use crate::trajectory::{Route, Way};
+use crate::trajectory::{Route, RouteWay};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::Vector3;
 use std::fmt::Write;
@@ -44,7 +44,7 @@ fn every_row_of_a_file_is_passed_within_the_distance_that_is_stated() {
         let data = eight(instants, noise);
         let scenario = on(&format!("kind = \"trajectory\"\nwithin = {within}\ndata = '''\n{data}'''")).unwrap();
         let route = route(&scenario);
-        let Way::Near { farthest, lead_in } = route.way else { panic!("{:?}", route.way) };
+        let RouteWay::Near { farthest, lead_in } = route.way else { panic!("{:?}", route.way) };
         assert!(lead_in > 0.0, "the eight begins in motion");
         let mut most: f64 = 0.0;
         for point in &route.points {
@@ -81,7 +81,7 @@ fn a_file_with_few_rows_and_their_velocities_is_followed_between_them() {
         writeln!(data, "{},{cos},{sin},1,{},{},0", 0.8 * f64::from(i), -0.75 * sin, 0.75 * cos).unwrap();
     }
     let scenario = on(&format!("kind = \"trajectory\"\nwithin = 0.01\ndata = '''\n{data}'''")).unwrap();
-    let Way::Near { lead_in, .. } = route(&scenario).way else { panic!() };
+    let RouteWay::Near { lead_in, .. } = route(&scenario).way else { panic!() };
     for i in 0..=880 {
         let time = lead_in + 0.01 * f64::from(i);
         let radius = scenario.trajectory.at((time * 1e6) as u64).position.xy().norm();
@@ -100,7 +100,7 @@ fn pieces_are_flown_as_their_polynomials_say() {
     let first = format!("2,0,1,-0.25{}{},1{}", zeros(5), zeros(8), zeros(7));
     let second = format!("2,1,0,-0.25{}{},1{}", zeros(5), zeros(8), zeros(7));
     let scenario = on(&format!("kind = \"trajectory\"\ndata = '''\n{header}\n{first}\n{second}\n'''")).unwrap();
-    let Way::Near { lead_in, .. } = route(&scenario).way else { panic!() };
+    let RouteWay::Near { lead_in, .. } = route(&scenario).way else { panic!() };
     for (time, x) in [(0.0, 0.0), (1.0, 0.75), (2.0, 1.0), (3.0, 0.75), (4.0, 0.0)] {
         let there = scenario.trajectory.at(((lead_in + time) * 1e6) as u64).position;
         assert!((f64::from(there.x) - x).abs() < 0.02 && (there.z - 1.0).abs() < 0.02, "{there} at {time} s");

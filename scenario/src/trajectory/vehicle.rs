@@ -4,7 +4,7 @@ use controller_core::configuration::Configuration;
 
 /// The vehicle that is to fly a path.
 #[derive(Debug, Clone)]
-pub struct Vehicle {
+pub struct PathVehicle {
     /// What it is certified for, beside this path.
     pub configuration: Configuration,
     /// Whether the file has `[reference_bounds]`.

@@ -4,11 +4,11 @@ use controller_core::configuration::{LawParameters, PaperLaw};
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::vehicle::Vehicle;
 use scenario::Scenario;
-use scenario::sampled_loop::{Axis, LoopModel, Timing};
+use scenario::sampled_loop::{Axis, LoopModel, LoopTiming};
 use std::sync::LazyLock;
 
 /// 100 Hz, ideal rotors, no delay.
-pub const IDEAL_TIMING: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
+pub const IDEAL_TIMING: LoopTiming = LoopTiming { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
 
 static PAPER: LazyLock<Scenario> = LazyLock::new(|| Scenario::paper().unwrap());
 
@@ -16,7 +16,7 @@ pub fn vehicle() -> Vehicle {
     *PAPER.configuration.vehicle()
 }
 
-pub fn model(gains: GainParameters, timing: Timing) -> LoopModel {
+pub fn model(gains: GainParameters, timing: LoopTiming) -> LoopModel {
     let vehicle = vehicle();
     let gains = Gains::new(gains, &vehicle).unwrap();
     let law = LawParameters::Paper(PaperLaw { gains, thrust_floor: None });

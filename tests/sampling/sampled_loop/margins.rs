@@ -3,7 +3,7 @@
 use super::common::{IDEAL_TIMING, model, vehicle};
 use super::oracle;
 use controller_core::gains::GainParameters;
-use scenario::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, LoopTiming};
 
 /// Even numbers in [0, 1) from a fixed seed.
 struct Random(u64);
@@ -26,7 +26,7 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
     let mut checked = [0; 6];
     let mut conditional = 0;
     while checked.iter().any(|count| *count < 100) {
-        let timing = Timing {
+        let timing = LoopTiming {
             period: random.scale(0.001, 0.02),
             rotor_lag: if random.next() < 0.2 { 0.0 } else { random.scale(0.001, 0.05) },
             delay_samples: if random.next() < 0.5 { (3.0 * random.next()).floor() } else { 3.0 * random.next() },
@@ -52,7 +52,7 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
             let with_gain = |factor: f64| oracle::spectral_radius(axis, &gains, timing, factor);
             let with_delay = |extra: f64| {
                 let delay_samples = timing.delay_samples + extra / timing.period;
-                oracle::spectral_radius(axis, &gains, Timing { delay_samples, ..timing }, 1.0)
+                oracle::spectral_radius(axis, &gains, LoopTiming { delay_samples, ..timing }, 1.0)
             };
             let context = format!("{axis:?} {timing:?} {gains:?} {margins:?}");
             assert!(margins.gain_up > 1.0 && margins.gain_down < 1.0 && margins.delay > 0.0, "{context}");
@@ -86,13 +86,13 @@ fn stability_ends_at_each_margin_and_holds_short_of_it() {
 }
 
 /// The spectral radius with commands that are `extra` s later.
-fn delayed(axis: Axis, gains: &GainParameters, timing: Timing, extra: f64) -> f64 {
+fn delayed(axis: Axis, gains: &GainParameters, timing: LoopTiming, extra: f64) -> f64 {
     let delay_samples = timing.delay_samples + extra / timing.period;
-    oracle::spectral_radius(axis, gains, Timing { delay_samples, ..timing }, 1.0)
+    oracle::spectral_radius(axis, gains, LoopTiming { delay_samples, ..timing }, 1.0)
 }
 
 /// The delay margin, s, of a loop that loses its stability there and not before.
-fn ends_where_it_says(axis: Axis, gains: GainParameters, timing: Timing) -> f64 {
+fn ends_where_it_says(axis: Axis, gains: GainParameters, timing: LoopTiming) -> f64 {
     let margins = model(gains, timing).report(axis).margins.unwrap();
     let with_delay = |extra: f64| delayed(axis, &gains, timing, extra);
     assert!((with_delay(margins.delay) - 1.0).abs() < 1e-7, "{margins:?}");
@@ -117,7 +117,7 @@ fn delay_that_makes_commands_alternate_ends_the_margin() {
         ..GainParameters::TABLE_1
     };
     for delay_samples in [0.0, 0.55, 0.6] {
-        let timing = Timing { period: 0.02, delay_samples, ..IDEAL_TIMING };
+        let timing = LoopTiming { period: 0.02, delay_samples, ..IDEAL_TIMING };
         ends_where_it_says(Axis::LateralY, gains, timing);
     }
 }
@@ -133,7 +133,7 @@ fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
         k_s: 2.743_467_8,
         ..GainParameters::TABLE_1
     };
-    let timing = Timing { period: 0.05, delay_samples: 1.53125, ..IDEAL_TIMING };
+    let timing = LoopTiming { period: 0.05, delay_samples: 1.53125, ..IDEAL_TIMING };
     assert!(delayed(Axis::Vertical, &gains, timing, 0.06) > 1.0);
     assert!(ends_where_it_says(Axis::Vertical, gains, timing) < 0.06);
 }
@@ -141,7 +141,7 @@ fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
 #[test]
 fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     // J s^2 + k_omega s + k_theta / 16: |L| = 1 at w, phase left atan(k_omega w / (k_theta / 16)), half a sample held.
-    let timing = Timing { period: 1e-4, ..IDEAL_TIMING };
+    let timing = LoopTiming { period: 1e-4, ..IDEAL_TIMING };
     let margins = model(GainParameters::TABLE_1, timing).report(Axis::Roll).margins.unwrap();
     let (inertia, k_omega, spring) = (2.24e-3_f64, 0.1_f64, 6.25_f64);
     let squared =
@@ -158,7 +158,7 @@ fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
 fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
     // An attitude loop that hardly carries the position loop in front of it.
     let gains = GainParameters { k_theta: 1.2, k_omega: 0.02, ..GainParameters::TABLE_1 };
-    let at = |period: f64, axis: Axis| model(gains, Timing { period, ..IDEAL_TIMING }).report(axis).margins.unwrap();
+    let at = |period: f64, axis: Axis| model(gains, LoopTiming { period, ..IDEAL_TIMING }).report(axis).margins.unwrap();
     for axis in [Axis::LateralX, Axis::LateralY, Axis::Vertical] {
         let (slow, fast) = (at(1e-3, axis), at(1e-5, axis));
         for (slow, fast) in
@@ -172,6 +172,6 @@ fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
 
 #[test]
 fn an_unstable_loop_has_no_margins() {
-    let report = model(GainParameters::TABLE_1, Timing { delay_samples: 1.0, ..IDEAL_TIMING }).report(Axis::Roll);
+    let report = model(GainParameters::TABLE_1, LoopTiming { delay_samples: 1.0, ..IDEAL_TIMING }).report(Axis::Roll);
     assert!(report.spectral_radius > 1.0 && report.margins.is_none());
 }

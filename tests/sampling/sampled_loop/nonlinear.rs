@@ -6,13 +6,13 @@
 
 use super::common::{IDEAL_TIMING, body_axis, model, vehicle};
 use controller_core::gains::GainParameters;
-use scenario::sampled_loop::{Axis, Timing};
+use scenario::sampled_loop::{Axis, LoopTiming};
 use std::collections::VecDeque;
 
 const ATTITUDE_AXES: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
 
 /// Peak |angle| in each window of `window` seconds, from rest at `angle` rad.
-fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize) -> Vec<f64> {
+fn peaks(axis: Axis, timing: LoopTiming, mut angle: f64, window: f64, windows: usize) -> Vec<f64> {
     /// Of the midpoint rule.
     const SUBSTEPS_PER_PERIOD: usize = 100;
     let inertia = f64::from(vehicle().inertia[body_axis(axis).unwrap()]);
@@ -58,7 +58,7 @@ fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize
 
 #[test]
 fn five_milliseconds_of_lag_settle_from_any_angle() {
-    let timing = Timing { rotor_lag: 0.005, ..IDEAL_TIMING };
+    let timing = LoopTiming { rotor_lag: 0.005, ..IDEAL_TIMING };
     for axis in ATTITUDE_AXES {
         assert!(model(GainParameters::TABLE_1, timing).spectral_radius(axis) < 1.0);
         for start in [0.01, 0.5, 3.0] {
@@ -69,7 +69,7 @@ fn five_milliseconds_of_lag_settle_from_any_angle() {
 }
 
 /// From a small and from a large angle the same oscillation remains, rad.
-fn limit_cycle(axis: Axis, timing: Timing) -> f64 {
+fn limit_cycle(axis: Axis, timing: LoopTiming) -> f64 {
     assert!(model(GainParameters::TABLE_1, timing).spectral_radius(axis) > 1.0);
     let ends = [1e-3, 1.0].map(|start| {
         let peaks = peaks(axis, timing, start, 5.0, 40);
@@ -83,7 +83,7 @@ fn limit_cycle(axis: Axis, timing: Timing) -> f64 {
 #[test]
 fn ten_milliseconds_of_lag_and_more_end_in_a_limit_cycle() {
     for axis in ATTITUDE_AXES {
-        let amplitudes = [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, Timing { rotor_lag, ..IDEAL_TIMING }));
+        let amplitudes = [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, LoopTiming { rotor_lag, ..IDEAL_TIMING }));
         assert!(amplitudes[0] > 1e-3 && amplitudes.is_sorted(), "{axis:?} {amplitudes:?}");
     }
 }
@@ -91,7 +91,7 @@ fn ten_milliseconds_of_lag_and_more_end_in_a_limit_cycle() {
 #[test]
 fn one_sample_of_delay_cannot_hold_still() {
     for axis in ATTITUDE_AXES {
-        let amplitude = limit_cycle(axis, Timing { delay_samples: 1.0, ..IDEAL_TIMING });
+        let amplitude = limit_cycle(axis, LoopTiming { delay_samples: 1.0, ..IDEAL_TIMING });
         assert!(amplitude > 1e-3, "{axis:?}: {amplitude}");
     }
 }
@@ -100,7 +100,7 @@ fn one_sample_of_delay_cannot_hold_still() {
 fn small_motions_grow_and_shrink_at_the_predicted_rate() {
     for (rotor_lag, delay_samples) in [(0.005, 0.0), (0.008, 0.0), (0.010, 0.0), (0.0, 0.5), (0.0, 1.0), (0.005, 1.25)]
     {
-        let timing = Timing { rotor_lag, delay_samples, ..IDEAL_TIMING };
+        let timing = LoopTiming { rotor_lag, delay_samples, ..IDEAL_TIMING };
         for axis in ATTITUDE_AXES {
             // So small that it stays linear however it grows. Peaks of windows show the rate but for half an
             // oscillation (9 samples at most) and for what a peak between two samples hides (4 %).

@@ -13,7 +13,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
 use nalgebra::{DMatrix, DVector, Quaternion, Vector3};
-use scenario::sampled_loop::{Axis, LoopModel, Timing};
+use scenario::sampled_loop::{Axis, LoopModel, LoopTiming};
 
 /// One axis: what is measured (position, velocity, tilt, rate; only those the axis has move) and remembered.
 #[derive(Debug, Clone, Copy, Default)]
@@ -88,11 +88,11 @@ fn exponential(matrix: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The largest eigenvalue's magnitude under the paper's law, with the command scaled by `gain`.
-pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: Timing, gain: f64) -> f64 {
+pub fn spectral_radius(axis: Axis, gains: &GainParameters, timing: LoopTiming, gain: f64) -> f64 {
     spectral_radius_with(Held::Feedback, axis, gains, timing, gain)
 }
 
-fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: Timing, gain: f64) -> f64 {
+fn spectral_radius_with(held: Held, axis: Axis, gains: &GainParameters, timing: LoopTiming, gain: f64) -> f64 {
     // Physical state (position, velocity, angle, rate, actual force), then the command.
     let mut rates = DMatrix::zeros(6, 6);
     rates[(0, 1)] = 1.0;
@@ -266,7 +266,7 @@ fn spectral_radii_agree_with_eigenvalues_of_the_written_out_loop() {
             (0.002, 0.05, 6.25),
             (0.02, 0.001, 0.5),
         ] {
-            let timing = Timing { period, rotor_lag, delay_samples };
+            let timing = LoopTiming { period, rotor_lag, delay_samples };
             for axis in Axis::ALL {
                 let found = model(gains, timing).spectral_radius(axis);
                 let expected = spectral_radius(axis, &gains, timing, 1.0);
@@ -285,7 +285,7 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
     let ExtendedLaw { parameters: p, .. } = extended(&configuration);
     let inertia = vehicle().inertia.z;
     let [tilt, yaw] = [[p.k_tilt / 4.0, p.k_omega_t], [inertia * p.c_1, inertia * p.c_2]];
-    let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL_TIMING };
+    let timing = LoopTiming { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL_TIMING };
     let model = LoopModel::new(&vehicle(), configuration.law(), timing).unwrap();
     for axis in Axis::ALL {
         let (across, vertical) = ([p.k_p_across, p.k_v_across], [p.k_p_vertical, p.k_v_vertical]);
@@ -305,6 +305,6 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
 #[test]
 fn the_oracle_needs_no_lag_to_be_small() {
     let ideal = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, IDEAL_TIMING, 1.0);
-    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, Timing { rotor_lag: 1e-5, ..IDEAL_TIMING }, 1.0);
+    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, LoopTiming { rotor_lag: 1e-5, ..IDEAL_TIMING }, 1.0);
     assert!((ideal - nearly).abs() < 1e-3);
 }

@@ -39,10 +39,11 @@ pub fn searched(paper: &Scenario) -> Result<[f64; 10], Box<dyn Error>> {
 }
 
 /// A law's figures in the paper's Section VI.
+#[derive(Default)]
 pub struct SectionSix {
     thrust: (f64, f64),
     torque: Vector3<f64>,
-    /// Greatest |omega_d|, rad/s.
+    /// Maximum |omega_d|, rad/s.
     rate: f64,
     /// Since when within 0.2 m, s.
     settled: f64,
@@ -59,18 +60,7 @@ pub struct SectionSix {
 impl SectionSix {
     /// Flies it.
     pub fn simulate(paper: &Scenario, mut flight: Flight) -> Result<Self, Box<dyn Error>> {
-        let mut shown = Self {
-            thrust: (f64::INFINITY, 0.0),
-            torque: Vector3::zeros(),
-            rate: 0.0,
-            settled: 0.0,
-            height_lost: 0.0,
-            steady: (0.0, 0.0),
-            thrusts: Vec::new(),
-            torques: Vec::new(),
-            errors: Vec::new(),
-            yaws: Vec::new(),
-        };
+        let mut shown = Self { thrust: (f64::INFINITY, 0.0), ..Self::default() };
         let duration = paper.timing.duration();
         for _ in 0..paper.timing.ticks {
             let tick = flight.tick()?;
@@ -158,7 +148,7 @@ pub fn rates(claims: &mut Claims, paper: &Scenario) {
     let outer = Outer::new(k_v, k_p, k_i, m_v, p_share, i_share);
     let vehicle = model(paper);
     let free = vehicle.thrust_max / vehicle.mass + vehicle.gravity;
-    let sup = |greatest: Option<f64>| {
+    let sup = |max: Option<f64>| {
         let mut sup = (0.0_f64, 0.0_f64);
         let along = |value: f64| Vector3::new(value, 0.0, 0.0);
         for (p, v) in (-60..=60).flat_map(|p| (-60..=60).map(move |v| (f64::from(p) * 0.05, f64::from(v) * 0.05))) {
@@ -168,9 +158,9 @@ pub fn rates(claims: &mut Claims, paper: &Scenario) {
                 feedback.map(|part| part.x)
             };
             let signs: &[f64] = &[-1.0, 1.0];
-            let accelerations: Vec<f64> = match greatest {
+            let accelerations: Vec<f64> = match max {
                 None => vec![of(0.0, 0.0)[0]],
-                Some(greatest) => signs.iter().map(|sign| sign * greatest).collect(),
+                Some(max) => signs.iter().map(|sign| sign * max).collect(),
             };
             for a in accelerations {
                 let [_, rate, _] = of(a, 0.0);

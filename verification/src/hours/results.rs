@@ -25,7 +25,7 @@ pub const TIMED_REASONS: [Reason; 5] =
 pub struct ParameterEffect {
     /// The choice: m, or m/s.
     pub chosen: f32,
-    /// The least and the greatest of what came of it: m above the ground in hover, or m/s downwards while landing.
+    /// The minimum and the maximum of the result: m above the ground in hover, or m/s downwards while landing.
     pub found: (f64, f64),
     /// The shortest and the longest time that it took, ticks: from the take-off's command to its height; of a landing,
     /// nothing is said.
@@ -38,8 +38,8 @@ impl ParameterEffect {
     }
 
     pub(super) fn find(&mut self, value: f64) {
-        let (least, most) = self.found;
-        self.found = (least.min(value), most.max(value));
+        let (min, max) = self.found;
+        self.found = (min.min(value), max.max(value));
     }
 
     pub(super) fn take(&mut self, ticks: u64) {
@@ -48,8 +48,8 @@ impl ParameterEffect {
 }
 
 /// The range with one more value in it.
-pub(super) fn widened((least, most): (u64, u64), value: u64) -> (u64, u64) {
-    (least.min(value), most.max(value))
+pub(super) fn widened((min, max): (u64, u64), value: u64) -> (u64, u64) {
+    (min.min(value), max.max(value))
 }
 
 /// The figures of all hours.
@@ -111,20 +111,20 @@ impl Hours {
         // How long a take-off takes depends on its height: they are compared by it.
         let delays = TIMED_REASONS.iter().zip(self.extremes).filter(|(reason, _)| **reason != Reason::TakenOff);
         let rises = self.heights.iter().map(|height| (&Reason::TakenOff, height.took));
-        for (reason, (least, most)) in delays.chain(rises) {
-            if most.checked_sub(least).is_none_or(|apart| apart > DELAY_SPREAD_MAX_TICKS) {
+        for (reason, (min, max)) in delays.chain(rises) {
+            if max.checked_sub(min).is_none_or(|apart| apart > DELAY_SPREAD_MAX_TICKS) {
                 return Err(format!(
-                    "{reason:?}: after {least} to {most} ticks, not more than {DELAY_SPREAD_MAX_TICKS} apart"
+                    "{reason:?}: after {min} to {max} ticks, not more than {DELAY_SPREAD_MAX_TICKS} apart"
                 ));
             }
         }
         for (what, obeyed, off) in
             [("height", &self.heights, HEIGHT_TOLERANCE_M), ("speed", &self.speeds, SPEED_TOLERANCE_M_PER_S)]
         {
-            for ParameterEffect { chosen, found: (least, most), .. } in obeyed {
+            for ParameterEffect { chosen, found: (min, max), .. } in obeyed {
                 let chosen = f64::from(*chosen);
-                if !(chosen - off..=chosen + off).contains(least) || !(chosen - off..=chosen + off).contains(most) {
-                    return Err(format!("{what}: {chosen} chosen, {least:.3} to {most:.3} found"));
+                if !(chosen - off..=chosen + off).contains(min) || !(chosen - off..=chosen + off).contains(max) {
+                    return Err(format!("{what}: {chosen} chosen, {min:.3} to {max:.3} found"));
                 }
             }
         }

@@ -17,7 +17,7 @@ use scenario::reality::Reality;
 use scenario::reality::failure::Failure;
 use scenario::rotor_loss::relaxed_hover::{NoHover, RelaxedHover};
 use scenario::rotor_loss::{PLACE_HELD_DISTANCE_M, SOFT_LANDING_SPEED_M_PER_S, WithoutARotor, turning_loop};
-use scenario::sampled_loop::Timing;
+use scenario::sampled_loop::LoopTiming;
 
 /// When the rotor goes, and for how long the vehicle is watched then; and how long if it turns ever faster.
 const FAILURE_S: f64 = 1.0;
@@ -69,7 +69,7 @@ impl Loss {
             RelaxedHover::new(configuration.vehicle(), rotors, &drag, rotor, &axis)
         });
         let period = scenario.timing.period();
-        let timing = Timing { period, rotor_lag: scenario.rotor_lag, delay_samples: scenario.delay() / period };
+        let timing = LoopTiming { period, rotor_lag: scenario.rotor_lag, delay_samples: scenario.delay() / period };
         let radius = hover.as_ref().ok();
         let radius = radius.map(|hover| turning_loop::radius(law, hover.rate, configuration.vehicle(), &timing));
         let settles = radius.is_some_and(|radius| radius < 1.0) || hover == Err(NoHover::Unbalanced);

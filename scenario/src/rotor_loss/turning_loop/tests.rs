@@ -26,7 +26,7 @@ impl Body {
     }
 
     /// A tick of the law and its period, s, in `TICK_STEPS`.
-    fn tick(&mut self, law: &WithoutARotor, vehicle: &Vehicle, timing: &Timing) {
+    fn tick(&mut self, law: &WithoutARotor, vehicle: &Vehicle, timing: &LoopTiming) {
         let step = timing.period / TICK_STEPS as f64;
         let under_way = self.coming.iter().sum::<Vector2<f64>>() * step;
         let pending = (self.torque * timing.rotor_lag + under_way).map(|x| x as f32);
@@ -51,7 +51,7 @@ fn shrinking(text: &str, delay: usize, rate: Option<f64>) -> (f64, f64) {
     let scenario = Scenario::parse(text, "f").unwrap();
     let configuration = &scenario.configuration;
     let (vehicle, period) = (configuration.vehicle(), scenario.timing.period());
-    let timing = Timing { period, rotor_lag: scenario.rotor_lag, delay_samples: delay as f64 / TICK_STEPS as f64 };
+    let timing = LoopTiming { period, rotor_lag: scenario.rotor_lag, delay_samples: delay as f64 / TICK_STEPS as f64 };
     let law = WithoutARotor::new(configuration, 0, period as f32).unwrap();
     let axis = law.axis();
     let drag = scenario.reality.drag.unwrap_or_default();

@@ -6,8 +6,8 @@
 //! derivative is known.
 
 use super::blocks::{BLOCK_SIZE, Blocks, Part};
-use super::limits::{Limits, ROW_COUNT, VARIABLE_COUNT};
-use super::piece::{KNOT_ORDERS, Motion, Place, powers};
+use super::limits::{PathLimits, ROW_COUNT, VARIABLE_COUNT};
+use super::piece::{KNOT_ORDERS, Motion, PiecePlace, powers};
 use super::places::Places;
 use super::sloped::Sloped;
 use super::way::Way;
@@ -33,7 +33,7 @@ pub fn barrier(share: f64) -> [f64; 3] {
 }
 
 /// The equations of a step from `way`, with `shares` at its places, for a weight `rho` of the duration.
-pub fn equations(limits: &Limits, places: &Places, way: &Way, shares: &[f64], rho: f64) -> Blocks {
+pub fn equations(limits: &PathLimits, places: &Places, way: &Way, shares: &[f64], rho: f64) -> Blocks {
     let mut equations = Blocks::new(way.knots.len());
     let mut shares = shares.chunks(SHARE_COUNT);
     for (piece, (_, duration)) in way.pieces.iter().enumerate() {
@@ -64,7 +64,7 @@ pub fn equations(limits: &Limits, places: &Places, way: &Way, shares: &[f64], rh
     equations
 }
 
-fn add_rows(equations: &mut Blocks, limits: &Limits, way: &Way, piece: usize, place: &Place) {
+fn add_rows(equations: &mut Blocks, limits: &PathLimits, way: &Way, piece: usize, place: &PiecePlace) {
     let (motion, speed) = (way.motion(piece, place), way.legs[way.pieces[piece].0].speed);
     let dependence = Dependence::at(way, piece, place);
     let mut curvature = [[0.0; 2]; KNOT_ORDERS - 1];
@@ -89,7 +89,7 @@ fn add_rows(equations: &mut Blocks, limits: &Limits, way: &Way, piece: usize, pl
     }
 }
 
-fn add_corridor(equations: &mut Blocks, way: &Way, piece: usize, place: &Place) {
+fn add_corridor(equations: &mut Blocks, way: &Way, piece: usize, place: &PiecePlace) {
     let leg = &way.legs[way.pieces[piece].0];
     let off: Vector3<f64> = leg.off(&way.motion(piece, place)[0].xyz());
     let inverse = 1.0 / (leg.corridor * leg.corridor);
@@ -108,7 +108,7 @@ struct Dependence {
 }
 
 impl Dependence {
-    fn at(way: &Way, piece: usize, place: &Place) -> Self {
+    fn at(way: &Way, piece: usize, place: &PiecePlace) -> Self {
         let powers = powers(way.pieces[piece].1);
         let weights: [[[f64; KNOT_ORDERS]; 2]; KNOT_ORDERS] =
             std::array::from_fn(|order| place.weights(order, &powers));

@@ -13,7 +13,7 @@ use super::piece::Motion;
 use super::sloped::Sloped;
 use crate::judge::judge;
 use crate::trajectory::stretch;
-use crate::trajectory::vehicle::Vehicle;
+use crate::trajectory::vehicle::PathVehicle;
 use controller_core::certificate::path::along::MaxShare;
 use controller_core::certificate::path::{self, PathJudge, PathRow};
 use controller_core::configuration::Configuration;
@@ -32,7 +32,7 @@ const BOUNDS_SHARE: f64 = 0.9995;
 
 /// What motions may take.
 #[derive(Debug, Clone)]
-pub struct Limits {
+pub struct PathLimits {
     /// What the vehicle has left, if its law is the extended one.
     judges: Option<Judges>,
     /// What bounds it besides; infinite where nothing does.
@@ -47,10 +47,10 @@ fn judges(configuration: &Configuration, force_kept: f32) -> Option<Judges> {
     Some((exact, judge(configuration, force_kept)?, judge(configuration, force_kept)?))
 }
 
-impl Limits {
+impl PathLimits {
     /// Those of a vehicle; the heading keeps within its bounds in any case, all else where the file has them.
-    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
-        let Vehicle { configuration, has_bounds, force_kept } = vehicle;
+    pub fn for_vehicle(vehicle: &PathVehicle) -> Self {
+        let PathVehicle { configuration, has_bounds, force_kept } = vehicle;
         let bounds = *configuration.bounds();
         let judges = judges(configuration, *force_kept);
         if judges.is_none() || *has_bounds {

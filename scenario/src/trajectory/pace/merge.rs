@@ -73,7 +73,7 @@ pub fn merged(points: &[Point], corridor: f64) -> (Vec<usize>, Vec<Leg>) {
     (kept, legs)
 }
 
-/// The leg between two points, with what is left of the corridor, and the least speed of those that it replaces.
+/// The leg between two points, with what is left of the corridor, and the minimum speed of those that it replaces.
 fn leg(points: &[Point], (start, end): (usize, usize), corridor: f64) -> Leg {
     let speed = points[start..end].iter().map(|point| point.speed).fold(f64::INFINITY, f64::min);
     let leg = Leg { from: points[start].place, to: points[end].place, corridor, speed };

@@ -18,9 +18,9 @@ pub type Motion = [Vector4<f64>; KNOT_ORDERS];
 
 /// W of one place: by order k, end e and order l.
 #[derive(Debug, Clone, Copy)]
-pub struct Place([[[f64; KNOT_ORDERS]; 2]; KNOT_ORDERS]);
+pub struct PiecePlace([[[f64; KNOT_ORDERS]; 2]; KNOT_ORDERS]);
 
-impl Place {
+impl PiecePlace {
     /// At s.
     pub fn new(s: f64) -> Self {
         let start = |l: usize, order: usize, s: f64| derivative(&coefficients(l), order, s);
@@ -81,7 +81,7 @@ mod tests {
         });
         let segment = Segment::between(&knots[0], &knots[1]);
         for time_us in [0_u64, 100_000, 555_555, 800_000] {
-            let place = Place::new(time_us as f64 * 1e-6 / duration);
+            let place = PiecePlace::new(time_us as f64 * 1e-6 / duration);
             let flown = segment.at(time_us);
             let vectors = [flown.position, flown.velocity, flown.acceleration, flown.jerk, flown.snap];
             for (order, flown) in vectors.into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The quickest motion along legs that takes no more of any row than there is: descent with a barrier.
 //!
 //! Free are how each knot is passed (velocity to snap; between the points also where) and the duration of each piece.
-//! At some places of each piece, denser towards its ends, the rows' shares s of [`Limits`] and of the corridor,
+//! At some places of each piece, denser towards its ends, the rows' shares s of [`PathLimits`] and of the corridor,
 //! (distance / corridor)^2, are below one, and
 //!
 //! rho times the whole duration + sum of b(s), b(s) = -ln(1 - x) - x - x^2 / 2, x = (s - [`IDLE`]) / (1 - [`IDLE`]),
@@ -14,7 +14,7 @@
 
 use super::blocks::Part;
 use super::equations::{DURATION_UNKNOWN, IDLE_SHARE, SHARE_COUNT, barrier, equations};
-use super::limits::Limits;
+use super::limits::PathLimits;
 use super::merge::Leg;
 use super::piece::Motion;
 use super::places::Places;
@@ -25,23 +25,23 @@ const BARRIER_GROWTH: f64 = 4.0;
 const NEWTON_STEPS_MAX: usize = 20;
 /// What the value falls by for each place in a step that is worth another.
 const DECREASE_PER_PLACE_MIN: f64 = 1e-3;
-/// The greatest and, inverse, the least duration of a leg from rest to rest, s.
+/// The maximum and, inverse, the minimum duration of a leg from rest to rest, s.
 const LEG_DURATION_MAX_S: f64 = 1e3;
 /// How often a step is halved, and damped ten times more.
 const STEP_HALVINGS_MAX: u32 = 3;
 const DAMPINGS_MAX: u32 = 12;
-/// The least damping, and that of unknowns that no row depends on.
+/// The minimum damping, and that of unknowns that no row depends on.
 const DAMPING_MIN: f64 = 1e-9;
 
 /// What is looked for, and where it is looked at.
 pub struct Search<'a> {
-    limits: &'a Limits,
+    limits: &'a PathLimits,
     places: Places,
 }
 
 impl<'a> Search<'a> {
     /// Within `limits`, with so many `places` of each piece.
-    pub fn new(limits: &'a Limits, places: usize) -> Self {
+    pub fn new(limits: &'a PathLimits, places: usize) -> Self {
         Self { limits, places: Places::new(places) }
     }
 
@@ -68,7 +68,7 @@ impl<'a> Search<'a> {
         (0..way.pieces.len()).all(slow)
     }
 
-    /// The greatest share at the places.
+    /// The maximum share at the places.
     pub fn most(&self, way: &Way) -> f64 {
         self.shares(way).into_iter().fold(0.0, f64::max)
     }

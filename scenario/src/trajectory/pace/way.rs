@@ -2,7 +2,7 @@
 
 use super::hull::stays;
 use super::merge::Leg;
-use super::piece::{KNOT_ORDERS, Motion, Place, powers};
+use super::piece::{KNOT_ORDERS, Motion, PiecePlace, powers};
 use controller_core::reference::knot::Knot;
 use nalgebra::{Vector3, Vector4};
 
@@ -58,7 +58,7 @@ impl Way {
     }
 
     /// The motion at a place of a piece.
-    pub fn motion(&self, piece: usize, place: &Place) -> Motion {
+    pub fn motion(&self, piece: usize, place: &PiecePlace) -> Motion {
         let powers = powers(self.pieces[piece].1);
         std::array::from_fn(|order| {
             let weights = place.weights(order, &powers);
@@ -90,7 +90,7 @@ impl Way {
         for (number, (leg, duration)) in self.pieces.iter().enumerate() {
             let parts = parts(*duration);
             for part in 0..parts {
-                let place = Place::new(part as f64 / parts as f64);
+                let place = PiecePlace::new(part as f64 / parts as f64);
                 knots.push(if part == 0 { self.knots[number] } else { self.motion(number, &place) });
                 pieces.push((*leg, duration / parts as f64));
             }

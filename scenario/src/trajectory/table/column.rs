@@ -16,7 +16,7 @@ pub enum Quantity {
     Acceleration(usize),
     /// Body to world.
     Quaternion(usize),
-    /// The greatest up to the next row, m/s.
+    /// The maximum up to the next row, m/s.
     Speed,
     /// Of a polynomial piece, s.
     Duration,
