@@ -65,10 +65,10 @@ impl Relay {
     ///
     /// # Errors
     /// [`RelayError`].
-    pub fn open(address: &str, ports: &Ports, patience: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
+    pub fn open(address: &str, ports: &Ports, timeout: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
         let clients = ClientPort::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
         let address = Address::Connect(address.to_owned());
-        let line = connected(&address, patience, interrupt).map_err(RelayError::Line)?;
+        let line = connected(&address, timeout, interrupt).map_err(RelayError::Line)?;
         let ready = || {
             line.set_nodelay(true)?;
             line.set_read_timeout(Some(POLL_PERIOD))?;

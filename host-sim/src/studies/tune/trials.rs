@@ -43,6 +43,9 @@ const GUST_FLIGHT_S: f64 = 6.0;
 const STORM_FLIGHT_S: f64 = 8.0;
 const STEP_FLIGHT_S: f64 = 12.0;
 const NOISE_FLIGHT_S: f64 = 4.0;
+/// Where the steps to the origin begin.
+const NEAR_STEP_M: Vector3<f64> = Vector3::new(-1.0, 0.0, 0.0);
+const FAR_STEP_M: Vector3<f64> = Vector3::new(-6.0, -6.0, -5.3);
 /// A flight in still air ends once position and yaw have been settled for this time.
 const SETTLED_FOR_S: f64 = 2.0;
 /// Between two poses, and from the moment that one shows to its arrival.
@@ -199,52 +202,14 @@ pub fn fly_trials(
     model: &Model,
     recovery: f64,
 ) -> Option<TrialFigures> {
-    let course = |scenario: &Scenario| Course::fly(scenario, start(scenario)?, ARRIVAL_DISTANCE_M).ok();
-    let settled =
-        |scenario: &Scenario| Course::until_settled(scenario, start(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok();
-    let real = really(scenario, model);
-    let hovering = |position, duration| hover(&real, position, duration).ok();
-    let windy = |speed: f64, duration: f64| {
-        let mut windy = hovering(Vector3::zeros(), duration)?;
-        let mass = f64::from(scenario.configuration.vehicle().mass);
-        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
-        windy.reality.drag = scenario.reality.drag.or(Some(unknown));
-        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
-        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-        course(&windy)
-    };
-    let stepped = |position| settled(&hovering(position, STEP_FLIGHT_S)?);
-    let near = Vector3::new(-1.0, 0.0, 0.0);
-
-    let recovered = settled(&turned_over(&hovering(Vector3::zeros(), recovery)?))?;
-    let (gusty, step) = (windy(GUST_M_PER_S, GUST_FLIGHT_S)?, stepped(near)?);
-    let mut noisy = hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
+    let trials = Trials { scenario, real: really(scenario, model), start, recovery };
+    let recovered = trials.settled(&turned_over(&trials.hovering(Vector3::zeros(), recovery)?))?;
+    let gusty = trials.windy(GUST_M_PER_S, GUST_FLIGHT_S)?;
+    let step = trials.stepped(NEAR_STEP_M)?;
+    let mut noisy = trials.hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
-    let noisy = course(&noisy)?;
-    let mut clipped = recovered.clipped + gusty.clipped + step.clipped + noisy.clipped;
-
-    let beyond = if *model == COST_MODELS[0] {
-        let storm = windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
-        let far = stepped(Vector3::new(-6.0, -6.0, -5.3))?;
-        let truth = Truth::of_model(scenario.configuration.vehicle());
-        let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
-            scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
-            settled(&scenario)
-        };
-        let weak = other(hovering(near, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
-        let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
-        clipped += [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum::<u64>();
-        Some(HarderTrialFigures {
-            storm: storm.excursion,
-            far: far.settled.unwrap_or(STEP_FLIGHT_S),
-            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
-            heavy_lost: heavy.height_lost,
-            heavy: heavy.settled.unwrap_or(recovery),
-        })
-    } else {
-        None
-    };
-
+    let noisy = trials.course(&noisy)?;
+    let (beyond, clipped) = if *model == COST_MODELS[0] { trials.harder()? } else { (None, 0) };
     Some(TrialFigures {
         height_lost: recovered.height_lost,
         recovered: recovered.settled.unwrap_or(recovery),
@@ -255,8 +220,69 @@ pub fn fly_trials(
         activity: noisy.activity / hovering_thrust(scenario),
         noise: noisy.rms,
         beyond,
-        clipped,
+        clipped: clipped + recovered.clipped + gusty.clipped + step.clipped + noisy.clipped,
     })
+}
+
+/// The vehicle and the law of all trials.
+struct Trials<'a, Start> {
+    scenario: &'a Scenario,
+    /// The vehicle as it really is.
+    real: Scenario,
+    start: Start,
+    /// s.
+    recovery: f64,
+}
+
+impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<'_, Start> {
+    fn course(&self, scenario: &Scenario) -> Option<Course> {
+        Course::fly(scenario, (self.start)(scenario)?, ARRIVAL_DISTANCE_M).ok()
+    }
+
+    fn settled(&self, scenario: &Scenario) -> Option<Course> {
+        Course::until_settled(scenario, (self.start)(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok()
+    }
+
+    fn hovering(&self, position: Vector3<f64>, duration: f64) -> Option<Scenario> {
+        hover(&self.real, position, duration).ok()
+    }
+
+    /// Hovering in wind that sets in.
+    fn windy(&self, speed: f64, duration: f64) -> Option<Course> {
+        let mut windy = self.hovering(Vector3::zeros(), duration)?;
+        let mass = f64::from(self.scenario.configuration.vehicle().mass);
+        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
+        windy.reality.drag = self.scenario.reality.drag.or(Some(unknown));
+        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
+        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
+        self.course(&windy)
+    }
+
+    /// From `position` to the origin.
+    fn stepped(&self, position: Vector3<f64>) -> Option<Course> {
+        self.settled(&self.hovering(position, STEP_FLIGHT_S)?)
+    }
+
+    /// The figures beyond a law's promise, and how many of their commands a limit cut.
+    fn harder(&self) -> Option<(Option<HarderTrialFigures>, u64)> {
+        let storm = self.windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
+        let far = self.stepped(FAR_STEP_M)?;
+        let truth = Truth::of_model(self.scenario.configuration.vehicle());
+        let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
+            scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
+            self.settled(&scenario)
+        };
+        let weak = other(self.hovering(NEAR_STEP_M, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
+        let heavy = other(turned_over(&self.hovering(Vector3::zeros(), self.recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
+        let figures = HarderTrialFigures {
+            storm: storm.excursion,
+            far: far.settled.unwrap_or(STEP_FLIGHT_S),
+            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
+            heavy_lost: heavy.height_lost,
+            heavy: heavy.settled.unwrap_or(self.recovery),
+        };
+        Some((Some(figures), [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum()))
+    }
 }
 
 /// Each rotor's thrust in hover, N; a vehicle without rotors counts as if it had four.
