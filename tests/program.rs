@@ -10,4 +10,5 @@ mod documented_defaults;
 mod identify;
 mod output;
 mod overwriting;
+mod rooms;
 mod verdicts;

@@ -14,9 +14,9 @@
 pub mod claims;
 pub mod controller;
 pub mod course;
-pub mod estimation;
+pub(crate) mod estimation;
 pub mod extremes;
-pub mod law_on_vehicle;
+pub(crate) mod law_on_vehicle;
 
 use crate::flight::controller::Controller;
 use crate::flight::estimation::{Estimation, NoEstimate};

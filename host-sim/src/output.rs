@@ -8,7 +8,7 @@
 //! | [`progress`] | a bar on a terminal, elsewhere a line now and then |
 //! | [`interrupt`] | SIGINT, SIGTERM and SIGHUP end long work at its next step |
 
-pub mod directory_lock;
+pub(crate) mod directory_lock;
 pub mod interrupt;
 pub mod progress;
 pub mod table;

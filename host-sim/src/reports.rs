@@ -10,6 +10,6 @@
 
 pub mod log;
 pub mod plots;
-pub mod recording;
+pub(crate) mod recording;
 pub mod reference_rows;
 pub mod report;

@@ -21,24 +21,24 @@
 //! | [`choice`] | which law flies, ours or one of these |
 //! | [`rate`] | a scenario under a law of another rate |
 
-pub mod cascade;
+pub(crate) mod cascade;
 pub mod choice;
 pub mod continuous;
-pub mod frame;
+pub(crate) mod frame;
 pub mod gains;
-pub mod indi;
+pub(crate) mod indi;
 pub mod jet;
 pub mod kind;
-pub mod lee;
-pub mod low_pass;
-pub mod mellinger;
+pub(crate) mod lee;
+pub(crate) mod low_pass;
+pub(crate) mod mellinger;
 pub mod memoryless;
 pub mod nested;
 pub mod pilot;
 pub mod quaternion_feedback;
 pub mod rate;
 pub mod rival;
-pub mod start;
+pub(crate) mod start;
 
 #[cfg(test)]
 mod tests;

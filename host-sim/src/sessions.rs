@@ -7,9 +7,9 @@
 //! | [`pace`], [`ports`] | what both need: the clock on the wall; the clients' UDP ports |
 //! | [`answer`], [`messages`] | the simulator's side of the lock-step |
 
-pub mod answer;
+pub(crate) mod answer;
 pub mod hil;
-pub mod messages;
-pub mod pace;
+pub(crate) mod messages;
+pub(crate) mod pace;
 pub mod ports;
 pub mod sitl;

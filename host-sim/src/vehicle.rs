@@ -12,7 +12,7 @@
 //! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
 
 pub mod actuators;
-pub mod ground;
+pub(crate) mod ground;
 pub mod instruments;
 pub mod plant;
 pub mod reality;

@@ -18,23 +18,23 @@
 //! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
 //! | [`command`] | all of it, from files to a report |
 
-pub mod agreement;
+pub(crate) mod agreement;
 pub mod bench;
 pub mod command;
-pub mod fit;
+pub(crate) mod fit;
 pub mod flight_log;
-pub mod foreign;
-pub mod hubs;
+pub(crate) mod foreign;
+pub(crate) mod hubs;
 pub mod impulses;
-pub mod low_passes;
-pub mod margins;
-pub mod model;
-pub mod noise;
+pub(crate) mod low_passes;
+pub(crate) mod margins;
+pub(crate) mod model;
+pub(crate) mod noise;
 pub mod observability;
-pub mod output;
-pub mod px4;
+pub(crate) mod output;
+pub(crate) mod px4;
 pub mod quantities;
-pub mod student_t;
+pub(crate) mod student_t;
 pub mod ulog;
 
 use bench::Bench;

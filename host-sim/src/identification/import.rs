@@ -14,21 +14,21 @@
 //! `docs/import.md` has each format's frames and units beside ours.
 
 pub mod existing;
-pub mod literal;
-pub mod mujoco;
-pub mod mujoco_frames;
+pub(crate) mod literal;
+pub(crate) mod mujoco;
+pub(crate) mod mujoco_frames;
 pub mod numbers;
-pub mod px4;
-pub mod rigid;
+pub(crate) mod px4;
+pub(crate) mod rigid;
 pub mod rotorpy;
-pub mod sdf;
-pub mod sdf_frames;
-pub mod sdf_model;
-pub mod sdf_motor;
-pub mod urdf;
+pub(crate) mod sdf;
+pub(crate) mod sdf_frames;
+pub(crate) mod sdf_model;
+pub(crate) mod sdf_motor;
+pub(crate) mod urdf;
 pub mod value;
 pub mod written;
-pub mod xml;
+pub(crate) mod xml;
 
 use numbers::VehicleNumbers;
 use std::path::Path;

@@ -12,9 +12,9 @@
 //! short, and files come from anywhere.
 
 pub mod command;
-pub mod formats;
-pub mod reader;
-pub mod topics;
+pub(crate) mod formats;
+pub(crate) mod reader;
+pub(crate) mod topics;
 pub mod writer;
 
 /// The first bytes of every ULog; the format's version follows.

@@ -1,9 +1,9 @@
 //! The figures of a flight: the eight panels of the paper's Figures 1 and 2, four of them again for the first seconds,
 //! and pictures of the path, still and moving. What a panel shows is a [`Plot`] of the report.
 
-pub mod axis;
-pub mod drawing;
-pub mod panel;
+pub(crate) mod axis;
+pub(crate) mod drawing;
+pub(crate) mod panel;
 pub mod path;
 pub mod replay;
 

@@ -15,9 +15,9 @@
 //! own time. The scenario is attached as it was read.
 
 mod drawing;
-pub mod flight;
+pub(crate) mod flight;
 mod schemas;
-pub mod session;
+pub(crate) mod session;
 
 use drawing::{pose, transform};
 use mcap::records::MessageHeader;

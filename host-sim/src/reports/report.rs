@@ -19,13 +19,13 @@
 //! The page's Content-Security-Policy names its one style sheet and its one program by their SHA-256 and allows nothing
 //! else: no request, and no program that came in with a scenario's text.
 
-pub mod distribution;
-pub mod document;
-pub mod flight;
+pub(crate) mod distribution;
+pub(crate) mod document;
+pub(crate) mod flight;
 pub mod page;
 pub mod plot;
-pub mod prose;
-pub mod recorder;
+pub(crate) mod prose;
+pub(crate) mod recorder;
 pub mod replay;
-pub mod text;
+pub(crate) mod text;
 pub mod track;

@@ -11,11 +11,11 @@
 //! [`senses`]'. Time is the other side's own: [`pace`] reports how regular its commands are by its clock. A session may
 //! be held to a speed, for MAVLink clients in real time ([`relay`]).
 
-pub mod pace;
+pub(crate) mod pace;
 pub mod port;
 pub mod relay;
-pub mod senses;
-pub mod vehicle;
+pub(crate) mod senses;
+pub(crate) mod vehicle;
 
 use crate::output::progress::Progress;
 use crate::output::whole_file::WholeFile;

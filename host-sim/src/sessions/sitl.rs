@@ -23,11 +23,11 @@
 pub mod clock;
 mod downlink;
 pub mod faults;
-pub mod flash;
+pub(crate) mod flash;
 pub mod key;
 pub mod memory_line;
 mod record;
-pub mod session;
+pub(crate) mod session;
 pub mod simulated_hardware;
 mod truth;
 

@@ -15,19 +15,19 @@
 //! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
 //! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
 
-pub mod batches;
-pub mod columns;
+pub(crate) mod batches;
+pub(crate) mod columns;
 pub mod draw;
 pub mod fly;
-pub mod losses;
+pub(crate) mod losses;
 pub mod manifest;
 pub mod outcome;
-pub mod random_flight;
-pub mod report;
-pub mod rotor_loss;
-pub mod rows;
+pub(crate) mod random_flight;
+pub(crate) mod report;
+pub(crate) mod rotor_loss;
+pub(crate) mod rows;
 pub mod step;
-pub mod store;
+pub(crate) mod store;
 pub mod summary;
 pub mod written;
 

@@ -6,14 +6,14 @@
 //! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. Our claim decides the exit
 //! status: every random flight of our law settles, and none of its commands is cut or leaves its certified bounds.
 
-pub mod limit;
-pub mod page;
-pub mod pictures;
-pub mod realism;
-pub mod rotor_loss;
-pub mod rows;
-pub mod scene_figures;
-pub mod scenes;
+pub(crate) mod limit;
+pub(crate) mod page;
+pub(crate) mod pictures;
+pub(crate) mod realism;
+pub(crate) mod rotor_loss;
+pub(crate) mod rows;
+pub(crate) mod scene_figures;
+pub(crate) mod scenes;
 
 use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::output::directory_lock::DirectoryLock;

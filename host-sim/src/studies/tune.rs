@@ -12,14 +12,14 @@
 //! searches; [`output`] writes what was found. A search starts from the file's constants and never ends with worse
 //! ones. Seeds are fixed: the same file gives the same constants.
 
-pub mod candidate;
-pub mod chosen;
+pub(crate) mod candidate;
+pub(crate) mod chosen;
 pub mod effort;
-pub mod evolution;
+pub(crate) mod evolution;
 pub mod output;
 pub mod requirements;
 pub mod rivals;
-pub mod space;
+pub(crate) mod space;
 pub mod trials;
 
 use crate::output::interrupt::Interrupt;

@@ -19,8 +19,8 @@
 //! needs them, [`crate::vehicle::actuators`] and [`crate::vehicle::ground`] stand around it.
 
 pub mod body;
-pub mod lanes;
-pub mod motion;
+pub(crate) mod lanes;
+pub(crate) mod motion;
 pub mod rows;
 
 use body::Body;

@@ -23,11 +23,11 @@
 //!
 //! A vehicle on the ground stands while the forces on it do not lift it; the ground is [`crate::vehicle::ground`]'s.
 
-pub mod air;
+pub(crate) mod air;
 pub mod battery;
-pub mod body;
-pub mod dryden;
-pub mod propulsion;
+pub(crate) mod body;
+pub(crate) mod dryden;
+pub(crate) mod propulsion;
 pub mod wind;
 
 use crate::vehicle::actuators::{ActuationError, ActuatorDemand};

@@ -1,7 +1,7 @@
 //! The page of one flight: what `fly` writes beside its log.
 
-pub mod columns;
-pub mod plots;
+pub(crate) mod columns;
+pub(crate) mod plots;
 
 use super::document;
 use super::page::{Block, Page, Section};
