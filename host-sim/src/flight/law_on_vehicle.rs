@@ -23,7 +23,6 @@ pub enum LawOnVehicle {
 impl LawOnVehicle {
     /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what
     /// certifies ours. None if the rival is undefined for its gains.
-    #[must_use]
     pub fn new(choice: &LawChoice, scenario: &Scenario, certified: Option<&Certified>) -> Option<Self> {
         Some(match choice {
             LawChoice::Ours => Self::Ours(certified.cloned().map(Box::new)),
@@ -32,7 +31,6 @@ impl LawOnVehicle {
     }
 
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Ours(_) => OUR_LAW,

@@ -107,7 +107,6 @@ pub struct Cascade {
 
 impl Cascade {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, gains: [f64; 18]) -> Self {
         let [p_a, p_v, v_a, i_a, d_a, v_v, i_v, d_v, v_across, v_vertical, k_q, weight, w_t, j_t, k_e, w_y, j_y, cut] =
             gains;

@@ -47,7 +47,6 @@ impl Speed {
     pub const UNSCALED: Self = Self { attitude: 1.0, position: 1.0, inertia: 1.0 };
 
     /// Itself, and with other position loops.
-    #[must_use]
     pub fn positions(self) -> Vec<Self> {
         [1.0, 2.0, 1.4, 0.7, 0.5, 0.35].map(|position| Self { position, ..self }).into()
     }
@@ -66,7 +65,6 @@ pub struct Start {
 
 impl Start {
     /// Its own speed, and other attitude loops for the vehicle's inertia.
-    #[must_use]
     pub fn attitudes(&self) -> Vec<Speed> {
         let of_vehicle = |attitude| Speed { attitude, inertia: self.inertia, ..Speed::UNSCALED };
         let all = [2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.35].map(of_vehicle);
@@ -74,7 +72,6 @@ impl Start {
     }
 
     /// The gains at `speed`.
-    #[must_use]
     pub fn at(&self, speed: Speed) -> Vec<f64> {
         let gain = |(gain, pace): (&f64, &Pace)| match *pace {
             Pace::Attitude(power) => gain * speed.attitude.powi(power),

@@ -7,7 +7,6 @@ use scenario::stability::{Lack, Shortfall};
 
 /// The meaning of an inequality, and which number to change in which direction; empty for a name that the extended
 /// law's certificate does not have.
-#[must_use]
 pub fn of_inequality(name: &str) -> &'static str {
     match name {
         "T1 fall A_- < g - K_a3" => {
@@ -66,7 +65,6 @@ pub fn of_inequality(name: &str) -> &'static str {
 }
 
 /// The meaning of a row of the judge of paths, and what to change besides the pace.
-#[must_use]
 pub fn of_path(row: Row) -> &'static str {
     match row {
         Row::Fall => {
@@ -97,7 +95,6 @@ pub const OF_FLIGHT: &str = "a model of the vehicle circles or swings about its 
     gains.turn_rate or gains.k_f, or lower gains.v_across, gains.v_up and gains.v_down; or raise control.rate.";
 
 /// The change for a loop with too little margin.
-#[must_use]
 pub fn of_loop(lack: &Lack) -> String {
     let gains = match lack.axis {
         Axis::Roll | Axis::Pitch => "gains.k_omega_t and gains.k_tilt",

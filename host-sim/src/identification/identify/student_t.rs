@@ -26,13 +26,11 @@ fn quantile_pair(parts: usize) -> [f64; 2] {
 }
 
 /// Within so many standard uncertainties a number is in all but 0.05 / 16 of all flights: sixteen at once in 95 of 100.
-#[must_use]
 pub fn coverage(parts: usize) -> f64 {
     quantile_pair(parts)[0]
 }
 
 /// Within so many in 999 of 1,000.
-#[must_use]
 pub fn consistent(parts: usize) -> f64 {
     quantile_pair(parts)[1]
 }

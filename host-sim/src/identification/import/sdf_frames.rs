@@ -35,7 +35,6 @@ pub struct Frames(BTreeMap<String, Stands>);
 
 impl Frames {
     /// The whole name of what is called `name` in `model`.
-    #[must_use]
     pub fn whole_name(model: &str, name: &str) -> String {
         if model.is_empty() { name.to_owned() } else { format!("{model}{SCOPE_SEPARATOR}{name}") }
     }
@@ -55,7 +54,6 @@ impl Frames {
     }
 
     /// Whether there is a frame of this whole name.
-    #[must_use]
     pub fn contains(&self, whole_name: &str) -> bool {
         self.0.contains_key(whole_name)
     }

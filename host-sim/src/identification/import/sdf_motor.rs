@@ -32,7 +32,6 @@ pub struct Motor {
 }
 
 /// Whether an element is a motor model.
-#[must_use]
 pub fn is_motor(node: &Node) -> bool {
     let [file, name] = ["filename", "name"].map(|of| node.attribute(of).unwrap_or_default());
     node.has_tag_name("plugin")

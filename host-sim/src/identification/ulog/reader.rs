@@ -35,7 +35,6 @@ pub struct Series {
 
 impl Series {
     /// The columns of these names, together; none if one is missing.
-    #[must_use]
     pub fn columns(&self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
         let place = |name: &&str| self.names.iter().position(|found| found == name);
         let places = names.iter().map(place).collect::<Option<Vec<usize>>>()?;
@@ -58,13 +57,11 @@ impl Series {
     }
 
     /// How many rows it has.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
     /// Whether it has none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -174,7 +171,6 @@ impl Ulog {
     }
 
     /// A topic, if there are records of it.
-    #[must_use]
     pub fn topic(&self, name: &str) -> Option<&Series> {
         self.topics.get(name).filter(|series| !series.is_empty())
     }

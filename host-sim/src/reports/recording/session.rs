@@ -31,9 +31,6 @@ pub struct SessionMoment {
 
 impl<W: Write> Recording<W> {
     /// Adds a moment.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn moment(&mut self, moment: &SessionMoment) -> io::Result<()> {
         let SessionMoment { now, truth, rotors, report, voltage } = moment;
         let now = *now;
@@ -69,9 +66,6 @@ impl<W: Write> Recording<W> {
     }
 
     /// Adds a text that the vehicle said at `time`, us.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn write_text(&mut self, time: u64, text: &str) -> io::Result<()> {
         let log = json!({
             "timestamp": stamp(time),

@@ -4,7 +4,6 @@ use super::prose::{Cell, Table};
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
 /// One table for each section of `toml`, the keys before the first section under `top`; none if it is no TOML.
-#[must_use]
 pub fn tables(toml: &str, top: &str) -> Vec<Table> {
     let mut tables = sections(toml, top);
     for table in &mut tables {

@@ -41,14 +41,12 @@ pub struct Flight<'a> {
 }
 
 /// A recorder of everything that the page shows of a flight of `scenario`.
-#[must_use]
 pub fn recorder(scenario: &Scenario) -> ReportRecorder {
     let timing = &scenario.timing;
     ReportRecorder::new(timing.ticks, timing.period(), columns::columns(scenario))
 }
 
 /// The page of a flight, and beside it the figures by the names of their files.
-#[must_use]
 pub fn page(flight: &Flight, recorder: ReportRecorder) -> (Page, [(&'static str, String); 4]) {
     let Flight { scenario, law, verdict, claims, flown, .. } = flight;
     let ticks_per_row = recorder.ticks_per_row();

@@ -55,7 +55,6 @@ pub struct ReportRecorder {
 
 impl ReportRecorder {
     /// For a flight of so many ticks, `period` s apart.
-    #[must_use]
     pub fn new(ticks: u64, period: f64, columns: Vec<(String, Kept, Read)>) -> Self {
         let stretch = if ticks <= ROWS_MAX { 1 } else { 2 * ticks.div_ceil(ROWS_MAX) };
         let column = |(name, kept, read)| Column { name, kept, read, held: None, values: Vec::new() };
@@ -63,7 +62,6 @@ impl ReportRecorder {
     }
 
     /// How many ticks lie between two rows.
-    #[must_use]
     pub fn ticks_per_row(&self) -> u64 {
         self.stretch.div_ceil(2)
     }
@@ -90,7 +88,6 @@ impl ReportRecorder {
     }
 
     /// The track.
-    #[must_use]
     pub fn finish(self, name: &str) -> Track {
         let mut columns: Vec<(String, Vec<f32>)> = Vec::with_capacity(self.columns.len());
         for mut column in self.columns {

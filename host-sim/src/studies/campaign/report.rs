@@ -23,7 +23,6 @@ struct Figure {
 }
 
 /// The page of what was `flown` of a scenario, read from `text`.
-#[must_use]
 pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordBatch]) -> Page {
     let (figures, shares) = figures(manifest, flown);
     let numbers = counts(flown, "number");

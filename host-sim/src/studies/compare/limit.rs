@@ -149,7 +149,6 @@ const STEP_DISTANCES_M: [f64; 2] = [1.0, 8.485];
 
 impl Limit {
     /// Of the vehicle of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let configuration = &scenario.configuration;
         let (mass, gravity) = (f64::from(configuration.vehicle().mass), f64::from(configuration.vehicle().gravity));
@@ -188,7 +187,6 @@ impl Limit {
     }
 
     /// In the row of `figure` of `scene`; none where nothing is worked out.
-    #[must_use]
     pub fn in_row(&self, scene: &str, figure: &str) -> Option<f64> {
         match (scene, figure) {
             ("upside down", "height lost") => Some(self.height_lost),

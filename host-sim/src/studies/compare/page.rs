@@ -57,7 +57,6 @@ pub struct Compared<'a> {
 }
 
 /// The page of a comparison.
-#[must_use]
 pub fn page(compared: &Compared) -> Page {
     let Compared { file, text, rows, holds, .. } = compared;
     let named =

@@ -31,7 +31,6 @@ pub struct FigureRow {
 
 impl FigureRow {
     /// Whether another law shows clearly less than ours, the first.
-    #[must_use]
     pub fn lost(&self) -> bool {
         let Some((ours, rivals)) = self.values.split_first() else { return false };
         let best = rivals.iter().copied().fold(f64::INFINITY, f64::min);
@@ -81,7 +80,6 @@ const OF_ROTORS: &str = "rotor";
 
 /// All rows of a vehicle with this `limit`, with or without `rotors`: of `scenes`, each with every law's figures, and
 /// of the random flights.
-#[must_use]
 pub fn all(
     scenes: &[(&'static str, Vec<Option<SceneFigures>>)],
     thrown: &[Option<RandomFlights>],
@@ -112,7 +110,6 @@ pub fn all(
 }
 
 /// A value as the tables show it.
-#[must_use]
 pub fn cell(value: f64) -> String {
     if value.is_finite() { short(significant(value)) } else { "never".to_owned() }
 }
@@ -123,7 +120,6 @@ fn significant(value: f64) -> f64 {
 }
 
 /// A table for a terminal; rows that ours loses begin with a star.
-#[must_use]
 pub fn table(names: &[&str], rows: &[FigureRow]) -> String {
     let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT_COLUMN);
     let head = ["", "scene", "figure", "unit"].iter().chain(names).chain(limit);
@@ -141,7 +137,6 @@ pub fn table(names: &[&str], rows: &[FigureRow]) -> String {
 }
 
 /// The same as CSV, in full; `inf` means never.
-#[must_use]
 pub fn csv(names: &[&str], rows: &[FigureRow]) -> String {
     let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT_COLUMN}\n", names.join(","));
     for row in rows {

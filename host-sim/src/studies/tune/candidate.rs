@@ -48,7 +48,6 @@ pub struct Verdict {
 impl Verdict {
     /// Of a candidate that passed every test; or of one that failed: the number of tests left, by how much it missed,
     /// and which test failed.
-    #[must_use]
     pub fn after(self, tests: Result<(), (u8, f64, String)>) -> Self {
         let Err((tests_left, missed, what)) = tests else {
             return self;
@@ -59,7 +58,6 @@ impl Verdict {
     }
 
     /// Of a candidate that was not judged.
-    #[must_use]
     pub fn missing() -> Self {
         let failed = Some("not judged".to_owned());
         Self {
@@ -81,7 +79,6 @@ impl Verdict {
     }
 
     /// Whether every requirement is met.
-    #[must_use]
     pub fn accepted(&self) -> bool {
         self.violation == 0.0
     }
@@ -119,7 +116,6 @@ pub struct Judge {
 
 impl Judge {
     /// A judge for the vehicle, rotors, timing and reference of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
         let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
         let space = Space::new(scenario, floor);
@@ -127,7 +123,6 @@ impl Judge {
     }
 
     /// The scenario with the gains of `point`, if the law is defined for them.
-    #[must_use]
     pub fn scenario(&self, point: &Point) -> Option<Scenario> {
         Some(Scenario { configuration: self.space.configuration(point)?, ..self.scenario.clone() })
     }

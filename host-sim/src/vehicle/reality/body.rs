@@ -40,7 +40,6 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// A body whose origin moves as `origin` says; `gravity` in m/s^2.
-    #[must_use]
     pub fn new(truth: &Truth, gravity: f64, origin: &BodyState) -> Self {
         let (mass, inertia, centre_of_mass) = (truth.mass, truth.inertia, truth.centre_of_mass);
         let mut body = Self { mass, inertia, gravity, centre_of_mass, state: *origin };
@@ -49,13 +48,11 @@ impl RigidBody {
     }
 
     /// The motion of the centre of mass.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         &self.state
     }
 
     /// The motion of the origin.
-    #[must_use]
     pub fn origin(&self) -> BodyState {
         let (arm, turning) = self.arm(&self.state);
         BodyState { position: self.state.position - arm, velocity: self.state.velocity - turning, ..self.state }
