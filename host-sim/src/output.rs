@@ -3,7 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`whole_file`] | a file that appears whole or not at all |
-//! | [`directory_lock`] | one writer for a directory |
+//! | `directory_lock` | one writer for a directory |
 //! | [`table`] | aligned tables of text |
 //! | [`progress`] | a bar on a terminal, elsewhere a line now and then |
 //! | [`interrupt`] | SIGINT, SIGTERM and SIGHUP end long work at its next step |

@@ -5,7 +5,7 @@
 //! | [`log`] | log.csv |
 //! | [`plots`] | the paper's figures and pictures of the path, still and moving |
 //! | [`report`] | report.html: a page of tables, plots, replays and distributions |
-//! | [`recording`] | flight.mcap, for Foxglove |
+//! | `recording` | flight.mcap, for Foxglove |
 //! | [`reference_rows`] | a scenario's reference as rows of a CSV file |
 
 pub mod log;

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | [`sitl`] | the firmware's own tasks, with MAVLink on UDP for clients |
 //! | [`hil`] | the vehicle for a controller in an emulator or on a board, in lock-step |
-//! | [`pace`], [`ports`] | what both need: the clock on the wall; the clients' UDP ports |
-//! | [`answer`], [`messages`] | the simulator's side of the lock-step |
+//! | `pace`, [`ports`] | what both need: the clock on the wall; the clients' UDP ports |
+//! | `answer`, `messages` | the simulator's side of the lock-step |
 
 pub(crate) mod answer;
 pub mod hil;

@@ -3,12 +3,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`numbers`] | what a source says of a vehicle: numbers, each of which may be missing |
-//! | [`rotorpy`], [`literal`], [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
-//! | [`urdf`] | URDF of gym-pybullet-drones' kind |
-//! | [`sdf`], [`sdf_model`], [`sdf_frames`], [`sdf_motor`] | SDF of Gazebo with its motor model |
-//! | [`mujoco`], [`mujoco_frames`] | MuJoCo's XML |
-//! | [`px4`] | PX4's rotor geometry |
-//! | [`xml`], [`rigid`] | what the XML formats share; bodies put together |
+//! | [`rotorpy`], `literal`, [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
+//! | `urdf` | URDF of gym-pybullet-drones' kind |
+//! | `sdf`, `sdf_model`, `sdf_frames`, `sdf_motor` | SDF of Gazebo with its motor model |
+//! | `mujoco`, `mujoco_frames` | MuJoCo's XML |
+//! | `px4` | PX4's rotor geometry |
+//! | `xml`, `rigid` | what the XML formats share; bodies put together |
 //! | [`written`], [`existing`] | the vehicle file, with what is missing marked; one that is there already |
 //!
 //! `docs/import.md` has each format's frames and units beside ours.

@@ -3,11 +3,11 @@
 use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::commands::certify::summary;
+use host_sim::output::interrupt::Interrupt;
 use host_sim::output::progress::in_words;
 use host_sim::output::table::{percent, short};
 use host_sim::output::whole_file::WholeFile;
 use host_sim::rivals::gains::Set;
-use host_sim::rivals::kind::RivalKind;
 use host_sim::rivals::rate;
 use host_sim::studies::campaign::fly::grounded;
 use host_sim::studies::compare::{
@@ -91,7 +91,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         }
         error => Err(error.to_string()),
     };
-    // A search takes minutes: whatever is wrong with the rest shows now.
+    // A search takes minutes: any other problem shows now.
     let reserved = compare::certified(&scenario).and_then(|_| compare::reserve(&directory));
     let _lock = match reserved {
         Ok(lock) => lock,
@@ -99,21 +99,13 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     };
     let (set, found) = match known {
         Ok(set) => (set, None),
-        Err((effort, name)) => {
-            if name == SEARCHED_GAINS_FILE {
-                complain_of_search(&scenario.name, &theirs, &kinds, &effort);
+        Err((effort, file)) => match searched(arguments, &scenario.name, &theirs, (&effort, file), &interrupt) {
+            Ok((set, text)) => (set, Some((file, text))),
+            Err(message) => {
+                complain(format_args!("error: {}: {message}", scenario.name));
+                return Ok(status(false, interrupt.signal()));
             }
-            match rivals::tune(&theirs, &kinds, effort, &interrupt) {
-                Ok(set) => {
-                    let written = set.written(&theirs, &arguments.command(&effort));
-                    (set, Some((name, written)))
-                }
-                Err(message) => {
-                    complain(format_args!("error: {}: {message}", scenario.name));
-                    return Ok(status(false, interrupt.signal()));
-                }
-            }
-        }
+        },
     };
     let files = (&scenario, &theirs);
     let compared = if arguments.realism {
@@ -149,12 +141,25 @@ fn compared_file(arguments: &CompareArguments) -> Result<(String, Scenario), Str
     problem.map_or(Ok((text, scenario)), |problem| Err(format!("{}: {problem}", arguments.file.display())))
 }
 
-fn complain_of_search(name: &str, theirs: &Scenario, kinds: &[RivalKind], effort: &Effort) {
-    complain(format_args!(
-        "{name}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard as \
-         `tune` searches ours, which may take {}",
-        in_words(rivals::expected(theirs, kinds, effort).as_secs_f64())
-    ));
+/// Gains that are searched on `theirs`, and the text of the `file` that keeps them.
+fn searched(
+    arguments: &CompareArguments,
+    name: &str,
+    theirs: &Scenario,
+    (effort, file): (&Effort, &str),
+    interrupt: &Interrupt,
+) -> Result<(Set, String), String> {
+    let kinds = arguments.kinds();
+    if file == SEARCHED_GAINS_FILE {
+        complain(format_args!(
+            "{name}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard \
+             as `tune` searches ours, which may take {}",
+            in_words(rivals::expected(theirs, &kinds, effort).as_secs_f64())
+        ));
+    }
+    let set = rivals::tune(theirs, &kinds, *effort, interrupt)?;
+    let text = set.written(theirs, &arguments.command(effort));
+    Ok((set, text))
 }
 
 /// A comparison's text, up to the directory that it is written to.
@@ -202,7 +207,7 @@ fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Re
     Ok(())
 }
 
-/// The name of a tuned scenario and the file it goes to, begun: whatever is wrong with them shows now, not after the
+/// The name of a tuned scenario and the file it goes to, begun: a problem with them shows now, not after the
 /// search.
 fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String, PathBuf, WholeFile), String> {
     let stem = arguments.out.as_deref().and_then(Path::file_stem);

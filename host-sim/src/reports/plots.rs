@@ -23,7 +23,6 @@ pub const FIRST_SECONDS: [&str; 4] = ["Yaw", "Attitude error (MRP)", "Torques", 
 const TRANSIENT_S: f64 = 5.0;
 
 /// The plots of these titles, two by two.
-#[must_use]
 pub fn figure(plots: &[Plot], titles: [&str; 4], track: &Track) -> String {
     let titled = titles.iter().filter_map(|title| plots.iter().find(|plot| plot.title == *title));
     let tracks = std::slice::from_ref(track);
@@ -31,13 +30,11 @@ pub fn figure(plots: &[Plot], titles: [&str; 4], track: &Track) -> String {
 }
 
 /// The same of the first seconds.
-#[must_use]
 pub fn first_seconds(plots: &[Plot], track: &Track) -> String {
     figure(plots, FIRST_SECONDS, &track.until(TRANSIENT_S))
 }
 
 /// Four plots, each with its tracks and of that size, two by two.
-#[must_use]
 pub fn four<'a>(plots: impl Iterator<Item = (&'a Plot, &'a [Track])>, size: (f64, f64), about: &str) -> String {
     let mut drawing = Drawing::new(((2.0 * size.0) as u32, (2.0 * size.1) as u32));
     let corners = [(0.0, 0.0), (size.0, 0.0), (0.0, size.1), size];

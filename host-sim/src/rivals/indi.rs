@@ -17,7 +17,7 @@
 //! flatness. Gains stand before accelerations.
 //!
 //! Home: rotors that turn as commanded, unknown forces and torques; wind, drag, weak rotors and a shifted centre of
-//! mass leave no offset. Rotors that turn more slowly than commanded leave one: nothing adds up what is missing.
+//! mass leave no offset. Rotors that turn more slowly than commanded leave one: it has no integral.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;

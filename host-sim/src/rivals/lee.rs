@@ -15,7 +15,7 @@
 //! carry from one vehicle to another, and tilt and yaw, across and vertical have their own: the paper's are scalars,
 //! which would tie all to the weakest axis.
 //!
-//! Home: attitude error below 90 degrees (almost global: below 180) and thrust to spare. It saturates nothing.
+//! Home: attitude error below 90 degrees (almost global: below 180) and thrust to spare. It has no saturation.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;

@@ -8,7 +8,7 @@
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs,
 //! the flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far
 //! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. The measurements are
-//! [`senses`]'. Time is the other side's own: [`pace`] reports how regular its commands are by its clock. A session may
+//! `senses`'. Time is the other side's own: `pace` reports how regular its commands are by its clock. A session may
 //! be held to a speed, for MAVLink clients in real time ([`relay`]).
 
 pub(crate) mod pace;
@@ -141,9 +141,6 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
 /// a signal comes.
-///
-/// # Errors
-/// [`HilError`].
 pub fn serve(
     scenario: &Scenario,
     port: &mut SimulatorPort,

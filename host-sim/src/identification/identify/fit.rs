@@ -60,7 +60,6 @@ type White = Vec<Vec<f64>>;
 
 type Filters = [Whitening; CHANNEL_COUNT];
 
-/// A covariance of all unknowns.
 pub type Covariance = SMatrix<f64, UNKNOWN_COUNT, UNKNOWN_COUNT>;
 
 /// The result of a fit.

@@ -81,7 +81,6 @@ impl Commands {
     }
 
     /// The rotors' impulses from each tick to the next, with the whole delay S and u, the squared lag.
-    #[must_use]
     pub fn impulses(&self, whole: f64, squared: f64) -> Vec<Impulse> {
         if squared >= 0.0 {
             return self.lagging(whole, squared.sqrt());

@@ -49,7 +49,6 @@ const YAW_TORQUE_INDEX: usize = 16;
 /// kappa_z; kappa_d and lambda follow.
 const HUB_FORCE_INDEX: usize = 17;
 
-/// All unknowns.
 pub type Unknowns = SVector<f64, UNKNOWN_COUNT>;
 
 /// Velocity along the world's axes, body rates.

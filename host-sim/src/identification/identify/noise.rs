@@ -35,7 +35,6 @@ pub struct Whitening {
     gains: Vec<([f64; 2], f64)>,
 }
 
-/// The factors by which levels are searched.
 const LEVEL_SEARCH_FACTORS: [f64; 4] = [16.0, 4.0, 2.0, 1.4];
 
 impl Noise {

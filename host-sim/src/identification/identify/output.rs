@@ -27,7 +27,6 @@ pub struct Values {
 }
 
 impl Values {
-    /// The estimates.
     pub fn estimates(identified: &Quantities) -> Self {
         let value = |quantity: &Quantity| quantity.value;
         Self {

@@ -21,7 +21,7 @@ impl Part {
         Self { mass: self.mass, centre: pose.transform_point(&self.centre.into()).coords, inertia }
     }
 
-    /// All `parts` as one; none if they weigh nothing.
+    /// All `parts` as one; none without mass.
     pub fn together(parts: &[Self]) -> Option<Self> {
         let mass: f64 = parts.iter().map(|part| part.mass).sum();
         if mass <= 0.0 {
@@ -41,7 +41,6 @@ pub fn pose([x, y, z]: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Isometry3<f64>
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
-/// A matrix of inertia from xx, yy, zz, xy, xz, yz.
 pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }

@@ -61,7 +61,7 @@ impl Frames {
     /// The whole name of what `model` calls `name`; `kind` is what errors call it.
     ///
     /// # Errors
-    /// If nothing is called that, or several are where the name leaves models out.
+    /// If no frame has this name, or several have it because it leaves models out.
     pub fn find(&self, model: &str, name: &str, kind: &str) -> Result<&str, String> {
         let whole = Self::whole_name(model, name);
         if let Some((found, _)) = self.0.get_key_value(&whole) {

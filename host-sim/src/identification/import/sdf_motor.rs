@@ -15,7 +15,6 @@ const MOTOR_NUMBER: [&str; 2] = ["actuator_number", "motorNumber"];
 pub const MOTOR_NUMBERS: [&str; 6] =
     ["motorConstant", "momentConstant", "maxRotVelocity", "timeConstantUp", "timeConstantDown", "rotorDragCoefficient"];
 
-/// One motor.
 pub struct Motor {
     /// What errors call it.
     pub place: String,

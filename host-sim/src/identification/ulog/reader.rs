@@ -14,12 +14,12 @@ use super::{HEAD_BYTES, MAGIC};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Message B: whether something is appended, which nothing here is interested in, and what no reader of this version
+/// Message B: whether data are appended, which is ignored here, and flags that no reader of this version
 /// understands.
 const FLAG_WORDS: [usize; 2] = [8, 16];
 const APPENDED_FLAG: u8 = 1;
 
-/// The kinds of messages of the format's version 1, with those that mean nothing here; and Z, with which the firmware
+/// The kinds of messages of the format's version 1, with those that are ignored here; and Z, with which the firmware
 /// fills the sectors of a card.
 const MESSAGE_KINDS: &[u8] = b"FIMPQADLCORSBZ";
 
@@ -74,7 +74,6 @@ pub struct Text {
     pub level: u8,
     /// us.
     pub time: u64,
-    /// The words.
     pub words: String,
 }
 
@@ -98,7 +97,7 @@ impl Damage {
     }
 }
 
-/// Stands behind what is said of a file; nothing, where all of it was read.
+/// Follows what is said of a file; empty where all of it was read.
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { places, bytes, first } = self;

@@ -68,7 +68,6 @@ impl Inks {
     }
 }
 
-/// A drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     /// Width and height, pixels.

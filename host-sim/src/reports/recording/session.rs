@@ -14,7 +14,6 @@ pub const SESSION_TOPICS: &[Topic] = &[("/state", STATE_SCHEMA), ("/log", LOG_SC
 /// Foxglove's.
 const INFORMATION_LEVEL: u8 = 2;
 
-/// One moment of a session.
 #[derive(Debug, Clone)]
 pub struct SessionMoment {
     /// The vehicle's time, us.

@@ -24,7 +24,6 @@ const CERTIFIED_MEANING: &str = " Certified means: for every reference within th
 
 /// A flight that is over.
 pub struct Flight<'a> {
-    /// The scenario.
     pub scenario: &'a Scenario,
     /// The file it was read from.
     pub text: &'a str,
@@ -34,7 +33,6 @@ pub struct Flight<'a> {
     pub verdict: &'a Verdict,
     /// The same in a sentence.
     pub certification: &'a str,
-    /// The claims.
     pub claims: &'a [Claim],
     /// The flight's figures.
     pub flown: &'a FlightExtremes,
@@ -71,16 +69,7 @@ pub fn page(flight: &Flight, recorder: ReportRecorder) -> (Page, [(&'static str,
                 Block::Table(loops(verdict)),
             ],
         ),
-        (
-            "Scenario",
-            vec![
-                Block::Folded(
-                    "Vehicle, gains and all else, section by section".into(),
-                    document::tables(flight.text, "scenario"),
-                ),
-                Block::Listing("The file as it was read".into(), flight.text.into()),
-            ],
-        ),
+        ("Scenario", document::scenario("Vehicle, gains and all else, section by section", flight.text)),
     ];
     let page = Page {
         title: scenario.name.clone(),

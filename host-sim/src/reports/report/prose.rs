@@ -6,7 +6,6 @@ use std::fmt::Write;
 /// A quantity with its value, as a reader meets it first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fact {
-    /// Its name.
     pub name: String,
     /// Its value with its unit.
     pub value: String,
@@ -26,7 +25,7 @@ pub enum Cell {
     Text(String),
     /// A number with its unit, aligned to the right.
     Number(String),
-    /// Whether something holds; none where nothing is required.
+    /// Whether a claim holds; none without a requirement.
     Verdict(Option<bool>),
 }
 
@@ -36,7 +35,6 @@ impl Cell {
         Self::Text(text.into())
     }
 
-    /// A number.
     pub fn number(text: impl Into<String>) -> Self {
         Self::Number(text.into())
     }

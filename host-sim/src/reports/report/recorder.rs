@@ -14,7 +14,6 @@ pub const ROWS_MAX: u64 = 4000;
 
 /// The source of a column.
 pub struct Instant<'a> {
-    /// The tick.
     pub tick: &'a Tick,
     /// Yaw, degrees, without jumps.
     pub yaw: f64,
@@ -87,7 +86,6 @@ impl ReportRecorder {
         self.seen += 1;
     }
 
-    /// The track.
     pub fn finish(self, name: &str) -> Track {
         let mut columns: Vec<(String, Vec<f32>)> = Vec::with_capacity(self.columns.len());
         for mut column in self.columns {

@@ -17,7 +17,7 @@ pub fn escaped(text: &str) -> String {
     })
 }
 
-/// `value` as JSON that may stand inside a `<script>` element: nothing in it can end that element or open a comment.
+/// `value` as JSON that may stand inside a `<script>` element: it cannot end that element or open a comment.
 pub fn json(value: &Value) -> String {
     // These characters stand in strings only.
     value.to_string().replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")

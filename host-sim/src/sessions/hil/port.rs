@@ -31,7 +31,7 @@ pub enum PortError {
     NoConnection(Address, Duration, Option<io::Error>),
     /// The address cannot be used.
     Address(String, io::Error),
-    /// The other side said nothing for so long.
+    /// The other side was silent for so long.
     Silent(Duration),
     /// The connection broke.
     Broken(io::Error),

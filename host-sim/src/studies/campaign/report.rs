@@ -37,16 +37,11 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
     let words = verdicts(flown);
     let worst = figures.iter().chain([&greatest]).map(|figure| Block::Table(worst(figure, &numbers, &words)));
     let spread: Vec<Distribution> = figures.iter().chain([&greatest]).chain(&shares).map(distribution).collect();
-    let all_numbers = "Vehicle, gains and all else, section by section".into();
-    let scenario = [
-        gains(manifest),
-        Some(Block::Folded(all_numbers, document::tables(text, "scenario"))),
-        Some(Block::Listing("The file as it was read".into(), text.to_owned())),
-    ];
+    let scenario = document::scenario("Vehicle, gains and all else, section by section", text);
     let sections = [
         ("Distributions", vec![Block::Distributions(spread)]),
         ("Worst flights", std::iter::once(Block::Text(REPLAY_HINT.to_owned())).chain(worst).collect()),
-        ("Scenario", scenario.into_iter().flatten().collect()),
+        ("Scenario", gains(manifest).into_iter().chain(scenario).collect()),
     ];
     let sentence = match (summary.holds, summary.rival) {
         (true, None) => "Every flight recovers and tracks within its bounds".to_owned(),

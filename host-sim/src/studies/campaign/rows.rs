@@ -37,10 +37,8 @@ use scenario::body::BodyState;
 use scenario::reference::ReferenceKind;
 use std::sync::Arc;
 
-/// One flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightRow {
-    /// Its number.
     pub number: u64,
     /// Whether it was to hover at the origin.
     pub hover: bool,

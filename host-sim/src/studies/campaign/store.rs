@@ -31,9 +31,7 @@ use std::path::{Path, PathBuf};
 
 /// The flights' name in a directory.
 pub const RESULT_FILE: &str = "campaign.arrow";
-/// The scenario's.
 pub const SCENARIO_FILE: &str = "scenario.toml";
-/// The summary.
 pub const SUMMARY_FILE: &str = "summary.txt";
 /// The same as a page.
 pub const REPORT_FILE: &str = "report.html";
@@ -103,7 +101,6 @@ impl Store {
         Ok((store, flown))
     }
 
-    /// Its manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

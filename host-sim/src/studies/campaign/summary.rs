@@ -29,7 +29,7 @@ pub struct Summary {
     pub tracking: u64,
     /// The name of the law that flew, if it is not ours.
     pub rival: Option<&'static str>,
-    /// Flights with a command beyond a certified bound, which is ours whatever law flew.
+    /// Flights with a command beyond a certified bound, always one of our law's.
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
@@ -57,7 +57,6 @@ struct Figure {
 
 impl Summary {
     /// Of what was `flown` of `scenario`, whose verdict is `verdict`.
-    #[must_use]
     pub fn summarize(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let verdicts = verdicts(flown);
@@ -225,7 +224,6 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
 }
 
 /// Each flight's verdict.
-#[must_use]
 pub fn verdicts(flown: &[RecordBatch]) -> Vec<&str> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name("verdict"));
     columns.flat_map(|column| column.as_string::<i32>().iter().flatten()).collect()

@@ -1,4 +1,4 @@
-//! The vehicle's own limit in three scenes: what rotors and inertia leave possible, whatever the law.
+//! The vehicle's own limit in three scenes: the best that rotors and inertia allow under any law.
 //!
 //! An estimate by bang-bang control: nothing but full torque one way, full torque the other way, and full thrust. It is
 //! no bound that is proven: a law that thrusts while it turns may come a little below it.

@@ -14,18 +14,16 @@ const CLEARLY_BETTER_SHARE: f64 = 0.01;
 /// One figure of every law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureRow {
-    /// The scene.
     pub scene: &'static str,
     /// The figure's name.
     pub figure: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// The value of each law, in the laws' order; less is better; infinite means never, or that the flight ended
     /// early.
     pub values: Vec<f64>,
     /// The least difference that matters, in the unit.
     pub grain: f64,
-    /// The vehicle's own limit, whatever the law; where one is worked out.
+    /// The vehicle's own limit under any law, where it is computed.
     pub limit: Option<f64>,
 }
 

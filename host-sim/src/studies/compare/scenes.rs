@@ -27,7 +27,6 @@ pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
 /// When a wind begins.
 const WIND_START_S: f64 = 1.0;
 
-/// A scene.
 #[derive(Clone)]
 pub struct Scene {
     /// Its name in tables.

@@ -9,9 +9,11 @@
 //! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
+use super::figures::{MODEL_FIGURES, TrialFigures};
+use super::models::COST_MODELS;
 use super::requirements::Requirements;
 use super::space::{Point, Space};
-use super::trials::{COST_MODELS, MODEL_FIGURES, TrialFigures, fly_trials};
+use super::trials::fly_trials;
 use crate::flight::Flight;
 use crate::flight::claims::reached;
 use crate::flight::extremes::FlightExtremes;

@@ -44,12 +44,10 @@ impl Evolution {
         Self { members, start: own, random, judged: 1 + judged }
     }
 
-    /// The start's verdict.
     pub fn start(&self) -> &Verdict {
         &self.start
     }
 
-    /// One generation.
     pub fn generation(&mut self, judge: &impl Judging, interrupt: &Interrupt) {
         let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();

@@ -23,7 +23,6 @@ pub const STAGE_TIMES: [f64; 3] = [0.0, 0.5, 1.0];
 /// p, v, q as stored (x, y, z, w), omega.
 type Packed = SVector<f64, 13>;
 
-/// A rigid body.
 #[derive(Debug, Clone)]
 pub struct RigidBody {
     /// kg.
