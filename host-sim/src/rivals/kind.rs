@@ -19,13 +19,13 @@ const START_INERTIA_KG_M2: f64 = 3.665e-3;
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RivalKind {
-    /// [`lee`].
+    /// `lee`.
     Lee,
-    /// [`cascade`].
+    /// `cascade`.
     Cascade,
-    /// [`mellinger`].
+    /// `mellinger`.
     Mellinger,
-    /// [`indi`].
+    /// `indi`.
     Indi,
     /// [`nested`].
     Nested,

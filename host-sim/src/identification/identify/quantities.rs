@@ -4,7 +4,7 @@
 //! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
 //! (`super::agreement`). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
-//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student_t`]). The report states
+//! Each *interval* is the estimate and so many standard uncertainties to either side (`student_t`). The report states
 //! sixteen quantities at once, and all true values together are to be in their intervals in 95 of 100 flights.
 //! Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from a few
 //! parts of a flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less
