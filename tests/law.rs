@@ -1,6 +1,5 @@
 //! The laws by themselves: against independent ones, against the paper's theorems, on impossible inputs.
 
-mod attitude_sign;
 mod bad_inputs;
 mod bounds;
 mod extended_flows;

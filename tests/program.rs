@@ -12,4 +12,5 @@ mod identify;
 #[cfg(target_os = "linux")]
 mod output;
 mod overwriting;
+mod rooms;
 mod verdicts;

@@ -6,17 +6,17 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`controller`] | our law or a rival, in the loop |
-//! | [`estimation`] | the core's estimator on the simulated instruments |
-//! | [`law_on_vehicle`] | a law on a vehicle, ready for any number of flights |
+//! | `estimation` | the core's estimator on the simulated instruments |
+//! | `law_on_vehicle` | a law on a vehicle, ready for any number of flights |
 //! | [`course`] | a flight's figures: height lost, overshoot, settling time |
 //! | [`extremes`], [`claims`] | a flight's extremes; its claims and verdicts |
 
 pub mod claims;
 pub mod controller;
 pub mod course;
-pub mod estimation;
+pub(crate) mod estimation;
 pub mod extremes;
-pub mod law_on_vehicle;
+pub(crate) mod law_on_vehicle;
 
 use crate::flight::controller::Controller;
 use crate::flight::estimation::{Estimation, NoEstimate};
@@ -165,9 +165,6 @@ pub fn law(scenario: &Scenario) -> Result<Law, ParameterError> {
 impl Flight {
     /// A flight of `scenario`, at its start, the controller reset: certified if it can be. That takes about a
     /// millisecond; to fly one scenario many times, clone the start.
-    ///
-    /// # Errors
-    /// As [`law`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         match Certified::new(scenario.configuration.clone()) {
             Ok(certified) => Self::certified(scenario, &certified),
@@ -177,18 +174,12 @@ impl Flight {
 
     /// A flight of a certified configuration, with the law and the allocation that boards fly, in the circumstances of
     /// `scenario`: its timing, delay, lag, start and reference.
-    ///
-    /// # Errors
-    /// As [`law`]'s.
     pub fn certified(scenario: &Scenario, certified: &Certified) -> Result<Self, ParameterError> {
         let law = Law::new(certified, scenario.timing.period() as f32)?;
         Ok(Self::start(scenario, certified.configuration(), Controller::Ours(law)))
     }
 
-    /// A flight that nothing certifies.
-    ///
-    /// # Errors
-    /// As [`law`]'s.
+    /// An uncertified flight.
     pub fn uncertified(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
         let law = Law::uncertified(configuration, scenario.timing.period() as f32)?;
@@ -196,7 +187,6 @@ impl Flight {
     }
 
     /// A flight of another law, on the vehicle, sensors and rotors of `scenario`.
-    #[must_use]
     pub fn of_rival(scenario: &Scenario, rival: Box<dyn Rival>) -> Self {
         let pilot = Box::new(RivalPilot::new(scenario, rival));
         Self::start(scenario, &scenario.configuration, Controller::Rival(pilot))
@@ -222,13 +212,11 @@ impl Flight {
     }
 
     /// How often the extended law's fallback came so far.
-    #[must_use]
     pub fn fallback_times(&self) -> u32 {
         self.controller.fallback_times()
     }
 
     /// The rotor that the law has found to fail; rivals look for none.
-    #[must_use]
     pub fn lost(&self) -> Option<LostRotor> {
         self.controller.lost()
     }
@@ -263,9 +251,6 @@ impl Flight {
     }
 
     /// The same tick, to the bit, in brief: as campaigns fly.
-    ///
-    /// # Errors
-    /// As [`Self::tick`]'s.
     #[inline]
     pub fn brief_tick(&mut self) -> Result<Brief, FlightError> {
         let (_, brief, ()) = self.advance(Controller::command)?;
@@ -339,15 +324,15 @@ impl Flight {
         }
     }
 
-    /// The vehicle's motion until the next tick, with what is `asked` of its actuators.
+    /// The vehicle's motion until the next tick, under this `demand` on its actuators.
     #[inline]
-    fn hold(&mut self, asked: &ActuatorDemand) -> Result<(bool, Thrusts), ActuationError> {
+    fn hold(&mut self, demand: &ActuatorDemand) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
-            return self.vehicle.hold(asked, self.steps_per_tick);
+            return self.vehicle.hold(demand, self.steps_per_tick);
         };
         let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
         for _ in 0..samples {
-            let (cut, arrived) = self.vehicle.hold(asked, self.steps_per_tick / samples)?;
+            let (cut, arrived) = self.vehicle.hold(demand, self.steps_per_tick / samples)?;
             clipped |= cut;
             if !arrived.is_empty() {
                 thrusts = arrived;

@@ -3,12 +3,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`whole_file`] | a file that appears whole or not at all |
-//! | [`directory_lock`] | one writer for a directory |
+//! | `directory_lock` | one writer for a directory |
 //! | [`table`] | aligned tables of text |
 //! | [`progress`] | a bar on a terminal, elsewhere a line now and then |
 //! | [`interrupt`] | SIGINT, SIGTERM and SIGHUP end long work at its next step |
 
-pub mod directory_lock;
+pub(crate) mod directory_lock;
 pub mod interrupt;
 pub mod progress;
 pub mod table;

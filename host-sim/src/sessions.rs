@@ -4,12 +4,12 @@
 //! |---|---|
 //! | [`sitl`] | the firmware's own tasks, with MAVLink on UDP for clients |
 //! | [`hil`] | the vehicle for a controller in an emulator or on a board, in lock-step |
-//! | [`pace`], [`ports`] | what both need: the clock on the wall; the clients' UDP ports |
-//! | [`answer`], [`messages`] | the simulator's side of the lock-step |
+//! | `pace`, [`ports`] | what both need: the clock on the wall; the clients' UDP ports |
+//! | `answer`, `messages` | the simulator's side of the lock-step |
 
-pub mod answer;
+pub(crate) mod answer;
 pub mod hil;
-pub mod messages;
-pub mod pace;
+pub(crate) mod messages;
+pub(crate) mod pace;
 pub mod ports;
 pub mod sitl;

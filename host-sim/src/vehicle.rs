@@ -5,14 +5,14 @@
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | delay, allocation and rotors that lag |
 //! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
-//! | [`ground`] | level ground, for flights that start and end there |
+//! | `ground` | level ground, for flights that start and end there |
 //! | [`sensors`], [`sensed`] | the measured state; what an IMU and motor controllers say beside it |
 //! | [`instruments`] | an IMU at 1 kHz and late poses, for an estimator |
 //!
 //! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
 
 pub mod actuators;
-pub mod ground;
+pub(crate) mod ground;
 pub mod instruments;
 pub mod plant;
 pub mod reality;
@@ -41,7 +41,6 @@ pub enum SimulatedVehicle {
 
 impl SimulatedVehicle {
     /// The scenario's vehicle at its start. The model is the `configuration`'s.
-    #[must_use]
     pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
         if !scenario.reality.is_model() {
             return Self::Real(Box::new(RealVehicle::new(scenario, configuration)));
@@ -57,7 +56,6 @@ impl SimulatedVehicle {
     }
 
     /// The present state of its origin.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         match self {
             Self::Model(plant, _) => plant.state(),
@@ -66,7 +64,6 @@ impl SimulatedVehicle {
     }
 
     /// The rotors' thrusts at this moment, N, after lag; none without rotors.
-    #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         match self {
             Self::Model(_, actuators) => actuators.thrusts(),
@@ -75,7 +72,6 @@ impl SimulatedVehicle {
     }
 
     /// Wind and battery at this moment.
-    #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         match self {
             Self::Model(..) => Surroundings::default(),
@@ -84,7 +80,6 @@ impl SimulatedVehicle {
     }
 
     /// Its body, where it is the model's and the wrench acts on it at once.
-    #[must_use]
     pub fn bare(&self) -> Option<&Plant> {
         match self {
             Self::Model(plant, actuators) if actuators.are_ideal() => Some(plant),
@@ -100,7 +95,6 @@ impl SimulatedVehicle {
     }
 
     /// Whether it stands on the ground.
-    #[must_use]
     pub fn stands(&self) -> bool {
         match self {
             Self::Model(..) => false,
@@ -127,13 +121,10 @@ impl SimulatedVehicle {
 
     /// Takes what a tick asks for and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
     /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
-    ///
-    /// # Errors
-    /// [`ActuationError`].
-    pub fn hold(&mut self, asked: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(&mut self, demand: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         match self {
-            Self::Model(plant, actuators) => actuators.hold(plant, asked, steps),
-            Self::Real(vehicle) => vehicle.hold(asked, steps),
+            Self::Model(plant, actuators) => actuators.hold(plant, demand, steps),
+            Self::Real(vehicle) => vehicle.hold(demand, steps),
         }
     }
 }

@@ -135,7 +135,7 @@ fn interrupted(
 }
 
 #[test]
-fn a_landing_at_any_time_after_a_take_off_climbs_on_by_half_a_metre_at_most() {
+fn a_landing_at_any_time_after_a_take_off_climbs_on_no_further_than_its_law_may() {
     for name in ["study", "hummingbird", PAPER] {
         let vehicle = certified(name);
         let cases: Vec<(f32, u64)> =

@@ -222,7 +222,7 @@ fn a_source_that_claims_to_be_exact_is_flown_like_any_other() {
     }
 }
 
-/// Prints only: how far undetectable lies lead in 30 s of holding.
+/// Prints how far undetectable lies lead in 30 s of holding, and judges these flights like all others.
 #[test]
 fn how_far_undetectable_lies_lead() {
     let drift = |speed: f32| Lie::Drifts(Vector3::new(speed, 0.0, 0.0));

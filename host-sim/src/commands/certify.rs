@@ -56,9 +56,6 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
 }
 
 /// The verdict and its reasons alone.
-///
-/// # Errors
-/// As [`certify`].
 pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::judge(scenario)?))
 }
@@ -67,15 +64,15 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
 fn limits(verdict: &Verdict) -> String {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();
-    let what = |inequality: &Inequality| advice::of_inequality(inequality.name).to_owned();
+    let what = |inequality: &Inequality| advice::for_inequality(inequality.name).to_owned();
     let (begins, mut all): (_, Vec<String>) = match certificate.tightest() {
         Some(tightest) if verdict.refusal().is_none() => ("What limits it", vec![what(&tightest)]),
         _ => ("What it fails in", failing.into_iter().map(what).collect()),
     };
-    all.extend(verdict.lacking().map(|lack| advice::of_loop(&lack)));
-    all.extend(verdict.not_arrived().map(|_| advice::OF_FLIGHT.to_owned()));
+    all.extend(verdict.lacking().map(|lack| advice::for_loop(&lack)));
+    all.extend(verdict.not_arrived().map(|_| advice::FOR_FLIGHT.to_owned()));
     let reference = verdict.along().filter(|along| !along.holds());
-    all.extend(reference.map(|along| advice::of_path(along.taken.row).to_owned()));
+    all.extend(reference.map(|along| advice::for_path(along.taken.row).to_owned()));
     all.iter().map(|what| format!("{begins}: {what}\n")).collect()
 }
 

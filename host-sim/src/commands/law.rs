@@ -96,9 +96,6 @@ impl InputLine<'_> {
 
 impl LawServer {
     /// The law for the scenario's vehicle and gains, reset. Its initial state, reference and plant are not used.
-    ///
-    /// # Errors
-    /// As [`Law::new`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
         let (fall, gravity) = (f64::from(configuration.max_fall()), f64::from(configuration.vehicle().gravity));
@@ -144,7 +141,6 @@ impl LawServer {
     }
 
     /// What the last answer was divided by: the wrench that acts is so many times the answer, as far as the law knows.
-    #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         self.law.thrust_scale()
     }

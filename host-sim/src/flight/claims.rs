@@ -43,12 +43,11 @@ pub struct Claim {
     pub required: String,
     /// The figure of the flight.
     pub flown: String,
-    /// Whether it holds; none where nothing is required.
+    /// Whether it holds; none without a requirement.
     pub holds: Option<bool>,
 }
 
 /// The claims about a flight of `scenario`, with its `verdict` and the figures `flown`.
-#[must_use]
 pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let published = scenario.is_papers();
     let duration = scenario.timing.duration();
@@ -93,7 +92,6 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) ->
 
 /// The claims about a flight of `scenario` under another law: that it reached its position. Our law's bounds stand
 /// beside its figures, without a verdict.
-#[must_use]
 pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let duration = scenario.timing.duration();
     let own =
@@ -158,7 +156,6 @@ fn large_motions(flights: &Result<Farthest, NotArrived>) -> Claim {
 }
 
 /// Whether a flight reached its reference, position and attitude, in time and for good.
-#[must_use]
 pub fn reached(scenario: &Scenario, flown: &FlightExtremes) -> bool {
     let latest = REACHED_BY_SHARE * scenario.timing.duration();
     [flown.position_reached(), flown.attitude_reached()].iter().all(|since| since.is_some_and(|since| since <= latest))
@@ -214,13 +211,11 @@ fn within(claim: String, flown: (f64, f64), required: (f64, f64)) -> Claim {
 }
 
 /// Whether every claim that has a verdict holds.
-#[must_use]
 pub fn all_hold(claims: &[Claim]) -> bool {
     claims.iter().all(|claim| claim.holds != Some(false))
 }
 
 /// The verdict on a flight in one line: which claims fail, by their names.
-#[must_use]
 pub fn verdict_line(claims: &[Claim]) -> String {
     let failing: Vec<&str> =
         claims.iter().filter(|claim| claim.holds == Some(false)).map(|claim| claim.claim.as_str()).collect();
@@ -232,7 +227,6 @@ pub fn verdict_line(claims: &[Claim]) -> String {
 }
 
 /// The claims as an aligned table for a terminal.
-#[must_use]
 pub fn table(claims: &[Claim]) -> String {
     let head = ["claim", "required", "flown", "verdict"].map(str::to_owned).to_vec();
     let row = |c: &Claim| vec![c.claim.clone(), c.required.clone(), c.flown.clone(), verdict(c).to_owned()];
@@ -240,7 +234,6 @@ pub fn table(claims: &[Claim]) -> String {
 }
 
 /// The claims as a Markdown table.
-#[must_use]
 pub fn markdown(claims: &[Claim]) -> String {
     let head = "| claim | required | flown | verdict |\n|---|---|---|---|\n".to_owned();
     claims.iter().fold(head, |mut text, claim| {

@@ -42,9 +42,6 @@ impl Controller {
     }
 
     /// One tick, with the command alone.
-    ///
-    /// # Errors
-    /// As [`Self::step`].
     #[inline]
     pub fn command(
         &mut self,
@@ -59,7 +56,6 @@ impl Controller {
     }
 
     /// Whether the file's limits cut the last command before it was sent. Ours keeps them by itself.
-    #[must_use]
     pub fn is_cut(&self) -> bool {
         match self {
             Self::Ours(_) => false,
@@ -69,7 +65,6 @@ impl Controller {
 
     /// What the last command asks of the actuators: its wrench over the thrust scale, or the thrusts that the law has
     /// allocated by itself.
-    #[must_use]
     #[inline]
     pub fn demand(&self, wrench: &Wrench) -> ActuatorDemand {
         match self {
@@ -79,7 +74,6 @@ impl Controller {
     }
 
     /// The rotor that our law has found to fail.
-    #[must_use]
     pub fn lost(&self) -> Option<LostRotor> {
         match self {
             Self::Ours(law) => law.lost(),
@@ -88,7 +82,6 @@ impl Controller {
     }
 
     /// The estimated thrust scale.
-    #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {
             Self::Ours(law) => law.thrust_scale(),
@@ -96,7 +89,7 @@ impl Controller {
         }
     }
 
-    /// For every tick in which nothing can be learnt from the motion. A rival knows by itself what its rotors cannot
+    /// For every tick whose motion says nothing about the estimates. A rival knows by itself what its rotors cannot
     /// deliver.
     pub fn hold_estimates(&mut self) {
         match self {
@@ -114,7 +107,6 @@ impl Controller {
     }
 
     /// How often the extended law's fallback came.
-    #[must_use]
     pub fn fallback_times(&self) -> u32 {
         match self {
             Self::Ours(law) => law.fallback_times(),
@@ -123,7 +115,6 @@ impl Controller {
     }
 
     /// The law's estimates, if it has any.
-    #[must_use]
     pub fn estimates(&self) -> Option<Estimates> {
         match self {
             Self::Ours(law) => law.estimates(),

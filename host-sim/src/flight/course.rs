@@ -70,7 +70,6 @@ pub struct Activity {
 
 impl Activity {
     /// Of commands that are `period_us` apart.
-    #[must_use]
     pub fn new(period_us: u64) -> Self {
         Self {
             past: VecDeque::new(),
@@ -93,7 +92,6 @@ impl Activity {
     }
 
     /// RMS of the changes, N.
-    #[must_use]
     pub fn rms(&self) -> f64 {
         (self.squares / self.changes.max(1) as f64).sqrt()
     }
@@ -109,10 +107,7 @@ impl Course {
     }
 
     /// Likewise, to the end or until position and yaw have been settled for `rest`, s. What has long settled stays so
-    /// where nothing acts on it.
-    ///
-    /// # Errors
-    /// As [`Self::fly`].
+    /// without disturbance.
     pub fn until_settled(scenario: &Scenario, mut flight: Flight, near: f64, rest: f64) -> Result<Self, FlightError> {
         let ticks = scenario.timing.ticks;
         let start = scenario.initial.position.z;

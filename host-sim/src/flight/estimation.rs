@@ -61,7 +61,6 @@ pub struct Estimation {
 
 impl Estimation {
     /// The scenario's, aligned; none where it has none.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let what = scenario.reality.estimator?;
         let gravity = scenario.configuration.vehicle().gravity;
@@ -97,7 +96,6 @@ impl Estimation {
     }
 
     /// How many samples there are in a period, us.
-    #[must_use]
     pub fn samples(&self, period: u64) -> u32 {
         (period / SAMPLE_PERIOD_US) as u32
     }
@@ -117,9 +115,6 @@ impl Estimation {
     }
 
     /// The estimate at this moment, and whether it has jumped since the last one.
-    ///
-    /// # Errors
-    /// [`NoEstimate`].
     pub fn state(&mut self) -> Result<(State, bool), NoEstimate> {
         let (newest, under_way) = (self.conditioner.newest(), self.conditioner.under_way());
         let estimated = newest
@@ -137,7 +132,6 @@ impl Estimation {
     }
 
     /// v' from the last estimate but one to the last, m/s^2, world, by accelerometer.
-    #[must_use]
     pub fn sensed_force(&self) -> Option<Vector3<f32>> {
         self.felt
     }

@@ -63,21 +63,18 @@ pub struct FlightExtremes {
 }
 
 /// Whether yaw is certified to follow the heading of `reference`: it is within `bounds`.
-#[must_use]
 pub fn heading_is_followed(reference: &Reference, bounds: &ReferenceBounds) -> bool {
     const HEADING_BOUNDS_TOLERANCE: f32 = 1e-3;
     bounds.contain(reference, HEADING_BOUNDS_TOLERANCE)
 }
 
 /// The part of an attitude's error, modified Rodrigues parameters, that is certified to vanish.
-#[must_use]
 pub fn claimed_error(mrp: &Vector3<f32>, reference: &Reference, bounds: &ReferenceBounds) -> f64 {
     f64::from(if heading_is_followed(reference, bounds) { mrp.norm() } else { mrp.xy().norm() })
 }
 
 impl FlightExtremes {
     /// Nothing seen yet of a flight of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let timing = &scenario.timing;
         Self {
@@ -144,13 +141,11 @@ impl FlightExtremes {
     }
 
     /// When the vehicle reached its reference's position for good, s; none if it was away from it at the last tick.
-    #[must_use]
     pub fn position_reached(&self) -> Option<f64> {
         self.reached(self.away_until_us.0)
     }
 
     /// When it reached the desired attitude for good, s; none likewise.
-    #[must_use]
     pub fn attitude_reached(&self) -> Option<f64> {
         self.reached(self.away_until_us.1)
     }

@@ -11,7 +11,6 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 
-/// A law on a vehicle.
 #[derive(Debug)]
 pub enum LawOnVehicle {
     /// The scenario's own, with what certifies it, if anything does.
@@ -23,7 +22,6 @@ pub enum LawOnVehicle {
 impl LawOnVehicle {
     /// The law of `choice` on the vehicle of `scenario`, which is what a rival knows of it. `certified` is what
     /// certifies ours. None if the rival is undefined for its gains.
-    #[must_use]
     pub fn new(choice: &LawChoice, scenario: &Scenario, certified: Option<&Certified>) -> Option<Self> {
         Some(match choice {
             LawChoice::Ours => Self::Ours(certified.cloned().map(Box::new)),
@@ -31,8 +29,6 @@ impl LawOnVehicle {
         })
     }
 
-    /// Its name.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Ours(_) => OUR_LAW,

@@ -2,39 +2,39 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`flight_log`], [`ulog`], [`px4`] | the states and commands of a flight, from log.csv, from the firmware's logs, from PX4's |
-//! | [`foreign`] | logs of other kinds, and what to do with them |
-//! | [`low_passes`] | the low-passes of its body rates, and of the gyro's noise |
+//! | [`flight_log`], [`ulog`], `px4` | the states and commands of a flight, from log.csv, from the firmware's logs, from PX4's |
+//! | `foreign` | logs of other kinds, and what to do with them |
+//! | `low_passes` | the low-passes of its body rates, and of the gyro's noise |
 //! | [`impulses`] | impulses of the model's rotors between ticks, with a lag and a delay |
-//! | [`model`] | the rigid body that is fitted to the log |
-//! | [`hubs`] | the air's forces at the rotors' hubs |
-//! | [`noise`] | the residuals, whitened |
-//! | [`fit`] | the most likely numbers and their covariance |
+//! | `model` | the rigid body that is fitted to the log |
+//! | `hubs` | the air's forces at the rotors' hubs |
+//! | `noise` | the residuals, whitened |
+//! | `fit` | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
-//! | [`student_t`] | how wide intervals are, by the length of the flight |
-//! | [`agreement`] | whether the two can be of one vehicle |
+//! | `student_t` | how wide intervals are, by the length of the flight |
+//! | `agreement` | whether the two can be of one vehicle |
 //! | [`observability`] | what is not observable in a log, and what to fly for it |
-//! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
+//! | `output`, `margins` | the scenario with these numbers; its margins within their uncertainty |
 //! | [`command`] | all of it, from files to a report |
 
-pub mod agreement;
+pub(crate) mod agreement;
 pub mod bench;
 pub mod command;
-pub mod fit;
+pub(crate) mod fit;
 pub mod flight_log;
-pub mod foreign;
-pub mod hubs;
+pub(crate) mod foreign;
+pub(crate) mod hubs;
 pub mod impulses;
-pub mod low_passes;
-pub mod margins;
-pub mod model;
-pub mod noise;
+pub(crate) mod low_passes;
+pub(crate) mod margins;
+pub(crate) mod model;
+pub(crate) mod noise;
 pub mod observability;
-pub mod output;
-pub mod px4;
+pub(crate) mod output;
+pub(crate) mod px4;
 pub mod quantities;
-pub mod student_t;
+pub(crate) mod student_t;
 pub mod ulog;
 
 use bench::Bench;
@@ -58,7 +58,7 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
 }
 
 /// By how much the body rates of a log are late that the sampled loops count, s: with an estimator by a sample of the
-/// IMU, besides the [`low_passes`].
+/// IMU, besides the `low_passes`.
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
         Source::Estimator => 1.0 / IMU_RATE_HZ,

@@ -3,32 +3,32 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`numbers`] | what a source says of a vehicle: numbers, each of which may be missing |
-//! | [`rotorpy`], [`literal`], [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
-//! | [`urdf`] | URDF of gym-pybullet-drones' kind |
-//! | [`sdf`], [`sdf_model`], [`sdf_frames`], [`sdf_motor`] | SDF of Gazebo with its motor model |
-//! | [`mujoco`], [`mujoco_frames`] | MuJoCo's XML |
-//! | [`px4`] | PX4's rotor geometry |
-//! | [`xml`], [`rigid`] | what the XML formats share; bodies put together |
+//! | [`rotorpy`], `literal`, [`value`] | RotorPy's dictionaries, the Python that they are written in, and its values |
+//! | `urdf` | URDF of gym-pybullet-drones' kind |
+//! | `sdf`, `sdf_model`, `sdf_frames`, `sdf_motor` | SDF of Gazebo with its motor model |
+//! | `mujoco`, `mujoco_frames` | MuJoCo's XML |
+//! | `px4` | PX4's rotor geometry |
+//! | `xml`, `rigid` | what the XML formats share; bodies put together |
 //! | [`written`], [`existing`] | the vehicle file, with what is missing marked; one that is there already |
 //!
 //! `docs/import.md` has each format's frames and units beside ours.
 
 pub mod existing;
-pub mod literal;
-pub mod mujoco;
-pub mod mujoco_frames;
+pub(crate) mod literal;
+pub(crate) mod mujoco;
+pub(crate) mod mujoco_frames;
 pub mod numbers;
-pub mod px4;
-pub mod rigid;
+pub(crate) mod px4;
+pub(crate) mod rigid;
 pub mod rotorpy;
-pub mod sdf;
-pub mod sdf_frames;
-pub mod sdf_model;
-pub mod sdf_motor;
-pub mod urdf;
+pub(crate) mod sdf;
+pub(crate) mod sdf_frames;
+pub(crate) mod sdf_model;
+pub(crate) mod sdf_motor;
+pub(crate) mod urdf;
 pub mod value;
 pub mod written;
-pub mod xml;
+pub(crate) mod xml;
 
 use numbers::VehicleNumbers;
 use std::path::Path;

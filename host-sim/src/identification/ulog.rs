@@ -2,19 +2,19 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`formats`] | a message's fields, where they begin, nested ones flattened |
-//! | [`reader`] | a file's topics as columns, its parameters, information and texts |
+//! | `formats` | a message's fields, where they begin, nested ones flattened |
+//! | `reader` | a file's topics as columns, its parameters, information and texts |
 //! | [`writer`] | a file of topics |
-//! | [`topics`] | the firmware's ticks as PX4's topics, in PX4's frames |
+//! | `topics` | the firmware's ticks as PX4's topics, in PX4's frames |
 //! | [`command`] | `host-sim log`, from a file to a file |
 //!
 //! The reader is our own: px4-ulog 0.6.1, the project's crate, panics on a subscription or a parameter that is too
 //! short, and files come from anywhere.
 
 pub mod command;
-pub mod formats;
-pub mod reader;
-pub mod topics;
+pub(crate) mod formats;
+pub(crate) mod reader;
+pub(crate) mod topics;
 pub mod writer;
 
 /// The first bytes of every ULog; the format's version follows.

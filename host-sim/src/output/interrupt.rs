@@ -1,5 +1,5 @@
 //! Interruption: SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that closes) end long work at its next step, so
-//! that nothing half-written stays behind.
+//! that no half-written file stays behind.
 
 #[cfg(unix)]
 use signal_hook::consts::SIGHUP;
@@ -32,7 +32,6 @@ impl Interrupt {
     }
 
     /// The signal that came, if one did: the exit status is 128 more, as shells have it.
-    #[must_use]
     pub fn signal(&self) -> Option<u8> {
         u8::try_from(self.0.load(Ordering::Relaxed)).ok().filter(|signal| *signal > 0)
     }

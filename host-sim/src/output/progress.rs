@@ -27,7 +27,6 @@ pub struct Progress {
 
 impl Progress {
     /// `total` steps of `what`.
-    #[must_use]
     pub fn new(what: &'static str, total: u64) -> Self {
         let (watched, started) = (stderr().is_terminal() && stdout().is_terminal(), Instant::now());
         Self { total, what, about: None, started, watched, bar: None, said: (started, 0) }
@@ -90,7 +89,6 @@ fn line(name: &str, done: u64, total: u64, elapsed: Duration) -> String {
 }
 
 /// A time, s, in seconds or whole minutes.
-#[must_use]
 pub fn in_words(seconds: f64) -> String {
     match (seconds / 60.0).ceil() {
         minutes if minutes > 1.0 => format!("{minutes:.0} minutes"),

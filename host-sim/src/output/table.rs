@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 /// Rows of equal length, the first one the head; text columns left-aligned, two spaces between.
-#[must_use]
 pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
@@ -19,7 +18,6 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// Four significant digits, without trailing zeros.
-#[must_use]
 pub fn short(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 || (magnitude - magnitude.round()).abs() < 1e-9 && (0.5..1e6).contains(&magnitude) {
@@ -34,7 +32,6 @@ pub fn short(value: f64) -> String {
 }
 
 /// A fraction as a percentage with one decimal.
-#[must_use]
 pub fn percent(fraction: f64) -> String {
     if fraction.is_finite() { format!("{:.1} %", 100.0 * fraction) } else { "none".to_owned() }
 }

@@ -32,17 +32,11 @@ pub struct WholeFile {
 
 impl WholeFile {
     /// Starts a file that will be called `path`. It grows under a hidden name in the same directory.
-    ///
-    /// # Errors
-    /// If it cannot be created, or the name is a directory's: at once, not when the work is done.
     pub fn create(path: &Path) -> io::Result<Self> {
         Self::begin(path, false)
     }
 
     /// As [`Self::create`], for what nobody else is to read: where it replaces nothing, only its owner may.
-    ///
-    /// # Errors
-    /// As [`Self::create`]'s.
     pub fn private(path: &Path) -> io::Result<Self> {
         Self::begin(path, true)
     }
@@ -69,9 +63,6 @@ impl WholeFile {
 
     /// As [`Self::create`], and keeps other programs from starting the same file in this way until it is dropped or
     /// finished: of two runs of minutes the later one would silently replace the other's result.
-    ///
-    /// # Errors
-    /// As [`Self::create`]'s, or if another program is at it; the text says what to do.
     pub fn alone(path: &Path) -> io::Result<Self> {
         let file = Self::create(path)?;
         let Some((temporary, path)) = &file.names else { return Ok(file) };
@@ -94,17 +85,11 @@ impl WholeFile {
     }
 
     /// Whether [`Self::create`] would find nothing to refuse, for asking before long work; nothing is left behind.
-    ///
-    /// # Errors
-    /// As [`Self::create`]'s. A device or a pipe is not tried: its reader would take the trial for the end.
     pub fn try_name(path: &Path) -> io::Result<()> {
         if is_special(path) { Ok(()) } else { Self::create(path).map(drop) }
     }
 
     /// Writes `contents` to `path`, whole.
-    ///
-    /// # Errors
-    /// If it cannot be created, written or renamed.
     pub fn write(path: &Path, contents: &str) -> io::Result<()> {
         let mut file = Self::create(path)?;
         file.write_all(contents.as_bytes())?;
@@ -187,7 +172,6 @@ fn hidden(path: &Path) -> Option<String> {
 }
 
 /// Whether `found` is what a program that was killed left of a file that was to be called `path`.
-#[must_use]
 pub fn is_unfinished(found: &Path, path: &Path) -> bool {
     let name = found.file_name().map(|name| name.to_string_lossy());
     let beginning = hidden(path);

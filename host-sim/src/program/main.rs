@@ -253,18 +253,18 @@ fn run_law(file: Option<&Path>) -> Result<ExitCode, String> {
 fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
     let scenario = Scenario::load(&arguments.file).map_err(|error| error.to_string())?;
     let (session, ground) = (arguments.session()?, arguments.ground()?);
-    let (interrupt, patience) = (watch()?, arguments.patience()?);
+    let (interrupt, timeout) = (watch()?, arguments.timeout()?);
     if let Some(log) = &arguments.log {
         let alone = WholeFile::alone(log).map(drop);
         alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
     }
     let mut port =
-        SimulatorPort::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
+        SimulatorPort::open(&arguments.address()?, timeout, &interrupt).map_err(|error| error.to_string())?;
     let mut show = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {
         None => None,
         Some((line, ports)) => {
-            let relay = Relay::open(line, &ports, patience, &interrupt).map_err(|error| error.to_string())?;
+            let relay = Relay::open(line, &ports, timeout, &interrupt).map_err(|error| error.to_string())?;
             Some(Clients { relay, show: &mut show })
         }
     };

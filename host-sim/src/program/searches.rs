@@ -3,13 +3,16 @@
 use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::commands::certify::summary;
+use host_sim::output::interrupt::Interrupt;
 use host_sim::output::progress::in_words;
 use host_sim::output::table::{percent, short};
 use host_sim::output::whole_file::WholeFile;
 use host_sim::rivals::gains::Set;
 use host_sim::rivals::rate;
 use host_sim::studies::campaign::fly::grounded;
-use host_sim::studies::compare::{self, CompareError, compare, compare_in_reality, compare_without_a_rotor};
+use host_sim::studies::compare::{
+    self, CompareError, Comparison, compare, compare_in_reality, compare_without_a_rotor,
+};
 use host_sim::studies::tune::effort::Effort;
 use host_sim::studies::tune::{Tuned, output, rivals, tune, widest_bounds};
 use scenario::{Scenario, check_name, constants};
@@ -64,16 +67,8 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
 }
 
 pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
-    let wanted = arguments.gains()?;
-    let text = text_of(Some(&arguments.file))?;
-    let scenario = Scenario::parse(&text, &arguments.file.display().to_string()).map_err(|error| error.to_string())?;
-    if let Some(problem) = grounded(&scenario) {
-        return Err(format!("{}: {problem}", arguments.file.display()));
-    }
-    if arguments.rotor_loss && scenario.configuration.rotors().is_none() {
-        let problem = "--rotor-loss needs [rotors]: there is no rotor that could fail; add that section";
-        return Err(format!("{}: {problem}", arguments.file.display()));
-    }
+    let requested = arguments.gains()?;
+    let (text, scenario) = compared_file(arguments)?;
     let kinds = arguments.kinds();
     let theirs = match arguments.rate {
         Some(hz) => rate::at(&scenario, hz).map_err(|problem| format!("--rate: {problem}"))?,
@@ -82,7 +77,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let directory = arguments.directory(&scenario.name);
     not_a_campaigns(&directory)?;
     // The gains, or how hard to search for them and in which file to keep them.
-    let known = match wanted {
+    let known = match requested {
         GainsWanted::Of(file) => Ok(Set::read(&theirs, Some(&file), &kinds).map_err(|error| error.to_string())?),
         GainsWanted::Searched(effort) => Err((effort, TUNED_GAINS_FILE)),
         GainsWanted::BuiltInOr(effort) => Set::built_in(&theirs, &kinds).ok_or((effort, SEARCHED_GAINS_FILE)),
@@ -96,7 +91,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         }
         error => Err(error.to_string()),
     };
-    // A search takes minutes: whatever is wrong with the rest shows now.
+    // A search takes minutes: any other problem shows now.
     let reserved = compare::certified(&scenario).and_then(|_| compare::reserve(&directory));
     let _lock = match reserved {
         Ok(lock) => lock,
@@ -104,26 +99,13 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     };
     let (set, found) = match known {
         Ok(set) => (set, None),
-        Err((effort, name)) => {
-            if name == SEARCHED_GAINS_FILE {
-                complain(format_args!(
-                    "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
-                     hard as `tune` searches ours, which may take {}",
-                    scenario.name,
-                    in_words(rivals::expected(&theirs, &kinds, &effort).as_secs_f64())
-                ));
+        Err((effort, file)) => match searched(arguments, &scenario.name, &theirs, (&effort, file), &interrupt) {
+            Ok((set, text)) => (set, Some((file, text))),
+            Err(message) => {
+                complain(format_args!("error: {}: {message}", scenario.name));
+                return Ok(status(false, interrupt.signal()));
             }
-            match rivals::tune(&theirs, &kinds, effort, &interrupt) {
-                Ok(set) => {
-                    let written = set.written(&theirs, &arguments.command(&effort));
-                    (set, Some((name, written)))
-                }
-                Err(message) => {
-                    complain(format_args!("error: {}: {message}", scenario.name));
-                    return Ok(status(false, interrupt.signal()));
-                }
-            }
-        }
+        },
     };
     let files = (&scenario, &theirs);
     let compared = if arguments.realism {
@@ -143,7 +125,51 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     });
     comparison.files.extend(found);
     compare::write(&comparison, &directory).map_err(|error| error.to_string())?;
-    let hz = |rate: f64| format!(" at {} Hz", short(rate));
+    let text = comparison_text(arguments, &scenario.name, &theirs, &set, &comparison);
+    print_text(&(text + &format!("{}\n{kept}", directory.display())))?;
+    Ok(status(comparison.holds, None))
+}
+
+/// The file that is compared on: its text, and its scenario.
+fn compared_file(arguments: &CompareArguments) -> Result<(String, Scenario), String> {
+    let text = text_of(Some(&arguments.file))?;
+    let scenario = Scenario::parse(&text, &arguments.file.display().to_string()).map_err(|error| error.to_string())?;
+    let problem = grounded(&scenario).map(|problem| problem.to_string()).or_else(|| {
+        let problem = "--rotor-loss needs [rotors]: there is no rotor that could fail; add that section";
+        (arguments.rotor_loss && scenario.configuration.rotors().is_none()).then(|| problem.to_owned())
+    });
+    problem.map_or(Ok((text, scenario)), |problem| Err(format!("{}: {problem}", arguments.file.display())))
+}
+
+/// Gains that are searched on `theirs`, and the text of the `file` that keeps them.
+fn searched(
+    arguments: &CompareArguments,
+    name: &str,
+    theirs: &Scenario,
+    (effort, file): (&Effort, &str),
+    interrupt: &Interrupt,
+) -> Result<(Set, String), String> {
+    let kinds = arguments.kinds();
+    if file == SEARCHED_GAINS_FILE {
+        complain(format_args!(
+            "{name}: no gains of the other laws are built in for this vehicle: they are searched first, each as hard \
+             as `tune` searches ours, which may take {}",
+            in_words(rivals::expected(theirs, &kinds, effort).as_secs_f64())
+        ));
+    }
+    let set = rivals::tune(theirs, &kinds, *effort, interrupt)?;
+    let text = set.written(theirs, &arguments.command(effort));
+    Ok((set, text))
+}
+
+/// A comparison's text, up to the directory that it is written to.
+fn comparison_text(
+    arguments: &CompareArguments,
+    name: &str,
+    theirs: &Scenario,
+    set: &Set,
+    comparison: &Comparison,
+) -> String {
     let (flown, verdict, written) = if arguments.realism {
         ("the vehicle is not as the file says".to_owned(), ["ours is never lost", "ours is LOST"], "table")
     } else if arguments.rotor_loss {
@@ -154,18 +180,15 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
         let not_all = "NOT every random flight of ours settles, unclipped, within its bounds";
         (format!("{} random flights of each", arguments.flights), [all, not_all], "table, pictures, report")
     };
-    print_text(&format!(
-        "{}: our law and {} others{}; {flown}\n\n{}\n{}{}* another law does better; {}; {written} in {}\n{kept}",
-        scenario.name,
+    format!(
+        "{name}: our law and {} others{}; {flown}\n\n{}\n{}{}* another law does better; {}; {written} in ",
         set.rivals.len(),
-        arguments.rate.map_or_else(String::new, hz),
+        arguments.rate.map_or_else(String::new, |rate| format!(" at {} Hz", short(rate))),
         comparison.text,
         set.of_other_rates(1.0 / theirs.timing.period()).map_or_else(String::new, |others| others + "\n"),
         set.left_out().map_or_else(String::new, |left_out| left_out + "\n"),
         verdict[usize::from(!comparison.holds)],
-        directory.display()
-    ))?;
-    Ok(status(comparison.holds, None))
+    )
 }
 
 /// Refuses a directory with other gains than those that will fly (from `gains`, or written as `written`): a reader
@@ -184,7 +207,7 @@ fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Re
     Ok(())
 }
 
-/// The name of a tuned scenario and the file it goes to, begun: whatever is wrong with them shows now, not after the
+/// The name of a tuned scenario and the file it goes to, begun: a problem with them shows now, not after the
 /// search.
 fn destination(arguments: &TuneArguments, scenario: &Scenario) -> Result<(String, PathBuf, WholeFile), String> {
     let stem = arguments.out.as_deref().and_then(Path::file_stem);

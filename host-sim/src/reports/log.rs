@@ -22,14 +22,12 @@ qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 const ESTIMATES_HEADER: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
 
 /// The header row for a vehicle with so many rotors, under a law that estimates or not.
-#[must_use]
 pub fn header(rotors: usize, estimates: bool) -> String {
     let law = HEADER.to_owned() + if estimates { ESTIMATES_HEADER } else { "" };
     (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
 /// The header row's columns of `[wind]`, `[battery]` and measurements.
-#[must_use]
 pub fn reality_header(reality: &Reality) -> String {
     [
         (reality.wind.is_some(), WIND_HEADER),
@@ -51,7 +49,6 @@ const ESTIMATED_HEADER: &str =
 
 /// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further
 /// column.
-#[must_use]
 pub fn bytes_per_row(reality: &Reality) -> u64 {
     const MODEL_ROW_BYTES: u64 = 740;
     const NUMBER_BYTES: u64 = 14;
@@ -59,9 +56,6 @@ pub fn bytes_per_row(reality: &Reality) -> u64 {
 }
 
 /// Writes one row.
-///
-/// # Errors
-/// As the writer's.
 pub fn write_row(out: &mut impl Write, tick: &Tick) -> io::Result<()> {
     let (s, d) = (&tick.state, &tick.diagnostics);
     let (q, nu, qd) = (&s.attitude, tick.reference.heading.direction(), &d.desired_attitude);

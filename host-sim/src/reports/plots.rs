@@ -1,9 +1,9 @@
 //! The figures of a flight: the eight panels of the paper's Figures 1 and 2, four of them again for the first seconds,
 //! and pictures of the path, still and moving. What a panel shows is a [`Plot`] of the report.
 
-pub mod axis;
-pub mod drawing;
-pub mod panel;
+pub(crate) mod axis;
+pub(crate) mod drawing;
+pub(crate) mod panel;
 pub mod path;
 pub mod replay;
 
@@ -23,7 +23,6 @@ pub const FIRST_SECONDS: [&str; 4] = ["Yaw", "Attitude error (MRP)", "Torques", 
 const TRANSIENT_S: f64 = 5.0;
 
 /// The plots of these titles, two by two.
-#[must_use]
 pub fn figure(plots: &[Plot], titles: [&str; 4], track: &Track) -> String {
     let titled = titles.iter().filter_map(|title| plots.iter().find(|plot| plot.title == *title));
     let tracks = std::slice::from_ref(track);
@@ -31,13 +30,11 @@ pub fn figure(plots: &[Plot], titles: [&str; 4], track: &Track) -> String {
 }
 
 /// The same of the first seconds.
-#[must_use]
 pub fn first_seconds(plots: &[Plot], track: &Track) -> String {
     figure(plots, FIRST_SECONDS, &track.until(TRANSIENT_S))
 }
 
 /// Four plots, each with its tracks and of that size, two by two.
-#[must_use]
 pub fn four<'a>(plots: impl Iterator<Item = (&'a Plot, &'a [Track])>, size: (f64, f64), about: &str) -> String {
     let mut drawing = Drawing::new(((2.0 * size.0) as u32, (2.0 * size.1) as u32));
     let corners = [(0.0, 0.0), (size.0, 0.0), (0.0, size.1), size];

@@ -15,9 +15,9 @@
 //! own time. The scenario is attached as it was read.
 
 mod drawing;
-pub mod flight;
+pub(crate) mod flight;
 mod schemas;
-pub mod session;
+pub(crate) mod session;
 
 use drawing::{pose, transform};
 use mcap::records::MessageHeader;
@@ -54,9 +54,6 @@ pub struct Recording<W: Write> {
 impl<W: Write> Recording<W> {
     /// Begins one of `scenario` with these topics beside those that every one has: its `text` attached, the vehicle's
     /// arms drawn.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn begin(out: W, scenario: &Scenario, text: &str, topics: &[Topic]) -> io::Result<Self> {
         let options = WriteOptions::new().compression(None).disable_seeking(true).library("host-sim");
         let mut recording =
@@ -103,9 +100,6 @@ impl<W: Write> Recording<W> {
     }
 
     /// Ends it, and gives back what it was written to.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn finish(mut self) -> io::Result<W> {
         self.writer.finish().map_err(failed)?;
         Ok(self.writer.into_inner().into_inner())

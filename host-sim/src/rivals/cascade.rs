@@ -78,7 +78,7 @@ const TILT_MAX_RAD: f64 = 0.785;
 const RATES_MAX_RAD_PER_S: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
 /// Level of the rate's integral.
 const RATE_INTEGRAL_MAX_RAD_PER_S2: f64 = 20.0;
-/// Error of a rate beyond which its integral takes nothing in: 400 degrees/s.
+/// Error of a rate beyond which its integral stands still: 400 degrees/s.
 const RATE_ERROR_MAX_RAD_PER_S: f64 = 6.98;
 /// Share of the thrust kept for moving across, however hard the vertical asks.
 const LEVEL_THRUST_SHARE: f64 = 0.3;
@@ -107,7 +107,6 @@ pub struct Cascade {
 
 impl Cascade {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, gains: [f64; 18]) -> Self {
         let [p_a, p_v, v_a, i_a, d_a, v_v, i_v, d_v, v_across, v_vertical, k_q, weight, w_t, j_t, k_e, w_y, j_y, cut] =
             gains;

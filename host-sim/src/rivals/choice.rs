@@ -16,7 +16,6 @@ pub enum LawChoice {
 
 impl LawChoice {
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Ours => OUR_LAW,

@@ -23,13 +23,11 @@ pub struct Continuous {
 
 impl Continuous {
     /// On the side of q_0 >= 0 at first.
-    #[must_use]
     pub fn new(law: QuaternionFeedback) -> Self {
         Self { law, before: None }
     }
 
     /// After one whole turn: the same attitude, on the side of q_0 < 0.
-    #[must_use]
     pub fn after_a_turn(law: QuaternionFeedback) -> Self {
         Self { law, before: Some(-Quaternion::identity()) }
     }

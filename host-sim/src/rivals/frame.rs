@@ -45,7 +45,6 @@ const AXIS_LENGTH_MIN: f64 = 1e-9;
 
 impl Frame {
     /// For the force per mass `force`, m/s^2, and the heading's unit vector, both world, with their derivatives.
-    #[must_use]
     pub fn new(force: &Jet, heading: &Jet, rule: HeadingRule) -> Self {
         // Free fall asks for no direction: upright is as good as any.
         let force = if force.0[0].norm() < FORCE_MIN_M_PER_S2 { Jet::constant(Vector3::z()) } else { *force };

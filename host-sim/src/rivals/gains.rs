@@ -129,15 +129,11 @@ impl Set {
     }
 
     /// The gains of `kinds` that are built in for the vehicle of `scenario`, if there are any.
-    #[must_use]
     pub fn built_in(scenario: &Scenario, kinds: &[RivalKind]) -> Option<Self> {
         Self::parse(scenario, BUILT_IN, BUILT_IN_NAME, kinds).ok()
     }
 
     /// The gains of `kinds` in `file`, or those that are built in.
-    ///
-    /// # Errors
-    /// If the file cannot be read, and as [`Self::parse`]'s.
     pub fn read(scenario: &Scenario, file: Option<&Path>, kinds: &[RivalKind]) -> Result<Self, GainsError> {
         let Some(file) = file else { return Self::parse(scenario, BUILT_IN, BUILT_IN_NAME, kinds) };
         let name = file.display().to_string();
@@ -152,13 +148,11 @@ impl Set {
     }
 
     /// One of them.
-    #[must_use]
     pub fn law(&self, kind: RivalKind) -> Option<LawChoice> {
         self.laws().find(|law| law.name() == kind.name())
     }
 
     /// As a table of a file of gains; `origin` is a line that says where they come from.
-    #[must_use]
     pub fn written(&self, scenario: &Scenario, origin: &str) -> String {
         // A name with a dot would be a table within a table.
         let name = &if scenario.name.contains('.') { format!("\"{}\"", scenario.name) } else { scenario.name.clone() };
@@ -178,7 +172,6 @@ impl Set {
     }
 
     /// The rivals that are left out, and why; `None` if all fly.
-    #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let names: Vec<&str> = self.lost.iter().map(|kind| kind.name()).collect();
         let why = "a search found no gains with which every trial is flown to its end";
@@ -186,7 +179,6 @@ impl Set {
     }
 
     /// The rivals whose gains were found at another rate than `rate`, Hz; `None` if there are none.
-    #[must_use]
     pub fn of_other_rates(&self, rate: f64) -> Option<String> {
         let from = |(kind, from): &(RivalKind, f64)| format!("{} at {} Hz", kind.name(), short(*from));
         let all: Vec<String> = self.from_other_rates.iter().map(from).collect();
@@ -225,7 +217,7 @@ fn vehicle(scenario: &Scenario) -> [(&'static str, Vec<f32>); 6] {
     ]
 }
 
-/// Whether a table says `values` under `key`, or nothing where it need not.
+/// Whether a table has `values` under `key`, or no such key where it is optional.
 fn is_said(found: Option<&Item>, key: &str, values: &[f32]) -> bool {
     let Some(found) = found else { return !matches!(key, "mass" | "inertia") };
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));

@@ -17,7 +17,7 @@
 //! flatness. Gains stand before accelerations.
 //!
 //! Home: rotors that turn as commanded, unknown forces and torques; wind, drag, weak rotors and a shifted centre of
-//! mass leave no offset. Rotors that turn more slowly than commanded leave one: nothing adds up what is missing.
+//! mass leave no offset. Rotors that turn more slowly than commanded leave one: it has no integral.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
@@ -65,7 +65,6 @@ pub struct Indi {
 
 impl Indi {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, cut_rate, cut_force]: [f64; 10]) -> Self {
         let [rate, torque] = [cut_rate; 2].map(|cut| LowPass::new(cut, model.period));
         let [acceleration, force] = [cut_force; 2].map(|cut| LowPass::new(cut, model.period));

@@ -19,14 +19,12 @@ pub struct Jet(pub [Vector3<f64>; 3]);
 
 impl Scalar {
     /// f of it, for f, f' and f'' at its value.
-    #[must_use]
     pub fn chain(&self, [f, first, second]: [f64; 3]) -> Self {
         let [_, rate, acceleration] = self.0;
         Self([f, first * rate, second * rate * rate + first * acceleration])
     }
 
     /// M tanh(x / M): the paper's smooth saturation, of slope one at zero.
-    #[must_use]
     pub fn saturated(&self, level: f64) -> Self {
         let tanh = (self.0[0] / level).tanh();
         let slope = 1.0 - tanh * tanh;
@@ -39,51 +37,43 @@ impl Jet {
     pub const ZERO: Self = Self([Vector3::new(0.0, 0.0, 0.0); 3]);
 
     /// A constant.
-    #[must_use]
     pub fn constant(value: Vector3<f64>) -> Self {
         Self([value, Vector3::zeros(), Vector3::zeros()])
     }
 
     /// Component by component times `factors`.
-    #[must_use]
     pub fn scaled(&self, factors: &Vector3<f64>) -> Self {
         Self(self.0.map(|part| part.component_mul(factors)))
     }
 
     /// The sum.
-    #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self([0, 1, 2].map(|order| self.0[order] + other.0[order]))
     }
 
     /// `function` of each component with its derivatives.
-    #[must_use]
     pub fn each(&self, function: impl Fn(Scalar) -> Scalar) -> Self {
         let [x, y, z] = [0, 1, 2].map(|axis| function(Scalar(self.0.map(|part| part[axis]))).0);
         Self([0, 1, 2].map(|order| Vector3::new(x[order], y[order], z[order])))
     }
 
     /// Each component saturated at its level.
-    #[must_use]
     pub fn saturated(&self, level: f64) -> Self {
         self.each(|component| component.saturated(level))
     }
 
     /// a . b.
-    #[must_use]
     pub fn dot(&self, other: &Self) -> Scalar {
         Scalar(products(self, other, |a, b| a.dot(b)))
     }
 
     /// a x b.
-    #[must_use]
     pub fn cross(&self, other: &Self) -> Self {
         Self(products(self, other, |a, b| a.cross(b)))
     }
 
     /// Along it, of length one. A vector shorter than `least` is taken to be `least` long, so that the rates stay
     /// finite.
-    #[must_use]
     pub fn unit(&self, least: f64) -> Self {
         let square = self.dot(self);
         let length = square.0[0].sqrt().max(least);

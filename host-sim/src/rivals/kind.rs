@@ -19,13 +19,13 @@ const START_INERTIA_KG_M2: f64 = 3.665e-3;
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RivalKind {
-    /// [`lee`].
+    /// `lee`.
     Lee,
-    /// [`cascade`].
+    /// `cascade`.
     Cascade,
-    /// [`mellinger`].
+    /// `mellinger`.
     Mellinger,
-    /// [`indi`].
+    /// `indi`.
     Indi,
     /// [`nested`].
     Nested,
@@ -41,7 +41,6 @@ impl RivalKind {
         [Self::Lee, Self::Cascade, Self::Mellinger, Self::Indi, Self::Nested, Self::Continuous, Self::Memoryless];
 
     /// Its name in tables and in the file of gains.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Lee => "lee",
@@ -55,7 +54,6 @@ impl RivalKind {
     }
 
     /// Its description, in a line.
-    #[must_use]
     pub fn about(self) -> &'static str {
         match self {
             Self::Lee => "geometric tracking on SE(3): Lee, Leok, McClamroch, 2010",
@@ -71,13 +69,11 @@ impl RivalKind {
     }
 
     /// The rival of that name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// Its gains' names.
-    #[must_use]
     pub fn gains(self) -> &'static [&'static str] {
         match self {
             Self::Lee => &lee::NAMES,
@@ -91,7 +87,6 @@ impl RivalKind {
     }
 
     /// Where a search for its gains starts on the vehicle of `scenario`.
-    #[must_use]
     pub fn start(self, scenario: &Scenario) -> Start {
         let (gains, paces): (&[f64], &[Pace]) = match self {
             Self::Lee => (&lee::START_GAINS, &lee::GAIN_PACES),
@@ -107,7 +102,6 @@ impl RivalKind {
 
     /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; `None` if there are
     /// too many or too few, or if the law is undefined.
-    #[must_use]
     pub fn build(self, scenario: &Scenario, gains: &[f64]) -> Option<Box<dyn Rival>> {
         let model = model(scenario);
         let feedback = |gains: &[f64]| Some(QuaternionFeedback::new(model, gains.try_into().ok()?));

@@ -15,7 +15,7 @@
 //! carry from one vehicle to another, and tilt and yaw, across and vertical have their own: the paper's are scalars,
 //! which would tie all to the weakest axis.
 //!
-//! Home: attitude error below 90 degrees (almost global: below 180) and thrust to spare. It saturates nothing.
+//! Home: attitude error below 90 degrees (almost global: below 180) and thrust to spare. It has no saturation.
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
@@ -43,7 +43,6 @@ pub struct Lee {
 
 impl Lee {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, [x_a, v_a, x_v, v_v, r_t, w_t, r_y, w_y]: [f64; 8]) -> Self {
         Self { model, k_x: paired(x_a, x_v), k_v: paired(v_a, v_v), k_r: paired(r_t, r_y), k_w: paired(w_t, w_y) }
     }
@@ -68,7 +67,6 @@ impl Lee {
 }
 
 /// e_R: half of the vector of R_d^T R - R^T R_d, which is 2 q_0 q_v of their quaternion.
-#[must_use]
 pub fn attitude_error(desired: &UnitQuaternion<f64>, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
     let error = desired.inverse() * attitude;
     error.imag() * (2.0 * error.w)

@@ -17,7 +17,6 @@ pub struct LowPass {
 
 impl LowPass {
     /// Of `bandwidth` b, 1/s, at a `period` h, s.
-    #[must_use]
     pub fn new(bandwidth: f64, period: f64) -> Self {
         Self { share: 1.0 - (-bandwidth * period).exp(), period, state: None }
     }

@@ -42,7 +42,6 @@ pub struct Mellinger {
 
 impl Mellinger {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, [p_a, v_a, p_v, v_v, r_t, w_t, r_y, w_y]: [f64; 8]) -> Self {
         Self { model, k_p: paired(p_a, p_v), k_v: paired(v_a, v_v), k_r: paired(r_t, r_y), k_w: paired(w_t, w_y) }
     }

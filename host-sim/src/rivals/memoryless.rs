@@ -13,7 +13,7 @@ use super::rival::{Commanded, Rival, RivalReference, RivalState};
 
 pub use super::quaternion_feedback::{GAIN_PACES, NAMES, START_GAINS};
 
-/// The law; it remembers nothing.
+/// The law, without memory.
 #[derive(Debug, Clone)]
 pub struct Memoryless(pub QuaternionFeedback);
 

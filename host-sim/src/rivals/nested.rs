@@ -69,14 +69,12 @@ pub struct Outer {
 
 impl Outer {
     /// Levels below half of the next outer one.
-    #[must_use]
     pub fn new(k_v: f64, k_p: f64, k_i: f64, m_v: f64, p_share: f64, i_share: f64) -> Self {
         let m_p = m_v * p_share.min(0.499);
         Self { k_v, k_p, k_i, levels: [m_v, m_p, m_p * i_share.min(0.499)] }
     }
 
     /// The feedback, m/s^2, with its derivatives, for p~, v~ and the integral with theirs.
-    #[must_use]
     pub fn feedback(&self, position: &Jet, velocity: &Jet, integral: &Jet) -> Jet {
         let [m_v, m_p, m_i] = self.levels;
         let by = |factor: f64| Vector3::repeat(factor);
@@ -99,7 +97,6 @@ pub struct Nested {
 
 impl Nested {
     /// With gains as in [`NAMES`], for the `vehicle` of `model`; none if the attitude law is undefined for them.
-    #[must_use]
     pub fn new(model: RivalModel, vehicle: &Vehicle, gains: [f64; 10]) -> Option<Self> {
         let [k_v, k_p, k_i, m_v, p_share, i_share, k_theta, m_theta, k_omega, m_omega] = gains;
         // Thrust must never vanish: u_z stays above zero for a reference that falls with up to a tenth of g.

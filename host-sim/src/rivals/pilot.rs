@@ -38,7 +38,6 @@ impl Clone for RivalPilot {
 }
 
 /// A rival's model of the vehicle of `scenario`.
-#[must_use]
 pub fn model(scenario: &Scenario) -> RivalModel {
     let (configuration, timing) = (&scenario.configuration, &scenario.timing);
     let vehicle = configuration.vehicle();
@@ -58,7 +57,6 @@ pub fn model(scenario: &Scenario) -> RivalModel {
 
 impl RivalPilot {
     /// `rival` on the vehicle of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario, rival: Box<dyn Rival>) -> Self {
         let configuration = &scenario.configuration;
         let limits = configuration.limits();
@@ -127,7 +125,6 @@ impl RivalPilot {
     }
 
     /// Whether the limits or the rotors cut something of the last command.
-    #[must_use]
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }

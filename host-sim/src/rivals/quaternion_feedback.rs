@@ -39,7 +39,6 @@ pub struct QuaternionFeedback {
 
 impl QuaternionFeedback {
     /// With gains as in [`NAMES`].
-    #[must_use]
     pub fn new(model: RivalModel, [k_p, k_v, level, q_t, w_t, q_y, w_y]: [f64; 7]) -> Self {
         Self { model, k_p, k_v, level: level.min(0.9 * model.gravity), k_q: paired(q_t, q_y), k_w: paired(w_t, w_y) }
     }

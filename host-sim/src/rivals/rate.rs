@@ -5,9 +5,6 @@
 use scenario::Scenario;
 
 /// `scenario` at a control rate of so many Hz.
-///
-/// # Errors
-/// In words, what does not fit.
 pub fn at(scenario: &Scenario, rate: f64) -> Result<Scenario, String> {
     let (own, timing) = (scenario.timing.period_us, scenario.timing.at_rate(rate)?);
     let mut other = Scenario { timing, ..scenario.clone() };

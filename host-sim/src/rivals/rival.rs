@@ -82,13 +82,11 @@ pub trait Rival: std::fmt::Debug + Send + Sync {
 }
 
 /// omega x J omega: the torque that keeps a spinning body turning about where it turns.
-#[must_use]
 pub fn gyroscopic(inertia: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
     rate.cross(&inertia.component_mul(rate))
 }
 
 /// (across, across, along): a gain across and one along the third axis.
-#[must_use]
 pub fn paired(across: f64, along: f64) -> Vector3<f64> {
     Vector3::new(across, across, along)
 }

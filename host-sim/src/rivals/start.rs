@@ -9,11 +9,9 @@
 /// Which loop a gain belongs to, and by which power of that loop's speed it grows: one in 1/s^n by the n-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
-    /// Of the attitude.
     Attitude(i32),
     /// Of the attitude, and a torque: it grows with the vehicle's inertia as well.
     Torque(i32),
-    /// Of the position.
     Position(i32),
     /// Of neither: a limit, a share or a filter.
     Kept,
@@ -47,7 +45,6 @@ impl Speed {
     pub const UNSCALED: Self = Self { attitude: 1.0, position: 1.0, inertia: 1.0 };
 
     /// Itself, and with other position loops.
-    #[must_use]
     pub fn positions(self) -> Vec<Self> {
         [1.0, 2.0, 1.4, 0.7, 0.5, 0.35].map(|position| Self { position, ..self }).into()
     }
@@ -56,7 +53,6 @@ impl Speed {
 /// A rival's START on a vehicle.
 #[derive(Debug, Clone, Copy)]
 pub struct Start {
-    /// Its gains.
     pub gains: &'static [f64],
     /// The speed that each of them scales with.
     pub paces: &'static [Pace],
@@ -66,7 +62,6 @@ pub struct Start {
 
 impl Start {
     /// Its own speed, and other attitude loops for the vehicle's inertia.
-    #[must_use]
     pub fn attitudes(&self) -> Vec<Speed> {
         let of_vehicle = |attitude| Speed { attitude, inertia: self.inertia, ..Speed::UNSCALED };
         let all = [2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.35].map(of_vehicle);
@@ -74,7 +69,6 @@ impl Start {
     }
 
     /// The gains at `speed`.
-    #[must_use]
     pub fn at(&self, speed: Speed) -> Vec<f64> {
         let gain = |(gain, pace): (&f64, &Pace)| match *pace {
             Pace::Attitude(power) => gain * speed.attitude.powi(power),

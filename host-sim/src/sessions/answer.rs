@@ -3,7 +3,6 @@
 use flight::{ImuSample, Stamped};
 use nalgebra::{Quaternion, Vector3};
 
-/// A measured pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPose {
     /// p, m, world.
@@ -12,7 +11,7 @@ pub struct MeasuredPose {
     pub attitude: Quaternion<f32>,
     /// v, m/s, and omega, rad/s, body frame; none from a source that knows neither.
     pub motion: Option<(Vector3<f32>, Vector3<f32>)>,
-    /// Standard deviations on each axis, m and rad; none for a source that says nothing about them.
+    /// Standard deviations on each axis, m and rad; none for a source that does not state them.
     pub deviations: Option<(f32, f32)>,
 }
 

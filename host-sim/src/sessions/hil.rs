@@ -8,22 +8,25 @@
 //! The vehicle moves only when a command has come, by exactly one period, so however fast or slow the other side runs,
 //! the flight is the same, to the last bit. Answers carry the times at which they are true: a command's, and how far
 //! the vehicle has moved since. The last HIL_SENSOR of an answer is that of the period's end. The measurements are
-//! [`senses`]'. Time is the other side's own: [`pace`] reports how regular its commands are by its clock. A session may
+//! `senses`'. Time is the other side's own: `pace` reports how regular its commands are by its clock. A session may
 //! be held to a speed, for MAVLink clients in real time ([`relay`]).
 
-pub mod pace;
+pub(crate) mod pace;
 pub mod port;
 pub mod relay;
-pub mod senses;
-pub mod vehicle;
+pub(crate) mod senses;
+pub(crate) mod vehicle;
 
 use crate::output::progress::Progress;
 use crate::output::whole_file::WholeFile;
+use crate::sessions::messages::Controls;
 use crate::sessions::pace::Pace as Speed;
+use nalgebra::Vector3;
 use pace::HilPace;
 use port::{PortError, SimulatorPort};
 use relay::Relay;
 use scenario::Scenario;
+use scenario::body::BodyState;
 use scenario::number::Number;
 use senses::Senses;
 use std::fmt;
@@ -120,14 +123,24 @@ pub struct Clients<'a> {
     pub show: &'a mut dyn FnMut(&str),
 }
 
+impl Clients<'_> {
+    /// Shows the vehicle's texts, and its status where the last one is old.
+    fn show(&mut self, time: f64, position: &Vector3<f64>, shown: &mut Instant) {
+        let show = &mut self.show;
+        self.relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
+        if shown.elapsed() >= STATUS_PERIOD {
+            *shown = Instant::now();
+            let [x, y, z]: [f64; 3] = (*position).into();
+            show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", self.relay.state()));
+        }
+    }
+}
+
 /// By the desk's clock.
 const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
 /// a signal comes.
-///
-/// # Errors
-/// [`HilError`].
 pub fn serve(
     scenario: &Scenario,
     port: &mut SimulatorPort,
@@ -144,19 +157,14 @@ pub fn serve(
     let (end, pose_end) = (session.duration.map(ticks), session.pose_until.map(ticks));
     let mut progress = end.map(|end| Progress::new("flying", end));
     let mut pace = HilPace::new(scenario.timing.period_us);
-    let mut touchdowns = Vec::new();
-    let mut started = None;
-    let mut speed = None;
-    let mut shown = Instant::now();
+    let (mut touchdowns, mut started, mut speed, mut shown) = (Vec::new(), None, None, Instant::now());
     let end = loop {
         if end.is_some_and(|end| pace.ticks() >= end) {
             break End::Over;
         }
-        let controls = match port.receive() {
-            Ok(Some(controls)) => controls,
-            Ok(None) => break End::Left,
-            Err(PortError::Interrupted(signal)) => break End::Interrupted(signal),
-            Err(error) => return Err(HilError::Port(error)),
+        let controls = match received(port)? {
+            Ok(controls) => controls,
+            Err(end) => break end,
         };
         started.get_or_insert_with(Instant::now);
         let tick = pace.ticks();
@@ -180,17 +188,8 @@ pub fn serve(
             speed.get_or_insert_with(|| Speed::new(factor)).wait(pace.ticks() * scenario.timing.period_us);
         }
         port.answer(&answer).map_err(HilError::Port)?;
-        if let Some(Clients { relay, show }) = &mut clients {
-            relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
-            if shown.elapsed() >= STATUS_PERIOD {
-                shown = Instant::now();
-                let [x, y, z]: [f64; 3] = moved.state.position.into();
-                show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
-            }
-        }
-        if let Some(progress) = &mut progress {
-            progress.show(pace.ticks());
-        }
+        clients.iter_mut().for_each(|clients| clients.show(time, &moved.state.position, &mut shown));
+        progress.iter_mut().for_each(|progress| progress.show(pace.ticks()));
     };
     if let Some(rows) = rows {
         rows.file.finish().map_err(unwritable)?;
@@ -198,6 +197,16 @@ pub fn serve(
     let position = vehicle.state().position;
     let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());
     Ok(HilSummary { pace, position: position.into(), touchdowns, took, end })
+}
+
+/// The next command, or the session's end.
+fn received(port: &mut SimulatorPort) -> Result<Result<Controls, End>, HilError> {
+    match port.receive() {
+        Ok(Some(controls)) => Ok(Ok(controls)),
+        Ok(None) => Ok(Err(End::Left)),
+        Err(PortError::Interrupted(signal)) => Ok(Err(End::Interrupted(signal))),
+        Err(error) => Err(HilError::Port(error)),
+    }
 }
 
 /// A row for each command: the state one period after it, the commands, the thrust at the end, the command's own time.
@@ -215,13 +224,7 @@ impl Log {
         Ok(Self { file })
     }
 
-    fn row(
-        &mut self,
-        time: f64,
-        s: &scenario::body::BodyState,
-        c: &crate::sessions::messages::Controls,
-        thrust: f64,
-    ) -> io::Result<()> {
+    fn row(&mut self, time: f64, s: &BodyState, c: &Controls, thrust: f64) -> io::Result<()> {
         let (p, v, q, w) = (&s.position, &s.velocity, &s.attitude, &s.angular_velocity);
         write!(self.file, "{time:.6}")?;
         for value in [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z, thrust] {

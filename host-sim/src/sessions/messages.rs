@@ -34,7 +34,6 @@ pub struct Controls {
 
 impl Controls {
     /// The commands in a frame, if it holds any.
-    #[must_use]
     pub fn from_frame(frame: &Frame<'_>) -> Option<Self> {
         let message: HIL_ACTUATOR_CONTROLS_DATA = decode(frame)?;
         let armed = message.mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);

@@ -25,13 +25,11 @@ pub struct Pace {
 
 impl Pace {
     /// A vehicle whose time passes `speed` times as fast, from zero now.
-    #[must_use]
     pub fn new(speed: f64) -> Self {
         Self { speed, start: Instant::now(), from: 0 }
     }
 
     /// The end of the slice that begins at `now`, us of the vehicle's time.
-    #[must_use]
     pub fn next(&self, now: u64) -> u64 {
         now + (SLICE_US * self.speed.max(1.0)) as u64
     }
@@ -50,7 +48,6 @@ impl Pace {
     }
 
     /// When by the desk's clock the vehicle's time was to be `time`, us: s since 1970.
-    #[must_use]
     pub fn desk_time(&self, time: u64) -> f64 {
         // A clock before 1970 is as good as that.
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();

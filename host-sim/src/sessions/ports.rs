@@ -65,9 +65,6 @@ pub struct ClientPort {
 
 impl ClientPort {
     /// Opens the local port.
-    ///
-    /// # Errors
-    /// [`PortTaken`].
     pub fn open(ports: &Ports) -> Result<Self, PortTaken> {
         let here = |port| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
         let open = || {

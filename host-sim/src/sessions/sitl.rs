@@ -11,9 +11,9 @@
 //! | [`simulated_hardware`] | vehicle, air, ground, sensors and the camera that sends poses |
 //! | `downlink` | the vehicle's frames to the clients ([`crate::sessions::ports`]) |
 //! | [`faults`] | simulated faults and their times |
-//! | [`flash`] | the parameters' memory |
+//! | `flash` | the parameters' memory |
 //! | [`key`] | the key that signs frames |
-//! | [`session`] | what a session is told, and how it ended |
+//! | `session` | a session's options, and its end |
 //! | `record` | the session as MCAP |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
@@ -23,11 +23,11 @@
 pub mod clock;
 mod downlink;
 pub mod faults;
-pub mod flash;
+pub(crate) mod flash;
 pub mod key;
 pub mod memory_line;
 mod record;
-pub mod session;
+pub(crate) mod session;
 pub mod simulated_hardware;
 mod truth;
 
@@ -113,9 +113,6 @@ impl Sitl {
     /// Boots the firmware on the scenario's vehicle, which stands on the ground. With it comes why it will not arm, if
     /// it will not. What can be refused at once is; then `say` gets a line, and the scenario is judged, which takes
     /// seconds.
-    ///
-    /// # Errors
-    /// In words: what the firmware cannot fly, and files and ports that cannot be used.
     pub fn boot(
         scenario: &Scenario,
         session: &SitlSession,
@@ -166,7 +163,7 @@ impl Sitl {
         Ok((sitl, warning))
     }
 
-    /// Starts the firmware: with nothing in memory, on what is in flash. The vehicle's clock goes on.
+    /// Starts the firmware: with empty memory, and the parameters in flash. The vehicle's clock goes on.
     fn start(&mut self) -> Result<(), ParameterError> {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
@@ -271,9 +268,6 @@ fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'st
 
 /// Runs a session until its duration is over or a signal comes; `say` gets a line before it starts, `show` those about
 /// it.
-///
-/// # Errors
-/// [`SitlError`].
 pub fn run(
     scenario: &Scenario,
     session: &SitlSession,

@@ -7,27 +7,27 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`draw`], [`random_flight`] | the circumstances of a flight, from seed and number; that flight under a law |
+//! | [`draw`], `random_flight` | the circumstances of a flight, from seed and number; that flight under a law |
 //! | [`written`] | those circumstances in the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
-//! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
-//! | [`rotor_loss`], [`losses`] | what it showed of a rotor that failed or was taken to; that of all flights |
-//! | [`manifest`], [`store`], [`batches`] | what a directory holds; its files; those with flights in them |
-//! | [`fly`], [`summary`], [`report`] | the commands `campaign` and `merge`, what they print, and their page |
+//! | [`outcome`], `rows` | what a flight showed; that as columns in Arrow's format |
+//! | `rotor_loss`, `losses` | what it showed of a rotor that failed or was taken to; that of all flights |
+//! | [`manifest`], `store`, `batches` | what a directory holds; its files; those with flights in them |
+//! | [`fly`], [`summary`], `report` | the commands `campaign` and `merge`, what they print, and their page |
 
-pub mod batches;
-pub mod columns;
+pub(crate) mod batches;
+pub(crate) mod columns;
 pub mod draw;
 pub mod fly;
-pub mod losses;
+pub(crate) mod losses;
 pub mod manifest;
 pub mod outcome;
-pub mod random_flight;
-pub mod report;
-pub mod rotor_loss;
-pub mod rows;
+pub(crate) mod random_flight;
+pub(crate) mod report;
+pub(crate) mod rotor_loss;
+pub(crate) mod rows;
 pub mod step;
-pub mod store;
+pub(crate) mod store;
 pub mod summary;
 pub mod written;
 
@@ -66,7 +66,6 @@ impl std::error::Error for CampaignError {}
 
 /// The value below which `part`, 0 to 1, of `values` lie; none of no values. Values that are no numbers count as the
 /// greatest.
-#[must_use]
 pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(|a, b| a.is_nan().cmp(&b.is_nan()).then(a.total_cmp(b)));

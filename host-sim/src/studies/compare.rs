@@ -1,19 +1,19 @@
 //! The `compare` command: our law and its rivals on one set of scenes.
 //!
-//! Every law flies the same [`scenes`] and the same random flights, those of [`crate::studies::campaign`]: same vehicle,
-//! allocation, sensors and clock. The table has every figure, less is better, with the vehicle's own [`limit`] where it
+//! Every law flies the same `scenes` and the same random flights, those of [`crate::studies::campaign`]: same vehicle,
+//! allocation, sensors and clock. The table has every figure, less is better, with the vehicle's own `limit` where it
 //! is worked out, and marks the rows that ours loses;
 //! `compare.csv` has them in full, two pictures the courses, `report.html` all of it. Our claim decides the exit
 //! status: every random flight of our law settles, and none of its commands is cut or leaves its certified bounds.
 
-pub mod limit;
-pub mod page;
-pub mod pictures;
-pub mod realism;
-pub mod rotor_loss;
-pub mod rows;
-pub mod scene_figures;
-pub mod scenes;
+pub(crate) mod limit;
+pub(crate) mod page;
+pub(crate) mod pictures;
+pub(crate) mod realism;
+pub(crate) mod rotor_loss;
+pub(crate) mod rows;
+pub(crate) mod scene_figures;
+pub(crate) mod scenes;
 
 use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::output::directory_lock::DirectoryLock;
@@ -150,9 +150,6 @@ fn flown<T>(
 
 /// Flies ours, and all laws of `set`, in all scenes of the file, which was read from `text`, and in `flights` random
 /// flights. `files`: the file, and the same at the others' rate.
-///
-/// # Errors
-/// [`CompareError`].
 pub fn compare(
     files: (&Scenario, &Scenario),
     text: &str,
@@ -204,11 +201,8 @@ pub fn compare(
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
 
-/// Flies ours, and all laws of `set`, on a vehicle that is not as its file says: [`realism`]. `files` as in
+/// Flies ours, and all laws of `set`, on a vehicle that is not as its file says: `realism`. `files` as in
 /// [`compare`].
-///
-/// # Errors
-/// [`CompareError`].
 pub fn compare_in_reality(
     files: (&Scenario, &Scenario),
     set: &Set,
@@ -217,11 +211,8 @@ pub fn compare_in_reality(
     in_scenes(files, set, realism::all, (realism::fly_realism_scene, realism::rows, realism::is_held), interrupt)
 }
 
-/// Flies ours, and all laws of `set`, as a rotor fails, to the ground: [`rotor_loss`]. `files` as in [`compare`], of a
+/// Flies ours, and all laws of `set`, as a rotor fails, to the ground: `rotor_loss`. `files` as in [`compare`], of a
 /// vehicle with rotors.
-///
-/// # Errors
-/// [`CompareError`].
 pub fn compare_without_a_rotor(
     files: (&Scenario, &Scenario),
     set: &Set,

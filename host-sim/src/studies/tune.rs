@@ -8,18 +8,20 @@
 //!    without a clipped command and within the allowed errors;
 //! 2. the least cost: what a pilot feels of the trials in [`trials`], averaged over the vehicle as it may really be.
 //!
-//! [`space`] says which constants are searched; [`candidate`] judges a point of it, cheapest test first; [`evolution`]
+//! `space` says which constants are searched; `candidate` judges a point of it, cheapest test first; `evolution`
 //! searches; [`output`] writes what was found. A search starts from the file's constants and never ends with worse
 //! ones. Seeds are fixed: the same file gives the same constants.
 
-pub mod candidate;
-pub mod chosen;
+pub(crate) mod candidate;
+pub(crate) mod chosen;
 pub mod effort;
-pub mod evolution;
+pub(crate) mod evolution;
+pub mod figures;
+pub(crate) mod models;
 pub mod output;
 pub mod requirements;
 pub mod rivals;
-pub mod space;
+pub(crate) mod space;
 pub mod trials;
 
 use crate::output::interrupt::Interrupt;
@@ -32,9 +34,9 @@ use controller_core::error::ParameterError;
 use controller_core::reference::ReferenceBounds;
 use effort::Effort;
 use evolution::Evolution;
+use figures::{MODEL_FIGURES, OWN_MODEL_FIGURES};
 use requirements::Requirements;
 use scenario::Scenario;
-use trials::{MODEL_FIGURES, OWN_MODEL_FIGURES};
 
 /// The search's result.
 #[derive(Clone)]
@@ -51,13 +53,11 @@ pub struct Tuned {
 
 impl Tuned {
     /// Whether the search found better constants than its start.
-    #[must_use]
     pub fn improved(&self) -> bool {
         self.verdict != self.before
     }
 
     /// Every figure before and after, as a table for a terminal.
-    #[must_use]
     pub fn table(&self) -> String {
         let own = |verdict: &Verdict| {
             let beyond =
@@ -108,9 +108,6 @@ pub fn tune(
 }
 
 /// The largest factor by which all reference bounds of `configuration` can grow with every margin at `margin` or above.
-///
-/// # Errors
-/// As [`Certificate::new`]'s.
 pub fn widest_bounds(configuration: &Configuration, margin: f64) -> Result<(f64, ReferenceBounds), ParameterError> {
     let bounds = *configuration.bounds();
     let scaled = |factor: f64| {

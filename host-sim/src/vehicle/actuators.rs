@@ -50,7 +50,7 @@ impl From<Diverged> for ActuationError {
     }
 }
 
-/// What is asked of the actuators.
+/// The demand on the actuators.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActuatorDemand {
     /// A wrench, to be allocated.
@@ -76,7 +76,6 @@ impl ActuatorDemand {
     }
 
     /// As a wrench, for a vehicle without rotors.
-    #[must_use]
     pub fn wrench(&self) -> Wrench {
         match self {
             Self::Wrench(wrench) => *wrench,
@@ -96,27 +95,24 @@ pub struct Actuators {
     waiting: VecDeque<(u64, ActuatorDemand)>,
     /// What acts now.
     acting: ActuatorDemand,
-    /// What acted since it was asked for.
+    /// What acted since it was last taken.
     pub(crate) acted: Acted,
 }
 
 impl Actuators {
     /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its
     /// tick. Without rotors wrenches act on the body directly.
-    #[must_use]
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
         let acting = ActuatorDemand::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
         Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting, acted: Acted::default() }
     }
 
     /// The rotors' thrusts at this moment, N, after lag; none without rotors.
-    #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         self.rotors.as_ref().map_or_else(Vec::new, |(_, rotors)| rotors.thrusts())
     }
 
     /// Whether a wrench acts at once.
-    #[must_use]
     pub fn are_ideal(&self) -> bool {
         self.rotors.is_none() && self.delay_steps == 0
     }
@@ -128,21 +124,18 @@ impl Actuators {
 
     /// Takes what a tick asks for and moves the body for `steps` plant steps. Returns whether anything was cut, and the
     /// commanded rotor thrusts, N, as they stand at the end (none without rotors).
-    ///
-    /// # Errors
-    /// [`ActuationError`].
     pub fn hold(
         &mut self,
         plant: &mut Plant,
-        asked: &ActuatorDemand,
+        demand: &ActuatorDemand,
         steps: u32,
     ) -> Result<(bool, Thrusts), ActuationError> {
         if self.are_ideal() {
-            self.acting = asked.clone();
+            self.acting = demand.clone();
             self.act(plant.body());
-            return Ok((plant.hold(&asked.wrench(), steps)?, Thrusts::new()));
+            return Ok((plant.hold(&demand.wrench(), steps)?, Thrusts::new()));
         }
-        self.waiting.push_back((self.now + self.delay_steps, asked.clone()));
+        self.waiting.push_back((self.now + self.delay_steps, demand.clone()));
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {

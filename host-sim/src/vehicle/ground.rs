@@ -66,7 +66,6 @@ pub struct Ground {
 impl Ground {
     /// Ground on which `vehicle` stands with its origin at `height`, m; and there it stands, where `start` says, level.
     /// `step` is the plant's, s.
-    #[must_use]
     pub fn under(vehicle: &Vehicle, height: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
         let (mass, inertia) = (f64::from(vehicle.mass), vehicle.inertia.map(f64::from));
         let weight = Weight { mass, inertia, gravity: f64::from(vehicle.gravity) };
@@ -76,7 +75,6 @@ impl Ground {
 
     /// Ground on which a vehicle that truly is `truth` stands with its origin at `height`, m; and where it is, if it
     /// was at `start`: at rest on it if that is down there.
-    #[must_use]
     pub fn at(height: f64, truth: &Truth, gravity: f64, start: &BodyState, step: f64) -> (Self, BodyState) {
         let weight = Weight { mass: truth.mass, inertia: truth.inertia, gravity };
         let mut ground = Self { height, weight, step, stance: Stance::Air };
@@ -85,7 +83,6 @@ impl Ground {
     }
 
     /// Whether the vehicle is on it, on all its feet or on one.
-    #[must_use]
     pub fn stands(&self) -> bool {
         !matches!(self.stance, Stance::Air)
     }

@@ -54,7 +54,6 @@ fn butterworth(bandwidth: f64) -> LowPass {
 }
 
 /// The gyro's own filter, sampled at [`IMU_RATE_HZ`].
-#[must_use]
 pub fn gyro_filter() -> LowPass {
     butterworth(GYRO_BANDWIDTH_HZ)
 }
@@ -98,7 +97,6 @@ pub struct Instruments {
 impl Instruments {
     /// Sensors as `what` describes them, under `gravity`, m/s^2, of a vehicle that has this velocity, m/s, a
     /// millisecond before the first sample. Outages count from `file_header`, us after that.
-    #[must_use]
     pub fn new(what: &Estimator, gravity: f64, velocity: Vector3<f64>, beginning: u64) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(what.seed);
         let mut bias = |deviation: f32| noise(&mut random, what.imu_noise * f64::from(deviation));
@@ -119,7 +117,6 @@ impl Instruments {
     }
 
     /// The same without filters of its own: what its IMU shows is true when it can be read.
-    #[must_use]
     pub fn prompt(self) -> Self {
         Self { filters: None, ..self }
     }

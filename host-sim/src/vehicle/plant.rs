@@ -11,16 +11,16 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`body`] | the vehicle's numbers in the equations |
-//! | [`motion`] | the equations and the method, for any number of vehicles side by side |
-//! | [`lanes`] | numbers of several vehicles in one register |
+//! | `motion` | the equations and the method, for any number of vehicles side by side |
+//! | `lanes` | numbers of several vehicles in one register |
 //! | [`rows`] | many vehicles that move at the same time |
 //!
 //! It has no rotors, no air and no ground: thrust and torque appear at once, and nothing stops a fall. Where a flight
-//! needs them, [`crate::vehicle::actuators`] and [`crate::vehicle::ground`] stand around it.
+//! needs them, [`crate::vehicle::actuators`] and `crate::vehicle::ground` stand around it.
 
 pub mod body;
-pub mod lanes;
-pub mod motion;
+pub(crate) mod lanes;
+pub(crate) mod motion;
 pub mod rows;
 
 use body::Body;
@@ -54,19 +54,16 @@ pub struct Plant {
 
 impl Plant {
     /// A vehicle at `state`, integrated in steps of `step` seconds.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, limits: &Limits, step: f64, state: BodyState) -> Self {
         Self { body: Body::new(vehicle, limits, step), state }
     }
 
     /// The vehicle's numbers.
-    #[must_use]
     pub fn body(&self) -> &Body {
         &self.body
     }
 
     /// The present state.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         &self.state
     }

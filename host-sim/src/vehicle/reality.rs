@@ -7,11 +7,11 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`body`] | the rigid body, by the classical Runge-Kutta method of fourth order |
-//! | [`propulsion`] | from the rotors' commanded thrusts to their speeds |
+//! | `body` | the rigid body, by the classical Runge-Kutta method of fourth order |
+//! | `propulsion` | from the rotors' commanded thrusts to their speeds |
 //! | [`battery`] | the voltage the motors have |
-//! | [`air`] | forces and moments of rotors and frame in moving air |
-//! | [`wind`], [`dryden`] | how the air moves |
+//! | `air` | forces and moments of rotors and frame in moving air |
+//! | [`wind`], `dryden` | how the air moves |
 //!
 //! A disturbance adds a constant force at the centre of mass, world frame, and a constant torque, body frame.
 //!
@@ -21,13 +21,13 @@
 //! voltage and turbulence are held over it. Each costs an error of the order of the step at that instant and leaves the
 //! order of the rest alone.
 //!
-//! A vehicle on the ground stands while the forces on it do not lift it; the ground is [`crate::vehicle::ground`]'s.
+//! A vehicle on the ground stands while the forces on it do not lift it; the ground is `crate::vehicle::ground`'s.
 
-pub mod air;
+pub(crate) mod air;
 pub mod battery;
-pub mod body;
-pub mod dryden;
-pub mod propulsion;
+pub(crate) mod body;
+pub(crate) mod dryden;
+pub(crate) mod propulsion;
 pub mod wind;
 
 use crate::vehicle::actuators::{ActuationError, ActuatorDemand};
@@ -83,7 +83,7 @@ pub struct RealVehicle {
     waiting: VecDeque<(u64, ActuatorDemand)>,
     /// What acts now.
     acting: ActuatorDemand,
-    /// What acted since it was asked for, by the model's coefficients.
+    /// What acted since it was last taken, by the model's coefficients.
     pub(crate) acted: Acted,
     /// Its origin, where the controller takes the centre of mass to be.
     state: BodyState,
@@ -91,7 +91,6 @@ pub struct RealVehicle {
 
 impl RealVehicle {
     /// The scenario's vehicle at its start. The model is the `configuration`'s. Its rotors turn as the model hovers.
-    #[must_use]
     pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
         let (reality, step) = (&scenario.reality, scenario.timing.step());
         let model = configuration.vehicle();
@@ -129,7 +128,6 @@ impl RealVehicle {
     }
 
     /// The same vehicle before the first command: no rotor turns.
-    #[must_use]
     pub fn switched_off(mut self) -> Self {
         self.propulsion.stop();
         self
@@ -137,9 +135,6 @@ impl RealVehicle {
 
     /// Asks each rotor for a thrust, N, and moves the vehicle for one plant step. For a flight controller that
     /// allocates by itself: without the scenario's delay.
-    ///
-    /// # Errors
-    /// [`Diverged`].
     pub fn drive(&mut self, thrusts: &[f32]) -> Result<(), Diverged> {
         self.propulsion.command(thrusts);
         self.advance();
@@ -147,19 +142,16 @@ impl RealVehicle {
     }
 
     /// The present state of its origin.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         &self.state
     }
 
     /// The rotors' thrusts at this moment in still air, N; none without rotors.
-    #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         self.air.thrusts(&self.propulsion.speeds())
     }
 
     /// Wind and battery at this moment.
-    #[must_use]
     pub fn surroundings(&self) -> Surroundings {
         Surroundings {
             wind: self.wind.as_ref().map(|wind| wind.velocity(self.now, 0.0)),
@@ -169,7 +161,6 @@ impl RealVehicle {
     }
 
     /// Whether it stands on the ground.
-    #[must_use]
     pub fn stands(&self) -> bool {
         self.ground.as_ref().is_some_and(Ground::stands)
     }
@@ -205,11 +196,8 @@ impl RealVehicle {
 
     /// Takes what a tick asks for and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
     /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
-    ///
-    /// # Errors
-    /// [`ActuationError`].
-    pub fn hold(&mut self, asked: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
-        self.waiting.push_back((self.now + self.delay_steps, asked.clone()));
+    pub fn hold(&mut self, demand: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+        self.waiting.push_back((self.now + self.delay_steps, demand.clone()));
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {

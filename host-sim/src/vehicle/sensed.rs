@@ -23,7 +23,6 @@ pub struct Sensed {
 
 impl Sensed {
     /// Of a `vehicle` that hovers level.
-    #[must_use]
     pub fn hovering(vehicle: &Vehicle) -> Self {
         let (mass, gravity) = (f64::from(vehicle.mass), f64::from(vehicle.gravity));
         Self { specific_force: Vector3::z() * gravity, wrench: Vector4::x() * (mass * gravity) }
@@ -31,7 +30,6 @@ impl Sensed {
 }
 
 /// The mean specific force, m/s^2, body, between two states that are `period`, s, apart, under `gravity`, m/s^2.
-#[must_use]
 pub fn specific_force(before: &BodyState, now: &BodyState, period: f64, gravity: f64) -> Vector3<f64> {
     let acceleration = (now.velocity - before.velocity) / period;
     let halfway = UnitQuaternion::new_normalize(before.attitude + now.attitude);

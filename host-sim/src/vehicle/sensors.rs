@@ -92,7 +92,6 @@ struct Past {
 
 impl Sensors {
     /// The scenario's, before the first tick; none where it has none.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let what = scenario.reality.sensors?;
         let start = &scenario.initial;
@@ -153,7 +152,6 @@ impl Sensors {
     }
 
     /// v' before the state that [`Self::measure`] gave last, m/s^2, world; none without an accelerometer.
-    #[must_use]
     pub fn sensed_force(&self) -> Option<Vector3<f32>> {
         self.arrived
     }

@@ -7,8 +7,7 @@ use scenario::stability::{Lack, Shortfall};
 
 /// The meaning of an inequality, and which number to change in which direction; empty for a name that the extended
 /// law's certificate does not have.
-#[must_use]
-pub fn of_inequality(name: &str) -> &'static str {
+pub fn for_inequality(name: &str) -> &'static str {
     match name {
         "T1 fall A_- < g - K_a3" => {
             "falling. The law may fall with gains.a_down while the reference falls with \
@@ -66,8 +65,7 @@ pub fn of_inequality(name: &str) -> &'static str {
 }
 
 /// The meaning of a row of the judge of paths, and what to change besides the pace.
-#[must_use]
-pub fn of_path(row: PathRow) -> &'static str {
+pub fn for_path(row: PathRow) -> &'static str {
     match row {
         PathRow::Fall => {
             "how fast the reference falls. gains.a_down must leave some of gravity to push against. Lower \
@@ -93,12 +91,11 @@ pub fn of_path(row: PathRow) -> &'static str {
 }
 
 /// The change for a model flight that does not arrive.
-pub const OF_FLIGHT: &str = "a model of the vehicle circles or swings about its target, from far away. Raise \
+pub const FOR_FLIGHT: &str = "a model of the vehicle circles or swings about its target, from far away. Raise \
     gains.turn_rate or gains.k_f, or lower gains.v_across, gains.v_up and gains.v_down; or raise control.rate.";
 
 /// The change for a loop with too little margin.
-#[must_use]
-pub fn of_loop(lack: &Lack) -> String {
+pub fn for_loop(lack: &Lack) -> String {
     let gains = match lack.axis {
         Axis::Roll | Axis::Pitch => "gains.k_omega_t and gains.k_tilt",
         Axis::Yaw => "gains.c_2 and gains.c_1",

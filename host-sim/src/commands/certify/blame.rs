@@ -17,9 +17,6 @@ use controller_core::error::ParameterError;
 use nalgebra::{Vector3, Vector4};
 
 /// The command of the tightest rotor, its greatest part, and its weak axis. Empty without rotors.
-///
-/// # Errors
-/// As [`rotors::torque_terms`].
 pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -> Result<String, ParameterError> {
     let Some(mounted) = configuration.rotors() else {
         return Ok(String::new());

@@ -6,7 +6,6 @@ use scenario::constants::written;
 use scenario::number::Number;
 
 /// The sections with every constant that `scenario` flies with.
-#[must_use]
 pub fn constants(scenario: &Scenario) -> String {
     let configuration = &scenario.configuration;
     let (law, constants) = match configuration.law() {

@@ -31,7 +31,6 @@ pub struct Circle {
 }
 
 /// The fastest circle that certifies; none if not even hovering does.
-#[must_use]
 pub fn circle(scenario: &Scenario) -> Option<Circle> {
     let configuration = &scenario.configuration;
     let judge = judge::<f64>(configuration, scenario.force_kept);
@@ -85,7 +84,6 @@ fn greatest(most: f64, certifies: impl Fn(f64) -> bool) -> Option<f64> {
 }
 
 /// The lines about acceleration and jerk, and last the one about the circle.
-#[must_use]
 pub fn lines(scenario: &Scenario) -> String {
     let configuration = &scenario.configuration;
     let gravity = f64::from(configuration.vehicle().gravity);

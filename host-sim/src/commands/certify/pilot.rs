@@ -6,7 +6,6 @@ use controller_core::extended::budget::TorqueBudget;
 use controller_core::extended::parameters::ExtendedParameters;
 
 /// The table and the lines below it.
-#[must_use]
 pub fn terms(configuration: &Configuration, law: &ExtendedLaw) -> String {
     let p = &*law.parameters;
     let [mass, gravity] = [configuration.vehicle().mass, configuration.vehicle().gravity].map(f64::from);

@@ -18,7 +18,6 @@ use scenario::judge::judge;
 
 /// The reference of `scenario` judged along itself, in a sentence, and whether it takes less than what is left,
 /// whatever rounding did; none under the paper's law.
-#[must_use]
 pub fn along(scenario: &Scenario) -> Option<(String, bool)> {
     let judge = judge::<Enclosure>(&scenario.configuration, scenario.force_kept)?;
     let share = MaxShare::along(&judge, &*scenario.trajectory, end_us(scenario)).share;
@@ -51,19 +50,16 @@ impl Rigorous {
     }
 
     /// Whether every inequality holds, whatever rounding did.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.rows.iter().all(|(_, enclosed)| enclosed.holds())
     }
 
     /// The greatest share of its available side by which rounding outwards changes a figure.
-    #[must_use]
     pub fn greatest_difference(&self) -> f64 {
         self.rows.iter().flat_map(|(nearest, enclosed)| differences(nearest, enclosed)).fold(0.0, f64::max)
     }
 
     /// Both figures of each inequality beside each other, and in a sentence what follows.
-    #[must_use]
     pub fn report(&self) -> String {
         let head = ["inequality, rounded outwards", "available", "less by", "", "required", "more by", ""];
         let mut table = vec![head.map(str::to_owned).to_vec()];

@@ -97,7 +97,7 @@ fn every_inequality_of_the_extended_law_is_explained() {
         let scenario = Scenario::parse(text, "f").unwrap();
         let certificate = Certificate::new(&scenario.configuration).unwrap();
         for inequality in certificate.inequalities() {
-            let advice = advice::of_inequality(inequality.name);
+            let advice = advice::for_inequality(inequality.name);
             assert!(["ower ", "aise "].iter().any(|word| advice.contains(word)), "{}: {advice:?}", inequality.name);
             let names = advice.split_whitespace().filter_map(|word| word.split_once('.'));
             for (section, key) in
@@ -117,7 +117,7 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
         let (report, certified) = report(text);
         let tightest =
             line(&report, "tightest: ").split_once("tightest: ").unwrap().1.split_once(", margin").unwrap().0;
-        assert!(certified && line(&report, "What limits it: ").ends_with(advice::of_inequality(tightest)), "{report}");
+        assert!(certified && line(&report, "What limits it: ").ends_with(advice::for_inequality(tightest)), "{report}");
         assert_eq!(report.matches("What ").count(), 1, "{report}");
     }
     let refused = |text: &str, start: &str, what: &str| {

@@ -46,7 +46,6 @@ pub struct Entry {
 /// Says which entry contradicts the rest, if all together leave more over than chance does. `flight` is the flight's
 /// own part of chi-square, `freedom` how many statements there are more than unknowns, `parts` from how many parts of
 /// it its uncertainty is known.
-#[must_use]
 pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usize, parts: usize) -> Option<String> {
     let left = |entry: &Entry| entry.value - entry.row.dot(&known.values);
     let bench: f64 = entries.iter().map(|entry| (left(entry) / entry.deviation).powi(2)).sum();

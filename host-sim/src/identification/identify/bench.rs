@@ -36,7 +36,6 @@ pub struct Measured {
 
 impl Measured {
     /// The uncertainty as a part of the number.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         self.uncertainty / self.value
     }
@@ -126,7 +125,7 @@ fn stand(table: &dyn TableLike) -> Result<(Measured, f64), String> {
     let of_sum = left * (uuuu + uu - 2.0 * uuu) / determinant;
     let pairs = || commands.iter().zip(&thrusts);
     let rises = pairs().all(|(u, f)| pairs().all(|(v, g)| u >= v || f < g));
-    // A curve through rising thrusts may still end below nothing.
+    // A curve through rising thrusts may still end below zero.
     if !rises || value <= 0.0 {
         return Err("thrust_stand.thrusts: must rise with the commands".to_owned());
     }

@@ -90,7 +90,7 @@ pub fn run(task: &Task) -> Result<String, Refused> {
     Ok(report)
 }
 
-/// The name of the scenario found, and the file it goes to, begun: whatever is wrong with them shows now, not after the
+/// The name of the scenario found, and the file it goes to, begun: a problem with them shows now, not after the
 /// fit.
 fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path, WholeFile), Refused> {
     let name = path.file_stem().map_or_else(|| usual.to_owned(), |stem| stem.to_string_lossy().into_owned());

@@ -21,9 +21,11 @@
 //! samples a second only: thrust over mass, drag and wind change slowly, and an estimator's prediction between its own
 //! updates leaves artefacts from tick to tick.
 
+use super::impulses::Impulse;
+use super::low_passes::LowPasses;
 use super::model::{
-    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG_INDEX, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns,
-    WHOLE_DELAY_INDEX, prior,
+    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG_INDEX, STRENGTH_INDEX, SensedMotion,
+    UNKNOWN_COUNT, Unknowns, WHOLE_DELAY_INDEX, prior,
 };
 use super::noise::{Noise, Whitening};
 use super::student_t::PART_COUNT_RANGE;
@@ -56,7 +58,8 @@ pub const UNCERTAINTY_FACTORS: [(usize, f64); 3] =
 /// Whitened series, a channel each.
 type White = Vec<Vec<f64>>;
 
-/// A covariance of all unknowns.
+type Filters = [Whitening; CHANNEL_COUNT];
+
 pub type Covariance = SMatrix<f64, UNKNOWN_COUNT, UNKNOWN_COUNT>;
 
 /// The result of a fit.
@@ -80,52 +83,23 @@ pub fn fit(model: &IdentifiedModel, reference: &IdentifiedModel, period: f64) ->
     let count = ((model.seconds() / JACKKNIFE_BLOCK_S).round() as usize).clamp(least, most);
     unknowns[STRENGTH_INDEX] = model.balance();
     let (start, mut noise) = (unknowns, [Noise::START; CHANNEL_COUNT]);
+    let sampling = Sampling::new(model, period);
     let mut sensed_motions = Vec::new();
     let (mut share, mut last, mut is_near) = (1.0, Unknowns::zeros(), false);
-    let look = (VELOCITY_PERIOD_S / period).round().max(1.0) as usize;
-    let every: [usize; CHANNEL_COUNT] = from_fn(|channel| if channel < 3 { look } else { 1 });
-    let periods = every.map(|every| every as f64 * period);
-    let seen = |channels: Channels| -> Channels {
-        from_fn(|channel| match model.low_passes() {
-            Some(low_passes) if channel >= 3 => low_passes.innovations(&channels[channel]),
-            _ => channels[channel].iter().step_by(every[channel]).copied().collect(),
-        })
-    };
     for step in 0..STEPS_MAX {
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
+        let residuals = sampling.take(&model.residuals(&unknowns, &impulses, &sensed_motions));
         if step < NOISE_STEPS || (step < MORE_NOISE_STEPS && !is_near) {
-            noise = from_fn(|channel| Noise::START.fitted(&left[channel], periods[channel]));
+            noise = from_fn(|channel| Noise::START.fitted(&residuals[channel], sampling.periods[channel]));
         }
-        let filters: [Whitening; CHANNEL_COUNT] =
-            from_fn(|channel| noise[channel].whitening(left[channel].len(), periods[channel]));
-        let white = |channels: &Channels| -> White {
-            channels.iter().zip(&filters).map(|(series, filter)| filter.whiten(series)).collect()
+        let filters: Filters =
+            from_fn(|channel| noise[channel].whitening(residuals[channel].len(), sampling.periods[channel]));
+        let slope = |unknown| {
+            let width = 1e-3 * wide[unknown];
+            slopes([model, reference], &sampling, &filters, (&unknowns, unknown, width), (&impulses, &sensed_motions))
         };
-        let errors = white(&left);
-        let slopes: Vec<(White, White)> = (0..UNKNOWN_COUNT)
-            .map(|unknown| {
-                let width = 1e-3 * wide[unknown];
-                let hovering = reference.hovering(&unknowns);
-                let moved = |by: f64| {
-                    let mut moved = unknowns;
-                    moved[unknown] += by;
-                    let late =
-                        [WHOLE_DELAY_INDEX, SQUARED_LAG_INDEX].contains(&unknown).then(|| model.impulses(&moved));
-                    let flown = seen(model.residuals(&moved, late.as_ref().unwrap_or(&impulses), &sensed_motions));
-                    (flown, seen(reference.residuals(&moved, &hovering, &[])))
-                };
-                let (ahead, behind) = (moved(width), moved(-width));
-                let slope = |ahead: &Channels, behind: &Channels| {
-                    white(&from_fn(|channel| {
-                        let pairs = ahead[channel].iter().zip(&behind[channel]);
-                        pairs.map(|(a, b)| (b - a) / (2.0 * width)).collect()
-                    }))
-                };
-                (slope(&ahead.0, &behind.0), slope(&ahead.1, &behind.1))
-            })
-            .collect();
-        let (mut spread, blocks) = equations(&errors, &slopes, count);
+        let slopes: Vec<(White, White)> = (0..UNKNOWN_COUNT).map(slope).collect();
+        let (mut spread, blocks) = equations(&white(&filters, &residuals), &slopes, count);
         let mut information = blocks.iter().map(|block| block.information).sum::<Covariance>();
         let mut pull = blocks.iter().map(|block| block.pull).sum::<Unknowns>();
         for unknown in 0..UNKNOWN_COUNT {
@@ -141,22 +115,75 @@ pub fn fit(model: &IdentifiedModel, reference: &IdentifiedModel, period: f64) ->
         if step >= NOISE_STEPS && is_near && within(CONVERGED_STEP_SIGMAS) {
             return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)?, blocks: blocks.len() });
         }
-        // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones
+        // Wind and drag come as a product, so whole steps may leap to and fro across the solution: then shorter ones
         // are taken.
-        let turned = (0..UNKNOWN_COUNT).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
-        share = if turned { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
+        let is_back = (0..UNKNOWN_COUNT).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
+        share = if is_back { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
         (last, is_near) = (moved, within(1.0));
         let widest = moved.component_div(&wide).amax();
         unknowns += moved * f64::min(share, STEP_MAX_SHARE / widest);
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
+        let residuals = sampling.take(&model.residuals(&unknowns, &impulses, &sensed_motions));
         let gusts = from_fn(|axis| {
-            let wander = filters[axis].wander(&left[axis]);
-            wander.into_iter().flat_map(|b| std::iter::repeat_n(b, look)).collect()
+            let wander = filters[axis].wander(&residuals[axis]);
+            wander.into_iter().flat_map(|b| std::iter::repeat_n(b, sampling.every[axis])).collect()
         });
         sensed_motions = model.sensed_motions(&unknowns, &impulses, &gusts);
     }
     Err("is of no vehicle like the scenario's: the search for its numbers does not settle".to_owned())
+}
+
+/// How often each channel is sampled: velocities each [`VELOCITY_PERIOD_S`], body rates at every tick.
+struct Sampling<'a> {
+    low_passes: Option<&'a LowPasses>,
+    /// Ticks.
+    every: [usize; CHANNEL_COUNT],
+    /// s.
+    periods: [f64; CHANNEL_COUNT],
+}
+
+impl<'a> Sampling<'a> {
+    fn new(model: &'a IdentifiedModel, period: f64) -> Self {
+        let rare = (VELOCITY_PERIOD_S / period).round().max(1.0) as usize;
+        let every: [usize; CHANNEL_COUNT] = from_fn(|channel| if channel < 3 { rare } else { 1 });
+        Self { low_passes: model.low_passes(), every, periods: every.map(|every| every as f64 * period) }
+    }
+
+    /// The samples of `channels`; of low-passed body rates the innovations.
+    fn take(&self, channels: &Channels) -> Channels {
+        from_fn(|channel| match self.low_passes {
+            Some(low_passes) if channel >= 3 => low_passes.innovations(&channels[channel]),
+            _ => channels[channel].iter().step_by(self.every[channel]).copied().collect(),
+        })
+    }
+}
+
+fn white(filters: &Filters, channels: &Channels) -> White {
+    channels.iter().zip(filters).map(|(series, filter)| filter.whiten(series)).collect()
+}
+
+/// The whitened slopes of the residuals of the model and of the reference over one unknown, by central differences.
+fn slopes(
+    [model, reference]: [&IdentifiedModel; 2],
+    sampling: &Sampling<'_>,
+    filters: &Filters,
+    (unknowns, unknown, width): (&Unknowns, usize, f64),
+    (impulses, sensed_motions): (&[Impulse], &[SensedMotion]),
+) -> (White, White) {
+    let hovering = reference.hovering(unknowns);
+    let moved = |by: f64| {
+        let mut moved = *unknowns;
+        moved[unknown] += by;
+        let late = [WHOLE_DELAY_INDEX, SQUARED_LAG_INDEX].contains(&unknown).then(|| model.impulses(&moved));
+        let flown = model.residuals(&moved, late.as_deref().unwrap_or(impulses), sensed_motions);
+        (sampling.take(&flown), sampling.take(&reference.residuals(&moved, &hovering, &[])))
+    };
+    let (ahead, behind) = (moved(width), moved(-width));
+    let slope = |ahead: &Channels, behind: &Channels| {
+        let difference = |(a, b): (&f64, &f64)| (b - a) / (2.0 * width);
+        white(filters, &from_fn(|channel| ahead[channel].iter().zip(&behind[channel]).map(difference).collect()))
+    };
+    (slope(&ahead.0, &behind.0), slope(&ahead.1, &behind.1))
 }
 
 /// The inverse of a matrix whose unknowns have very different sizes.

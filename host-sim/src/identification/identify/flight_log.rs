@@ -19,7 +19,7 @@ pub enum Source {
     Sensors,
     /// It is the state itself.
     Truth,
-    /// By PX4, on another clock than its own: [`super::px4`].
+    /// By PX4, on another clock than its own: `super::px4`.
     Px4,
 }
 
@@ -140,13 +140,11 @@ impl FlightLog {
     }
 
     /// How long it is, s.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.moments.len() as f64 * self.period
     }
 
     /// The same flight as the reference has it: velocities without gusts and noise, level, turning in heading only.
-    #[must_use]
     pub fn of_reference(&self) -> Self {
         let referred = |moment: &Moment| Moment {
             velocity: moment.reference_velocity,
@@ -173,7 +171,6 @@ fn differentiate(moments: &mut [Option<Moment>]) {
 
 /// A moment from time, velocity, attitude, rates, the law's thrust and torque, the reference's velocity, and the
 /// estimated thrust scale; `None` if that is no state.
-#[must_use]
 pub fn moment(numbers: &[f64], scale: f64) -> Option<Moment> {
     let &[time, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz, thrust, tau_x, tau_y, tau_z, rx, ry, rz] = numbers else {
         return None;

@@ -27,7 +27,6 @@ const OTHER_LOGS: [(usize, &[u8], &str); 9] = [
 ];
 
 /// What to do with a log of another program; none if it is not recognised.
-#[must_use]
 pub fn recognised(bytes: &[u8]) -> Option<String> {
     let begins = |(at, magic): (usize, &[u8])| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
     let (_, _, what) = OTHER_LOGS.into_iter().find(|(at, magic, _)| {

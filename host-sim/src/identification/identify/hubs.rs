@@ -38,7 +38,6 @@ pub struct Layout {
 
 impl Layout {
     /// Of a vehicle's rotors.
-    #[must_use]
     pub fn of_rotors(rotors: &Rotors) -> Self {
         let lever = |position: &Vector3<f32>| Vector2::new(-f64::from(position.y), f64::from(position.x));
         let levers = rotors.iter().map(|rotor| lever(&rotor.position)).map(|lever| lever * lever.transpose());
@@ -59,13 +58,11 @@ pub struct Hubs {
 
 impl Hubs {
     /// l, m/s^2, at an airspeed in m/s.
-    #[must_use]
     pub fn lifted(&self, layout: &Layout, airspeed: &Vector3<f64>) -> f64 {
         layout.count * self.lift * airspeed.xy().norm_squared()
     }
 
     /// lambda's part of a c/m, N m/kg, at an airspeed in m/s and a rate about z in rad/s.
-    #[must_use]
     pub fn torque(&self, layout: &Layout, airspeed: &Vector3<f64>, yaw_rate: f64) -> Vector3<f64> {
         let across = layout.levers * airspeed.xy() * (-2.0 * self.lift * yaw_rate);
         Vector3::new(across.x, across.y, 0.0)
@@ -73,7 +70,6 @@ impl Hubs {
 
     /// kappa's part of a over the time of an impulse, N m s, where the rotors carry the vehicle with `carried`, F, and
     /// the air makes `air`, m/s^2.
-    #[must_use]
     pub fn unlike(&self, impulse: &Impulse, carried: f64, air: &Vector3<f64>) -> Vector3<f64> {
         let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE_THRUST_M_PER_S2));
         tilting * (self.along * air.z) - Vector3::z() * (self.across * tilting.dot(air))

@@ -12,7 +12,7 @@
 //! reflection 2 W(0) - W(-u), smooth through u = 0, so that what is found is unbiased; a lag is read from it
 //! afterwards.
 //!
-//! Body rates behind [`LowPasses`] are the integral of torques behind the same filters, which are linear. So torques
+//! Body rates behind `LowPasses` are the integral of torques behind the same filters, which are linear. So torques
 //! are filtered here, and S is without the filters' delay. Counted as a delay alone, their shape would be taken for
 //! lag.
 
@@ -81,7 +81,6 @@ impl Commands {
     }
 
     /// The rotors' impulses from each tick to the next, with the whole delay S and u, the squared lag.
-    #[must_use]
     pub fn impulses(&self, whole: f64, squared: f64) -> Vec<Impulse> {
         if squared >= 0.0 {
             return self.lagging(whole, squared.sqrt());

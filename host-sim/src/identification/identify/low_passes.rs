@@ -36,7 +36,6 @@ pub struct LowPasses {
 
 impl LowPasses {
     /// Those of a log, if its body rates came from an IMU.
-    #[must_use]
     pub fn of_log(log: &FlightLog) -> Option<Self> {
         let imu = ImuParameters::BMI088;
         let samples = (log.period * f64::from(imu.rate)).round().max(1.0) as usize;
@@ -58,7 +57,6 @@ impl LowPasses {
     }
 
     /// How many samples of the IMU a tick has.
-    #[must_use]
     pub fn samples(&self) -> usize {
         self.samples
     }
@@ -71,7 +69,6 @@ impl LowPasses {
 
     /// The innovations of a series with a sample a tick: each sample less its prediction from those before. Before the
     /// first stands the first.
-    #[must_use]
     pub fn innovations(&self, series: &[f64]) -> Vec<f64> {
         let before = |tick: usize, by: usize| series[tick.saturating_sub(by)];
         let predicted = |tick: usize| -> f64 {

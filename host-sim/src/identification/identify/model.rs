@@ -49,7 +49,6 @@ const YAW_TORQUE_INDEX: usize = 16;
 /// kappa_z; kappa_d and lambda follow.
 const HUB_FORCE_INDEX: usize = 17;
 
-/// All unknowns.
 pub type Unknowns = SVector<f64, UNKNOWN_COUNT>;
 
 /// Velocity along the world's axes, body rates.
@@ -77,7 +76,6 @@ pub struct IdentifiedModel<'a> {
 /// Where a search begins, and how far from there an unknown may be, one standard deviation: so wide that it does not
 /// matter for an observable quantity; those of the hubs as wide as the numbers that RotorPy has for the Hummingbird are
 /// great.
-#[must_use]
 pub fn prior() -> (Unknowns, Unknowns) {
     let start = [0.0, 0.0, 0.0, 0.0, 0.02, 1e-4, 0.0, 0.0, 0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let wide =
@@ -104,25 +102,21 @@ impl<'a> IdentifiedModel<'a> {
     }
 
     /// How long the log is, s.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.log.seconds()
     }
 
     /// The rotors' impulses for these unknowns.
-    #[must_use]
     pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {
         self.commands.impulses(unknowns[WHOLE_DELAY_INDEX], unknowns[SQUARED_LAG_INDEX])
     }
 
     /// The low-passes of the log's body rates.
-    #[must_use]
     pub fn low_passes(&self) -> Option<&LowPasses> {
         self.commands.low_passes.as_ref()
     }
 
     /// The residuals of each channel: measured less integrated. `sensed_motions` is as [`Self::sensed_motions`] has it.
-    #[must_use]
     pub fn residuals(&self, unknowns: &Unknowns, impulses: &[Impulse], sensed_motions: &[SensedMotion]) -> Channels {
         let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
         let damping = three(unknowns, DAMPING_INDEX);
@@ -162,7 +156,6 @@ impl<'a> IdentifiedModel<'a> {
 
     /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's
     /// axes.
-    #[must_use]
     pub fn sensed_motions(
         &self,
         unknowns: &Unknowns,
@@ -182,7 +175,6 @@ impl<'a> IdentifiedModel<'a> {
     }
 
     /// The strength that carries the weight over the whole flight: where a search begins.
-    #[must_use]
     pub fn balance(&self) -> f64 {
         let impulses = self.impulses(&prior().0);
         let (mut up, mut count) = (0.0, 0.0);
@@ -197,7 +189,6 @@ impl<'a> IdentifiedModel<'a> {
     }
 
     /// A hover's impulses, one for each moment but the last.
-    #[must_use]
     pub fn hovering(&self, unknowns: &Unknowns) -> Vec<Impulse> {
         let thrust = self.gravity * self.log.period / self.numbers(unknowns).strength;
         vec![Impulse { thrust, torque: Vector3::zeros() }; self.log.moments.len().saturating_sub(1)]

@@ -35,7 +35,6 @@ pub struct Whitening {
     gains: Vec<([f64; 2], f64)>,
 }
 
-/// The factors by which levels are searched.
 const LEVEL_SEARCH_FACTORS: [f64; 4] = [16.0, 4.0, 2.0, 1.4];
 
 impl Noise {
@@ -43,7 +42,6 @@ impl Noise {
     pub const START: Self = Self { wander: 30.0, time: 3.0, walk: 0.1 };
 
     /// The noise that makes `residuals`, a sample each `period`, s, most likely; searched from `self`.
-    #[must_use]
     pub fn fitted(self, residuals: &[f64], period: f64) -> Self {
         let mut best = (self.cost(residuals, period), self);
         for step in LEVEL_SEARCH_FACTORS {
@@ -87,7 +85,6 @@ impl Noise {
     }
 
     /// The filter for so many samples.
-    #[must_use]
     pub fn whitening(&self, samples: usize, period: f64) -> Whitening {
         let decay = (-period / self.time).exp();
         let (walk, fresh) = (self.walk * self.walk, self.wander * self.wander * (1.0 - decay * decay));
@@ -122,7 +119,6 @@ impl Whitening {
     }
 
     /// Innovations over their deviations in units of the white noise, without the first few.
-    #[must_use]
     pub fn whiten(&self, residuals: &[f64]) -> Vec<f64> {
         let mut white = Vec::with_capacity(residuals.len());
         self.run(residuals, |innovation, _| white.push(innovation));
@@ -131,7 +127,6 @@ impl Whitening {
     }
 
     /// b as the filter knows it at each sample.
-    #[must_use]
     pub fn wander(&self, residuals: &[f64]) -> Vec<f64> {
         let mut wander = Vec::with_capacity(residuals.len());
         self.run(residuals, |_, b| wander.push(b));

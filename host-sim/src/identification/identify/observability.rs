@@ -20,7 +20,6 @@ const SPEED_MIN_M_PER_S: [f64; 3] = [0.25, 0.25, 0.08];
 const THRUST_SCALE_RANGE: [f64; 2] = [0.3, 3.0];
 
 /// The missing excitation of a flight, a line each; empty if every quantity is excited.
-#[must_use]
 pub fn unexcited(log: &FlightLog) -> Vec<String> {
     let seconds = log.seconds();
     if seconds < FLIGHT_MIN_S {
@@ -98,7 +97,6 @@ fn reach(identified: &Quantities, (_, quantity, _, unit, _): &Asked<'_>) -> f64 
 
 /// The quantities that are known of a flight that does not tell all of them, each with its interval; none if what it
 /// tells is contradictory or implausible.
-#[must_use]
 pub fn known(identified: &Quantities) -> Vec<String> {
     let plausible = (THRUST_SCALE_RANGE[0]..=THRUST_SCALE_RANGE[1]).contains(&identified.thrust_scale.value);
     if identified.contradiction.is_some() || !plausible || identified.lag.interval[1] <= 0.0 {
@@ -115,7 +113,6 @@ pub fn known(identified: &Quantities) -> Vec<String> {
 }
 
 /// The quantities that are too uncertain or implausible to be written, a line each.
-#[must_use]
 pub fn unobservable(identified: &Quantities) -> Vec<String> {
     if let Some(contradiction) = &identified.contradiction {
         return vec![contradiction.clone()];

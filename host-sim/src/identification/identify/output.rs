@@ -27,8 +27,6 @@ pub struct Values {
 }
 
 impl Values {
-    /// The estimates.
-    #[must_use]
     pub fn estimates(identified: &Quantities) -> Self {
         let value = |quantity: &Quantity| quantity.value;
         Self {

@@ -52,7 +52,6 @@ const QUADROTOR_PLACES: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [
 const PULSE_RANGE_US: [f64; 2] = [1000.0, 2000.0];
 
 /// Whether a log is PX4's.
-#[must_use]
 pub fn is_one(log: &Ulog) -> bool {
     ["actuator_motors", "actuator_outputs"].iter().any(|name| log.topic(name).is_some())
 }

@@ -2,9 +2,9 @@
 //!
 //! A flight shows c/m and c/J_i; a scale shows m; a bifilar swing shows J_i/m; a thrust stand shows c. In logarithms
 //! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
-//! ([`super::agreement`]). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
+//! (`super::agreement`). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
-//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student_t`]). The report states
+//! Each *interval* is the estimate and so many standard uncertainties to either side (`student_t`). The report states
 //! sixteen quantities at once, and all true values together are to be in their intervals in 95 of 100 flights.
 //! Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from a few
 //! parts of a flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less
@@ -46,7 +46,6 @@ impl Quantity {
     }
 
     /// Whether a value is within the stated uncertainty.
-    #[must_use]
     pub fn holds(&self, value: f64) -> bool {
         let [least, greatest] = self.interval;
         (least..=greatest).contains(&value)

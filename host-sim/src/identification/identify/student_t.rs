@@ -4,7 +4,7 @@
 pub const PART_COUNT_RANGE: [usize; 2] = [4, 16];
 
 /// By parts, of one degree of freedom less than there are: the quantiles at 1 - 0.05 / (2 x 16) and at 99.95 %.
-const QUANTILES: [[f64; 2]; 13] = [
+const STUDENT_T_QUANTILES: [[f64; 2]; 13] = [
     [8.768, 12.924],
     [6.364, 8.610],
     [5.326, 6.869],
@@ -22,17 +22,15 @@ const QUANTILES: [[f64; 2]; 13] = [
 
 fn quantile_pair(parts: usize) -> [f64; 2] {
     let [least, most] = PART_COUNT_RANGE;
-    QUANTILES[parts.clamp(least, most) - least]
+    STUDENT_T_QUANTILES[parts.clamp(least, most) - least]
 }
 
 /// Within so many standard uncertainties a number is in all but 0.05 / 16 of all flights: sixteen at once in 95 of 100.
-#[must_use]
 pub fn coverage(parts: usize) -> f64 {
     quantile_pair(parts)[0]
 }
 
 /// Within so many in 999 of 1,000.
-#[must_use]
 pub fn consistent(parts: usize) -> f64 {
     quantile_pair(parts)[1]
 }

@@ -9,7 +9,6 @@ const LISTED_MAX: usize = 6;
 const VALUE_LETTERS_MAX: usize = 60;
 
 /// Why `new` must not take the place of `existing` unasked: the numbers that would change; none if both are the same.
-#[must_use]
 pub fn objection(existing: &str, new: &str) -> Option<String> {
     if existing == new {
         return None;

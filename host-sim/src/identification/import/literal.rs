@@ -13,7 +13,6 @@ const REPEATED_VALUES_MAX: usize = 10_000;
 
 /// What a file assigns at its outermost level, in its order: each name with its value, or with what of it cannot be
 /// worked out.
-#[must_use]
 pub fn assignments(text: &str) -> Vec<(String, Result<Value, String>)> {
     let mut found = Vec::new();
     let mut reader = Reader { text, at: 0, line: 1, depth: 0, names: HashMap::new(), repeated: 0 };

@@ -75,8 +75,7 @@ pub enum Thrust {
 }
 
 impl VehicleNumbers {
-    /// A vehicle of which `source` has said nothing yet.
-    #[must_use]
+    /// A vehicle without numbers, from `source`.
     pub fn new(source: impl Into<String>, actuation: Actuation) -> Self {
         Self {
             source: source.into(),

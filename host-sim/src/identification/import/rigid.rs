@@ -15,15 +15,13 @@ pub struct Part {
 
 impl Part {
     /// The same in the frame in which its own frame stands at `pose`.
-    #[must_use]
     pub fn placed(&self, pose: &Isometry3<f64>) -> Self {
         let rotation = pose.rotation.to_rotation_matrix();
         let inertia = rotation.matrix() * self.inertia * rotation.matrix().transpose();
         Self { mass: self.mass, centre: pose.transform_point(&self.centre.into()).coords, inertia }
     }
 
-    /// All `parts` as one; none if they weigh nothing.
-    #[must_use]
+    /// All `parts` as one; none without mass.
     pub fn together(parts: &[Self]) -> Option<Self> {
         let mass: f64 = parts.iter().map(|part| part.mass).sum();
         if mass <= 0.0 {
@@ -39,13 +37,10 @@ impl Part {
 }
 
 /// A pose from a position, m, and the angles of Rz(yaw) Ry(pitch) Rx(roll), rad.
-#[must_use]
 pub fn pose([x, y, z]: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
-/// A matrix of inertia from xx, yy, zz, xy, xz, yz.
-#[must_use]
 pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }

@@ -35,7 +35,6 @@ pub struct Frames(BTreeMap<String, Stands>);
 
 impl Frames {
     /// The whole name of what is called `name` in `model`.
-    #[must_use]
     pub fn whole_name(model: &str, name: &str) -> String {
         if model.is_empty() { name.to_owned() } else { format!("{model}{SCOPE_SEPARATOR}{name}") }
     }
@@ -55,7 +54,6 @@ impl Frames {
     }
 
     /// Whether there is a frame of this whole name.
-    #[must_use]
     pub fn contains(&self, whole_name: &str) -> bool {
         self.0.contains_key(whole_name)
     }
@@ -63,7 +61,7 @@ impl Frames {
     /// The whole name of what `model` calls `name`; `kind` is what errors call it.
     ///
     /// # Errors
-    /// If nothing is called that, or several are where the name leaves models out.
+    /// If no frame has this name, or several have it because it leaves models out.
     pub fn find(&self, model: &str, name: &str, kind: &str) -> Result<&str, String> {
         let whole = Self::whole_name(model, name);
         if let Some((found, _)) = self.0.get_key_value(&whole) {

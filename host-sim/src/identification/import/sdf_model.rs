@@ -29,7 +29,6 @@ pub struct Model {
     included: usize,
 }
 
-/// One link.
 pub struct Link {
     /// Its frame's.
     pub whole_name: String,

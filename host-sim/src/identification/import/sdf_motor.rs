@@ -15,7 +15,6 @@ const MOTOR_NUMBER: [&str; 2] = ["actuator_number", "motorNumber"];
 pub const MOTOR_NUMBERS: [&str; 6] =
     ["motorConstant", "momentConstant", "maxRotVelocity", "timeConstantUp", "timeConstantDown", "rotorDragCoefficient"];
 
-/// One motor.
 pub struct Motor {
     /// What errors call it.
     pub place: String,
@@ -32,7 +31,6 @@ pub struct Motor {
 }
 
 /// Whether an element is a motor model.
-#[must_use]
 pub fn is_motor(node: &Node) -> bool {
     let [file, name] = ["filename", "name"].map(|of| node.attribute(of).unwrap_or_default());
     node.has_tag_name("plugin")

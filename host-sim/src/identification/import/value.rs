@@ -11,20 +11,18 @@ pub enum Value {
     List(Vec<Value>),
     /// A dictionary with texts as keys, in its order.
     Dictionary(Vec<(String, Value)>),
-    /// `None`, and whatever else has no number.
+    /// `None`, and all else without a number.
     Other,
 }
 
 impl Value {
     /// What a dictionary holds at `key`.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<&Self> {
         let Self::Dictionary(entries) = self else { return None };
         entries.iter().rev().find(|(known, _)| known == key).map(|(_, value)| value)
     }
 
     /// How many values it consists of.
-    #[must_use]
     pub fn size(&self) -> usize {
         match self {
             Self::List(elements) => 1 + elements.iter().map(Self::size).sum::<usize>(),
@@ -34,7 +32,6 @@ impl Value {
     }
 
     /// The same of JSON.
-    #[must_use]
     pub fn of_json(json: serde_json::Value) -> Self {
         match json {
             serde_json::Value::Number(number) => number.as_f64().map_or(Self::Other, Self::Number),

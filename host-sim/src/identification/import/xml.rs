@@ -30,7 +30,6 @@ pub fn document(text: &str) -> Result<Document<'_>, String> {
 }
 
 /// Where an element stands, as errors call it.
-#[must_use]
 pub fn place(node: &Node) -> String {
     let line = node.document().text_pos_at(node.range().start).row;
     let name = node.attribute("name").map_or(String::new(), |name| format!(" name={name:?}"));
@@ -38,7 +37,6 @@ pub fn place(node: &Node) -> String {
 }
 
 /// The first child element called `name`.
-#[must_use]
 pub fn child<'a, 'input>(node: &Node<'a, 'input>, name: &str) -> Option<Node<'a, 'input>> {
     children(node, name).next()
 }
@@ -60,7 +58,6 @@ pub fn attribute<'a>(node: &Node<'a, '_>, name: &str) -> Result<&'a str, String>
 }
 
 /// The text of an element.
-#[must_use]
 pub fn text<'a>(node: &Node<'a, '_>) -> &'a str {
     node.text().unwrap_or("").trim()
 }
@@ -80,25 +77,16 @@ pub fn numbers<const N: usize>(node: &Node, what: &str, text: &str) -> Result<[f
 }
 
 /// One number, likewise.
-///
-/// # Errors
-/// As [`numbers`].
 pub fn number(node: &Node, what: &str, text: &str) -> Result<f64, String> {
     numbers(node, what, text).map(|[number]| number)
 }
 
 /// The number in the child element `name`; none without the element.
-///
-/// # Errors
-/// As [`numbers`].
 pub fn child_number(node: &Node, name: &str) -> Result<Option<f64>, String> {
     child(node, name).map(|child| number(&child, "", text(&child))).transpose()
 }
 
 /// The numbers of the attribute `name`; `otherwise` without it.
-///
-/// # Errors
-/// As [`numbers`].
 pub fn attribute_numbers<const N: usize>(node: &Node, name: &str, otherwise: [f64; N]) -> Result<[f64; N], String> {
     node.attribute(name).map_or(Ok(otherwise), |text| numbers(node, name, text))
 }

@@ -35,7 +35,6 @@ pub enum Number {
 
 impl Number {
     /// The number of this name; none for a message of another format.
-    #[must_use]
     pub fn from_name(kind: &str) -> Option<Self> {
         Some(match kind {
             "uint64_t" => Self::Unsigned(8),
@@ -53,7 +52,6 @@ impl Number {
     }
 
     /// Bytes.
-    #[must_use]
     pub fn size(self) -> usize {
         match self {
             Self::Unsigned(size) | Self::Signed(size) => size,
@@ -63,7 +61,6 @@ impl Number {
     }
 
     /// The number that these bytes begin with.
-    #[must_use]
     pub fn read(self, bytes: &[u8]) -> Option<f64> {
         let bytes = bytes.get(..self.size())?;
         let mut eight = [0; 8];
@@ -81,13 +78,11 @@ impl Number {
 
 impl Field {
     /// The byte behind it.
-    #[must_use]
     pub fn end(&self) -> usize {
         self.at + self.number.size()
     }
 
     /// Its value in a message; none if that ends before it, as PX4's do before padding.
-    #[must_use]
     pub fn read(&self, message: &[u8]) -> Option<f64> {
         self.number.read(message.get(self.at..)?)
     }

@@ -14,12 +14,12 @@ use super::{HEAD_BYTES, MAGIC};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Message B: whether something is appended, which nothing here is interested in, and what no reader of this version
+/// Message B: whether data are appended, which is ignored here, and flags that no reader of this version
 /// understands.
 const FLAG_WORDS: [usize; 2] = [8, 16];
 const APPENDED_FLAG: u8 = 1;
 
-/// The kinds of messages of the format's version 1, with those that mean nothing here; and Z, with which the firmware
+/// The kinds of messages of the format's version 1, with those that are ignored here; and Z, with which the firmware
 /// fills the sectors of a card.
 const MESSAGE_KINDS: &[u8] = b"FIMPQADLCORSBZ";
 
@@ -35,7 +35,6 @@ pub struct Series {
 
 impl Series {
     /// The columns of these names, together; none if one is missing.
-    #[must_use]
     pub fn columns(&self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
         let place = |name: &&str| self.names.iter().position(|found| found == name);
         let places = names.iter().map(place).collect::<Option<Vec<usize>>>()?;
@@ -58,13 +57,11 @@ impl Series {
     }
 
     /// How many rows it has.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
     /// Whether it has none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -77,7 +74,6 @@ pub struct Text {
     pub level: u8,
     /// us.
     pub time: u64,
-    /// The words.
     pub words: String,
 }
 
@@ -101,7 +97,7 @@ impl Damage {
     }
 }
 
-/// Stands behind what is said of a file; nothing, where all of it was read.
+/// Follows what is said of a file; empty where all of it was read.
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { places, bytes, first } = self;
@@ -174,7 +170,6 @@ impl Ulog {
     }
 
     /// A topic, if there are records of it.
-    #[must_use]
     pub fn topic(&self, name: &str) -> Option<&Series> {
         self.topics.get(name).filter(|series| !series.is_empty())
     }

@@ -23,7 +23,6 @@ pub struct Writer(Vec<u8>);
 
 impl Writer {
     /// Begins a file of these topics, whose numbers are their places; the first record is of `time`, us.
-    #[must_use]
     pub fn new(time: u64, topics: &[Topic], information: &[(&str, &str)], parameters: &[(&str, f64)]) -> Self {
         let mut writer = Self([&MAGIC[..], &[FORMAT_VERSION], &time.to_le_bytes()].concat());
         writer.message(b'B', &[&FLAG_BYTES]);
@@ -66,7 +65,6 @@ impl Writer {
     }
 
     /// The file.
-    #[must_use]
     pub fn finish(self) -> Vec<u8> {
         self.0
     }

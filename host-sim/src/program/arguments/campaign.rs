@@ -149,7 +149,6 @@ impl CampaignArguments {
     }
 
     /// Where the results go, of a campaign or a flight of this name.
-    #[must_use]
     pub fn directory(&self, name: &str) -> PathBuf {
         let parent = if self.replay.is_some() { "flights" } else { "campaigns" };
         self.out.clone().unwrap_or_else(|| Path::new(parent).join(name))

@@ -182,9 +182,9 @@ impl HilArguments {
     ///
     /// # Errors
     /// Names the argument if it is no valid time.
-    pub fn patience(&self) -> Result<Duration, String> {
-        let patience = Duration::try_from_secs_f64(self.patience).ok().filter(|patience| !patience.is_zero());
-        patience.ok_or_else(|| format!("--patience: must be greater than zero, found {}", self.patience))
+    pub fn timeout(&self) -> Result<Duration, String> {
+        let timeout = Duration::try_from_secs_f64(self.patience).ok().filter(|timeout| !timeout.is_zero());
+        timeout.ok_or_else(|| format!("--patience: must be greater than zero, found {}", self.patience))
     }
 
     /// The session's times.

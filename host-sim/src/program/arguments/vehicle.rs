@@ -65,14 +65,12 @@ missing or are refused, 2 if the source cannot be read or the file not written."
 
 impl VehicleArguments {
     /// The format that is asked for.
-    #[must_use]
     pub fn format(&self) -> Option<Format> {
         let named = |name: &String| Format::ALL.into_iter().find(|(known, _)| known == name);
         self.format.as_ref().and_then(named).map(|(_, format)| format)
     }
 
     /// How the file is to be written.
-    #[must_use]
     pub fn wishes(&self) -> Wishes {
         Wishes { given: self.given.clone(), neglect_products: self.neglect_products }
     }

@@ -16,7 +16,6 @@ pub struct Axis {
 impl Axis {
     /// The vertical axis of `plot`, whose curves reach so far: what is shown, what is proven, other bounds unless they
     /// would flatten it, and room beyond.
-    #[must_use]
     pub fn vertical(plot: &Plot, values: impl Iterator<Item = f64>) -> Self {
         let logarithmic = plot.logarithmic;
         let seen = values.filter(|value| value.is_finite() && (!logarithmic || *value > LOGARITHMIC_AXIS_MIN));
@@ -52,7 +51,6 @@ impl Axis {
     }
 
     /// How far along the axis a value lies, from 0 to 1.
-    #[must_use]
     pub fn share(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value.max(self.least) / self.least).ln() / (self.greatest / self.least).ln()
@@ -62,7 +60,6 @@ impl Axis {
     }
 
     /// Round numbers between the ends, about so many at most, each as it is written.
-    #[must_use]
     pub fn marks(&self, most: f64) -> Vec<(f64, String)> {
         if self.logarithmic {
             let (low, high) =

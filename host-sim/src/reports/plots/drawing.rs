@@ -68,7 +68,6 @@ impl Inks {
     }
 }
 
-/// A drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     /// Width and height, pixels.
@@ -79,7 +78,6 @@ pub struct Drawing {
 
 impl Drawing {
     /// An empty one.
-    #[must_use]
     pub const fn new(size: (u32, u32)) -> Self {
         Self { size, shapes: Vec::new() }
     }
@@ -95,7 +93,6 @@ impl Drawing {
     }
 
     /// As SVG; `about` says what it shows to whoever does not see it.
-    #[must_use]
     pub fn svg(&self, inks: Inks, about: &str) -> String {
         let ((width, height), about) = (self.size, escaped(about));
         let named = match inks {
@@ -140,7 +137,6 @@ impl Drawing {
     }
 
     /// As pixels; none if it has none.
-    #[must_use]
     pub fn pixels(&self) -> Option<Pixmap> {
         let mut pixels = Pixmap::new(self.size.0, self.size.1)?;
         pixels.fill(paint(Color::Card));
@@ -169,7 +165,6 @@ impl Drawing {
 }
 
 /// Red, green and blue of a colour of the light scheme.
-#[must_use]
 pub fn channels(color: Color) -> [u8; 3] {
     let value = u32::from_str_radix(&color.hex()[1..], 16).unwrap_or(0).to_be_bytes();
     [value[1], value[2], value[3]]

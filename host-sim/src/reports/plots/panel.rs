@@ -25,7 +25,6 @@ pub struct Area {
 const LETTER_WIDTH_SHARE: f64 = 0.56;
 
 /// The plot alone, for a page that has its title.
-#[must_use]
 pub fn picture(plot: &Plot, tracks: &[Track]) -> String {
     let mut drawing = Drawing::new((420, 250));
     draw(&mut drawing, Area { corner: (0.0, 0.0), size: (420.0, 250.0), em: 12.0, titled: false }, plot, tracks);

@@ -30,7 +30,6 @@ pub struct Pose {
 }
 
 /// The poses of a track that has log.csv's columns; none of any other.
-#[must_use]
 pub fn poses(track: &Track) -> Vec<Pose> {
     let names = ["px", "py", "pz", "pdx", "pdy", "pdz", "qw", "qx", "qy", "qz"];
     let columns = names.map(|name| track.column(name).unwrap_or_default());
@@ -63,7 +62,6 @@ pub struct View {
 }
 
 /// Draws the whole flight.
-#[must_use]
 pub fn picture(track: &Track) -> Drawing {
     let poses = poses(track);
     let view = View::new(&poses, SIZE_PIXELS, STILL_ARM_SHARE);
@@ -106,7 +104,6 @@ fn apart(all: &[Pose], distance: f64) -> Vec<&Pose> {
 
 impl View {
     /// A view of `size` pixels that holds all of `poses`, the vehicle's half diagonal that share of their extent.
-    #[must_use]
     pub fn new(poses: &[Pose], size: (u32, u32), arm: f64) -> Self {
         let (azimuth, elevation) = (VIEW_DIRECTION_DEG.0.to_radians(), VIEW_DIRECTION_DEG.1.to_radians());
         let right = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);

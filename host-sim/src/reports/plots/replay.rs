@@ -67,7 +67,6 @@ pub fn gif(track: &Track, things: &[Vec<Vector3<f64>>], stretch: Stretch) -> Res
 }
 
 /// The last of the poses, the path up to it and `things`, in a picture that also holds `around`.
-#[must_use]
 pub fn still(flown: &[Pose], things: &[Vec<Vector3<f64>>], around: &[Vector3<f64>]) -> Drawing {
     let held = [things.concat(), around.to_vec()];
     let mut drawing = Drawing::new(SIZE_PIXELS);
@@ -113,7 +112,7 @@ fn changed(pixels: &[u8], before: Option<&[u8]>) -> Frame<'static> {
     let different = |x: usize, y: usize| !same(y * width + x);
     let rows: Vec<usize> = (0..height).filter(|y| (0..width).any(|x| different(x, *y))).collect();
     let columns: Vec<usize> = (0..width).filter(|x| rows.iter().any(|y| different(*x, *y))).collect();
-    // Where nothing changed one pixel says so.
+    // An unchanged picture is one pixel.
     let (left, right) = (columns.first().copied().unwrap_or(0), columns.last().copied().unwrap_or(0));
     let (top, bottom) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
     let places = (top..=bottom).flat_map(|y| (left..=right).map(move |x| y * width + x));

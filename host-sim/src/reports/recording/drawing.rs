@@ -3,7 +3,6 @@
 use nalgebra::{Quaternion, Vector3};
 use serde_json::{Value, json};
 
-/// A time.
 pub fn stamp(time_us: u64) -> Value {
     json!({ "sec": time_us / 1_000_000, "nsec": time_us % 1_000_000 * 1_000 })
 }

@@ -12,9 +12,6 @@ pub const FLIGHT_TOPICS: &[Topic] = &[("/estimates", ESTIMATES_SCHEMA)];
 
 impl<W: Write> Recording<W> {
     /// Adds a tick.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn take(&mut self, tick: &Tick) -> io::Result<()> {
         let (now, s, d) = (tick.time_us, &tick.state, &tick.diagnostics);
         self.truth(now, s)?;

@@ -24,7 +24,6 @@ macro_rules! parts {
     };
 }
 
-/// A pose in a frame.
 pub const POSE_IN_FRAME: Schema = Schema {
     name: "foxglove.PoseInFrame",
     text: concat!(

@@ -14,7 +14,6 @@ pub const SESSION_TOPICS: &[Topic] = &[("/state", STATE_SCHEMA), ("/log", LOG_SC
 /// Foxglove's.
 const INFORMATION_LEVEL: u8 = 2;
 
-/// One moment of a session.
 #[derive(Debug, Clone)]
 pub struct SessionMoment {
     /// The vehicle's time, us.
@@ -31,9 +30,6 @@ pub struct SessionMoment {
 
 impl<W: Write> Recording<W> {
     /// Adds a moment.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn moment(&mut self, moment: &SessionMoment) -> io::Result<()> {
         let SessionMoment { now, truth, rotors, report, voltage } = moment;
         let now = *now;
@@ -69,9 +65,6 @@ impl<W: Write> Recording<W> {
     }
 
     /// Adds a text that the vehicle said at `time`, us.
-    ///
-    /// # Errors
-    /// As the writer's.
     pub fn write_text(&mut self, time: u64, text: &str) -> io::Result<()> {
         let log = json!({
             "timestamp": stamp(time),

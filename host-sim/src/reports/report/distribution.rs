@@ -34,7 +34,6 @@ pub struct Distribution {
 
 impl Distribution {
     /// Its data for the page's program.
-    #[must_use]
     pub fn json(&self) -> Value {
         let sorted: Vec<Vec<f64>> = self.groups.iter().map(|(_, values)| finite(values)).collect();
         let axis = self.axis(&sorted);
@@ -50,7 +49,6 @@ impl Distribution {
     }
 
     /// Quantiles of each group, and how many exceed the bound.
-    #[must_use]
     pub fn table(&self) -> Table {
         let head =
             ["group", "flights", "least", "median", "95 %", "99 %", "greatest", "without a value", "above the bound"];

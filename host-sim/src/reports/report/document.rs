@@ -1,11 +1,17 @@
 //! A scenario's own text as tables, section by section, its author's comments beside the values.
 
+use super::page::Block;
 use super::prose::{Cell, Table};
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
+/// The scenario of a page: its tables under `title`, and its text as it was read.
+pub fn scenario(title: &str, text: &str) -> Vec<Block> {
+    let listing = Block::Listing("The file as it was read".into(), text.to_owned());
+    vec![Block::Folded(title.into(), tables(text, "scenario")), listing]
+}
+
 /// One table for each section of `toml`, the keys before the first section under `top`; none if it is no TOML.
-#[must_use]
-pub fn tables(toml: &str, top: &str) -> Vec<Table> {
+fn tables(toml: &str, top: &str) -> Vec<Table> {
     let mut tables = sections(toml, top);
     for table in &mut tables {
         // A section without comments needs no room for them.

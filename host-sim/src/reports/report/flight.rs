@@ -1,7 +1,7 @@
 //! The page of one flight: what `fly` writes beside its log.
 
-pub mod columns;
-pub mod plots;
+pub(crate) mod columns;
+pub(crate) mod plots;
 
 use super::document;
 use super::page::{Block, Page, Section};
@@ -24,7 +24,6 @@ const CERTIFIED_MEANING: &str = " Certified means: for every reference within th
 
 /// A flight that is over.
 pub struct Flight<'a> {
-    /// The scenario.
     pub scenario: &'a Scenario,
     /// The file it was read from.
     pub text: &'a str,
@@ -34,21 +33,18 @@ pub struct Flight<'a> {
     pub verdict: &'a Verdict,
     /// The same in a sentence.
     pub certification: &'a str,
-    /// The claims.
     pub claims: &'a [Claim],
     /// The flight's figures.
     pub flown: &'a FlightExtremes,
 }
 
 /// A recorder of everything that the page shows of a flight of `scenario`.
-#[must_use]
 pub fn recorder(scenario: &Scenario) -> ReportRecorder {
     let timing = &scenario.timing;
     ReportRecorder::new(timing.ticks, timing.period(), columns::columns(scenario))
 }
 
 /// The page of a flight, and beside it the figures by the names of their files.
-#[must_use]
 pub fn page(flight: &Flight, recorder: ReportRecorder) -> (Page, [(&'static str, String); 4]) {
     let Flight { scenario, law, verdict, claims, flown, .. } = flight;
     let ticks_per_row = recorder.ticks_per_row();
@@ -73,16 +69,7 @@ pub fn page(flight: &Flight, recorder: ReportRecorder) -> (Page, [(&'static str,
                 Block::Table(loops(verdict)),
             ],
         ),
-        (
-            "Scenario",
-            vec![
-                Block::Folded(
-                    "Vehicle, gains and all else, section by section".into(),
-                    document::tables(flight.text, "scenario"),
-                ),
-                Block::Listing("The file as it was read".into(), flight.text.into()),
-            ],
-        ),
+        ("Scenario", document::scenario("Vehicle, gains and all else, section by section", flight.text)),
     ];
     let page = Page {
         title: scenario.name.clone(),

@@ -85,7 +85,6 @@ struct Figures {
 
 impl Page {
     /// The page as one self-contained HTML file.
-    #[must_use]
     pub fn html(&self) -> String {
         let mut figures = Figures::default();
         let mut body = String::new();

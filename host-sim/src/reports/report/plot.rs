@@ -1,6 +1,7 @@
 //! Curves over time and what bounds them, with a table of their extremes for whoever reads rather than looks.
 //!
-//! The one description of a plot: the page's program draws it from [`Plot::json`], [`crate::reports::plots::panel`] as SVG.
+//! The one description of a plot: the page's program draws it from [`Plot::json`], `crate::reports::plots::panel` as
+//! SVG.
 
 use super::prose::{Cell, Table};
 use super::track::Track;
@@ -48,13 +49,11 @@ impl Color {
         [Self::Blue, Self::Vermilion, Self::Green, Self::Orange, Self::Purple, Self::Sky];
 
     /// The colour of the curve at this place.
-    #[must_use]
     pub fn at_place(place: usize) -> Self {
         Self::COLOR_CYCLE[place % Self::COLOR_CYCLE.len()]
     }
 
     /// What the style sheet calls it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Blue => "blue",
@@ -74,7 +73,6 @@ impl Color {
     }
 
     /// Its value in the light scheme: `#rrggbb`.
-    #[must_use]
     pub fn hex(self) -> &'static str {
         let value = STYLE_SHEET.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
         value.unwrap_or("#000000")
@@ -95,7 +93,6 @@ pub enum LinePattern {
 
 impl LinePattern {
     /// What the style sheet calls it.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Solid => "solid",
@@ -124,19 +121,16 @@ pub struct Curve {
 
 impl Curve {
     /// A full line from the page's first track.
-    #[must_use]
     pub fn new(column: impl Into<String>, label: impl Into<String>, color: Color) -> Self {
         Self { track: 0, column: column.into(), label: label.into(), color, line: LinePattern::Solid, broad: false }
     }
 
     /// The same, dashed.
-    #[must_use]
     pub fn dashed(self) -> Self {
         Self { line: LinePattern::Dashed, ..self }
     }
 
     /// The same, broad.
-    #[must_use]
     pub fn broad(self) -> Self {
         Self { broad: true, ..self }
     }
@@ -164,7 +158,7 @@ pub struct Plot {
     pub unit: String,
     /// Whether the vertical axis shows decades.
     pub logarithmic: bool,
-    /// Whether the vertical axis reaches zero though nothing drawn comes near.
+    /// Whether the vertical axis reaches zero though no curve comes near.
     pub from_zero: bool,
     /// What is drawn.
     pub curves: Vec<Curve>,
@@ -174,32 +168,27 @@ pub struct Plot {
 
 impl Plot {
     /// A plot without bounds.
-    #[must_use]
     pub fn new(title: &str, unit: &str, curves: Vec<Curve>) -> Self {
         let (title, unit) = (title.to_owned(), unit.to_owned());
         Self { title, unit, logarithmic: false, from_zero: false, curves, bounds: Vec::new() }
     }
 
     /// The same with decades on its vertical axis.
-    #[must_use]
     pub fn logarithmic(self) -> Self {
         Self { logarithmic: true, ..self }
     }
 
     /// The same with zero on its vertical axis.
-    #[must_use]
     pub fn from_zero(self) -> Self {
         Self { from_zero: true, ..self }
     }
 
     /// The same within `bounds`.
-    #[must_use]
     pub fn within(self, bounds: Vec<Bound>) -> Self {
         Self { bounds, ..self }
     }
 
     /// What the page's program reads.
-    #[must_use]
     pub fn json(&self) -> Value {
         let curves = self.curves.iter().map(|curve| {
             json!({ "track": curve.track, "column": curve.column, "label": curve.label, "color": curve.color.name(),
@@ -213,7 +202,6 @@ impl Plot {
     }
 
     /// Least, greatest and last value of each curve, then the bounds.
-    #[must_use]
     pub fn table(&self, tracks: &[Track]) -> Table {
         let mut table =
             Table::new(format!("{}, in figures", self.title), &["curve", "least", "greatest", "at the end"]);
@@ -234,7 +222,6 @@ impl Plot {
     }
 
     /// A value with the plot's unit.
-    #[must_use]
     pub fn measure(&self, value: f64) -> String {
         match (value.is_finite(), self.unit.as_str()) {
             (false, _) => "none".to_owned(),

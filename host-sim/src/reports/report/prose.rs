@@ -6,7 +6,6 @@ use std::fmt::Write;
 /// A quantity with its value, as a reader meets it first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fact {
-    /// Its name.
     pub name: String,
     /// Its value with its unit.
     pub value: String,
@@ -14,7 +13,6 @@ pub struct Fact {
 
 impl Fact {
     /// A fact.
-    #[must_use]
     pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self { name: name.into(), value: value.into() }
     }
@@ -27,19 +25,16 @@ pub enum Cell {
     Text(String),
     /// A number with its unit, aligned to the right.
     Number(String),
-    /// Whether something holds; none where nothing is required.
+    /// Whether a claim holds; none without a requirement.
     Verdict(Option<bool>),
 }
 
 impl Cell {
     /// Words.
-    #[must_use]
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
     }
 
-    /// A number.
-    #[must_use]
     pub fn number(text: impl Into<String>) -> Self {
         Self::Number(text.into())
     }
@@ -64,7 +59,6 @@ fn unbroken(text: &str) -> String {
 }
 
 /// How a verdict looks and what it says. Its sign is the style sheet's, so that colour never stands alone.
-#[must_use]
 pub fn verdict_words(verdict: Option<bool>) -> (&'static str, &'static str) {
     match verdict {
         Some(true) => ("holds", "holds"),
@@ -86,13 +80,11 @@ pub struct Table {
 
 impl Table {
     /// A table without rows.
-    #[must_use]
     pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
         Self { caption: caption.into(), head: head.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
     }
 
     /// As HTML. It scrolls sideways, by keyboard too, where a page is too narrow for it.
-    #[must_use]
     pub fn html(&self) -> String {
         let caption = escaped(&self.caption);
         let mut html = format!(
@@ -125,7 +117,6 @@ impl Table {
 }
 
 /// Facts side by side.
-#[must_use]
 pub fn facts(facts: &[Fact]) -> String {
     let list = facts.iter().fold(String::new(), |mut list, Fact { name, value }| {
         let _ = write!(list, "<div><dt>{}</dt><dd>{}</dd></div>", escaped(name), escaped(value));
@@ -135,7 +126,6 @@ pub fn facts(facts: &[Fact]) -> String {
 }
 
 /// A text as it stands, folded until the reader opens it.
-#[must_use]
 pub fn listing(name: &str, text: &str) -> String {
     format!("<details><summary>{}</summary><pre tabindex=\"0\">{}</pre></details>\n", escaped(name), escaped(text))
 }

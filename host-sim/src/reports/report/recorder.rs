@@ -14,7 +14,6 @@ pub const ROWS_MAX: u64 = 4000;
 
 /// The source of a column.
 pub struct Instant<'a> {
-    /// The tick.
     pub tick: &'a Tick,
     /// Yaw, degrees, without jumps.
     pub yaw: f64,
@@ -55,7 +54,6 @@ pub struct ReportRecorder {
 
 impl ReportRecorder {
     /// For a flight of so many ticks, `period` s apart.
-    #[must_use]
     pub fn new(ticks: u64, period: f64, columns: Vec<(String, Kept, Read)>) -> Self {
         let stretch = if ticks <= ROWS_MAX { 1 } else { 2 * ticks.div_ceil(ROWS_MAX) };
         let column = |(name, kept, read)| Column { name, kept, read, held: None, values: Vec::new() };
@@ -63,7 +61,6 @@ impl ReportRecorder {
     }
 
     /// How many ticks lie between two rows.
-    #[must_use]
     pub fn ticks_per_row(&self) -> u64 {
         self.stretch.div_ceil(2)
     }
@@ -89,8 +86,6 @@ impl ReportRecorder {
         self.seen += 1;
     }
 
-    /// The track.
-    #[must_use]
     pub fn finish(self, name: &str) -> Track {
         let mut columns: Vec<(String, Vec<f32>)> = Vec::with_capacity(self.columns.len());
         for mut column in self.columns {

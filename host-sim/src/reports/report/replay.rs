@@ -31,7 +31,6 @@ pub struct Replay {
 
 impl Replay {
     /// Its data for the page's program.
-    #[must_use]
     pub fn json(&self) -> Value {
         let bodies = self
             .bodies

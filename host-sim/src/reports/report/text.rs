@@ -3,7 +3,6 @@
 use serde_json::Value;
 
 /// `text` as HTML, for elements and for quoted attributes.
-#[must_use]
 pub fn escaped(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut safe, character| {
         match character {
@@ -18,15 +17,13 @@ pub fn escaped(text: &str) -> String {
     })
 }
 
-/// `value` as JSON that may stand inside a `<script>` element: nothing in it can end that element or open a comment.
-#[must_use]
+/// `value` as JSON that may stand inside a `<script>` element: it cannot end that element or open a comment.
 pub fn json(value: &Value) -> String {
     // These characters stand in strings only.
     value.to_string().replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
 /// `text` as the name of a place in the page: letters, digits and hyphens.
-#[must_use]
 pub fn anchor(text: &str) -> String {
     let kept = text.to_lowercase();
     kept.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-")

@@ -22,19 +22,16 @@ pub struct Track {
 
 impl Track {
     /// The values of a column.
-    #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f32]> {
         self.columns.iter().find(|(found, _)| found == name).map(|(_, values)| values.as_slice())
     }
 
     /// One row after the last, s: a flight of 40 s ends at 40.
-    #[must_use]
     pub fn end(&self) -> f64 {
         self.start + self.step * self.columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0) as f64
     }
 
     /// The same without what comes after `end`, s.
-    #[must_use]
     pub fn until(&self, end: f64) -> Self {
         let rows = ((end - self.start) / self.step + 1e-6).max(0.0) as usize;
         let cut = |(name, values): &(String, Vec<f32>)| (name.clone(), values[..rows.min(values.len())].to_vec());
@@ -42,7 +39,6 @@ impl Track {
     }
 
     /// Columns of points (s, value) that are evenly spaced and begin together.
-    #[must_use]
     pub fn of_points(columns: Vec<(String, Vec<(f64, f64)>)>) -> Self {
         let longest = columns.iter().map(|(_, points)| points.as_slice()).max_by_key(|points| points.len());
         let (start, step) = match longest.unwrap_or_default() {
@@ -56,7 +52,6 @@ impl Track {
     }
 
     /// What the page's program reads.
-    #[must_use]
     pub fn json(&self) -> Value {
         let columns: Map<String, Value> =
             self.columns.iter().map(|(name, values)| (name.clone(), Value::from(encoded(values)))).collect();
@@ -65,7 +60,6 @@ impl Track {
 }
 
 /// Base64 of little-endian single precision.
-#[must_use]
 pub fn encoded(values: &[f32]) -> String {
     STANDARD.encode(values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>())
 }

@@ -15,7 +15,6 @@ pub struct HilPace {
 
 impl HilPace {
     /// Commands that should come every `period` microseconds.
-    #[must_use]
     pub fn new(period: u64) -> Self {
         Self { period, ticks: 0, last: None, range: None, missed: 0 }
     }
@@ -34,7 +33,6 @@ impl HilPace {
     }
 
     /// Commands so far.
-    #[must_use]
     pub fn ticks(&self) -> u64 {
         self.ticks
     }

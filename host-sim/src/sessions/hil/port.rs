@@ -31,7 +31,7 @@ pub enum PortError {
     NoConnection(Address, Duration, Option<io::Error>),
     /// The address cannot be used.
     Address(String, io::Error),
-    /// The other side said nothing for so long.
+    /// The other side was silent for so long.
     Silent(Duration),
     /// The connection broke.
     Broken(io::Error),
@@ -62,31 +62,31 @@ pub struct SimulatorPort {
     reader: BufReader<TcpStream>,
     parser: Parser,
     writer: TcpStream,
-    patience: Duration,
+    timeout: Duration,
     interrupt: Interrupt,
     encoder: Encoder,
     bytes: Vec<u8>,
 }
 
 impl SimulatorPort {
-    /// Finds the other side; `patience` bounds this and every later wait.
+    /// Finds the other side; `timeout` bounds this and every later wait.
     ///
     /// # Errors
     /// [`PortError`] if the other side does not come in time or the address cannot be used.
-    pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
-        let stream = connected(address, patience, interrupt)?;
-        Self::new(stream, patience, interrupt.clone()).map_err(PortError::Broken)
+    pub fn open(address: &Address, timeout: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
+        let stream = connected(address, timeout, interrupt)?;
+        Self::new(stream, timeout, interrupt.clone()).map_err(PortError::Broken)
     }
 
-    fn new(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
+    fn new(stream: TcpStream, timeout: Duration, interrupt: Interrupt) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
-        stream.set_read_timeout(Some(POLL_PERIOD.min(patience)))?;
-        stream.set_write_timeout(Some(patience))?;
+        stream.set_read_timeout(Some(POLL_PERIOD.min(timeout)))?;
+        stream.set_write_timeout(Some(timeout))?;
         let writer = stream.try_clone()?;
         let reader = BufReader::new(stream);
         let (parser, encoder, bytes) = (Parser::new(), Encoder::default(), Vec::new());
-        Ok(Self { reader, parser, writer, patience, interrupt, encoder, bytes })
+        Ok(Self { reader, parser, writer, timeout, interrupt, encoder, bytes })
     }
 
     /// The next command; none when the other side has gone. Other messages, and noise, are skipped.
@@ -103,8 +103,8 @@ impl SimulatorPort {
                 Err(error) => match error.kind() {
                     ErrorKind::ConnectionReset => return Ok(None),
                     ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {
-                        if last.elapsed() >= self.patience {
-                            return Err(PortError::Silent(self.patience));
+                        if last.elapsed() >= self.timeout {
+                            return Err(PortError::Silent(self.timeout));
                         }
                         continue;
                     }
@@ -144,15 +144,15 @@ fn interrupted(interrupt: &Interrupt) -> Result<(), PortError> {
     interrupt.signal().map_or(Ok(()), |signal| Err(PortError::Interrupted(signal)))
 }
 
-/// A connection to `address`, made within `patience`.
-pub(super) fn connected(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
+/// A connection to `address`, made within `timeout`.
+pub(super) fn connected(address: &Address, timeout: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     match address {
-        Address::Connect(to) => connect(to, address, patience, interrupt),
-        Address::Listen(on) => listen(on, address, patience, interrupt),
+        Address::Connect(to) => connect(to, address, timeout, interrupt),
+        Address::Listen(on) => listen(on, address, timeout, interrupt),
     }
 }
 
-fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
+fn connect(to: &str, address: &Address, timeout: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     let started = Instant::now();
     loop {
         let (candidates, mut failed) = match to.to_socket_addrs() {
@@ -162,7 +162,7 @@ fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrup
         };
         for candidate in candidates {
             interrupted(interrupt)?;
-            let left = patience.saturating_sub(started.elapsed()).max(POLL_PERIOD);
+            let left = timeout.saturating_sub(started.elapsed()).max(POLL_PERIOD);
             match TcpStream::connect_timeout(&candidate, left.min(CONNECT_TIMEOUT)) {
                 Ok(stream) => return Ok(stream),
                 Err(error) if error.kind() == ErrorKind::InvalidInput => {
@@ -172,14 +172,14 @@ fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrup
             }
         }
         interrupted(interrupt)?;
-        if started.elapsed() >= patience {
-            return Err(PortError::NoConnection(address.clone(), patience, failed));
+        if started.elapsed() >= timeout {
+            return Err(PortError::NoConnection(address.clone(), timeout, failed));
         }
         std::thread::sleep(POLL_PERIOD);
     }
 }
 
-fn listen(on: &str, address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
+fn listen(on: &str, address: &Address, timeout: Duration, interrupt: &Interrupt) -> Result<TcpStream, PortError> {
     let refuse = |error| PortError::Address(on.to_owned(), error);
     let listener = TcpListener::bind(on).map_err(refuse)?;
     listener.set_nonblocking(true).map_err(refuse)?;
@@ -189,8 +189,8 @@ fn listen(on: &str, address: &Address, patience: Duration, interrupt: &Interrupt
         match listener.accept() {
             Ok((stream, _)) => return Ok(stream),
             Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(PortError::Broken(error)),
-            Err(_) if started.elapsed() >= patience => {
-                return Err(PortError::NoConnection(address.clone(), patience, None));
+            Err(_) if started.elapsed() >= timeout => {
+                return Err(PortError::NoConnection(address.clone(), timeout, None));
             }
             Err(_) => std::thread::sleep(POLL_PERIOD),
         }

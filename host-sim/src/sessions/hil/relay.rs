@@ -62,13 +62,10 @@ pub struct Relay {
 
 impl Relay {
     /// Connects to the line at `address` and opens the ports.
-    ///
-    /// # Errors
-    /// [`RelayError`].
-    pub fn open(address: &str, ports: &Ports, patience: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
+    pub fn open(address: &str, ports: &Ports, timeout: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
         let clients = ClientPort::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
         let address = Address::Connect(address.to_owned());
-        let line = connected(&address, patience, interrupt).map_err(RelayError::Line)?;
+        let line = connected(&address, timeout, interrupt).map_err(RelayError::Line)?;
         let ready = || {
             line.set_nodelay(true)?;
             line.set_read_timeout(Some(POLL_PERIOD))?;
@@ -82,13 +79,11 @@ impl Relay {
     }
 
     /// The texts since the last time.
-    #[must_use]
     pub fn texts(&self) -> Vec<String> {
         std::mem::take(&mut locked(&self.received).texts)
     }
 
     /// The vehicle's state by its last heartbeat.
-    #[must_use]
     pub fn state(&self) -> &'static str {
         match locked(&self.received).state {
             None => "silent",

@@ -26,7 +26,6 @@ pub struct Senses {
 
 impl Senses {
     /// The scenario's, of a vehicle at rest.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let gravity = scenario.configuration.vehicle().gravity;
         let instruments = scenario.reality.estimator.map(|what| {
@@ -39,7 +38,6 @@ impl Senses {
 
     /// How many states of a period they must be shown, evenly spaced. With `[estimator]` a scenario's plant steps fall
     /// on every millisecond: its file is refused otherwise.
-    #[must_use]
     pub fn instants(&self) -> u64 {
         if self.instruments.is_some() { self.period / SAMPLE_PERIOD_US } else { 1 }
     }

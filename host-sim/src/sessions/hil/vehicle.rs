@@ -85,7 +85,6 @@ impl HilVehicle {
     }
 
     /// The present state.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         self.plant.state()
     }

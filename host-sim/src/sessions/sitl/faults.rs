@@ -109,19 +109,16 @@ pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
     /// Whether a part has failed at `now`, us.
-    #[must_use]
     pub fn has(&self, part: FaultyPart, now: u64) -> bool {
         self.active(now).any(|failed| failed == part)
     }
 
     /// The battery's voltage at `now`, us, if a fault sets it.
-    #[must_use]
     pub fn voltage(&self, now: u64) -> Option<f32> {
         self.active(now).find_map(|part| if let FaultyPart::Battery(volts) = part { Some(volts) } else { None })
     }
 
     /// The share of its commanded thrust that a rotor, counted from 0, delivers at `now`, us.
-    #[must_use]
     pub fn thrust_left(&self, rotor: usize, now: u64) -> f64 {
         let left = self.active(now).filter_map(|part| match part {
             FaultyPart::Rotor(failed, left) if failed == rotor => Some(left),

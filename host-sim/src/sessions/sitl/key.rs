@@ -35,7 +35,6 @@ fn parsed(digits: &[u8]) -> Option<Key> {
 }
 
 /// The desk's time as stamps count it.
-#[must_use]
 pub fn now() -> Stamp {
     let since = SystemTime::now().duration_since(UNIX_EPOCH + EPOCH_2015).unwrap_or_default();
     since.as_micros() as Stamp / 10

@@ -28,7 +28,6 @@ impl SessionRecord {
     }
 
     /// When the next moment is due, us.
-    #[must_use]
     pub fn due(&self) -> u64 {
         self.due
     }

@@ -1,4 +1,4 @@
-//! A session of `sitl`: what it is told, and how it ended.
+//! The options of a `sitl` session, and its end.
 
 use super::faults::Fault;
 use super::simulated_hardware::PoseSource;
@@ -21,7 +21,7 @@ pub struct SitlSession {
     pub duration: Option<f64>,
     /// Where its poses come from.
     pub poses: PoseSource,
-    /// The faults.
+    /// To be injected.
     pub faults: Vec<Fault>,
     /// Where parameters are kept.
     pub parameters: Option<PathBuf>,

@@ -133,21 +133,16 @@ impl SimulatedHardware {
     }
 
     /// Where the vehicle really is.
-    #[must_use]
     pub fn state(&self) -> BodyState {
         *self.0.body.borrow().vehicle.state()
     }
 
     /// Its rotors' true thrusts, N.
-    #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         self.0.body.borrow().vehicle.thrusts()
     }
 
     /// Whether its motion is still made of numbers.
-    ///
-    /// # Errors
-    /// [`Diverged`].
     pub fn check(&self) -> Result<(), Diverged> {
         self.0.body.borrow().diverged.map_or(Ok(()), Err)
     }

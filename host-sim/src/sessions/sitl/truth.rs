@@ -21,9 +21,6 @@ pub struct Truth {
 
 impl Truth {
     /// For a listener at a port of this machine, which need not be there.
-    ///
-    /// # Errors
-    /// In words.
     pub fn open(port: u16) -> Result<Self, String> {
         if port == 0 {
             return Err("--truth-port: must be from 1 to 65535, found 0".to_owned());

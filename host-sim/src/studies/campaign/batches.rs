@@ -21,9 +21,6 @@ const ARROW_END: &[u8] = b"ARROW1";
 const DIGEST_BYTES: usize = 32;
 
 /// Writes a result; returns its SHA-256, hexadecimal.
-///
-/// # Errors
-/// If it cannot be written.
 pub fn write(path: &Path, schema: &Schema, batches: &[RecordBatch]) -> Result<String, ArrowError> {
     let bytes = encoded(schema, batches)?;
     store(path, &[&bytes])?;
@@ -31,9 +28,6 @@ pub fn write(path: &Path, schema: &Schema, batches: &[RecordBatch]) -> Result<St
 }
 
 /// Writes a part, sealed.
-///
-/// # Errors
-/// If it cannot be written.
 pub fn write_sealed(path: &Path, schema: &Schema, batch: &RecordBatch) -> Result<(), ArrowError> {
     let bytes = encoded(schema, std::slice::from_ref(batch))?;
     store(path, &[&bytes, &Sha256::digest(&bytes)])
@@ -47,14 +41,12 @@ fn whole(path: &Path) -> std::io::Result<Vec<u8>> {
 }
 
 /// The batches of a result, if they are there and of that SHA-256, where it is known.
-#[must_use]
 pub fn read(path: &Path, expected: Option<&str>) -> Option<Vec<RecordBatch>> {
     let bytes = whole(path).ok()?;
     expected.is_none_or(|expected| sha256(&bytes) == expected).then(|| decoded(&bytes)).flatten()
 }
 
 /// The batches of a part, if they are there and whole.
-#[must_use]
 pub fn read_sealed(path: &Path) -> Option<Vec<RecordBatch>> {
     let bytes = whole(path).ok()?;
     if bytes.ends_with(ARROW_END) {
@@ -65,7 +57,6 @@ pub fn read_sealed(path: &Path) -> Option<Vec<RecordBatch>> {
 }
 
 /// The SHA-256 of `bytes`, hexadecimal.
-#[must_use]
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

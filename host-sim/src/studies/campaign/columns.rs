@@ -5,21 +5,18 @@ use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, UInt64Type};
 
 /// A column of whole numbers.
-#[must_use]
 pub fn counts(flown: &[RecordBatch], column: &str) -> Vec<u64> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     columns.flat_map(|column| column.as_primitive::<UInt64Type>().values().to_vec()).collect()
 }
 
 /// A column of whole numbers; none in a row without one.
-#[must_use]
 pub fn whole_numbers(flown: &[RecordBatch], column: &str) -> Vec<Option<u64>> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     columns.flat_map(|column| column.as_primitive::<UInt64Type>().iter()).collect()
 }
 
 /// A column of numbers; infinite in a row without one.
-#[must_use]
 pub fn floats(flown: &[RecordBatch], column: &str) -> Vec<f64> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name(column));
     let value = |value: Option<f64>| value.unwrap_or(f64::INFINITY);

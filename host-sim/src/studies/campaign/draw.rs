@@ -52,7 +52,6 @@ const WHOLE_TOLERANCE: f64 = 1e-9;
 
 /// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it
 /// is: what is certified for the scenario is certified for all of its flights.
-#[must_use]
 pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u64) -> Scenario {
     let mut drawn = Drawn(ChaCha8Rng::seed_from_u64(number));
     drawn.0.set_stream(seed);
@@ -84,7 +83,6 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
 }
 
 /// For how long every flight is flown, in whole control periods.
-#[must_use]
 pub fn timing(scenario: &Scenario, ranges: &Ranges) -> Timing {
     let period = scenario.timing.period();
     Timing { ticks: (ranges.duration / period * (1.0 + WHOLE_TOLERANCE)) as u64, ..scenario.timing }

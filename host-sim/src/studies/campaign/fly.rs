@@ -56,19 +56,16 @@ impl CampaignSource {
     }
 
     /// The scenario.
-    #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
     /// Its text.
-    #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
     /// Its name in errors.
-    #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -113,14 +110,13 @@ pub fn campaign(
     finish(source, &verdict, &store, &flown)
 }
 
-/// Why nothing of `scenario` is thrown into the air, if so.
-#[must_use]
+/// Why `scenario` cannot be thrown into the air, if so.
 pub fn grounded(scenario: &Scenario) -> Option<&'static str> {
     let problem = "ground: a campaign throws its vehicles into the air anywhere: leave that section out";
     scenario.reality.ground.is_some().then_some(problem)
 }
 
-/// What is wrong where shards are left without flights: of those nothing could be said.
+/// The problem with shards that are left without flights.
 fn idle(orders: &Orders) -> Option<String> {
     let (chunks, parts) = (orders.flights.div_ceil(CHUNK_FLIGHTS), orders.shard.1);
     let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });

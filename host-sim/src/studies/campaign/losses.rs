@@ -29,7 +29,6 @@ pub struct Losses {
 
 impl Losses {
     /// Counts the failing rotors of all flights in `flown`.
-    #[must_use]
     pub fn count(flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let [failed, found] = ["failed_rotor", "found_rotor"].map(|column| whole_numbers(flown, column));
@@ -66,7 +65,6 @@ impl Losses {
     }
 
     /// Greatest distance from the reference after each failure, m.
-    #[must_use]
     pub fn distances(&self) -> &[f64] {
         &self.figures[2]
     }

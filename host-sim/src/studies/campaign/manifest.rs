@@ -45,7 +45,6 @@ pub struct Manifest {
 
 impl Manifest {
     /// Of our law's flights of `scenario`, with the plant step that it has, read from `text`.
-    #[must_use]
     pub fn new(scenario: &Scenario, text: &str, flights: u64, seed: u64, shard: (u64, u64)) -> Self {
         Self {
             name: scenario.name.clone(),
@@ -62,38 +61,32 @@ impl Manifest {
     }
 
     /// The same flights under `law`.
-    #[must_use]
     pub fn under(self, law: LawChoice) -> Self {
         Self { law, ..self }
     }
 
     /// The name of a law that is not ours.
-    #[must_use]
     pub fn rival(&self) -> Option<&'static str> {
         (self.law != LawChoice::Ours).then(|| self.law.name())
     }
 
     /// The numbers of its chunks, rising.
-    #[must_use]
     pub fn chunks(&self) -> Vec<u64> {
         let (part, parts) = self.shard;
         (0..self.flights.div_ceil(CHUNK_FLIGHTS)).filter(|chunk| chunk % parts == part - 1).collect()
     }
 
     /// The numbers of the flights of a chunk.
-    #[must_use]
     pub fn flights_of(&self, chunk: u64) -> Range<u64> {
         chunk * CHUNK_FLIGHTS..((chunk + 1) * CHUNK_FLIGHTS).min(self.flights)
     }
 
     /// How many flights its chunks have together.
-    #[must_use]
     pub fn own_flights(&self) -> u64 {
         self.chunks().into_iter().map(|chunk| self.flights_of(chunk)).map(|flights| flights.end - flights.start).sum()
     }
 
     /// As the text of a file. That of our law says nothing of laws: its gains are the scenario's.
-    #[must_use]
     pub fn written(&self) -> String {
         let said = |key: &str| self.law != LawChoice::Ours || !matches!(key, "law" | "gains");
         let fields = self.fields().into_iter().filter(|(key, ..)| said(key));
@@ -123,9 +116,6 @@ impl Manifest {
     }
 
     /// The manifest in `directory`; none if there is no campaign.
-    ///
-    /// # Errors
-    /// If its manifest cannot be read or is malformed.
     pub fn read_in(directory: &Path) -> Result<Option<Self>, CampaignError> {
         let path = directory.join(MANIFEST_FILE);
         let text = match scenario::text::read(&path) {
@@ -162,7 +152,6 @@ impl Manifest {
     }
 
     /// In what the two differ, in words; none where they agree.
-    #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let pairs = self.fields().into_iter().zip(other.fields());
         let differing: Vec<String> = pairs

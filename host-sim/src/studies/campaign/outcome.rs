@@ -15,7 +15,7 @@
 //! zero, which many a flight touches. That of a torque is |tau| over its bound. A command below a least counts as
 //! beyond. Once the law has found a rotor to be lost, no bound is certified but each rotor's range: from then on a
 //! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
-//! [`super::rotor_loss`].
+//! `super::rotor_loss`.
 
 use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
 use crate::flight::claims::REACHED_BY_SHARE;
@@ -76,7 +76,6 @@ pub struct Shares {
 
 impl Shares {
     /// The greatest of all.
-    #[must_use]
     pub fn greatest(&self) -> f64 {
         self.torque.iter().chain(&self.rotors).copied().fold(self.thrust, f64::max)
     }
@@ -85,7 +84,6 @@ impl Shares {
 impl Outcome {
     /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to
     /// its end, the height lost and the final error are infinite.
-    #[must_use]
     pub fn judge(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
         let start = scenario.initial.position.z;
         let mut outcome = Self {
@@ -152,20 +150,17 @@ impl Outcome {
 
     /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
     /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD_DISTANCE_M`] of its reference.
-    #[must_use]
     pub fn tracks(&self) -> bool {
         if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD_DISTANCE_M } else { self.in_time }
     }
 
     /// Whether it tracks, and no command went beyond its bound.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.tracks() && self.beyond == 0
     }
 }
 
 /// Whether a flight of `duration`, s, has settled in time.
-#[must_use]
 pub fn in_time(settled: Option<f64>, duration: f64) -> bool {
     settled.is_some_and(|since| since <= REACHED_BY_SHARE * duration)
 }

@@ -10,9 +10,6 @@ use scenario::Scenario;
 
 /// Flight `number` of the campaign of `scenario`, with the plant step that it has, from `seed`. The circumstances are
 /// the same for every law; what `certificate` proves of our commands, those of any law are held against.
-///
-/// # Errors
-/// As [`LawOnVehicle::flight`]'s.
 pub fn fly(
     law: &LawOnVehicle,
     scenario: &Scenario,

@@ -23,27 +23,8 @@ struct Figure {
 }
 
 /// The page of what was `flown` of a scenario, read from `text`.
-#[must_use]
 pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordBatch]) -> Page {
-    let figure = |title: &str, unit, column: &str| {
-        let bound = column.starts_with("share").then_some(1.0);
-        Figure { title: title.to_owned(), unit, bound, values: floats(flown, column) }
-    };
-    let mut shares = vec![figure("Share of the thrust's proven bound", "", "share_thrust")];
-    for axis in ["x", "y", "z"] {
-        shares.push(figure(&format!("Share of the bound on torque {axis}"), "", &format!("share_torque_{axis}")));
-    }
-    for rotor in 1..=manifest.rotors as usize {
-        shares.push(figure(&format!("Share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor)));
-    }
-    let figures = [
-        figure("On the reference for good after", "s", "settled"),
-        figure("Near its attitude for good after", "s", "attitude"),
-        figure("Near its heading for good after", "s", "heading"),
-        figure("Height lost", "m", "height_lost"),
-        figure("Rise above start and reference", "m", "rise"),
-        figure("Distance from the reference at the end", "m", "final_error"),
-    ];
+    let (figures, shares) = figures(manifest, flown);
     let numbers = counts(flown, "number");
     let greatest =
         |flight: usize| shares.iter().filter_map(|share| share.values.get(flight)).copied().fold(0.0, f64::max);
@@ -56,23 +37,11 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
     let words = verdicts(flown);
     let worst = figures.iter().chain([&greatest]).map(|figure| Block::Table(worst(figure, &numbers, &words)));
     let spread: Vec<Distribution> = figures.iter().chain([&greatest]).chain(&shares).map(distribution).collect();
+    let scenario = document::scenario("Vehicle, gains and all else, section by section", text);
     let sections = [
         ("Distributions", vec![Block::Distributions(spread)]),
         ("Worst flights", std::iter::once(Block::Text(REPLAY_HINT.to_owned())).chain(worst).collect()),
-        (
-            "Scenario",
-            [
-                gains(manifest),
-                Some(Block::Folded(
-                    "Vehicle, gains and all else, section by section".into(),
-                    document::tables(text, "scenario"),
-                )),
-                Some(Block::Listing("The file as it was read".into(), text.to_owned())),
-            ]
-            .into_iter()
-            .flatten()
-            .collect(),
-        ),
+        ("Scenario", gains(manifest).into_iter().chain(scenario).collect()),
     ];
     let sentence = match (summary.holds, summary.rival) {
         (true, None) => "Every flight recovers and tracks within its bounds".to_owned(),
@@ -101,6 +70,27 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
         tracks: Vec::new(),
         sections: sections.map(|(title, blocks)| Section { title: title.into(), blocks }).into(),
     }
+}
+
+/// The figures of every flight; and the shares of each proven bound.
+fn figures(manifest: &Manifest, flown: &[RecordBatch]) -> ([Figure; 6], Vec<Figure>) {
+    let figure = |title: &str, unit, column: &str| {
+        let bound = column.starts_with("share").then_some(1.0);
+        Figure { title: title.to_owned(), unit, bound, values: floats(flown, column) }
+    };
+    let of_axis = |axis| figure(&format!("Share of the bound on torque {axis}"), "", &format!("share_torque_{axis}"));
+    let of_rotor = |rotor| figure(&format!("Share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor));
+    let thrust = std::iter::once(figure("Share of the thrust's proven bound", "", "share_thrust"));
+    let shares = thrust.chain(["x", "y", "z"].map(of_axis)).chain((1..=manifest.rotors as usize).map(of_rotor));
+    let figures = [
+        figure("On the reference for good after", "s", "settled"),
+        figure("Near its attitude for good after", "s", "attitude"),
+        figure("Near its heading for good after", "s", "heading"),
+        figure("Height lost", "m", "height_lost"),
+        figure("Rise above start and reference", "m", "rise"),
+        figure("Distance from the reference at the end", "m", "final_error"),
+    ];
+    (figures, shares.collect())
 }
 
 /// Rotors that failed, and those that were taken to.

@@ -37,7 +37,6 @@ pub struct RotorLoss {
 
 impl RotorLoss {
     /// Of a flight of `scenario`, before its first tick.
-    #[must_use]
     pub fn before_flight(scenario: &Scenario) -> Self {
         let end = scenario.timing.duration();
         let failure = scenario.reality.failure.filter(|failure| failure.time < end);
@@ -45,7 +44,6 @@ impl RotorLoss {
     }
 
     /// The flight cannot be flown to its end.
-    #[must_use]
     pub fn unfinished(self) -> Self {
         let lost = if self.failure.is_some() { f64::INFINITY } else { 0.0 };
         Self { height_lost: lost, distance: lost, ..self }
@@ -67,7 +65,6 @@ impl RotorLoss {
     }
 
     /// Whether a rotor was found that had not failed.
-    #[must_use]
     pub fn is_false_alarm(&self) -> bool {
         let failed = |rotor, time| self.failure.is_some_and(|failure| failure.rotor == rotor && failure.time <= time);
         self.found.is_some_and(|(rotor, time)| !failed(rotor, time))
@@ -76,7 +73,6 @@ impl RotorLoss {
 
 /// Whether each rotor's command is within what that rotor can deliver, but for rounding, or nothing is commanded of the
 /// one that is `lost`: all that is proven from then on.
-#[must_use]
 pub fn is_within_ranges(tick: &Brief, rotors: Option<&Rotors>, lost: usize) -> bool {
     let mut ranges = rotors.into_iter().flat_map(|rotors| rotors.iter());
     let raised = 1.0 + BOUND_TOLERANCE as f32;

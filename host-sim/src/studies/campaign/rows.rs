@@ -37,10 +37,8 @@ use scenario::body::BodyState;
 use scenario::reference::ReferenceKind;
 use std::sync::Arc;
 
-/// One flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightRow {
-    /// Its number.
     pub number: u64,
     /// Whether it was to hover at the origin.
     pub hover: bool,
@@ -57,7 +55,6 @@ const LAW_KEY: &str = "law";
 
 impl FlightRow {
     /// Flight `number`, in the circumstances of `thrown`.
-    #[must_use]
     pub fn new(number: u64, thrown: &Scenario, outcome: Outcome) -> Self {
         let wind = thrown.reality.wind.unwrap_or_default();
         Self {
@@ -72,7 +69,6 @@ impl FlightRow {
 
 impl Outcome {
     /// In a word; whether the bounds were kept counts where they are `proven` of the law that flew.
-    #[must_use]
     pub fn verdict(&self, proven: bool) -> &'static str {
         let reached = self.settled.is_some() && self.attitude.is_some() && self.heading.is_some();
         // A flight without a rotor is held to its place at the end, so it cannot be late.
@@ -108,7 +104,6 @@ const LOSS_COLUMNS: [&str; 5] =
 const SHARE_COLUMNS: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
 /// The columns of what `manifest` describes.
-#[must_use]
 pub fn schema(manifest: &Manifest) -> Schema {
     let number = |name: &str| Field::new(name, DataType::Float64, false);
     let count = |name: &str| Field::new(name, DataType::UInt64, false);
@@ -129,7 +124,6 @@ pub fn schema(manifest: &Manifest) -> Schema {
 }
 
 /// The column of a rotor's share, numbered from 1.
-#[must_use]
 pub fn share_of_rotor(rotor: usize) -> String {
     format!("share_rotor_{rotor}")
 }

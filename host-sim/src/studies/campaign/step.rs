@@ -16,7 +16,6 @@ const WHOLE_TOLERANCE: f64 = 1e-6;
 
 /// `scenario` with the longest plant step that fits: the control period, the delay of commands and, with an estimator,
 /// the IMU's millisecond are whole numbers of it. A file's own step stays where it is longer.
-#[must_use]
 pub fn with_longest_step(scenario: &Scenario) -> Scenario {
     let own = scenario.timing.steps_per_tick;
     let fitting = (1..own).find_map(|steps| {
@@ -29,9 +28,6 @@ pub fn with_longest_step(scenario: &Scenario) -> Scenario {
 }
 
 /// `scenario` with a plant step of so many seconds.
-///
-/// # Errors
-/// Says what does not fit.
 pub fn with_step(scenario: &Scenario, step: f64) -> Result<Scenario, String> {
     let period = scenario.timing.period();
     let steps = period / step;

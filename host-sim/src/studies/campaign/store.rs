@@ -31,9 +31,7 @@ use std::path::{Path, PathBuf};
 
 /// The flights' name in a directory.
 pub const RESULT_FILE: &str = "campaign.arrow";
-/// The scenario's.
 pub const SCENARIO_FILE: &str = "scenario.toml";
-/// The summary.
 pub const SUMMARY_FILE: &str = "summary.txt";
 /// The same as a page.
 pub const REPORT_FILE: &str = "report.html";
@@ -103,20 +101,16 @@ impl Store {
         Ok((store, flown))
     }
 
-    /// Its manifest.
-    #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
     /// Where it is.
-    #[must_use]
     pub fn directory(&self) -> &Path {
         &self.directory
     }
 
     /// Where the scenario's text is.
-    #[must_use]
     pub fn scenario_file(&self) -> PathBuf {
         self.directory.join(SCENARIO_FILE)
     }
@@ -140,7 +134,6 @@ impl Store {
     }
 
     /// All flights, a batch a chunk, if they are there.
-    #[must_use]
     pub fn result(&self) -> Option<Vec<RecordBatch>> {
         let batches = batches::read(&self.directory.join(RESULT_FILE), self.manifest.result.as_deref())?;
         let chunks = self.manifest.chunks();
@@ -150,7 +143,6 @@ impl Store {
     }
 
     /// The flights of a chunk, if they are there.
-    #[must_use]
     pub fn part(&self, chunk: u64) -> Option<RecordBatch> {
         let batches = batches::read_sealed(&self.path_of(chunk))?;
         let [batch] = batches.as_slice() else { return None };
@@ -201,9 +193,6 @@ impl Store {
     }
 
     /// Writes a text, whole.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn write(&self, name: &str, text: &str) -> Result<(), CampaignError> {
         let path = self.directory.join(name);
         WholeFile::write(&path, text).map_err(unwritable(&path))

@@ -29,7 +29,7 @@ pub struct Summary {
     pub tracking: u64,
     /// The name of the law that flew, if it is not ours.
     pub rival: Option<&'static str>,
-    /// Flights with a command beyond a certified bound, which is ours whatever law flew.
+    /// Flights with a command beyond a certified bound, always one of our law's.
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
@@ -57,30 +57,10 @@ struct Figure {
 
 impl Summary {
     /// Of what was `flown` of `scenario`, whose verdict is `verdict`.
-    #[must_use]
     pub fn summarize(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let verdicts = verdicts(flown);
-        let figure =
-            |what: &str, unit, column: &str| Figure { what: what.to_owned(), unit, values: floats(flown, column) };
-        let mut figures = vec![
-            figure("height lost", "m", "height_lost"),
-            figure("rise above start and reference", "m", "rise"),
-            figure(&format!("within {SETTLED_DISTANCE_M} m for good after"), "s", "settled"),
-            figure("attitude", "s", "attitude"),
-            figure("heading", "s", "heading"),
-            figure("error at the end", "m", "final_error"),
-            figure("share of the thrust's bound", "", "share_thrust"),
-        ];
-        figures.extend(
-            ["x", "y", "z"].map(|axis| {
-                figure(&format!("share of the bound on torque {axis}"), "", &format!("share_torque_{axis}"))
-            }),
-        );
-        let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
-        figures.extend(
-            (1..=rotors).map(|rotor| figure(&format!("share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor))),
-        );
+        let (figures, shares) = figures(scenario, flown);
         let reached = ["settled", "attitude", "heading"].map(|column| floats(flown, column));
         let duration = timing(scenario, &scenario.campaign.ranges).duration();
         let slowest: Vec<f64> = (0..numbers.len())
@@ -93,9 +73,8 @@ impl Summary {
             None => in_time(Some(slowest[*flight]), duration),
         };
         let tracking = (0..numbers.len()).filter(tracks).count();
-        let greatest_share = (0..numbers.len()).map(|flight| {
-            figures[6..].iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max)
-        });
+        let greatest_share = (0..numbers.len())
+            .map(|flight| shares.iter().filter_map(|figure| figure.values.get(flight)).copied().fold(0.0, f64::max));
         let greatest_share: Vec<f64> = greatest_share.collect();
         let listed = |what, values: &[f64], unit| (what, worst(&numbers, values, unit));
         let failing: Vec<String> = numbers
@@ -118,21 +97,11 @@ impl Summary {
             let failed: Vec<u64> = failed.map(|(number, _)| *number).collect();
             worst.push(("farthest after a failure", self::worst(&failed, losses.distances(), "m")));
         }
-        let (part, parts) = manifest.shard;
-        let shard = if parts > 1 { format!(", shard {part} of {parts}") } else { String::new() };
         let refusal = verdict.refusal().map(|refusal| refusal.to_string());
         let ever = |column: &str| counts(flown, column).iter().filter(|ticks| **ticks > 0).count() as u64;
         let rival = manifest.rival();
-        let under = rival.map_or(String::new(), |law| format!(" under {law}"));
         Self {
-            title: format!(
-                "{}{under}: {} flights of {} s from seed {}, plant step {} ms{shard}",
-                manifest.name,
-                numbers.len(),
-                scenario.campaign.ranges.duration,
-                manifest.seed,
-                short(1e3 * manifest.plant_step)
-            ),
+            title: title(scenario, manifest, numbers.len()),
             flights: numbers.len() as u64,
             tracking: tracking as u64,
             rival,
@@ -145,7 +114,7 @@ impl Summary {
                 && tracking == numbers.len()
                 && verdicts.iter().all(|verdict| *verdict == HOLDS_COLUMN),
             refusal,
-            quantiles: table(&numbers, &figures),
+            quantiles: table(&numbers, figures.iter().chain(&shares)),
             worst,
         }
     }
@@ -187,8 +156,39 @@ impl fmt::Display for Summary {
     }
 }
 
+fn title(scenario: &Scenario, manifest: &Manifest, flights: usize) -> String {
+    let (part, parts) = manifest.shard;
+    let shard = if parts > 1 { format!(", shard {part} of {parts}") } else { String::new() };
+    format!(
+        "{}{}: {flights} flights of {} s from seed {}, plant step {} ms{shard}",
+        manifest.name,
+        manifest.rival().map_or(String::new(), |law| format!(" under {law}")),
+        scenario.campaign.ranges.duration,
+        manifest.seed,
+        short(1e3 * manifest.plant_step)
+    )
+}
+
+/// The figures of every flight, the height lost first; and the shares of each certified bound.
+fn figures(scenario: &Scenario, flown: &[RecordBatch]) -> (Vec<Figure>, Vec<Figure>) {
+    let figure = |what: &str, unit, column: &str| Figure { what: what.to_owned(), unit, values: floats(flown, column) };
+    let figures = vec![
+        figure("height lost", "m", "height_lost"),
+        figure("rise above start and reference", "m", "rise"),
+        figure(&format!("within {SETTLED_DISTANCE_M} m for good after"), "s", "settled"),
+        figure("attitude", "s", "attitude"),
+        figure("heading", "s", "heading"),
+        figure("error at the end", "m", "final_error"),
+    ];
+    let of_axis = |axis| figure(&format!("share of the bound on torque {axis}"), "", &format!("share_torque_{axis}"));
+    let of_rotor = |rotor| figure(&format!("share of rotor {rotor}'s bound"), "", &share_of_rotor(rotor));
+    let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
+    let thrust = std::iter::once(figure("share of the thrust's bound", "", "share_thrust"));
+    (figures, thrust.chain(["x", "y", "z"].map(of_axis)).chain((1..=rotors).map(of_rotor)).collect())
+}
+
 /// A row for each figure: median, 99 %, 99.9 %, greatest and whose that is.
-fn table(numbers: &[u64], figures: &[Figure]) -> String {
+fn table<'a>(numbers: &[u64], figures: impl Iterator<Item = &'a Figure>) -> String {
     let head = ["figure", "unit", "median", "99 %", "99.9 %", "greatest", "flight"].map(str::to_owned).to_vec();
     let row = |Figure { what, unit, values }: &Figure| {
         let parts = [0.5, 0.99, 0.999, 1.0].map(|part| quantile(values, part));
@@ -199,7 +199,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
         cells.push(flight);
         cells
     };
-    aligned(&std::iter::once(head).chain(figures.iter().map(row)).collect::<Vec<_>>())
+    aligned(&std::iter::once(head).chain(figures.map(row)).collect::<Vec<_>>())
 }
 
 /// A figure, or "none".
@@ -224,7 +224,6 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
 }
 
 /// Each flight's verdict.
-#[must_use]
 pub fn verdicts(flown: &[RecordBatch]) -> Vec<&str> {
     let columns = flown.iter().filter_map(|batch| batch.column_by_name("verdict"));
     columns.flat_map(|column| column.as_string::<i32>().iter().flatten()).collect()

@@ -11,7 +11,6 @@ use scenario::reality::sensors::VelocitySource;
 use scenario::reference::ReferenceKind;
 
 /// The text of a scenario's file below what flight `number` from `seed`, which is `thrown`, has instead.
-#[must_use]
 pub fn above(text: &str, thrown: &Scenario, seed: u64, number: u64) -> String {
     let mut comments =
         format!("# Flight {number} of the campaign with seed {seed}. Drawn in place of what stands below:\n#\n");

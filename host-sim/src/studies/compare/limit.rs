@@ -1,4 +1,4 @@
-//! The vehicle's own limit in three scenes: what rotors and inertia leave possible, whatever the law.
+//! The vehicle's own limit in three scenes: the best that rotors and inertia allow under any law.
 //!
 //! An estimate by bang-bang control: nothing but full torque one way, full torque the other way, and full thrust. It is
 //! no bound that is proven: a law that thrusts while it turns may come a little below it.
@@ -149,7 +149,6 @@ const STEP_DISTANCES_M: [f64; 2] = [1.0, 8.485];
 
 impl Limit {
     /// Of the vehicle of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let configuration = &scenario.configuration;
         let (mass, gravity) = (f64::from(configuration.vehicle().mass), f64::from(configuration.vehicle().gravity));
@@ -188,7 +187,6 @@ impl Limit {
     }
 
     /// In the row of `figure` of `scene`; none where nothing is worked out.
-    #[must_use]
     pub fn in_row(&self, scene: &str, figure: &str) -> Option<f64> {
         match (scene, figure) {
             ("upside down", "height lost") => Some(self.height_lost),

@@ -44,7 +44,6 @@ pub struct Compared<'a> {
     pub names: &'a [&'static str],
     /// The table.
     pub rows: &'a [FigureRow],
-    /// The scenes.
     pub scenes: &'a [Scene],
     /// Each law's figures in each scene; `None` if the flight ended early.
     pub figures: &'a [(&'static str, Vec<Option<SceneFigures>>)],
@@ -57,7 +56,6 @@ pub struct Compared<'a> {
 }
 
 /// The page of a comparison.
-#[must_use]
 pub fn page(compared: &Compared) -> Page {
     let Compared { file, text, rows, holds, .. } = compared;
     let named =
@@ -78,16 +76,7 @@ pub fn page(compared: &Compared) -> Page {
                 Block::Folded("The rivals' gains".into(), gains(compared)),
             ],
         ),
-        (
-            "Scenario",
-            vec![
-                Block::Folded(
-                    "Vehicle, our gains and all else, section by section".into(),
-                    document::tables(text, "scenario"),
-                ),
-                Block::Listing("The file as it was read".into(), (*text).to_owned()),
-            ],
-        ),
+        ("Scenario", document::scenario("Vehicle, our gains and all else, section by section", text)),
     ];
     let sentence = if *holds {
         "Every random flight of ours settles, unclipped, within its bounds"

@@ -47,7 +47,6 @@ fn decades(title: &str, names: &[&str], (all, name): (Scenes, &str), cut: (f64, 
 }
 
 /// Recovery, gust, storm and far step.
-#[must_use]
 pub fn scenes(names: &[&str], all: Scenes) -> String {
     drawn(
         &[
@@ -66,7 +65,6 @@ pub fn scenes(names: &[&str], all: Scenes) -> String {
 }
 
 /// The random flights: how many have settled by when; and the file's own flight, noise and weak rotors.
-#[must_use]
 pub fn random(names: &[&str], thrown: &[Option<RandomFlights>], all: Scenes) -> String {
     let settled = |law: usize| {
         let thrown = thrown.get(law)?.as_ref()?;

@@ -59,9 +59,6 @@ struct Different {
 }
 
 /// All scenes, in the order of the table.
-///
-/// # Errors
-/// None for a scenario that was read from a file.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let nothing = Different::default();
     let recovered = |different: Different| recovery(&really(file, &different), FLIGHT_S);
@@ -176,7 +173,6 @@ fn more(own: &Drag, part: f64, file: &Scenario) -> Drag {
 }
 
 /// The rows of each law's figures in each of the `scenes`, in the laws' order.
-#[must_use]
 pub fn rows(scenes: &[(&'static str, Vec<Option<SceneFigures>>)]) -> Vec<FigureRow> {
     type Get = fn(Option<&SceneFigures>) -> f64;
     const REALISM_FIGURES: [(&str, &str, f64, Get); 4] = [
@@ -199,13 +195,11 @@ pub fn rows(scenes: &[(&'static str, Vec<Option<SceneFigures>>)]) -> Vec<FigureR
 }
 
 /// Whether a flight that did not end early is not lost.
-#[must_use]
 pub fn is_held(figures: &SceneFigures) -> bool {
     figures.end_error <= LOST_DISTANCE_M
 }
 
 /// Flies `scene`; none if it cannot be flown to its end.
-#[must_use]
 pub fn fly_realism_scene(law: &LawOnVehicle, scene: &Scene) -> Option<SceneFigures> {
     fly_scene_within(law, scene, ARRIVAL_DISTANCE_M)
 }

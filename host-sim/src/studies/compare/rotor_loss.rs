@@ -68,16 +68,12 @@ pub struct Landing {
 
 impl Landing {
     /// Whether it lands well.
-    #[must_use]
     pub fn is_soft(&self) -> bool {
         self.speed < SOFT_LANDING_SPEED_M_PER_S && self.away < PLACE_HELD_DISTANCE_M && self.height_lost < HEIGHT_LOST_MAX_M
     }
 }
 
 /// All scenes of a vehicle with rotors, in the order of the table.
-///
-/// # Errors
-/// None for a scenario that was read from a file.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let still_air = in_still_air(file);
     let resting = hover(&still_air, Vector3::zeros(), 0.0)?;
@@ -155,7 +151,6 @@ fn moved(time: f64) -> f64 {
 }
 
 /// Flies `scene`; none if it comes to no number.
-#[must_use]
 pub fn fly_loss_scene(law: &LawOnVehicle, scene: &Scene) -> Option<Landing> {
     let scenario = &scene.scenario;
     let failure = scenario.reality.failure?;
@@ -181,7 +176,6 @@ pub fn fly_loss_scene(law: &LawOnVehicle, scene: &Scene) -> Option<Landing> {
 }
 
 /// The rows of each law's figures in each of the `scenes`, in the laws' order.
-#[must_use]
 pub fn rows(scenes: &[(&'static str, Vec<Option<Landing>>)]) -> Vec<FigureRow> {
     type Get = fn(&Landing) -> f64;
     const LOSS_FIGURES: [(&str, &str, Get); 4] = [

@@ -14,24 +14,21 @@ const CLEARLY_BETTER_SHARE: f64 = 0.01;
 /// One figure of every law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureRow {
-    /// The scene.
     pub scene: &'static str,
     /// The figure's name.
     pub figure: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// The value of each law, in the laws' order; less is better; infinite means never, or that the flight ended
     /// early.
     pub values: Vec<f64>,
     /// The least difference that matters, in the unit.
     pub grain: f64,
-    /// The vehicle's own limit, whatever the law; where one is worked out.
+    /// The vehicle's own limit under any law, where it is computed.
     pub limit: Option<f64>,
 }
 
 impl FigureRow {
     /// Whether another law shows clearly less than ours, the first.
-    #[must_use]
     pub fn lost(&self) -> bool {
         let Some((ours, rivals)) = self.values.split_first() else { return false };
         let best = rivals.iter().copied().fold(f64::INFINITY, f64::min);
@@ -81,7 +78,6 @@ const OF_ROTORS: &str = "rotor";
 
 /// All rows of a vehicle with this `limit`, with or without `rotors`: of `scenes`, each with every law's figures, and
 /// of the random flights.
-#[must_use]
 pub fn all(
     scenes: &[(&'static str, Vec<Option<SceneFigures>>)],
     thrown: &[Option<RandomFlights>],
@@ -112,7 +108,6 @@ pub fn all(
 }
 
 /// A value as the tables show it.
-#[must_use]
 pub fn cell(value: f64) -> String {
     if value.is_finite() { short(significant(value)) } else { "never".to_owned() }
 }
@@ -123,7 +118,6 @@ fn significant(value: f64) -> f64 {
 }
 
 /// A table for a terminal; rows that ours loses begin with a star.
-#[must_use]
 pub fn table(names: &[&str], rows: &[FigureRow]) -> String {
     let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT_COLUMN);
     let head = ["", "scene", "figure", "unit"].iter().chain(names).chain(limit);
@@ -141,7 +135,6 @@ pub fn table(names: &[&str], rows: &[FigureRow]) -> String {
 }
 
 /// The same as CSV, in full; `inf` means never.
-#[must_use]
 pub fn csv(names: &[&str], rows: &[FigureRow]) -> String {
     let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT_COLUMN}\n", names.join(","));
     for row in rows {

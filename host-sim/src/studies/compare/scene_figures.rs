@@ -41,13 +41,11 @@ pub struct SceneFigures {
 }
 
 /// Flies `scene`; none if it cannot be flown to its end.
-#[must_use]
 pub fn fly_scene(law: &LawOnVehicle, scene: &Scene) -> Option<SceneFigures> {
     fly_scene_within(law, scene, ARRIVAL_DISTANCE_M)
 }
 
 /// Likewise; it has arrived within `near`, m.
-#[must_use]
 pub fn fly_scene_within(law: &LawOnVehicle, scene: &Scene, near: f64) -> Option<SceneFigures> {
     gather(&scene.scenario, law.flight(&scene.scenario).ok()?, near).ok()
 }
@@ -102,7 +100,6 @@ pub struct RandomFlights {
 
 /// Flies the flights 0 to `count` - 1 of the campaign of `scenario`, with its plant step: the flights of
 /// `campaign --law`. `None` after an interrupt.
-#[must_use]
 pub fn fly_random_flights(
     law: &LawOnVehicle,
     scenario: &Scenario,
@@ -119,28 +116,24 @@ pub fn fly_random_flights(
 
 impl RandomFlights {
     /// Share of the flights for which `holds` is true.
-    #[must_use]
     pub fn share(&self, holds: impl Fn(&Outcome) -> bool) -> f64 {
         let count = self.outcomes.iter().filter(|outcome| holds(outcome)).count();
         count as f64 / self.outcomes.len().max(1) as f64
     }
 
     /// The height lost that this share of the flights does not exceed, m.
-    #[must_use]
     pub fn height(&self, part: f64) -> f64 {
         let heights: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.height_lost).collect();
         quantile(&heights, part).unwrap_or(f64::INFINITY)
     }
 
     /// The time until within 0.2 m for good that this share of the flights does not exceed, s; infinite for never.
-    #[must_use]
     pub fn settled(&self, part: f64) -> f64 {
         let times: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.settled.unwrap_or(f64::INFINITY)).collect();
         quantile(&times, part).unwrap_or(f64::INFINITY)
     }
 
     /// Share of all ticks for which `count` counts.
-    #[must_use]
     pub fn ticks(&self, count: impl Fn(&Outcome) -> u64) -> f64 {
         let (counted, all) =
             self.outcomes.iter().fold((0, 0), |(counted, all), one| (counted + count(one), all + one.ticks));

@@ -27,7 +27,6 @@ pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
 /// When a wind begins.
 const WIND_START_S: f64 = 1.0;
 
-/// A scene.
 #[derive(Clone)]
 pub struct Scene {
     /// Its name in tables.
@@ -39,7 +38,6 @@ pub struct Scene {
 }
 
 /// The vehicle of `file` in still air, with nothing that happens to it.
-#[must_use]
 pub fn in_still_air(file: &Scenario) -> Scenario {
     let mut still_air = file.clone();
     let mass = f64::from(file.configuration.vehicle().mass);
@@ -51,9 +49,6 @@ pub fn in_still_air(file: &Scenario) -> Scenario {
 }
 
 /// All scenes, in the order of the table.
-///
-/// # Errors
-/// None for a scenario that was read from a file.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let still_air = in_still_air(file);
     let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);

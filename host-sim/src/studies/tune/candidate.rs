@@ -9,9 +9,11 @@
 //! drive k_p and k_v to where the vehicle only just does not oscillate. So all loops must stay stable with k_p and k_v
 //! multiplied by the margin as well, which is the gain margin at the position feedback.
 
+use super::figures::{MODEL_FIGURES, TrialFigures};
+use super::models::COST_MODELS;
 use super::requirements::Requirements;
 use super::space::{Point, Space};
-use super::trials::{COST_MODELS, MODEL_FIGURES, TrialFigures, fly_trials};
+use super::trials::fly_trials;
 use crate::flight::Flight;
 use crate::flight::claims::reached;
 use crate::flight::extremes::FlightExtremes;
@@ -48,7 +50,6 @@ pub struct Verdict {
 impl Verdict {
     /// Of a candidate that passed every test; or of one that failed: the number of tests left, by how much it missed,
     /// and which test failed.
-    #[must_use]
     pub fn after(self, tests: Result<(), (u8, f64, String)>) -> Self {
         let Err((tests_left, missed, what)) = tests else {
             return self;
@@ -59,7 +60,6 @@ impl Verdict {
     }
 
     /// Of a candidate that was not judged.
-    #[must_use]
     pub fn missing() -> Self {
         let failed = Some("not judged".to_owned());
         Self {
@@ -81,7 +81,6 @@ impl Verdict {
     }
 
     /// Whether every requirement is met.
-    #[must_use]
     pub fn accepted(&self) -> bool {
         self.violation == 0.0
     }
@@ -119,7 +118,6 @@ pub struct Judge {
 
 impl Judge {
     /// A judge for the vehicle, rotors, timing and reference of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario, requirements: Requirements) -> Self {
         let floor = requirements.projection.then_some(1.0 - requirements.margin as f32);
         let space = Space::new(scenario, floor);
@@ -127,7 +125,6 @@ impl Judge {
     }
 
     /// The scenario with the gains of `point`, if the law is defined for them.
-    #[must_use]
     pub fn scenario(&self, point: &Point) -> Option<Scenario> {
         Some(Scenario { configuration: self.space.configuration(point)?, ..self.scenario.clone() })
     }

@@ -4,7 +4,6 @@ use controller_core::extended::defaults::{self, Airframe, Given, NOTHING_GIVEN};
 use controller_core::extended::parameters::ExtendedParameters;
 
 /// A few of `parameters` from which the formulas for `airframe` make all of them, to the bit.
-#[must_use]
 pub fn chosen(airframe: &Airframe, parameters: &ExtendedParameters) -> Given {
     let wanted = parameters.values();
     let differing = |given: &Given| {

@@ -33,7 +33,6 @@ pub struct Evolution {
 
 impl Evolution {
     /// The first population, scattered around where the search starts, which is judged first and belongs to it.
-    #[must_use]
     pub fn new(judge: &impl Judging, effort: &Effort, interrupt: &Interrupt) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(effort.seed);
         let start = judge.start();
@@ -45,13 +44,10 @@ impl Evolution {
         Self { members, start: own, random, judged: 1 + judged }
     }
 
-    /// The start's verdict.
-    #[must_use]
     pub fn start(&self) -> &Verdict {
         &self.start
     }
 
-    /// One generation.
     pub fn generation(&mut self, judge: &impl Judging, interrupt: &Interrupt) {
         let best = self.leader();
         let trials: Vec<Point> = (0..self.members.len()).map(|parent| self.trial(parent, best)).collect();
@@ -65,20 +61,17 @@ impl Evolution {
     }
 
     /// The best accepted member, if there is one.
-    #[must_use]
     pub fn best(&self) -> Option<(Point, Verdict)> {
         let best = self.members[self.leader()].clone();
         best.1.accepted().then_some(best)
     }
 
     /// The verdict nearest to acceptance.
-    #[must_use]
     pub fn closest(&self) -> Verdict {
         self.members[self.leader()].1.clone()
     }
 
     /// Candidates judged so far.
-    #[must_use]
     pub fn judged(&self) -> u64 {
         self.judged
     }

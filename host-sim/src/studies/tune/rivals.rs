@@ -15,8 +15,9 @@ use crate::rivals::start::Speed;
 use crate::studies::tune::candidate::{Judging, Verdict};
 use crate::studies::tune::effort::Effort;
 use crate::studies::tune::evolution::Evolution;
+use crate::studies::tune::models::COST_MODELS;
 use crate::studies::tune::space::Point;
-use crate::studies::tune::trials::{COST_MODELS, fly_trials};
+use crate::studies::tune::trials::fly_trials;
 use rayon::prelude::*;
 use scenario::Scenario;
 use std::time::{Duration, Instant};
@@ -43,13 +44,11 @@ pub struct RivalJudge<'a> {
 
 impl<'a> RivalJudge<'a> {
     /// Of `kind` on the vehicle of `scenario`; the search begins at `start`.
-    #[must_use]
     pub fn new(scenario: &'a Scenario, kind: RivalKind, start: &[f64]) -> Self {
         Self { scenario, kind, start: start.to_vec() }
     }
 
-    /// Likewise; the search begins at START, made as fast as flies best on this vehicle: [`crate::rivals::start`].
-    #[must_use]
+    /// Likewise; the search begins at START, made as fast as flies best on this vehicle: `crate::rivals::start`.
     pub fn at_best_start(scenario: &'a Scenario, kind: RivalKind, interrupt: &Interrupt) -> Self {
         let start = kind.start(scenario);
         let judged = |speed: Speed| {
@@ -67,7 +66,6 @@ impl<'a> RivalJudge<'a> {
     }
 
     /// The gains of `point`.
-    #[must_use]
     pub fn gains(point: &Point) -> Vec<f64> {
         point.iter().map(|logarithm| logarithm.exp()).collect()
     }
@@ -148,7 +146,6 @@ pub fn tune(scenario: &Scenario, kinds: &[RivalKind], effort: Effort, interrupt:
 }
 
 /// About how long [`tune`] takes here, from how long one candidate of the first rival does.
-#[must_use]
 pub fn expected(scenario: &Scenario, kinds: &[RivalKind], effort: &Effort) -> Duration {
     let (began, threads) = (Instant::now(), rayon::current_num_threads());
     let searched = searched(kinds);

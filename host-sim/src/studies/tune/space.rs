@@ -40,7 +40,6 @@ pub struct Space {
 impl Space {
     /// Around the configuration of `scenario`; thrust floors of the paper's law up to the share `floor` of the
     /// admissible one, or none.
-    #[must_use]
     pub fn new(scenario: &Scenario, floor: Option<f32>) -> Self {
         let own = match (scenario.configuration.law(), scenario.airframe()) {
             (LawParameters::Extended(law), Some(airframe)) => chosen(&airframe, &law.parameters),
@@ -50,7 +49,6 @@ impl Space {
     }
 
     /// The file's own constants: where the search starts.
-    #[must_use]
     pub fn start(&self) -> Point {
         let configuration = &self.scenario.configuration;
         match configuration.law() {
@@ -64,7 +62,6 @@ impl Space {
     }
 
     /// The configuration with the constants of `point`, if the law is defined for them.
-    #[must_use]
     pub fn configuration(&self, point: &Point) -> Option<Configuration> {
         match self.scenario.configuration.law() {
             LawParameters::Paper(law) => self.papers(law, point),

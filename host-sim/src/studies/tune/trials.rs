@@ -11,10 +11,12 @@
 //! | weak rotors | 1 m step with rotors that deliver 60 % | time until within 0.1 m for good, s |
 //! | heavy | the recovery with 1.6 times the mass | height lost, m; time until within 0.1 m for good, s |
 //!
-//! The cost is their weighted sum, [`TrialFigures::cost`], averaged over the models of [`COST_MODELS`]: the vehicle as the file
-//! says, and as it may really be. The last four go beyond a law's promise; they are flown on the file's own model
-//! only.
+//! The cost is their weighted sum, [`TrialFigures::cost`], averaged over the models of `COST_MODELS`: the vehicle as
+//! the file says, and as it may really be. The last four go beyond a law's promise; they are flown on the file's own
+//! model only.
 
+use super::figures::{HarderTrialFigures, TrialFigures};
+use super::models::{COST_MODELS, Model};
 use crate::flight::Flight;
 use crate::flight::course::Course;
 use controller_core::error::ParameterError;
@@ -28,7 +30,6 @@ use scenario::reality::sensors::{Sensors, VelocitySource};
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 use scenario::timing::Timing;
-use std::fmt;
 use std::sync::Arc;
 
 const ARRIVAL_DISTANCE_M: f64 = 0.1;
@@ -43,6 +44,9 @@ const GUST_FLIGHT_S: f64 = 6.0;
 const STORM_FLIGHT_S: f64 = 8.0;
 const STEP_FLIGHT_S: f64 = 12.0;
 const NOISE_FLIGHT_S: f64 = 4.0;
+/// Where the steps to the origin begin.
+const NEAR_STEP_M: Vector3<f64> = Vector3::new(-1.0, 0.0, 0.0);
+const FAR_STEP_M: Vector3<f64> = Vector3::new(-6.0, -6.0, -5.3);
 /// A flight in still air ends once position and yaw have been settled for this time.
 const SETTLED_FOR_S: f64 = 2.0;
 /// Between two poses, and from the moment that one shows to its arrival.
@@ -61,190 +65,22 @@ const HEAVY_MASS_FACTOR: f64 = 1.6;
 /// over a vehicle of a hand's size.
 const CENTRE_OFFSET_MAX_SHARE: f64 = 0.03;
 
-/// A vehicle as it may really be, relative to the file's model.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Model {
-    /// Factor on the mass.
-    pub mass: f64,
-    /// The thrust scale.
-    pub thrust: f64,
-    /// Centre of mass, m, body; on small vehicles nearer, by `CENTRE_OFFSET_MAX_SHARE`.
-    pub centre_of_mass: [f64; 2],
-    /// Factor on the rotors' lag.
-    pub lag: f64,
-    /// Further delay, s, rounded to plant steps.
-    pub delay: f64,
-}
-
-impl fmt::Display for Model {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mass, thrust, centre_of_mass: [x, y], lag, delay } = self;
-        write!(f, "mass times {mass}, thrust times {thrust}, centre of mass at [{x}, {y}] m, ")?;
-        write!(f, "lag times {lag}, {delay} s of further delay")
-    }
-}
-
-/// The models a cost is averaged over: as the file says; and mass and thrust 10 % off, the centre of mass 5 mm, half as
-/// much lag again, 5 ms of delay, in combinations.
-pub const COST_MODELS: [Model; 4] = [
-    Model { mass: 1.0, thrust: 1.0, centre_of_mass: [0.0, 0.0], lag: 1.0, delay: 0.0 },
-    Model { mass: 1.1, thrust: 0.9, centre_of_mass: [0.004, 0.003], lag: 1.5, delay: 0.0 },
-    Model { mass: 0.9, thrust: 1.1, centre_of_mass: [-0.003, 0.004], lag: 1.0, delay: 0.005 },
-    Model { mass: 1.0, thrust: 1.0, centre_of_mass: [0.0, 0.0], lag: 1.5, delay: 0.005 },
-];
-
-/// The trials' figures.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrialFigures {
-    /// Height lost in the recovery, m.
-    pub height_lost: f64,
-    /// Until the recovery is within 0.1 m for good, s.
-    pub recovered: f64,
-    /// Until the recovery's yaw is within 0.1 rad for good, s.
-    pub turned: f64,
-    /// Deepest excursion in the gust, m.
-    pub gust: f64,
-    /// The offset at the gust's end, m.
-    pub offset: f64,
-    /// Until the step is within 0.1 m for good, s.
-    pub step: f64,
-    /// Change of a rotor's command within 10 ms under noise, rms, as a share of its thrust in hover; zero without
-    /// rotors.
-    pub activity: f64,
-    /// Position under noise, m, rms.
-    pub noise: f64,
-    /// The figures beyond a law's promise, on the file's own model; `None` for another model.
-    pub beyond: Option<HarderTrialFigures>,
-    /// Commands that a limit cut, in all trials.
-    pub clipped: u64,
-}
-
-/// The figures of the trials beyond a law's promise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HarderTrialFigures {
-    /// Deepest excursion in the storm, m.
-    pub storm: f64,
-    /// Until the far step is within 0.1 m for good, s.
-    pub far: f64,
-    /// Until the step with weak rotors is within 0.1 m for good, s.
-    pub weak: f64,
-    /// Height lost in the heavy vehicle's recovery, m.
-    pub heavy_lost: f64,
-    /// Until it is within 0.1 m for good, s.
-    pub heavy: f64,
-}
-
-/// A figure: its name, its unit, the value with which a pilot begins to be content, and its weight.
-pub type Figure = (&'static str, &'static str, f64, f64);
-
-/// The figures that every model shows, as [`TrialFigures::values`].
-pub const MODEL_FIGURES: [Figure; 7] = [
-    ("upside down: height lost", "m", 3.0, 1.0),
-    ("upside down: back for good after", "s", 5.0, 1.0),
-    ("upside down: yaw back after", "s", 8.0, 1.0),
-    ("gust of 5 m/s: excursion", "m", 0.3, 1.0),
-    ("step of 1 m: there after", "s", 2.0, 1.0),
-    ("noise: position, rms", "m", 4e-3, 1.0),
-    ("noise: rotor command's change in 10 ms", "of hovering", 0.05, 0.5),
-];
-
-/// The figures of the file's own model alone, as [`HarderTrialFigures::values`].
-pub const OWN_MODEL_FIGURES: [Figure; 5] = [
-    ("storm of 12 m/s: excursion", "m", 2.0, 0.5),
-    ("step of 10 m: there after", "s", 5.0, 1.0),
-    ("step with weak rotors: there after", "s", 4.0, 0.5),
-    ("upside down, heavy: height lost", "m", 6.0, 0.5),
-    ("upside down, heavy: back after", "s", 8.0, 0.5),
-];
-
-/// No figure counts more than this many times its content value, so that the other figures judge a vehicle that cannot
-/// fly one of the trials.
-const FIGURE_COST_MAX: f64 = 10.0;
-
-/// The weighted sum of `values`.
-fn weighted(figures: &[Figure], values: &[f64]) -> f64 {
-    let parts = figures.iter().zip(values);
-    parts.map(|((_, _, content, weight), value)| weight * (value / content).min(FIGURE_COST_MAX)).sum()
-}
-
-impl HarderTrialFigures {
-    /// The values of [`OWN_MODEL_FIGURES`].
-    #[must_use]
-    pub fn values(&self) -> [f64; 5] {
-        [self.storm, self.far, self.weak, self.heavy_lost, self.heavy]
-    }
-}
-
-impl TrialFigures {
-    /// The values of [`MODEL_FIGURES`].
-    #[must_use]
-    pub const fn values(&self) -> [f64; 7] {
-        [self.height_lost, self.recovered, self.turned, self.gust, self.step, self.noise, self.activity]
-    }
-
-    /// The weighted sum that a search minimises. A figure of only one of the [`COST_MODELS`] counts as if all had it.
-    #[must_use]
-    pub fn cost(&self) -> f64 {
-        let beyond = self.beyond.map_or(0.0, |beyond| weighted(&OWN_MODEL_FIGURES, &beyond.values()));
-        weighted(&MODEL_FIGURES, &self.values()) + COST_MODELS.len() as f64 * beyond
-    }
-}
-
 /// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a
 /// flight of the judged law in given circumstances. `None` if one of the flights ends early.
-#[must_use]
 pub fn fly_trials(
     scenario: &Scenario,
     start: impl Fn(&Scenario) -> Option<Flight>,
     model: &Model,
     recovery: f64,
 ) -> Option<TrialFigures> {
-    let course = |scenario: &Scenario| Course::fly(scenario, start(scenario)?, ARRIVAL_DISTANCE_M).ok();
-    let settled =
-        |scenario: &Scenario| Course::until_settled(scenario, start(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok();
-    let real = really(scenario, model);
-    let hovering = |position, duration| hover(&real, position, duration).ok();
-    let windy = |speed: f64, duration: f64| {
-        let mut windy = hovering(Vector3::zeros(), duration)?;
-        let mass = f64::from(scenario.configuration.vehicle().mass);
-        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
-        windy.reality.drag = scenario.reality.drag.or(Some(unknown));
-        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
-        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-        course(&windy)
-    };
-    let stepped = |position| settled(&hovering(position, STEP_FLIGHT_S)?);
-    let near = Vector3::new(-1.0, 0.0, 0.0);
-
-    let recovered = settled(&turned_over(&hovering(Vector3::zeros(), recovery)?))?;
-    let (gusty, step) = (windy(GUST_M_PER_S, GUST_FLIGHT_S)?, stepped(near)?);
-    let mut noisy = hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
+    let trials = Trials { scenario, real: really(scenario, model), start, recovery };
+    let recovered = trials.settled(&turned_over(&trials.hovering(Vector3::zeros(), recovery)?))?;
+    let gusty = trials.windy(GUST_M_PER_S, GUST_FLIGHT_S)?;
+    let step = trials.stepped(NEAR_STEP_M)?;
+    let mut noisy = trials.hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
-    let noisy = course(&noisy)?;
-    let mut clipped = recovered.clipped + gusty.clipped + step.clipped + noisy.clipped;
-
-    let beyond = if *model == COST_MODELS[0] {
-        let storm = windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
-        let far = stepped(Vector3::new(-6.0, -6.0, -5.3))?;
-        let truth = Truth::model(scenario.configuration.vehicle());
-        let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
-            scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
-            settled(&scenario)
-        };
-        let weak = other(hovering(near, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
-        let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
-        clipped += [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum::<u64>();
-        Some(HarderTrialFigures {
-            storm: storm.excursion,
-            far: far.settled.unwrap_or(STEP_FLIGHT_S),
-            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
-            heavy_lost: heavy.height_lost,
-            heavy: heavy.settled.unwrap_or(recovery),
-        })
-    } else {
-        None
-    };
-
+    let noisy = trials.course(&noisy)?;
+    let (beyond, clipped) = if *model == COST_MODELS[0] { trials.harder()? } else { (None, 0) };
     Some(TrialFigures {
         height_lost: recovered.height_lost,
         recovered: recovered.settled.unwrap_or(recovery),
@@ -255,8 +91,69 @@ pub fn fly_trials(
         activity: noisy.activity / hovering_thrust(scenario),
         noise: noisy.rms,
         beyond,
-        clipped,
+        clipped: clipped + recovered.clipped + gusty.clipped + step.clipped + noisy.clipped,
     })
+}
+
+/// The vehicle and the law of all trials.
+struct Trials<'a, Start> {
+    scenario: &'a Scenario,
+    /// The vehicle as it really is.
+    real: Scenario,
+    start: Start,
+    /// s.
+    recovery: f64,
+}
+
+impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<'_, Start> {
+    fn course(&self, scenario: &Scenario) -> Option<Course> {
+        Course::fly(scenario, (self.start)(scenario)?, ARRIVAL_DISTANCE_M).ok()
+    }
+
+    fn settled(&self, scenario: &Scenario) -> Option<Course> {
+        Course::until_settled(scenario, (self.start)(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok()
+    }
+
+    fn hovering(&self, position: Vector3<f64>, duration: f64) -> Option<Scenario> {
+        hover(&self.real, position, duration).ok()
+    }
+
+    /// Hovering in wind that sets in.
+    fn windy(&self, speed: f64, duration: f64) -> Option<Course> {
+        let mut windy = self.hovering(Vector3::zeros(), duration)?;
+        let mass = f64::from(self.scenario.configuration.vehicle().mass);
+        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
+        windy.reality.drag = self.scenario.reality.drag.or(Some(unknown));
+        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
+        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
+        self.course(&windy)
+    }
+
+    /// From `position` to the origin.
+    fn stepped(&self, position: Vector3<f64>) -> Option<Course> {
+        self.settled(&self.hovering(position, STEP_FLIGHT_S)?)
+    }
+
+    /// The figures beyond a law's promise, and how many of their commands a limit cut.
+    fn harder(&self) -> Option<(Option<HarderTrialFigures>, u64)> {
+        let storm = self.windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
+        let far = self.stepped(FAR_STEP_M)?;
+        let truth = Truth::model(self.scenario.configuration.vehicle());
+        let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
+            scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
+            self.settled(&scenario)
+        };
+        let weak = other(self.hovering(NEAR_STEP_M, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
+        let heavy = other(turned_over(&self.hovering(Vector3::zeros(), self.recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
+        let figures = HarderTrialFigures {
+            storm: storm.excursion,
+            far: far.settled.unwrap_or(STEP_FLIGHT_S),
+            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
+            heavy_lost: heavy.height_lost,
+            heavy: heavy.settled.unwrap_or(self.recovery),
+        };
+        Some((Some(figures), [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum()))
+    }
 }
 
 /// Each rotor's thrust in hover, N; a vehicle without rotors counts as if it had four.
@@ -268,9 +165,6 @@ fn hovering_thrust(scenario: &Scenario) -> f64 {
 
 /// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off
 /// the reference's heading), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
-///
-/// # Errors
-/// None for a hover at the origin.
 pub fn recovery(scenario: &Scenario, duration: f64) -> Result<Scenario, ParameterError> {
     Ok(turned_over(&hover(scenario, Vector3::zeros(), duration)?))
 }
@@ -326,7 +220,6 @@ fn off_centre(scenario: &Scenario, model: &Model) -> Vector3<f64> {
 }
 
 /// The measured state of the trial under noise.
-#[must_use]
 pub fn noise(period: f64) -> Sensors {
     let ticks = |time: f64| (time / period).round() as u64;
     let accelerometer = ACCELEROMETER_NOISE_M_PER_S2 * (POSE_PERIOD_S / period).sqrt();

@@ -19,7 +19,6 @@ pub struct SpinningRotors {
 
 impl SpinningRotors {
     /// Rotors that together give the thrust `hover`, N, without torque. `lag` and the plant's `step` in s.
-    #[must_use]
     pub fn hovering(rotors: &Rotors, lag: f64, hover: f32, step: f64) -> Self {
         let hovering = |(rotor, row): (&Rotor, &Vector4<f64>)| {
             let thrust = (row.x as f32 * hover).clamp(rotor.thrust_min, rotor.thrust_max);
@@ -29,7 +28,6 @@ impl SpinningRotors {
     }
 
     /// Rotors that stand still. `lag` and the plant's `step` in s.
-    #[must_use]
     pub fn stopped(rotors: &Rotors, lag: f64, step: f64) -> Self {
         Self::at(rotors, lag, step, rotors.iter().map(|_| 0.0))
     }
@@ -44,7 +42,6 @@ impl SpinningRotors {
     }
 
     /// Thrusts at the speeds of this moment, N.
-    #[must_use]
     pub fn thrusts(&self) -> Vec<f64> {
         let thrust = |((speed, _), rotor): (&(f64, f64), &Rotor)| f64::from(rotor.thrust_coefficient) * speed * speed;
         self.speeds.iter().zip(self.rotors.iter()).map(thrust).collect()

@@ -23,7 +23,6 @@ pub struct Body {
 
 impl Body {
     /// For `vehicle`, moved within `limits`, in steps of `step` seconds.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, limits: &Limits, step: f64) -> Self {
         let inertia = vehicle.inertia.map(f64::from);
         let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y);
@@ -40,7 +39,6 @@ impl Body {
 
     /// Thrust, N, and torque, N m, of `wrench` as far as the limits let them act, and whether they cut anything.
     #[inline]
-    #[must_use]
     pub fn clipped(&self, wrench: &Wrench) -> (f64, Vector3<f64>, bool) {
         let commanded = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
         let thrust = commanded.0.clamp(0.0, self.thrust_max);

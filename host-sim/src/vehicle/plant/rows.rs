@@ -2,7 +2,7 @@
 //!
 //! The numbers of each kind stand side by side in a row, one of each body. A register takes as many neighbours as it
 //! holds: eight with AVX-512, four with AVX2, found out at run time. Those left over at the end of a row, and all of
-//! them on any other processor, go one by one. The equations are written once ([`super::motion`]), so the bits are
+//! them on any other processor, go one by one. The equations are written once (`super::motion`), so the bits are
 //! always the same.
 
 use super::body::Body;
@@ -27,7 +27,6 @@ pub struct Rows {
 
 impl Rows {
     /// Room for so many bodies, on the best registers of `processor`.
-    #[must_use]
     pub fn new(processor: Arch, bodies: usize) -> Self {
         let row = |_| vec![0.0; bodies];
         Self { processor, states: std::array::from_fn(row), commands: std::array::from_fn(row) }
@@ -52,7 +51,6 @@ impl Rows {
 
     /// The state of a body.
     #[inline]
-    #[must_use]
     pub fn state(&self, body: usize) -> BodyState {
         let number = |row: usize| self.states[row][body];
         BodyState {
@@ -71,7 +69,7 @@ impl Rows {
     }
 }
 
-/// One advance of all rows, for whatever registers.
+/// One advance of all rows, with registers of any width.
 struct Advance<'a> {
     body: &'a Body,
     steps: u32,

@@ -45,7 +45,6 @@ pub struct Flow {
 }
 
 /// c_g of rotors with this radius, m, of a vehicle this far above where it stands, m.
-#[must_use]
 pub fn ground_effect(radius: f64, above: f64) -> f64 {
     let ratio = radius / (4.0 * (above.max(0.0) + 0.5 * radius));
     if radius > 0.0 { 1.0 / (1.0 - ratio * ratio) - 1.0 } else { 0.0 }
@@ -77,7 +76,6 @@ pub struct Air {
 
 impl Air {
     /// Air around a vehicle with these rotors, if it has any.
-    #[must_use]
     pub fn new(rotors: Option<&Rotors>, truth: &Truth, drag: &Drag) -> Self {
         let real = |(index, rotor): (usize, &Rotor)| {
             let scale = truth.thrust_scale * truth.rotor_scales.get(index).copied().unwrap_or(1.0);
@@ -98,13 +96,11 @@ impl Air {
     }
 
     /// The rotors' thrusts at these speeds, rad/s, in still air, N.
-    #[must_use]
     pub fn thrusts(&self, speeds: &[f64; ROTORS_MAX]) -> Vec<f64> {
         self.rotors.iter().zip(speeds).map(|(rotor, speed)| rotor.thrust * speed * speed).collect()
     }
 
     /// Force, N, and torque about the centre of mass, N m.
-    #[must_use]
     pub fn act(&self, flow: &Flow, delivered: &Delivered) -> (Vector3<f64>, Vector3<f64>) {
         let (force, torque) = match delivered {
             Delivered::Wrench { thrust, torque } => {

@@ -34,7 +34,6 @@ pub struct BatteryState {
 
 impl BatteryState {
     /// As it is before anything is drawn from it.
-    #[must_use]
     pub fn new(battery: &Battery) -> Self {
         let charge = battery.charge * battery.capacity;
         let mut state = Self { battery: *battery, charge, voltage: 0.0, current: 0.0 };
@@ -43,19 +42,16 @@ impl BatteryState {
     }
 
     /// Under load, V.
-    #[must_use]
     pub fn voltage(&self) -> f64 {
         self.voltage
     }
 
     /// A.
-    #[must_use]
     pub fn current(&self) -> f64 {
         self.current
     }
 
     /// V / V_0.
-    #[must_use]
     pub fn ratio(&self) -> f64 {
         self.voltage / self.battery.nominal_voltage
     }

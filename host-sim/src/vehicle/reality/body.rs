@@ -23,7 +23,6 @@ pub const STAGE_TIMES: [f64; 3] = [0.0, 0.5, 1.0];
 /// p, v, q as stored (x, y, z, w), omega.
 type Packed = SVector<f64, 13>;
 
-/// A rigid body.
 #[derive(Debug, Clone)]
 pub struct RigidBody {
     /// kg.
@@ -40,7 +39,6 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// A body whose origin moves as `origin` says; `gravity` in m/s^2.
-    #[must_use]
     pub fn new(truth: &Truth, gravity: f64, origin: &BodyState) -> Self {
         let (mass, inertia, centre_of_mass) = (truth.mass, truth.inertia, truth.centre_of_mass);
         let mut body = Self { mass, inertia, gravity, centre_of_mass, state: *origin };
@@ -49,13 +47,11 @@ impl RigidBody {
     }
 
     /// The motion of the centre of mass.
-    #[must_use]
     pub fn state(&self) -> &BodyState {
         &self.state
     }
 
     /// The motion of the origin.
-    #[must_use]
     pub fn origin(&self) -> BodyState {
         let (arm, turning) = self.arm(&self.state);
         BodyState { position: self.state.position - arm, velocity: self.state.velocity - turning, ..self.state }

@@ -50,7 +50,6 @@ pub struct Turbulence {
 
 impl Turbulence {
     /// Stationary turbulence in a mean wind of `steady`, m/s, that advances in steps of `step` s.
-    #[must_use]
     pub fn new(turbulence: &wind::Turbulence, steady: &Vector3<f64>, step: f64) -> Self {
         let height = turbulence.altitude / FOOT_M;
         let ground = 0.177 + 0.000823 * height;
@@ -72,7 +71,6 @@ impl Turbulence {
     }
 
     /// m/s, world.
-    #[must_use]
     pub fn velocity(&self) -> Vector3<f64> {
         self.along * self.u.output() + self.across * self.v.output() + Vector3::z() * self.w.output()
     }

@@ -84,7 +84,6 @@ pub struct Propulsion {
 
 impl Propulsion {
     /// The vehicle's at rest in its command to hover. `lag` and `step` in s.
-    #[must_use]
     pub fn new(configuration: &Configuration, lag: f64, reality: &Reality, step: f64) -> Self {
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
         let hover = vehicle.mass * vehicle.gravity;
@@ -131,20 +130,17 @@ impl Propulsion {
     }
 
     /// The speeds of this moment, rad/s; zero where there is no rotor.
-    #[must_use]
     pub fn speeds(&self) -> [f64; ROTORS_MAX] {
         self.motors.as_ref().map_or([0.0; ROTORS_MAX], |motors| motors.speeds)
     }
 
     /// Voltage, V, and current, A, of the battery, if there is one.
-    #[must_use]
     pub fn battery(&self) -> Option<(f64, f64)> {
         let battery = self.motors.as_ref()?.battery.as_ref()?;
         Some((battery.voltage(), battery.current()))
     }
 
     /// Thrust, N, and torque, N m, that the model has of what is `delivered`.
-    #[must_use]
     pub fn as_modelled(&self, delivered: &Delivered) -> (f64, Vector3<f64>) {
         match delivered {
             Delivered::Wrench { thrust, torque } => (*thrust, *torque),
@@ -156,7 +152,6 @@ impl Propulsion {
 
     /// The torque of rotors that turn as `delivered` and change their speeds as in the last step, N m, on a body that
     /// turns at `rate`, rad/s.
-    #[must_use]
     pub fn spin(&self, delivered: &Delivered, rate: &Vector3<f64>) -> Vector3<f64> {
         match (delivered, &self.motors) {
             (Delivered::Speeds(speeds), Some(motors)) if motors.inertia > 0.0 => motors.spin(speeds, rate),

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Sources: MIL-F-8785C, section 3.7.1.3 (the discrete gust, here by time instead of by distance); CS-25.341(a) (the
-//! pulse); turbulence, [`super::dryden`].
+//! pulse); turbulence, `super::dryden`.
 
 use super::dryden::Turbulence;
 use nalgebra::Vector3;
@@ -27,7 +27,6 @@ pub struct MovingAir {
 
 impl MovingAir {
     /// The scenario's wind; turbulence advances in plant steps of `step` s.
-    #[must_use]
     pub fn new(wind: &Wind, step: f64) -> Self {
         let turbulence = wind.turbulence.map(|turbulence| Turbulence::new(&turbulence, &wind.steady, step));
         let gust = wind.gust.map(|gust| (gust, first_step(gust.start, step)));
@@ -35,7 +34,6 @@ impl MovingAir {
     }
 
     /// Its velocity, m/s, in the plant step `now`, a `part` of which is over.
-    #[must_use]
     pub fn velocity(&self, now: u64, part: f64) -> Vector3<f64> {
         let begun = |(gust, first): &&(Gust, u64)| gust.shape != Shape::Step || now >= *first;
         let gust = self.gust.as_ref().filter(begun).map_or_else(Vector3::zeros, |(gust, _)| {
@@ -54,7 +52,6 @@ impl MovingAir {
 }
 
 /// The first plant step of `step` s that does not begin before `time`, s, but for rounding.
-#[must_use]
 pub fn first_step(time: f64, step: f64) -> u64 {
     (time / step - 1e-6).ceil() as u64
 }

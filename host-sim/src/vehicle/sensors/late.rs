@@ -20,7 +20,6 @@ pub struct Late<const N: usize> {
 
 impl<const N: usize> Late<N> {
     /// By so many ticks.
-    #[must_use]
     pub fn new(ticks: f64) -> Self {
         Self { whole: ticks as usize, share: ticks.fract(), past: VecDeque::new() }
     }

@@ -29,7 +29,6 @@ pub struct PropagatedAttitude {
 
 impl PropagatedAttitude {
     /// Starts from `attitude`, a unit quaternion that was true at `time` (us), with body rates in rad/s.
-    #[must_use]
     pub fn new(attitude: Quaternion<f32>, angular_velocity: Vector3<f32>, time: u64) -> Self {
         Self { attitude, angular_velocity, time }
     }
@@ -45,7 +44,6 @@ impl PropagatedAttitude {
     }
 
     /// q, body to world, unit.
-    #[must_use]
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }

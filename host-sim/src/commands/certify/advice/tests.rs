@@ -90,7 +90,7 @@ fn the_advice_on_an_inequality_is_accepted_and_gives_it_margin() {
         let scenario = Scenario::parse(text, "f").unwrap();
         let certificate = Certificate::new(&scenario.configuration).unwrap();
         for inequality in certificate.inequalities() {
-            let steps = steps(of_inequality(inequality.name));
+            let steps = steps(for_inequality(inequality.name));
             assert!(!steps.is_empty(), "{}", inequality.name);
             let before = inequality.margin();
             for (path, factor) in steps {
@@ -114,7 +114,7 @@ fn the_advice_on_an_inequality_is_accepted_and_gives_it_margin() {
 fn the_advice_is_accepted_by_a_vehicles_file_alone() {
     let scenario = Scenario::parse(BARE_VEHICLE, "f").unwrap();
     for inequality in Certificate::new(&scenario.configuration).unwrap().inequalities() {
-        for (path, factor) in steps(of_inequality(inequality.name)) {
+        for (path, factor) in steps(for_inequality(inequality.name)) {
             with(BARE_VEHICLE, path, factor).unwrap_or_else(|error| panic!("{}: {error}", inequality.name));
         }
     }
@@ -124,9 +124,9 @@ fn the_advice_is_accepted_by_a_vehicles_file_alone() {
 fn the_advice_on_paths_flights_and_loops_is_accepted() {
     use controller_core::certificate::path::PathRow;
     let rows = [PathRow::Fall, PathRow::Thrust, PathRow::TurningRate, PathRow::Torque, PathRow::Floor, PathRow::Cone];
-    let lack = |axis| of_loop(&Lack { axis, missed: 0.1, what: Shortfall::Unstable { spectral_radius: 1.1 } });
+    let lack = |axis| for_loop(&Lack { axis, missed: 0.1, what: Shortfall::Unstable { spectral_radius: 1.1 } });
     let loops = [Axis::Roll, Axis::Yaw, Axis::LateralX, Axis::Vertical].map(lack);
-    let texts = rows.map(|row| of_path(row).to_owned()).into_iter().chain(loops).chain([OF_FLIGHT.to_owned()]);
+    let texts = rows.map(|row| for_path(row).to_owned()).into_iter().chain(loops).chain([FOR_FLIGHT.to_owned()]);
     for advice in texts {
         let steps = steps(&advice);
         assert!(!steps.is_empty(), "{advice}");

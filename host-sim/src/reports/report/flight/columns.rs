@@ -21,7 +21,6 @@ type Norm = fn(&Diagnostics) -> f32;
 type Distance = fn(&State, &BodyState) -> f64;
 
 /// The columns of a flight of `scenario`.
-#[must_use]
 pub fn columns(scenario: &Scenario) -> Columns {
     let mut columns = Columns::new();
     samples(&mut columns);

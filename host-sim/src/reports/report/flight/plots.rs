@@ -13,7 +13,6 @@ use scenario::Scenario;
 const LIMIT_LABEL: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
-#[must_use]
 pub fn plots(scenario: &Scenario, certificate: &Certificate, track: &Track) -> Vec<Plot> {
     let mut plots = motion(scenario);
     plots.extend(commands(scenario, certificate));

@@ -16,10 +16,10 @@ const FUTILE_WAIT: Duration = Duration::from_millis(300);
 const HANG_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A port and the flight controller's end of its connection.
-fn connected(patience: Duration) -> (SimulatorPort, TcpStream) {
+fn connected(timeout: Duration) -> (SimulatorPort, TcpStream) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Connect(listener.local_addr().unwrap().to_string());
-    let port = SimulatorPort::open(&address, patience, &Interrupt::default()).unwrap();
+    let port = SimulatorPort::open(&address, timeout, &Interrupt::default()).unwrap();
     let board = listener.accept().unwrap().0;
     board.set_read_timeout(Some(HANG_TIMEOUT)).unwrap();
     (port, board)
