@@ -11,7 +11,13 @@ use flight::{
 const LONG_FLIGHT_TICKS: u64 = 4_000;
 
 fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
-    MissionItem { leg, position: Vector3::new(x, y, z), turn: HeadingSetpoint::Keep, radius: ACCEPTANCE_RADIUS_M, hold: 0 }
+    MissionItem {
+        leg,
+        position: Vector3::new(x, y, z),
+        turn: HeadingSetpoint::Keep,
+        radius: ACCEPTANCE_RADIUS_M,
+        hold: 0,
+    }
 }
 
 fn waypoint(x: f32, y: f32, z: f32) -> MissionItem {

@@ -48,9 +48,13 @@ fn path_of(file: &str) -> String {
 fn every_test_and_theorem_the_map_names_is_where_it_says() {
     let map = read("docs/map.md");
     let (mut named, mut theorems) = (0, BTreeSet::new());
-    let rows = map.lines().filter(|line| line.starts_with('|'));
-    for checked in rows.filter_map(|row| row.trim_end_matches([' ', '|']).rsplit('|').next()) {
-        for (files, tests) in checked.split("; ").filter_map(|part| part.rsplit_once(": ")) {
+    // Under each entry, what checks it: an item for each file or some, with its tests.
+    let entries = map.split("\n- **").skip(1);
+    for checks in entries.map(|entry| entry.split("\n\n").next().unwrap_or_default().split("\n  - ").skip(1)) {
+        let checks = checks.map(|check| check.split_whitespace().collect::<Vec<_>>().join(" "));
+        for (files, tests) in
+            checks.filter_map(|check| check.rsplit_once(": ").map(|(a, b)| (a.to_owned(), b.to_owned())))
+        {
             let is_file = |word: &&str| word.ends_with(".rs") || word.ends_with(".v");
             let files: Vec<&str> = files.split([' ', ',']).filter(is_file).collect();
             for test in tests.split('`').skip(1).step_by(2) {

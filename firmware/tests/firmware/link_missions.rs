@@ -365,7 +365,10 @@ fn places_are_those_of_their_frames() {
     ] {
         let placed = item_of(&item, true).placed(&origin, &home);
         assert!((frames::world(&placed.position) - local).norm() < 0.02, "{item:?} {placed:?}");
-        assert_eq!((placed.leg, placed.turn, placed.radius), (Leg::Waypoint, HeadingSetpoint::Keep, ACCEPTANCE_RADIUS_M));
+        assert_eq!(
+            (placed.leg, placed.turn, placed.radius),
+            (Leg::Waypoint, HeadingSetpoint::Keep, ACCEPTANCE_RADIUS_M)
+        );
     }
     // Yaw is from north to the right, degrees; the law's heading from east to the left.
     let turned = MISSION_ITEM_INT_DATA { param1: 2.5, param2: 1.25, param4: 180.0, ..waypoint(0, 0.0, 0.0, -1.0) };

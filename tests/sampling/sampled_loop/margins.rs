@@ -158,7 +158,8 @@ fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
 fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
     // An attitude loop that hardly carries the position loop in front of it.
     let gains = GainParameters { k_theta: 1.2, k_omega: 0.02, ..GainParameters::TABLE_1 };
-    let at = |period: f64, axis: Axis| model(gains, LoopTiming { period, ..IDEAL_TIMING }).report(axis).margins.unwrap();
+    let at =
+        |period: f64, axis: Axis| model(gains, LoopTiming { period, ..IDEAL_TIMING }).report(axis).margins.unwrap();
     for axis in [Axis::LateralX, Axis::LateralY, Axis::Vertical] {
         let (slow, fast) = (at(1e-3, axis), at(1e-5, axis));
         for (slow, fast) in

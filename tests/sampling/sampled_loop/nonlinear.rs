@@ -83,7 +83,8 @@ fn limit_cycle(axis: Axis, timing: LoopTiming) -> f64 {
 #[test]
 fn ten_milliseconds_of_lag_and_more_end_in_a_limit_cycle() {
     for axis in ATTITUDE_AXES {
-        let amplitudes = [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, LoopTiming { rotor_lag, ..IDEAL_TIMING }));
+        let amplitudes =
+            [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, LoopTiming { rotor_lag, ..IDEAL_TIMING }));
         assert!(amplitudes[0] > 1e-3 && amplitudes.is_sorted(), "{axis:?} {amplitudes:?}");
     }
 }

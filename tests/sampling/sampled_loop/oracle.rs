@@ -305,6 +305,7 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
 #[test]
 fn the_oracle_needs_no_lag_to_be_small() {
     let ideal = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, IDEAL_TIMING, 1.0);
-    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, LoopTiming { rotor_lag: 1e-5, ..IDEAL_TIMING }, 1.0);
+    let nearly =
+        spectral_radius(Axis::Roll, &GainParameters::TABLE_1, LoopTiming { rotor_lag: 1e-5, ..IDEAL_TIMING }, 1.0);
     assert!((ideal - nearly).abs() < 1e-3);
 }

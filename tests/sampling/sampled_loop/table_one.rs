@@ -50,7 +50,8 @@ fn rotor_lag_costs_the_roll_loop_its_stability_at_8_5_milliseconds() {
 #[test]
 fn no_attitude_loop_survives_a_sample_of_delay() {
     for (axis, expected) in [(Axis::Roll, 0.754), (Axis::Pitch, 0.831), (Axis::Yaw, 0.955)] {
-        let limit = boundary(0.0, 1.0, |delay_samples| radius(axis, LoopTiming { delay_samples, ..IDEAL_TIMING }) < 1.0);
+        let limit =
+            boundary(0.0, 1.0, |delay_samples| radius(axis, LoopTiming { delay_samples, ..IDEAL_TIMING }) < 1.0);
         assert!((limit - expected).abs() < 0.0005, "{axis:?}: {limit} samples");
         // The delay margin of the undelayed loop is that limit in seconds.
         let margin = model(GainParameters::TABLE_1, IDEAL_TIMING).report(axis).margins.unwrap().delay;

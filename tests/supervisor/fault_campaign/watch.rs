@@ -98,9 +98,8 @@ fn rotors_are_proven(thrusts: &[f32], certified: &Certified) -> bool {
     let rotors = certified.configuration().rotors().unwrap();
     thrusts.iter().enumerate().all(|(rotor, thrust)| {
         let (thrust, least) = (f64::from(*thrust), f64::from(rotors[rotor].thrust_min));
-        certified
-            .certificate()
-            .rotor(rotor)
-            .is_some_and(|proven| thrust <= proven.max * (1.0 + ROUNDING_SHARE) && thrust >= least.min(proven.min) - ROUNDING_SHARE)
+        certified.certificate().rotor(rotor).is_some_and(|proven| {
+            thrust <= proven.max * (1.0 + ROUNDING_SHARE) && thrust >= least.min(proven.min) - ROUNDING_SHARE
+        })
     })
 }

@@ -69,7 +69,9 @@ pub struct Landing {
 impl Landing {
     /// Whether it lands well.
     pub fn is_soft(&self) -> bool {
-        self.speed < SOFT_LANDING_SPEED_M_PER_S && self.away < PLACE_HELD_DISTANCE_M && self.height_lost < HEIGHT_LOST_MAX_M
+        self.speed < SOFT_LANDING_SPEED_M_PER_S
+            && self.away < PLACE_HELD_DISTANCE_M
+            && self.height_lost < HEIGHT_LOST_MAX_M
     }
 }
 
