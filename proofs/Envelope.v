@@ -1,7 +1,7 @@
 (** * The envelope is invariant
 
     Section 3 of docs/extended-law.md, claim (c), in continuous time;
-    controller-core/src/extended/turning.rs. *)
+    controller-core/src/extended/direction_limiter.rs. *)
 
 From Coq Require Import Reals Lra.
 From Coquelicot Require Import Coquelicot.

@@ -1,7 +1,7 @@
 (** * The limiter: how fast the thrust direction turns
 
     Section 3 of docs/extended-law.md, in exact arithmetic;
-    controller-core/src/extended/turning.rs. p is the direction's rate, q its
+    controller-core/src/extended/direction_limiter.rs. p is the direction's rate, q its
     acceleration, both across it. *)
 
 From Coq Require Import Reals Lra.

@@ -18,7 +18,7 @@ Open Scope R_scope.
 Definition greatest_size : R := 10000.
 
 (** The margin of the thrust floor, as a share of [size_of]. The constructor asks
-    for a little more, Extended::FLOOR_MARGIN_LEAST. *)
+    for a little more, Extended::FLOOR_MARGIN_SHARE_MIN. *)
 Definition margin_least : R := 35 / 10000000.
 
 (** What the sizes are shares of, N: the greatest thrust of all rotors, but no

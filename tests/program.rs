@@ -8,6 +8,8 @@ mod compare;
 mod documentation;
 mod documented_defaults;
 mod identify;
+// It needs /dev/full, and signals.
+#[cfg(target_os = "linux")]
 mod output;
 mod overwriting;
 mod verdicts;

@@ -14,7 +14,7 @@
 //! - [`minimum_norm`]: its first step, B+ w, which is all that a certified flight needs;
 //! - [`remaining`]: the same after a rotor has failed;
 //! - `attainable` (internal): the polytope as half-spaces, arranged for the mixer's three queries, and for
-//!   [`greatest_torques`];
+//!   [`max_torques`];
 //! - [`curve`]: thrust to motor command and back, with battery compensation;
 //! - [`support`]: the demand of a whole set of wrenches on each rotor: the certificate's last link.
 
@@ -26,7 +26,7 @@ pub mod mixer;
 pub mod remaining;
 pub mod support;
 
-pub use attainable::greatest_torques;
+pub use attainable::max_torques;
 pub use curve::{Battery, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
 pub use minimum_norm::{MinimumNorm, Thrusts};

@@ -38,7 +38,6 @@ pub struct TorqueCommand {
 
 /// R(q)^T v for a quaternion q = (w, a) of any length: v - w t + a x t with t = 2 a x v / |q|^2.
 #[inline(always)]
-#[must_use]
 pub fn rotate_back(q: &Quaternion<f32>, v: &Vector3<f32>) -> Vector3<f32> {
     let (axis, w) = (q.imag(), q.w);
     let t = (axis * (2.0 / length_squared(q))).cross(v);
@@ -70,7 +69,6 @@ pub struct AttitudeLaw {
 
 impl AttitudeLaw {
     /// For `gains` and the diagonal of J, kg m^2.
-    #[must_use]
     pub fn new(gains: &Gains, inertia: &Vector3<f32>) -> Self {
         let [k_theta, m_theta, k, m] = [gains.k_theta, gains.m_theta, gains.k_omega, gains.m_omega].map(f64::from);
         let steepness = k_theta / m_theta;
@@ -88,7 +86,6 @@ impl AttitudeLaw {
     /// Evaluates the law. `error` is a quaternion of any length along R~, `sign` times along the lift;
     /// `angular_velocity` is omega in the body frame; omega_d and omega_d' are in the axes of the desired body frame.
     #[inline(always)]
-    #[must_use]
     pub fn command(
         &self,
         error: &Quaternion<f32>,

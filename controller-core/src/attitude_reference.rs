@@ -59,7 +59,6 @@ pub struct AttitudeReference {
 /// The attitude that points body z along `command` and body x's horizontal part along `heading`, with its motion.
 ///
 /// `command`, `command_rate` and `command_acceleration` are u, u', u'' in the world frame; u_z > 0.
-#[must_use]
 pub fn attitude_reference(
     command: &Vector3<f32>,
     command_rate: &Vector3<f32>,
@@ -95,7 +94,7 @@ impl AngularMotion {
 
 /// How the thrust direction turns, axes of the desired frame without heading's turn: rho' and rho'' across rho.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct DirectionMotion {
     /// p, rad/s.
     pub rate: Vector2<f32>,
     /// q, rad/s^2.
@@ -128,7 +127,6 @@ pub struct DesiredAttitude {
 impl DesiredAttitude {
     /// For u in the world frame, u_z > 0.
     #[inline(always)]
-    #[must_use]
     pub fn new(command: &Vector3<f32>, heading: &Heading) -> Self {
         let yaw = heading.direction();
         let h = turned_back_by_yaw(&yaw, command);
@@ -148,14 +146,12 @@ impl DesiredAttitude {
 
     /// |u|, m/s^2.
     #[inline(always)]
-    #[must_use]
     pub fn magnitude(&self) -> f32 {
         self.magnitude
     }
 
     /// R_d as a unit quaternion, body to world.
     #[inline(always)]
-    #[must_use]
     pub fn attitude(&self) -> Quaternion<f32> {
         let back = self.error(&Quaternion::new(1.0, 0.0, 0.0, 0.0));
         back.conjugate() * (1.0 / math::sqrt(back.norm_squared()))
@@ -166,7 +162,6 @@ impl DesiredAttitude {
     /// Turned back by yaw, pitch and roll: the quaternions (c, 0, 0, -s), (c, 0, -s, 0) and (c, -s, 0, 0) in front,
     /// where (c, s) is along the cosine and sine of half the angle.
     #[inline(always)]
-    #[must_use]
     pub fn error(&self, attitude: &Quaternion<f32>) -> Quaternion<f32> {
         let (w, x, y, z) = (attitude.w, attitude.i, attitude.j, attitude.k);
         let (cos, sin) = (self.yaw.x, self.yaw.y);
@@ -181,26 +176,28 @@ impl DesiredAttitude {
 
     /// omega_d and omega_d' where the command moves by u' and u''; `heading` as before.
     #[inline(always)]
-    #[must_use]
     pub fn motion(
         &self,
         command_rate: &Vector3<f32>,
         command_acceleration: &Vector3<f32>,
         heading: &Heading,
     ) -> AngularMotion {
-        let turn = self.turn(command_rate, command_acceleration);
-        self.motion_of(&turn.rate, &turn.acceleration, heading)
+        let turn = self.direction_motion(command_rate, command_acceleration);
+        self.motion_of_direction(&turn.rate, &turn.acceleration, heading)
     }
 
     /// How rho turns where the command moves by u' and u''.
     #[inline(always)]
-    #[must_use]
-    pub fn turn(&self, command_rate: &Vector3<f32>, command_acceleration: &Vector3<f32>) -> Turn {
+    pub fn direction_motion(
+        &self,
+        command_rate: &Vector3<f32>,
+        command_acceleration: &Vector3<f32>,
+    ) -> DirectionMotion {
         let rate = self.turned_back(command_rate);
         let acceleration = self.turned_back(command_acceleration);
         let double_magnitude_rate = rate.z + rate.z;
         let p = rate.xy() * self.inverse_magnitude;
-        Turn {
+        DirectionMotion {
             rate: p,
             acceleration: (acceleration.xy() - p * double_magnitude_rate) * self.inverse_magnitude,
             magnitude: self.magnitude,
@@ -211,15 +208,18 @@ impl DesiredAttitude {
 
     /// The third component of omega_d where rho turns by `rate`, p.
     #[inline(always)]
-    #[must_use]
     pub fn yaw_rate(&self, rate: &Vector2<f32>, heading: &Heading) -> f32 {
         (heading.rate() * self.pitch.x - rate.x * self.roll.y) * self.roll_secant
     }
 
     /// omega_d and omega_d' where rho turns by p = `rate` and q = `acceleration`; `heading` as before.
     #[inline(always)]
-    #[must_use]
-    pub fn motion_of(&self, rate: &Vector2<f32>, acceleration: &Vector2<f32>, heading: &Heading) -> AngularMotion {
+    pub fn motion_of_direction(
+        &self,
+        rate: &Vector2<f32>,
+        acceleration: &Vector2<f32>,
+        heading: &Heading,
+    ) -> AngularMotion {
         let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
         let (yaw_rate, yaw_acceleration) = (heading.rate(), heading.acceleration());
         let x = -rate.y;
@@ -235,7 +235,6 @@ impl DesiredAttitude {
 
     /// e3 in the axes of the desired frame: R_d^T e3.
     #[inline(always)]
-    #[must_use]
     pub fn up(&self) -> Vector3<f32> {
         let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
         Vector3::new(-sin_theta, sin_phi * cos_theta, cos_phi * cos_theta)
@@ -243,7 +242,6 @@ impl DesiredAttitude {
 
     /// R_d v.
     #[inline(always)]
-    #[must_use]
     pub fn turned(&self, v: &Vector3<f32>) -> Vector3<f32> {
         let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (self.pitch.into(), self.roll.into());
         let (y, along) = (cos_phi * v.y - sin_phi * v.z, sin_phi * v.y + cos_phi * v.z);

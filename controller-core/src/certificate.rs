@@ -51,7 +51,6 @@ impl<R: Real> Certificate<R> {
     }
 
     /// The paper's law's, if this is one.
-    #[must_use]
     pub fn paper(&self) -> Option<&PaperCertificate<R>> {
         match self {
             Self::Paper(certificate) => Some(certificate),
@@ -68,13 +67,11 @@ impl<R: Real> Certificate<R> {
     }
 
     /// Whether the configuration is certified: everything that decides holds.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.inequalities().all(Inequality::holds)
     }
 
     /// Every thrust the law can command, N.
-    #[must_use]
     pub fn thrust(&self) -> Interval<R> {
         match self {
             Self::Paper(certificate) => certificate.sharp.thrust,
@@ -83,7 +80,6 @@ impl<R: Real> Certificate<R> {
     }
 
     /// Greatest |torque| about each body axis, N m.
-    #[must_use]
     pub fn torque(&self) -> Vector3<R> {
         match self {
             Self::Paper(certificate) => certificate.sharp.torque,
@@ -92,12 +88,11 @@ impl<R: Real> Certificate<R> {
     }
 
     /// Every thrust the law can command of a rotor, N, the first being rotor 0; none beyond the last.
-    #[must_use]
     pub fn rotor(&self, rotor: usize) -> Option<Interval<R>> {
         match self {
             Self::Paper(certificate) => {
                 let demand = &certificate.rotors.get(rotor)?.demand;
-                Some(Interval { least: demand.least, greatest: demand.greatest })
+                Some(Interval { min: demand.min, max: demand.max })
             }
             Self::Extended(certificate) => certificate.bounds.rotors.get(rotor).copied(),
         }
@@ -114,7 +109,6 @@ impl Certificate {
     }
 
     /// The inequality with the least margin.
-    #[must_use]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(self.inequalities())
     }

@@ -57,7 +57,7 @@ impl Configuration {
         gains: Gains,
         bounds: ReferenceBounds,
     ) -> Result<Self, ParameterError> {
-        Self::of(vehicle, limits, LawParameters::Paper(PaperLaw { gains, thrust_floor: None }), bounds)
+        Self::build(vehicle, limits, LawParameters::Paper(PaperLaw { gains, thrust_floor: None }), bounds)
     }
 
     /// The extended law for `vehicle`, to fly references within `bounds`.
@@ -70,10 +70,10 @@ impl Configuration {
         law: ExtendedLaw,
         bounds: ReferenceBounds,
     ) -> Result<Self, ParameterError> {
-        Self::of(vehicle, limits, LawParameters::Extended(law), bounds)
+        Self::build(vehicle, limits, LawParameters::Extended(law), bounds)
     }
 
-    fn of(
+    fn build(
         vehicle: Vehicle,
         limits: Limits,
         law: LawParameters,
@@ -81,11 +81,11 @@ impl Configuration {
     ) -> Result<Self, ParameterError> {
         let bounds = bounds.validated()?;
         let room = vehicle.gravity - bounds.vertical_acceleration;
-        let (least, field) = match &law {
+        let (min, field) = match &law {
             LawParameters::Paper(PaperLaw { gains, .. }) => (gains.m_p, "gains.m_p"),
             LawParameters::Extended(ExtendedLaw { parameters, .. }) => (parameters.a_down, "gains.a_down"),
         };
-        require(least < room, field, Reason::NotBelow(room))?;
+        require(min < room, field, Reason::NotBelow(room))?;
         Ok(Self { vehicle, limits, law, bounds, rotors: None })
     }
 
@@ -99,8 +99,8 @@ impl Configuration {
         let field = "control.thrust_floor";
         let law = *self.paper().ok_or(ParameterError { field, reason: Reason::OtherLaw })?;
         require_positive(floor, field)?;
-        let least = self.least_thrust();
-        require(floor <= least, field, Reason::Above(least))?;
+        let min = self.min_thrust();
+        require(floor <= min, field, Reason::Above(min))?;
         Ok(Self { law: LawParameters::Paper(PaperLaw { thrust_floor: Some(floor), ..law }), ..self })
     }
 
@@ -118,15 +118,14 @@ impl Configuration {
     /// # Errors
     /// As [`Self::new`], and as [`Self::with_thrust_floor`] if there is a floor.
     pub fn with_bounds(&self, bounds: ReferenceBounds) -> Result<Self, ParameterError> {
-        let configuration = Self::of(self.vehicle, self.limits, self.law, bounds)?;
+        let configuration = Self::build(self.vehicle, self.limits, self.law, bounds)?;
         let configuration = Self { rotors: self.rotors.clone(), ..configuration };
         self.thrust_floor().map_or(Ok(configuration.clone()), |floor| configuration.with_thrust_floor(floor))
     }
 
     /// By how much the law itself may command to fall, m/s^2: the reference's vertical acceleration must stay above
     /// this less g.
-    #[must_use]
-    pub fn greatest_fall(&self) -> f32 {
+    pub fn max_fall(&self) -> f32 {
         match &self.law {
             LawParameters::Paper(PaperLaw { gains, .. }) => gains.m_p,
             LawParameters::Extended(ExtendedLaw { parameters, .. }) => parameters.a_down,
@@ -135,9 +134,8 @@ impl Configuration {
 
     /// m (g - K_a3) less m times what the law may command to fall, N: the greatest floor the thrust projection may
     /// have.
-    #[must_use]
-    pub fn least_thrust(&self) -> f32 {
-        self.vehicle.mass * (self.vehicle.gravity - self.greatest_fall() - self.bounds.vertical_acceleration)
+    pub fn min_thrust(&self) -> f32 {
+        self.vehicle.mass * (self.vehicle.gravity - self.max_fall() - self.bounds.vertical_acceleration)
     }
 
     /// Carries the certificate to the rotors.
@@ -155,25 +153,21 @@ impl Configuration {
     }
 
     /// The vehicle.
-    #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
 
     /// The user's limits.
-    #[must_use]
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
     /// The law and its constants.
-    #[must_use]
     pub fn law(&self) -> &LawParameters {
         &self.law
     }
 
     /// The paper's law; none if it is another.
-    #[must_use]
     pub fn paper(&self) -> Option<&PaperLaw> {
         match &self.law {
             LawParameters::Paper(law) => Some(law),
@@ -182,25 +176,21 @@ impl Configuration {
     }
 
     /// The gains of the paper's law; none for another.
-    #[must_use]
     pub fn gains(&self) -> Option<&Gains> {
         self.paper().map(|law| &law.gains)
     }
 
     /// Omega_r: the references this configuration is for.
-    #[must_use]
     pub fn bounds(&self) -> &ReferenceBounds {
         &self.bounds
     }
 
     /// The floor of the thrust projection, N; none where it is off.
-    #[must_use]
     pub fn thrust_floor(&self) -> Option<f32> {
         self.paper().and_then(|law| law.thrust_floor)
     }
 
     /// The rotors, if the certificate is to reach them.
-    #[must_use]
     pub fn rotors(&self) -> Option<&Rotors> {
         self.rotors.as_ref()
     }

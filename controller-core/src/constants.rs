@@ -10,27 +10,26 @@ use crate::error::{ParameterError, Reason, require, require_finite};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Least.
-    pub least: f32,
+    pub min: f32,
     /// Greatest.
-    pub greatest: f32,
+    pub max: f32,
 }
 
 impl Range {
     /// A gain or a level: its square stays above zero and, with the largest states, below overflow.
-    pub const POSITIVE: Self = Self { least: 1e-7, greatest: 1e3 };
+    pub const POSITIVE: Self = Self { min: 1e-7, max: 1e3 };
     /// A level that may be zero, which turns its term off.
-    pub const LEVEL: Self = Self { least: 0.0, greatest: 1e3 };
+    pub const LEVEL: Self = Self { min: 0.0, max: 1e3 };
     /// A bandwidth of a filter, 1/s: slower ones add up rounding, faster ones are beyond every tick.
-    pub const BANDWIDTH: Self = Self { least: 0.2, greatest: 100.0 };
+    pub const BANDWIDTH: Self = Self { min: 0.2, max: 100.0 };
     /// The bound of a motion.
-    pub const BOUND: Self = Self { least: 0.0, greatest: f32::MAX };
+    pub const BOUND: Self = Self { min: 0.0, max: f32::MAX };
     /// A share of one, above zero.
-    pub const SHARE: Self = Self { least: 1e-7, greatest: 1.0 };
+    pub const SHARE: Self = Self { min: 1e-7, max: 1.0 };
 
     /// A range of its own.
-    #[must_use]
     pub const fn between(least: f32, greatest: f32) -> Self {
-        Self { least, greatest }
+        Self { min: least, max: greatest }
     }
 
     /// Checks one value.
@@ -39,10 +38,10 @@ impl Range {
     /// Names `field`.
     pub fn check(&self, value: f32, field: &'static str) -> Result<(), ParameterError> {
         require_finite(value, field)?;
-        require(self.least <= 0.0 || value > 0.0, field, Reason::NotPositive)?;
-        require(self.least < 0.0 || value >= 0.0, field, Reason::Negative)?;
-        require(value >= self.least, field, Reason::Below(self.least))?;
-        require(value <= self.greatest, field, Reason::Above(self.greatest))
+        require(self.min <= 0.0 || value > 0.0, field, Reason::NotPositive)?;
+        require(self.min < 0.0 || value >= 0.0, field, Reason::Negative)?;
+        require(value >= self.min, field, Reason::Below(self.min))?;
+        require(value <= self.max, field, Reason::Above(self.max))
     }
 }
 
@@ -61,14 +60,52 @@ pub struct Constant {
     pub range: Range,
     /// Whether `tune` searches it.
     pub searched: bool,
+    /// The formula of its default, as written in its declaration; empty without one.
+    pub formula: &'static str,
 }
 
-/// Declares a struct of constants, each with its entry of the table.
+/// Declares a struct of constants, each with its entry of the table. With `by Quantities |d|` each entry ends with its
+/// default: a formula of the quantities d, which have a method for every constant.
 macro_rules! constants {
     (
         $(#[$outer:meta])*
         pub struct $name:ident {
             $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident; )*
+        }
+    ) => {
+        $crate::constants::constants! { @table
+            $(#[$outer])* pub struct $name { $( #[doc = $about] $section.$key: $range, $searched, ""; )* }
+        }
+    };
+    (
+        $(#[$outer:meta])*
+        pub struct $name:ident by $quantities:ident |$of:ident| {
+            $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident, $formula:expr; )*
+        }
+    ) => {
+        $crate::constants::constants! { @table
+            $(#[$outer])*
+            pub struct $name { $( #[doc = $about] $section.$key: $range, $searched, stringify!($formula); )* }
+        }
+
+        impl $name {
+            /// Every constant as it is given or by its formula, in the table's order.
+            pub(super) fn defaults(of: &$quantities) -> [f64; Self::COUNT] {
+                [$(of.$key()),*]
+            }
+        }
+
+        impl $quantities<'_> {
+            $( #[doc = $about] #[allow(unused_variables)] pub(super) fn $key(&self) -> f64 {
+                let $of = self;
+                self.given(stringify!($key)).unwrap_or_else(|| $formula)
+            } )*
+        }
+    };
+    (@table
+        $(#[$outer:meta])*
+        pub struct $name:ident {
+            $( #[doc = $about:literal] $section:ident . $key:ident : $range:expr, $searched:ident, $formula:expr; )*
         }
     ) => {
         $(#[$outer])*
@@ -94,11 +131,11 @@ macro_rules! constants {
                     about: $about,
                     range: $range,
                     searched: $crate::constants::$searched,
+                    formula: $formula,
                 } ),*
             ];
 
             /// The values, in the table's order.
-            #[must_use]
             pub fn values(&self) -> [f32; Self::COUNT] {
                 [$(self.$key),*]
             }
@@ -118,7 +155,6 @@ macro_rules! constants {
             }
 
             /// The struct of these values, in the table's order.
-            #[must_use]
             pub fn from_values(values: [f32; Self::COUNT]) -> Self {
                 let [$($key),*] = values;
                 Self { $($key),* }

@@ -45,7 +45,7 @@ use crate::gains::Gains;
 use crate::path_lifting::{self, Lift};
 use crate::position::{CommandRates, FilterState, FilterTransition, PositionLaw};
 use crate::projection::projected_thrust;
-use crate::reference::{DERIVATIVE_RANGE, Reference};
+use crate::reference::{Reference, admit};
 use crate::state::{State, Wrench};
 use crate::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
@@ -199,7 +199,6 @@ impl Controller {
     }
 
     /// What the law remembers.
-    #[must_use]
     pub fn memory(&self) -> Memory {
         self.memory
     }
@@ -218,7 +217,7 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        self.admit(state, reference)?;
+        admit(state, reference, self.steepest_fall)?;
         let Memory { filter, lift } = self.memory;
 
         let command = self.position_law.command(state, reference, &filter);
@@ -265,29 +264,6 @@ impl Controller {
             rate_feedback,
         };
         Ok((wrench, diagnostics))
-    }
-
-    /// Refuses what the law cannot be evaluated for. Nearly every input passes at a glance.
-    #[inline(always)]
-    fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
-        if self.passes_at_a_glance(state, reference) { Ok(()) } else { self.examine(state, reference) }
-    }
-
-    /// Whether nothing can be wrong: where the squares of all components add up to little, each is finite and in range.
-    #[inline(always)]
-    fn passes_at_a_glance(&self, state: &State, reference: &Reference) -> bool {
-        let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
-        let climbs = reference.acceleration.z > self.steepest_fall;
-        small & climbs & state.has_unit_attitude()
-    }
-
-    /// What is wrong with an input, if anything.
-    #[cold]
-    #[inline(never)]
-    fn examine(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
-        state.check()?;
-        reference.check()?;
-        if reference.acceleration.z > self.steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
     }
 }
 

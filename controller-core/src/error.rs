@@ -62,8 +62,8 @@ impl fmt::Display for Reason {
                     "violates the triangle inequality of a rigid body (no moment may exceed the sum of the others)"
                 )
             }
-            Self::TooFew(least) => write!(f, "needs at least {least} elements"),
-            Self::TooMany(most) => write!(f, "takes at most {most} elements"),
+            Self::TooFew(min) => write!(f, "needs at least {min} elements"),
+            Self::TooMany(max) => write!(f, "takes at most {max} elements"),
             Self::NotZero => write!(f, "must be zero"),
             Self::NotIncreasing => write!(f, "must be strictly increasing"),
             Self::NotOnCircle => write!(f, "must be a unit vector with derivatives along the circle"),
@@ -144,7 +144,6 @@ pub enum InputError {
 
 impl InputError {
     /// The input that it is about.
-    #[must_use]
     pub fn field(&self) -> &'static str {
         match *self {
             Self::NotFinite { field } | Self::OutOfRange { field } | Self::NotARotation { field } => field,

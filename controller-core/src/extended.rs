@@ -8,25 +8,22 @@
 //! |---|---|---|
 //! | [`position`] | an envelope for u; feedback gets what force and vertical leave of it; thrust at once | 1 |
 //! | [`approach`] | as fast towards the target as the vehicle can brake | 1 |
-//! | [`force`] | an estimate of the unmodelled force | 2 |
-//! | [`turning`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
+//! | `estimates` | unmodelled force, constant torque, thrust scale | 2, 7, 9 |
+//! | [`direction_limiter`] | the thrust direction turns as fast as the torque at hand turns the vehicle | 3 |
 //! | [`budget`] | a tick's torque about the tilt's axes, spent part by part | 4 |
 //! | [`heading`] | yaw takes what tilt and thrust leave, and brakes a spin before thrust | 5 |
 //! | [`attitude`] | the tilt alone, whatever the heading does; errors projected over the rotors' lag | 6 |
-//! | [`torque_bias`] | an estimate of a constant torque | 7 |
 //! | [`thrust_range`] | a least and a greatest thrust that follow the torque, and the yaw torque that is left | 8 |
-//! | [`thrust_scale`] | an estimate of the delivered thrust over the commanded thrust | 9 |
 //! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
 //! | [`fallback`] | the same law, slowed down, if a flight makes no progress | 13 |
 //! | [`rotor_loss`] | a rotor that fails: found, and flown without | 16 |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`measured`] | an accelerometer's acceleration and the rotors' speeds, where there are any | 2, 10 |
-//! | [`learning`] | how the three estimates learn from an interval | 2, 7, 9 |
 //! | [`demand`] | an acceleration, or an attitude and a thrust, in place of the feedback | |
 //! | [`memory`] | the law's memory from one tick to the next | |
 //! | [`controller`] | one step, state and reference in, wrench out | |
 //! | [`crate::constants`], [`parameters`] | all of its constants, declared once, validated | |
-//! | [`defaults`] | every constant from a vehicle's numbers | 14 |
+//! | [`quantities`], [`defaults`] | every constant from a vehicle's numbers | 14 |
 //!
 //! Each estimate has a level; a level of zero turns it off.
 
@@ -37,20 +34,18 @@ pub mod budget;
 pub mod controller;
 pub mod defaults;
 pub mod demand;
+pub mod direction_limiter;
+pub(crate) mod estimates;
 pub mod fallback;
-pub mod force;
 pub mod heading;
-pub mod learning;
 pub mod measured;
 pub mod memory;
 pub mod parameters;
 pub mod position;
+pub mod quantities;
 pub mod rotor_loss;
 pub mod saturation;
 pub mod thrust_range;
-pub mod thrust_scale;
-pub mod torque_bias;
-pub mod turning;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -8,19 +8,19 @@
 //! ```
 //!
 //! A spline has a knot in every control tick up to 100 Hz, and above that in every second, third ... so that knots lie
-//! `KNOTS_APART` or more apart. In the ticks between two knots the reference is the spline at their time. So neither
-//! the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
+//! `KNOT_INTERVAL_MIN_S` or more apart. In the ticks between two knots the reference is the spline at their time. So
+//! neither the bounds nor the memory depend on the rate. In the parts below a tick is the time between two knots.
 //!
 //! - `braking`, `pursuit`: the command x_0, a double integrator that makes for the target and stops on it;
 //! - `lead`: where the command must be for the output to be on a moving point;
 //! - `windows`: why averages of these lengths keep acceleration, jerk and snap inside, and which lengths;
 //! - `averages`: the first two, of the command, in integers: a head that keeps the bounds under any setpoint;
-//! - `stream`, `direct`, `blend`, `envelope`: a head that is on a stream of setpoints as it is sent, where that keeps
-//!   the bounds;
+//! - `stream`, `stream_follower`, `blend`, `envelope`: a head that is on a stream of setpoints as it is sent, where
+//!   that keeps the bounds;
 //! - `demand`: what a stream asks of the bounds, for those who send it;
 //! - `smoother`, `steady`: the last average and the quintic spline that makes the output one smooth function of time,
 //!   and where the averages begin;
-//! - `turning`: the same for the heading;
+//! - `heading_governor`: the same for the heading;
 //!
 //! What holds by construction: every bound, at every instant, whatever is sent (NaN is refused);
 //! position to snap are one function and its derivatives, snap moves by at most 2 K_s in [`GovernorLimits::snap_ramp`],
@@ -37,10 +37,10 @@ mod averages;
 mod blend;
 mod braking;
 mod demand;
-mod direct;
 mod envelope;
-mod following;
 mod goal;
+mod head_and_stream;
+mod heading_governor;
 mod lead;
 mod limits;
 mod pursuit;
@@ -48,21 +48,21 @@ mod setpoint;
 mod smoother;
 mod steady;
 mod stream;
-mod turning;
+mod stream_follower;
 mod windows;
 
-pub use demand::Following;
-pub use limits::{GovernorLimits, SPEED_RANGE};
-pub use setpoint::{Motion, POSITION_RANGE, Setpoint, Turn};
+pub use demand::FollowingReport;
+pub use limits::{GovernorLimits, SPEED_RANGE_M_PER_S};
+pub use setpoint::{HeadingSetpoint, Motion, POSITION_RANGE_M, Setpoint};
 
 use crate::error::{InputError, ParameterError, Reason, require, require_positive};
 use crate::heading::Heading;
-use crate::math::{self, between, single, whole, within};
+use crate::math::{self, clamp, f32_to_i64, i64_to_f32, saturate};
 use crate::reference::{Reference, ReferenceBounds};
 use crate::state::check_vectors;
 use averages::Averages;
-use direct::{Direct, Drive};
 use goal::Goal;
+use heading_governor::{HeadingGoal, HeadingGovernor};
 use lead::Lead;
 use nalgebra::Vector3;
 use pursuit::Pursuit;
@@ -70,7 +70,7 @@ use setpoint::Parts;
 use smoother::{Knot, Smoother};
 use steady::Steady;
 use stream::Stream;
-use turning::{TurnGoal, Turning};
+use stream_follower::{HeadDrive, StreamFollower};
 use windows::Windows;
 
 /// Where a governor lies: 9 KB, most of them the commands that its averages remember. Its user makes it, where it
@@ -94,14 +94,14 @@ impl Memory {
         lead: Lead::NONE,
         averages: Averages::NONE,
         smoother: Smoother::NONE,
-        direct: Direct::NONE,
+        follower: StreamFollower::NONE,
         knot: Knot::NONE,
         crackle: Vector3::new(0.0, 0.0, 0.0),
-        turning: Turning::NONE,
+        turning: HeadingGovernor::NONE,
         goal: Goal::STOP,
         goal_age: 0,
         goal_late: 0.0,
-        turn: TurnGoal::STOP,
+        turn: HeadingGoal::STOP,
         turn_age: 0,
     });
 }
@@ -127,17 +127,17 @@ pub struct Governor {
     lead: Lead,
     averages: Averages,
     smoother: Smoother,
-    direct: Direct,
+    follower: StreamFollower,
     /// The newest knot, and the fifth derivative on the way to it, m/s^5.
     knot: Knot,
     crackle: Vector3<f32>,
-    turning: Turning,
+    turning: HeadingGovernor,
     goal: Goal,
     /// Control ticks since it came.
     goal_age: u32,
     /// How long before it came the goal was true, s.
     goal_late: f32,
-    turn: TurnGoal,
+    turn: HeadingGoal,
     turn_age: u32,
 }
 
@@ -157,16 +157,16 @@ impl Governor {
         for (value, path) in bounds.values().into_iter().zip(ReferenceBounds::PATHS) {
             require_positive(value, path)?;
         }
-        for (value, most, field) in [
+        for (value, max, field) in [
             (period, 0.1, "governor.period"),
-            (limits.horizontal_speed, SPEED_RANGE, "governor.horizontal_speed"),
-            (limits.vertical_speed, SPEED_RANGE, "governor.vertical_speed"),
-            (limits.snap_ramp, LONGEST_TIME, "governor.snap_ramp"),
-            (limits.heading_ramp, LONGEST_TIME, "governor.heading_ramp"),
-            (limits.timeout, LONGEST_TIME, "governor.timeout"),
+            (limits.horizontal_speed, SPEED_RANGE_M_PER_S, "governor.horizontal_speed"),
+            (limits.vertical_speed, SPEED_RANGE_M_PER_S, "governor.vertical_speed"),
+            (limits.snap_ramp, DURATION_MAX_S, "governor.snap_ramp"),
+            (limits.heading_ramp, DURATION_MAX_S, "governor.heading_ramp"),
+            (limits.timeout, DURATION_MAX_S, "governor.timeout"),
         ] {
             require_positive(value, field)?;
-            require(value <= most, field, Reason::Above(most))?;
+            require(value <= max, field, Reason::Above(max))?;
         }
         // In place: built apart and moved here, a governor would take its size in code and on the stack.
         *memory = Memory::EMPTY;
@@ -187,7 +187,7 @@ impl Governor {
             variance: windows.variance() * period * period,
             acceleration: windows.horizontal / (windows.per_metre * period * period),
         };
-        governor.design_direct(&windows, bounds, limits, period);
+        governor.design_follower(&windows, bounds, limits, period);
         governor.windows = windows;
         governor.period = period;
         Ok(governor)
@@ -204,7 +204,10 @@ impl Governor {
         velocity: &Vector3<f32>,
         heading: &Heading,
     ) -> Result<(), InputError> {
-        check_vectors(&[(position, POSITION_RANGE, "initial.position"), (velocity, SPEED_RANGE, "initial.velocity")])?;
+        check_vectors(&[
+            (position, POSITION_RANGE_M, "initial.position"),
+            (velocity, SPEED_RANGE_M_PER_S, "initial.velocity"),
+        ])?;
         let (position, speed) = (self.length(position), self.length(&(velocity * self.period)));
         let ahead = self.windows.span() + 1;
         let steady = |position: i64, speed: i64| {
@@ -213,8 +216,8 @@ impl Governor {
         };
         self.go_on(&[steady(position.x, speed.x), steady(position.y, speed.y), steady(position.z, speed.z)]);
         self.part = self.parts;
-        self.direct.start();
-        self.turning.start(turning::phase_of(heading));
+        self.follower.start();
+        self.turning.start(heading_governor::nearest_phase(heading));
         self.stop();
         Ok(())
     }
@@ -232,9 +235,9 @@ impl Governor {
         self.crackle = Vector3::zeros();
     }
 
-    /// Metres as length units, no more than [`FARTHEST`].
+    /// Metres as length units, no more than [`LENGTH_MAX_UNITS`].
     fn length(&self, metres: &Vector3<f32>) -> Vector3<i64> {
-        (metres * self.windows.per_metre).map(|length| whole(within(length, FARTHEST)))
+        (metres * self.windows.per_metre).map(|length| f32_to_i64(saturate(length, LENGTH_MAX_UNITS)))
     }
 
     /// Replaces the target. At any time, any number of times between ticks.
@@ -245,8 +248,8 @@ impl Governor {
         self.accept_late(setpoint, 0.0)
     }
 
-    /// The same for a setpoint that was true `late` seconds ago, cut to [0, [`LATEST`]]: a moving point has gone on
-    /// since.
+    /// The same for a setpoint that was true `late` seconds ago, cut to [0, [`SETPOINT_AGE_MAX_S`]]: a moving point has
+    /// gone on since.
     ///
     /// # Errors
     /// As [`Self::accept`]'s.
@@ -254,14 +257,17 @@ impl Governor {
         let Parts { position, velocity, acceleration, turn } = setpoint.checked()?;
         let held = position.map(|position| position.is_some());
         let last = (self.goal_age <= self.timeout).then_some(&self.goal);
-        let late = between(late, 0.0, LATEST);
+        let late = clamp(late, 0.0, SETPOINT_AGE_MAX_S);
         let stream = Goal::stream(held, velocity, acceleration, last, self.goal_time() - late);
         self.goal_late = late;
         let position = self.length(&Vector3::from(position.map(Option::unwrap_or_default)));
         self.goal = Goal { position, held, stream };
         self.goal_age = 0;
         if let Some((angle, rate)) = turn {
-            self.turn = TurnGoal { phase: angle.map(turning::phase), rate: turning::units(rate, self.period) };
+            self.turn = HeadingGoal {
+                phase: angle.map(heading_governor::phase),
+                rate: heading_governor::units(rate, self.period),
+            };
             self.turn_age = 0;
         }
         Ok(())
@@ -275,13 +281,12 @@ impl Governor {
     /// Gives up every target and comes to rest, smoothly and as soon as the bounds allow.
     pub fn stop(&mut self) {
         self.goal = Goal::STOP;
-        self.turn = TurnGoal::STOP;
+        self.turn = HeadingGoal::STOP;
     }
 
     /// Whether the reference is at rest at its goal, and stays there until another setpoint.
-    #[must_use]
     pub fn at_rest(&self) -> bool {
-        self.direct.is_averaged()
+        self.follower.is_averaged()
             && self.crackle == Vector3::zeros()
             && self.pursue() == Vector3::zeros()
             && self.smoother.at_rest(self.averages.commanded())
@@ -290,20 +295,18 @@ impl Governor {
 
     /// How far the reference would go if it were stopped now, m: what it is behind the command, and the command's own
     /// braking. Infinite where it follows a stream directly.
-    #[must_use]
     pub fn way_to_rest(&self) -> f32 {
-        if !self.direct.is_averaged() {
+        if !self.follower.is_averaged() {
             return f32::INFINITY;
         }
-        let behind = (self.averages.commanded() - self.smoother.place()).map(single);
-        let way = behind + self.pursuit.braking_way(&self.averages.speed().map(single));
+        let behind = (self.averages.commanded() - self.smoother.place()).map(i64_to_f32);
+        let way = behind + self.pursuit.braking_way(&self.averages.speed().map(i64_to_f32));
         math::sqrt(way.norm_squared()) / self.windows.per_metre
     }
 
     /// How the stream that is sent is followed, if there is one: position, velocity and acceleration, not at rest.
-    #[must_use]
-    pub fn following(&self) -> Option<Following> {
-        self.direct.following()
+    pub fn following(&self) -> Option<FollowingReport> {
+        self.follower.following()
     }
 
     /// The reference one period later.
@@ -322,14 +325,14 @@ impl Governor {
 
     /// To the next knot.
     fn move_on(&mut self) {
-        let head = self.moving();
-        let averaged = if self.direct.is_averaging() { self.averages.push(&self.pursue()) } else { Vector3::zeros() };
-        let sought = self.sought(&head);
-        let snap = match self.direct.tick(&head, sought.as_ref(), &averaged, 1.0 / self.per_snap) {
+        let head = self.head_motion();
+        let averaged = if self.follower.is_averaging() { self.averages.push(&self.pursue()) } else { Vector3::zeros() };
+        let sought = self.stream_target(&head);
+        let snap = match self.follower.tick(&head, sought.as_ref(), &averaged, 1.0 / self.per_snap) {
             // To the nearest unit: so braking ends.
-            Drive::Snap(snap) => (snap * self.per_snap).map(|units| (units + 0.5_f32.copysign(units)) as i32),
-            Drive::Averages => averaged,
-            Drive::Restarted => {
+            HeadDrive::Snap(snap) => (snap * self.per_snap).map(|units| (units + 0.5_f32.copysign(units)) as i32),
+            HeadDrive::Averages => averaged,
+            HeadDrive::Restarted => {
                 self.go_on(&self.smoother.steady(&self.windows));
                 self.averages.push(&self.pursue())
             }
@@ -349,7 +352,7 @@ impl Governor {
         let Stream { velocity, acceleration, .. } = if stale { &Stream::STILL } else { stream };
         // The command at hand is where it was a control tick ago.
         let age = (self.goal_age as f32 - 1.0) * self.tick + self.goal_late;
-        let (ahead, feed) = self.lead.of(velocity, acceleration, age);
+        let (ahead, feed) = self.lead.ahead_and_velocity(velocity, acceleration, age);
         let away = position + self.length(&ahead) - self.averages.commanded();
         let [x, y, z] = *held;
         let error = Vector3::new(i64::from(x), i64::from(y), i64::from(z)).component_mul(&away);
@@ -359,33 +362,33 @@ impl Governor {
     }
 
     /// The heading's goal at the knot at hand.
-    fn turn_goal(&self) -> TurnGoal {
+    fn turn_goal(&self) -> HeadingGoal {
         let rate = if self.turn_age > self.timeout { 0 } else { self.turn.rate };
         let lead = (self.turn_age as f32 - 1.0) * self.tick / self.period + self.turning.delay();
-        let phase = self.turn.phase.map(|phase| phase.wrapping_add(whole(single(rate) * lead)));
-        TurnGoal { phase, rate }
+        let phase = self.turn.phase.map(|phase| phase.wrapping_add(f32_to_i64(i64_to_f32(rate) * lead)));
+        HeadingGoal { phase, rate }
     }
 }
 
 /// The least time between two knots, s: a hundredth of a second is short beside the averages, and keeps them in memory.
-const KNOTS_APART: f32 = 0.01;
+const KNOT_INTERVAL_MIN_S: f32 = 0.01;
 
 /// The control ticks of `period`, s, between two knots.
 fn parts(period: f32) -> u32 {
     // A little less: a period is a rounded number.
-    let exact = KNOTS_APART / period * (1.0 - windows::ROUNDING_ROOM);
+    let exact = KNOT_INTERVAL_MIN_S / period * (1.0 - windows::ROUNDING_MARGIN);
     let whole = exact as u32;
     whole.saturating_add(u32::from((whole as f32) < exact)).max(1)
 }
 
 /// The greatest length, units: 2^61, so that a target, its lead and the command's own place add up within 64 bits.
-const FARTHEST: f32 = 2_305_843_009_213_693_952.0;
+const LENGTH_MAX_UNITS: f32 = 2_305_843_009_213_693_952.0;
 
 /// How late a setpoint counts as at most, s: a line with more is not one to stream over.
-pub const LATEST: f32 = 0.3;
+pub const SETPOINT_AGE_MAX_S: f32 = 0.3;
 
 /// The longest ramp or timeout, s.
-const LONGEST_TIME: f32 = 60.0;
+const DURATION_MAX_S: f32 = 60.0;
 
 #[cfg(test)]
 mod tests;

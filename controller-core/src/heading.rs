@@ -18,7 +18,7 @@ pub struct Heading {
 
 impl Heading {
     /// How far from one the length of a direction may be, and its derivatives from the tangent, relative.
-    pub const TOLERANCE: f32 = 1e-3;
+    pub const UNIT_LENGTH_TOLERANCE: f32 = 1e-3;
 
     /// The heading along world x, at rest.
     pub const FORWARD: Self = Self { direction: Vector2::new(1.0, 0.0), rate: 0.0, acceleration: 0.0 };
@@ -26,12 +26,13 @@ impl Heading {
     /// From a direction (normalised here), psi' in rad/s and psi'' in rad/s^2.
     ///
     /// # Errors
-    /// [`Reason::NotFinite`], or [`Reason::NotOnCircle`] if |direction| is not one within [`Self::TOLERANCE`].
+    /// [`Reason::NotFinite`], or [`Reason::NotOnCircle`] if |direction| is not one within
+    /// [`Self::UNIT_LENGTH_TOLERANCE`].
     pub fn new(direction: Vector2<f32>, rate: f32, acceleration: f32) -> Result<Self, ParameterError> {
         let finite = direction.x.is_finite() && direction.y.is_finite() && rate.is_finite() && acceleration.is_finite();
         require(finite, "heading", Reason::NotFinite)?;
         let length = math::sqrt(direction.x * direction.x + direction.y * direction.y);
-        require((length - 1.0).abs() <= Self::TOLERANCE, "heading.direction", Reason::NotOnCircle)?;
+        require((length - 1.0).abs() <= Self::UNIT_LENGTH_TOLERANCE, "heading.direction", Reason::NotOnCircle)?;
         Ok(Self { direction: direction / length, rate, acceleration })
     }
 
@@ -62,7 +63,7 @@ impl Heading {
         let rate = direction.x * first.y - direction.y * first.x;
         let acceleration = direction.x * second.y - direction.y * second.x;
         let heading = Self::new(direction, rate, acceleration)?;
-        let room = Self::TOLERANCE * (1.0 + first.norm_squared() + second.norm());
+        let room = Self::UNIT_LENGTH_TOLERANCE * (1.0 + first.norm_squared() + second.norm());
         let on_circle =
             direction.dot(&first).abs() <= room && (direction.dot(&second) + first.norm_squared()).abs() <= room;
         require(on_circle, "heading.derivatives", Reason::NotOnCircle)?;
@@ -76,11 +77,10 @@ impl Heading {
     }
 
     /// Where a vehicle's x axis points, at rest; along world x where that points up or down.
-    #[must_use]
-    pub fn of_attitude(attitude: &Quaternion<f32>) -> Self {
+    pub fn from_attitude(attitude: &Quaternion<f32>) -> Self {
         let forwards = forwards(attitude);
         let length = math::sqrt(forwards.norm_squared());
-        if length > Self::TOLERANCE { Self::near_unit(forwards, 0.0, 0.0) } else { Self::FORWARD }
+        if length > Self::UNIT_LENGTH_TOLERANCE { Self::near_unit(forwards, 0.0, 0.0) } else { Self::FORWARD }
     }
 
     /// A direction that is not zero, normalised, with rates that are finite.
@@ -89,37 +89,31 @@ impl Heading {
     }
 
     /// The same direction with its rates dropped.
-    #[must_use]
     pub fn at_rest(&self) -> Self {
         Self { rate: 0.0, acceleration: 0.0, ..*self }
     }
 
     /// nu_d, unit length.
-    #[must_use]
     pub fn direction(&self) -> Vector2<f32> {
         self.direction
     }
 
     /// psi', rad/s.
-    #[must_use]
     pub fn rate(&self) -> f32 {
         self.rate
     }
 
     /// psi'', rad/s^2.
-    #[must_use]
     pub fn acceleration(&self) -> f32 {
         self.acceleration
     }
 
     /// nu_d' = psi' S nu, 1/s.
-    #[must_use]
     pub fn first_derivative(&self) -> Vector2<f32> {
         Vector2::new(-self.direction.y, self.direction.x) * self.rate
     }
 
     /// nu_d'' = psi'' S nu - psi'^2 nu, 1/s^2.
-    #[must_use]
     pub fn second_derivative(&self) -> Vector2<f32> {
         Vector2::new(-self.direction.y, self.direction.x) * self.acceleration - self.direction * (self.rate * self.rate)
     }

@@ -1,14 +1,14 @@
 //! The law that flies: the paper's or the extended one, by its configuration.
 
 use crate::allocation::Thrusts;
-use crate::allocation::remaining::Lost;
+use crate::allocation::remaining::LostRotor;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::{self, Diagnostics};
 use crate::error::{InputError, ParameterError};
 use crate::extended;
 use crate::extended::measured::Measured;
 use crate::extended::memory::Estimates;
-use crate::extended::rotor_loss::spinning::SpinningLaw;
+use crate::extended::rotor_loss::spinning::RotorLossLaw;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use nalgebra::Vector3;
@@ -74,33 +74,29 @@ impl Law {
     /// For every tick in which nothing can be learnt from the motion: see
     /// [`extended::controller::Controller::hold_estimates`].
     pub fn hold_estimates(&mut self) {
-        match self {
-            Self::Paper(_) => {}
-            Self::Extended(law) => law.hold_estimates(),
+        if let Self::Extended(law) = self {
+            law.hold_estimates();
         }
     }
 
     /// For every tick whose velocity is not the vehicle's: see
     /// [`extended::controller::Controller::hold_without_velocity`].
     pub fn hold_without_velocity(&mut self) {
-        match self {
-            Self::Paper(_) => {}
-            Self::Extended(law) => law.hold_without_velocity(),
+        if let Self::Extended(law) = self {
+            law.hold_without_velocity();
         }
     }
 
     /// What was measured beside the state since the last step, for the next one alone: see
     /// [`extended::controller::Controller::measured`].
     pub fn measured(&mut self, measured: &Measured) {
-        match self {
-            Self::Paper(_) => {}
-            Self::Extended(law) => law.measured(measured),
+        if let Self::Extended(law) = self {
+            law.measured(measured);
         }
     }
 
     /// The delivered thrust over the commanded thrust, by the law's estimate: divide a wrench by it before it is
     /// allocated to rotors.
-    #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         match self {
             Self::Paper(_) => 1.0,
@@ -109,7 +105,6 @@ impl Law {
     }
 
     /// What has been estimated, if the law estimates anything.
-    #[must_use]
     pub fn estimates(&self) -> Option<Estimates> {
         match self {
             Self::Paper(_) => None,
@@ -117,35 +112,30 @@ impl Law {
         }
     }
 
-    /// The rotor that the law has found to fail, and flies without; the paper's law looks for none.
-    #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    /// The law without a rotor, once one is lost; the paper's law looks for none.
+    fn spinning(&self) -> Option<&RotorLossLaw> {
         match self {
             Self::Paper(_) => None,
-            Self::Extended(law) => law.spinning().map(|spinning| *spinning.lost()),
+            Self::Extended(law) => law.spinning(),
         }
+    }
+
+    /// The rotor that the law has found to fail, and flies without.
+    pub fn lost(&self) -> Option<LostRotor> {
+        self.spinning().map(|law| *law.lost())
     }
 
     /// What the law has commanded of each rotor, N, in place of a wrench to allocate: once a rotor is lost.
-    #[must_use]
     pub fn commands(&self) -> Option<&Thrusts> {
-        match self {
-            Self::Paper(_) => None,
-            Self::Extended(law) => law.spinning().map(SpinningLaw::commands),
-        }
+        self.spinning().map(RotorLossLaw::commands)
     }
 
     /// What these commands deliver, N and N m, by the law's estimates.
-    #[must_use]
     pub fn delivered(&self) -> Option<&Wrench> {
-        match self {
-            Self::Paper(_) => None,
-            Self::Extended(law) => law.spinning().map(SpinningLaw::delivered),
-        }
+        self.spinning().map(RotorLossLaw::delivered)
     }
 
     /// How often the [fallback](crate::extended::fallback) came since the reset; the paper's law has none.
-    #[must_use]
     pub fn fallback_times(&self) -> u32 {
         match self {
             Self::Paper(_) => 0,
@@ -154,7 +144,6 @@ impl Law {
     }
 
     /// The extended law, if it is that one.
-    #[must_use]
     pub fn extended(&mut self) -> Option<&mut extended::controller::Controller> {
         match self {
             Self::Paper(_) => None,

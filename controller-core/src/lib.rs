@@ -1,33 +1,4 @@
-//! Position and heading control of a quadrotor whose thrust and torque stay inside limits proven before take-off, down
-//! to each rotor, from every initial attitude, upside down included.
-//!
-//! Two laws. The paper's: *Robust Global Position and Heading Tracking on SE(3) via Saturated Hybrid Feedback*
-//! (Martins, Cardeira, Oliveira). And one that extends it by estimates of disturbances and by budgets for each rotor.
-//! `no_std`, no allocation, no panics; single precision; the same bits on every machine.
-//!
-//! ```
-//! use controller_core::prelude::*;
-//!
-//! let inertia = Vector3::new(3.65e-3, 3.68e-3, 7.03e-3); // kg m^2
-//! let vehicle = Vehicle::new(VehicleParameters { mass: 0.5, inertia, gravity: 9.81 })?;
-//! let rotors = Rotors::quad_x(QuadX {
-//!     arm: 0.17, thrust_coefficient: 5.57e-6, drag_coefficient: 1.36e-7, speed_min: 0.0, speed_max: 1500.0,
-//! })?;
-//! let actuators = ActuatorParameters { lag: 0.005, delay: 0.0 }; // s
-//! let airframe = Airframe {
-//!     vehicle: &vehicle, limits: &rotors.limits(&vehicle)?, rotors: Some(&rotors), actuators, period: 0.01, drag: 0.0,
-//! };
-//! let certified = Certified::new(Configuration::of_airframe(&airframe)?).expect("its limits hold");
-//! let (mut law, mixer) = (Law::new(&certified, 0.01)?, Mixer::new(&rotors));
-//! let hover = Hover::new(Vector3::new(0.0, 0.0, 2.0), Heading::FORWARD)?;
-//!
-//! let (position, velocity, angular_velocity) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
-//! let upside_down = State { position, velocity, attitude: Quaternion::new(0.0, 1.0, 0.0, 0.0), angular_velocity };
-//! let wrench = law.command(&upside_down, &hover.at(0)).expect("finite numbers").wrench;
-//! let thrusts = mixer.allocate(&wrench).expect("finite numbers"); // N, each rotor's
-//! assert!(thrusts.is_exact());
-//! # Ok::<(), controller_core::error::ParameterError>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! The constants follow from the vehicle's numbers. [`Certified`](certificate::certified::Certified) proves the limits,
 //! or names the inequality that fails. A [`Law`](law::Law) for flight is made of nothing else.

@@ -24,7 +24,6 @@ use nalgebra::Vector3;
 /// Square root, correctly rounded: the hardware instruction on bare-metal ARM with hardware floating point, which the
 /// target's ABI shows (stable compilers hide its feature `vfp2`).
 #[inline(always)]
-#[must_use]
 pub fn sqrt(x: f32) -> f32 {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf", target_os = "none"))]
     return sqrtf(x);
@@ -33,8 +32,7 @@ pub fn sqrt(x: f32) -> f32 {
 }
 
 /// `x` cut to ± `level`; a NaN stays one. One comparison where nothing is cut, which is nearly always.
-#[must_use]
-pub fn within(x: f32, level: f32) -> f32 {
+pub fn saturate(x: f32, level: f32) -> f32 {
     if x.abs() > level {
         cold_path();
         level.copysign(x)
@@ -44,61 +42,53 @@ pub fn within(x: f32, level: f32) -> f32 {
 }
 
 /// `x` cut to an interval; a NaN stays one. Two comparisons, where `f32::min` and `f32::max` are calls on a Cortex-M.
-#[must_use]
-pub fn between(x: f32, least: f32, greatest: f32) -> f32 {
-    let x = if x > greatest { greatest } else { x };
-    if x < least { least } else { x }
+pub fn clamp(x: f32, min: f32, max: f32) -> f32 {
+    let x = if x > max { max } else { x };
+    if x < min { min } else { x }
 }
 
 /// The greater of two numbers; the first where they cannot be compared.
-#[must_use]
-pub fn greater(a: f32, b: f32) -> f32 {
+pub fn max(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
 /// The lesser of two numbers; the first where they cannot be compared.
-#[must_use]
-pub fn lesser(a: f32, b: f32) -> f32 {
+pub fn min(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
 /// The greater of two numbers; NaN if either is NaN. For proofs, where a NaN must not pass for the lesser
 /// one.
-#[must_use]
 #[cfg_attr(target_os = "none", inline(never))] // a board's image has it in a hundred places: 2 KB
-pub fn greater_f64(a: f64, b: f64) -> f64 {
+pub fn max_f64(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
 /// The lesser of two numbers; NaN if either is NaN.
-#[must_use]
 #[cfg_attr(target_os = "none", inline(never))]
-pub fn lesser_f64(a: f64, b: f64) -> f64 {
+pub fn min_f64(a: f64, b: f64) -> f64 {
     if a <= b || a.is_nan() { a } else { b }
 }
 
 /// The square root of a number that only rounding can have taken below zero.
-#[must_use]
 pub fn sqrt_of_rounded(x: f64) -> f64 {
-    sqrt_f64(greater_f64(x, 0.0))
+    sqrt_f64(max_f64(x, 0.0))
 }
 
 /// An integer in single precision, to 1.2e-7 of it; exact below 2^24. In its two halves: the processor converts those
 /// in one instruction each, where the conversion of 64 bits is a call.
-#[must_use]
-pub fn single(x: i64) -> f32 {
+pub fn i64_to_f32(x: i64) -> f32 {
     let low = x as i32;
     let high = (x.wrapping_sub(i64::from(low)) >> 32) as i32;
     high as f32 * 4_294_967_296.0 + low as f32
 }
 
 /// The whole part of a number, exactly; beyond 2^61 it saturates, and a NaN gives zero. In two halves,
-/// as [`single`].
-#[must_use]
-pub fn whole(x: f32) -> i64 {
-    const HALF: f32 = 2_147_483_648.0;
-    let high = (x * (1.0 / HALF)) as i32;
-    let low = (x - high as f32 * HALF) as i32;
+/// as [`i64_to_f32`].
+pub fn f32_to_i64(x: f32) -> i64 {
+    const HALF_RANGE: f32 = 2_147_483_648.0;
+    let high = (x * (1.0 / HALF_RANGE)) as i32;
+    let low = (x - high as f32 * HALF_RANGE) as i32;
     (i64::from(high) << 31) + i64::from(low)
 }
 
@@ -125,15 +115,14 @@ extern "C" fn sqrtf(x: f32) -> f32 {
 /// Sine and cosine of `phase` / 2^64 turns.
 ///
 /// The phase is an integer, so its reduction to an octant is exact however long the clock has run.
-#[must_use]
 pub fn sin_cos_turns(phase: u64) -> (f32, f32) {
     /// Radians per unit of a phase whose full turn is 2^32.
-    const RADIANS: f32 = core::f32::consts::TAU / 4_294_967_296.0;
+    const RAD_PER_UNIT: f32 = core::f32::consts::TAU / 4_294_967_296.0;
     // The nearest quarter turn, and what is left of it in [-1/8, 1/8) turn as a signed 32-bit phase.
     let rounded = phase.wrapping_add(1 << 61);
     let quadrant = rounded >> 62;
     let rest = (((rounded << 2) >> 2) as i64).wrapping_sub(1 << 61) >> 32;
-    let x = rest as f32 * RADIANS;
+    let x = rest as f32 * RAD_PER_UNIT;
     let x2 = x * x;
     let sin = x + x * x2 * (-0.166_666_55 + x2 * (0.008_332_161 - x2 * 0.000_195_152_96));
     let cos = 1.0 - 0.5 * x2 + x2 * x2 * (0.041_666_646 + x2 * (-0.001_388_731_6 + x2 * 0.000_024_433_157));
@@ -155,12 +144,11 @@ pub const TANH_SCALE: f64 = 0.021_492_645_453_276_255;
 /// fit); the rest of the stated error is rounding. A common factor of A and Q cancels, and the scale of z is the one at
 /// which both leading coefficients are one: two multiplications less. In exact arithmetic 2 A Q <= A^2 + Q^2, and the
 /// rounded quotient was found at most one for every single-precision number, so nothing is clipped.
-#[must_use]
 pub fn tanh_of_scaled(z: f32) -> f32 {
     let z2 = z * z;
-    if z2 <= LINEAR {
+    if z2 <= LINEAR_SQUARE_MAX {
         linear(z)
-    } else if z2 <= SATURATION {
+    } else if z2 <= UNSATURATED_SQUARE_MAX {
         unsaturated(z)
     } else if z.is_nan() {
         z
@@ -172,12 +160,11 @@ pub fn tanh_of_scaled(z: f32) -> f32 {
 /// [`tanh_of_scaled`] of three numbers, to the same bits. Mostly none of them is large: one comparison instead of
 /// three.
 #[inline(always)]
-#[must_use]
 pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
     let z2 = z.norm_squared();
-    if z2 <= LINEAR {
+    if z2 <= LINEAR_SQUARE_MAX {
         z.map(linear)
-    } else if z2 <= SATURATION {
+    } else if z2 <= UNSATURATED_SQUARE_MAX {
         z.map(unsaturated)
     } else {
         z.map(tanh_of_scaled)
@@ -185,11 +172,11 @@ pub fn tanh_of_all_scaled(z: &Vector3<f32>) -> Vector3<f32> {
 }
 
 /// Up to this z^2 the leading coefficients are all that is left of A and Q after rounding, and Q^2 of the denominator.
-const LINEAR: f32 = 5e-11;
+const LINEAR_SQUARE_MAX: f32 = 5e-11;
 
 /// Where z^2 is beyond this, |x| > 8.69, tanh is within a rounding of one: so it is one, before a quotient rounds
 /// beyond.
-const SATURATION: f32 = 0.034_9;
+const UNSATURATED_SQUARE_MAX: f32 = 0.034_9;
 
 #[inline(always)]
 fn unsaturated(z: f32) -> f32 {
@@ -200,8 +187,8 @@ fn unsaturated(z: f32) -> f32 {
     2.0 * a * q / (a * a + q * q)
 }
 
-/// [`unsaturated`] to the bit, up to [`LINEAR`]: without the powers of z that fall below the normal numbers, which cost
-/// a desktop a quarter of its time where a vehicle has settled.
+/// [`unsaturated`] to the bit, up to [`LINEAR_SQUARE_MAX`]: without the powers of z that fall below the normal numbers,
+/// which cost a desktop a quarter of its time where a vehicle has settled.
 #[inline(always)]
 fn linear(z: f32) -> f32 {
     2.0 * (z * A_0) * Q_0 / (Q_0 * Q_0)

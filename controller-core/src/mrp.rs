@@ -16,40 +16,34 @@
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 /// R(q) for a unit quaternion, body to world.
-#[must_use]
 pub fn rotation(q: &Quaternion<f32>) -> Matrix3<f32> {
     let cross = q.imag().cross_matrix();
     Matrix3::identity() + cross * (2.0 * q.w) + cross * cross * 2.0
 }
 
 /// phi(q) for a unit quaternion other than (-1, 0, 0, 0), where it is infinite.
-#[must_use]
 pub fn from_quaternion(q: &Quaternion<f32>) -> Vector3<f32> {
     from_multiple(q, 1.0, 1.0)
 }
 
 /// phi of the unit quaternion `sign` Q / N for a quaternion Q of length N: `sign` Q_1 / (N + `sign` Q_0).
 #[inline(always)]
-#[must_use]
 pub fn from_multiple(q: &Quaternion<f32>, sign: f32, length: f32) -> Vector3<f32> {
     q.imag() * (sign / (length + sign * q.w))
 }
 
 /// The shadow parameters of the same rotation, Upsilon(theta), theta not zero.
-#[must_use]
 pub fn shadow(theta: &Vector3<f32>) -> Vector3<f32> {
     -theta / theta.norm_squared()
 }
 
 /// T(theta): theta' = T(theta) omega, omega in the body frame.
-#[must_use]
 pub fn kinematics(theta: &Vector3<f32>) -> Matrix3<f32> {
     let diagonal = Matrix3::identity() * (1.0 - theta.norm_squared());
     (diagonal + theta.cross_matrix() * 2.0 + theta * theta.transpose() * 2.0) * 0.25
 }
 
 /// R_theta(theta), with the sign that makes it agree with R(q).
-#[must_use]
 pub fn to_rotation(theta: &Vector3<f32>) -> Matrix3<f32> {
     let square = theta.norm_squared();
     let cross = theta.cross_matrix();

@@ -48,7 +48,6 @@ pub struct Lifted {
 }
 
 /// qbar: |phi(q)| = 1 + `delta` where the scalar part of q is its negative.
-#[must_use]
 pub fn switching_magnitude<R: Real>(delta: f32) -> R {
     let radius = R::from(delta) + 1.0;
     let square = radius * radius;
@@ -56,7 +55,6 @@ pub fn switching_magnitude<R: Real>(delta: f32) -> R {
 }
 
 /// The scalar part at which |phi(q)| = 1 + `delta`, to the nearest number in single precision.
-#[must_use]
 pub fn switching_scalar(delta: f32) -> f32 {
     -switching_magnitude::<f64>(delta) as f32
 }
@@ -68,7 +66,6 @@ pub fn switching_scalar(delta: f32) -> f32 {
 /// jumps and which lift is the nearest. `switching_scalar` is [`switching_scalar`] of delta; `alpha` is the memory's
 /// distance, 1 - q_hat . p.
 #[inline(always)]
-#[must_use]
 pub fn lift(previous: Option<&Lift>, error: &Quaternion<f32>, switching_scalar: f32, alpha: f32) -> Lifted {
     let length = math::sqrt(length_squared(error));
     let Lift { mut memory, mut sign } = match previous {

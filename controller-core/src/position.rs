@@ -59,36 +59,35 @@ pub struct FilterTransition {
 
 impl FilterTransition {
     /// The longest period, s: the slowest tick of the link's simulators.
-    pub const LONGEST_PERIOD: f32 = 0.1;
+    pub const PERIOD_MAX_S: f32 = 0.1;
 
     /// How much of the way a filter may go in one step: all but eight roundings, see [`Self::advance`].
-    const GREATEST_WEIGHT: f64 = 1.0 - 8.0 / 16_777_216.0;
+    const WEIGHT_MAX: f64 = 1.0 - 8.0 / 16_777_216.0;
 
-    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::LONGEST_PERIOD`]] s.
+    /// For the bandwidths `k_f` and `k_s`, 1/s, and a period in (0, [`Self::PERIOD_MAX_S`]] s.
     ///
     /// # Errors
     /// Names `control.period` if it is outside.
     pub fn new(k_f: f32, k_s: f32, period: f32) -> Result<Self, ParameterError> {
         require_positive(period, "control.period")?;
-        let longest = Self::LONGEST_PERIOD;
+        let longest = Self::PERIOD_MAX_S;
         require(period <= longest, "control.period", Reason::Above(longest))?;
         let (k_f, k_s, h) = (f64::from(k_f), f64::from(k_s), f64::from(period));
         let slow = math::exp(-k_f * h);
         // (e^-a - e^-b) / (b - a) = e^-a (1 - e^-(b - a)) / (b - a), whose limit at b = a is e^-a.
         let spread = (k_s - k_f) * h;
         let mixed = if spread.abs() < 1e-9 { slow } else { -slow * math::exp_m1(-spread) / spread };
-        let towards_intermediate = (k_f * h * mixed).min(Self::GREATEST_WEIGHT);
-        let both = (-math::exp_m1(-k_f * h)).min(Self::GREATEST_WEIGHT);
+        let towards_intermediate = (k_f * h * mixed).min(Self::WEIGHT_MAX);
+        let both = (-math::exp_m1(-k_f * h)).min(Self::WEIGHT_MAX);
         Ok(Self {
             towards_intermediate: towards_intermediate as f32,
             towards_input: (both - towards_intermediate).max(0.0) as f32,
-            intermediate_towards_input: (-math::exp_m1(-k_s * h)).min(Self::GREATEST_WEIGHT) as f32,
+            intermediate_towards_input: (-math::exp_m1(-k_s * h)).min(Self::WEIGHT_MAX) as f32,
         })
     }
 
     /// The filters' states one period later, with `feedback` held. Every component stays within the box that holds all
     /// of them now, to the last bit.
-    #[must_use]
     pub fn advance(&self, state: &FilterState, feedback: &Vector3<f32>) -> FilterState {
         let FilterState { filtered: f, intermediate: s } = state;
         let (x_f, x_s) = self.advance_axis(f.x, s.x, feedback.x);
@@ -98,7 +97,6 @@ impl FilterTransition {
     }
 
     /// One axis' u_f and u_s one period later, with its ubar held.
-    #[must_use]
     pub fn advance_axis(&self, u_f: f32, u_s: f32, ubar: f32) -> (f32, f32) {
         // Steps, not weighted sums: at fast ticks the weights of the old states are so near one that rounding them
         // would move the filters' bandwidth. To the last bit: in a step from x towards values of at most M, three
@@ -158,7 +156,6 @@ pub struct CommandRates {
 
 impl PositionLaw {
     /// For `gains` under `gravity`, m/s^2.
-    #[must_use]
     pub fn new(gains: &Gains, gravity: f32) -> Self {
         let GainParameters { k_f, k_s, m_p, .. } = **gains;
         let [p, v, f, s, m] = [gains.k_p, gains.k_v, k_f, k_s, m_p].map(f64::from);
@@ -170,7 +167,6 @@ impl PositionLaw {
 
     /// Evaluates the law at one instant; the filters are read, not advanced.
     #[inline(always)]
-    #[must_use]
     pub fn command(&self, state: &State, reference: &Reference, filter: &FilterState) -> PositionCommand {
         let Self { second_lag, first_lag, .. } = *self;
         let [of_position, of_velocity, of_filtered, of_intermediate] = self.weights;
@@ -193,7 +189,6 @@ impl PositionLaw {
 
     /// u' and u'' while the filters take up `feedback`.
     #[inline(always)]
-    #[must_use]
     pub fn rates(&self, reference: &Reference, filter: &FilterState, feedback: &Vector3<f32>) -> CommandRates {
         let FilterState { filtered: u_f, intermediate: u_s } = filter;
         let towards_intermediate = u_s - u_f;

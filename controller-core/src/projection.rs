@@ -22,7 +22,6 @@ use nalgebra::Quaternion;
 
 /// T in N for m |u| in N, the attitude error R~ as a quaternion of any length and the floor in N.
 #[inline(always)]
-#[must_use]
 pub fn projected_thrust(magnitude: f32, error: &Quaternion<f32>, floor: f32) -> f32 {
     let lean = 2.0 / length_squared(error) * (error.i * error.i + error.j * error.j);
     let thrust = magnitude - magnitude * lean;

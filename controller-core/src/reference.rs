@@ -25,7 +25,7 @@ use crate::constants::{Range, constants};
 use crate::error::{InputError, ParameterError};
 use crate::heading::Heading;
 use crate::math;
-use crate::state::{STATE_RANGE, check_vectors, sum_of_squares};
+use crate::state::{STATE_RANGE, State, check_vectors, sum_of_squares};
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a reference derivative's component, in its SI unit.
@@ -50,7 +50,6 @@ pub struct Reference {
 
 impl Reference {
     /// At rest.
-    #[must_use]
     pub const fn resting(position: Vector3<f32>, heading: Heading) -> Self {
         let zero = Vector3::new(0.0, 0.0, 0.0);
         Self { position, velocity: zero, acceleration: zero, jerk: zero, snap: zero, heading }
@@ -75,6 +74,30 @@ impl Reference {
             (&turning, DERIVATIVE_RANGE, "reference.heading"),
         ])
     }
+}
+
+/// Refuses a tick's inputs for which no law is defined; the reference's vertical acceleration stays above
+/// `steepest_fall`, m/s^2. Nearly every input passes at a glance.
+#[inline(always)]
+pub(crate) fn admit(state: &State, reference: &Reference, steepest_fall: f32) -> Result<(), InputError> {
+    if passes_at_a_glance(state, reference, steepest_fall) { Ok(()) } else { examine(state, reference, steepest_fall) }
+}
+
+/// Whether nothing can be wrong: where the squares of all components add up to little, each is finite and in range.
+#[inline(always)]
+pub(crate) fn passes_at_a_glance(state: &State, reference: &Reference, steepest_fall: f32) -> bool {
+    let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
+    let climbs = reference.acceleration.z > steepest_fall;
+    small & climbs & state.has_unit_attitude()
+}
+
+/// What is wrong with an input, if anything.
+#[cold]
+#[inline(never)]
+pub(crate) fn examine(state: &State, reference: &Reference, steepest_fall: f32) -> Result<(), InputError> {
+    state.check()?;
+    reference.check()?;
+    if reference.acceleration.z > steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
 }
 
 constants! {
@@ -110,7 +133,6 @@ impl ReferenceBounds {
     };
 
     /// The greater of each bound.
-    #[must_use]
     pub fn covering(&self, other: &Self) -> Self {
         let (mut values, others) = (self.values(), other.values());
         for (value, other) in values.iter_mut().zip(others) {
@@ -129,7 +151,6 @@ impl ReferenceBounds {
     }
 
     /// Whether `reference` lies inside, with a relative allowance for single-precision rounding.
-    #[must_use]
     pub fn contain(&self, reference: &Reference, allowance: f32) -> bool {
         let Reference { velocity: v, acceleration: a, jerk, snap, heading, .. } = reference;
         [

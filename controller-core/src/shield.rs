@@ -33,8 +33,8 @@ pub use settings::Settings;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
-use crate::extended::controller::{Controller, Prospect};
-use crate::extended::position::Most;
+use crate::extended::controller::{Controller, StoppingForecast};
+use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -61,7 +61,7 @@ pub trait Policy {
 
 /// One tick of a shield.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flown {
+pub struct ShieldStep {
     /// T and tau.
     pub wrench: Wrench,
     /// The law's, with errors from [`Self::reference`].
@@ -74,7 +74,7 @@ pub struct Flown {
 
 /// Who flies, and since when.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Pilot {
+enum InControl {
     Policy,
     Law {
         reason: Reason,
@@ -88,13 +88,13 @@ enum Pilot {
 /// g across. With all of the envelope the law may brake a climb with a third of the weight as thrust, and while it is
 /// tilted such a thrust turns the vehicle too slowly to follow: a Hummingbird in wind then went two metres astray. Up
 /// there is no such limit.
-fn stopping(gravity: f32) -> Most {
-    Most { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
+fn stopping(gravity: f32) -> FeedbackLimits {
+    FeedbackLimits { up: f32::MAX, down: 0.4 * gravity, across: 0.8 * gravity }
 }
 
 /// How near its refuge a vehicle is to be before a policy gets it back: |z_1|, m, and |z_2|, m/s. A quarter of it is
 /// too little where states are noisy and air is rough.
-const NEAR: f32 = 0.2;
+const REFUGE_RADIUS: f32 = 0.2;
 
 /// A shield, as before a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,9 +103,9 @@ pub struct Shield {
     monitor: Monitor,
     heading: HeadingGenerator,
     /// The greatest levels of feedback while the law flies.
-    most: Most,
+    limits: FeedbackLimits,
     period: f32,
-    pilot: Pilot,
+    pilot: InControl,
     /// The last demand that could be used, and how many ticks ago it came.
     demand: Option<Demand>,
     silent: u32,
@@ -128,9 +128,9 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
-            most: stopping(configuration.vehicle().gravity),
+            limits: stopping(configuration.vehicle().gravity),
             period,
-            pilot: Pilot::Policy,
+            pilot: InControl::Policy,
             demand: None,
             silent: 0,
             doubtful: 0,
@@ -142,40 +142,37 @@ impl Shield {
     ///
     /// # Errors
     /// For one that makes no sense, by its name; nothing has changed then.
-    pub fn confine(&mut self, settings: &Settings) -> Result<(), ParameterError> {
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), ParameterError> {
         settings.check()?;
         self.settings = *settings;
-        self.monitor.confine(settings);
+        self.monitor.set_settings(settings);
         Ok(())
     }
 
     /// As before a flight, pointing along `heading`.
     pub fn reset(&mut self, heading: &Heading) {
         self.heading.start(heading);
-        (self.pilot, self.demand) = (Pilot::Policy, None);
+        (self.pilot, self.demand) = (InControl::Policy, None);
         (self.silent, self.doubtful) = (0, 0);
         self.hand_overs = 0;
     }
 
     /// A person asks for the policy again: hand-overs are counted anew. The vehicle still has to come near its refuge.
-    pub fn ask_again(&mut self) {
+    pub fn request_again(&mut self) {
         self.hand_overs = 0;
     }
 
     /// How often the law took over since the reset, or since a person asked again.
-    #[must_use]
     pub fn hand_overs(&self) -> u32 {
         self.hand_overs
     }
 
     /// Whether the law keeps the vehicle until a person asks again.
-    #[must_use]
-    pub fn keeps(&self) -> bool {
+    pub fn is_latched(&self) -> bool {
         self.hand_overs >= self.settings.hand_overs
     }
 
     /// Where the heading generator points.
-    #[must_use]
     pub fn heading(&self) -> &Heading {
         self.heading.heading()
     }
@@ -184,40 +181,50 @@ impl Shield {
     ///
     /// # Errors
     /// As the law's step; law and shield remember nothing of the tick then. Whatever the policy offers is no error.
-    pub fn step(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
+    pub fn step(
+        &mut self,
+        law: &mut Controller,
+        state: &State,
+        offers: Option<&Demand>,
+    ) -> Result<ShieldStep, InputError> {
         let mut next = *self;
         let flown = next.advance(law, state, offers)?;
         *self = next;
         Ok(flown)
     }
 
-    fn advance(&mut self, law: &mut Controller, state: &State, offers: Option<&Demand>) -> Result<Flown, InputError> {
-        let prospect = law.prospect(state, &self.most);
+    fn advance(
+        &mut self,
+        law: &mut Controller,
+        state: &State,
+        offers: Option<&Demand>,
+    ) -> Result<ShieldStep, InputError> {
+        let prospect = law.stopping_forecast(state, &self.limits);
         let against = self.judge(state, &prospect, offers);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
-            (Pilot::Policy, Some(demand)) => {
+            (InControl::Policy, Some(demand)) => {
                 self.heading.follow(demand);
                 let reference = Reference::resting(self.refuge(&prospect), *self.heading.heading());
                 let (wrench, diagnostics) = law.step_on_demand(state, &reference, demand)?;
-                Ok(Flown { wrench, diagnostics, reason: None, reference })
+                Ok(ShieldStep { wrench, diagnostics, reason: None, reference })
             }
             (pilot, _) => {
                 // A policy that flies has made a demand, so the other case is never met.
                 let (reason, refuge) = match pilot {
-                    Pilot::Law { reason, refuge, .. } => (*reason, *refuge),
-                    Pilot::Policy => (Reason::Silent, self.refuge(&prospect)),
+                    InControl::Law { reason, refuge, .. } => (*reason, *refuge),
+                    InControl::Policy => (Reason::Silent, self.refuge(&prospect)),
                 };
                 self.heading.come_to_rest();
                 let reference = Reference::resting(refuge, *self.heading.heading());
-                let (wrench, diagnostics) = law.step_within(state, &reference, &self.most)?;
-                Ok(Flown { wrench, diagnostics, reason: Some(reason), reference })
+                let (wrench, diagnostics) = law.step_within(state, &reference, &self.limits)?;
+                Ok(ShieldStep { wrench, diagnostics, reason: Some(reason), reference })
             }
         }
     }
 
     /// What speaks against the policy in this tick.
-    fn judge(&mut self, state: &State, prospect: &Prospect, offers: Option<&Demand>) -> Option<Reason> {
+    fn judge(&mut self, state: &State, prospect: &StoppingForecast, offers: Option<&Demand>) -> Option<Reason> {
         let usable = offers.map(|demand| demand.check().map(|()| *demand));
         match usable {
             Some(Ok(demand)) => (self.demand, self.silent) = (Some(demand), 0),
@@ -231,32 +238,33 @@ impl Shield {
         if self.demand.is_none() || seconds(self.silent) > self.settings.silence {
             return Some(Reason::Silent);
         }
-        self.monitor.against(state, prospect, seconds(self.doubtful))
+        self.monitor.violation(state, prospect, seconds(self.doubtful))
     }
 
     /// Hands over, either way.
-    fn decide(&mut self, prospect: &Prospect, against: Option<Reason>) {
+    fn decide(&mut self, prospect: &StoppingForecast, against: Option<Reason>) {
         match (&mut self.pilot, against) {
-            (Pilot::Policy, None) => {}
-            (Pilot::Policy, Some(reason)) => {
+            (InControl::Policy, None) => {}
+            (InControl::Policy, Some(reason)) => {
                 self.hand_overs = self.hand_overs.saturating_add(1);
-                self.pilot = Pilot::Law { reason, refuge: self.refuge(prospect), near: 0 };
+                self.pilot = InControl::Law { reason, refuge: self.refuge(prospect), near: 0 };
             }
-            (Pilot::Law { refuge, near, .. }, against) => {
+            (InControl::Law { refuge, near, .. }, against) => {
                 let away = (prospect.z_1 - *refuge).norm_squared();
-                let arrived = away < NEAR * NEAR && prospect.z_2.norm_squared() < NEAR * NEAR;
+                let arrived =
+                    away < REFUGE_RADIUS * REFUGE_RADIUS && prospect.z_2.norm_squared() < REFUGE_RADIUS * REFUGE_RADIUS;
                 *near = if arrived && against.is_none() { near.saturating_add(1) } else { 0 };
                 let waited = *near as f32 * self.period;
                 let patience = self.settings.patience(self.hand_overs);
                 if self.hand_overs < self.settings.hand_overs && waited >= patience {
-                    self.pilot = Pilot::Policy;
+                    self.pilot = InControl::Policy;
                 }
             }
         }
     }
 
     /// Where the law would fly to if it took over now.
-    fn refuge(&self, prospect: &Prospect) -> Vector3<f32> {
+    fn refuge(&self, prospect: &StoppingForecast) -> Vector3<f32> {
         self.settings.refuge(&prospect.z_1)
     }
 }

@@ -49,8 +49,8 @@ pub(crate) fn length_squared(q: &Quaternion<f32>) -> f32 {
 /// Whether `q` is a rotation within [`UNIT_TOLERANCE`]: | |q| - 1 | <= e is | |q|^2 - (1 + e^2) | <= 2 e.
 #[inline(always)]
 pub(crate) fn is_rotation(q: &Quaternion<f32>) -> bool {
-    const SQUARE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
-    (length_squared(q) - SQUARE).abs() <= 2.0 * UNIT_TOLERANCE
+    const SQUARE_AND_TOLERANCE: f32 = 1.0 + UNIT_TOLERANCE * UNIT_TOLERANCE;
+    (length_squared(q) - SQUARE_AND_TOLERANCE).abs() <= 2.0 * UNIT_TOLERANCE
 }
 
 impl State {
@@ -95,7 +95,6 @@ pub struct Wrench {
 
 impl Wrench {
     /// The same wrench, `factor` times as strong.
-    #[must_use]
     pub fn scaled(&self, factor: f32) -> Self {
         Self { thrust: self.thrust * factor, torque: self.torque * factor }
     }

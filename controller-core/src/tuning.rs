@@ -27,16 +27,15 @@ pub struct Percent(u8);
 
 impl Percent {
     /// The least.
-    pub const LEAST: u8 = 70;
+    pub const FACTOR_MIN_PERCENT: u8 = 70;
     /// From one to the next.
-    pub const STEP: u8 = 10;
+    pub const FACTOR_STEP_PERCENT: u8 = 10;
     /// How many there are.
     pub const COUNT: usize = 7;
     /// As built.
-    pub const FULL: Self = Self(3);
+    pub const AS_BUILT: Self = Self(3);
 
     /// The factor of this many percent, if it is one.
-    #[must_use]
     pub fn new(percent: f32) -> Option<Self> {
         (0..Self::COUNT as u8).map(Self).find(|level| level.percent() == percent)
     }
@@ -47,13 +46,12 @@ impl Percent {
     }
 
     /// In percent.
-    #[must_use]
     pub fn percent(self) -> f32 {
-        f32::from(Self::LEAST + Self::STEP * self.0)
+        f32::from(Self::FACTOR_MIN_PERCENT + Self::FACTOR_STEP_PERCENT * self.0)
     }
 
-    /// `gain` times the factor; with [`Self::FULL`] the same to the bit.
-    fn of(self, gain: f32) -> f32 {
+    /// `gain` times the factor; with [`Self::AS_BUILT`] the same to the bit.
+    fn times(self, gain: f32) -> f32 {
         gain * (self.percent() / 100.0)
     }
 
@@ -83,12 +81,12 @@ pub struct Factors {
 impl Factors {
     /// The gains as built.
     pub const BUILT: Self = Self {
-        attitude: Percent::FULL,
-        rate: Percent::FULL,
-        position_across: Percent::FULL,
-        velocity_across: Percent::FULL,
-        position_vertical: Percent::FULL,
-        velocity_vertical: Percent::FULL,
+        attitude: Percent::AS_BUILT,
+        rate: Percent::AS_BUILT,
+        position_across: Percent::AS_BUILT,
+        velocity_across: Percent::AS_BUILT,
+        position_vertical: Percent::AS_BUILT,
+        velocity_vertical: Percent::AS_BUILT,
     };
 
     /// The law's constants with these factors, for `vehicle`.
@@ -101,13 +99,13 @@ impl Factors {
                 for (factor, field) in
                     [(self.position_vertical, "gains.k_p_vertical"), (self.velocity_vertical, "gains.k_v_vertical")]
                 {
-                    require(factor == Percent::FULL, field, Reason::OtherLaw)?;
+                    require(factor == Percent::AS_BUILT, field, Reason::OtherLaw)?;
                 }
                 let gains = GainParameters {
-                    k_theta: self.attitude.of(gains.k_theta),
-                    k_omega: self.rate.of(gains.k_omega),
-                    k_p: self.position_across.of(gains.k_p),
-                    k_v: self.velocity_across.of(gains.k_v),
+                    k_theta: self.attitude.times(gains.k_theta),
+                    k_omega: self.rate.times(gains.k_omega),
+                    k_p: self.position_across.times(gains.k_p),
+                    k_v: self.velocity_across.times(gains.k_v),
                     ..**gains
                 };
                 Ok(LawParameters::Paper(PaperLaw { gains: Gains::new(gains, vehicle)?, thrust_floor: *thrust_floor }))
@@ -123,7 +121,7 @@ impl Factors {
                     (&mut constants.k_p_vertical, self.position_vertical),
                     (&mut constants.k_v_vertical, self.velocity_vertical),
                 ] {
-                    *gain = factor.of(*gain);
+                    *gain = factor.times(*gain);
                 }
                 let parameters = Extended::new(constants, vehicle)?;
                 Ok(LawParameters::Extended(ExtendedLaw { parameters, actuators: *actuators }))
@@ -149,8 +147,7 @@ pub struct Figures {
 
 impl Figures {
     /// Those of `configuration`; of its rotors' the first one's.
-    #[must_use]
-    pub fn of(configuration: &Configuration) -> Self {
+    pub fn from_configuration(configuration: &Configuration) -> Self {
         let first = configuration.rotors().and_then(|rotors| rotors.first());
         Self {
             mass: configuration.vehicle().mass,
@@ -190,17 +187,17 @@ impl Tuning {
             None => configuration,
         };
         match built.rotors() {
-            Some(rotors) => configuration.with_rotors(self.rotors(rotors, &Figures::of(built))?),
+            Some(rotors) => configuration.with_rotors(self.rotors(rotors, &Figures::from_configuration(built))?),
             None => Ok(configuration),
         }
     }
 
     /// `rotors` with the thrusts that were changed.
     fn rotors(&self, rotors: &Rotors, built: &Figures) -> Result<Rotors, ParameterError> {
-        let ([least, most], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
+        let ([min, max], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
         let changed = |rotor: &Rotor| Rotor {
-            thrust_min: if least == built_least { rotor.thrust_min } else { least },
-            thrust_max: if most == built_most { rotor.thrust_max } else { most },
+            thrust_min: if min == built_least { rotor.thrust_min } else { min },
+            thrust_max: if max == built_most { rotor.thrust_max } else { max },
             ..*rotor
         };
         let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> = collected(rotors.iter().map(changed));

@@ -5,7 +5,7 @@ use core::ops::Deref;
 use nalgebra::Vector3;
 
 /// Names of the three torque limits, for errors.
-const TORQUE_MAX: [&str; 3] = ["limits.torque_max[0]", "limits.torque_max[1]", "limits.torque_max[2]"];
+const TORQUE_MAX_FIELDS: [&str; 3] = ["limits.torque_max[0]", "limits.torque_max[1]", "limits.torque_max[2]"];
 
 /// What a rigid body needs to be described; see [`Vehicle`] for the validated form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +76,7 @@ impl Limits {
         require_finite(parameters.thrust_max, "limits.thrust_max")?;
         let hover = vehicle.mass * vehicle.gravity;
         require(parameters.thrust_max > hover, "limits.thrust_max", Reason::NotAbove(hover))?;
-        for (torque, field) in parameters.torque_max.iter().zip(TORQUE_MAX) {
+        for (torque, field) in parameters.torque_max.iter().zip(TORQUE_MAX_FIELDS) {
             require_positive(*torque, field)?;
         }
         Ok(Self(parameters))

@@ -1,6 +1,6 @@
 //! The mixer against vertex enumeration in f64, on many geometries and random wrenches.
 
-use controller_core::allocation::{Mixer, QuadX, Rotor, Rotors, Spin, greatest_torques};
+use controller_core::allocation::{Mixer, QuadX, Rotor, Rotors, Spin, max_torques};
 use controller_core::state::Wrench;
 use nalgebra::{SMatrix, SVector, Vector2, Vector3, Vector4};
 
@@ -214,7 +214,7 @@ fn extreme_vehicles_are_served_as_well() {
         }
     }
     println!("{served} random vehicles: inside {inside:.1e}, worst excess {excess:.1e}");
-    // Some are close to not spanning the wrench: there rounding counts up to 1 / INDEPENDENCE times.
+    // Some are close to not spanning the wrench: there rounding counts up to 1 / ROW_INDEPENDENCE_SINE_MIN times.
     assert!(inside < 100.0 * f64::from(f32::EPSILON) && excess < ROUNDING, "{inside:e} {excess:e}");
 }
 
@@ -307,7 +307,7 @@ fn yaw_is_given_up_first_then_thrust_and_roll_and_pitch_last() {
 #[test]
 fn no_torque_beyond_the_greatest_can_be_had_alone() {
     for (name, rotors) in vehicles() {
-        let greatest = greatest_torques(&rotors);
+        let greatest = max_torques(&rotors);
         for (axis, others) in [[2, 3], [1, 3], [1, 2]].into_iter().enumerate() {
             let (low, high) = extremes(&rotors, others, [0.0, 0.0], axis + 1);
             let (found, best) = (f64::from(greatest[axis]), high.min(-low));
@@ -322,7 +322,7 @@ fn rotors_all_ahead_of_the_centre_of_mass_have_no_greatest_torques() {
         .into_iter()
         .map(|rotor| Rotor { position: rotor.position + Vector3::new(0.3, 0.0, 0.0), ..rotor })
         .collect();
-    let greatest = greatest_torques(&Rotors::new(&ahead).unwrap());
+    let greatest = max_torques(&Rotors::new(&ahead).unwrap());
     assert!(greatest.min() < 0.0, "{greatest}");
 }
 

@@ -210,7 +210,7 @@ fn direction(random: &mut Random) -> Vector3<f32> {
     Vector3::new(signed(random), signed(random), signed(random))
 }
 
-fn of(numbers: &[(&'static str, f32)]) -> Vec<(&'static str, f64)> {
+fn as_f64(numbers: &[(&'static str, f32)]) -> Vec<(&'static str, f64)> {
     numbers.iter().map(|(name, x)| (*name, f64::from(*x))).collect()
 }
 

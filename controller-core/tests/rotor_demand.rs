@@ -80,7 +80,7 @@ fn no_command_in_the_set_exceeds_or_saturates_a_rotor() {
         let command = command(random.next(), &points);
         for (row, demand) in rotors.pseudo_inverse().iter().zip(&demands) {
             let thrust = row.dot(&command);
-            assert!(thrust <= demand.greatest && thrust >= demand.least, "{thrust} {demand:?}");
+            assert!(thrust <= demand.max && thrust >= demand.min, "{thrust} {demand:?}");
         }
         let single = command.map(|x| x as f32);
         let wrench = Wrench { thrust: single.x, torque: Vector3::new(single.y, single.z, single.w) };
@@ -93,8 +93,8 @@ fn a_search_comes_within_a_hundredth_of_every_extreme() {
     let rotors = hummingbird(0.0);
     let mut random = Random(2);
     for (row, demand) in rotors.pseudo_inverse().iter().zip(all_demands(&rotors)) {
-        let half = 0.5 * (demand.greatest - demand.least);
-        for (sign, bound) in [(1.0, demand.greatest), (-1.0, demand.least)] {
+        let half = 0.5 * (demand.max - demand.min);
+        for (sign, bound) in [(1.0, demand.max), (-1.0, demand.min)] {
             let value = |thrust: f64, points: &[Vector3<f64>]| sign * row.dot(&command(thrust, points));
             let mut best = f64::NEG_INFINITY;
             for _ in 0..10 {
@@ -163,9 +163,9 @@ fn a_demand_beyond_either_end_of_a_rotor_does_not_fit() {
     // A newton metre of yaw costs each rotor k_eta / (4 k_m) = 10.24 N, one of roll or pitch 2.08 N.
     let row = 0.25 * ((5.57e-6_f64 / 1.36e-7).powi(2) + 4.0 / 0.17_f64.powi(2)).sqrt();
     let yawing = demand(&rotors, 5.0, 5.0, 0.21);
-    assert!(!yawing.fits() && (yawing.least - (1.25 - 0.21 * row)).abs() < 1e-5, "{yawing:?}");
+    assert!(!yawing.fits() && (yawing.min - (1.25 - 0.21 * row)).abs() < 1e-5, "{yawing:?}");
     let heavy = demand(&rotors, 5.0, 60.0, 0.01);
-    assert!(!heavy.fits() && (heavy.greatest - (15.0 + 0.01 * row)).abs() < 1e-4, "{heavy:?}");
+    assert!(!heavy.fits() && (heavy.max - (15.0 + 0.01 * row)).abs() < 1e-4, "{heavy:?}");
     let idle = demand(&hummingbird(300.0), 3.0, 5.0, 0.01);
     assert!((idle.available_min - 0.5013).abs() < 1e-4 && idle.fits());
 }
@@ -181,7 +181,7 @@ fn sets_that_are_none_are_refused() {
 fn demands_are_rounded_outwards_by_what_single_precision_may_lose() {
     for demand in demands(&hummingbird(0.0), &Commands::new(4.0, 4.0, &[]).unwrap()) {
         // A quarter of 4 N each, without torque.
-        assert!((demand.greatest - 1.0 - 1e-6).abs() < 1e-9, "{demand:?}");
-        assert!((1.0 - demand.least - 1e-6).abs() < 1e-9, "{demand:?}");
+        assert!((demand.max - 1.0 - 1e-6).abs() < 1e-9, "{demand:?}");
+        assert!((1.0 - demand.min - 1e-6).abs() < 1e-9, "{demand:?}");
     }
 }

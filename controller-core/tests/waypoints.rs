@@ -3,7 +3,7 @@
 use crate::support::{Random, bounds, demands, derivatives, psi, slope, turn};
 use controller_core::error::Reason;
 use controller_core::reference::Trajectory;
-use controller_core::reference::waypoints::{CAPACITY, Waypoint, Waypoints};
+use controller_core::reference::waypoints::{POINTS_MAX, Waypoint, Waypoints};
 use core::f64::consts::PI;
 
 fn waypoint(time: f64, position: [f64; 3], heading_deg: f64) -> Waypoint {
@@ -16,7 +16,7 @@ fn micros(time: f64) -> u64 {
 
 /// Two to sixteen points within ten metres, a tenth of a second to ten seconds apart.
 fn random(generator: &mut Random) -> Vec<Waypoint> {
-    let count = 2 + generator.bits() as usize % (CAPACITY - 1);
+    let count = 2 + generator.bits() as usize % (POINTS_MAX - 1);
     let mut time = 0.0;
     (0..count)
         .map(|_| {
@@ -334,12 +334,12 @@ fn malformed_points_are_refused_by_name() {
         (error.field, error.reason)
     };
     assert_eq!(refusal(&[]), ("reference.points", Reason::TooFew(1)));
-    let many: Vec<_> = (0..=CAPACITY).map(good).collect();
+    let many: Vec<_> = (0..=POINTS_MAX).map(good).collect();
     assert_eq!(refusal(&many), ("reference.points", Reason::TooMany(16)));
-    assert!(Waypoints::new(&many[..CAPACITY]).is_ok());
+    assert!(Waypoints::new(&many[..POINTS_MAX]).is_ok());
 
     let with = |i: usize, change: fn(&mut Waypoint)| {
-        let mut points: Vec<_> = (0..CAPACITY).map(good).collect();
+        let mut points: Vec<_> = (0..POINTS_MAX).map(good).collect();
         change(&mut points[i]);
         refusal(&points)
     };

@@ -13,14 +13,14 @@
 //! ```
 //!
 //! - `present`: the state for the law, without the rotors' vibration;
-//! - `felt`: the mean acceleration between two ticks, by accelerometer alone;
+//! - `mean_acceleration`: that between two ticks, by accelerometer alone;
 //! - `nominal`: the state's motion, exact in rotation; attitude errors have no singularity;
 //! - [`covariance`]: its error's, in blocks;
 //! - [`filter`]: both together: advance, weigh a pose, fuse it;
 //! - [`history`]: the ring; [`settings`]: the sensors' noise;
 //! - `checkpoints`: poses out of order; `stream`: time stamps, quality, frozen streams;
 //! - `candidate`: how an estimate begins, at rest or in motion, and how a lost body is found again;
-//! - `taking`: what becomes of a pose, step by step;
+//! - `pose_fusion`: what becomes of a pose, step by step;
 //! - [`verdict`], [`health`]: the verdict on each pose, and the estimate's health, in words.
 //!
 //! # How a tick uses it
@@ -52,52 +52,52 @@ pub mod verdict;
 
 mod candidate;
 mod checkpoints;
-mod felt;
+mod mean_acceleration;
 mod measurement;
 mod nominal;
+mod pose_fusion;
 mod present;
 mod stream;
-mod taking;
 
-pub use health::{COASTING_AFTER, Faults, Health};
-pub use history::{Clipped, EXTRAPOLATION_MAX, Increment};
+pub use health::{COASTING_AFTER_US, Faults, Health};
+pub use history::{Clipped, EXTRAPOLATION_MAX_US, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
 pub use settings::{EstimatorParameters, Settings};
-pub use verdict::{Fault, Rejected, Taken};
+pub use verdict::{Accepted, Fault, Rejected};
 
-use crate::measurement::{STAMP_LEAD_MAX, Stamped};
+use crate::measurement::{STAMP_LEAD_MAX_US, Stamped};
 use candidate::Candidate;
 use checkpoints::Checkpoints;
 use controller_core::state::State;
-use felt::Felt;
 use filter::{Biases, Filter};
 use health::Statistics;
 use heapless::Vec;
 use history::{History, is_measurable};
+use mean_acceleration::MeanAcceleration;
 use measurement::PoseMeasurement as Pose;
 use nalgebra::{Quaternion, Vector3};
-use present::Present;
+use present::PresentMotion;
 use stream::Stream;
 
 /// How long after a move of the sender's frame the next one is believed, us: a running counter is no moving frame.
 /// Longer than the vehicle flies without a believed pose, or a stream of lies would be flown from one move to the next.
-pub const REBASE_EVERY: u64 = 3_000_000;
+pub const REBASE_INTERVAL_MIN_US: u64 = 3_000_000;
 
 /// The cosine of the greatest angle between the accelerometer's up and a pose's, or that of a frame before and after it
 /// moved: 10 degrees.
-const TILT_COSINE: f32 = 0.984_807_8;
+const TILT_COSINE_MIN: f32 = 0.984_807_8;
 
 /// What the biases of a sound gyro, rad/s, and of a sound accelerometer, m/s^2, change by in a flight: a BMI088's by 30
 /// K, at 0.015 deg/s and 0.2 mg a kelvin.
-const GYRO_CHANGE: f32 = 0.008;
-const ACCELEROMETER_CHANGE: f32 = 0.06;
+const GYRO_BIAS_CHANGE_MAX_RAD_PER_S: f32 = 0.008;
+const ACCELEROMETER_BIAS_CHANGE_MAX_M_PER_S2: f32 = 0.06;
 
 /// The time constant with which the vertical speed goes from the accelerometer's to that of the poses, s.
-const CLIMB_TIME: f32 = 8.0;
+const CLIMB_TIME_CONSTANT_S: f32 = 8.0;
 
 /// Poses that may wait for the IMU.
-const WAITING: usize = 4;
+const WAITING_POSES_MAX: usize = 4;
 
 /// The state at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ pub struct EstimatedState {
     pub state: State,
     /// v', m/s^2, world: the mean over the last two increments, by accelerometer.
     pub acceleration: Vector3<f32>,
-    /// How often the state has jumped since the start: each [`Taken::Rebased`], [`Taken::Refound`] and
+    /// How often the state has jumped since the start: each [`Accepted::Rebased`], [`Accepted::Refound`] and
     /// [`Estimator::adopt`]. A differentiator of the state begins anew when it changes.
     pub jumps: u32,
     /// What the vertical speed has gained by the accelerometer alone, m/s; only differences count.
@@ -134,8 +134,8 @@ pub struct Estimator {
     gained: f32,
     /// The vertical speed of [`Self::climb`], m/s.
     climb: f32,
-    felt: Felt,
-    waiting: Vec<Stamped<Pose>, WAITING>,
+    felt: MeanAcceleration,
+    waiting: Vec<Stamped<Pose>, WAITING_POSES_MAX>,
     /// The sender's reset counter when the filter last followed it, and when that was, us.
     frame: Option<(u8, u64)>,
     statistics: Statistics,
@@ -143,7 +143,6 @@ pub struct Estimator {
 
 impl Estimator {
     /// One without an estimate.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
             settings: *settings,
@@ -158,7 +157,7 @@ impl Estimator {
             grounded: None,
             gained: 0.0,
             climb: 0.0,
-            felt: Felt::NOTHING,
+            felt: MeanAcceleration::NOTHING,
             waiting: Vec::new(),
             frame: None,
             statistics: Statistics::NONE,
@@ -169,10 +168,10 @@ impl Estimator {
     /// everything begins anew, with the biases as they were: no state carries over a time without measurements.
     pub fn imu(&mut self, increment: &Increment) {
         let follows = self.history.newest().is_none_or(|newest| newest.end == increment.start);
-        if !follows || !increment.is_usable(EXTRAPOLATION_MAX) {
+        if !follows || !increment.is_usable(EXTRAPOLATION_MAX_US) {
             self.restart();
         }
-        if !increment.is_usable(EXTRAPOLATION_MAX) {
+        if !increment.is_usable(EXTRAPOLATION_MAX_US) {
             return;
         }
         if let Some(leaving) = self.history.leaving() {
@@ -184,7 +183,7 @@ impl Estimator {
             self.checkpoints.forget_before(end);
         }
         self.history.push(increment);
-        self.stream.note(if self.may_stand { self.moves(increment) } else { self.stirs(increment) });
+        self.stream.note(if self.may_stand { self.moves(increment) } else { self.differs_from_rest(increment) });
         if let Some(latest) = &mut self.latest {
             let before = latest.velocity;
             latest.advance(increment, self.settings.parameters().gravity);
@@ -195,7 +194,7 @@ impl Estimator {
             self.gained += felt;
             self.climb += felt
                 + taught * increment.seconds()
-                + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME);
+                + (latest.velocity.z - self.climb) * (increment.seconds() / CLIMB_TIME_CONSTANT_S);
         }
         self.take_waiting(increment.end);
     }
@@ -218,7 +217,6 @@ impl Estimator {
 
     /// The vertical speed, m/s: at once that of the accelerometer, with its bias as it was on the ground, and after
     /// 8 s that of the poses.
-    #[must_use]
     pub fn climb(&self) -> f32 {
         self.climb
     }
@@ -229,10 +227,10 @@ impl Estimator {
     pub fn distrust(&mut self) {
         let (Some(filter), Some((gyro, accelerometer))) = (&mut self.filter, self.grounded) else { return };
         let nominal = &mut filter.nominal;
-        if (nominal.gyro_bias - gyro).norm_squared() > GYRO_CHANGE * GYRO_CHANGE {
+        if (nominal.gyro_bias - gyro).norm_squared() > GYRO_BIAS_CHANGE_MAX_RAD_PER_S * GYRO_BIAS_CHANGE_MAX_RAD_PER_S {
             nominal.gyro_bias = gyro;
         }
-        if (nominal.accelerometer_bias.z - accelerometer.z).abs() > ACCELEROMETER_CHANGE {
+        if (nominal.accelerometer_bias.z - accelerometer.z).abs() > ACCELEROMETER_BIAS_CHANGE_MAX_M_PER_S2 {
             nominal.accelerometer_bias.z = accelerometer.z;
         }
         self.carry_on();
@@ -242,7 +240,7 @@ impl Estimator {
     ///
     /// # Errors
     /// The reason for a refusal; the state is as it was.
-    pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Taken, Rejected> {
+    pub fn pose(&mut self, pose: &Stamped<Pose>, now: u64) -> Result<Accepted, Rejected> {
         let verdict = self.stream.admit(pose, now).and_then(|()| self.take_in_time(pose));
         self.statistics.record(verdict, pose.time);
         verdict
@@ -250,13 +248,13 @@ impl Estimator {
 
     /// The state at `now`, us, with the newest body rate as the law may have it: low-passed, rad/s, its bias included.
     /// The increment that is `under_way` since the last one turns the attitude on, and beyond it the mean rate of the
-    /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX`] after the last increment, before it,
-    /// and with a rate that is not finite or beyond every sensor.
-    #[must_use]
+    /// time of one increment. None before the first, beyond [`EXTRAPOLATION_MAX_US`] after the last increment, before
+    /// it, and with a rate that is not finite or beyond every sensor.
     pub fn state(&self, now: u64, rate: &Vector3<f32>, under_way: Option<&Increment>) -> Option<EstimatedState> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX && is_measurable(rate))?;
-        let Present { force, vibration } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US && is_measurable(rate))?;
+        let PresentMotion { force, vibration } =
+            PresentMotion::from_increments(last, self.history.before_newest(), self.history.slow_force());
         let seconds = ahead as f32 * 1e-6;
         let increment = Increment {
             start: last.end,
@@ -279,9 +277,9 @@ impl Estimator {
 
     /// The mean of v', m/s^2, world, since the last call, to be called once a tick: by accelerometer, with the
     /// increment that is `under_way`. None at the first call, and where [`Self::state`] has none.
-    pub fn felt(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
+    pub fn mean_acceleration(&mut self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let Some(ahead) = self.velocity_ahead(now, under_way) else {
-            self.felt = Felt::NOTHING;
+            self.felt = MeanAcceleration::NOTHING;
             return None;
         };
         self.felt.mean(now, &ahead)
@@ -290,8 +288,9 @@ impl Estimator {
     /// By how much the velocity changes from the end of the last increment to `now`, m/s, world.
     fn velocity_ahead(&self, now: u64, under_way: Option<&Increment>) -> Option<Vector3<f32>> {
         let (latest, last) = (self.latest.as_ref()?, self.history.newest()?);
-        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX)?;
-        let Present { force, .. } = Present::of(last, self.history.before_newest(), self.history.slow_force());
+        let ahead = self.imu_age(now).filter(|&age| age <= EXTRAPOLATION_MAX_US)?;
+        let PresentMotion { force, .. } =
+            PresentMotion::from_increments(last, self.history.before_newest(), self.history.slow_force());
         let goes_on = |next: &&Increment| next.start == last.end && next.is_usable(ahead);
         let (pushed, known) =
             under_way.filter(goes_on).map_or((Vector3::zeros(), 0.0), |next| (next.delta_velocity, next.seconds()));
@@ -303,14 +302,12 @@ impl Estimator {
     }
 
     /// What the estimate is worth at `now`, us.
-    #[must_use]
     pub fn health(&self, now: u64) -> Health {
         let imu_age = self.imu_age(now).unwrap_or(u64::MAX);
         Health::new(self.filter.as_ref(), &self.statistics, &self.settings, imu_age, now)
     }
 
     /// The filter at its horizon, if there is one: nominal state, covariance and time.
-    #[must_use]
     pub fn filter(&self) -> Option<&Filter> {
         self.filter.as_ref()
     }
@@ -331,7 +328,7 @@ impl Estimator {
     /// How long ago the last increment ended, us; none before the first, or if the clock has run back since.
     fn imu_age(&self, now: u64) -> Option<u64> {
         let end = self.history.newest()?.end;
-        (end <= now.saturating_add(STAMP_LEAD_MAX)).then(|| now.saturating_sub(end))
+        (end <= now.saturating_add(STAMP_LEAD_MAX_US)).then(|| now.saturating_sub(end))
     }
 
     /// Begins anew, with the biases as they are if they are plausible.
@@ -345,7 +342,7 @@ impl Estimator {
         self.checkpoints.clear();
         self.waiting.clear();
         (self.filter, self.latest, self.candidate) = (None, None, None);
-        self.felt = Felt::NOTHING;
+        self.felt = MeanAcceleration::NOTHING;
         self.statistics = self.statistics.restarted();
     }
 }

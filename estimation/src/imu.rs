@@ -24,38 +24,38 @@
 //! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
 //! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
 //!
-//! [`watch`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
+//! [`faults`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
 //! sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged, for the
-//! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX`] without samples
-//! are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does the
-//! estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX_US`] without
+//! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
+//! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
 pub mod calibration;
+pub mod faults;
 pub mod integrator;
 pub mod low_pass;
 pub mod six_point;
 pub mod standstill;
-pub mod watch;
 
 pub use calibration::Calibration;
-pub use watch::ImuFault;
+pub use faults::ImuFault;
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};
 use controller_core::error::{ParameterError, require_positive};
+use faults::{FaultMonitor, Ranges};
 use integrator::{Integrator, Sample};
 use low_pass::LowPass;
 use nalgebra::Vector3;
-use watch::{Ranges, Watch};
 
 /// How long an increment lasts, us, where no sample is missing.
-pub const INCREMENT: u64 = 5_000;
+pub const INCREMENT_US: u64 = 5_000;
 
 /// The longest time without samples that is bridged, us: an increment then stays below
-/// [`crate::estimator::EXTRAPOLATION_MAX`].
-pub const BRIDGED_MAX: u64 = 15_000;
+/// [`crate::estimator::EXTRAPOLATION_MAX_US`].
+pub const BRIDGED_MAX_US: u64 = 15_000;
 
 /// A sensor and how it is to be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,19 +88,16 @@ impl ImuParameters {
 
     /// How late the body rates of a law with ticks every `period` us are at most, s, as long as they change slowly: by
     /// both filters, and by the time to the next sample.
-    #[must_use]
     pub fn rates_late(&self, period: u64) -> f32 {
         self.low_pass(period).delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
     }
 
     /// Where what it shows ends.
-    #[must_use]
     pub fn ranges(&self) -> Ranges {
         Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
     }
 
     /// The low-pass for the body rates of a law with ticks every `period` us.
-    #[must_use]
     pub fn low_pass(&self, period: u64) -> LowPass {
         LowPass::before_ticks(period, self.rate.into())
     }
@@ -122,7 +119,7 @@ pub struct Conditioner {
     period: u64,
     late: u64,
     calibration: Calibration,
-    watch: Watch,
+    watch: FaultMonitor,
     low_pass: LowPass,
     integrator: Integrator,
     newest: Option<Stamped<ImuSample>>,
@@ -147,15 +144,15 @@ impl Conditioner {
             period,
             late: p.late,
             calibration: *calibration,
-            watch: Watch::new(p.ranges()),
+            watch: FaultMonitor::new(p.ranges()),
             low_pass: p.low_pass(period),
             integrator: Integrator::EMPTY,
             newest: None,
         })
     }
 
-    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX`] of the
-    /// last.
+    /// Goes on with the samples of another sensor. There is no gap if its first one comes within [`BRIDGED_MAX_US`] of
+    /// the last.
     ///
     /// # Errors
     /// As [`Self::new`]; nothing has changed then.
@@ -170,13 +167,11 @@ impl Conditioner {
 
     /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it
     /// shows, but for the low-pass.
-    #[must_use]
     pub fn newest(&self) -> Option<Stamped<ImuSample>> {
         self.newest
     }
 
     /// What the newest samples add up to since the last increment; none where that ended with the newest.
-    #[must_use]
     pub fn under_way(&self) -> Option<Increment> {
         self.integrator.under_way()
     }
@@ -195,7 +190,7 @@ impl Conditioner {
         angular_velocity: &Vector3<f32>,
         specific_force: Option<&Vector3<f32>>,
     ) -> Conditioned {
-        let fault = self.watch.see(angular_velocity, specific_force);
+        let fault = self.watch.check(angular_velocity, specific_force);
         if fault == Some(ImuFault::NotFinite) {
             return Conditioned { increment: None, fault };
         }
@@ -205,9 +200,9 @@ impl Conditioner {
         let sample = Sample { time, rate, force, clipped: self.watch.clipped() };
         match self.integrator.age(time) {
             Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
-            Some(age) if age <= BRIDGED_MAX => {
+            Some(age) if age <= BRIDGED_MAX_US => {
                 let smooth = self.low_pass.take(&rate);
-                let increment = self.integrator.take(&sample, INCREMENT);
+                let increment = self.integrator.take(&sample, INCREMENT_US);
                 self.keep(time, &smooth, force);
                 Conditioned { increment, fault }
             }

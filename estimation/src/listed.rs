@@ -29,7 +29,6 @@ macro_rules! worded {
 
         impl $name {
             /// The same in words.
-            #[must_use]
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$variant => $text,)+ }
             }

@@ -4,19 +4,19 @@
 //! quaternion from there on. Increments of the IMU are checked by the estimator, which begins anew where one cannot be.
 //! So the law never sees a number that it could refuse.
 
-use controller_core::governor::SPEED_RANGE;
+use controller_core::governor::SPEED_RANGE_M_PER_S;
 use controller_core::math;
 use core::fmt;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// How far ahead of the clock a time stamp may be, us: a sample taken while the tick was beginning.
-pub const STAMP_LEAD_MAX: u64 = 1_000;
+pub const STAMP_LEAD_MAX_US: u64 = 1_000;
 
 /// How far from the origin a pose may be, m: single precision resolves millimetres up to here.
-pub const DISTANCE_MAX: f32 = 10_000.0;
+pub const DISTANCE_MAX_M: f32 = 10_000.0;
 
 /// How far from one the length of a pose's quaternion may be; closer ones are normalised.
-pub const LENGTH_TOLERANCE: f32 = 0.05;
+pub const QUATERNION_LENGTH_TOLERANCE: f32 = 0.05;
 
 /// A value and when it was true, microseconds of the vehicle's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,13 +29,11 @@ pub struct Stamped<T> {
 
 impl<T> Stamped<T> {
     /// Something that follows from it, true at the same time.
-    #[must_use]
     pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Stamped<U> {
         Stamped { value: of(self.value), time: self.time }
     }
 
     /// How old it is at `now`, us; zero for a time to come.
-    #[must_use]
     pub fn age(&self, now: u64) -> u64 {
         now.saturating_sub(self.time)
     }
@@ -74,7 +72,7 @@ pub enum PoseError {
     NotFinite(&'static str),
     /// This field is further away, or faster, than any pose.
     OutOfRange(&'static str),
-    /// The quaternion's length is not one within [`LENGTH_TOLERANCE`].
+    /// The quaternion's length is not one within [`QUATERNION_LENGTH_TOLERANCE`].
     NotARotation,
 }
 
@@ -93,16 +91,17 @@ impl Pose {
     /// which is normalised.
     ///
     /// # Errors
-    /// Names the field that is not finite, further than [`DISTANCE_MAX`], faster than [`SPEED_RANGE`], or no rotation.
+    /// Names the field that is not finite, further than [`DISTANCE_MAX_M`], faster than [`SPEED_RANGE_M_PER_S`], or no
+    /// rotation.
     pub fn new(position: Vector3<f32>, velocity: Velocity, attitude: Quaternion<f32>) -> Result<Self, PoseError> {
         let (Velocity::World(given) | Velocity::Body(given)) = velocity;
-        within(&position, DISTANCE_MAX, "position")?;
-        within(&given, SPEED_RANGE, "velocity")?;
+        within(&position, DISTANCE_MAX_M, "position")?;
+        within(&given, SPEED_RANGE_M_PER_S, "velocity")?;
         if !attitude.coords.iter().all(|component| component.is_finite()) {
             return Err(PoseError::NotFinite("attitude"));
         }
         let length = math::sqrt(attitude.norm_squared());
-        if !((1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE)).contains(&length) {
+        if !((1.0 - QUATERNION_LENGTH_TOLERANCE)..=(1.0 + QUATERNION_LENGTH_TOLERANCE)).contains(&length) {
             return Err(PoseError::NotARotation);
         }
         let attitude = attitude / length;
@@ -114,36 +113,32 @@ impl Pose {
     }
 
     /// p, m, world.
-    #[must_use]
     pub fn position(&self) -> Vector3<f32> {
         self.position
     }
 
     /// v, m/s, world.
-    #[must_use]
     pub fn velocity(&self) -> Vector3<f32> {
         self.velocity
     }
 
     /// q, body to world, unit.
-    #[must_use]
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }
 }
 
 /// Refuses a vector that is longer than `most`.
-fn within(vector: &Vector3<f32>, most: f32, field: &'static str) -> Result<(), PoseError> {
+fn within(vector: &Vector3<f32>, max: f32, field: &'static str) -> Result<(), PoseError> {
     if !vector.iter().all(|component| component.is_finite()) {
         return Err(PoseError::NotFinite(field));
     }
-    if vector.norm_squared() <= most * most { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
+    if vector.norm_squared() <= max * max { Ok(()) } else { Err(PoseError::OutOfRange(field)) }
 }
 
 /// Whether something true at `time` is not older than `age_max` at `now`, us, and the clock has not run back.
-#[must_use]
 pub fn is_fresh(time: u64, age_max: u64, now: u64) -> bool {
-    now.saturating_sub(time) <= age_max && time <= now.saturating_add(STAMP_LEAD_MAX)
+    now.saturating_sub(time) <= age_max && time <= now.saturating_add(STAMP_LEAD_MAX_US)
 }
 
 #[cfg(test)]

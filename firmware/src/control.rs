@@ -23,7 +23,7 @@ use crate::shared::{
 use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use estimation::estimator::{Fault as EstimatorFault, Increment, Rejected, Taken};
+use estimation::estimator::{Accepted, Fault as EstimatorFault, Increment, Rejected};
 use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Stored, Transition};
 use heapless::Vec;
 
@@ -273,7 +273,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
                 *pose = now.saturating_add(TEXT_INTERVAL_US);
                 self.shared.announce(Event::Pose(Err(rejected)));
             }
-            Some(Ok(taken @ (Taken::Rebased | Taken::Refound))) => self.shared.announce(Event::Pose(Ok(taken))),
+            Some(Ok(taken @ (Accepted::Rebased | Accepted::Refound))) => self.shared.announce(Event::Pose(Ok(taken))),
             _ => {}
         }
         // Before it begins it has no fault.

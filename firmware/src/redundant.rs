@@ -12,11 +12,11 @@
 //! that out, on the ground.
 //!
 //! A takeover by silence lasts at most 15 ms from the first's last sample to the second's first, which is bridged
-//! ([`estimation::imu::BRIDGED_MAX`]): the faults are counted before either sensor's driver begins to power it up
+//! ([`estimation::imu::BRIDGED_MAX_US`]): the faults are counted before either sensor's driver begins to power it up
 //! anew.
 
 use crate::hardware::{Fault, Imu, RawImu, Unit};
-use estimation::imu::watch::Watch;
+use estimation::imu::faults::FaultMonitor;
 use estimation::imu::{ImuFault, ImuParameters};
 
 /// Faults of the first in a row after which the second takes over: 10 ms at worst.
@@ -33,7 +33,7 @@ pub struct Redundant<First, Second> {
     /// Whether the second answered its last read.
     is_ready: bool,
     /// The first's samples.
-    watch: Watch,
+    watch: FaultMonitor,
     /// The first's faults in a row. One under way counts: a caller with a timeout drops it.
     faults: u8,
     /// The first's samples in a row that had no force.
@@ -43,7 +43,7 @@ pub struct Redundant<First, Second> {
 impl<First: Imu, Second: Imu> Redundant<First, Second> {
     /// The first speaks.
     pub fn new(first: First, second: Second) -> Self {
-        let watch = Watch::new(first.parameters().ranges());
+        let watch = FaultMonitor::new(first.parameters().ranges());
         Self { first, second, unit: Unit::First, is_ready: false, watch, faults: 0, silent: 0 }
     }
 
@@ -52,7 +52,7 @@ impl<First: Imu, Second: Imu> Redundant<First, Second> {
         let Ok(sample) = answer else { return self.faults >= TAKE_OVER_AFTER_FAULTS };
         self.faults = 0;
         self.silent = if sample.specific_force.is_some() { 0 } else { self.silent.saturating_add(1) };
-        let fault = self.watch.see(&sample.angular_velocity, sample.specific_force.as_ref());
+        let fault = self.watch.check(&sample.angular_velocity, sample.specific_force.as_ref());
         self.silent >= SILENT_AFTER_SAMPLES || matches!(fault, Some(ImuFault::GyroStuck | ImuFault::AccelerometerStuck))
     }
 }

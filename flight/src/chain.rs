@@ -13,12 +13,12 @@ use super::refusal::Grounded;
 use super::rules::REFUSAL_MAX_US;
 use super::sinking::Sinking;
 use super::spool::Spool;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::extended::measured::Measured;
-use controller_core::governor::{self, Following, Governor, GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{self, FollowingReport, Governor, GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use controller_core::heading::Heading;
 use controller_core::law::Command;
 use controller_core::law::Law;
@@ -93,7 +93,7 @@ pub(super) struct Chain<'m> {
     refused: u64,
     lift_off: LiftOff,
     /// The rotor that was found to fail, in this flight or one before.
-    lost: Option<Lost>,
+    lost: Option<LostRotor>,
 }
 
 /// What `make` makes, moved in one piece: inlined, each of its fields would be moved for itself.
@@ -185,7 +185,7 @@ impl<'m> Chain<'m> {
     fn rise_on(&mut self) -> Result<(), &'static str> {
         let mut position = self.reference.position;
         position.z = self.rising_to;
-        self.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Keep }, 0.0)
+        self.accept(&Setpoint { motion: Motion::Position(position), turn: HeadingSetpoint::Keep }, 0.0)
     }
 
     /// Whether the reference has come to rest at the height of the take-off.
@@ -203,7 +203,7 @@ impl<'m> Chain<'m> {
         }
         let motion = Motion::Velocity(Vector3::new(0.0, 0.0, -speed));
         // A number within its range, as the settings have it; refused, the reference stops.
-        let _ = self.governor.accept(&Setpoint { motion, turn: Turn::Keep });
+        let _ = self.governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep });
     }
 
     /// Takes a setpoint that was true `late` seconds ago.
@@ -215,7 +215,7 @@ impl<'m> Chain<'m> {
     }
 
     /// How the stream that is sent is followed, if there is one.
-    pub fn following(&self) -> Option<Following> {
+    pub fn following(&self) -> Option<FollowingReport> {
         self.governor.following()
     }
 
@@ -322,7 +322,7 @@ impl<'m> Chain<'m> {
     }
 
     /// The rotor that was found to fail since the boot.
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         self.lost
     }
 

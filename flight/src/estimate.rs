@@ -7,7 +7,7 @@ use super::exchange::Inputs;
 use super::rules::COASTING_MAX_US;
 use controller_core::state::State;
 use estimation::estimator::{
-    COASTING_AFTER, EXTRAPOLATION_MAX, EstimatedState, Estimator, Fault, Health, Rejected, Taken,
+    Accepted, COASTING_AFTER_US, EXTRAPOLATION_MAX_US, EstimatedState, Estimator, Fault, Health, Rejected,
 };
 use estimation::measurement::is_fresh;
 use nalgebra::{Quaternion, Vector3};
@@ -24,7 +24,7 @@ pub(super) struct Estimate {
     pub felt: Option<Vector3<f32>>,
     pub health: Health,
     /// The verdict on this tick's poses: the last refusal, or else what the last was taken for.
-    pub pose: Option<Result<Taken, Rejected>>,
+    pub pose: Option<Result<Accepted, Rejected>>,
     /// Where the state has jumped since the last tick: the one it would be, had it not.
     pub jumped_from: Option<State>,
     /// Whether all has been well for [`SETTLED_AFTER_US`].
@@ -39,7 +39,7 @@ impl Estimate {
 
     /// Whether poses are believed, and the estimate may be flown again.
     pub fn is_found(&self) -> bool {
-        self.is_certain_within(COASTING_AFTER)
+        self.is_certain_within(COASTING_AFTER_US)
     }
 
     fn is_certain_within(&self, age_max: u64) -> bool {
@@ -101,12 +101,12 @@ impl<'m> Estimation<'m> {
             // That it has is counted with the other jumps.
             let _ = self.estimator.adopt();
         }
-        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX, now));
+        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time, EXTRAPOLATION_MAX_US, now));
         let (health, state) = (
             self.estimator.health(now),
             rate.and_then(|rate| self.estimator.state(now, &rate.value, inputs.under_way.as_ref())),
         );
-        let felt = self.estimator.felt(now, inputs.under_way.as_ref());
+        let felt = self.estimator.mean_acceleration(now, inputs.under_way.as_ref());
         let jumped = health.jumps != self.jumps;
         let steady = health.is_good() && state.is_some() && !jumped && health.counts.1 == self.counts.1;
         self.since = if steady { self.since.or(Some(now)) } else { None };

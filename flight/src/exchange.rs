@@ -9,10 +9,10 @@ use super::request::Request;
 use super::rules::{Mode, Transition};
 use super::stream_check::Streamed;
 use controller_core::allocation::Thrusts;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::error::InputError;
 use controller_core::governor::Setpoint;
-use estimation::estimator::{EstimatedState, Health, Increment, PoseMeasurement, Rejected, Taken};
+use estimation::estimator::{Accepted, EstimatedState, Health, Increment, PoseMeasurement, Rejected};
 use estimation::imu::ImuFault;
 use estimation::measurement::Stamped;
 use nalgebra::Vector3;
@@ -136,13 +136,13 @@ pub struct Outcome {
     pub health: Health,
     /// The verdict on this tick's poses: the last refusal, or else what the last was taken for; none where none came,
     /// or where all of them wait for the IMU.
-    pub pose: Option<Result<Taken, Rejected>>,
+    pub pose: Option<Result<Accepted, Rejected>>,
     /// What was flown, in an armed mode; or what the law could not use: the thrusts are then the last tick's.
     pub flown: Option<Result<Flown, InputError>>,
     /// The rotors' thrust over the commanded thrust, in the ticks that report a persistent deviation.
     pub doubtful_thrust: Option<f32>,
     /// The rotor that is found to fail, in the tick in which it is.
-    pub lost: Option<Lost>,
+    pub lost: Option<LostRotor>,
     /// How a stream of setpoints is flown, in the ticks that report it.
     pub streamed: Option<Streamed>,
     /// Whether a policy is let fly.

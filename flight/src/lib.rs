@@ -76,7 +76,7 @@ mod trust;
 pub use chain::{Flown, Memory};
 pub use estimate::SETTLED_AFTER_US;
 pub use estimation::measurement::{
-    DISTANCE_MAX, ImuSample, LENGTH_TOLERANCE, Pose, PoseError, STAMP_LEAD_MAX, Stamped, Velocity,
+    DISTANCE_MAX_M, ImuSample, Pose, PoseError, QUATERNION_LENGTH_TOLERANCE, STAMP_LEAD_MAX_US, Stamped, Velocity,
 };
 pub use exchange::{Battery, Inputs, Outcome, Output};
 pub use mission::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal, MissionStep};

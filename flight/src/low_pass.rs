@@ -58,7 +58,7 @@ impl LowPass {
             |new: Vector3<f32>, last: Option<Vector3<f32>>| last.map_or(new, |last| last + (new - last) * self.share);
         let velocity = averaged(state.velocity, last.map(|last| last.velocity));
         let angular_velocity = averaged(state.angular_velocity, last.map(|last| last.angular_velocity));
-        let counted = acceleration.map(|a| math::between(a, -ACCELERATION_MAX_M_PER_S2, ACCELERATION_MAX_M_PER_S2));
+        let counted = acceleration.map(|a| math::clamp(a, -ACCELERATION_MAX_M_PER_S2, ACCELERATION_MAX_M_PER_S2));
         let once = averaged(counted, last.map(|last| last.acceleration.0));
         let acceleration = averaged(once, last.map(|last| last.acceleration.1));
         let smoothed =

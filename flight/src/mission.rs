@@ -10,7 +10,7 @@
 //! ```
 
 use super::settings::FlightSettings;
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use core::fmt;
 use nalgebra::{Vector2, Vector3};
 
@@ -48,7 +48,7 @@ pub struct MissionItem {
     /// Where to, m, world. A take-off uses the height alone, a landing all but that, a return nothing.
     pub position: Vector3<f32>,
     /// Which way to point.
-    pub turn: Turn,
+    pub turn: HeadingSetpoint,
     /// How near the reference has to come, m.
     pub radius: f32,
     /// For how long it stays, us.

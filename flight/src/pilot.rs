@@ -22,8 +22,8 @@ use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
-use controller_core::governor::{Following, GovernorLimits};
-use estimation::estimator::{EstimatedState, Estimator, Fault, Taken};
+use controller_core::governor::{FollowingReport, GovernorLimits};
+use estimation::estimator::{Accepted, EstimatedState, Estimator, Fault};
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 5.7 KB, and its [`Memory`] and [`Estimator`].
@@ -154,7 +154,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         match (&mut self.chain, &estimate.jumped_from, &estimate.state) {
             (Ok(chain), Some(before), Some(EstimatedState { state, .. })) if self.mode.is_armed() => {
                 // A body that is found again has not moved with its frame.
-                if !(self.mode.flies() && estimate.pose == Some(Ok(Taken::Refound))) {
+                if !(self.mode.flies() && estimate.pose == Some(Ok(Accepted::Refound))) {
                     self.fence.displace(before, state);
                 }
                 !self.mode.flies() || chain.jump(before, state, self.mode).is_ok()
@@ -198,7 +198,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// How a stream of setpoints is followed, where setpoints are flown.
-    fn following(&self) -> Option<Following> {
+    fn following(&self) -> Option<FollowingReport> {
         self.chain.as_ref().ok().filter(|_| self.mode == Mode::Flying).and_then(Chain::following)
     }
 

@@ -119,7 +119,7 @@ impl<P: Policy> Aboard for Guarded<P> {
 
     fn begin(&mut self, [low, high]: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal> {
         let shield = self.shield.as_mut().ok_or(Refusal::NoPolicyUnderLaw)?;
-        shield.confine(&Settings::new(low, high)).map_err(|_| Refusal::OutsideFence)?;
+        shield.set_settings(&Settings::new(low, high)).map_err(|_| Refusal::OutsideFence)?;
         shield.reset(heading);
         (self.goal, self.last) = (*goal, None);
         Ok(())
@@ -127,7 +127,7 @@ impl<P: Policy> Aboard for Guarded<P> {
 
     fn ask_again(&mut self) {
         if let Some(shield) = &mut self.shield {
-            shield.ask_again();
+            shield.request_again();
         }
     }
 
@@ -146,7 +146,7 @@ impl<P: Policy> Aboard for Guarded<P> {
         self.last = Some(flown.reason);
         let handover = match flown.reason {
             None => Handover::ToPolicy,
-            Some(reason) if shield.keeps() => Handover::ToLawForGood(reason),
+            Some(reason) if shield.is_latched() => Handover::ToLawForGood(reason),
             Some(reason) => Handover::ToLaw(reason),
         };
         Ok(Shielded {

@@ -21,7 +21,7 @@ pub use mode::Mode;
 pub use table::{Row, TABLE};
 
 use super::reason::Reason;
-use estimation::estimator::EXTRAPOLATION_MAX;
+use estimation::estimator::EXTRAPOLATION_MAX_US;
 
 /// How long a flight goes on by IMU alone after the last pose that was believed. Drift grows with the square of the
 /// time: it must stay below 10 cm in 500 ms and below 1 m in 2 s, so it is a quarter of a metre or less in this second.
@@ -29,7 +29,7 @@ pub const COASTING_MAX_US: u64 = 1_000_000;
 
 /// The maximum age of an IMU sample that is flown: twenty samples missed, and the delay of its own filters. The
 /// attitude loop stands no more (docs/sampled-loop.md), and without rates the attitude is unknown.
-pub const IMU_AGE_MAX_US: u64 = EXTRAPOLATION_MAX;
+pub const IMU_AGE_MAX_US: u64 = EXTRAPOLATION_MAX_US;
 
 /// How long a vehicle without a pose only levels: poses may come back. Then it goes down.
 pub const LEVELLING_MAX_US: u64 = 1_000_000;

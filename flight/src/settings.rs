@@ -52,7 +52,7 @@ impl Default for FlightSettings {
 }
 
 fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {
-    if value.is_nan() { default } else { math::between(value, min, max) }
+    if value.is_nan() { default } else { math::clamp(value, min, max) }
 }
 
 #[cfg(test)]

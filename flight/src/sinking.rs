@@ -65,7 +65,7 @@ impl Sinking {
     /// How far above its descent the vehicle is, m, after another tick of `period`, s, in which it should move at
     /// `desired`, m/s.
     pub fn behind(&mut self, desired: f32, period: f32) -> f32 {
-        self.behind = math::between(self.behind + (self.speed - desired) * period, -BEHIND_MAX_M, BEHIND_MAX_M);
+        self.behind = math::clamp(self.behind + (self.speed - desired) * period, -BEHIND_MAX_M, BEHIND_MAX_M);
         self.behind
     }
 

@@ -4,7 +4,7 @@
 //! reference has been farther than [`FOLLOWED_DISTANCE_MAX_M`] from the stream for [`STREAM_DEBOUNCE_US`], and again
 //! every [`STREAM_REPORT_INTERVAL_US`]; and the end of it likewise, once.
 
-use controller_core::governor::Following;
+use controller_core::governor::FollowingReport;
 use core::fmt;
 
 /// The distance of the reference beyond which a stream is not flown as it is sent.
@@ -49,7 +49,7 @@ pub(super) struct StreamCheck {
 
 impl StreamCheck {
     /// How the stream is flown, in a tick in which that is to be reported.
-    pub fn tick(&mut self, following: Option<Following>, now: u64) -> Option<Streamed> {
+    pub fn tick(&mut self, following: Option<FollowingReport>, now: u64) -> Option<Streamed> {
         let Some(following) = following else {
             *self = Self::default();
             return None;

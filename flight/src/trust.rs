@@ -14,7 +14,7 @@
 //!
 //! At [`DOUBT_MAX_S`] the source is given up until the vehicle is disarmed.
 
-use estimation::estimator::{COASTING_AFTER, Rejected, Taken};
+use estimation::estimator::{Accepted, COASTING_AFTER_US, Rejected};
 
 /// Doubt at which a source is given up.
 pub const DOUBT_MAX_S: f32 = 3.0;
@@ -46,14 +46,14 @@ pub(super) struct Trust {
 impl Trust {
     /// Takes note of what became of a tick's poses, in flight. Where the gyro's bias is not `plausible` with them, they
     /// turn as the vehicle does not, and are no better than refused.
-    pub fn judge(&mut self, pose: Option<Result<Taken, Rejected>>, plausible: bool, now: u64) {
+    pub fn judge(&mut self, pose: Option<Result<Accepted, Rejected>>, plausible: bool, now: u64) {
         let Some(pose) = pose else { return };
         let seconds = now.saturating_sub(self.judged).min(POSE_INTERVAL_MAX_US) as f32 * 1e-6;
         self.judged = now;
         self.doubt(match pose {
             Err(rejected) if rejected.is_lie() => seconds,
-            Ok(Taken::Refound) => REFOUND_DOUBT_S,
-            Ok(Taken::Rebased) => FRAME_MOVED_DOUBT_S,
+            Ok(Accepted::Refound) => REFOUND_DOUBT_S,
+            Ok(Accepted::Rebased) => FRAME_MOVED_DOUBT_S,
             Ok(taken) if taken.is_believed() && plausible => -DOUBT_DECAY_SHARE * seconds,
             Ok(taken) if taken.is_believed() => seconds,
             Ok(_) | Err(_) => 0.0,
@@ -61,7 +61,7 @@ impl Trust {
     }
 
     /// Notes a pose that is refused for its values, or believed.
-    pub fn note(&mut self, pose: Result<Taken, Rejected>, now: u64) {
+    pub fn note(&mut self, pose: Result<Accepted, Rejected>, now: u64) {
         match pose {
             Ok(taken) if taken.is_believed() => self.refused = None,
             Err(rejected) if rejected.is_lie() => {
@@ -73,12 +73,12 @@ impl Trust {
 
     /// Whether poses have lied: one outlier before an outage is no lie.
     pub fn has_lied(&self) -> bool {
-        self.is_given_up || self.refused.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER)
+        self.is_given_up || self.refused.is_some_and(|(first, last)| last.saturating_sub(first) >= COASTING_AFTER_US)
     }
 
     /// Whether poses lied before `levelled`, us, or still did then: what they agree on later is no better.
     pub fn lied_until(&self, levelled: u64) -> bool {
-        self.has_lied() || self.refused.is_some_and(|(_, last)| levelled.saturating_sub(last) <= COASTING_AFTER)
+        self.has_lied() || self.refused.is_some_and(|(_, last)| levelled.saturating_sub(last) <= COASTING_AFTER_US)
     }
 
     /// Whether poses that were lost may be flown again, by a landing or not; if so, they are.

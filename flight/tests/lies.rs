@@ -4,7 +4,7 @@
 
 use crate::support::{Body, Flight, PERIOD_US, PoseSource, SPOOLING_TICKS, displaced, go_to};
 use controller_core::prelude::*;
-use estimation::estimator::{Rejected, Taken};
+use estimation::estimator::{Accepted, Rejected};
 use flight::rules::COASTING_MAX_US;
 use flight::{Mode, Outcome, Output, Reason, Request, Stamped};
 use nalgebra::UnitQuaternion;
@@ -207,7 +207,7 @@ fn a_reported_frame_move_is_flown_through_without_a_lurch() {
         let place = flight.body.position;
         flight.source = moved(offset, turn, 1);
         let rebased = flight.tick();
-        assert_eq!((rebased.pose, rebased.health.jumps, rebased.mode), (Some(Ok(Taken::Rebased)), 1, Mode::Flying));
+        assert_eq!((rebased.pose, rebased.health.jumps, rebased.mode), (Some(Ok(Accepted::Rebased)), 1, Mode::Flying));
         let (fastest, last) = speed(&mut flight, 300);
         assert!(fastest < 0.02, "{offset} {turn}: {fastest} m/s");
         assert!((flight.body.position - place).norm() < 0.02, "{offset} {turn}: {}", flight.body.position - place);
@@ -292,7 +292,7 @@ fn a_body_found_where_coasting_may_have_led_is_flown_on_from_without_a_lurch() {
     let mut found = 0;
     for _ in 0..300 {
         let outcome = flight.tick();
-        found += u32::from(outcome.pose == Some(Ok(Taken::Refound)));
+        found += u32::from(outcome.pose == Some(Ok(Accepted::Refound)));
         assert_eq!(outcome.mode, Mode::Flying);
         assert!(flight.body.velocity.norm() < 0.05, "{}", flight.body.velocity);
     }

@@ -1,7 +1,7 @@
 //! Missions: items in their order, within the same bounds and rules as setpoints.
 
 use crate::support::{Flight, GROUND_HEIGHT_M, PERIOD_US, go_to};
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use controller_core::prelude::*;
 use flight::{
     ACCEPTANCE_RADIUS_M, Battery, Leg, MissionItem, MissionRefusal, MissionStep, Mode, Reason, Refusal, Request,
@@ -11,7 +11,7 @@ use flight::{
 const LONG_FLIGHT_TICKS: u64 = 4_000;
 
 fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
-    MissionItem { leg, position: Vector3::new(x, y, z), turn: Turn::Keep, radius: ACCEPTANCE_RADIUS_M, hold: 0 }
+    MissionItem { leg, position: Vector3::new(x, y, z), turn: HeadingSetpoint::Keep, radius: ACCEPTANCE_RADIUS_M, hold: 0 }
 }
 
 fn waypoint(x: f32, y: f32, z: f32) -> MissionItem {

@@ -1,7 +1,7 @@
 //! The pilot in closed loop with a rigid body: what each mode does, and how each ends.
 
 use crate::support::{Flight, GROUND_HEIGHT_M, PERIOD_US, SPOOLING_TICKS, go_to};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use flight::rules::{
     BATTERY_DEBOUNCE_US, COASTING_MAX_US, GROUND_STATION_TIMEOUT_US, LEVELLING_MAX_US, TRACKING_DEBOUNCE_US,
@@ -12,7 +12,7 @@ use flight::{Battery, Mode, MotorTest, Output, Reason, Refusal, Request};
 fn under_way() -> Flight {
     let mut flight = Flight::armed();
     flight.ticks(50);
-    let turn = Turn::Angle { angle: 2.0, rate: 0.0 };
+    let turn = HeadingSetpoint::Angle { angle: 2.0, rate: 0.0 };
     flight.inputs.setpoint = Some(Setpoint { turn, ..go_to(30.0, 10.0, 3.0) });
     assert_eq!(flight.tick().setpoint, Some(Ok(())));
     flight.ticks(250);
@@ -148,7 +148,8 @@ fn attitudes_between_poses_are_carried_on_by_the_gyro() {
     // Ten poses a second, none of them older than 100 ms: it flies on, and as well as with a hundred.
     let mut flight = Flight::armed();
     flight.ticks(50);
-    flight.inputs.setpoint = Some(Setpoint { turn: Turn::Angle { angle: 1.5, rate: 0.0 }, ..go_to(3.0, 0.0, 1.0) });
+    flight.inputs.setpoint =
+        Some(Setpoint { turn: HeadingSetpoint::Angle { angle: 1.5, rate: 0.0 }, ..go_to(3.0, 0.0, 1.0) });
     for tick in 0..600 {
         flight.present.pose = tick % 10 == 0;
         let truth = flight.body.attitude;
@@ -387,7 +388,7 @@ fn a_velocity_setpoint_is_flown_too() {
     let mut flight = Flight::armed();
     for _ in 0..400 {
         let motion = Motion::Velocity(Vector3::new(1.0, 0.0, 0.0));
-        flight.inputs.setpoint = Some(Setpoint { motion, turn: Turn::Keep });
+        flight.inputs.setpoint = Some(Setpoint { motion, turn: HeadingSetpoint::Keep });
         flight.tick();
     }
     assert!((flight.body.velocity.x - 1.0).abs() < 0.1, "{}", flight.body.velocity);

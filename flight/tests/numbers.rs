@@ -2,7 +2,7 @@
 
 use crate::support::outputs::check_output;
 use crate::support::{Handed, PERIOD_US, SETTLING_TICKS, at_rest, go_to, rotors, settled};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use estimation::estimator::PoseMeasurement;
 use flight::{Mode, MotorTest, Output, Pose, Request, Stamped, Velocity};
@@ -74,16 +74,22 @@ fn spoil(handed: &mut Handed, field: usize, number: f32) {
             parts[(field - 16) / 3][(field - 16) % 3] = number;
             let [position, velocity, acceleration] = parts;
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
-            handed.setpoint = Some(Setpoint { motion, turn: Turn::Keep });
+            handed.setpoint = Some(Setpoint { motion, turn: HeadingSetpoint::Keep });
         }
         25..28 => {
             let mut velocity = Vector3::zeros();
             velocity[field - 25] = number;
-            handed.setpoint = Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Keep });
+            handed.setpoint = Some(Setpoint { motion: Motion::Velocity(velocity), turn: HeadingSetpoint::Keep });
         }
-        28 => handed.setpoint = Some(Setpoint { turn: Turn::Angle { angle: number, rate: 0.0 }, ..go_to(0., 0., 1.) }),
-        29 => handed.setpoint = Some(Setpoint { turn: Turn::Angle { angle: 0.0, rate: number }, ..go_to(0., 0., 1.) }),
-        30 => handed.setpoint = Some(Setpoint { turn: Turn::Rate(number), ..go_to(0., 0., 1.) }),
+        28 => {
+            handed.setpoint =
+                Some(Setpoint { turn: HeadingSetpoint::Angle { angle: number, rate: 0.0 }, ..go_to(0., 0., 1.) })
+        }
+        29 => {
+            handed.setpoint =
+                Some(Setpoint { turn: HeadingSetpoint::Angle { angle: 0.0, rate: number }, ..go_to(0., 0., 1.) })
+        }
+        30 => handed.setpoint = Some(Setpoint { turn: HeadingSetpoint::Rate(number), ..go_to(0., 0., 1.) }),
         31..34 => imu.delta_angle[field - 31] = number,
         _ => {
             let test = MotorTest { rotor: 0, level: number, duration: 1_000_000 };

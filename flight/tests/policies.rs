@@ -1,7 +1,7 @@
 //! A policy aboard: let fly in the air by a request, within the same rules as setpoints, and ended by any of them.
 
 use crate::support::{Flight, GROUND_HEIGHT_M, go_to};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use controller_core::shield::{self, Demand, Observation, Policy};
 use flight::{Aboard, Guarded, Handover, Mode, Outcome, Reason, Refusal, Request};
@@ -88,7 +88,8 @@ fn without_a_setpoint_the_goal_is_where_the_vehicle_was() {
     flight.ticks(300);
     assert!(flight.pilot.mode() == Mode::Flying && distance(&flight, 0.0, 0.0, 2.5) < 0.05);
     // A velocity is no goal, and a place outside of the fence is refused.
-    flight.inputs.setpoint = Some(Setpoint { motion: Motion::Velocity(Vector3::new(1.0, 0.0, 0.0)), turn: Turn::Keep });
+    flight.inputs.setpoint =
+        Some(Setpoint { motion: Motion::Velocity(Vector3::new(1.0, 0.0, 0.0)), turn: HeadingSetpoint::Keep });
     flight.ticks(200);
     flight.inputs.setpoint = Some(go_to(500.0, 0.0, 2.0));
     assert_eq!(flight.tick().setpoint, Some(Err(Refusal::OutsideFence)));

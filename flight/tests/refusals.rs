@@ -6,7 +6,7 @@ use crate::support::{
 };
 use controller_core::certificate::certified::Refused;
 use controller_core::error::{ParameterError, Reason};
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use flight::{Battery, FlightSettings, Grounded, Mode, MotorTest, Output, Pilot, Refusal, Request};
 
@@ -35,10 +35,13 @@ fn setpoints_that_make_no_sense_are_refused_where_setpoints_are_flown() {
         (go_to(100.1, 0.0, 0.0), Refusal::OutsideFence),
         (go_to(0.0, 0.0, 51.1), Refusal::OutsideFence),
         (
-            Setpoint { motion: Motion::Velocity(Vector3::repeat(f32::NAN)), turn: Turn::Keep },
+            Setpoint { motion: Motion::Velocity(Vector3::repeat(f32::NAN)), turn: HeadingSetpoint::Keep },
             Refusal::Setpoint("setpoint.velocity"),
         ),
-        (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, Refusal::Setpoint("setpoint.yaw_rate")),
+        (
+            Setpoint { turn: HeadingSetpoint::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) },
+            Refusal::Setpoint("setpoint.yaw_rate"),
+        ),
     ] {
         flight.inputs.setpoint = Some(setpoint);
         let outcome = flight.tick();

@@ -1,7 +1,7 @@
 //! Earlier and present requests: the newest counts, and nothing that was granted is forgotten.
 
 use crate::support::{Flight, PERIOD_US, go_to};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use flight::rules::SETPOINTS_REQUEST_MAX_US;
 use flight::{Battery, Mode, Outcome, Output, Reason, Refusal, Request, SETPOINT_AGE_MAX_US};
@@ -12,7 +12,7 @@ fn far() -> Setpoint {
 }
 
 fn velocity(x: f32) -> Setpoint {
-    Setpoint { motion: Motion::Velocity(Vector3::new(x, 0.0, 0.0)), turn: Turn::Keep }
+    Setpoint { motion: Motion::Velocity(Vector3::new(x, 0.0, 0.0)), turn: HeadingSetpoint::Keep }
 }
 
 /// A tick with a request.

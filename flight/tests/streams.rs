@@ -3,7 +3,7 @@
 use crate::support::outputs::check_output;
 use crate::support::{Handed, PERIOD_US, SETTLING_TICKS, go_to, pilot, pose, resting_imu, rotors};
 use controller_core::allocation::Rotors;
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use controller_core::prelude::*;
 use estimation::estimator::{Increment, PoseMeasurement};
 use flight::rules::{COASTING_MAX_US, DESCENDING_MAX_US, IDLING_MAX_US, IMU_AGE_MAX_US, MOTOR_TEST_MAX_US};
@@ -105,7 +105,7 @@ fn arrival() -> impl Strategy<Value = Arrival> {
 fn mission_item(&[x, y, z, kind, radius, hold]: &[f32; 6]) -> Option<MissionItem> {
     let leg = [Leg::TakeOff, Leg::Waypoint, Leg::Land, Leg::Return][(kind + 2.0) as usize % 4];
     let position = Vector3::new(100.0 * x, 100.0 * y, 10.0 * z);
-    let item = MissionItem { leg, position, turn: Turn::Keep, radius, hold: (hold.abs() * 1e5) as u64 };
+    let item = MissionItem { leg, position, turn: HeadingSetpoint::Keep, radius, hold: (hold.abs() * 1e5) as u64 };
     (hold > -1.8).then_some(item)
 }
 

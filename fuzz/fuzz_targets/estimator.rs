@@ -4,14 +4,14 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use estimation::estimator::{Estimator, EstimatorParameters, PoseMeasurement, Settings, Taken};
+use estimation::estimator::{Accepted, Estimator, EstimatorParameters, PoseMeasurement, Settings};
 use flight::{Pose, Stamped, Velocity};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::{Quaternion, Vector3};
 
 /// How far from a pose the state may be right after taking it, m.
-const NEAR: f32 = 1.0;
+const POSE_DISTANCE_MAX_M: f32 = 1.0;
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -103,10 +103,10 @@ fuzz_target!(|events: Vec<Event>| {
 });
 
 /// What was fused is where the state at its time is.
-fn near(estimator: &Estimator, taken: Option<Taken>, time: u64, position: &Vector3<f32>) {
+fn near(estimator: &Estimator, taken: Option<Accepted>, time: u64, position: &Vector3<f32>) {
     // Among later poses it is not the last that was fused.
-    if let (Some(Taken::Fused), Some(filter)) = (taken, estimator.filter().filter(|filter| filter.time == time)) {
+    if let (Some(Accepted::Fused), Some(filter)) = (taken, estimator.filter().filter(|filter| filter.time == time)) {
         let away = (filter.nominal.position - position).norm();
-        assert!(away < NEAR, "fused {away} m away");
+        assert!(away < POSE_DISTANCE_MAX_M, "fused {away} m away");
     }
 }

@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 /// COMMAND_LONG, SET_POSITION_TARGET_LOCAL_NED, TIMESYNC, ATT_POS_MOCAP, ODOMETRY, COMMAND_INT, SET_GPS_GLOBAL_ORIGIN,
 /// MISSION_REQUEST_LIST, MISSION_COUNT, MISSION_CLEAR_ALL, LOG_REQUEST_LIST, LOG_REQUEST_DATA, LOG_ERASE,
 /// LOG_REQUEST_END, FILE_TRANSFER_PROTOCOL.
-const LISTENED: [u32; 20] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45, 117, 119, 121, 122, 110];
+const RECEIVED_MESSAGE_IDS: [u32; 20] = [0, 4, 20, 21, 23, 76, 84, 111, 138, 331, 75, 48, 43, 44, 45, 117, 119, 121, 122, 110];
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -49,7 +49,7 @@ fuzz_target!(|events: Vec<Event>| {
             Event::Bytes(bytes) => bytes,
             Event::Message { which, sender, sequence, mut payload } => {
                 payload.resize(255, 0);
-                let message = LISTENED[usize::from(which) % LISTENED.len()];
+                let message = RECEIVED_MESSAGE_IDS[usize::from(which) % RECEIVED_MESSAGE_IDS.len()];
                 if let Ok(mut message) = MavMessage::parse(MavlinkVersion::V2, message, &payload) {
                     if let MavMessage::PARAM_SET(set) = &mut message {
                         named(set, sequence);

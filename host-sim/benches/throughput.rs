@@ -12,34 +12,36 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Flights of each kind.
-const REPETITIONS: usize = 1500;
+const FLIGHTS_OF_EACH_KIND: usize = 1500;
 /// What the project asks for, simulated seconds per second: as a file flies, as a campaign flies.
-const REQUIRED: f64 = 10_000.0;
+const REQUIRED_RATE: f64 = 10_000.0;
 const REQUIRED_OF_CAMPAIGNS: f64 = 50_000.0;
 /// At a file's step: fewer than these are the sources' doing, not that of a busy machine.
-const LEAST: f64 = 4_000.0;
-/// How far a campaign's step may move the paper's flight, m.
-const NEAR: f64 = 1e-6;
+const RATE_MIN: f64 = 4_000.0;
+/// How far a campaign's step may move the paper's flight.
+const CAMPAIGN_STEP_DEVIATION_MAX_M: f64 = 1e-6;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::paper()?;
-    let campaigns = step::longest(&scenario);
-    let moved = distance(&campaigns, &step::of(&scenario, 5e-4)?)?;
+    let campaigns = step::with_longest_step(&scenario);
+    let moved = distance(&campaigns, &step::with_step(&scenario, 5e-4)?)?;
 
     // A limit that is not reached is printed and stops no build: the machine may be busy.
-    let best = measured(&scenario, "a file's plant step of 1 ms", REQUIRED)?;
+    let best = measured(&scenario, "a file's plant step of 1 ms", REQUIRED_RATE)?;
     measured(&campaigns, "a campaign's of 5 ms", REQUIRED_OF_CAMPAIGNS)?;
-    println!("a campaign's plant step moves the flight by {moved:.2e} m: {}", word(moved < NEAR));
-    if best >= LEAST && moved < NEAR { Ok(()) } else { Err("too slow, or too far".into()) }
+    println!(
+        "a campaign's plant step moves the flight by {moved:.2e} m: {}",
+        word(moved < CAMPAIGN_STEP_DEVIATION_MAX_M)
+    );
+    if best >= RATE_MIN && moved < CAMPAIGN_STEP_DEVIATION_MAX_M { Ok(()) } else { Err("too slow, or too far".into()) }
 }
 
 /// Flies one flight after the other, prints whether the best is as much as `required`, and returns it.
 fn measured(scenario: &Scenario, what: &str, required: f64) -> Result<f64, Box<dyn Error>> {
-    let mut rates = Vec::with_capacity(REPETITIONS);
+    let mut rates = Vec::with_capacity(FLIGHTS_OF_EACH_KIND);
     // Certified once, as before a take-off.
     let start = Flight::new(scenario)?;
-    for _ in 0..REPETITIONS {
+    for _ in 0..FLIGHTS_OF_EACH_KIND {
         let started = Instant::now();
         let mut flight = start.clone();
         for _ in 0..scenario.timing.ticks {
@@ -48,7 +50,7 @@ fn measured(scenario: &Scenario, what: &str, required: f64) -> Result<f64, Box<d
         rates.push(scenario.timing.duration() / started.elapsed().as_secs_f64());
     }
     rates.sort_by(f64::total_cmp);
-    let (best, median) = (rates[REPETITIONS - 1], rates[REPETITIONS / 2]);
+    let (best, median) = (rates[FLIGHTS_OF_EACH_KIND - 1], rates[FLIGHTS_OF_EACH_KIND / 2]);
     let verdict = word(best >= required);
     println!("{what}: {best:.0} simulated s/s (median {median:.0}); required {required:.0}: {verdict}");
     Ok(best)

@@ -7,29 +7,29 @@
 //! |---|---|
 //! | [`controller`] | our law or a rival, in the loop |
 //! | [`estimation`] | the core's estimator on the simulated instruments |
-//! | [`flier`] | a law on a vehicle, ready for any number of flights |
+//! | [`law_on_vehicle`] | a law on a vehicle, ready for any number of flights |
 //! | [`course`] | a flight's figures: height lost, overshoot, settling time |
-//! | [`flown`], [`claims`] | a flight's extremes; its claims and verdicts |
+//! | [`extremes`], [`claims`] | a flight's extremes; its claims and verdicts |
 
 pub mod claims;
 pub mod controller;
 pub mod course;
 pub mod estimation;
-pub mod flier;
-pub mod flown;
+pub mod extremes;
+pub mod law_on_vehicle;
 
 use crate::flight::controller::Controller;
 use crate::flight::estimation::{Estimation, NoEstimate};
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
 use crate::vehicle::SimulatedVehicle;
-use crate::vehicle::actuators::{ActuationError, Asked};
+use crate::vehicle::actuators::{ActuationError, ActuatorDemand};
 use crate::vehicle::ground::Touchdown;
 use crate::vehicle::reality::Surroundings;
 use crate::vehicle::sensed::{Sensed, specific_force};
 use crate::vehicle::sensors::Sensors;
 use controller_core::allocation::Thrusts;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
@@ -229,7 +229,7 @@ impl Flight {
 
     /// The rotor that the law has found to fail; rivals look for none.
     #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         self.controller.lost()
     }
 
@@ -285,7 +285,7 @@ impl Flight {
         let sensed = self.sense(&state);
         let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &sensed, &reference);
         let (Command { wrench, mrp }, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
-        let held = self.hold(&self.controller.asked(&wrench));
+        let held = self.hold(&self.controller.demand(&wrench));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         let clipped = clipped || self.controller.is_cut();
         // The motion was then another than the wrench alone would have made it.
@@ -312,11 +312,11 @@ impl Flight {
         let Some(estimation) = &mut self.estimation else {
             let Some(sensors) = &mut self.sensors else { return Ok(None) };
             let measured = sensors.measure(state);
-            self.controller.measured(&Measured { acceleration: sensors.felt(), wrench: None });
+            self.controller.measured(&Measured { acceleration: sensors.sensed_force(), wrench: None });
             return Ok(Some(measured));
         };
         let (measured, jumped) = estimation.state()?;
-        self.controller.measured(&Measured { acceleration: estimation.felt(), wrench: None });
+        self.controller.measured(&Measured { acceleration: estimation.sensed_force(), wrench: None });
         if jumped {
             self.controller.hold_estimates();
         }
@@ -341,7 +341,7 @@ impl Flight {
 
     /// The vehicle's motion until the next tick, with what is `asked` of its actuators.
     #[inline]
-    fn hold(&mut self, asked: &Asked) -> Result<(bool, Thrusts), ActuationError> {
+    fn hold(&mut self, asked: &ActuatorDemand) -> Result<(bool, Thrusts), ActuationError> {
         let Some(estimation) = &mut self.estimation else {
             return self.vehicle.hold(asked, self.steps_per_tick);
         };

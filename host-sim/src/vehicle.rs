@@ -20,7 +20,7 @@ pub mod sensed;
 pub mod sensors;
 
 use crate::vehicle::actuators::rotors::SpinningRotors;
-use crate::vehicle::actuators::{ActuationError, Actuators, Asked};
+use crate::vehicle::actuators::{ActuationError, ActuatorDemand, Actuators};
 use crate::vehicle::ground::Touchdown;
 use crate::vehicle::plant::Plant;
 use crate::vehicle::reality::{RealVehicle, Surroundings};
@@ -130,7 +130,7 @@ impl SimulatedVehicle {
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(&mut self, asked: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         match self {
             Self::Model(plant, actuators) => actuators.hold(plant, asked, steps),
             Self::Real(vehicle) => vehicle.hold(asked, steps),

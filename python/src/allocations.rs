@@ -1,7 +1,7 @@
 //! From a wrench to the rotors: the core's mixer, as boards fly it.
 
-use crate::refused::{refused, refused_field};
-use crate::rows::{WRENCH, row, wrench};
+use crate::errors::{refused, refused_field};
+use crate::rows::{WRENCH_COLUMNS, row, wrench};
 use crate::scenarios::Scenario;
 use controller_core::allocation::{Mixer, Rotors};
 use numpy::PyArray1;
@@ -30,7 +30,7 @@ impl Allocation {
     /// Thrusts (n,), N, each within its rotor's range, for a wrench (4,); and whether anything of it was given up.
     #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
     fn thrusts<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyArray1<f32>>, bool)> {
-        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
+        let asked = wrench(&row::<WRENCH_COLUMNS>(asked, "wrench")?).map_err(refused)?;
         let allocation = self.mixer.allocate(&asked).map_err(refused)?;
         Ok((PyArray1::from_slice(py, &allocation.thrusts), !allocation.is_exact()))
     }

@@ -1,18 +1,18 @@
 //! Campaigns of randomised flights, their shards, and merging them: the directories that `host-sim campaign` writes.
 
-use crate::cores::alone;
-use crate::refused::{failed, refused, refused_field, unwritable};
+use crate::errors::{failed, refused, refused_field, unwritable};
+use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
-use crate::waiting::interruptible;
-use crate::whole::Whole;
-use host_sim::rivals::choice::OURS;
+use crate::threads::alone;
+use crate::whole_number::Whole;
+use host_sim::rivals::choice::OUR_LAW;
 use host_sim::rivals::gains as of_rivals;
 use host_sim::studies::campaign::CampaignError;
-use host_sim::studies::campaign::fly::{self, Orders, Source};
+use host_sim::studies::campaign::fly::{self, CampaignSource, Orders};
 use host_sim::studies::campaign::step;
 use host_sim::studies::campaign::summary;
 use pyo3::prelude::*;
-use scenario::campaign::MOST_FLIGHTS;
+use scenario::campaign::FLIGHTS_MAX;
 use std::path::PathBuf;
 
 /// What a campaign showed. As text: what `host-sim campaign` prints.
@@ -99,7 +99,7 @@ impl Campaign {
 ///     ValueError: names the argument, or says that the directory holds another campaign.
 ///     OSError: it cannot be written.
 #[pyfunction]
-#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::of(1), Whole::of(1)), plant_step=None, law=OURS, gains=None))]
+#[pyo3(signature = (scenario, directory, *, flights=None, seed=None, shard=(Whole::new(1), Whole::new(1)), plant_step=None, law=OUR_LAW, gains=None))]
 #[allow(clippy::too_many_arguments)] // its user names them
 pub fn campaign(
     py: Python<'_>,
@@ -113,22 +113,24 @@ pub fn campaign(
     gains: Option<PathBuf>,
 ) -> PyResult<Campaign> {
     let own = &scenario.read.campaign;
-    let (flights, seed) = (flights.unwrap_or(Whole::of(own.flights)), seed.unwrap_or(Whole::of(own.seed)));
-    let flights = flights.within("flights", 1..=MOST_FLIGHTS as u64)?;
+    let (flights, seed) = (flights.unwrap_or(Whole::new(own.flights)), seed.unwrap_or(Whole::new(own.seed)));
+    let flights = flights.within("flights", 1..=FLIGHTS_MAX as u64)?;
     let seed = seed.within("seed", 0..=u64::MAX)?;
-    let wanted = shard.0.value().zip(shard.1.value()).filter(|(part, parts)| (1..=*parts).contains(part));
-    let shard = wanted.ok_or_else(|| {
+    let within = shard.0.value().zip(shard.1.value()).filter(|(part, parts)| (1..=*parts).contains(part));
+    let shard = within.ok_or_else(|| {
         let allowed = "must be (I, N) with I from 1 to N";
         refused_field("shard", format!("{allowed}, found ({}, {})", shard.0, shard.1))
     })?;
     let stepped = match plant_step {
-        None => step::longest(&scenario.read),
-        Some(wanted) => step::of(&scenario.read, wanted).map_err(|problem| refused_field("plant_step", problem))?,
+        None => step::with_longest_step(&scenario.read),
+        Some(requested) => {
+            step::with_step(&scenario.read, requested).map_err(|problem| refused_field("plant_step", problem))?
+        }
     };
     let law = of_rivals::chosen(law, &stepped, gains.as_deref());
     let law = law.map_err(|(argument, problem)| refused_field(argument, problem))?;
     let orders = Orders { flights, seed, shard };
-    let source = Source::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
+    let source = CampaignSource::new(stepped, scenario.text.clone(), scenario.file.clone()).map_err(raised)?;
     let flown = interruptible(py, |interrupt| alone(|| fly::campaign(&source, &law, &orders, &directory, interrupt)))?;
     Ok(Campaign { summary: flown?.map_err(raised)? })
 }

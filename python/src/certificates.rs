@@ -1,6 +1,6 @@
 //! The certificate of a scenario and its sampled loops, in numbers and in words.
 
-use crate::refused::refused;
+use crate::errors::refused;
 use crate::rows::array;
 use crate::scenarios::Scenario;
 use host_sim::commands::certify::{certify as report_on, may_fly};
@@ -68,7 +68,7 @@ impl Loop {
 }
 
 impl Loop {
-    fn of(report: &LoopReport) -> Self {
+    fn from_report(report: &LoopReport) -> Self {
         let margins = report.margins;
         Self {
             axis: report.axis.name(),
@@ -78,7 +78,7 @@ impl Loop {
             gain_up: margins.map(|margins| margins.gain_up),
             delay: margins.map(|margins| margins.delay),
             crossover: margins.map(|margins| margins.crossover),
-            lacks: LoopMargin::LEAST.lacking(report).map(|lack| lack.to_string()),
+            lacks: LoopMargin::FLYABLE_MIN.lacking(report).map(|lack| lack.to_string()),
         }
     }
 }
@@ -100,7 +100,7 @@ pub struct Certificate {
 #[pyfunction]
 pub fn certify(scenario: &Scenario) -> PyResult<Certificate> {
     let read = &scenario.read;
-    let verdict = Verdict::of(read).map_err(refused)?;
+    let verdict = Verdict::judge(read).map_err(refused)?;
     let (report, _) = report_on(read).map_err(refused)?;
     let report = format!("{report}\n{}", may_fly::lines(read));
     let rotors = read.configuration.rotors().map_or(0, |rotors| rotors.len());
@@ -143,14 +143,14 @@ impl Certificate {
     /// The six sampled loops.
     #[getter]
     fn loops(&self) -> Vec<Loop> {
-        self.verdict.loops().iter().map(Loop::of).collect()
+        self.verdict.loops().iter().map(Loop::from_report).collect()
     }
 
     /// Least and greatest thrust that the law can command, N.
     #[getter]
     fn thrust(&self) -> (f64, f64) {
         let thrust = self.verdict.certificate().thrust();
-        (thrust.least, thrust.greatest)
+        (thrust.min, thrust.max)
     }
 
     /// (3,): greatest |torque| that it can command about each body axis, N m.
@@ -163,7 +163,7 @@ impl Certificate {
     #[getter]
     fn rotors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let proven = (0..self.rotors).filter_map(|rotor| self.verdict.certificate().rotor(rotor));
-        array(py, proven.map(|proven| [proven.least, proven.greatest]).collect())
+        array(py, proven.map(|proven| [proven.min, proven.max]).collect())
     }
 
     fn __bool__(&self) -> bool {

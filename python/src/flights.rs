@@ -1,12 +1,12 @@
 //! Whole flights: the columns of log.csv, and what was claimed against what was flown.
 
 use crate::certificates::reasons;
-use crate::refused::{failed, refused};
+use crate::errors::{failed, refused};
+use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
-use crate::waiting::interruptible;
 use controller_core::error::ParameterError;
 use host_sim::flight::claims::{self, claims};
-use host_sim::flight::flown::Flown;
+use host_sim::flight::extremes::FlightExtremes;
 use host_sim::flight::{self, FlightError};
 use host_sim::output::interrupt::Interrupt;
 use host_sim::reports::log;
@@ -108,14 +108,14 @@ enum Stopped {
 
 /// Flies `scenario` to its end, or to where it is interrupted.
 fn flown(scenario: &scenario::Scenario, interrupt: &Interrupt) -> Result<Flight, Stopped> {
-    let verdict = Verdict::of(scenario).map_err(Stopped::Scenario)?;
+    let verdict = Verdict::judge(scenario).map_err(Stopped::Scenario)?;
     let mut flight = flight::Flight::new(scenario).map_err(Stopped::Scenario)?;
     let configuration = &scenario.configuration;
     let rotors = configuration.rotors().map_or(0, |rotors| rotors.len());
     let header = log::header(rotors, configuration.paper().is_none()) + &log::reality_header(&scenario.reality);
     let names: Vec<String> = header.split(',').map(str::to_owned).collect();
     let mut columns = vec![Vec::new(); names.len()];
-    let (mut row, mut seen) = (Vec::new(), Flown::new(scenario));
+    let (mut row, mut seen) = (Vec::new(), FlightExtremes::new(scenario));
     for _ in 0..scenario.timing.ticks {
         if interrupt.signal().is_some() {
             break;

@@ -1,10 +1,10 @@
 //! The governor of a scenario: setpoints in, references inside its bounds out.
 
-use crate::refused::{in_flight, refused, refused_field};
+use crate::errors::{in_flight, refused, refused_field};
 use crate::rows::{array, of_reference, row};
 use crate::scenarios::Scenario;
-use crate::whole::Whole;
-use controller_core::governor::{self, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use crate::whole_number::Whole;
+use controller_core::governor::{self, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 use numpy::{PyArray1, PyArray2};
@@ -104,9 +104,9 @@ impl Governor {
     ) -> PyResult<()> {
         let motion = motion(position, velocity, acceleration)?;
         let turn = match (yaw, yaw_rate) {
-            (None, None) => Turn::Keep,
-            (Some(angle), rate) => Turn::Angle { angle, rate: rate.unwrap_or(0.0) },
-            (None, Some(rate)) => Turn::Rate(rate),
+            (None, None) => HeadingSetpoint::Keep,
+            (Some(angle), rate) => HeadingSetpoint::Angle { angle, rate: rate.unwrap_or(0.0) },
+            (None, Some(rate)) => HeadingSetpoint::Rate(rate),
         };
         self.governor.accept_late(&Setpoint { motion, turn }, late).map_err(refused)
     }
@@ -129,7 +129,7 @@ impl Governor {
 
     /// The references (ticks, 19) of as many periods. Interrupted, it is where it was.
     fn run<'py>(&mut self, py: Python<'py>, ticks: Whole) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let ticks = ticks.within("ticks", 0..=MOST_TICKS)? as usize;
+        let ticks = ticks.within("ticks", 0..=TICKS_MAX)? as usize;
         let mut governor = self.governor.clone();
         let mut references = Vec::with_capacity(ticks);
         while references.len() < ticks {
@@ -151,7 +151,7 @@ fn made(scenario: &scenario::Scenario, limits: &GovernorLimits) -> PyResult<Box<
 }
 
 /// Of one call: about half a gigabyte of references.
-const MOST_TICKS: u64 = 10_000_000;
+const TICKS_MAX: u64 = 10_000_000;
 /// Some milliseconds of them.
 const TICKS_BETWEEN_SIGNALS: usize = 10_000;
 

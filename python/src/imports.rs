@@ -1,6 +1,6 @@
 //! Vehicles from the files and dictionaries of other programs, as `host-sim vehicle` reads them.
 
-use crate::refused::{refused, refused_field};
+use crate::errors::{refused, refused_field};
 use crate::scenarios::{Scenario, change};
 use host_sim::identification::import::numbers::VehicleNumbers;
 use host_sim::identification::import::value::Value;
@@ -12,7 +12,7 @@ use scenario::check_name;
 use std::path::PathBuf;
 
 /// How deep dictionaries and lists may lie in each other: one that holds itself has no end.
-const DEEPEST: usize = 8;
+const NESTING_MAX: usize = 8;
 
 /// A vehicle's numbers from another program, as a vehicle file; what the source has not is marked in it, never guessed.
 ///
@@ -26,7 +26,7 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    fn of(numbers: &VehicleNumbers, name: String, from: &str, neglect_products: bool) -> PyResult<Self> {
+    fn convert(numbers: &VehicleNumbers, name: String, from: &str, neglect_products: bool) -> PyResult<Self> {
         check_name(&name).map_err(refused)?;
         let wishes = Wishes { given: Vec::new(), neglect_products };
         let file = written(numbers, &name, from, &wishes).map_err(refused)?;
@@ -43,9 +43,9 @@ impl Vehicle {
     #[staticmethod]
     #[pyo3(signature = (quad_params, name="vehicle", neglect_products=false))]
     fn from_rotorpy(quad_params: &Bound<'_, PyDict>, name: &str, neglect_products: bool) -> PyResult<Self> {
-        let dictionary = value(quad_params, DEEPEST)?;
+        let dictionary = value(quad_params, NESTING_MAX)?;
         let numbers = rotorpy::of_dictionary(&dictionary, "quad_params").map_err(refused)?;
-        Self::of(&numbers, name.to_owned(), "Python", neglect_products)
+        Self::convert(&numbers, name.to_owned(), "Python", neglect_products)
     }
 
     /// The vehicle of a file: RotorPy's (Python or JSON), URDF, SDF, MuJoCo's XML, PX4's parameters.
@@ -56,10 +56,10 @@ impl Vehicle {
     #[pyo3(signature = (path, name=None, format=None, neglect_products=false))]
     fn read(path: PathBuf, name: Option<String>, format: Option<&str>, neglect_products: bool) -> PyResult<Self> {
         let file = path.display().to_string();
-        let known = |wanted: &str| {
-            let found = Format::ALL.into_iter().find(|(name, _)| *name == wanted).map(|(_, format)| format);
+        let known = |requested: &str| {
+            let found = Format::ALL.into_iter().find(|(name, _)| *name == requested).map(|(_, format)| format);
             let all = Format::ALL.map(|(name, _)| name).join(", ");
-            found.ok_or_else(|| refused_field("format", format!("must be one of {all}, found {wanted:?}")))
+            found.ok_or_else(|| refused_field("format", format!("must be one of {all}, found {requested:?}")))
         };
         let format = format.map(known).transpose()?;
         let text =
@@ -67,7 +67,7 @@ impl Vehicle {
         let numbers = import::read(&text, &path, format).map_err(|what| refused_field(&file, what))?;
         let own = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let from = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Self::of(&numbers, name.unwrap_or(own), &from, neglect_products)
+        Self::convert(&numbers, name.unwrap_or(own), &from, neglect_products)
     }
 
     /// The vehicle file, TOML: `Scenario.parse` reads it if nothing is missing.
@@ -93,7 +93,7 @@ impl Vehicle {
                 path.extract().map_err(|_| refused_field("changes", "keys must be dotted paths, as text"))?;
             change(&mut document, &path, &value)?;
         }
-        Scenario::of(document.to_string(), self.name.clone())
+        Scenario::from_text(document.to_string(), self.name.clone())
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

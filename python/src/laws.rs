@@ -2,11 +2,14 @@
 //!
 //! A step that is refused changes nothing, of rows none of them.
 
-use crate::cores::shared;
-use crate::refused::{in_flight, refused, refused_field};
-use crate::rows::{REFERENCE, STATE, WRENCH, array, measured, of_wrench, reference_of, row, rows, wrench, wrench_rows};
+use crate::errors::{in_flight, refused, refused_field};
+use crate::rows::{
+    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, measured, of_wrench, reference_of, row, rows, wrench,
+    wrench_rows,
+};
 use crate::scenarios::Scenario;
-use crate::whole::Whole;
+use crate::threads::shared;
+use crate::whole_number::Whole;
 use controller_core::certificate::certified::Certified;
 use controller_core::controller::Diagnostics;
 use controller_core::law;
@@ -20,9 +23,9 @@ use scenario::timing::check_period;
 use std::fmt::Display;
 
 /// Rows that one core takes at a time: fewer are not worth waking another for.
-pub const ROWS_AT_ONCE: usize = 256;
+pub const ROWS_PER_TASK: usize = 256;
 /// Rows of laws, or of vehicles: of these some 10 GB.
-pub const MOST_ROWS: u64 = 1_000_000;
+pub const ROWS_MAX: u64 = 1_000_000;
 
 /// The control law of a scenario, as after a reset: the bits that boards fly.
 ///
@@ -95,7 +98,8 @@ impl Law {
         state: &Bound<'py, PyAny>,
         reference: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let (state, reference) = (row::<STATE>(state, "state")?, row::<REFERENCE>(reference, "reference")?);
+        let (state, reference) =
+            (row::<STATE_COLUMNS>(state, "state")?, row::<REFERENCE_COLUMNS>(reference, "reference")?);
         let (wrench, diagnostics) = step(&mut self.law, &state, &reference).map_err(refused)?;
         self.diagnostics = Some(diagnostics);
         Ok(PyArray1::from_slice(py, &of_wrench(&wrench)))
@@ -103,7 +107,7 @@ impl Law {
 
     /// The rotors' command for a wrench (4,): the wrench over `thrust_scale`.
     fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
+        let asked = wrench(&row::<WRENCH_COLUMNS>(asked, "wrench")?).map_err(refused)?;
         Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.law, &asked))))
     }
 
@@ -172,7 +176,7 @@ pub fn named<'py>(py: Python<'py>, d: &Diagnostics) -> PyResult<Bound<'py, PyDic
 }
 
 /// A law after a step, and its wrench.
-type Stepped = (law::Law, [f32; WRENCH]);
+type Stepped = (law::Law, [f32; WRENCH_COLUMNS]);
 
 /// The law of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 #[pyclass(module = "saturated_hybrid")]
@@ -186,7 +190,7 @@ pub struct LawRows {
 impl LawRows {
     #[new]
     fn new(scenario: &Bound<'_, Scenario>, rows: Whole) -> PyResult<Self> {
-        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
+        let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
         let reset = flight::law(&scenario.get().read).map_err(refused)?;
         Ok(Self { scenario: scenario.clone().unbind(), laws: vec![reset.clone(); rows], reset })
     }
@@ -227,11 +231,11 @@ impl LawRows {
         references: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = self.laws.len();
-        let states = rows::<STATE>(states, count, "states")?;
-        let references = rows::<REFERENCE>(references, count, "references")?;
+        let states = rows::<STATE_COLUMNS>(states, count, "states")?;
+        let references = rows::<REFERENCE_COLUMNS>(references, count, "references")?;
         let laws = &self.laws;
         let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
-            let given = laws.par_iter().zip(&states).zip(&references).enumerate().with_min_len(ROWS_AT_ONCE);
+            let given = laws.par_iter().zip(&states).zip(&references).enumerate().with_min_len(ROWS_PER_TASK);
             let one = |(number, ((law, state), reference)): (usize, ((&law::Law, _), _))| {
                 let mut law = law.clone();
                 let (wrench, _) = step(&mut law, state, reference).map_err(|error| format!("row {number}: {error}"))?;
@@ -239,7 +243,7 @@ impl LawRows {
             };
             let all = || given.map(one).collect();
             // Each core works on its own rows.
-            if count > ROWS_AT_ONCE { shared(all) } else { Ok(all()) }
+            if count > ROWS_PER_TASK { shared(all) } else { Ok(all()) }
         });
         let (laws, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
         self.laws = laws;
@@ -289,8 +293,8 @@ pub fn numbers(chosen: Option<Vec<bool>>, count: usize) -> PyResult<Vec<usize>> 
 
 fn step(
     law: &mut law::Law,
-    state: &[f64; STATE],
-    reference: &[f64; REFERENCE],
+    state: &[f64; STATE_COLUMNS],
+    reference: &[f64; REFERENCE_COLUMNS],
 ) -> Result<(Wrench, Diagnostics), String> {
     let said = |error: &dyn Display| error.to_string();
     let reference = reference_of(reference).map_err(|error| format!("reference.{error}"))?;

@@ -13,8 +13,8 @@
 //! | [`vehicles`] | rows of simulated vehicles, for environments |
 //! | [`replays`] | pictures and replays of flights that something else flew |
 //! | [`rows`] | numpy arrays as states, references and wrenches, and back |
-//! | [`whole`] | whole numbers as arguments |
-//! | [`refused`], [`waiting`], [`cores`] | errors; long work that lets other threads run and Ctrl-C through; on which threads |
+//! | [`whole_number`] | whole numbers as arguments |
+//! | [`errors`], [`interruptible`], [`threads`] | errors; long work that lets other threads run and Ctrl-C through; on which threads |
 //!
 //! Arrays that come in may have any numeric type and are rounded once, where the law's single precision begins; those that go
 //! out have the precision of what they hold. What documents the items here is their docstring in Python, which
@@ -23,21 +23,21 @@
 mod allocations;
 mod campaigns;
 mod certificates;
-mod cores;
+mod errors;
 mod flights;
 mod governors;
 mod imports;
+mod interruptible;
 mod laws;
 mod networks;
-mod refused;
 mod replays;
 mod rows;
 mod scenarios;
 mod shields;
+mod threads;
 mod tuning;
 mod vehicles;
-mod waiting;
-mod whole;
+mod whole_number;
 
 use pyo3::prelude::*;
 

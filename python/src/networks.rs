@@ -1,9 +1,9 @@
 //! A small network as a policy: the bits that boards fly.
 
-use crate::refused::{refused, refused_field};
-use crate::rows::{STATE, array, measured, rows};
+use crate::errors::{refused, refused_field};
+use crate::rows::{STATE_COLUMNS, array, measured, rows};
 use controller_core::heading::Heading;
-use controller_core::shield::network::{self, INPUTS, OUTPUTS};
+use controller_core::shield::network::{self, INPUT_COUNT, OUTPUT_COUNT};
 use controller_core::shield::{Demand, Observation};
 use nalgebra::{Vector2, Vector3};
 use numpy::{PyArray1, PyArray2, PyUntypedArray, PyUntypedArrayMethods};
@@ -49,10 +49,10 @@ impl Network {
         outputs: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = length(states, "states")?;
-        let states = rows::<STATE>(states, count, "states")?;
+        let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let goals = rows::<3>(goals, count, "goals")?;
         let headings = directions(headings, count)?;
-        let last = rows::<OUTPUTS>(outputs, count, "outputs")?;
+        let last = rows::<OUTPUT_COUNT>(outputs, count, "outputs")?;
         let observed = states.iter().zip(&goals).zip(&headings).zip(&last).map(|(((state, goal), heading), last)| {
             let goal = Vector3::from(*goal).map(|place| place as f32);
             let observation = Observation { state: measured(state), goal, heading: *heading };
@@ -63,10 +63,10 @@ impl Network {
 
     /// The outputs (n, 4), float32, from -1 to 1, for inputs (n, 22).
     fn act<'py>(&self, py: Python<'py>, observations: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let observations = rows::<INPUTS>(observations, length(observations, "observations")?, "observations")?;
+        let observations = rows::<INPUT_COUNT>(observations, length(observations, "observations")?, "observations")?;
         let outputs = self.0.with(|network| {
             let network = network.map_err(refused)?;
-            let of = |inputs: &[f64; INPUTS]| network.outputs(&inputs.map(|input| input as f32));
+            let of = |inputs: &[f64; INPUT_COUNT]| network.outputs(&inputs.map(|input| input as f32));
             Ok::<_, PyErr>(observations.iter().map(of).collect())
         });
         array(py, outputs?)
@@ -80,13 +80,15 @@ impl Network {
         headings: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = length(outputs, "outputs")?;
-        let outputs = rows::<OUTPUTS>(outputs, count, "outputs")?;
+        let outputs = rows::<OUTPUT_COUNT>(outputs, count, "outputs")?;
         let headings = directions(headings, count)?;
         let demands = self.0.with(|network| {
             let network = network.map_err(refused)?;
-            let of = |(outputs, heading): (&[f64; OUTPUTS], &Heading)| {
+            let of = |(outputs, heading): (&[f64; OUTPUT_COUNT], &Heading)| {
                 let demand = network.demand(&outputs.map(|output| output as f32), heading);
-                let Demand::Acceleration { acceleration: a, yaw_rate } = demand else { return [f32::NAN; OUTPUTS] };
+                let Demand::Acceleration { acceleration: a, yaw_rate } = demand else {
+                    return [f32::NAN; OUTPUT_COUNT];
+                };
                 [a.x, a.y, a.z, yaw_rate]
             };
             Ok::<_, PyErr>(outputs.iter().zip(&headings).map(of).collect())

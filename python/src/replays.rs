@@ -2,8 +2,8 @@
 //!
 //! They are drawn by what draws the flights of `host-sim`. A flight is its rows, a control period apart.
 
-use crate::refused::{failed, refused_field, unwritable};
-use crate::rows::{REFERENCE, Rows, STATE, WRENCH, counted, rows, vector};
+use crate::errors::{failed, refused_field, unwritable};
+use crate::rows::{REFERENCE_COLUMNS, Rows, STATE_COLUMNS, WRENCH_COLUMNS, counted, rows, vector};
 use crate::scenarios::Scenario;
 use host_sim::reports::plots::path::poses;
 use host_sim::reports::plots::replay::{Stretch, gif, still};
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 
 /// The longest moving picture, s.
-const LONGEST: f64 = 60.0;
+const DURATION_MAX_S: f64 = 60.0;
 
 /// Lines in the world.
 type Things = Vec<Vec<Vector3<f64>>>;
@@ -73,7 +73,7 @@ pub fn replay(
     speed: f64,
 ) -> PyResult<()> {
     let (states, references) = flight(states, references)?;
-    let wrenches = rows::<WRENCH>(wrenches, states.len(), "wrenches")?;
+    let wrenches = rows::<WRENCH_COLUMNS>(wrenches, states.len(), "wrenches")?;
     let by_policy = by_policy.map(|rows| vector(rows, "by_policy")).transpose()?;
     if let Some(other) = by_policy.as_ref().filter(|rows| rows.len() != states.len()) {
         return Err(refused_field(
@@ -89,10 +89,12 @@ pub fn replay(
     let bytes = match path.extension().and_then(|extension| extension.to_str()) {
         Some("gif") => {
             let long = track.end() / speed;
-            if long > LONGEST {
+            if long > DURATION_MAX_S {
                 return Err(refused_field(
                     "speed",
-                    format!("the picture would take {long:.0} s, at most {LONGEST} are allowed: take a higher one"),
+                    format!(
+                        "the picture would take {long:.0} s, at most {DURATION_MAX_S} are allowed: take a higher one"
+                    ),
                 ));
             }
             let stretch = Stretch { from: 0.0, to: track.end(), speed };
@@ -112,12 +114,15 @@ pub fn replay(
 }
 
 /// States and references of one flight.
-fn flight(states: &Bound<'_, PyAny>, references: &Bound<'_, PyAny>) -> PyResult<(Rows<STATE>, Rows<REFERENCE>)> {
-    let states = counted::<STATE>(states, "states")?;
+fn flight(
+    states: &Bound<'_, PyAny>,
+    references: &Bound<'_, PyAny>,
+) -> PyResult<(Rows<STATE_COLUMNS>, Rows<REFERENCE_COLUMNS>)> {
+    let states = counted::<STATE_COLUMNS>(states, "states")?;
     if states.is_empty() {
         return Err(refused_field("states", "must have a row at least"));
     }
-    let references = rows::<REFERENCE>(references, states.len(), "references")?;
+    let references = rows::<REFERENCE_COLUMNS>(references, states.len(), "references")?;
     Ok((states, references))
 }
 
@@ -130,8 +135,8 @@ fn points(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Vec<Vector3<f64>>> 
 }
 
 /// The columns that replays and plots need, by their names in log.csv.
-fn track(states: &Rows<STATE>, references: &Rows<REFERENCE>, period: f64) -> Track {
-    const NAMES: [&str; STATE] = ["px", "py", "pz", "vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
+fn track(states: &Rows<STATE_COLUMNS>, references: &Rows<REFERENCE_COLUMNS>, period: f64) -> Track {
+    const NAMES: [&str; STATE_COLUMNS] = ["px", "py", "pz", "vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
     let single = |column: &mut dyn Iterator<Item = f64>| column.map(|number| number as f32).collect::<Vec<f32>>();
     let of_states =
         NAMES.iter().enumerate().map(|(place, name)| (*name, single(&mut states.iter().map(|row| row[place]))));
@@ -140,11 +145,12 @@ fn track(states: &Rows<STATE>, references: &Rows<REFERENCE>, period: f64) -> Tra
         .enumerate()
         .map(|(place, name)| (*name, single(&mut references.iter().map(|row| row[place]))));
     let yaw = single(&mut references.iter().map(|row| row[16].atan2(row[15]).to_degrees()));
-    let distance = |(state, reference): (&[f64; STATE], &[f64; REFERENCE])| {
+    let distance = |(state, reference): (&[f64; STATE_COLUMNS], &[f64; REFERENCE_COLUMNS])| {
         (0..3).map(|axis| (state[axis] - reference[axis]).powi(2)).sum::<f64>().sqrt()
     };
-    let tilt =
-        |row: &[f64; STATE]| (1.0 - 2.0 * (row[7].powi(2) + row[8].powi(2))).clamp(-1.0, 1.0).acos().to_degrees();
+    let tilt = |row: &[f64; STATE_COLUMNS]| {
+        (1.0 - 2.0 * (row[7].powi(2) + row[8].powi(2))).clamp(-1.0, 1.0).acos().to_degrees()
+    };
     let worked_out = [
         ("yaw_d", yaw),
         ("distance", single(&mut states.iter().zip(references).map(distance))),
@@ -165,7 +171,11 @@ fn page(scenario: &Scenario, track: Track) -> Page {
         hover_thrust: f64::from(vehicle.mass * vehicle.gravity),
     };
     let curves = |names: &[&str]| {
-        names.iter().enumerate().map(|(place, name)| Curve::new(*name, *name, Color::of(place))).collect::<Vec<_>>()
+        names
+            .iter()
+            .enumerate()
+            .map(|(place, name)| Curve::new(*name, *name, Color::at_place(place)))
+            .collect::<Vec<_>>()
     };
     let goal = curves(&["pdx", "pdy", "pdz"]).into_iter().map(Curve::dashed).collect();
     let mut plots = vec![

@@ -10,7 +10,7 @@
 //!
 //! The order of `log.csv`. A heading is a direction, as everywhere, so that a row gives a reference back bit for bit.
 
-use crate::refused::{refused, refused_field};
+use crate::errors::{refused, refused_field};
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::shield::Demand;
@@ -24,11 +24,11 @@ use pyo3::prelude::*;
 use scenario::body::{BodyState, attitude_from_euler};
 
 /// Columns of a state.
-pub const STATE: usize = 13;
+pub const STATE_COLUMNS: usize = 13;
 /// Columns of a reference.
-pub const REFERENCE: usize = 19;
+pub const REFERENCE_COLUMNS: usize = 19;
 /// Columns of a wrench.
-pub const WRENCH: usize = 4;
+pub const WRENCH_COLUMNS: usize = 4;
 
 /// Rows of `N` numbers each.
 pub type Rows<const N: usize> = Vec<[f64; N]>;
@@ -121,7 +121,7 @@ fn three<const N: usize>(row: &[f64; N], first: usize) -> Vector3<f64> {
 }
 
 /// The vehicle's state.
-pub fn body(row: &[f64; STATE]) -> BodyState {
+pub fn body(row: &[f64; STATE_COLUMNS]) -> BodyState {
     BodyState {
         position: three(row, 0),
         velocity: three(row, 3),
@@ -131,18 +131,18 @@ pub fn body(row: &[f64; STATE]) -> BodyState {
 }
 
 /// The law's input state.
-pub fn measured(row: &[f64; STATE]) -> State {
+pub fn measured(row: &[f64; STATE_COLUMNS]) -> State {
     body(row).measured()
 }
 
 /// A state as a row.
-pub fn of_body(state: &BodyState) -> [f64; STATE] {
+pub fn of_body(state: &BodyState) -> [f64; STATE_COLUMNS] {
     let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
     [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z]
 }
 
 /// The law's input state as a row.
-pub fn of_measured(state: &State) -> [f64; STATE] {
+pub fn of_measured(state: &State) -> [f64; STATE_COLUMNS] {
     let (p, v, q, w) = (&state.position, &state.velocity, &state.attitude, &state.angular_velocity);
     [p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.i, q.j, q.k, w.x, w.y, w.z].map(f64::from)
 }
@@ -151,7 +151,7 @@ pub fn of_measured(state: &State) -> [f64; STATE] {
 ///
 /// # Errors
 /// If its heading is invalid.
-pub fn reference_of(row: &[f64; REFERENCE]) -> Result<Reference, controller_core::error::ParameterError> {
+pub fn reference_of(row: &[f64; REFERENCE_COLUMNS]) -> Result<Reference, controller_core::error::ParameterError> {
     let single = |first| three(row, first).map(|value| value as f32);
     let direction = Vector2::new(row[15] as f32, row[16] as f32);
     let (rate, acceleration) = (row[17] as f32, row[18] as f32);
@@ -162,9 +162,9 @@ pub fn reference_of(row: &[f64; REFERENCE]) -> Result<Reference, controller_core
 }
 
 /// A reference as a row.
-pub fn of_reference(reference: &Reference) -> [f32; REFERENCE] {
+pub fn of_reference(reference: &Reference) -> [f32; REFERENCE_COLUMNS] {
     let Reference { position, velocity, acceleration, jerk, snap, heading } = reference;
-    let mut row = [0.0; REFERENCE];
+    let mut row = [0.0; REFERENCE_COLUMNS];
     for (place, vector) in [position, velocity, acceleration, jerk, snap].into_iter().enumerate() {
         row[3 * place..3 * place + 3].copy_from_slice(vector.as_slice());
     }
@@ -177,7 +177,7 @@ pub fn of_reference(reference: &Reference) -> [f32; REFERENCE] {
 ///
 /// # Errors
 /// If a number is not finite in single precision.
-pub fn wrench(row: &[f64; WRENCH]) -> Result<Wrench, &'static str> {
+pub fn wrench(row: &[f64; WRENCH_COLUMNS]) -> Result<Wrench, &'static str> {
     let single = row.map(|value| value as f32);
     if single.iter().all(|value| value.is_finite()) {
         Ok(Wrench { thrust: single[0], torque: Vector3::new(single[1], single[2], single[3]) })
@@ -191,7 +191,7 @@ pub fn wrench(row: &[f64; WRENCH]) -> Result<Wrench, &'static str> {
 /// # Errors
 /// Names the row, or the field if it has another shape.
 pub fn wrench_rows(array: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Wrench>> {
-    let given = rows::<WRENCH>(array, count, "wrenches")?;
+    let given = rows::<WRENCH_COLUMNS>(array, count, "wrenches")?;
     let each = given.iter().enumerate().map(|(number, row)| wrench(row).map_err(|problem| (number, problem)));
     each.collect::<Result<_, _>>().map_err(|(number, problem)| refused(format!("row {number}: {problem}")))
 }
@@ -233,7 +233,7 @@ pub fn demand_rows(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyRes
 }
 
 /// A wrench as a row.
-pub fn of_wrench(wrench: &Wrench) -> [f32; WRENCH] {
+pub fn of_wrench(wrench: &Wrench) -> [f32; WRENCH_COLUMNS] {
     [wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z]
 }
 

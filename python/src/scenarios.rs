@@ -1,7 +1,7 @@
 //! Scenarios: text that was read, and what it says. A changed scenario is a changed text, read anew.
 
-use crate::refused::{refused, refused_field};
-use crate::rows::{REFERENCE, array, of_body, of_reference, vector};
+use crate::errors::{refused, refused_field};
+use crate::rows::{REFERENCE_COLUMNS, array, of_body, of_reference, vector};
 use controller_core::allocation::Rotor;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -46,7 +46,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Names the file, the field and the reason.
-    pub fn of(text: String, file: String) -> PyResult<Self> {
+    pub fn from_text(text: String, file: String) -> PyResult<Self> {
         let read = Read::parse(&text, &file).map_err(refused)?;
         Ok(Self { read, file, text })
     }
@@ -58,16 +58,16 @@ impl Scenario {
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Self> {
         let file = path.display().to_string();
-        let text =
-            scenario::whole::read(&path).map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
-        Self::of(text, file)
+        let text = scenario::self_contained::read(&path)
+            .map_err(|error| refused_field(&file, format!("cannot be read: {error}")))?;
+        Self::from_text(text, file)
     }
 
     /// Reads TOML text, which errors call `file`.
     #[staticmethod]
     #[pyo3(signature = (text, file="scenario"))]
     fn parse(text: String, file: &str) -> PyResult<Self> {
-        Self::of(text, file.to_owned())
+        Self::from_text(text, file.to_owned())
     }
 
     /// One of `names()`: the repository's scenarios and vehicles.
@@ -77,7 +77,7 @@ impl Scenario {
             let known = BUILT_IN.map(|(known, _)| known).join(", ");
             return Err(refused_field("name", format!("there is no scenario {name:?}; there are {known}")));
         };
-        Self::of((*text).to_owned(), format!("{name} (built in)"))
+        Self::from_text((*text).to_owned(), format!("{name} (built in)"))
     }
 
     /// What `built_in` knows.
@@ -97,7 +97,7 @@ impl Scenario {
                 path.extract().map_err(|_| refused_field("changes", "keys must be dotted paths, as text"))?;
             change(&mut document, &path, &value)?;
         }
-        Self::of(document.to_string(), self.file.clone())
+        Self::from_text(document.to_string(), self.file.clone())
     }
 
     /// Names the flight.
@@ -185,12 +185,12 @@ impl Scenario {
 
     /// The reference at `times` (n,), s, rounded to microseconds: (n, 19).
     fn reference<'py>(&self, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let at = |time: f64| -> PyResult<[f32; REFERENCE]> {
+        let at = |time: f64| -> PyResult<[f32; REFERENCE_COLUMNS]> {
             let micros = (time * 1e6).round();
-            if !(0.0..=GREATEST_TIME).contains(&micros) {
+            if !(0.0..=REFERENCE_TIME_MAX_US).contains(&micros) {
                 return Err(refused_field(
                     "times",
-                    format!("must be from 0 to {:e} s, found {time}", GREATEST_TIME / 1e6),
+                    format!("must be from 0 to {:e} s, found {time}", REFERENCE_TIME_MAX_US / 1e6),
                 ));
             }
             Ok(of_reference(&self.read.trajectory.at(micros as u64)))
@@ -217,7 +217,7 @@ impl Scenario {
 }
 
 /// The longest time of a reference, us: beyond it a double no longer resolves microseconds.
-const GREATEST_TIME: f64 = 9e15;
+const REFERENCE_TIME_MAX_US: f64 = 9e15;
 
 /// Sets what stands at a dotted path, or with `None` takes it away; sections that are missing come into being.
 ///
@@ -245,19 +245,19 @@ pub fn change(document: &mut DocumentMut, path: &str, value: &Bound<'_, PyAny>) 
 /// A Python value as a TOML item: a dictionary becomes a section.
 fn item(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Item> {
     let Ok(section) = value.cast::<PyDict>() else {
-        return Ok(Item::Value(toml(value, path, DEEPEST)?));
+        return Ok(Item::Value(toml(value, path, NESTING_MAX)?));
     };
     let mut table = Table::new();
     for (key, value) in section.iter() {
         let key = named(&key, path)?;
-        table.insert(&key, Item::Value(toml(&value, &format!("{path}.{key}"), DEEPEST)?));
+        table.insert(&key, Item::Value(toml(&value, &format!("{path}.{key}"), NESTING_MAX)?));
     }
     Ok(Item::Table(table))
 }
 
 /// How deep lists and dictionaries may lie in each other: no key of a scenario takes more, and one that holds itself
 /// has no end.
-const DEEPEST: usize = 16;
+const NESTING_MAX: usize = 16;
 
 /// A key of a dictionary at `path`.
 fn named(key: &Bound<'_, PyAny>, path: &str) -> PyResult<String> {

@@ -3,15 +3,15 @@
 //! A step that is refused changes nothing, of rows none of them. No demand is refused that has the right shape: one
 //! that cannot be used hands over to the law.
 
-use crate::cores::shared;
-use crate::laws::{MOST_ROWS, ROWS_AT_ONCE, for_rotors, named, numbers};
-use crate::refused::{in_flight, refused};
+use crate::errors::{in_flight, refused};
+use crate::laws::{ROWS_MAX, ROWS_PER_TASK, for_rotors, named, numbers};
 use crate::rows::{
-    REFERENCE, STATE, WRENCH, array, demand_row, demand_rows, measured, of_reference, of_wrench, row, rows, wrench,
-    wrench_rows,
+    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, measured, of_reference,
+    of_wrench, row, rows, wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
-use crate::whole::Whole;
+use crate::threads::shared;
+use crate::whole_number::Whole;
 use controller_core::controller::Diagnostics;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
@@ -27,7 +27,7 @@ use rayon::prelude::*;
 
 /// A law, its shield, and what became of the last step.
 #[derive(Clone)]
-struct One {
+struct ShieldRow {
     law: Law,
     shield: shield::Shield,
     /// Before the first step.
@@ -36,7 +36,7 @@ struct One {
     reference: Reference,
 }
 
-impl One {
+impl ShieldRow {
     fn new(scenario: &Scenario, settings: &Settings) -> PyResult<Self> {
         let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
         let shield = shield::Shield::new(configuration, settings, period).map_err(refused)?;
@@ -58,9 +58,9 @@ impl One {
         self.reason.map_or("", Reason::word)
     }
 
-    fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH], Diagnostics), String> {
+    fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH_COLUMNS], Diagnostics), String> {
         if self.fresh {
-            self.shield.reset(&Heading::of_attitude(&state.attitude));
+            self.shield.reset(&Heading::from_attitude(&state.attitude));
         }
         // There is no shield of another law.
         let law = self.law.extended().ok_or("control.law: must be \"extended\"")?;
@@ -70,7 +70,7 @@ impl One {
     }
 }
 
-fn settings(&Wanted { low, high, numbers, hand_overs }: &Wanted) -> Settings {
+fn settings(&ShieldArguments { low, high, numbers, hand_overs }: &ShieldArguments) -> Settings {
     let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
     let [speed, silence, patience, patience_greatest] = numbers.map(|value| value as f32);
     Settings { speed, silence, patience, patience_greatest, hand_overs, ..Settings::new(corner(low), corner(high)) }
@@ -78,7 +78,7 @@ fn settings(&Wanted { low, high, numbers, hand_overs }: &Wanted) -> Settings {
 
 /// What a shield was made of.
 #[derive(Clone, Copy)]
-struct Wanted {
+struct ShieldArguments {
     low: [f64; 3],
     high: [f64; 3],
     /// Speed, silence, patience and its greatest.
@@ -86,7 +86,7 @@ struct Wanted {
     hand_overs: u32,
 }
 
-impl Wanted {
+impl ShieldArguments {
     /// As Python names it.
     fn named<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
@@ -115,9 +115,9 @@ impl Wanted {
 #[pyclass(module = "saturated_hybrid")]
 pub struct Shield {
     scenario: Py<Scenario>,
-    wanted: Wanted,
-    start: One,
-    one: One,
+    arguments: ShieldArguments,
+    start: ShieldRow,
+    one: ShieldRow,
     diagnostics: Option<Diagnostics>,
 }
 
@@ -125,7 +125,7 @@ pub struct Shield {
 impl Shield {
     #[new]
     #[pyo3(signature = (scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
-        hand_overs=Whole::of(10)),
+        hand_overs=Whole::new(10)),
         text_signature = "(scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
 hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
@@ -141,9 +141,10 @@ hand_overs=10)")]
     ) -> PyResult<Self> {
         let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
         let (low, high) = (row::<3>(low, "low")?, row::<3>(high, "high")?);
-        let wanted = Wanted { low, high, numbers: [speed, silence, patience, patience_greatest], hand_overs };
-        let start = One::new(scenario.get(), &settings(&wanted))?;
-        Ok(Self { scenario: scenario.clone().unbind(), wanted, one: start.clone(), start, diagnostics: None })
+        let arguments =
+            ShieldArguments { low, high, numbers: [speed, silence, patience, patience_greatest], hand_overs };
+        let start = ShieldRow::new(scenario.get(), &settings(&arguments))?;
+        Ok(Self { scenario: scenario.clone().unbind(), arguments, one: start.clone(), start, diagnostics: None })
     }
 
     /// Another shield that remembers the same.
@@ -161,7 +162,7 @@ hand_overs=10)")]
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Py<Scenario>,), Bound<'py, PyDict>)> {
         let fresh = self.one.is_as(&self.start);
-        if fresh { Ok(((self.scenario.clone_ref(py),), self.wanted.named(py)?)) } else { Err(in_flight("Shield")) }
+        if fresh { Ok(((self.scenario.clone_ref(py),), self.arguments.named(py)?)) } else { Err(in_flight("Shield")) }
     }
 
     /// As before a flight, law included.
@@ -172,10 +173,10 @@ hand_overs=10)")]
 
     /// Counts hand-overs anew: the policy may fly again.
     fn ask_again(&mut self) {
-        self.one.shield.ask_again();
+        self.one.shield.request_again();
     }
 
-    /// One control tick.
+    /// ShieldRow control tick.
     ///
     /// Args:
     ///     state: (13,).
@@ -193,7 +194,7 @@ hand_overs=10)")]
         state: &Bound<'py, PyAny>,
         demand: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let state = measured(&row::<STATE>(state, "state")?);
+        let state = measured(&row::<STATE_COLUMNS>(state, "state")?);
         let demand = demand.map(|demand| demand_row(demand, "demand")).transpose()?;
         let mut next = self.one.clone();
         let (wrench, diagnostics) = next.step(&state, demand.as_ref()).map_err(refused)?;
@@ -227,7 +228,7 @@ hand_overs=10)")]
 
     /// As `Law.for_rotors`.
     fn for_rotors<'py>(&self, py: Python<'py>, asked: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let asked = wrench(&row::<WRENCH>(asked, "wrench")?).map_err(refused)?;
+        let asked = wrench(&row::<WRENCH_COLUMNS>(asked, "wrench")?).map_err(refused)?;
         Ok(PyArray1::from_slice(py, &of_wrench(&for_rotors(&self.one.law, &asked))))
     }
 
@@ -250,7 +251,7 @@ hand_overs=10)")]
 }
 
 /// A law and its shield after a step, and the wrench.
-type Stepped = (One, [f32; WRENCH]);
+type Stepped = (ShieldRow, [f32; WRENCH_COLUMNS]);
 
 /// The shields of rows of vehicles, each with its own memory. Rows are shared out to all cores.
 ///
@@ -258,16 +259,16 @@ type Stepped = (One, [f32; WRENCH]);
 #[pyclass(module = "saturated_hybrid")]
 pub struct ShieldRows {
     scenario: Py<Scenario>,
-    wanted: Wanted,
-    start: One,
-    ones: Vec<One>,
+    arguments: ShieldArguments,
+    start: ShieldRow,
+    ones: Vec<ShieldRow>,
 }
 
 #[pymethods]
 impl ShieldRows {
     #[new]
     #[pyo3(signature = (scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
-        hand_overs=Whole::of(10)),
+        hand_overs=Whole::new(10)),
         text_signature = "(scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
 hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
@@ -282,10 +283,10 @@ hand_overs=10)")]
         patience_greatest: f64,
         hand_overs: Whole,
     ) -> PyResult<Self> {
-        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
-        let Shield { scenario, wanted, start, .. } =
+        let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
+        let Shield { scenario, arguments, start, .. } =
             Shield::new(scenario, low, high, speed, silence, patience, patience_greatest, hand_overs)?;
-        Ok(Self { scenario, wanted, ones: vec![start.clone(); rows], start })
+        Ok(Self { scenario, arguments, ones: vec![start.clone(); rows], start })
     }
 
     fn __copy__(&self, py: Python<'_>) -> Self {
@@ -301,7 +302,7 @@ hand_overs=10)")]
         if !self.ones.iter().all(|one| one.is_as(&self.start)) {
             return Err(in_flight("ShieldRows"));
         }
-        Ok(((self.scenario.clone_ref(py), self.ones.len()), self.wanted.named(py)?))
+        Ok(((self.scenario.clone_ref(py), self.ones.len()), self.arguments.named(py)?))
     }
 
     fn __len__(&self) -> usize {
@@ -321,12 +322,12 @@ hand_overs=10)")]
     #[pyo3(signature = (chosen=None))]
     fn ask_again(&mut self, chosen: Option<Vec<bool>>) -> PyResult<()> {
         for number in numbers(chosen, self.ones.len())? {
-            self.ones[number].shield.ask_again();
+            self.ones[number].shield.request_again();
         }
         Ok(())
     }
 
-    /// One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
+    /// ShieldRow tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
     /// to wrenches (rows, 4).
     ///
     /// If a state is refused, the error names the row and no row has changed.
@@ -338,12 +339,12 @@ hand_overs=10)")]
         demands: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = self.ones.len();
-        let states = rows::<STATE>(states, count, "states")?;
+        let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let demands = demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?;
         let (ones, demands) = (&self.ones, demands.as_deref());
         let stepped: PyResult<Result<Vec<Stepped>, String>> = py.detach(|| {
-            let given = ones.par_iter().zip(&states).enumerate().with_min_len(ROWS_AT_ONCE);
-            let one = |(number, (one, state)): (usize, (&One, &[f64; STATE]))| {
+            let given = ones.par_iter().zip(&states).enumerate().with_min_len(ROWS_PER_TASK);
+            let one = |(number, (one, state)): (usize, (&ShieldRow, &[f64; STATE_COLUMNS]))| {
                 let mut one = one.clone();
                 let demand = demands.and_then(|demands| demands.get(number));
                 let stepped = one.step(&measured(state), demand);
@@ -352,7 +353,7 @@ hand_overs=10)")]
             };
             let all = || given.map(one).collect();
             // Each core works on its own rows.
-            if count > ROWS_AT_ONCE { shared(all) } else { Ok(all()) }
+            if count > ROWS_PER_TASK { shared(all) } else { Ok(all()) }
         });
         let (ones, wrenches) = stepped?.map_err(refused)?.into_iter().unzip();
         self.ones = ones;
@@ -362,13 +363,13 @@ hand_overs=10)")]
     /// (rows,) bool: whether the policy flew the last step.
     #[getter]
     fn by_policy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        PyArray1::from_vec(py, self.ones.iter().map(One::by_policy).collect())
+        PyArray1::from_vec(py, self.ones.iter().map(ShieldRow::by_policy).collect())
     }
 
     /// As `Shield.reason`, of every row.
     #[getter]
     fn reasons(&self) -> Vec<&'static str> {
-        self.ones.iter().map(One::reason).collect()
+        self.ones.iter().map(ShieldRow::reason).collect()
     }
 
     /// (rows,): as `Shield.hand_overs`.
@@ -380,7 +381,8 @@ hand_overs=10)")]
     /// (rows, 19): as `Shield.reference`.
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let references: Vec<[f32; REFERENCE]> = self.ones.iter().map(|one| of_reference(&one.reference)).collect();
+        let references: Vec<[f32; REFERENCE_COLUMNS]> =
+            self.ones.iter().map(|one| of_reference(&one.reference)).collect();
         array(py, references)
     }
 

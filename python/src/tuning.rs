@@ -1,13 +1,13 @@
 //! The search for gains.
 
-use crate::cores::alone;
-use crate::refused::{failed, refused, refused_field};
+use crate::errors::{failed, refused, refused_field};
+use crate::interruptible::interruptible;
 use crate::scenarios::Scenario;
-use crate::waiting::interruptible;
-use crate::whole::Whole;
+use crate::threads::alone;
+use crate::whole_number::Whole;
 use host_sim::studies::tune::effort::Effort;
-use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
-use host_sim::studies::tune::trials::Shown;
+use host_sim::studies::tune::requirements::{RECOVERY_MAX_S, RECOVERY_MIN_S, Requirements};
+use host_sim::studies::tune::trials::TrialFigures;
 use host_sim::studies::tune::{output, tune as search};
 use pyo3::prelude::*;
 use scenario::check_name;
@@ -19,7 +19,7 @@ pub struct Tuned {
     /// The scenario with these gains.
     #[pyo3(get)]
     scenario: Py<Scenario>,
-    shown: Shown,
+    shown: TrialFigures,
     /// What the search made small.
     #[pyo3(get)]
     cost: f64,
@@ -83,7 +83,7 @@ impl Tuned {
 /// Raises:
 ///     RuntimeError: no gains met the requirements; says in what the closest fail.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, name=None, generations=Whole::of(60), population=Whole::of(24), seed=Whole::of(1), margin=0.0, gain_margin=1.75,
+#[pyo3(signature = (scenario, *, name=None, generations=Whole::new(60), population=Whole::new(24), seed=Whole::new(1), margin=0.0, gain_margin=1.75,
     delay_margin=0.003, position_error=0.02, mrp_error=0.01, recovery=20.0, projection=true),
     text_signature = "(scenario, *, name=None, generations=60, population=24, seed=1, margin=0.0, gain_margin=1.75, delay_margin=0.003, \
 position_error=0.02, mrp_error=0.01, recovery=20.0, projection=True)")]
@@ -107,9 +107,9 @@ pub fn tune(
     for (field, value) in positive {
         check(value > 0.0 && value.is_finite(), field, "must be greater than zero and finite", value)?;
     }
-    let least = LoopMargin::LEAST;
-    let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
-    check((LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&recovery), "recovery", &allowed, recovery)?;
+    let least = LoopMargin::FLYABLE_MIN;
+    let allowed = format!("must be from {RECOVERY_MIN_S} to {RECOVERY_MAX_S} s");
+    check((RECOVERY_MIN_S..=RECOVERY_MAX_S).contains(&recovery), "recovery", &allowed, recovery)?;
     check((0.0..1.0).contains(&margin), "margin", "must be from 0 to below 1", margin)?;
     check(gain_margin >= least.gain && gain_margin.is_finite(), "gain_margin", "must be 1.5 or more", gain_margin)?;
     check(
@@ -133,10 +133,10 @@ pub fn tune(
         failed(format!("{}: no gains meet the requirements; the closest fail in: {what}", scenario.read.name))
     })?;
     let text = output::rewritten(&scenario.text, &tuned).map_err(refused)?;
-    let scenario = Py::new(py, Scenario::of(text, scenario.file.clone())?)?;
+    let scenario = Py::new(py, Scenario::from_text(text, scenario.file.clone())?)?;
     Ok(Tuned {
         scenario,
-        shown: tuned.verdict.shown,
+        shown: tuned.verdict.figures,
         cost: tuned.verdict.cost,
         cost_before: tuned.before.cost,
         judged: tuned.judged,

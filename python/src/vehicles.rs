@@ -6,15 +6,15 @@
 //! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's
 //! vector registers ([`host_sim::vehicle::plant::rows`]), to the bits that each has alone.
 
-use crate::cores::shared;
-use crate::laws::{MOST_ROWS, numbers};
-use crate::refused::{in_flight, refused, refused_field};
-use crate::rows::{STATE, array, body, of_body, of_measured, of_reference, rows, wrench_rows};
+use crate::errors::{in_flight, refused, refused_field};
+use crate::laws::{ROWS_MAX, numbers};
+use crate::rows::{STATE_COLUMNS, array, body, of_body, of_measured, of_reference, rows, wrench_rows};
 use crate::scenarios::Scenario;
-use crate::whole::Whole;
+use crate::threads::shared;
+use crate::whole_number::Whole;
 use controller_core::state::Wrench;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::plant::body::Body;
 use host_sim::vehicle::plant::rows::Rows;
 use host_sim::vehicle::sensors::Sensors;
@@ -22,10 +22,10 @@ use numpy::{PyArray1, PyArray2};
 use pulp::Arch;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use scenario::body::{BodyState, GREATEST_TURN_PER_STEP};
+use scenario::body::{BodyState, ROTATION_PER_STEP_MAX_RAD};
 
-/// Rows of a stretch, which one core takes at a time.
-const STRETCH: usize = 16;
+/// Rows of a stretch.
+const ROWS_PER_TASK: usize = 16;
 
 /// One vehicle.
 #[derive(Clone)]
@@ -33,7 +33,7 @@ struct Row {
     vehicle: SimulatedVehicle,
     sensors: Option<Sensors>,
     /// The measured state now.
-    measured: [f64; STATE],
+    measured: [f64; STATE_COLUMNS],
     tick: u64,
     lost: bool,
 }
@@ -41,7 +41,8 @@ struct Row {
 impl Row {
     fn new(scenario: &scenario::Scenario) -> Self {
         let vehicle = SimulatedVehicle::new(scenario, &scenario.configuration);
-        let mut row = Self { vehicle, sensors: Sensors::new(scenario), measured: [0.0; STATE], tick: 0, lost: false };
+        let mut row =
+            Self { vehicle, sensors: Sensors::new(scenario), measured: [0.0; STATE_COLUMNS], tick: 0, lost: false };
         row.measure();
         row
     }
@@ -55,11 +56,11 @@ impl Row {
     }
 
     /// Whether anything was clipped.
-    fn hold(&mut self, asked: &Wrench, steps: u32) -> bool {
+    fn hold(&mut self, wrench: &Wrench, steps: u32) -> bool {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(&Asked::Wrench(*asked), steps);
+        let held = self.vehicle.hold(&ActuatorDemand::Wrench(*wrench), steps);
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 
@@ -91,11 +92,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new(scenario: &scenario::Scenario, count: usize) -> Self {
-        Self::of((0..count).map(|_| Row::new(scenario)).collect())
-    }
-
-    fn of(rows: Vec<Row>) -> Self {
+    fn new(rows: Vec<Row>) -> Self {
         let bare = rows.first().and_then(|row| row.vehicle.bare());
         let mut bodies = bare.map(|plant| (plant.body().clone(), Rows::new(Arch::new(), rows.len())));
         if let Some((_, bodies)) = &mut bodies {
@@ -112,16 +109,16 @@ impl Stretch {
     }
 
     /// Which of them had anything clipped.
-    fn hold(&mut self, asked: &[Wrench], steps: u32) -> Vec<bool> {
+    fn hold(&mut self, wrench: &[Wrench], steps: u32) -> Vec<bool> {
         let Some((body, bodies)) = &mut self.bodies else {
-            return self.rows.iter_mut().zip(asked).map(|(row, asked)| row.hold(asked, steps)).collect();
+            return self.rows.iter_mut().zip(wrench).map(|(row, wrench)| row.hold(wrench, steps)).collect();
         };
-        let command = |(number, asked): (usize, &Wrench)| {
-            let (thrust, torque, clipped) = body.clipped(asked);
+        let command = |(number, wrench): (usize, &Wrench)| {
+            let (thrust, torque, clipped) = body.clipped(wrench);
             bodies.command(number, thrust, &torque);
             clipped
         };
-        let clipped: Vec<bool> = asked.iter().enumerate().map(command).collect();
+        let clipped: Vec<bool> = wrench.iter().enumerate().map(command).collect();
         bodies.advance(body, steps);
         let arrive = |(number, (row, clipped)): (usize, (&mut Row, bool))| row.arrive(bodies.state(number), clipped);
         self.rows.iter_mut().zip(clipped).enumerate().map(arrive).collect()
@@ -139,7 +136,7 @@ pub struct VehicleRows {
 }
 
 /// A state and a seed.
-type Start = Option<([f64; STATE], u64)>;
+type Start = Option<([f64; STATE_COLUMNS], u64)>;
 
 impl VehicleRows {
     fn read(&self) -> &scenario::Scenario {
@@ -147,7 +144,7 @@ impl VehicleRows {
     }
 
     /// Starts a row anew.
-    fn put(&mut self, number: usize, state: [f64; STATE], seed: u64) {
+    fn put(&mut self, number: usize, state: [f64; STATE_COLUMNS], seed: u64) {
         let mut scenario = self.read().clone();
         scenario.initial = body(&state);
         if let Some(sensors) = &mut scenario.reality.sensors {
@@ -156,7 +153,7 @@ impl VehicleRows {
         if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
             turbulence.seed = seed;
         }
-        self.stretches[number / STRETCH].place(number % STRETCH, Row::new(&scenario));
+        self.stretches[number / ROWS_PER_TASK].place(number % ROWS_PER_TASK, Row::new(&scenario));
         self.starts[number] = Some((state, seed));
     }
 
@@ -169,21 +166,21 @@ impl VehicleRows {
 impl VehicleRows {
     #[new]
     fn new(scenario: &Bound<'_, Scenario>, rows: Whole) -> PyResult<Self> {
-        let rows = rows.within("rows", 0..=MOST_ROWS)? as usize;
+        let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
         let Scenario { read, file, .. } = scenario.get();
         if read.reality.estimator.is_some() {
             let problem = "estimator: rows of vehicles have none; leave that section out, [sensors] may stay";
             return Err(refused_field(file, problem));
         }
-        let stretch = |first| Stretch::new(read, STRETCH.min(rows - first));
-        let stretches = (0..rows).step_by(STRETCH).map(stretch).collect();
+        let stretch = |first| Stretch::new(vec![Row::new(read); ROWS_PER_TASK.min(rows - first)]);
+        let stretches = (0..rows).step_by(ROWS_PER_TASK).map(stretch).collect();
         Ok(Self { scenario: scenario.clone().unbind(), count: rows, stretches, starts: vec![None; rows] })
     }
 
     fn __copy__(&self, py: Python<'_>) -> Self {
         Self {
             scenario: self.scenario.clone_ref(py),
-            stretches: self.stretches.iter().map(|stretch| Stretch::of(stretch.rows.clone())).collect(),
+            stretches: self.stretches.iter().map(|stretch| Stretch::new(stretch.rows.clone())).collect(),
             starts: self.starts.clone(),
             ..*self
         }
@@ -228,7 +225,7 @@ impl VehicleRows {
         chosen: Option<Vec<bool>>,
         seeds: Option<Vec<Whole>>,
     ) -> PyResult<()> {
-        let states = rows::<STATE>(states, self.count, "states")?;
+        let states = rows::<STATE_COLUMNS>(states, self.count, "states")?;
         let seeds: Vec<u64> = match seeds {
             Some(seeds) => seeds.iter().map(|seed| seed.within("seeds", 0..=u64::MAX)).collect::<PyResult<_>>()?,
             None => (0..self.count as u64).collect(),
@@ -262,8 +259,8 @@ impl VehicleRows {
         let stretches = &mut self.stretches;
         let clipped: PyResult<Vec<Vec<bool>>> = py.detach(|| {
             let brief = stretches.len() < 2;
-            let given = stretches.par_iter_mut().zip(wrenches.par_chunks(STRETCH));
-            let all = || given.map(|(stretch, asked)| stretch.hold(asked, steps)).collect();
+            let given = stretches.par_iter_mut().zip(wrenches.par_chunks(ROWS_PER_TASK));
+            let all = || given.map(|(stretch, wrench)| stretch.hold(wrench, steps)).collect();
             // Each core works on its own rows.
             if brief { Ok(all()) } else { shared(all) }
         });
@@ -299,7 +296,7 @@ impl VehicleRows {
 }
 
 /// Where a vehicle may be put: finite, a rotation, and no faster than its integration step can follow.
-fn start(row: &[f64; STATE], step: f64) -> Result<BodyState, String> {
+fn start(row: &[f64; STATE_COLUMNS], step: f64) -> Result<BodyState, String> {
     let state = body(row);
     if !state.is_finite() {
         return Err("state: must be finite".to_owned());
@@ -308,7 +305,7 @@ fn start(row: &[f64; STATE], step: f64) -> Result<BodyState, String> {
     if (length - 1.0).abs() > 1e-3 {
         return Err(format!("state.attitude: quaternion must have unit length within 1e-3, found length {length}"));
     }
-    let greatest = GREATEST_TURN_PER_STEP / step;
+    let greatest = ROTATION_PER_STEP_MAX_RAD / step;
     let rate = state.angular_velocity.norm();
     if rate > greatest {
         return Err(format!(

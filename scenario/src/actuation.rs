@@ -1,23 +1,11 @@
 //! `[rotors]` and `[sampling]`: what stands between the law's wrench and the body. Both may be left out.
-//!
-//! ```toml
-//! [rotors]
-//! position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]   # m, body
-//! spin = ["cw", "ccw", "cw", "ccw"]     # seen from above
-//! thrust_coefficient = 5.57e-6          # k_eta, N/(rad/s)^2; or thrusts in place of these three ([`propulsion`])
-//! drag_coefficient = 1.36e-7            # k_m, N m/(rad/s)^2
-//! speed = [0.0, 1500.0]                 # least and greatest while flying, rad/s
-//! lag = 0.005                           # first-order, s
-//!
-//! [sampling]
-//! delay = 0.01                          # from a tick to the moment its wrench acts, s; whole plant steps
-//! ```
 
 pub mod propulsion;
 mod spin_order;
 
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::plausibility::likely_slip;
-use crate::sampled_loop::GREATEST_DELAY;
+use crate::sampled_loop::DELAY_MAX_SAMPLES;
 use crate::section::{FieldError, Section, in_line, vector_at};
 use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
@@ -27,7 +15,34 @@ use propulsion::Propulsion;
 use toml::Value;
 
 /// Longest lag and delay, s: slower actuators fly no multirotor.
-const LONGEST: f64 = 1.0;
+const LAG_OR_DELAY_MAX_S: f64 = 1.0;
+
+const LAG_OR_DELAY: Bounds = Bounds::between(0.0, LAG_OR_DELAY_MAX_S, "s").checked_later();
+
+/// The keys of `[rotors]`.
+pub const ROTORS: Layout = Layout {
+    name: "rotors",
+    about: "What delivers thrust and torque. Either thrust_coefficient, drag_coefficient and speed, or thrust_max, \
+            thrust_min and torque_per_thrust say how much. Left out: both act directly, within [limits].",
+    keys: &[
+        Key::new("position", Values::List(&Values::Vector(Bounds::any("m"))), "Of each rotor, m, body."),
+        Key::new("spin", Values::List(&Values::Choice(&["cw", "ccw"])), "Of each rotor, seen from above."),
+        Key::number("lag", LAG_OR_DELAY, "First-order, of the speeds."),
+        propulsion::SPEED_KEYS[0],
+        propulsion::SPEED_KEYS[1],
+        propulsion::SPEED_KEYS[2],
+        propulsion::THRUST_KEYS[0],
+        propulsion::THRUST_KEYS[1],
+        propulsion::THRUST_KEYS[2],
+    ],
+};
+
+/// The keys of `[sampling]`.
+pub const SAMPLING: Layout = Layout {
+    name: "sampling",
+    about: "When commands act.",
+    keys: &[Key::number("delay", LAG_OR_DELAY, "From a tick to the moment its wrench acts; whole plant steps.").or(0.0)],
+};
 
 /// Reads the first-order lag of the rotors' speeds, s; zero without `[rotors]`.
 ///
@@ -49,10 +64,9 @@ pub fn read_lag(root: &Section) -> Result<f64, FieldError> {
 /// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench; what says how
 /// much thrust they have if it cannot hover the vehicle.
 pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, FieldError> {
-    let Some(section) = root.optional_section("rotors")? else {
+    let Some(section) = root.open(&ROTORS)? else {
         return Ok(None);
     };
-    section.allow(&[["position", "spin", "lag"], propulsion::SPEEDS, propulsion::THRUSTS].concat())?;
     let positions = section.elements("position", "a list of positions [x, y, z]")?;
     let spins = section.elements("spin", "a list of \"cw\" and \"ccw\", one for each rotor")?;
     if spins.len() != positions.len() {
@@ -96,14 +110,13 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
 /// # Errors
 /// If it is negative, longer than the sampled loops can be judged with, or no whole number of plant steps.
 pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
-    let Some(section) = root.optional_section("sampling")? else {
+    let Some(section) = root.open(&SAMPLING)? else {
         return Ok(0);
     };
-    section.allow(&["delay"])?;
     let delay = read_time(&section, "delay")?;
-    let greatest = f64::from(GREATEST_DELAY) * timing.period();
+    let greatest = f64::from(DELAY_MAX_SAMPLES) * timing.period();
     if delay > greatest {
-        let problem = format!("must be at most {GREATEST_DELAY} control periods, {greatest} s, found {delay}");
+        let problem = format!("must be at most {DELAY_MAX_SAMPLES} control periods, {greatest} s, found {delay}");
         return Err(FieldError::new(section.path_of("delay"), problem));
     }
     let steps = delay / timing.step();
@@ -117,14 +130,17 @@ pub fn read_delay(root: &Section, timing: &Timing) -> Result<u64, FieldError> {
 }
 
 fn read_time(section: &Section, key: &str) -> Result<f64, FieldError> {
-    let time = section.number_or(key, 0.0)?;
-    if (0.0..=LONGEST).contains(&time) {
+    let time = section.number(key)?;
+    if (0.0..=LAG_OR_DELAY_MAX_S).contains(&time) {
         Ok(time)
     } else {
         let in_seconds = time / 1000.0;
-        let is_slip = (0.0..=LONGEST).contains(&in_seconds);
+        let is_slip = (0.0..=LAG_OR_DELAY_MAX_S).contains(&in_seconds);
         let slip = if is_slip { format!("; if it is in ms, write {in_seconds}") } else { String::new() };
-        Err(FieldError::new(section.path_of(key), format!("must be from 0 to {LONGEST} s, found {time}{slip}")))
+        Err(FieldError::new(
+            section.path_of(key),
+            format!("must be from 0 to {LAG_OR_DELAY_MAX_S} s, found {time}{slip}"),
+        ))
     }
 }
 

@@ -9,8 +9,8 @@ use crate::file::Scenario;
 use crate::judge::judge;
 use crate::path::Place;
 use crate::reference::ReferenceKind;
-use controller_core::certificate::path::along::Taken;
-use controller_core::certificate::path::{PathJudge, Row};
+use controller_core::certificate::path::along::MaxShare;
+use controller_core::certificate::path::{PathJudge, PathRow};
 use controller_core::heading::Heading;
 use controller_core::reference::harmonic::HarmonicParameters;
 use controller_core::reference::{Reference, ReferenceBounds, Trajectory};
@@ -18,17 +18,17 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 /// The greatest stretch that is looked for, how finely it and the force are looked for.
-const SLOWEST: f64 = 50.0;
-const HALVINGS: u32 = 12;
+const STRETCH_MAX: f64 = 50.0;
+const HALVINGS_MAX: u32 = 12;
 
 /// How far, relative, frequencies may be from multiples of the lowest one.
-const SAME_FREQUENCY: f64 = 1e-9;
+const FREQUENCY_TOLERANCE_SHARE: f64 = 1e-9;
 
 /// What a scenario's reference takes of what its vehicle leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Along {
     /// The most that it takes.
-    pub taken: Taken,
+    pub taken: MaxShare,
     /// Where.
     pub at: Place,
     /// Until when it was judged, microseconds.
@@ -51,23 +51,23 @@ pub struct Remedy {
 impl Along {
     /// Of the reference of `scenario`; none under the paper's law.
     #[must_use]
-    pub fn of(scenario: &Scenario) -> Option<Self> {
+    pub fn judge(scenario: &Scenario) -> Option<Self> {
         let judge = |force: f32| judge::<f64>(&scenario.configuration, force);
         let own = judge(scenario.force_kept)?;
         let end = end_us(scenario);
         let along = |judge: &PathJudge, slower: f64| {
-            Taken::along(
+            MaxShare::along(
                 judge,
                 &Slower { trajectory: &*scenario.trajectory, factor: slower },
                 (end as f64 * slower) as u64,
             )
         };
-        let taken = Taken::along(&own, &*scenario.trajectory, end);
+        let taken = MaxShare::along(&own, &*scenario.trajectory, end);
         let position = scenario.trajectory.at(taken.at_us).position.map(f64::from);
         let at = Place { position, time: taken.at_us as f64 * 1e-6 };
         let remedy = (taken.share >= 1.0).then(|| {
             let slow_enough = |slower: f64| along(&own, slower).share < 1.0;
-            let slower = least(1.0, SLOWEST, slow_enough).map(|slower| (slower * 100.0).ceil() / 100.0);
+            let slower = least(1.0, STRETCH_MAX, slow_enough).map(|slower| (slower * 100.0).ceil() / 100.0);
             let light_enough = |less: f64| {
                 judge(scenario.force_kept - less as f32).is_some_and(|judge| along(&judge, 1.0).share < 1.0)
             };
@@ -90,7 +90,7 @@ fn least(few: f64, most: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
         return None;
     }
     let (mut fails, mut holds) = (few, most);
-    for _ in 0..HALVINGS {
+    for _ in 0..HALVINGS_MAX {
         let middle = if few > 0.0 { (fails * holds).sqrt() } else { 0.5 * (fails + holds) };
         if enough(middle) { holds = middle } else { fails = middle }
     }
@@ -116,7 +116,7 @@ fn common_period(harmonic: &HarmonicParameters) -> Option<f64> {
     let axes = amplitude.iter().zip(frequency).chain([(&heading.amplitude, &heading.frequency)]);
     let moving: Vec<f64> = axes.filter(|(size, rate)| **size * **rate != 0.0).map(|(_, rate)| rate.abs()).collect();
     let Some(lowest) = moving.iter().copied().reduce(f64::min) else { return Some(0.0) };
-    let is_multiple = |rate: &f64| ((rate / lowest).round() / (rate / lowest) - 1.0).abs() < SAME_FREQUENCY;
+    let is_multiple = |rate: &f64| ((rate / lowest).round() / (rate / lowest) - 1.0).abs() < FREQUENCY_TOLERANCE_SHARE;
     moving.iter().all(is_multiple).then_some(TAU / lowest)
 }
 
@@ -159,20 +159,20 @@ impl Trajectory for Slower<'_> {
 
 /// What a row is about.
 #[must_use]
-pub fn name(row: Row) -> &'static str {
+pub fn name(row: PathRow) -> &'static str {
     match row {
-        Row::Fall => "its fall",
-        Row::Thrust => "thrust",
-        Row::TurningRate => "the rate of turning",
-        Row::Torque => "torque",
-        Row::Floor => "the thrust that torque needs",
-        Row::Cone => "tilt",
+        PathRow::Fall => "its fall",
+        PathRow::Thrust => "thrust",
+        PathRow::TurningRate => "the rate of turning",
+        PathRow::Torque => "torque",
+        PathRow::Floor => "the thrust that torque needs",
+        PathRow::Cone => "tilt",
     }
 }
 
 impl fmt::Display for Along {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { taken: Taken { share, row, .. }, at, force_kept, remedy, .. } = self;
+        let Self { taken: MaxShare { share, row, .. }, at, force_kept, remedy, .. } = self;
         write!(
             f,
             "reference, {}: takes {:.1} % of what is left beside a force of {force_kept} m/s^2, ",

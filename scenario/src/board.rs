@@ -23,11 +23,11 @@ use controller_core::vehicle::{LimitParameters, VehicleParameters};
 use std::ops::RangeInclusive;
 
 /// The rates of the firmware's control task, Hz: of the extended law, and of the paper's, which is the published one.
-const RATES: RangeInclusive<f64> = 50.0..=1000.0;
-const PAPERS_RATE: f64 = 100.0;
+const CONTROL_RATES_HZ: RangeInclusive<f64> = 50.0..=1000.0;
+const PAPER_LAW_RATE_HZ: f64 = 100.0;
 
 /// Rotors that the boards have outputs for.
-pub const ROTORS: usize = 4;
+pub const ROTOR_COUNT: usize = 4;
 
 /// Whether boards have what `scenario`, of the file `name`, needs: its rate and its rotors. [`check`] asks this first.
 ///
@@ -35,19 +35,19 @@ pub const ROTORS: usize = 4;
 /// One line: the file, the field, and what is wrong.
 pub fn fits(scenario: &Scenario, name: &str) -> Result<(), String> {
     let rate = 1.0 / scenario.timing.period();
-    if !RATES.contains(&rate) {
-        let (least, most) = (RATES.start(), RATES.end());
+    if !CONTROL_RATES_HZ.contains(&rate) {
+        let (least, most) = (CONTROL_RATES_HZ.start(), CONTROL_RATES_HZ.end());
         return Err(format!("{name}: control.rate: the firmware flies at {least} to {most} Hz, found {rate}"));
     }
-    if matches!(scenario.configuration.law(), LawParameters::Paper(_)) && rate != PAPERS_RATE {
-        let problem = format!("the firmware flies the paper's law at {PAPERS_RATE} Hz, found {rate}");
+    if matches!(scenario.configuration.law(), LawParameters::Paper(_)) && rate != PAPER_LAW_RATE_HZ {
+        let problem = format!("the firmware flies the paper's law at {PAPER_LAW_RATE_HZ} Hz, found {rate}");
         return Err(format!("{name}: control.rate: {problem}; leave [gains] to the extended law for other rates"));
     }
     let Some(rotors) = scenario.configuration.rotors() else {
-        return Err(format!("{name}: rotors: missing; a board needs to know what its {ROTORS} motors turn"));
+        return Err(format!("{name}: rotors: missing; a board needs to know what its {ROTOR_COUNT} motors turn"));
     };
-    if rotors.len() != ROTORS {
-        return Err(format!("{name}: rotors.position: the boards drive {ROTORS} motors, found {}", rotors.len()));
+    if rotors.len() != ROTOR_COUNT {
+        return Err(format!("{name}: rotors.position: the boards drive {ROTOR_COUNT} motors, found {}", rotors.len()));
     }
     Ok(())
 }
@@ -62,11 +62,11 @@ pub fn fits(scenario: &Scenario, name: &str) -> Result<(), String> {
 /// One line: the file, the field, the loop or the flight, and what is wrong.
 pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> {
     fits(scenario, name)?;
-    let verdict = Verdict::of(scenario).map_err(|error| format!("{name}: {error}"))?;
+    let verdict = Verdict::judge(scenario).map_err(|error| format!("{name}: {error}"))?;
     let law = scenario.configuration.law();
     let loops = LoopModel::new(scenario.configuration.vehicle(), law, timing(scenario));
     let loops = loops.map_err(|error| format!("{name}: {error}"))?.reports();
-    if let Some(lack) = verdict.lacking().or_else(|| LoopMargin::LEAST.first_lacking(&loops)) {
+    if let Some(lack) = verdict.lacking().or_else(|| LoopMargin::FLYABLE_MIN.first_lacking(&loops)) {
         let late = rates_delay(&scenario.timing) * 1e3;
         return Err(format!(
             "{name}: {lack}; what cannot be flown is not built (a board's body rates are up to {late:.1} ms late)"
@@ -89,8 +89,8 @@ fn timing(scenario: &Scenario) -> Timing {
 
 /// The loops that only the attitude's factors change, and those that these and the position's across change; under the
 /// paper's law, whose gains are those of every axis, the vertical one is among them.
-const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
-const ACROSS: [Axis; 2] = [Axis::LateralX, Axis::LateralY];
+const ATTITUDE_AXES: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
+const HORIZONTAL_AXES: [Axis; 2] = [Axis::LateralX, Axis::LateralY];
 
 /// Which factors on the gains of `scenario` leave its sampled loops stable and with their margin.
 #[must_use]
@@ -104,10 +104,10 @@ pub fn judged(scenario: &Scenario) -> JudgedLoops {
         let key = (factors.attitude, factors.rate);
         let (_, holds) = *attitude
             .take_if(|(last, _)| *last == key)
-            .get_or_insert_with(|| (key, has_margins(scenario, factors, &ATTITUDE)));
+            .get_or_insert_with(|| (key, has_margins(scenario, factors, &ATTITUDE_AXES)));
         attitude = Some((key, holds));
         holds
-            && has_margins(scenario, factors, &ACROSS)
+            && has_margins(scenario, factors, &HORIZONTAL_AXES)
             && (!with_vertical || has_margins(scenario, factors, &vertical))
     };
     JudgedLoops::judge(across, |factors| has_margins(scenario, factors, &vertical))
@@ -118,7 +118,7 @@ fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
     let configuration = &scenario.configuration;
     let Ok(law) = factors.law(configuration.law(), configuration.vehicle()) else { return false };
     let loops = LoopModel::new(configuration.vehicle(), &law, timing(scenario));
-    loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::LEAST.lacking(&loops.report(*axis)).is_none()))
+    loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::FLYABLE_MIN.lacking(&loops.report(*axis)).is_none()))
 }
 
 /// A hash of a scenario's configuration, in [0, 2^24): what was tuned on one is not the other's.
@@ -193,7 +193,7 @@ mod tests {
             let configuration = &study.configuration;
             let law = factors.law(configuration.law(), configuration.vehicle()).unwrap();
             let loops = LoopModel::new(configuration.vehicle(), &law, timing(&study)).unwrap();
-            LoopMargin::LEAST.first_lacking(&loops.reports()).is_none()
+            LoopMargin::FLYABLE_MIN.first_lacking(&loops.reports()).is_none()
         };
         let (mut good, mut bad) = (0, 0);
         for (index, attitude) in Percent::all().enumerate() {
@@ -227,7 +227,7 @@ mod tests {
                     &mut factors;
                 let each = [attitude, rate, position_across, velocity_across, position_vertical, velocity_vertical];
                 *each.into_iter().nth(gain).unwrap() = percent;
-                let tuning = Tuning { figures: Figures::of(configuration), factors };
+                let tuning = Tuning { figures: Figures::from_configuration(configuration), factors };
                 let certificate = Certificate::new(&tuning.apply(configuration).unwrap()).unwrap();
                 assert!(certificate.holds() && loops.hold(&factors), "{}: {factors:?}", scenario.name);
             }
@@ -245,7 +245,7 @@ mod tests {
             p.k_tilt
         };
         for percent in Percent::all() {
-            let factor = stiffness(percent) / stiffness(Percent::FULL);
+            let factor = stiffness(percent) / stiffness(Percent::AS_BUILT);
             assert!((factor - percent.percent() / 100.0).abs() < 1e-6, "{factor}");
         }
     }
@@ -275,7 +275,7 @@ mod tests {
     fn what_flies_on_a_desk_and_not_with_a_boards_late_rates_is_not_built() {
         let late = (10..60).filter(|damping| {
             let scenario = damped(f64::from(*damping) * 0.01);
-            let verdict = Verdict::of(&scenario).unwrap();
+            let verdict = Verdict::judge(&scenario).unwrap();
             verdict.lacking().is_none() && check(&scenario, "a test").is_err_and(|error| error.contains("ms late"))
         });
         assert!(late.count() > 0);

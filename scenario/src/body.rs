@@ -4,8 +4,8 @@ use controller_core::heading::Heading;
 use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3};
 
-/// The greatest angle, rad, that an integration step may turn: beyond it an integrator no longer follows the rotation.
-pub const GREATEST_TURN_PER_STEP: f64 = 0.5;
+/// Beyond it an integrator no longer follows the rotation.
+pub const ROTATION_PER_STEP_MAX_RAD: f64 = 0.5;
 
 /// The rigid body's state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,9 +42,9 @@ impl BodyState {
     /// The angle from a heading to the vehicle's, rad, at most pi.
     #[must_use]
     pub fn heading_error(&self, heading: &Heading) -> f64 {
-        let wanted = heading.direction().map(f64::from);
-        let turned = self.yaw() - wanted.y.atan2(wanted.x);
-        turned.sin().atan2(turned.cos()).abs()
+        let desired = heading.direction().map(f64::from);
+        let difference = self.yaw() - desired.y.atan2(desired.x);
+        difference.sin().atan2(difference.cos()).abs()
     }
 
     /// b = R e3, the thrust axis, world frame.

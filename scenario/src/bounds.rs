@@ -24,7 +24,7 @@ use controller_core::constants::Constant;
 use controller_core::reference::ReferenceBounds;
 
 /// The least K_v12 where the file leaves it out, m/s: what the governor allows.
-pub const DEFAULT_SPEED: f32 = 5.0;
+pub const DEFAULT_SPEED_M_PER_S: f32 = 5.0;
 
 /// Reads `[reference_bounds]`, which must be no less than `own`; `default` gives the bounds if the section is left out.
 ///

@@ -1,41 +1,15 @@
 //! `[campaign]`: how far the circumstances of a campaign's flights may differ. Only `host-sim campaign` reads it.
 //!
-//! ```toml
-//! [campaign]
-//! flights = 1000                       # how many
-//! seed = 0
-//! duration = 60.0                      # s, each, 1 at least; 180 under the paper's law, which takes its time
-//! reference = "in-turn"                # hover at the origin and the file's reference in turn; or "file", or "hover"
-//! attitude = "uniform"                 # of all attitudes alike; or "file": that of [initial]
-//! offset = 10.0                        # m, from the reference's first point
-//! velocity = 5.0                       # m/s
-//! rate = 15.0                          # rad/s, about body x and y
-//! yaw_rate = 6.0                       # rad/s, about body z
-//! wind = 5.0                           # m/s, steady, level, from any side
-//! gust = 0.0                           # m/s, level, a step within the first half of the flight
-//! turbulence = 0.0                     # m/s, wind at 20 feet
-//! gyro_noise = 0.01                    # rad/s
-//! position_noise = 0.002               # m
-//! attitude_noise_deg = 0.2             # degrees
-//! pose_delay = 0.0                     # s, of all that is measured
-//! mass = 0.0                           # part of vehicle.mass, more or less
-//! inertia = 0.0                        # part of vehicle.inertia, more or less
-//! centre_of_mass = 0.0                 # m, body
-//! thrust_scale = 0.0                   # part of all rotors' thrust, more or less
-//! rotor_scales = 0.0                   # part of each rotor's thrust, more or less
-//! rotor_failures = 0.0                 # share of the flights in which a rotor fails, within the first half
-//! thrust_left = [0.0, 0.7]             # the share of its thrust that it then has left: least and greatest
-//! ```
-//!
 //! Each number is the greatest value that is drawn: evenly from zero up, or within a ball of that radius, or as much on
-//! either side; `rotor_failures` is a share of the flights. Every key may be left out; these are the defaults. Those of
-//! `duration` and `wind` ([`default_wind`]) depend on the law.
+//! either side; `rotor_failures` is a share of the flights. Every key may be left out. The defaults of `duration` and
+//! `wind` ([`default_wind`]) depend on the law.
 
-use crate::body::GREATEST_TURN_PER_STEP;
-use crate::reality::numbers::{Allowed, seed};
+use crate::body::ROTATION_PER_STEP_MAX_RAD;
+use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use controller_core::configuration::{Configuration, LawParameters};
+use toml::Table;
 
 /// A campaign as the file describes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,97 +102,96 @@ pub struct FailureRanges {
 }
 
 impl FailureRanges {
-    /// Of a file that says nothing of it: none fails.
+    /// None fails.
     pub const DEFAULT: Self = Self { flights: 0.0, thrust_left: [0.0, 0.7] };
 }
 
-impl Campaign {
-    /// The campaign of a file that says nothing of it.
-    #[must_use]
-    pub fn of(configuration: &Configuration, timing: &Timing) -> Self {
-        let turn = greatest_rate(timing);
-        let noise = NoiseRanges { gyro: 0.01, position: 2e-3, attitude: ATTITUDE_NOISE_DEG.to_radians(), delay: 0.0 };
-        let ranges = Ranges {
-            duration: if configuration.paper().is_some() { 180.0 } else { 60.0 },
-            reference: Task::InTurn,
-            attitude: true,
-            offset: 10.0,
-            velocity: 5.0,
-            rate: turn.min(15.0),
-            yaw_rate: turn.min(6.0),
-            wind: default_wind(configuration),
-            gust: 0.0,
-            turbulence: 0.0,
-            noise,
-            model: ModelRanges::default(),
-            failure: FailureRanges::DEFAULT,
-        };
-        Self { flights: 1000, seed: 0, ranges }
-    }
-}
-
 /// The greatest body rate that the plant can follow, rad/s.
-fn greatest_rate(timing: &Timing) -> f64 {
-    GREATEST_TURN_PER_STEP / timing.step()
+fn angular_velocity_max(timing: &Timing) -> f64 {
+    ROTATION_PER_STEP_MAX_RAD / timing.step()
 }
-
-/// Degrees.
-const ATTITUDE_NOISE_DEG: f64 = 0.2;
 
 /// The default wind, m/s: 5, or less where the estimate of forces
 /// cannot hold against it. A wind of 1 m/s pushes with about 0.5 m/s^2, and four fifths of the estimate's level are
 /// taken. The paper's law, which estimates nothing and gives way to every constant force, gets none.
 #[must_use]
 pub fn default_wind(configuration: &Configuration) -> f64 {
-    const GREATEST: f64 = 5.0;
-    const BORNE: f64 = 0.8 / 0.5;
+    const WIND_MAX_M_PER_S: f64 = 5.0;
+    const WIND_PER_FORCE_LEVEL_S: f64 = 0.8 / 0.5;
     match configuration.law() {
         LawParameters::Paper(_) => 0.0,
-        LawParameters::Extended(law) => (BORNE * f64::from(law.parameters.force_across)).min(GREATEST),
+        LawParameters::Extended(law) => {
+            (WIND_PER_FORCE_LEVEL_S * f64::from(law.parameters.force_across)).min(WIND_MAX_M_PER_S)
+        }
     }
 }
+
+const DURATION: Bounds = Bounds::between(DURATION_MIN_S, 1e5, "s");
+const ANGULAR_RATE: Bounds = Bounds::not_negative("rad/s").checked_later();
+const WIND_SPEED: Bounds = Bounds::between(0.0, 100.0, "m/s");
+const SHARE: Bounds = Bounds::between(0.0, 0.9, "");
+
+/// The most flights of a campaign.
+pub const FLIGHTS_MAX: f64 = 1e8;
+
+/// In less no flight has time to miss its reference, or to come back to it.
+const DURATION_MIN_S: f64 = 1.0;
+
+/// The keys of `[campaign]`.
+pub const LAYOUT: Layout = Layout {
+    name: "campaign",
+    about: "How far the circumstances of the flights of `host-sim campaign` may differ: each number is the greatest \
+            value that is drawn.",
+    keys: &[
+        Key::new("flights", Values::Whole(Bounds::between(1.0, FLIGHTS_MAX, "")), "How many.").or(1000.0),
+        SEED,
+        Key::number("duration", DURATION, "Of each; left out: 60, under the paper's law 180.").optional(),
+        Key::choice("reference", &["in-turn", "file", "hover"], "Left out: \"hover\" and \"file\" in order."),
+        Key::choice("attitude", &["uniform", "file"], "Left out: of all alike; or that of [initial]."),
+        Key::number("offset", Bounds::between(0.0, 1e4, "m"), "From the reference's first point.").or(10.0),
+        Key::number("velocity", Bounds::between(0.0, 1e3, "m/s"), "In any direction.").or(5.0),
+        Key::number("rate", ANGULAR_RATE, "About body x and y; left out: 15, or what plant.step allows.").optional(),
+        Key::number("yaw_rate", ANGULAR_RATE, "About body z; left out: 6, or what plant.step allows.").optional(),
+        Key::number("wind", WIND_SPEED, "Steady, level; left out: what the law bears, at most 5.").optional(),
+        Key::number("gust", WIND_SPEED, "Level, a step within the first half of the flight.").or(0.0),
+        Key::number("turbulence", WIND_SPEED, "Wind at 20 feet.").or(0.0),
+        Key::number("gyro_noise", Bounds::between(0.0, 10.0, "rad/s"), "Standard deviation.").or(0.01),
+        Key::number("position_noise", Bounds::between(0.0, 100.0, "m"), "Standard deviation.").or(2e-3),
+        Key::number("attitude_noise_deg", Bounds::between(0.0, 30.0, "degrees"), "Standard deviation.").or(0.2),
+        Key::number("pose_delay", Bounds::between(0.0, 1.0, "s"), "Of all that is measured.").or(0.0),
+        Key::number("mass", SHARE, "Share of vehicle.mass, more or less.").or(0.0),
+        Key::number("inertia", SHARE, "Share of vehicle.inertia, more or less.").or(0.0),
+        Key::number("centre_of_mass", Bounds::between(0.0, 10.0, "m"), "Body.").or(0.0),
+        Key::number("thrust_scale", SHARE, "Share of all rotors' thrust, more or less.").or(0.0),
+        Key::number("rotor_scales", SHARE, "Share of each rotor's thrust, more or less.").or(0.0),
+        Key::number("rotor_failures", Bounds::SHARE, "Share of the flights in which a rotor fails.").or(0.0),
+        Key::new("thrust_left", Values::Range(Bounds::SHARE), "Of such a rotor; left out: [0, 0.7].").optional(),
+    ],
+};
+
+/// The keys that a file with `[sensors]` may not have.
+const NOISE_KEYS: [&str; 4] = ["gyro_noise", "position_noise", "attitude_noise_deg", "pose_delay"];
+
+/// The keys that a file without `[rotors]` may not have.
+const ROTOR_KEYS: [&str; 3] = ["rotor_scales", "rotor_failures", "thrust_left"];
 
 /// Reads `[campaign]`; the defaults if it is missing.
 ///
 /// # Errors
 /// Names the field that is refused, or the section that it cannot stand beside.
 pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> Result<Campaign, FieldError> {
-    let default = Campaign::of(configuration, timing);
-    let Some(section) = root.optional_section("campaign")? else {
-        return Ok(default);
+    let missing = Table::new();
+    let section = match root.open(&LAYOUT)? {
+        Some(section) => section,
+        None => Section::root(&missing).with(&LAYOUT)?,
     };
-    section.allow(&[
-        "flights",
-        "seed",
-        "duration",
-        "reference",
-        "attitude",
-        "offset",
-        "velocity",
-        "rate",
-        "yaw_rate",
-        "wind",
-        "gust",
-        "turbulence",
-        "gyro_noise",
-        "position_noise",
-        "attitude_noise_deg",
-        "pose_delay",
-        "mass",
-        "inertia",
-        "centre_of_mass",
-        "thrust_scale",
-        "rotor_scales",
-        "rotor_failures",
-        "thrust_left",
-    ])?;
-    let measured = NOISE.into_iter().find(|key| section.has(key));
+    let measured = NOISE_KEYS.into_iter().find(|key| section.has(key));
     let source = ["sensors", "estimator"].into_iter().find(|other| root.has(other));
     if let (Some(key), Some(other)) = (measured, source) {
         let problem = format!("[{other}] says what is measured: leave that section or this key out");
         return Err(FieldError::new(section.path_of(key), problem));
     }
-    let of_rotors = OF_ROTORS.into_iter().find(|key| section.has(key));
+    let of_rotors = ROTOR_KEYS.into_iter().find(|key| section.has(key));
     if let (Some(key), None) = (of_rotors, configuration.rotors()) {
         let problem = "needs [rotors]: add that section or leave this key out";
         return Err(FieldError::new(section.path_of(key), problem));
@@ -227,75 +200,64 @@ pub fn read(root: &Section, timing: &Timing, configuration: &Configuration) -> R
         let problem = "[failure] says which rotor fails: leave that section or this key out";
         return Err(FieldError::new(section.path_of("rotor_failures"), problem));
     }
-    let ranges = read_ranges(&section, timing, &default.ranges)?;
-    let flights = section.number_or("flights", default.flights as f64)?;
-    if flights.fract() != 0.0 || !(1.0..=MOST_FLIGHTS).contains(&flights) {
-        let problem = format!("must be a whole number from 1 to {MOST_FLIGHTS}, found {flights}");
+    let ranges = read_ranges(&section, timing, configuration)?;
+    let flights = section.number("flights")?;
+    if flights.fract() != 0.0 || !(1.0..=FLIGHTS_MAX).contains(&flights) {
+        let problem = format!("must be a whole number from 1 to {FLIGHTS_MAX}, found {flights}");
         return Err(FieldError::new(section.path_of("flights"), problem));
     }
-    Ok(Campaign { flights: flights as u64, seed: seed(&section)?, ranges })
+    Ok(Campaign { flights: flights as u64, seed: read_seed(&section)?, ranges })
 }
 
-/// The least duration of a flight, s: in less nothing that was thrown has time to miss its reference, or to come back
-/// to it.
-const LEAST_DURATION: f64 = 1.0;
-
-/// The most flights of a campaign.
-pub const MOST_FLIGHTS: f64 = 1e8;
-
-/// The keys that a file with `[sensors]` may not have.
-const NOISE: [&str; 4] = ["gyro_noise", "position_noise", "attitude_noise_deg", "pose_delay"];
-
-/// The keys that a file without `[rotors]` may not have.
-const OF_ROTORS: [&str; 3] = ["rotor_scales", "rotor_failures", "thrust_left"];
-
-fn read_ranges(section: &Section, timing: &Timing, default: &Ranges) -> Result<Ranges, FieldError> {
-    let up_to =
-        |key: &str, greatest: f64, unit, default| Allowed::new(0.0..=greatest, unit).number_or(section, key, default);
-    let part = |key: &str| up_to(key, 0.9, "", 0.0);
-    let turn = greatest_rate(timing);
-    let attitude = up_to("attitude_noise_deg", 30.0, "degrees", ATTITUDE_NOISE_DEG)?.to_radians();
+fn read_ranges(section: &Section, timing: &Timing, configuration: &Configuration) -> Result<Ranges, FieldError> {
+    let number = |key: &str| section.number(key);
+    let rate_max = angular_velocity_max(timing);
+    let rate = |key: &str, default: f64| {
+        let rate = section.number_or(key, default.min(rate_max))?;
+        Bounds::between(0.0, rate_max, "rad/s").check(section.path_of(key), rate)
+    };
+    let duration = if configuration.paper().is_some() { 180.0 } else { 60.0 };
     Ok(Ranges {
-        duration: Allowed::new(LEAST_DURATION..=1e5, "s").number_or(section, "duration", default.duration)?,
-        reference: read_choice(section, "reference", REFERENCES, default.reference)?,
-        attitude: read_choice(section, "attitude", [("uniform", true), ("file", false)], default.attitude)?,
-        offset: up_to("offset", 1e4, "m", default.offset)?,
-        velocity: up_to("velocity", 1e3, "m/s", default.velocity)?,
-        rate: up_to("rate", turn, "rad/s", default.rate)?,
-        yaw_rate: up_to("yaw_rate", turn, "rad/s", default.yaw_rate)?,
-        wind: up_to("wind", 100.0, "m/s", default.wind)?,
-        gust: up_to("gust", 100.0, "m/s", default.gust)?,
-        turbulence: up_to("turbulence", 100.0, "m/s", default.turbulence)?,
+        duration: section.number_or("duration", duration)?,
+        reference: read_choice(section, "reference", TASK_NAMES, Task::InTurn)?,
+        attitude: read_choice(section, "attitude", [("uniform", true), ("file", false)], true)?,
+        offset: number("offset")?,
+        velocity: number("velocity")?,
+        rate: rate("rate", 15.0)?,
+        yaw_rate: rate("yaw_rate", 6.0)?,
+        wind: section.number_or("wind", default_wind(configuration))?,
+        gust: number("gust")?,
+        turbulence: number("turbulence")?,
         noise: NoiseRanges {
-            gyro: up_to("gyro_noise", 10.0, "rad/s", default.noise.gyro)?,
-            position: up_to("position_noise", 100.0, "m", default.noise.position)?,
-            attitude,
-            delay: up_to("pose_delay", 1.0, "s", default.noise.delay)?,
+            gyro: number("gyro_noise")?,
+            position: number("position_noise")?,
+            attitude: number("attitude_noise_deg")?.to_radians(),
+            delay: number("pose_delay")?,
         },
         model: ModelRanges {
-            mass: part("mass")?,
-            inertia: part("inertia")?,
-            centre_of_mass: up_to("centre_of_mass", 10.0, "m", 0.0)?,
-            thrust_scale: part("thrust_scale")?,
-            rotor_scales: part("rotor_scales")?,
+            mass: number("mass")?,
+            inertia: number("inertia")?,
+            centre_of_mass: number("centre_of_mass")?,
+            thrust_scale: number("thrust_scale")?,
+            rotor_scales: number("rotor_scales")?,
         },
         failure: FailureRanges {
-            flights: up_to("rotor_failures", 1.0, "", default.failure.flights)?,
-            thrust_left: read_thrust_left(section, default.failure.thrust_left)?,
+            flights: number("rotor_failures")?,
+            thrust_left: read_thrust_left(section, FailureRanges::DEFAULT.thrust_left)?,
         },
     })
 }
 
 /// The least and the greatest share of its thrust that a failing rotor has left.
 fn read_thrust_left(section: &Section, default: [f64; 2]) -> Result<[f64; 2], FieldError> {
-    const WANTED: &str = "[least, greatest], 0 <= least <= greatest < 1";
+    const REQUIREMENT: &str = "[least, greatest], 0 <= least <= greatest < 1";
     if !section.has("thrust_left") {
         return Ok(default);
     }
-    section.range("thrust_left", WANTED, |least, greatest| 0.0 <= least && least <= greatest && greatest < 1.0)
+    section.range("thrust_left", REQUIREMENT, |least, greatest| 0.0 <= least && least <= greatest && greatest < 1.0)
 }
 
-const REFERENCES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];
+const TASK_NAMES: [(&str, Task); 3] = [("in-turn", Task::InTurn), ("file", Task::File), ("hover", Task::Hover)];
 
 fn read_choice<T: Copy, const N: usize>(
     section: &Section,

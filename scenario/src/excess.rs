@@ -9,10 +9,10 @@ use controller_core::reference::{Reference, ReferenceBounds};
 use std::fmt;
 
 /// The greatest stretch that is looked for, and how finely.
-const MOST: f64 = 50.0;
-const HALVINGS: u32 = 12;
+const STRETCH_MAX: f64 = 50.0;
+const HALVINGS_MAX: u32 = 12;
 /// Instants looked at.
-const INSTANTS: u64 = 20_000;
+const INSTANTS_CHECKED: u64 = 20_000;
 
 /// How a reference exceeds what its vehicle can be certified for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ impl Excess {
     /// Of a scenario of the paper's law that is not certified, if that is for its reference: none where the reference
     /// at rest would not help.
     #[must_use]
-    pub fn of(scenario: &Scenario) -> Option<Self> {
+    pub fn find(scenario: &Scenario) -> Option<Self> {
         scenario.configuration.paper()?;
         let own = scenario.trajectory.bounds();
         if certifies(scenario, &own) {
@@ -37,8 +37,8 @@ impl Excess {
         }
         let allowed = allowed(scenario, &own)?;
         let end = scenario.timing.ticks * scenario.timing.period_us;
-        let (at, of) = (0..=INSTANTS)
-            .map(|i| end / INSTANTS * i)
+        let (at, of) = (0..=INSTANTS_CHECKED)
+            .map(|i| end / INSTANTS_CHECKED * i)
             .map(|time| (time, most(&scenario.trajectory.at(time), &allowed)))
             .max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0))
             .map(|(time, (_, of))| (time, of))?;
@@ -51,8 +51,8 @@ impl Excess {
 
 /// Bounds that certify: those of the reference flown as slowly as it takes.
 fn allowed(scenario: &Scenario, own: &ReferenceBounds) -> Option<ReferenceBounds> {
-    let (mut fails, mut holds) = (1.0_f64, MOST);
-    for _ in 0..HALVINGS {
+    let (mut fails, mut holds) = (1.0_f64, STRETCH_MAX);
+    for _ in 0..HALVINGS_MAX {
         let middle = (fails * holds).sqrt();
         if certifies(scenario, &stretched(own, middle)) { holds = middle } else { fails = middle }
     }
@@ -69,7 +69,7 @@ fn certifies(scenario: &Scenario, bounds: &ReferenceBounds) -> bool {
 
 /// By how much an instant alone would have to be stretched, and for what.
 fn most(reference: &Reference, allowed: &ReferenceBounds) -> (f64, &'static str) {
-    const NAMES: [&str; ReferenceBounds::COUNT] = [
+    const BOUND_NAMES: [&str; ReferenceBounds::COUNT] = [
         "horizontal speed",
         "horizontal acceleration",
         "vertical acceleration",
@@ -88,7 +88,7 @@ fn most(reference: &Reference, allowed: &ReferenceBounds) -> (f64, &'static str)
         heading.rate().abs(),
         heading.second_derivative().norm(),
     ];
-    let each = NAMES.into_iter().enumerate().map(|(number, name)| {
+    let each = BOUND_NAMES.into_iter().enumerate().map(|(number, name)| {
         let mut alone = [0.0; ReferenceBounds::COUNT];
         alone[number] = values[number];
         (stretch(&ReferenceBounds::from_values(alone), allowed), name)
@@ -122,11 +122,11 @@ mod tests {
 
     #[test]
     fn a_reference_stretched_by_what_is_said_certifies_and_by_less_it_does_not() {
-        assert_eq!(Excess::of(&eight(20.0)), None);
-        let excess = Excess::of(&eight(2.0)).expect("too fast");
+        assert_eq!(Excess::find(&eight(20.0)), None);
+        let excess = Excess::find(&eight(2.0)).expect("too fast");
         assert!(excess.stretch > 1.1 && excess.at.time > 0.0, "{excess}");
         // The path is fitted to the rows anew, and begins a little differently.
-        assert_eq!(Excess::of(&eight(2.0 * 1.1 * excess.stretch)), None, "{excess}");
-        assert!(Excess::of(&eight(2.0 * 0.8 * excess.stretch)).is_some(), "{excess}");
+        assert_eq!(Excess::find(&eight(2.0 * 1.1 * excess.stretch)), None, "{excess}");
+        assert!(Excess::find(&eight(2.0 * 0.8 * excess.stretch)).is_some(), "{excess}");
     }
 }

@@ -12,13 +12,13 @@ use crate::constants;
 use crate::section::{FieldError, Section};
 use controller_core::configuration::ExtendedLaw;
 use controller_core::error::ParameterError;
-use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX};
+use controller_core::extended::actuators::{ActuatorModel, ActuatorParameters, DELAY_MAX_TICKS};
 use controller_core::extended::controller::Controller;
 use controller_core::extended::defaults::{self, Airframe, NOTHING_GIVEN};
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 
 /// Constants that the law had once, and what is in their place.
-const RETIRED: [(&str, &str); 9] = [
+const RETIRED_CONSTANTS: [(&str, &str); 9] = [
     ("w", "k_tilt is the tilt's stiffness, c_1 the heading's"),
     ("eta", "nothing is needed in its place"),
     ("k_t", "k_tilt is the tilt's stiffness"),
@@ -66,7 +66,7 @@ pub fn refused(root: &Section, error: &ParameterError) -> FieldError {
 
 /// Refuses a constant that the law no longer has, and names what is in its place.
 fn refuse_retired(section: &Section, name: &str) -> Result<(), FieldError> {
-    match RETIRED.iter().find(|(key, _)| section.has(key)) {
+    match RETIRED_CONSTANTS.iter().find(|(key, _)| section.has(key)) {
         Some((key, instead)) => {
             let problem = format!("the law no longer has it: {instead}; leave it out, and a formula takes its place");
             Err(FieldError::new(format!("{name}.{key}"), problem))
@@ -77,12 +77,12 @@ fn refuse_retired(section: &Section, name: &str) -> Result<(), FieldError> {
 
 /// Refuses a delay longer than the memory of the law's actuator model.
 fn check_delay(root: &Section, actuators: &ActuatorParameters, period: f32) -> Result<(), FieldError> {
-    const MOST: usize = DELAY_MAX - 1;
+    const DELAY_MAX_PERIODS: usize = DELAY_MAX_TICKS - 1;
     ActuatorModel::new(actuators, period).map(|_| ()).map_err(|_| {
         let field = if root.has("sampling") { "sampling.delay" } else { "sensors.delay" };
-        let longest = MOST as f64 * f64::from(period);
+        let longest = DELAY_MAX_PERIODS as f64 * f64::from(period);
         let problem = format!(
-            "under the extended law must be, both delays together, at most {MOST} control periods, {longest:.3} s, found {} s",
+            "under the extended law must be, both delays together, at most {DELAY_MAX_PERIODS} control periods, {longest:.3} s, found {} s",
             actuators.delay
         );
         FieldError::new(field, problem)

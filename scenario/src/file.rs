@@ -2,20 +2,23 @@
 
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
+use crate::key::{Key, Layout, Values};
 use crate::path;
 use crate::reality::sensors::{self, VelocitySource};
 use crate::reality::{self, Reality, estimator};
-use crate::reference::ReferenceKind;
+use crate::reference::{LAYOUTS, ReferenceKind};
 use crate::sampled_loop::{self, LoopModel};
 use crate::section::{FieldError, Section};
-use crate::timing::Timing;
-use crate::trajectory::Directory;
+use crate::timing::{self, DURATION, Timing};
 use crate::trajectory::vehicle::Vehicle;
+use crate::trajectory::{Directory, FORCE_KEPT, TOLERANCE};
 use crate::{actuation, initial, plausibility, vehicle};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::extended::defaults::Airframe;
+use controller_core::extended::parameters::ExtendedParameters;
+use controller_core::gains::GainParameters;
 use controller_core::reference::{ReferenceBounds, Trajectory};
 use std::fmt;
 use std::path::Path;
@@ -28,26 +31,56 @@ pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 /// The firmware's default vehicle, built in.
 pub const STUDY: &str = include_str!("../../vehicles/study.toml");
 
-/// The keys of a scenario file's top level, beside [`reality::SECTIONS`].
-const MODEL_SECTIONS: [&str; 14] = [
-    "name",
-    "duration",
-    "vehicle",
-    "limits",
-    "gains",
-    "estimates",
-    "control",
-    "plant",
-    "rotors",
-    "sampling",
-    "initial",
-    "reference",
-    "reference_bounds",
-    "campaign",
-];
+/// A scenario file: its sections in the order in which errors list them.
+pub const LAYOUT: Layout = Layout {
+    name: "",
+    about: "A flight: a vehicle, its limits and gains, where it starts and its reference. SI units, world z up, body x \
+            forward, y left, z up.",
+    keys: &[
+        Key::new("name", Values::Text, "Names the flight: 1 to 64 letters, digits, '-', '_' or '.'."),
+        DURATION,
+        Key::new("vehicle", Values::Table(&vehicle::VEHICLE), vehicle::VEHICLE.about),
+        Key::table(&vehicle::LIMITS),
+        Key::new(
+            "gains",
+            Values::Constants("gains", &[&ExtendedParameters::TABLE, &GainParameters::TABLE]),
+            "The gains of a law: of the extended one each may be left out, of the paper's none.",
+        )
+        .optional(),
+        Key::new(
+            "estimates",
+            Values::Constants("estimates", &[&ExtendedParameters::TABLE]),
+            "The estimates of the extended law; what is left out follows from the vehicle's numbers.",
+        )
+        .optional(),
+        Key::table(&timing::CONTROL),
+        Key::table(&timing::PLANT),
+        Key::table(&actuation::ROTORS),
+        Key::table(&actuation::SAMPLING),
+        Key::table(&initial::LAYOUT),
+        Key::new("reference", Values::Kinds(&LAYOUTS), "Left out: hover where the flight starts.").optional(),
+        Key::new(
+            "reference_bounds",
+            Values::Constants("reference_bounds", &[&ReferenceBounds::TABLE]),
+            "The references that the certificate is to cover; what is left out follows from the vehicle or the \
+             reference.",
+        )
+        .optional(),
+        Key::table(&campaign::LAYOUT),
+        Key::table(&reality::truth::LAYOUT),
+        Key::table(&reality::drag::LAYOUT),
+        Key::table(&reality::wind::LAYOUT),
+        Key::table(&reality::disturbance::LAYOUT),
+        Key::table(&reality::battery::LAYOUT),
+        Key::table(&reality::failure::LAYOUT),
+        Key::table(&reality::ground::LAYOUT),
+        Key::table(&sensors::LAYOUT),
+        Key::table(&estimator::LAYOUT),
+    ],
+};
 
-/// How long a flight along points goes on after the last of them, if the file does not say, s.
-const AFTERWARDS: f64 = 5.0;
+/// After the last of a path's points, if the file has no duration.
+const HOLD_AFTER_LAST_POINT_S: f64 = 5.0;
 
 /// A flight that can be flown.
 #[derive(Clone)]
@@ -110,11 +143,11 @@ impl Scenario {
         let refuse = |what: String| ScenarioError { file: file.to_owned(), what };
         let table: Table = text.parse().map_err(|error| refuse(syntax(text, &error)))?;
         let directory = Path::new(file).parent();
-        Self::read(&Section::root(&table), directory).map_err(|error| refuse(error.to_string()))
+        Self::read(Section::root(&table), directory).map_err(|error| refuse(error.to_string()))
     }
 
-    fn read(root: &Section, directory: Directory) -> Result<Self, FieldError> {
-        root.allow(&[MODEL_SECTIONS.as_slice(), reality::SECTIONS.as_slice()].concat())?;
+    fn read(root: Section, directory: Directory) -> Result<Self, FieldError> {
+        let root = &root.with(&LAYOUT)?;
         root.check_measured()?;
         let name = read_name(root)?;
         let timing = Timing::read(root)?;
@@ -133,16 +166,18 @@ impl Scenario {
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
         };
-        let force_kept = ReferenceKind::force_kept(root)?;
+        let force_kept = ReferenceKind::number(root, &FORCE_KEPT)? as f32;
         let allow = || {
             let configuration = configuration(&ReferenceBounds::REST)?;
             Ok(Vehicle { configuration, has_bounds: root.has("reference_bounds"), force_kept })
         };
         let reference = ReferenceKind::read(root, directory, &allow)?;
-        let tolerance = ReferenceKind::tolerance(root)?;
+        let tolerance = ReferenceKind::number(root, &TOLERANCE)?;
         let trajectory = reference.build().map_err(|error| root.refused(&error))?;
         let timing = match &reference {
-            ReferenceKind::Route(route) if !root.has("duration") => timing.lasting(route.duration() + AFTERWARDS),
+            ReferenceKind::Route(route) if !root.has("duration") => {
+                timing.lasting(route.duration() + HOLD_AFTER_LAST_POINT_S)
+            }
             _ => timing,
         };
         let configuration = configuration(&trajectory.bounds())?;

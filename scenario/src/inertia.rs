@@ -3,6 +3,7 @@
 //! The law's inertia is diagonal in body axes. A matrix that is not is refused with its principal moments and the
 //! angles by which the body axes would have to turn; moments that no body can have, with the sum to take.
 
+use crate::key::{Bounds, Values};
 use crate::section::{FieldError, Section, vector_at};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
@@ -10,7 +11,11 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use toml::Value;
 
 /// Products of inertia that count as zero, relative to the greatest moment: a file's rounding.
-const ROUNDING: f64 = 1e-6;
+const NEGLIGIBLE_PRODUCT_SHARE: f64 = 1e-6;
+
+/// What a file may write: moments, or a matrix.
+pub const VALUES: Values =
+    Values::Either(&[Values::Vector(Bounds::physical("kg m^2")), Values::List(&Values::Vector(Bounds::any("kg m^2")))]);
 
 /// Reads the diagonal moments at `key`, kg m^2.
 ///
@@ -36,7 +41,7 @@ fn matrix(path: &str, rows: &[(String, &Value)]) -> Result<Matrix3<f64>, FieldEr
 
 /// The diagonal of `inertia`, if the rest is zero.
 fn diagonal(path: &str, inertia: &Matrix3<f64>) -> Result<Vector3<f64>, FieldError> {
-    let negligible = ROUNDING * inertia.diagonal().amax();
+    let negligible = NEGLIGIBLE_PRODUCT_SHARE * inertia.diagonal().amax();
     let differs =
         |&(row, column): &(usize, usize)| (inertia[(row, column)] - inertia[(column, row)]).abs() > negligible;
     if let Some((row, column)) = [(0, 1), (0, 2), (1, 2)].into_iter().find(differs) {
@@ -56,20 +61,20 @@ fn diagonal(path: &str, inertia: &Matrix3<f64>) -> Result<Vector3<f64>, FieldErr
 
 /// The error of a matrix with products of inertia, and its remedy.
 fn not_diagonal(inertia: &Matrix3<f64>) -> String {
-    const WANTED: &str = "must be diagonal";
+    const REQUIREMENT: &str = "must be diagonal";
     let Some((moments, axes)) = principal(inertia) else {
-        return format!("{WANTED}, found products of inertia, and no principal axes");
+        return format!("{REQUIREMENT}, found products of inertia, and no principal axes");
     };
     let listed = moments.map(|moment| format!("{moment:.5e}"));
     let listed = format!("[{}, {}, {}]", listed.x, listed.y, listed.z);
     if moments.min() <= 0.0 {
         return format!(
-            "{WANTED}, and its moments greater than zero; found principal moments {listed}, which no body has"
+            "{REQUIREMENT}, and its moments greater than zero; found principal moments {listed}, which no body has"
         );
     }
     let [roll, pitch, yaw] = euler_deg(&axes);
     let turned = format!("write inertia = {listed}, and rotors.position in the turned axes");
-    let about = format!("{WANTED}, found principal moments {listed} about axes turned by");
+    let about = format!("{REQUIREMENT}, found principal moments {listed} about axes turned by");
     if roll.abs().max(pitch.abs()) < 5e-3 {
         return format!("{about} a yaw of {yaw:.2} degrees: turn the body axes by it, {turned}");
     }
@@ -82,9 +87,9 @@ fn not_diagonal(inertia: &Matrix3<f64>) -> String {
 /// The principal moments and their axes in columns, each in the place of the body axis that it is nearest to; none for
 /// numbers too large to work with.
 fn principal(inertia: &Matrix3<f64>) -> Option<(Vector3<f64>, Matrix3<f64>)> {
-    const MOST_STEPS: usize = 1000;
+    const ITERATIONS_MAX: usize = 1000;
     let size = inertia.amax();
-    let found = SymmetricEigen::try_new(inertia / size, f64::EPSILON, MOST_STEPS)?;
+    let found = SymmetricEigen::try_new(inertia / size, f64::EPSILON, ITERATIONS_MAX)?;
     let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     let axes = orders.map(|order| right_handed(Matrix3::from_columns(&order.map(|k| found.eigenvectors.column(k)))));
     let (order, axes) = orders.iter().zip(axes).max_by(|(_, a), (_, b)| a.trace().total_cmp(&b.trace()))?;

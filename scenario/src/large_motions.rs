@@ -39,34 +39,34 @@ struct Start {
 }
 
 /// At rest, level, at the target.
-const RESTING: Start = Start { name: "", position: [0.0; 3], velocity: [0.0; 3], turned: [0.0; 3], turning: [0.0; 3] };
+const AT_REST: Start = Start { name: "", position: [0.0; 3], velocity: [0.0; 3], turned: [0.0; 3], turning: [0.0; 3] };
 
 /// All of them.
 const STARTS: [Start; 11] = [
-    Start { name: "10 m beside its target", position: [10.0, 0.0, 0.0], ..RESTING },
-    Start { name: "10 m above its target", position: [0.0, 0.0, 10.0], ..RESTING },
-    Start { name: "10 m below its target", position: [0.0, 0.0, -10.0], ..RESTING },
-    Start { name: "8 m/s past its target", position: [0.0, 3.0, 0.0], velocity: [8.0, 0.0, 0.0], ..RESTING },
-    Start { name: "a dive at 7 m/s", position: [5.0, 0.0, 5.0], velocity: [0.0, 5.0, -5.0], ..RESTING },
-    Start { name: "upside down", turned: [3.1, 0.2, 0.0], ..RESTING },
-    Start { name: "half a turn of heading", turned: [0.0, 0.0, 3.1], ..RESTING },
-    Start { name: "a tumble", turned: [1.5, -1.0, 0.5], turning: [6.0, -6.0, 4.0], ..RESTING },
-    Start { name: "a fast tumble", turned: [0.5, 1.0, 0.0], turning: [12.0, -8.0, 8.0], ..RESTING },
-    Start { name: "a spin on its side", turned: [1.7, 0.0, 0.0], turning: [2.0, -2.0, 15.0], ..RESTING },
-    Start { name: "a spin upside down", turned: [2.8, 0.4, 0.0], turning: [-2.0, 4.0, -15.0], ..RESTING },
+    Start { name: "10 m beside its target", position: [10.0, 0.0, 0.0], ..AT_REST },
+    Start { name: "10 m above its target", position: [0.0, 0.0, 10.0], ..AT_REST },
+    Start { name: "10 m below its target", position: [0.0, 0.0, -10.0], ..AT_REST },
+    Start { name: "8 m/s past its target", position: [0.0, 3.0, 0.0], velocity: [8.0, 0.0, 0.0], ..AT_REST },
+    Start { name: "a dive at 7 m/s", position: [5.0, 0.0, 5.0], velocity: [0.0, 5.0, -5.0], ..AT_REST },
+    Start { name: "upside down", turned: [3.1, 0.2, 0.0], ..AT_REST },
+    Start { name: "half a turn of heading", turned: [0.0, 0.0, 3.1], ..AT_REST },
+    Start { name: "a tumble", turned: [1.5, -1.0, 0.5], turning: [6.0, -6.0, 4.0], ..AT_REST },
+    Start { name: "a fast tumble", turned: [0.5, 1.0, 0.0], turning: [12.0, -8.0, 8.0], ..AT_REST },
+    Start { name: "a spin on its side", turned: [1.7, 0.0, 0.0], turning: [2.0, -2.0, 15.0], ..AT_REST },
+    Start { name: "a spin upside down", turned: [2.8, 0.4, 0.0], turning: [-2.0, 4.0, -15.0], ..AT_REST },
 ];
 
 /// s. Most arrive in seconds; a weak vehicle that starts spinning falls for minutes, and then has far to come.
-const LONGEST_FLIGHT: f64 = 1800.0;
+const FLIGHT_DURATION_MAX_S: f64 = 1800.0;
 
 /// So near the target, m and m/s, and so near upright and its heading, rad, for so long, s, a vehicle has arrived.
-const ARRIVAL_DISTANCE: f64 = 0.05;
-const ARRIVAL_SPEED: f64 = 0.1;
-const ARRIVAL_ANGLE: f64 = 0.05;
-const ARRIVAL_TIME: f64 = 1.0;
+const ARRIVAL_DISTANCE_M: f64 = 0.05;
+const ARRIVAL_SPEED_M_PER_S: f64 = 0.1;
+const ARRIVAL_ANGLE_RAD: f64 = 0.05;
+const ARRIVAL_TIME_S: f64 = 1.0;
 
 /// The model's longest step, s.
-const STEP_MAX: f64 = 2e-3;
+const STEP_MAX_S: f64 = 2e-3;
 
 /// The flight that was farthest from its target on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,7 +137,7 @@ struct Model {
 
 impl Model {
     fn new(vehicle: &Vehicle, timing: &Timing, start: &Start) -> Self {
-        let steps = (timing.period / STEP_MAX).ceil();
+        let steps = (timing.period / STEP_MAX_S).ceil();
         let step = timing.period / steps;
         let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);
         let waiting = (timing.delay_samples * steps).round() as usize;
@@ -172,16 +172,16 @@ impl Model {
         loop {
             let command = law.command(&self.body.measured(), &reference);
             let [distance, turned] = [self.body.position.norm(), self.body.heading_error(&reference.heading)];
-            let (Ok(command), 0, true) = (command, law.fallback_times(), time < LONGEST_FLIGHT) else {
+            let (Ok(command), 0, true) = (command, law.fallback_times(), time < FLIGHT_DURATION_MAX_S) else {
                 return Err(NotArrived { start, time, distance, turned });
             };
             farthest = farthest.max(distance);
             self.advance(&command.wrench);
             time += period;
-            let near = distance < ARRIVAL_DISTANCE && self.body.velocity.norm() < ARRIVAL_SPEED;
-            let arrived = near && turned < ARRIVAL_ANGLE && self.body.thrust_axis().z > ARRIVAL_ANGLE.cos();
+            let near = distance < ARRIVAL_DISTANCE_M && self.body.velocity.norm() < ARRIVAL_SPEED_M_PER_S;
+            let arrived = near && turned < ARRIVAL_ANGLE_RAD && self.body.thrust_axis().z > ARRIVAL_ANGLE_RAD.cos();
             stayed = if arrived { stayed + period } else { 0.0 };
-            if stayed > ARRIVAL_TIME {
+            if stayed > ARRIVAL_TIME_S {
                 return Ok(farthest);
             }
         }

@@ -18,8 +18,8 @@
 //! | `[campaign]` | the circumstances of [`campaign`] |
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
-//! [`mod@file`] reads the whole file; each section has a module; one that comes later adds a module, its name to the
-//! list of sections and a field to [`Scenario`]. Numbers are read in double precision and rounded once, where the law's
+//! [`mod@file`] reads the whole file; each section has a module, which declares its keys ([`key`]) and reads them.
+//! [`schema`] prints the declarations as a JSON schema. Numbers are read in double precision and rounded once, where the law's
 //! types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
@@ -45,6 +45,7 @@ pub mod file;
 pub mod inertia;
 pub mod initial;
 pub mod judge;
+pub mod key;
 pub mod large_motions;
 pub mod number;
 pub mod path;
@@ -56,13 +57,14 @@ pub mod remarks;
 pub mod resolution;
 pub mod rotor_loss;
 pub mod sampled_loop;
+pub mod schema;
 pub mod section;
+pub mod self_contained;
 pub mod stability;
 pub mod text;
 pub mod timing;
 pub mod trajectory;
 pub mod vehicle;
 pub mod verdict;
-pub mod whole;
 
 pub use file::{PAPER, STUDY, Scenario, ScenarioError, check_name};

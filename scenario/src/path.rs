@@ -10,14 +10,14 @@ use nalgebra::Vector3;
 use std::fmt;
 
 /// Instants looked at on each leg: a peak between two of them is missed by less than 1e-4 of the leg's swing.
-const INSTANTS: u32 = 256;
+const INSTANTS_PER_LEG: u32 = 256;
 
 /// The greatest distance that is not reported, and the rounding of single precision, m.
-const LEAST: f64 = 0.01;
+const DISTANCE_TOLERANCE_M: f64 = 0.01;
 
 /// A path that goes deeper than this, m, and less than this share of that above zero, has its z axis downwards.
-const DEPTH_OF_Z_DOWN: f64 = 0.2;
-const HEIGHT_SHARE_OF_Z_DOWN: f64 = 0.1;
+const Z_DOWN_DEPTH_M: f64 = 0.2;
+const Z_DOWN_HEIGHT_SHARE: f64 = 0.1;
 
 /// A point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +41,7 @@ impl Swing {
     /// The farthest that the path of `reference` leaves the box of its waypoints; none where it stays inside, or where
     /// there are none.
     #[must_use]
-    pub fn of(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
+    pub fn find(reference: &ReferenceKind, trajectory: &dyn Trajectory) -> Option<Self> {
         let ReferenceKind::Route(Route { points, way: Way::Smooth, .. }) = reference else { return None };
         let positions = || points.iter().map(|point| Vector3::from(point.position));
         let (least, greatest) = (positions().reduce(|a, b| a.inf(&b))?, positions().reduce(|a, b| a.sup(&b))?);
@@ -49,7 +49,7 @@ impl Swing {
             let nearest = at.position.sup(&least).inf(&greatest);
             Self { distance: (at.position - nearest).norm(), at }
         });
-        swings.max_by(|a, b| a.distance.total_cmp(&b.distance)).filter(|swing| swing.distance > LEAST)
+        swings.max_by(|a, b| a.distance.total_cmp(&b.distance)).filter(|swing| swing.distance > DISTANCE_TOLERANCE_M)
     }
 }
 
@@ -100,7 +100,7 @@ pub fn check_ground(
     };
     let height = match (ground, reference) {
         (Some(ground), _) => ground.height,
-        (None, _) if lowest.position.z < -DEPTH_OF_Z_DOWN && highest < -HEIGHT_SHARE_OF_Z_DOWN * lowest.position.z => {
+        (None, _) if lowest.position.z < -Z_DOWN_DEPTH_M && highest < -Z_DOWN_HEIGHT_SHARE * lowest.position.z => {
             let problem = format!(
                 "lies below zero, from z = {:.2} to {highest:.2} m, and z points up: where it points down (NED), turn \
                  it round to (x, -y, -z) and -yaw; where the ground is that low, say so in [ground] height",
@@ -111,7 +111,7 @@ pub fn check_ground(
         (None, ReferenceKind::Route(Route { points, .. })) if points.iter().all(|p| p.position[2] >= 0.0) => 0.0,
         _ => return Ok(()),
     };
-    if lowest.position.z >= height - LEAST {
+    if lowest.position.z >= height - DISTANCE_TOLERANCE_M {
         return Ok(());
     }
     let problem = format!("the path must stay above the ground at {height} m, found {lowest}; {remedy}");
@@ -122,7 +122,8 @@ pub fn check_ground(
 fn places(points: &[Waypoint], trajectory: &dyn Trajectory) -> impl Iterator<Item = Place> {
     points.windows(2).flat_map(move |pair| {
         let (from, to) = (pair[0].time, pair[1].time);
-        (0..=INSTANTS).map(move |i| place(trajectory, from + (to - from) * f64::from(i) / f64::from(INSTANTS)))
+        (0..=INSTANTS_PER_LEG)
+            .map(move |i| place(trajectory, from + (to - from) * f64::from(i) / f64::from(INSTANTS_PER_LEG)))
     })
 }
 

@@ -27,13 +27,13 @@ use std::f64::consts::TAU;
 use toml::Value;
 
 /// Arm of a vehicle without rotors, per cube root of its mass, m/kg^(1/3).
-const USUAL_ARM: f64 = 0.2;
+const USUAL_ARM_M_PER_KG_THIRD: f64 = 0.2;
 /// Longest usual lag of rotors, s.
-const USUAL_LAG_MAX: f64 = 0.15;
+const USUAL_LAG_MAX_S: f64 = 0.15;
 /// Shortest usual lag, s.
-const USUAL_LAG_MIN: f64 = 0.001;
+const USUAL_LAG_MIN_S: f64 = 0.001;
 /// (rad/s) / (revolution/minute).
-const RADIANS_PER_SECOND: f64 = TAU / 60.0;
+const RAD_PER_S_PER_RPM: f64 = TAU / 60.0;
 
 /// Values that a quantity usually has, and that it can have, each with both ends; and one amid the published vehicles'.
 struct Range {
@@ -43,13 +43,13 @@ struct Range {
 }
 
 const ARM_RANGE: Range = Range { typical: 0.16, usual: [0.06, 0.6], possible: [0.02, 2.0] };
-const RADIUS: Range = Range { typical: 0.6, usual: [0.12, 1.25], possible: [0.03, 2.0] };
-const RADIUS_WITHOUT_ROTORS: Range = Range { typical: 0.6, usual: [0.12, 2.5], possible: [0.003, 20.0] };
-const THRUST: Range = Range { typical: 4.0, usual: [1.2, 20.0], possible: [1.0, 50.0] };
-const YAW: Range = Range { typical: 0.15, usual: [0.02, 0.8], possible: [0.001, 3.0] };
-const THRUST_LIMIT: Range = Range { typical: 4.0, usual: [0.0, 20.0], possible: [0.0, 50.0] };
-const TORQUE_LIMIT: Range = Range { typical: 100.0, usual: [0.5, 5e3], possible: [0.01, 5e4] };
-const SPEED: Range = Range { typical: 250.0, usual: [0.0, 750.0], possible: [0.0, f64::INFINITY] };
+const GYRATION_RADIUS_RANGE: Range = Range { typical: 0.6, usual: [0.12, 1.25], possible: [0.03, 2.0] };
+const GYRATION_RADIUS_RANGE_WITHOUT_ROTORS: Range = Range { typical: 0.6, usual: [0.12, 2.5], possible: [0.003, 20.0] };
+const THRUST_RANGE: Range = Range { typical: 4.0, usual: [1.2, 20.0], possible: [1.0, 50.0] };
+const YAW_TORQUE_RANGE: Range = Range { typical: 0.15, usual: [0.02, 0.8], possible: [0.001, 3.0] };
+const THRUST_LIMIT_RANGE: Range = Range { typical: 4.0, usual: [0.0, 20.0], possible: [0.0, 50.0] };
+const TORQUE_LIMIT_RANGE: Range = Range { typical: 100.0, usual: [0.5, 5e3], possible: [0.01, 5e4] };
+const TIP_SPEED_RANGE: Range = Range { typical: 250.0, usual: [0.0, 750.0], possible: [0.0, f64::INFINITY] };
 
 fn within(value: f64, [least, greatest]: [f64; 2]) -> bool {
     (least..=greatest).contains(&value)
@@ -88,13 +88,13 @@ struct Judged {
 }
 
 impl Numbers {
-    fn of(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Self {
+    fn read(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Self {
         let rotors = rotors.and_then(|rotors| {
             let one = rotors.first()?;
             let has_speeds = root.value("rotors.speed").is_some();
             let thrust_max = f64::from(one.thrust_max);
             Some(RotorNumbers {
-                arm: f64::from(rotors.longest_arm()),
+                arm: f64::from(rotors.max_arm()),
                 thrust: f64::from(rotors.thrust_together().1),
                 yaw: f64::from(one.drag_coefficient) / f64::from(one.thrust_coefficient),
                 speed: has_speeds.then(|| (thrust_max / f64::from(one.thrust_coefficient)).sqrt()),
@@ -110,31 +110,34 @@ impl Numbers {
         let radius = (self.moment / self.mass).sqrt();
         let size = self.mass.cbrt();
         let Some(RotorNumbers { arm, thrust, yaw, speed }) = self.rotors else {
-            let arm = USUAL_ARM * size;
+            let arm = USUAL_ARM_M_PER_KG_THIRD * size;
             let says = format!(
                 "makes a radius of gyration of {} m, and a vehicle of {} kg is some {} m wide",
                 short(radius),
                 short(self.mass),
                 short(2.0 * arm)
             );
-            let range = RADIUS_WITHOUT_ROTORS;
+            let range = GYRATION_RADIUS_RANGE_WITHOUT_ROTORS;
             let inertia = Judged { field: "vehicle.inertia", value: radius / arm, range, says };
             let [thrust, torque] = self.limits;
             let thrust = thrust.map(|thrust| {
                 let value = thrust / (self.mass * self.gravity);
-                let says =
-                    format!("is {} times the weight, where at most {} times is usual", short(value), THRUST.usual[1]);
-                Judged { field: "limits.thrust_max", value, range: THRUST_LIMIT, says }
+                let says = format!(
+                    "is {} times the weight, where at most {} times is usual",
+                    short(value),
+                    THRUST_RANGE.usual[1]
+                );
+                Judged { field: "limits.thrust_max", value, range: THRUST_LIMIT_RANGE, says }
             });
             let torque = torque.map(|torque| {
                 let value = torque / self.moment;
                 let says = format!(
                     "makes an angular acceleration of {} rad/s^2, where {} to {} rad/s^2 are usual",
                     short(value),
-                    TORQUE_LIMIT.usual[0],
-                    TORQUE_LIMIT.usual[1]
+                    TORQUE_LIMIT_RANGE.usual[0],
+                    TORQUE_LIMIT_RANGE.usual[1]
                 );
-                Judged { field: "limits.torque_max", value, range: TORQUE_LIMIT, says }
+                Judged { field: "limits.torque_max", value, range: TORQUE_LIMIT_RANGE, says }
             });
             return [Some(inertia), thrust, torque].into_iter().flatten().collect();
         };
@@ -159,37 +162,37 @@ impl Numbers {
             Judged {
                 field: "vehicle.inertia",
                 value: radius / arm,
-                range: RADIUS,
+                range: GYRATION_RADIUS_RANGE,
                 says: format!(
                     "makes a radius of gyration sqrt(J / m) of {} m beside arms of {} m, where {} to {} times the arm \
                      is usual",
                     short(radius),
                     short(arm),
-                    RADIUS.usual[0],
-                    RADIUS.usual[1]
+                    GYRATION_RADIUS_RANGE.usual[0],
+                    GYRATION_RADIUS_RANGE.usual[1]
                 ),
             },
             Judged {
                 field: thrust_field,
                 value: relative,
-                range: THRUST,
+                range: THRUST_RANGE,
                 says: format!(
                     "makes a thrust of all rotors together of {} times the weight, where {} to {} times is usual",
                     short(relative),
-                    THRUST.usual[0],
-                    THRUST.usual[1]
+                    THRUST_RANGE.usual[0],
+                    THRUST_RANGE.usual[1]
                 ),
             },
             Judged {
                 field: yaw_field,
                 value: yaw / arm,
-                range: YAW,
+                range: YAW_TORQUE_RANGE,
                 says: format!(
                     "makes a yaw torque of {} N m for each newton of thrust, where {} to {} are usual with arms of \
                      {} m",
                     short(yaw),
-                    short(YAW.usual[0] * arm),
-                    short(YAW.usual[1] * arm),
+                    short(YAW_TORQUE_RANGE.usual[0] * arm),
+                    short(YAW_TORQUE_RANGE.usual[1] * arm),
                     short(arm)
                 ),
             },
@@ -201,7 +204,7 @@ impl Numbers {
                 short(speed),
                 short(speed * arm)
             );
-            all.push(Judged { field: "rotors.speed", value: speed * arm, range: SPEED, says });
+            all.push(Judged { field: "rotors.speed", value: speed * arm, range: TIP_SPEED_RANGE, says });
         }
         all
     }
@@ -256,7 +259,7 @@ const fn slip(field: &'static str, is: &'static str, factor: f64, number: Slippe
 /// What both coefficients of a rotor may be instead.
 const PER_RPM: &str = "in N/rpm^2 (and drag_coefficient in N m/rpm^2)";
 
-const SLIPS: [Slip; 17] = [
+const UNIT_SLIPS: [Slip; 17] = [
     slip("vehicle.mass", "in g", 1e-3, Slipped::Mass),
     slip("vehicle.inertia", "in g m^2", 1e-3, Slipped::Moment),
     slip("vehicle.inertia", "in kg cm^2", 1e-4, Slipped::Moment),
@@ -272,15 +275,15 @@ const SLIPS: [Slip; 17] = [
     slip("rotors.thrust_max", "in kilograms-force", 9.80665, Slipped::Thrust),
     slip("rotors.torque_per_thrust", "in cm", 1e-2, Slipped::Yaw),
     slip("rotors.torque_per_thrust", "in mm", 1e-3, Slipped::Yaw),
-    slip("rotors.speed", "in rpm", RADIANS_PER_SECOND, Slipped::Speed),
-    slip("rotors.thrust_coefficient", PER_RPM, 1.0 / (RADIANS_PER_SECOND * RADIANS_PER_SECOND), Slipped::Thrust),
+    slip("rotors.speed", "in rpm", RAD_PER_S_PER_RPM, Slipped::Speed),
+    slip("rotors.thrust_coefficient", PER_RPM, 1.0 / (RAD_PER_S_PER_RPM * RAD_PER_S_PER_RPM), Slipped::Thrust),
 ];
 
 /// The slip that would explain the numbers, with the value that would be right: the end of a sentence. Without one it
 /// is empty.
 #[must_use]
 pub fn likely_slip(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> String {
-    let numbers = Numbers::of(root, vehicle, rotors);
+    let numbers = Numbers::read(root, vehicle, rotors);
     let explains = |slip: &'static Slip| {
         let value = root.value(slip.field)?;
         let judged = numbers.corrected(slip).judged();
@@ -289,7 +292,7 @@ pub fn likely_slip(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
         let unlike: f64 = judged.iter().map(|judged| (judged.value / judged.range.typical).ln().abs()).sum();
         is_usual.then_some((unlike, slip, value))
     };
-    let found = SLIPS.iter().filter_map(explains).min_by(|(one, ..), (other, ..)| one.total_cmp(other));
+    let found = UNIT_SLIPS.iter().filter_map(explains).min_by(|(one, ..), (other, ..)| one.total_cmp(other));
     found.map_or(String::new(), |(_, Slip { field, is, factor, .. }, value)| {
         format!("; if {field} is {is}, write {}", scaled(value, *factor))
     })
@@ -300,7 +303,7 @@ pub fn likely_slip(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
 /// # Errors
 /// Names the field, with the slip that would explain it.
 pub fn check(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f64) -> Result<Vec<String>, FieldError> {
-    let judged = Numbers::of(root, vehicle, rotors).judged();
+    let judged = Numbers::read(root, vehicle, rotors).judged();
     let beyond = |range: fn(&Range) -> [f64; 2]| judged.iter().filter(move |j| !within(j.value, range(&j.range)));
     if let Some(Judged { field, says, .. }) = beyond(|range| range.possible).next() {
         let problem = format!("{says}: no vehicle has this{}", likely_slip(root, vehicle, rotors));
@@ -311,12 +314,12 @@ pub fn check(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f6
     if let Some(last) = unusual.last_mut() {
         *last += &likely_slip(root, vehicle, rotors);
     }
-    if rotors.is_some() && lag < USUAL_LAG_MIN {
+    if rotors.is_some() && lag < USUAL_LAG_MIN_S {
         unusual
             .push(format!("rotors.lag is {lag} s: rotors that respond at once are some simulators', and no real ones"));
     }
-    if lag > USUAL_LAG_MAX {
-        unusual.push(format!("rotors.lag is {lag} s, where 0.005 to {USUAL_LAG_MAX} s are usual"));
+    if lag > USUAL_LAG_MAX_S {
+        unusual.push(format!("rotors.lag is {lag} s, where 0.005 to {USUAL_LAG_MAX_S} s are usual"));
     }
     Ok(unusual)
 }

@@ -10,7 +10,7 @@
 //!
 //! [`controller_core::shield::network`] says what inputs and outputs are.
 
-use controller_core::shield::network::{Layer, Network, OUTPUTS};
+use controller_core::shield::network::{Layer, Network, OUTPUT_COUNT};
 use toml::{Table, Value};
 
 /// The numbers of a network.
@@ -19,7 +19,7 @@ pub struct PolicyFile {
     /// Weights, row by row, and biases, of each layer.
     pub layers: Vec<(Vec<f32>, Vec<f32>)>,
     /// What the outputs are multiplied by.
-    pub scale: [f32; OUTPUTS],
+    pub scale: [f32; OUTPUT_COUNT],
 }
 
 impl PolicyFile {
@@ -39,7 +39,7 @@ impl PolicyFile {
         only(table, &["scale", "layers"], "")?;
         let scale = numbers(table.get("scale"), "scale")?;
         let count = scale.len();
-        let scale = scale.try_into().map_err(|_| format!("scale: must have {OUTPUTS} numbers, found {count}"))?;
+        let scale = scale.try_into().map_err(|_| format!("scale: must have {OUTPUT_COUNT} numbers, found {count}"))?;
         let layers = table.get("layers").and_then(Value::as_array).ok_or("layers: missing; write [[layers]]")?;
         let layer = |(number, layer): (usize, &Value)| {
             let path = format!("layers[{number}]");

@@ -21,7 +21,6 @@ pub mod drag;
 pub mod estimator;
 pub mod failure;
 pub mod ground;
-pub mod numbers;
 pub mod sensors;
 pub mod truth;
 pub mod wind;
@@ -40,7 +39,7 @@ use truth::Truth;
 use wind::Wind;
 
 /// The names of the sections.
-pub const SECTIONS: [&str; 9] =
+pub const SECTION_NAMES: [&str; 9] =
     ["truth", "drag", "wind", "disturbance", "battery", "failure", "ground", "sensors", "estimator"];
 
 /// The file's reality beyond the model. By default none: the vehicle is the model, in still vacuum, its state known.
@@ -113,7 +112,7 @@ impl Reality {
             self.sensors.is_some(),
             self.estimator.is_some(),
         ];
-        SECTIONS.into_iter().zip(there).filter_map(|(section, there)| there.then_some(section)).collect()
+        SECTION_NAMES.into_iter().zip(there).filter_map(|(section, there)| there.then_some(section)).collect()
     }
 
     /// Whether the vehicle and the air are the model's, whatever the sensors say of them.

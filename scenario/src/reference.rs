@@ -2,10 +2,10 @@
 //! starts, or 1 m above the origin if `[initial]` does not say where that is, facing world x.
 
 use crate::initial::read_position;
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::resolution;
 use crate::section::{FieldError, Section};
-use crate::trajectory::{self, Allowed, Directory, Route, stretch};
-use controller_core::certificate::path::FORCE_KEPT;
+use crate::trajectory::{self, Allowed, Directory, FORCE_KEPT, Route, TOLERANCE, kind, stretch};
 use controller_core::error::{ParameterError, Reason};
 use controller_core::heading::Heading;
 use controller_core::reference::Trajectory;
@@ -15,17 +15,55 @@ use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// How far a flight may stray from its reference once it is there, if the file does not say, m.
-pub const TOLERANCE: f64 = 0.5;
-
 /// Where to hover if the file says nothing of it, m.
-const DEFAULT_POSITION: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
+const DEFAULT_POSITION_M: Vector3<f64> = Vector3::new(0.0, 0.0, 1.0);
 
 /// What to do about a place that is too far away.
 const COUNT_FROM_NEAR: &str = "count all positions from an origin nearby";
 
 /// The greatest angle of a harmonic, turns.
-const MOST_TURNS: f64 = 2.0;
+const ANGLE_MAX_TURNS: f64 = 2.0;
+
+/// The keys of `[reference]`, by its kind.
+pub const LAYOUTS: [&Layout; 4] = [&HOVER, &HARMONIC, &trajectory::WAYPOINTS, &trajectory::TRAJECTORY];
+
+const HOVER: Layout = Layout {
+    name: "reference",
+    about: "A point and a heading, at rest.",
+    keys: &[
+        kind(&["hover"]),
+        TOLERANCE,
+        FORCE_KEPT,
+        Key::vector("position", Bounds::any("m"), "World."),
+        Key::number("heading_deg", Bounds::any("degrees"), "From world x.").or(0.0),
+    ],
+};
+
+const HARMONIC: Layout = Layout {
+    name: "reference",
+    about: "A cosine on each axis, a heading that rotates and swings.",
+    keys: &[
+        kind(&["harmonic"]),
+        TOLERANCE,
+        FORCE_KEPT,
+        Key::vector("center", Bounds::any("m"), "World."),
+        Key::vector("amplitude", Bounds::any("m"), "Of each axis."),
+        Key::vector("frequency", Bounds::any("rad/s"), "Of each axis."),
+        Key::vector("phase", Bounds::any("rad"), "Of each axis.").or(0.0),
+        Key::table(&HEADING),
+    ],
+};
+
+const HEADING: Layout = Layout {
+    name: "heading",
+    about: "offset + rate t + amplitude cos(frequency t), from world x.",
+    keys: &[
+        Key::number("offset", Bounds::any("rad"), "At the start.").or(0.0),
+        Key::number("rate", Bounds::any("rad/s"), "Of the rotation.").or(0.0),
+        Key::number("amplitude", Bounds::any("rad"), "Of the swing.").or(0.0),
+        Key::number("frequency", Bounds::any("rad/s"), "Of the swing.").or(0.0),
+    ],
+};
 
 /// A reference as the file describes it, double precision.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,14 +89,18 @@ impl ReferenceKind {
     /// Names the field that is missing, unknown, or no number.
     pub fn read(root: &Section, directory: Directory, allow: Allowed) -> Result<Self, FieldError> {
         let Some(section) = root.optional_section("reference")? else {
-            let position = read_position(root)?.unwrap_or(DEFAULT_POSITION);
+            let position = read_position(root)?.unwrap_or(DEFAULT_POSITION_M);
             return Ok(Self::Hover { position, heading: 0.0 });
         };
         match section.text("kind")? {
-            "hover" => read_hover(&section),
-            "harmonic" => read_harmonic(&section).map(Self::Harmonic),
-            "waypoints" => trajectory::read_waypoints(&section, directory, allow).map(Self::Route),
-            "trajectory" => trajectory::read_trajectory(&section, directory, allow).map(Self::Route),
+            "hover" => read_hover(&section.with(&HOVER)?),
+            "harmonic" => read_harmonic(&section.with(&HARMONIC)?).map(Self::Harmonic),
+            "waypoints" => {
+                trajectory::read_waypoints(&section.with(&trajectory::WAYPOINTS)?, directory, allow).map(Self::Route)
+            }
+            "trajectory" => {
+                trajectory::read_trajectory(&section.with(&trajectory::TRAJECTORY)?, directory, allow).map(Self::Route)
+            }
             other => {
                 let allowed = "must be \"hover\", \"harmonic\", \"waypoints\" or \"trajectory\"";
                 Err(FieldError::new(section.path_of("kind"), format!("{allowed}, found {other:?}")))
@@ -66,26 +108,17 @@ impl ReferenceKind {
         }
     }
 
-    /// Reads `tolerance` of `[reference]`, m: how far a flight may stray once it is there.
+    /// Reads a number that every kind of `[reference]` may have: [`TOLERANCE`] or [`FORCE_KEPT`].
     ///
     /// # Errors
-    /// Names the field if it is no positive number.
-    pub fn tolerance(root: &Section) -> Result<f64, FieldError> {
-        let Some(section) = root.optional_section("reference")? else { return Ok(TOLERANCE) };
-        section.positive_or("tolerance", TOLERANCE)
-    }
-
-    /// Reads `force_kept` of `[reference]`, m/s^2: the force per mass, in any direction, that is kept free along it.
-    ///
-    /// # Errors
-    /// Names the field if it is negative or no number.
-    pub fn force_kept(root: &Section) -> Result<f32, FieldError> {
-        let Some(section) = root.optional_section("reference")? else { return Ok(FORCE_KEPT) };
-        let force = section.number_or("force_kept", f64::from(FORCE_KEPT))?;
-        if force >= 0.0 {
-            return Ok(force as f32);
+    /// Names the field if it is no number or outside its bounds.
+    pub fn number(root: &Section, key: &Key) -> Result<f64, FieldError> {
+        match (root.optional_section("reference")?, key.values) {
+            (Some(section), Values::Number(bounds)) if section.has(key.name) => {
+                bounds.check(section.path_of(key.name), section.number(key.name)?)
+            }
+            _ => Ok(key.default()),
         }
-        Err(FieldError::new(section.path_of("force_kept"), format!("must not be negative, found {force}")))
     }
 
     /// The trajectory itself.
@@ -108,29 +141,25 @@ impl ReferenceKind {
 }
 
 fn read_hover(section: &Section) -> Result<ReferenceKind, FieldError> {
-    section.allow(&["kind", "tolerance", "force_kept", "position", "heading_deg"])?;
     let position = section.vector("position")?;
     resolution::check(&section.path_of("position"), &position, COUNT_FROM_NEAR)?;
-    let heading = section.number_or("heading_deg", 0.0)?.to_radians();
+    let heading = section.number("heading_deg")?.to_radians();
     Ok(ReferenceKind::Hover { position, heading })
 }
 
-/// `phase` and `heading`, or fields of it, are zero where they are left out.
 fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
-    section.allow(&["kind", "tolerance", "force_kept", "center", "amplitude", "frequency", "phase", "heading"])?;
     let mut heading = HeadingParameters { offset: 0.0, rate: 0.0, amplitude: 0.0, frequency: 0.0 };
-    if let Some(section) = section.optional_section("heading")? {
-        section.allow(&["offset", "rate", "amplitude", "frequency"])?;
-        heading.offset = section.number_or("offset", 0.0)?;
+    if let Some(section) = section.open(&HEADING)? {
+        heading.offset = section.number("offset")?;
         check_radians(&section, "offset", heading.offset)?;
-        heading.rate = section.number_or("rate", 0.0)?;
-        heading.amplitude = section.number_or("amplitude", 0.0)?;
-        heading.frequency = section.number_or("frequency", 0.0)?;
+        heading.rate = section.number("rate")?;
+        heading.amplitude = section.number("amplitude")?;
+        heading.frequency = section.number("frequency")?;
     }
     let (center, amplitude) = (section.vector("center")?, section.vector("amplitude")?);
     resolution::check(&section.path_of("center"), &center, COUNT_FROM_NEAR)?;
     resolution::check(&section.path_of("amplitude"), &amplitude, "fly a smaller one")?;
-    let phase = section.vector_or("phase", Vector3::zeros())?;
+    let phase = section.vector("phase")?;
     check_radians(section, "phase", phase.amax())?;
     Ok(HarmonicParameters {
         center: center.into(),
@@ -143,9 +172,9 @@ fn read_harmonic(section: &Section) -> Result<HarmonicParameters, FieldError> {
 
 /// Refuses an angle of so many turns that it is probably in degrees.
 fn check_radians(section: &Section, key: &str, angle: f64) -> Result<(), FieldError> {
-    if angle.abs() < MOST_TURNS * TAU {
+    if angle.abs() < ANGLE_MAX_TURNS * TAU {
         return Ok(());
     }
-    let problem = format!("is in rad, and at most {MOST_TURNS} turns, found {angle}; degrees are rad times 57.3");
+    let problem = format!("is in rad, and at most {ANGLE_MAX_TURNS} turns, found {angle}; degrees are rad times 57.3");
     Err(FieldError::new(section.path_of(key), problem))
 }

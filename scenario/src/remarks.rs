@@ -16,8 +16,8 @@ pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     };
     let summary = route.and_then(summary);
     let source = route.into_iter().flat_map(|route| route.remarks.clone());
-    let swing = Swing::of(&scenario.reference, &*scenario.trajectory).map(|swing| swing.to_string());
-    let excess = if is_certified { None } else { Excess::of(scenario) };
+    let swing = Swing::find(&scenario.reference, &*scenario.trajectory).map(|swing| swing.to_string());
+    let excess = if is_certified { None } else { Excess::find(scenario) };
     let reference = summary.into_iter().chain(source).chain(swing).chain(excess.map(|excess| excess.to_string()));
     let vehicle = scenario.unusual.iter().map(|unusual| format!("vehicle, unusual: {unusual}"));
     vehicle.chain(reference.map(|remark| format!("reference: {remark}"))).collect()

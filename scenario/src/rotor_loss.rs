@@ -10,25 +10,25 @@
 pub mod relaxed_hover;
 pub mod turning_loop;
 
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::extended::memory::Estimates;
-use controller_core::extended::rotor_loss::spinning::SpinningLaw;
+use controller_core::extended::rotor_loss::spinning::RotorLossLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// How near its place a vehicle without a rotor must stay not to count as lost, m.
-pub const PLACE_HELD: f64 = 3.0;
+pub const PLACE_HELD_DISTANCE_M: f64 = 3.0;
 
 /// The greatest speed of its soft landing, m/s.
-pub const SOFT_LANDING: f64 = 1.0;
+pub const SOFT_LANDING_SPEED_M_PER_S: f64 = 1.0;
 
 /// The law of a vehicle without one of its rotors, before its first tick.
 #[derive(Debug, Clone)]
 pub struct WithoutARotor {
-    law: SpinningLaw,
+    law: RotorLossLaw,
     period: f32,
 }
 
@@ -40,10 +40,10 @@ impl WithoutARotor {
         let (LawParameters::Extended(law), Some(rotors)) = (configuration.law(), configuration.rotors()) else {
             return None;
         };
-        let lost = Lost { rotor, left: 0.0 };
+        let lost = LostRotor { rotor, left: 0.0 };
         let times = [law.actuators.lag + law.actuators.delay, period];
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
-        Some(Self { law: SpinningLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })
+        Some(Self { law: RotorLossLaw::new(vehicle, limits, rotors, &lost, times, &Estimates::NONE), period })
     }
 
     /// The axis, in the body, about which it turns: at rest and level, the tilt's error is the one from it to z.

@@ -38,14 +38,14 @@ use slopes::Slopes;
 pub(crate) use spectral_radius::spectral_radius;
 
 /// The longest period between ticks, s; the law's own limit.
-const LONGEST_PERIOD: f32 = 0.1;
+const PERIOD_MAX_S: f32 = 0.1;
 
 /// The factors on the lag that are looked at: powers of this, and of its inverse.
-const LAG_STEP: f64 = 1.05;
-const LAG_STEPS: i32 = 47;
+const LAG_FACTOR_STEP: f64 = 1.05;
+const LAG_FACTOR_STEPS: i32 = 47;
 
 /// The greatest delay looked at, samples: the delay line is part of the matrix.
-pub const GREATEST_DELAY: f32 = 64.0;
+pub const DELAY_MAX_SAMPLES: f32 = 64.0;
 
 /// When commands are computed and how they reach the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,12 +138,12 @@ impl LoopModel {
             require(value.is_finite(), field, Reason::NotFinite)?;
         }
         require(period > 0.0, "control.period", Reason::NotPositive)?;
-        require(period <= f64::from(LONGEST_PERIOD), "control.period", Reason::Above(LONGEST_PERIOD))?;
+        require(period <= f64::from(PERIOD_MAX_S), "control.period", Reason::Above(PERIOD_MAX_S))?;
         require(rotor_lag >= 0.0, "rotors.lag", Reason::Negative)?;
         require(delay_samples >= 0.0, "sampling.delay", Reason::Negative)?;
-        require(delay_samples <= f64::from(GREATEST_DELAY), "sampling.delay", Reason::Above(GREATEST_DELAY))?;
+        require(delay_samples <= f64::from(DELAY_MAX_SAMPLES), "sampling.delay", Reason::Above(DELAY_MAX_SAMPLES))?;
         let inertia = [vehicle.inertia.x, vehicle.inertia.y, vehicle.inertia.z].map(f64::from);
-        Ok(Self { slopes: Slopes::of(law, inertia), timing, velocity_bandwidth: None })
+        Ok(Self { slopes: Slopes::from_law(law, inertia), timing, velocity_bandwidth: None })
     }
 
     /// The same loops with the velocity from the positions, by an alpha-beta filter with a double pole at `bandwidth`,
@@ -188,8 +188,9 @@ impl LoopModel {
             let timing = Timing { rotor_lag: self.timing.rotor_lag * factor, ..self.timing };
             Axis::ALL.into_iter().all(|axis| Self { timing, ..*self }.spectral_radius(axis) < 1.0)
         };
-        let first_unstable = |step: f64| (1..=LAG_STEPS).map(|n| step.powi(n)).find(|factor| !is_stable(*factor));
-        [first_unstable(1.0 / LAG_STEP).unwrap_or(0.0), first_unstable(LAG_STEP).unwrap_or(f64::INFINITY)]
+        let first_unstable =
+            |step: f64| (1..=LAG_FACTOR_STEPS).map(|n| step.powi(n)).find(|factor| !is_stable(*factor));
+        [first_unstable(1.0 / LAG_FACTOR_STEP).unwrap_or(0.0), first_unstable(LAG_FACTOR_STEP).unwrap_or(f64::INFINITY)]
     }
 
     /// All loops, in the order of [`Axis::ALL`].

@@ -1,8 +1,10 @@
 //! Reading a TOML table field by field, with errors that name the field by its dotted path.
 //!
-//! Every section lists its keys when it is opened, so a misspelt key is reported as such, with the nearest known one,
-//! before the key it stands for is reported missing. Numbers must be finite and fit single precision.
+//! A section is opened with the declaration of its keys ([`crate::key`]), so a misspelt key is reported as such, with
+//! the nearest known one, before the key it stands for is reported missing. Numbers must be finite and fit single
+//! precision.
 
+use crate::key::{Key, Layout, LeftOut, Values};
 use controller_core::error::ParameterError;
 use nalgebra::Vector3;
 use std::fmt;
@@ -10,7 +12,7 @@ use toml::{Table, Value};
 
 /// The longest key that may be a misspelt one, bytes: the time to compare two keys grows with the product of their
 /// lengths.
-const LONGEST_KEY: usize = 200;
+const MISSPELT_KEY_MAX_BYTES: usize = 200;
 
 /// What stands in place of a number that is not known yet: `host-sim vehicle` writes it.
 pub const MISSING: &str = "missing";
@@ -53,13 +55,14 @@ impl fmt::Display for FieldError {
 pub struct Section<'a> {
     path: String,
     table: &'a Table,
+    keys: &'static [Key],
 }
 
 impl<'a> Section<'a> {
     /// The whole file.
     #[must_use]
     pub fn root(table: &'a Table) -> Self {
-        Self { path: String::new(), table }
+        Self { path: String::new(), table, keys: &[] }
     }
 
     /// The dotted path of `key` in this section.
@@ -77,7 +80,7 @@ impl<'a> Section<'a> {
             None => Ok(()),
             Some(key) => {
                 let near = |candidate: &&&str| strsim::damerau_levenshtein(candidate, key);
-                let nearest = known.iter().filter(|_| key.len() <= LONGEST_KEY).min_by_key(near);
+                let nearest = known.iter().filter(|_| key.len() <= MISSPELT_KEY_MAX_BYTES).min_by_key(near);
                 let nearest = nearest.map_or(String::new(), |nearest| format!(", did you mean \"{nearest}\"?"));
                 let all = known.join(", ");
                 Err(FieldError::new(
@@ -155,7 +158,7 @@ impl<'a> Section<'a> {
     /// If it is missing or no table.
     pub fn section(&self, key: &str) -> Result<Section<'a>, FieldError> {
         match self.require(key, "a section")? {
-            Value::Table(table) => Ok(Section { path: self.path_of(key), table }),
+            Value::Table(table) => Ok(Section { path: self.path_of(key), table, keys: &[] }),
             other => Err(self.mismatch(key, "a section", other)),
         }
     }
@@ -168,17 +171,37 @@ impl<'a> Section<'a> {
         if self.has(key) { self.section(key).map(Some) } else { Ok(None) }
     }
 
-    /// A list of tables, keys not yet checked.
+    /// A section that may be left out, with the keys of `layout`.
     ///
     /// # Errors
-    /// If it is missing, no list, or an element is no table.
-    pub fn sections(&self, key: &str) -> Result<Vec<Section<'a>>, FieldError> {
-        const WANTED: &str = "a list of tables, e.g. [{ … }, { … }]";
-        let Value::Array(elements) = self.require(key, WANTED)? else {
-            return Err(FieldError::new(self.path_of(key), format!("must be {WANTED}")));
+    /// If it is no table, or has other keys.
+    pub fn open(&self, layout: &'static Layout) -> Result<Option<Section<'a>>, FieldError> {
+        self.optional_section(layout.name)?.map(|section| section.with(layout)).transpose()
+    }
+
+    /// The same table with the keys of `layout`.
+    ///
+    /// # Errors
+    /// If it has other keys.
+    pub fn with(self, layout: &'static Layout) -> Result<Section<'a>, FieldError> {
+        self.allow(&layout.keys.iter().map(|key| key.name).collect::<Vec<_>>())?;
+        Ok(Self { keys: layout.keys, ..self })
+    }
+
+    /// A list of tables with the keys of `layout`.
+    ///
+    /// # Errors
+    /// If it is missing, no list, or an element is no table or has other keys.
+    pub fn tables(&self, layout: &'static Layout) -> Result<Vec<Section<'a>>, FieldError> {
+        const REQUIREMENT: &str = "a list of tables, e.g. [{ … }, { … }]";
+        let key = layout.name;
+        let Value::Array(elements) = self.require(key, REQUIREMENT)? else {
+            return Err(FieldError::new(self.path_of(key), format!("must be {REQUIREMENT}")));
         };
         let open = |(index, element): (usize, &'a Value)| match element {
-            Value::Table(table) => Ok(Section { path: format!("{}[{index}]", self.path_of(key)), table }),
+            Value::Table(table) => {
+                Section { path: format!("{}[{index}]", self.path_of(key)), table, keys: &[] }.with(layout)
+            }
             other => Err(self.mismatch(&format!("{key}[{index}]"), "a table", other)),
         };
         elements.iter().enumerate().map(open).collect()
@@ -195,16 +218,52 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A finite number that must be there.
+    /// One of the texts of `key`'s declaration, which must be there.
     ///
     /// # Errors
-    /// If it is missing, no number, not finite, or beyond single precision.
-    pub fn number(&self, key: &str) -> Result<f64, FieldError> {
-        let value = self.require(key, "a number")?;
-        finite(value).map_err(|problem| FieldError::new(self.path_of(key), problem))
+    /// If it is missing or another.
+    pub fn choice(&self, key: &str) -> Result<&'static str, FieldError> {
+        let found = self.text(key)?;
+        let names = match self.declared(key).map(|key| key.values) {
+            Some(Values::Choice(names)) => names,
+            _ => &[],
+        };
+        names.iter().find(|name| **name == found).copied().ok_or_else(|| {
+            let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+            let allowed = match quoted.split_last() {
+                Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+                _ => quoted.concat(),
+            };
+            FieldError::new(self.path_of(key), format!("must be {allowed}, found {found:?}"))
+        })
     }
 
-    /// A finite number, or `default` if it is left out.
+    /// A finite number within its declared bounds, or its default.
+    ///
+    /// # Errors
+    /// If it is missing without a default, no number, not finite, beyond single precision, or outside its bounds.
+    pub fn number(&self, key: &str) -> Result<f64, FieldError> {
+        let declared = self.declared(key);
+        if let (false, Some(LeftOut::Default(default))) = (self.has(key), declared.map(|key| key.left_out)) {
+            return Ok(default);
+        }
+        let number = finite(self.require(key, "a number")?);
+        let number = number.map_err(|problem| FieldError::new(self.path_of(key), problem))?;
+        match declared.map(|key| key.values) {
+            Some(Values::Number(bounds)) => bounds.check(self.path_of(key), number),
+            _ => Ok(number),
+        }
+    }
+
+    /// As [`Self::number`]; none where the key is left out.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn optional_number(&self, key: &str) -> Result<Option<f64>, FieldError> {
+        self.has(key).then(|| self.number(key)).transpose()
+    }
+
+    /// As [`Self::number`], or `default` where the key is left out.
     ///
     /// # Errors
     /// As [`Self::number`].
@@ -212,47 +271,49 @@ impl<'a> Section<'a> {
         if self.has(key) { self.number(key) } else { Ok(default) }
     }
 
-    /// A positive number, or `default` if it is left out.
+    /// Three finite numbers, each within the declared bounds, or their default.
     ///
     /// # Errors
-    /// As [`Self::number`], or if it is not positive.
-    pub fn positive_or(&self, key: &str, default: f64) -> Result<f64, FieldError> {
-        let number = self.number_or(key, default)?;
-        if number > 0.0 {
-            Ok(number)
-        } else {
-            Err(FieldError::new(self.path_of(key), format!("must be positive, found {number}")))
-        }
-    }
-
-    /// Three finite numbers that must be there.
-    ///
-    /// # Errors
-    /// If they are missing, not three, or one of them is refused as in [`Self::number`].
+    /// If they are missing without a default, not three, or one of them is refused as in [`Self::number`].
     pub fn vector(&self, key: &str) -> Result<Vector3<f64>, FieldError> {
-        vector_at(&self.path_of(key), self.require(key, THREE_NUMBERS)?)
+        let declared = self.declared(key);
+        if let (false, Some(LeftOut::Default(default))) = (self.has(key), declared.map(|key| key.left_out)) {
+            return Ok(Vector3::repeat(default));
+        }
+        let vector = vector_at(&self.path_of(key), self.require(key, THREE_NUMBERS)?)?;
+        if let Some(Values::Vector(bounds)) = declared.map(|key| key.values) {
+            for (index, value) in vector.iter().enumerate() {
+                bounds.check(format!("{}[{index}]", self.path_of(key)), *value)?;
+            }
+        }
+        Ok(vector)
     }
 
     /// The elements of a list that must be there, each with its path.
     ///
     /// # Errors
-    /// If it is missing or no list; `wanted` says of what.
-    pub fn elements(&self, key: &str, wanted: &str) -> Result<Vec<(String, &'a Value)>, FieldError> {
-        match self.require(key, wanted)? {
+    /// If it is missing or no list; `requirement` says of what.
+    pub fn elements(&self, key: &str, requirement: &str) -> Result<Vec<(String, &'a Value)>, FieldError> {
+        match self.require(key, requirement)? {
             Value::Array(elements) => {
                 let path = self.path_of(key);
                 Ok(elements.iter().enumerate().map(|(index, value)| (format!("{path}[{index}]"), value)).collect())
             }
-            other => Err(self.mismatch(key, wanted, other)),
+            other => Err(self.mismatch(key, requirement, other)),
         }
     }
 
-    /// Two numbers that must be there and be `allowed`; `wanted` says which are.
+    /// Two numbers that must be there and be `allowed`; `requirement` says which are.
     ///
     /// # Errors
     /// If they are missing, not two, or not allowed.
-    pub fn range(&self, key: &str, wanted: &str, allowed: impl Fn(f64, f64) -> bool) -> Result<[f64; 2], FieldError> {
-        let elements = self.elements(key, wanted)?;
+    pub fn range(
+        &self,
+        key: &str,
+        requirement: &str,
+        allowed: impl Fn(f64, f64) -> bool,
+    ) -> Result<[f64; 2], FieldError> {
+        let elements = self.elements(key, requirement)?;
         let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         match elements[..] {
             [(_, least), (_, greatest)]
@@ -263,25 +324,21 @@ impl<'a> Section<'a> {
             }
             _ => {
                 let found = elements.iter().map(|(_, value)| in_line(value)).collect::<Vec<_>>().join(", ");
-                Err(FieldError::new(self.path_of(key), format!("must be {wanted}, found [{found}]")))
+                Err(FieldError::new(self.path_of(key), format!("must be {requirement}, found [{found}]")))
             }
         }
     }
 
-    /// Three finite numbers, or `default` if they are left out.
-    ///
-    /// # Errors
-    /// As [`Self::vector`].
-    pub fn vector_or(&self, key: &str, default: Vector3<f64>) -> Result<Vector3<f64>, FieldError> {
-        if self.has(key) { self.vector(key) } else { Ok(default) }
+    fn declared(&self, key: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|declared| declared.name == key)
     }
 
-    fn require(&self, key: &str, wanted: &str) -> Result<&'a Value, FieldError> {
-        self.table.get(key).ok_or_else(|| FieldError::new(self.path_of(key), format!("missing, must be {wanted}")))
+    fn require(&self, key: &str, requirement: &str) -> Result<&'a Value, FieldError> {
+        self.table.get(key).ok_or_else(|| FieldError::new(self.path_of(key), format!("missing, must be {requirement}")))
     }
 
-    fn mismatch(&self, key: &str, wanted: &str, found: &Value) -> FieldError {
-        FieldError::new(self.path_of(key), format!("must be {wanted}, found {}", found.type_str()))
+    fn mismatch(&self, key: &str, requirement: &str, found: &Value) -> FieldError {
+        FieldError::new(self.path_of(key), format!("must be {requirement}, found {}", found.type_str()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The requirements on the sampled loops: stable, with margins.
 //!
-//! A linear model without margin models a vehicle that does not exist. [`LoopMargin::LEAST`] is what a configuration
+//! A linear model without margin models a vehicle that does not exist. [`LoopMargin::FLYABLE_MIN`] is what a configuration
 //! must have to fly; `host-sim tune` asks for more.
 
 use crate::sampled_loop::{Axis, LoopReport};
@@ -25,7 +25,7 @@ impl LoopMargin {
     ///
     /// *Delay, 2 ms*: what no file states. A sample of a gyro read at 1 kHz is up to 1 ms old when a tick uses it; the
     /// tick's own work, the frame to the motor controllers and their next step take most of another.
-    pub const LEAST: Self = Self { gain: 1.5, delay: 2e-3 };
+    pub const FLYABLE_MIN: Self = Self { gain: 1.5, delay: 2e-3 };
 
     /// The greatest shortfall of `report`'s loop from this margin; none if it has all of it.
     #[must_use]

@@ -6,14 +6,14 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// The longest file of settings, bytes: thousands of times a scenario.
-pub const LONGEST: u64 = 4 << 20;
+pub const FILE_MAX_BYTES: u64 = 4 << 20;
 
 /// The text of `path`.
 ///
 /// # Errors
-/// If it cannot be read, is neither UTF-8 nor UTF-16, or is longer than [`LONGEST`].
+/// If it cannot be read, is neither UTF-8 nor UTF-16, or is longer than [`FILE_MAX_BYTES`].
 pub fn read(path: &Path) -> io::Result<String> {
-    decoded(&bytes(path, LONGEST)?).map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, problem))
+    decoded(&bytes(path, FILE_MAX_BYTES)?).map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
 /// Text in UTF-8 or, as spreadsheets and PowerShell write it, in UTF-16; with a byte order mark or without.
@@ -38,7 +38,7 @@ fn decoded(bytes: &[u8]) -> Result<String, String> {
 }
 
 /// Where what the program was started with is, a pipe or a device as well: standard input, and a shell's `<(...)`.
-const GIVEN: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
+const OPEN_FILE_PATHS: [&str; 4] = ["/dev/stdin", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
 
 /// Opens a file for reading. Opening a pipe waits until a writer opens it, and reading a device may never end.
 ///
@@ -54,7 +54,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// # Errors
 /// If it is no regular file, unless it was opened already by who started the program.
 pub fn regular(path: &Path) -> io::Result<()> {
-    let is_given = GIVEN.iter().any(|given| path.starts_with(given));
+    let is_given = OPEN_FILE_PATHS.iter().any(|given| path.starts_with(given));
     match std::fs::metadata(path) {
         Ok(what) if !what.is_file() && !is_given => {
             Err(io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn a_file_of_the_greatest_length_is_read_and_a_longer_one_refused() {
         let path = std::env::temp_dir().join(format!("scenario-text-{}", std::process::id()));
-        for (length, fits) in [(LONGEST, true), (LONGEST + 1, false)] {
+        for (length, fits) in [(FILE_MAX_BYTES, true), (FILE_MAX_BYTES + 1, false)] {
             std::fs::write(&path, vec![b'#'; length as usize]).unwrap();
             assert_eq!(read(&path).map(|text| text.len() as u64).ok(), fits.then_some(length));
         }

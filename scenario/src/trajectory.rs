@@ -1,22 +1,5 @@
 //! `[reference]` from points: given in the file itself or in another one, passed exactly or followed closely.
 //!
-//! ```toml
-//! [reference]
-//! kind = "trajectory"                # near rows that say when to be where
-//! file = "lemniscate.csv"            # beside this file: t, x, y, z and more (table), or polynomial pieces
-//! within = 0.02                      # m: how near the path is to every row; left out: 0.02
-//! stretch = 1.0                      # the rows' times are multiplied by this; left out: 1
-//! origin = [0.0, 0.0, 0.0]           # m: subtracted from every position of the file
-//! ```
-//!
-//! ```toml
-//! [reference]
-//! kind = "waypoints"                 # through every point
-//! file = "gates.csv"                 # or points = [{ t = 0.0, position = [0.0, 0.0, 1.0] }, …]
-//! speed = 3.0                        # m/s at most, and otherwise as fast as the vehicle may; with this no times
-//! corridor = 0.3                     # m: how far from the straight legs the path may be; left out: 0.3
-//! ```
-//!
 //! | module | |
 //! |---|---|
 //! | `row`, `table`, `pieces` | rows from a file |
@@ -38,6 +21,7 @@ pub mod stretch;
 mod table;
 pub mod vehicle;
 
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
 use controller_core::reference::inside;
@@ -52,9 +36,58 @@ pub use source::Directory;
 use source::Source;
 use vehicle::Vehicle;
 
-/// How near a path is to the rows, and how far from straight legs, if the file does not say, m.
-const NEAR: f64 = 0.02;
-const CORRIDOR: f64 = 0.3;
+const KIND: &str = "kind";
+
+/// The key that says of which kind a reference is.
+pub const fn kind(names: &'static [&'static str]) -> Key {
+    Key::new(KIND, Values::Choice(names), "How the reference is given.")
+}
+
+/// How far a flight may stray from its reference once it is there.
+pub const TOLERANCE: Key =
+    Key::number("tolerance", Bounds::positive("m"), "How far a flight may stray from it once it is there.").or(0.5);
+
+/// The force that is kept free along a reference.
+pub const FORCE_KEPT: Key = Key::number(
+    "force_kept",
+    Bounds::not_negative("m/s^2"),
+    "The force per mass, in any direction, that is kept free along it.",
+)
+.or(controller_core::certificate::path::FORCE_KEPT_M_PER_S2 as f64);
+
+/// A path through points.
+pub const WAYPOINTS: Layout = Layout {
+    name: "reference",
+    about: "A path through every point.",
+    keys: &[
+        kind(&["waypoints"]),
+        TOLERANCE,
+        FORCE_KEPT,
+        Key::new(source::POINTS.name, Values::Tables(&source::POINTS), source::POINTS.about).optional(),
+        source::FILE,
+        source::DATA,
+        source::ORIGIN,
+        Key::choice("path", &["smooth", "inside"], "Between points with times; left out: the smoothest."),
+        Key::number("speed", Bounds::positive("m/s"), "The greatest, of points without times.").optional(),
+        Key::number("corridor", Bounds::positive("m"), "From the straight legs; with speed only.").or(0.3),
+    ],
+};
+
+/// A path near rows.
+pub const TRAJECTORY: Layout = Layout {
+    name: "reference",
+    about: "A path near rows that say when to be where.",
+    keys: &[
+        kind(&["trajectory"]),
+        TOLERANCE,
+        FORCE_KEPT,
+        source::FILE,
+        source::DATA,
+        source::ORIGIN,
+        Key::number("within", Bounds::positive("m"), "How near the path is to every row.").or(0.02),
+        Key::number("stretch", Bounds::positive(""), "The rows' times are multiplied by this.").or(1.0),
+    ],
+};
 
 /// A path through or near points.
 #[derive(Debug, Clone)]
@@ -115,22 +148,13 @@ pub type Allowed<'a> = &'a dyn Fn() -> Result<Vehicle, FieldError>;
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_waypoints(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    let own = ["points", "file", "data", "origin", "path", "speed", "corridor"];
-    section.allow(&[["kind", "tolerance", "force_kept"].as_slice(), &own].concat())?;
     let mut source = Source::read(section, directory)?;
     if section.has("speed") || source.rows.iter().any(|row| row.time.is_none() && row.speed.is_some()) {
         return paced(section, source, &allow()?);
     }
     source.check_times(1.0)?;
     let Source { rows, field, name, remarks, .. } = source;
-    let way = match section.has("path").then(|| section.text("path")).transpose()? {
-        None | Some("smooth") => Way::Smooth,
-        Some("inside") => Way::Inside,
-        Some(other) => {
-            let problem = format!("must be \"smooth\" or \"inside\", found {other:?}");
-            return Err(FieldError::new(section.path_of("path"), problem));
-        }
-    };
+    let way = if section.has("path") && section.choice("path")? == "inside" { Way::Inside } else { Way::Smooth };
     if section.has("corridor") {
         let problem = "goes with speed; points with times are passed at these, on the way that path says";
         return Err(FieldError::new(section.path_of("corridor"), problem));
@@ -168,8 +192,8 @@ fn refused(section: &Section, place: &str, error: &ParameterError) -> FieldError
 /// Times for points that are to be passed with a speed at most.
 fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, FieldError> {
     let Source { rows, field, name, remarks, .. } = source;
-    let corridor = section.positive_or("corridor", CORRIDOR)?;
-    let speed = section.positive_or("speed", f64::INFINITY)?;
+    let corridor = section.number("corridor")?;
+    let speed = section.number_or("speed", f64::INFINITY)?;
     if section.has("path") {
         return Err(FieldError::new(section.path_of("path"), "goes with times; with speed there is corridor"));
     }
@@ -187,7 +211,7 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
         let problem = "is the same as the one before: leave it out or, to wait, give times in place of speed";
         return Err(FieldError::new(format!("{field}[{}]", same + 1), problem));
     }
-    let limits = Limits::of(vehicle);
+    let limits = Limits::for_vehicle(vehicle);
     if limits.bounds().values().iter().any(|bound| *bound <= 0.0) {
         let problem =
             "needs bounds that the path is to keep: write [reference_bounds]; the paper's law has none of its own";
@@ -201,7 +225,7 @@ fn paced(section: &Section, source: Source, vehicle: &Vehicle) -> Result<Route, 
             Problem::Legs(legs) => format!(
                 "has {legs} straight legs, and at most {} can be searched: widen the corridor, leave points out, or \
                  give them times",
-                pace::MOST_LEGS
+                pace::LEGS_MAX
             ),
             Problem::Rest => "no path keeps to what the vehicle may fly, however slow it is".to_owned(),
         };
@@ -221,8 +245,7 @@ fn waypoint(time: f64, row: &Row) -> Waypoint {
 /// # Errors
 /// Names the field and what is wrong.
 pub fn read_trajectory(section: &Section, directory: Directory, allow: Allowed) -> Result<Route, FieldError> {
-    section.allow(&["kind", "tolerance", "force_kept", "file", "data", "origin", "within", "stretch"])?;
-    let (near, stretch) = (section.positive_or("within", NEAR)?, section.positive_or("stretch", 1.0)?);
+    let (near, stretch) = (section.number("within")?, section.number("stretch")?);
     let mut source = Source::read(section, directory)?;
     source.check_times(stretch)?;
     let Source { rows, name, remarks, .. } = source;

@@ -8,13 +8,15 @@
 //! gain that the paper's law alone has. `[control] thrust_floor` (N) is an option of the paper's law: see
 //! [`controller_core::projection`].
 
-use crate::bounds::{DEFAULT_SPEED, read_bounds};
+use crate::bounds::{DEFAULT_SPEED_M_PER_S, read_bounds};
 use crate::constants;
 use crate::extended::{read_extended, refused};
 use crate::inertia;
+use crate::key::{Bounds, Key, Layout};
 use crate::reality::drag::{self, Drag};
 use crate::section::{FieldError, Section};
-use controller_core::allocation::{Rotors, greatest_torques};
+use crate::timing::CONTROL;
+use controller_core::allocation::{Rotors, max_torques};
 use controller_core::certificate::airframe::flyable;
 use controller_core::configuration::Configuration;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -26,7 +28,28 @@ use controller_core::vehicle::{LimitParameters, Limits, Vehicle, VehicleParamete
 use nalgebra::Vector3;
 
 /// Gravity where the file leaves it out, m/s^2.
-const DEFAULT_GRAVITY: f64 = 9.81;
+const DEFAULT_GRAVITY_M_PER_S2: f64 = 9.81;
+
+/// The keys of `[vehicle]`.
+pub const VEHICLE: Layout = Layout {
+    name: "vehicle",
+    about: "The vehicle as its controller knows it.",
+    keys: &[
+        Key::number("mass", Bounds::physical("kg"), "With all that flies."),
+        Key::new("inertia", inertia::VALUES, "About body x, y, z, or the whole matrix, if it is diagonal."),
+        Key::number("gravity", Bounds::physical("m/s^2"), "Downwards.").or(DEFAULT_GRAVITY_M_PER_S2),
+    ],
+};
+
+/// The keys of `[limits]`.
+pub const LIMITS: Layout = Layout {
+    name: "limits",
+    about: "What the law may command. Each left out: what [rotors] can give.",
+    keys: &[
+        Key::number("thrust_max", Bounds::physical("N"), "Above the weight.").optional(),
+        Key::vector("torque_max", Bounds::physical("N m"), "About each body axis.").optional(),
+    ],
+};
 
 /// Reads the law and its options, for a vehicle with its limits and rotors, if there are any, and the bounds of its
 /// references. Its own reference is within `own`; so the paper law's bounds must be no less. The extended law's
@@ -66,7 +89,7 @@ pub fn read_configuration(
         LawName::Paper => {
             let gains = read_gains(root, &vehicle)?;
             let bounds = read_bounds(root, own, || {
-                own.covering(&ReferenceBounds { horizontal_speed: DEFAULT_SPEED, ..ReferenceBounds::REST })
+                own.covering(&ReferenceBounds { horizontal_speed: DEFAULT_SPEED_M_PER_S, ..ReferenceBounds::REST })
             })?;
             (Configuration::new(vehicle, limits, gains, bounds), bounds)
         }
@@ -90,7 +113,7 @@ pub fn read_configuration(
         );
         FieldError::new(refused.field, problem)
     })?;
-    let configuration = match root.optional_section("control")? {
+    let configuration = match root.open(&CONTROL)? {
         Some(control) if control.has("thrust_floor") => {
             let floor = control.number("thrust_floor")? as f32;
             configuration.with_thrust_floor(floor).map_err(|error| root.refused(&error))?
@@ -130,15 +153,9 @@ fn has_papers_gains(root: &Section) -> Result<bool, FieldError> {
 
 /// `[control] law`; none where it is left out.
 fn named_law(root: &Section) -> Result<Option<LawName>, FieldError> {
-    let control = root.optional_section("control")?.filter(|control| control.has("law"));
-    match control.map(|control| control.text("law")).transpose()? {
-        None => Ok(None),
-        Some("paper") => Ok(Some(LawName::Paper)),
-        Some("extended") => Ok(Some(LawName::Extended)),
-        Some(other) => {
-            Err(FieldError::new("control.law", format!("must be \"paper\" or \"extended\", found {other:?}")))
-        }
-    }
+    let control = root.open(&CONTROL)?.filter(|control| control.has("law"));
+    let name = control.map(|control| control.choice("law")).transpose()?;
+    Ok(name.map(|name| if name == "paper" { LawName::Paper } else { LawName::Extended }))
 }
 
 /// The drag across from the file's `[drag]`, per velocity and mass at hover, 1/s.
@@ -156,12 +173,11 @@ pub fn known_drag(drag: &Drag, vehicle: &Vehicle, rotors: Option<&Rotors>) -> f3
 /// # Errors
 /// Names the field that is missing or not physical.
 pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
-    let section = root.section("vehicle")?;
-    section.allow(&["mass", "inertia", "gravity"])?;
+    let section = root.section("vehicle")?.with(&VEHICLE)?;
     section.require_all(&["mass", "inertia"])?;
     let mass = section.number("mass")? as f32;
     let moments = inertia::read(&section, "inertia")?;
-    let gravity = section.number_or("gravity", DEFAULT_GRAVITY)? as f32;
+    let gravity = section.number("gravity")? as f32;
     let parameters = VehicleParameters { mass, inertia: moments.map(|moment| moment as f32), gravity };
     let vehicle = Vehicle::new(parameters).map_err(|error| {
         let impossible = inertia::impossible("vehicle.inertia", &moments, &error);
@@ -181,16 +197,16 @@ pub fn read_vehicle(root: &Section) -> Result<Vehicle, FieldError> {
 /// Names the field that is missing or refused, or `rotors.position` if the rotors cannot push without turning the
 /// vehicle.
 pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -> Result<Limits, FieldError> {
-    let missing = |field: &str, wanted: &str| {
-        let problem =
-            format!("missing, must be {wanted} (it may be left out only beside [rotors], which are the limit then)");
+    let missing = |field: &str, requirement: &str| {
+        let problem = format!(
+            "missing, must be {requirement} (it may be left out only beside [rotors], which are the limit then)"
+        );
         FieldError::new(field, problem)
     };
-    let section = match root.optional_section("limits")? {
+    let section = match root.open(&LIMITS)? {
         None if rotors.is_none() => return Err(missing("limits", "a section")),
         section => section,
     };
-    section.iter().try_for_each(|section| section.allow(&["thrust_max", "torque_max"]))?;
     let with = |key: &str| section.as_ref().filter(|section| section.has(key));
     let thrust_max = match (with("thrust_max"), rotors) {
         (Some(section), _) => section.number("thrust_max")? as f32,
@@ -199,15 +215,15 @@ pub fn read_limits(root: &Section, vehicle: &Vehicle, rotors: Option<&Rotors>) -
     };
     let torque_max = match (with("torque_max"), rotors) {
         (Some(section), _) => section.vector("torque_max")?.map(|torque| torque as f32),
-        (None, Some(rotors)) => torques_of(rotors)?,
+        (None, Some(rotors)) => rotors_torque_max(rotors)?,
         (None, None) => return Err(missing("limits.torque_max", "a list of three numbers")),
     };
     Limits::new(LimitParameters { thrust_max, torque_max }, vehicle).map_err(|error| root.refused(&error))
 }
 
 /// The greatest torque of `rotors` about each axis alone, N m.
-fn torques_of(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
-    let torques = greatest_torques(rotors);
+fn rotors_torque_max(rotors: &Rotors) -> Result<Vector3<f32>, FieldError> {
+    let torques = max_torques(rotors);
     if torques.min() > 0.0 {
         return Ok(torques);
     }

@@ -5,7 +5,7 @@
 //! - the *certificate* is a proof about commands: whatever the vehicle does, the law never asks for more than it has. A
 //!   vehicle whose rotors follow a second late falls with every command within its limits.
 //! - the [sampled loops](crate::sampled_loop) are an analysis of small motions about hover: with this period, delay and
-//!   lag they die out, with [`LoopMargin::LEAST`] to spare. It knows nothing of limits and large angles.
+//!   lag they die out, with [`LoopMargin::FLYABLE_MIN`] to spare. It knows nothing of limits and large angles.
 //! - the [model flights](crate::large_motions) of the extended law show that large motions die out too, from a few
 //!   starts. The paper's law, which swings for minutes about a target that is far away, has its theorem.
 //!
@@ -59,7 +59,7 @@ impl Verdict {
     ///
     /// # Errors
     /// If a number is beyond what the certificate or the loops can work with; no file that was read leads there.
-    pub fn of(scenario: &Scenario) -> Result<Self, ParameterError> {
+    pub fn judge(scenario: &Scenario) -> Result<Self, ParameterError> {
         let proof = match Certified::new(scenario.configuration.clone()) {
             Ok(certified) => Ok(Box::new(certified)),
             Err(Refused::Fails(certificate)) => Err(Box::new(certificate)),
@@ -68,12 +68,12 @@ impl Verdict {
         let loops = scenario.loops()?.reports();
         let is_extended = matches!(scenario.configuration.law(), LawParameters::Extended(_));
         let flights = match &proof {
-            Ok(certified) if is_extended && LoopMargin::LEAST.first_lacking(&loops).is_none() => {
+            Ok(certified) if is_extended && LoopMargin::FLYABLE_MIN.first_lacking(&loops).is_none() => {
                 Some(large_motions::flown(certified, &scenario.loop_timing())?)
             }
             _ => None,
         };
-        let along = Along::of(scenario);
+        let along = Along::judge(scenario);
         let on_path = match (&proof, flights, along) {
             (Ok(certified), Some(Ok(_)), Some(along)) if along.holds() && along.end_us > 0 => {
                 let path = Path {
@@ -93,7 +93,7 @@ impl Verdict {
     /// ones first, the first model flight that does not arrive, the reference, and the model's flight along it.
     pub fn refusals(&self) -> impl Iterator<Item = Refusal> {
         let failing = self.certificate().inequalities().filter(|inequality| !inequality.holds());
-        let lacking = self.loops.iter().filter_map(|report| LoopMargin::LEAST.lacking(report));
+        let lacking = self.loops.iter().filter_map(|report| LoopMargin::FLYABLE_MIN.lacking(report));
         let (unstable, weak): (Vec<_>, Vec<_>) =
             lacking.partition(|lack| matches!(lack.what, Shortfall::Unstable { .. }));
         failing
@@ -153,10 +153,10 @@ impl Verdict {
         self.flights?.err()
     }
 
-    /// The first loop that is unstable, or else without [`LoopMargin::LEAST`].
+    /// The first loop that is unstable, or else without [`LoopMargin::FLYABLE_MIN`].
     #[must_use]
     pub fn lacking(&self) -> Option<Lack> {
-        LoopMargin::LEAST.first_lacking(&self.loops)
+        LoopMargin::FLYABLE_MIN.first_lacking(&self.loops)
     }
 }
 

@@ -10,7 +10,7 @@ use scenario::Scenario;
 use scenario::reality::estimator::{Estimator, Outage};
 use scenario::timing::Timing;
 
-const SENSORS: Estimator = Estimator {
+const NOISY_SENSORS: Estimator = Estimator {
     imu_noise: 1.0,
     pose_every: 10,
     pose_delay: 20,
@@ -73,7 +73,7 @@ fn late_poses_cost_millimetres_and_make_nothing_oscillate() {
         "poses late by: hover RMS, greatest; circle RMS; estimate RMS, mm; height lost in recovery, m ({known:.2} on the truth)"
     );
     for delay in [20, 50, 100, 150] {
-        let sensors = Some(Estimator { pose_delay: delay, ..SENSORS });
+        let sensors = Some(Estimator { pose_delay: delay, ..NOISY_SENSORS });
         let (still, round, recovered) = (fly(hovering(), sensors), fly(circle(), sensors), fly(turned(), sensors));
         println!(
             "{delay:3} ms: {:.1}, {:.1}; {:.1}; {:.1}; {:.2}",
@@ -101,8 +101,8 @@ fn at_any_rate_the_estimate_is_as_near_and_the_vehicle_too() {
     println!("Hz: hover RMS, greatest; estimate RMS, mm; height lost in recovery, m");
     for rate in [50, 100, 250, 500, 1_000] {
         let vehicle = hummingbird_at(rate);
-        let still = fly(hover(&vehicle, Vector3::zeros(), 12.0).unwrap(), Some(SENSORS));
-        let recovered = fly(recovery(&vehicle, 10.0).unwrap(), Some(SENSORS));
+        let still = fly(hover(&vehicle, Vector3::zeros(), 12.0).unwrap(), Some(NOISY_SENSORS));
+        let recovered = fly(recovery(&vehicle, 10.0).unwrap(), Some(NOISY_SENSORS));
         let [rms, greatest, estimate] = [still.rms, still.greatest, still.estimate].map(|metres| 1e3 * metres);
         println!("{rate:4}: {rms:.1}, {greatest:.1}; {estimate:.1}; {:.2}", recovered.height_lost);
         assert!(still.rms < 5e-3 && still.estimate < 3e-3, "{rate} Hz: {rms}, {estimate} mm");
@@ -114,7 +114,7 @@ fn at_any_rate_the_estimate_is_as_near_and_the_vehicle_too() {
 fn half_a_second_without_poses_is_flown_through() {
     let outage = Some(Outage { start: 8.0, duration: 0.5 });
     for (name, scenario) in [("hover", hover(&hummingbird(), Vector3::zeros(), 12.0).unwrap()), ("circle", circle())] {
-        let shown = fly(scenario, Some(Estimator { outage, ..SENSORS }));
+        let shown = fly(scenario, Some(Estimator { outage, ..NOISY_SENSORS }));
         println!("{name}: greatest error {:.1} mm", 1e3 * shown.greatest);
         assert!(shown.greatest < 0.1, "{name}: {}", shown.greatest);
     }
@@ -124,7 +124,7 @@ fn half_a_second_without_poses_is_flown_through() {
 fn poses_that_come_seldom_or_not_always_are_enough() {
     for (pose_every, dropout) in [(5, 0.0), (100, 0.0), (10, 0.5)] {
         let scenario = hover(&hummingbird(), Vector3::zeros(), 12.0).unwrap();
-        let shown = fly(scenario, Some(Estimator { pose_every, dropout, ..SENSORS }));
+        let shown = fly(scenario, Some(Estimator { pose_every, dropout, ..NOISY_SENSORS }));
         println!("{} Hz, {dropout} lost: hover RMS {:.1} mm", 1000 / pose_every, 1e3 * shown.rms);
         assert!(shown.rms < 10e-3, "{pose_every} ms, {dropout}: {}", shown.rms);
     }
@@ -133,7 +133,7 @@ fn poses_that_come_seldom_or_not_always_are_enough() {
 #[test]
 fn a_flight_begins_on_a_proven_estimate_or_not_at_all() {
     let mut scenario = hover(&hummingbird(), Vector3::zeros(), 1.0).unwrap();
-    scenario.reality.estimator = Some(Estimator { dropout: 0.99, ..SENSORS });
+    scenario.reality.estimator = Some(Estimator { dropout: 0.99, ..NOISY_SENSORS });
     let error = Flight::new(&scenario).unwrap().tick().unwrap_err();
     assert!(matches!(error.cause, Cause::Estimate(_)), "{error}");
     assert_eq!(error.to_string(), "at 0 s: no state to fly on. Estimator: not started, no consistent poses");

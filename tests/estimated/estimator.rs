@@ -13,8 +13,7 @@ use rayon::prelude::*;
 use run::{Meddle, Shown};
 use truth::{Moment, Truth};
 
-/// Flights of each kind.
-const RUNS: u64 = 100;
+const FLIGHTS_OF_EACH_KIND: u64 = 100;
 
 /// Of chi-square with 15 degrees of freedom, the mean of 100: 95 % lie between these (the quantiles of 1500 degrees,
 /// over 100).
@@ -38,7 +37,7 @@ impl Campaign {
 
     fn lied_to(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle) -> Self {
         let fly = |seed| run::fly(truth, parameters, meddle, &mut random::generator(seed));
-        Self { shown: (0..RUNS).into_par_iter().map(fly).collect() }
+        Self { shown: (0..FLIGHTS_OF_EACH_KIND).into_par_iter().map(fly).collect() }
     }
 
     /// RMS of the position on all three axes, m, and of the attitude, degrees.
@@ -58,7 +57,9 @@ impl Campaign {
     /// The mean over all flights at each instant.
     fn nees(&self) -> Vec<f64> {
         let instants = self.shown[0].nees.len();
-        (0..instants).map(|n| self.shown.iter().map(|shown| shown.nees[n]).sum::<f64>() / RUNS as f64).collect()
+        (0..instants)
+            .map(|n| self.shown.iter().map(|shown| shown.nees[n]).sum::<f64>() / FLIGHTS_OF_EACH_KIND as f64)
+            .collect()
     }
 
     /// RMS and worst drift after 0.5 s and after 2 s without poses, m.
@@ -76,17 +77,19 @@ impl Campaign {
 }
 
 /// What the sensors are, exactly: the noise that is synthesised, and stamps that are right.
-const EXACT: EstimatorParameters = EstimatorParameters { time_noise: 0.0, ..EstimatorParameters::BMI088 };
+const EXACT_PARAMETERS: EstimatorParameters = EstimatorParameters { time_noise: 0.0, ..EstimatorParameters::BMI088 };
 
 #[test]
 fn position_and_attitude_are_known_in_hover_circle_and_recovery_and_coasting_lasts() {
-    println!("{RUNS} flights each: BMI088 noise, bias and walk; poses 100 Hz, 1 mm, 0.3 degrees, 20 ms late");
+    println!(
+        "{FLIGHTS_OF_EACH_KIND} flights each: BMI088 noise, bias and walk; poses 100 Hz, 1 mm, 0.3 degrees, 20 ms late"
+    );
     println!(
         "{:<10} {:>14} {:>18} {:>16} {:>16} {:>12} {:>9}",
         "flight", "position RMS", "attitude RMS", "0.5 s no poses", "2 s no poses", "mean NEES", "in band"
     );
     for truth in [Truth::hover(), Truth::circle(), Truth::recovery()] {
-        let campaign = Campaign::fly(&truth, &EXACT);
+        let campaign = Campaign::fly(&truth, &EXACT_PARAMETERS);
         let ((position, attitude), worst) = (campaign.errors(), campaign.worst());
         let [(short, short_worst), (long, long_worst)] = campaign.drift();
         let nees = campaign.nees();
@@ -124,9 +127,9 @@ fn position_and_attitude_are_known_in_hover_circle_and_recovery_and_coasting_las
 #[test]
 fn sensors_a_quarter_noisier_than_they_are_said_to_be_leave_the_band() {
     let said = EstimatorParameters {
-        position_noise: 0.8 * EXACT.position_noise,
-        attitude_noise: 0.8 * EXACT.attitude_noise,
-        ..EXACT
+        position_noise: 0.8 * EXACT_PARAMETERS.position_noise,
+        attitude_noise: 0.8 * EXACT_PARAMETERS.attitude_noise,
+        ..EXACT_PARAMETERS
     };
     let campaign = Campaign::fly(&Truth::hover(), &said);
     let nees = campaign.nees();

@@ -5,7 +5,7 @@
 use crate::support::extended::{published, vehicle};
 use controller_core::certificate::certified::Certified;
 use controller_core::extended::memory::Estimates;
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
 use flight::{FlightSettings, Inputs, Memory, Output, Pilot, Pose, Request, Stamped, Velocity};
 use host_sim::flight::Flight;
@@ -18,15 +18,14 @@ use scenario::reality::failure::Failure;
 use scenario::reality::ground::Ground;
 use scenario::reality::truth::Truth;
 
-/// How near is there, m.
-const NEAR: f64 = 0.1;
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
 /// When a rotor fails, s.
 const FAILS_AT: f64 = 5.0;
 
 fn hovering(name: &str, seconds: f64, change: impl FnOnce(&mut Scenario)) -> Course {
     let mut scenario = hover(&vehicle(name), Vector3::zeros(), seconds).unwrap();
     change(&mut scenario);
-    Course::over(&scenario, Flight::new(&scenario).unwrap(), NEAR).unwrap()
+    Course::fly(&scenario, Flight::new(&scenario).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
 }
 
 /// Rotor 1 left with `share` of its thrust.
@@ -64,13 +63,13 @@ fn torque_offsets(scenario: &Scenario) -> [(&'static str, Course); 2] {
     let rotors = scenario.configuration.rotors().unwrap();
     let arm = rotors.iter().map(|rotor| rotor.position.xy().norm()).fold(0.0, f32::max);
     let off = OFF_CENTRE.min(OFF_CENTRE_OF_ARM * f64::from(arm));
-    let truth = Truth::of_model(scenario.configuration.vehicle());
+    let truth = Truth::model(scenario.configuration.vehicle());
     let mut weak = vec![1.0; rotors.len()];
     weak[0] = 0.7;
     let flown = |truth| {
         let mut hovering = hover(scenario, Vector3::zeros(), 60.0).unwrap();
         hovering.reality.truth = Some(truth);
-        Course::over(&hovering, Flight::new(&hovering).unwrap(), NEAR).unwrap()
+        Course::fly(&hovering, Flight::new(&hovering).unwrap(), ARRIVAL_DISTANCE_M).unwrap()
     };
     [
         ("one rotor at 70 %", flown(Truth { rotor_scales: weak, ..truth.clone() })),
@@ -130,24 +129,22 @@ fn what_stands_on_the_ground_learns_nothing_from_it() {
     }
 }
 
-/// The time between ticks, us.
-const PERIOD: u64 = 10_000;
+const TICK_PERIOD_US: u64 = 10_000;
 
-/// The tick of arming: the estimate takes a second and a half to prove itself.
-const ARMED: u64 = 200;
+/// The estimate takes a second and a half to prove itself.
+const ARMING_TICK: u64 = 200;
 
-/// When the take-off is commanded.
-const FLOWN: u64 = ARMED + 1;
+const TAKEOFF_TICK: u64 = ARMING_TICK + 1;
 
-/// The tick in which something lifts the vehicle off.
-const LIFTED: u64 = 700;
+/// The tick in which an outside force lifts the vehicle off.
+const LIFTED_TICK: u64 = 700;
 
 /// Height above the ground, m, and acceleration over the tick before, m/s^2: 12 cm up in 0.2 s.
 fn lifted(tick: u64) -> (f32, f32) {
-    let seconds = PERIOD as f32 * 1e-6;
+    let seconds = TICK_PERIOD_US as f32 * 1e-6;
     let (mut height, mut speed, mut acceleration) = (0.0, 0.0, 0.0);
-    for tick in LIFTED..tick {
-        acceleration = match tick - LIFTED {
+    for tick in LIFTED_TICK..tick {
+        acceleration = match tick - LIFTED_TICK {
             0..10 => 12.0,
             10..20 => -12.0,
             _ => 0.0,
@@ -162,16 +159,21 @@ fn lifted(tick: u64) -> (f32, f32) {
 fn commanded_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
     let mut share = f32::NAN;
     for tick in from..=to {
-        let now = tick * PERIOD;
+        let now = tick * TICK_PERIOD_US;
         let (height, acceleration) = lifted(tick);
         let zero = Vector3::zeros();
-        let delta_velocity = Vector3::new(0.0, 0.0, (9.81 + acceleration) * PERIOD as f32 * 1e-6);
-        let increment =
-            Increment { start: now - PERIOD, end: now, delta_angle: zero, delta_velocity, clipped: Clipped::NEITHER };
+        let delta_velocity = Vector3::new(0.0, 0.0, (9.81 + acceleration) * TICK_PERIOD_US as f32 * 1e-6);
+        let increment = Increment {
+            start: now - TICK_PERIOD_US,
+            end: now,
+            delta_angle: zero,
+            delta_velocity,
+            clipped: Clipped::NEITHER,
+        };
         let position = Vector3::new(0.0, 0.0, height);
         let still = Velocity::World(Vector3::zeros());
         let pose = Pose::new(position, still, Quaternion::new(1.0, 0.0, 0.0, 0.0)).unwrap();
-        let setpoint = Setpoint { motion: Motion::Position(Vector3::new(0.0, 0.0, -3.0)), turn: Turn::Keep };
+        let setpoint = Setpoint { motion: Motion::Position(Vector3::new(0.0, 0.0, -3.0)), turn: HeadingSetpoint::Keep };
         let outcome = pilot.tick(&Inputs {
             now,
             increments: &[increment],
@@ -179,14 +181,14 @@ fn commanded_of_the_rotors(pilot: &mut Pilot, from: u64, to: u64) -> f32 {
             poses: &[Stamped { value: PoseMeasurement::new(&pose), time: now }],
             ground_station: Some(now),
             request: match tick {
-                ARMED => Some(Request::Arm),
-                FLOWN => Some(Request::FlySetpoints),
+                ARMING_TICK => Some(Request::Arm),
+                TAKEOFF_TICK => Some(Request::FlySetpoints),
                 _ => None,
             },
-            setpoint: (tick == FLOWN).then_some(setpoint),
+            setpoint: (tick == TAKEOFF_TICK).then_some(setpoint),
             ..Inputs::default()
         });
-        if tick < FLOWN {
+        if tick < TAKEOFF_TICK {
             continue;
         }
         let (Some(Ok(flown)), Output::Thrusts(thrusts)) = (outcome.flown, outcome.output) else { panic!("not flown") };
@@ -201,11 +203,17 @@ fn what_is_armed_on_the_ground_learns_nothing_before_it_lifts_off() {
     let memory = Box::leak(Box::new(Memory::EMPTY));
     let settings = Settings::bmi088(certified.configuration().vehicle());
     let estimator = Box::leak(Box::new(Estimator::new(&settings)));
-    let mut pilot =
-        Pilot::new(Ok(&certified), &GovernorLimits::default(), &FlightSettings::DEFAULT, PERIOD, estimator, memory);
-    let standing = commanded_of_the_rotors(&mut pilot, 1, LIFTED);
+    let mut pilot = Pilot::new(
+        Ok(&certified),
+        &GovernorLimits::default(),
+        &FlightSettings::DEFAULT,
+        TICK_PERIOD_US,
+        estimator,
+        memory,
+    );
+    let standing = commanded_of_the_rotors(&mut pilot, 1, LIFTED_TICK);
     assert!((standing - 1.0).abs() < 1e-4, "the thrust scale was learnt on the ground: {}", 1.0 / standing);
     // Twelve centimetres higher it learns from how it was moved, to whatever end: that was no thrust.
-    let flying = commanded_of_the_rotors(&mut pilot, LIFTED + 1, LIFTED + 120);
+    let flying = commanded_of_the_rotors(&mut pilot, LIFTED_TICK + 1, LIFTED_TICK + 120);
     assert!((flying - 1.0).abs() > 0.01, "{}", 1.0 / flying);
 }

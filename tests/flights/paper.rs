@@ -3,13 +3,13 @@
 use controller_core::certificate::Certificate;
 use host_sim::flight::Flight;
 use host_sim::flight::claims::{all_hold, claims, table};
-use host_sim::flight::flown::Flown;
+use host_sim::flight::extremes::FlightExtremes;
 use scenario::Scenario;
 use scenario::verdict::Verdict;
 use std::path::Path;
 
-fn flown(scenario: &Scenario) -> Flown {
-    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
+fn flown(scenario: &Scenario) -> FlightExtremes {
+    FlightExtremes::gather(scenario, Flight::new(scenario).unwrap()).unwrap()
 }
 
 #[test]
@@ -24,7 +24,7 @@ fn the_papers_experiment_meets_every_published_figure() {
     }
     assert_eq!(flown.clipped, 0);
     assert!(flown.filter <= 2.0);
-    let claims = claims(&scenario, &Verdict::of(&scenario).unwrap(), &flown);
+    let claims = claims(&scenario, &Verdict::judge(&scenario).unwrap(), &flown);
     assert!(all_hold(&claims), "{}", table(&claims));
 }
 
@@ -67,11 +67,11 @@ fn every_file_of_the_collection_flies_within_its_claims_and_arrives() {
     let all = [collection("scenarios"), collection("vehicles")].concat();
     for scenario in &all {
         let flown = flown(scenario);
-        let claims = claims(scenario, &Verdict::of(scenario).unwrap(), &flown);
+        let claims = claims(scenario, &Verdict::judge(scenario).unwrap(), &flown);
         println!("{}: there after {:?} s", scenario.name, flown.position_reached());
         assert!(all_hold(&claims), "{}\n{}", scenario.name, table(&claims));
         let thrust = Certificate::new(&scenario.configuration).unwrap().thrust();
-        assert!(thrust.least > 0.0 && thrust.greatest <= f64::from(scenario.configuration.limits().thrust_max));
+        assert!(thrust.min > 0.0 && thrust.max <= f64::from(scenario.configuration.limits().thrust_max));
     }
     for name in [
         "paper",

@@ -14,8 +14,7 @@ use scenario::reality::wind::{Gust, Shape, Wind};
 use scenario::timing::Timing;
 use std::path::Path;
 
-/// How near is there, m.
-const NEAR: f64 = 0.1;
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
 
 /// A vehicle in all the circumstances of the table.
 struct Subject {
@@ -40,7 +39,7 @@ impl Subject {
 
     fn fly(&self, scenario: &Scenario) -> Course {
         let flight = Flight::certified(scenario, &self.certified).unwrap();
-        let course = Course::over(scenario, flight, NEAR).unwrap();
+        let course = Course::fly(scenario, flight, ARRIVAL_DISTANCE_M).unwrap();
         assert_eq!(course.clipped, 0, "{}: a rotor was commanded beyond its limits", scenario.name);
         course
     }
@@ -59,7 +58,7 @@ impl Subject {
     }
 
     fn truth(&self) -> Truth {
-        Truth::of_model(self.scenario.configuration.vehicle())
+        Truth::model(self.scenario.configuration.vehicle())
     }
 
     /// The file's own circle in other circumstances: RMS over the last half of 40 s, m.

@@ -13,8 +13,7 @@ use verification::campaign::fly_all;
 const HUMMINGBIRD: &str = include_str!("../../vehicles/hummingbird-paper-law.toml");
 const EXTENDED: &str = include_str!("../../vehicles/hummingbird.toml");
 const DRAG: &str = include_str!("hummingbird_drag.toml");
-/// Settled is nearer than this, m.
-const NEAR: f64 = 0.1;
+const SETTLED_DISTANCE_M: f64 = 0.1;
 
 /// The Hummingbird on its circle of 1 m at 0.25 Hz, at speed from the start, with further sections.
 fn circling(sections: &str) -> Scenario {
@@ -38,7 +37,7 @@ fn hovering_as(file: &str, duration: f64, initial: &str, sections: &str) -> Scen
 }
 
 fn course(scenario: &Scenario) -> Course {
-    let course = Course::over(scenario, Flight::new(scenario).unwrap(), NEAR).unwrap();
+    let course = Course::fly(scenario, Flight::new(scenario).unwrap(), SETTLED_DISTANCE_M).unwrap();
     println!(
         "excursion {:8.4} m, end {:8.4} m, RMS {:8.5} m, rotors {:6.4} N per tick, clipped {}",
         course.excursion, course.end_error, course.rms, course.activity, course.clipped
@@ -213,7 +212,8 @@ fn a_campaign_of_disturbed_flights_takes_moments() {
         case
     };
     let flown =
-        fly_all(&certified, 200, circumstances, |scenario, flight| Course::over(scenario, flight, NEAR)).unwrap();
+        fly_all(&certified, 200, circumstances, |scenario, flight| Course::fly(scenario, flight, SETTLED_DISTANCE_M))
+            .unwrap();
     let seconds = started.elapsed().as_secs_f64();
     println!("200 flights of 20 s in {seconds:.2} s: {:.0} simulated seconds per second", 4000.0 / seconds);
     assert!(flown.iter().all(|course| course.as_ref().is_ok_and(|course| course.excursion < 10.0)));
@@ -238,7 +238,7 @@ fn a_campaign_is_its_flights_one_by_one_in_order() {
         }
         case
     };
-    let course = |scenario: &Scenario, flight| Course::over(scenario, flight, 0.1).unwrap();
+    let course = |scenario: &Scenario, flight| Course::fly(scenario, flight, 0.1).unwrap();
     let all = fly_all(&certified, 12, circumstances, course).unwrap();
     let one_by_one: Vec<Course> = (0..12)
         .map(|number| course(&circumstances(number), Flight::certified(&circumstances(number), &certified).unwrap()))

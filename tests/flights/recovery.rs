@@ -7,12 +7,12 @@ use controller_core::reference::{Trajectory, hover::Hover};
 use nalgebra::{Quaternion, Vector3};
 use rand::RngExt;
 
-/// Control period, s; the body takes five Runge-Kutta steps in it (0.04 rad each at 20 rad/s).
-const PERIOD: f64 = 0.01;
+/// The body takes five Runge-Kutta steps in it (0.04 rad each at 20 rad/s).
+const PERIOD_S: f64 = 0.01;
 
-/// When the attitude error must be small, and until when it must stay so, in ticks.
-const SETTLED: usize = 600;
-const WATCHED: usize = 1000;
+/// When the attitude error must be small, and until when it must stay so.
+const SETTLED_TICKS: usize = 600;
+const WATCHED_TICKS: usize = 1000;
 
 #[test]
 fn a_thousand_random_attitudes_and_spins_settle_within_six_seconds() {
@@ -37,17 +37,17 @@ fn a_thousand_random_attitudes_and_spins_settle_within_six_seconds() {
             let spin = rng.random_range(0.0..20.0);
             body.angular_velocity = random::direction(&mut rng).cast::<f64>() * spin;
         }
-        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD_S as f32).unwrap();
         let mut last_large = 0;
-        for tick in 0..WATCHED {
+        for tick in 0..WATCHED_TICKS {
             let (wrench, diagnostics) = controller.step(&body.state(), &reference).unwrap();
             if diagnostics.mrp.norm() >= 0.01 {
                 last_large = tick;
             }
-            body.advance(&vehicle, &wrench, PERIOD, 5);
+            body.advance(&vehicle, &wrench, PERIOD_S, 5);
         }
-        assert!(last_large < SETTLED, "flight {number}: MRP error above 0.01 at {last_large} ticks");
+        assert!(last_large < SETTLED_TICKS, "flight {number}: MRP error above 0.01 at {last_large} ticks");
         slowest = slowest.max(last_large);
     }
-    println!("slowest of 1000 flights: MRP error below 0.01 for good after {:.2} s", PERIOD * (slowest + 1) as f64);
+    println!("slowest of 1000 flights: MRP error below 0.01 for good after {:.2} s", PERIOD_S * (slowest + 1) as f64);
 }

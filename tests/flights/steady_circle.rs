@@ -9,25 +9,25 @@ use scenario::reality::disturbance::Disturbance;
 use scenario::reality::truth::Truth;
 use scenario::timing::Timing;
 
-/// How long it is flown, and from when on it has to be there, s.
-const FLOWN: f64 = 60.0;
-const THERE: f64 = 40.0;
+/// How long it is flown, and from when on it has to be there.
+const FLIGHT_S: f64 = 60.0;
+const THERE_S: f64 = 40.0;
 
 /// Greatest distance from the reference from then on, m: in no force or a vertical one, 0.13 mm of which are the
 /// circle's own; and in one across, where thrust has to vary all the way round, and what is held for a tick and lags by
 /// 5 ms is late: 0.15 mm for each 5 ms, whatever the scale.
-const OFF: [f64; 2] = [2e-4, 4e-4];
+const DISTANCE_MAX_M: [f64; 2] = [2e-4, 4e-4];
 
 /// The Hummingbird's circle in air that does nothing, with a force per mass and rotors that deliver `thrust_scale` of
 /// what is commanded.
 fn circle(acceleration: Vector3<f64>, thrust_scale: f64) -> Scenario {
     let mut scenario = vehicle("hummingbird");
     let timing = scenario.timing;
-    scenario.timing = Timing { ticks: (FLOWN / timing.period()) as u64, ..timing };
+    scenario.timing = Timing { ticks: (FLIGHT_S / timing.period()) as u64, ..timing };
     scenario.reality.drag = None;
     scenario.configuration = with_constants(&scenario.configuration, |p| p.drag_across = 0.0);
     scenario.reality.disturbance = Some(Disturbance { acceleration, torque: Vector3::zeros(), start: 0.0 });
-    let truth = Truth::of_model(scenario.configuration.vehicle());
+    let truth = Truth::model(scenario.configuration.vehicle());
     scenario.reality.truth = Some(Truth { thrust_scale, ..truth });
     scenario
 }
@@ -38,7 +38,7 @@ fn flown(scenario: &Scenario) -> (f64, f32) {
     let (mut off, mut scale) = (0.0_f64, 0.0);
     for number in 0..scenario.timing.ticks {
         let tick = flight.tick().unwrap();
-        if number as f64 * scenario.timing.period() >= THERE {
+        if number as f64 * scenario.timing.period() >= THERE_S {
             off = off.max((tick.state.position - tick.reference.position.cast::<f64>()).norm());
         }
         scale = tick.estimates.unwrap().scale;
@@ -50,7 +50,7 @@ fn flown(scenario: &Scenario) -> (f64, f32) {
 fn a_constant_force_and_a_wrong_thrust_scale_together_leave_no_offset_on_a_circle() {
     let p = law(&vehicle("hummingbird").configuration).parameters;
     let mut missed = Vec::new();
-    let [vertical, across] = OFF;
+    let [vertical, across] = DISTANCE_MAX_M;
     for (name, force, most) in [
         ("nowhere", Vector3::zeros(), vertical),
         ("up", Vector3::z() * 0.9, vertical),

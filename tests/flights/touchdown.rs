@@ -11,19 +11,19 @@ use flight::{FlightSettings, Inputs, Mode, Request};
 use scenario::reality::estimator::Estimator;
 use verification::piloted::{PilotedVehicle, Place, Undisturbed};
 
-/// When it gets which command, and until when it is watched, ticks.
-const ARM: u64 = 200;
+/// When it gets which command, and until when it is watched.
+const ARM_TICK: u64 = 200;
 const TAKE_OFF: u64 = 220;
-const LAND: u64 = 900;
-const END: u64 = 1_700;
+const LAND_TICK: u64 = 900;
+const END_TICK: u64 = 1_700;
 
 /// How far the estimate may be off, m: at a touchdown, and before it and from [`KNOWN_AFTER`] ticks after it on.
 const AT_TOUCHDOWN: f64 = 25e-3;
-const OTHERWISE: f64 = 3e-3;
+const ESTIMATE_ERROR_MAX_M: f64 = 3e-3;
 const KNOWN_AFTER: u64 = 15;
 
 /// How far the estimate was off, m, while it flew, and after the touchdown; and the last tick after it at which that
-/// was beyond [`OTHERWISE`].
+/// was beyond [`ESTIMATE_ERROR_MAX_M`].
 fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
     let mut scenario = vehicle(name);
     scenario.reality.estimator = Some(Estimator { seed: draw, ..Estimator::default() });
@@ -35,11 +35,11 @@ fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
     let height = 0.6 + 0.37e-3 * draw as f32;
     let (mut flying, mut landed, mut last) = (0.0_f64, 0.0_f64, 0);
     let mut touched = None;
-    for tick in 1..END {
+    for tick in 1..END_TICK {
         let request = match tick {
-            ARM => Some(Request::Arm),
+            ARM_TICK => Some(Request::Arm),
             TAKE_OFF => Some(Request::TakeOff(Some(height))),
-            LAND => Some(Request::Land),
+            LAND_TICK => Some(Request::Land),
             _ => None,
         };
         let given =
@@ -48,7 +48,7 @@ fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
         assert!(!matches!(outcome.answer, Some(Err(_))), "{name}, draw {draw}, tick {tick}: {:?}", outcome.answer);
         let touchdown = vehicle.vehicle_mut().take_touchdown().filter(|touchdown| touchdown.speed > 0.1);
         touched = touched.or(touchdown.map(|_| tick));
-        if tick < ARM {
+        if tick < ARM_TICK {
             continue;
         }
         let off = (outcome.estimated.unwrap().state.position.cast() - vehicle.vehicle().state().position).norm();
@@ -56,12 +56,12 @@ fn fly(name: &str, draw: u64) -> (f64, f64, u64) {
             None => flying = flying.max(off),
             Some(when) => {
                 landed = landed.max(off);
-                last = if off > OTHERWISE { tick - when } else { last };
+                last = if off > ESTIMATE_ERROR_MAX_M { tick - when } else { last };
             }
         }
         // Ready again, but for a pose in the last second that was not believed.
         let down = [Mode::Ready, Mode::Checks].contains(&outcome.mode);
-        assert!(tick + 1 < END || down, "{name}, draw {draw}: {:?}", outcome.mode);
+        assert!(tick + 1 < END_TICK || down, "{name}, draw {draw}: {:?}", outcome.mode);
     }
     assert!(touched.is_some(), "{name}, draw {draw}");
     (flying, landed, last)
@@ -76,6 +76,6 @@ fn what_a_touchdown_leaves_out_is_known_again_soon_whenever_it_comes() {
         let landed = flown.iter().map(|flown| flown.1).fold(0.0, f64::max);
         let last = flown.iter().map(|flown| flown.2).max().unwrap();
         println!("{name:12} {:22.1} {:25.1}    {:.2} s", flying * 1e3, landed * 1e3, (last + 1) as f64 * 0.01);
-        assert!(flying < OTHERWISE && landed < AT_TOUCHDOWN && last < KNOWN_AFTER, "{name}: {flown:?}");
+        assert!(flying < ESTIMATE_ERROR_MAX_M && landed < AT_TOUCHDOWN && last < KNOWN_AFTER, "{name}: {flown:?}");
     }
 }

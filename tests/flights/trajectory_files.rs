@@ -3,15 +3,15 @@
 //! `cargo test -p host-sim trajectory_files -- --nocapture` prints how near.
 
 use crate::support::binary::{self, host_sim, status, stdout};
-use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::reference::Reference;
 use host_sim::flight::Flight;
-use host_sim::reports::reference_rows::SLOWER;
+use host_sim::reports::reference_rows::FOLLOWED_WITHIN_2_CM_FACTOR;
 use nalgebra::Vector3;
 use scenario::reference::ReferenceKind;
 use scenario::trajectory::{Route, Way};
 use scenario::verdict::Verdict;
-use scenario::{Scenario, whole};
+use scenario::{Scenario, self_contained};
 use std::fs;
 use std::path::Path;
 
@@ -51,7 +51,7 @@ fn far() -> Scenario {
 
 /// How far from its points, at their times, and from its reference the vehicle flies at worst, m.
 fn flown(scenario: &Scenario) -> (f64, f64) {
-    assert_eq!(Verdict::of(scenario).unwrap().refusal(), None, "{}", scenario.name);
+    assert_eq!(Verdict::judge(scenario).unwrap().refusal(), None, "{}", scenario.name);
     let ReferenceKind::Route(Route { points, .. }) = &scenario.reference else { panic!("no route") };
     let mut flight = Flight::new(scenario).unwrap();
     let (mut off, mut path, mut next) = (0.0_f64, Vec::new(), points.iter().peekable());
@@ -98,7 +98,7 @@ fn a_campaign_and_a_report_keep_the_rows_of_a_file() {
     let output = host_sim(&directory, &campaign);
     assert!(status(&output) < 2, "{}", stdout(&output));
     // Without the file beside it, the campaign goes on from what it kept.
-    let text = whole::read(&directory.join("eight.toml")).unwrap();
+    let text = self_contained::read(&directory.join("eight.toml")).unwrap();
     fs::remove_file(directory.join("eight.csv")).unwrap();
     let kept = fs::read_to_string(directory.join("flown/scenario.toml")).unwrap();
     assert_eq!(kept, text);
@@ -112,20 +112,20 @@ fn streamed(scenario: &Scenario) -> f32 {
     let governor = Governor::new(bounds, &GovernorLimits::default(), period, memory).unwrap();
     // Two seconds at rest, then as `host-sim reference` writes it.
     let at = |tick: u64| {
-        let time = (tick * 10_000).saturating_sub(2_000_000) as f64 / SLOWER;
+        let time = (tick * 10_000).saturating_sub(2_000_000) as f64 / FOLLOWED_WITHIN_2_CM_FACTOR;
         let Reference { velocity, acceleration, .. } = scenario.trajectory.at(time as u64);
-        let slower = SLOWER as f32;
+        let slower = FOLLOWED_WITHIN_2_CM_FACTOR as f32;
         let (velocity, acceleration) = (velocity / slower, acceleration / (slower * slower));
         Reference { velocity, acceleration, ..scenario.trajectory.at(time as u64) }
     };
     let first = at(0);
     governor.start(&first.position, &Vector3::zeros(), &first.heading).unwrap();
     let mut worst = 0.0_f32;
-    for tick in 0..(scenario.timing.ticks as f64 * SLOWER) as u64 + 200 {
+    for tick in 0..(scenario.timing.ticks as f64 * FOLLOWED_WITHIN_2_CM_FACTOR) as u64 + 200 {
         if tick % 2 == 0 {
             let Reference { position, velocity, acceleration, .. } = at(tick);
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
-            governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+            governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         }
         let off = (governor.tick().position - at(tick + 1).position).norm();
         worst = worst.max(off);

@@ -18,29 +18,28 @@ use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
 use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
-use host_sim::vehicle::instruments::{Felt, SAMPLE};
+use host_sim::vehicle::instruments::{SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use verification::piloted::{Meddler, PilotedVehicle, Place};
 
-/// How far the plane of the rotors is above the IMU, m.
-const ABOVE: f64 = 0.02;
+/// Above the IMU.
+const ROTOR_PLANE_HEIGHT_M: f64 = 0.02;
 
 /// The part of a pull that the frame turns upwards.
-const UPWARDS: f64 = 0.5;
+const UPWARD_SHARE: f64 = 0.5;
 
 /// By how much each rotor is faster than the one before it.
-const FASTER: f64 = 0.004;
+const ROTOR_SPEED_STEP_SHARE: f64 = 0.004;
 
-/// The height of the hover, m.
-const HEIGHT: f64 = 1.5;
+const HOVER_HEIGHT_M: f64 = 1.5;
 
 /// What happens when, us: arming, take-off; from when on it hovers, and to when; what is then requested or lost.
-const ARM: u64 = 2_000_000;
+const ARM_US: u64 = 2_000_000;
 const TAKE_OFF: u64 = 2_600_000;
-const HOVER: std::ops::Range<u64> = 15_000_000..30_000_000;
-const END: u64 = 60_000_000;
+const HOVER_US: std::ops::Range<u64> = 15_000_000..30_000_000;
+const END_US: u64 = 60_000_000;
 
 /// A rotor as its unbalance has it.
 struct Shaker {
@@ -78,9 +77,9 @@ impl Unbalanced {
         let configuration = &scenario.configuration;
         let (model, rotors) = (configuration.vehicle(), configuration.rotors().unwrap());
         let shakers = rotors.iter().enumerate().map(|(number, rotor)| Shaker {
-            place: rotor.position.map(f64::from) + Vector3::z() * ABOVE,
+            place: rotor.position.map(f64::from) + Vector3::z() * ROTOR_PLANE_HEIGHT_M,
             sense: -f64::from(rotor.spin.sign()),
-            faster: faster * (1.0 + FASTER * number as f64),
+            faster: faster * (1.0 + ROTOR_SPEED_STEP_SHARE * number as f64),
             phase: number as f64,
             speed: 0.0,
         });
@@ -108,8 +107,8 @@ impl Unbalanced {
 
 impl Meddler for Unbalanced {
     fn act(&mut self, vehicle: &mut RealVehicle, _: u64) {
-        let bent = |x: f64, y: f64| Vector3::new(x, y, UPWARDS * x);
-        let seconds = SAMPLE as f64 * 1e-6;
+        let bent = |x: f64, y: f64| Vector3::new(x, y, UPWARD_SHARE * x);
+        let seconds = SAMPLE_PERIOD_US as f64 * 1e-6;
         (self.force, self.rate, self.angle) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
         for (shaker, thrust) in self.shakers.iter_mut().zip(vehicle.thrusts()) {
             let speed = shaker.faster * (thrust / self.coefficient).max(0.0).sqrt();
@@ -125,11 +124,11 @@ impl Meddler for Unbalanced {
         }
     }
 
-    fn feel(&mut self, felt: Felt, _: u64) -> Felt {
+    fn feel(&mut self, felt: TrueMotion, _: u64) -> TrueMotion {
         let (force, rate, samples) = self.squares;
         self.squares = (force + self.force.norm_squared(), rate + self.rate.norm_squared(), samples + 1.0);
         let turned = UnitQuaternion::from_scaled_axis(-self.angle);
-        Felt {
+        TrueMotion {
             angular_velocity: turned * felt.angular_velocity + self.rate,
             specific_force: turned * (felt.specific_force + self.force),
         }
@@ -166,33 +165,33 @@ fn fly(scenario: &Scenario, unbalance: f64, faster: f64, is_blinded: bool) -> Fl
     let (mut squares, mut greatest) = (0.0, 0.0_f64);
     let mut flown = Flown { strength: (0.0, 0.0), off: (0.0, 0.0), refused: 0, touchdown: 0.0, reasons: Vec::new() };
     let period = scenario.timing.period_us;
-    for time in (period..END).step_by(period as usize) {
+    for time in (period..END_US).step_by(period as usize) {
         let request = match time {
-            ARM => Some(Request::Arm),
-            TAKE_OFF => Some(Request::TakeOff(Some(HEIGHT as f32))),
-            time if time == HOVER.end && !is_blinded => Some(Request::Land),
+            ARM_US => Some(Request::Arm),
+            TAKE_OFF => Some(Request::TakeOff(Some(HOVER_HEIGHT_M as f32))),
+            time if time == HOVER_US.end && !is_blinded => Some(Request::Land),
             _ => None,
         };
-        shaken.is_seen = !(is_blinded && time >= HOVER.end);
-        if time == HOVER.start {
+        shaken.is_seen = !(is_blinded && time >= HOVER_US.end);
+        if time == HOVER_US.start {
             shaken.squares = (0.0, 0.0, 0.0);
         }
         let given = Inputs { request, ground_station: Some(vehicle.now() + period), ..Inputs::default() };
         let (outcome, _) = vehicle.tick(&given, &mut shaken).unwrap();
         flown.reasons.extend(outcome.transition.map(|transition| (transition.reason, time)));
         flown.refused += usize::from(outcome.pose.is_some_and(|pose| pose.is_err()));
-        if HOVER.contains(&time) {
-            let off = (vehicle.vehicle().state().position - Vector3::z() * HEIGHT).norm();
+        if HOVER_US.contains(&time) {
+            let off = (vehicle.vehicle().state().position - Vector3::z() * HOVER_HEIGHT_M).norm();
             (squares, greatest) = (squares + off * off, greatest.max(off));
         }
-        if time == HOVER.end {
+        if time == HOVER_US.end {
             flown.strength = shaken.strength();
         }
         if let Some(touchdown) = vehicle.vehicle_mut().take_touchdown() {
             flown.touchdown = flown.touchdown.max(touchdown.speed);
         }
     }
-    let ticks = ((HOVER.end - HOVER.start) / period) as f64;
+    let ticks = ((HOVER_US.end - HOVER_US.start) / period) as f64;
     Flown { off: ((squares / ticks).sqrt(), greatest), ..flown }
 }
 
@@ -215,7 +214,7 @@ fn a_shaken_vehicle_hovers_lands_and_comes_down_blind() {
                 let flown = fly(&vehicle(name), unbalance, 1.0, is_blinded);
                 check(&flown, is_blinded, limit, &format!("{name}, {unbalance} kg m"));
                 let down = flown.reasons.iter().find(|(reason, _)| *reason == Reason::Landed).unwrap().1;
-                (flown, (down - HOVER.end) as f64 * 1e-6)
+                (flown, (down - HOVER_US.end) as f64 * 1e-6)
             });
             let Flown { strength: (force, rate), off, .. } = landed.0;
             let (rms, most) = (off.0 * 1e3, off.1 * 1e3);

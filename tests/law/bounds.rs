@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use rand::RngExt;
 
 /// The greatest magnitude the law accepts in a state.
-const GREATEST: f32 = 1e15;
+const STATE_MAX: f32 = 1e15;
 
 /// A control period between 0.1 ms and the longest allowed.
 fn period(rng: &mut ChaCha8Rng) -> f32 {
@@ -27,7 +27,7 @@ fn inside(v: &Vector3<f32>, level: f32) -> bool {
 
 /// Pulls `state` about: small errors, huge ones, and long stretches of the same saturated error.
 fn disturb(rng: &mut ChaCha8Rng, state: &mut State, reference: &Reference) {
-    let away = random::log_uniform(rng, 1e-3, GREATEST / 4.0);
+    let away = random::log_uniform(rng, 1e-3, STATE_MAX / 4.0);
     match rng.random_range(0..20) {
         0 => *state = random::state_around(rng, reference),
         1 => state.position = random::vector(rng, away),
@@ -39,7 +39,7 @@ fn disturb(rng: &mut ChaCha8Rng, state: &mut State, reference: &Reference) {
 
 #[test]
 fn filter_states_stay_in_their_box_to_the_last_bit() {
-    const TICKS: usize = 2_000;
+    const FLIGHT_TICKS: usize = 2_000;
     let mut rng = random::generator(30);
     let mut on_the_wall = 0_u32;
     for number in 0..300 {
@@ -53,7 +53,7 @@ fn filter_states_stay_in_their_box_to_the_last_bit() {
         controller.restore(Memory { filter, lift: None });
         let reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);
-        for tick in 0..TICKS {
+        for tick in 0..FLIGHT_TICKS {
             disturb(&mut rng, &mut state, &reference);
             let (_, diagnostics) = controller.step(&state, &reference).unwrap();
             let FilterState { filtered, intermediate } = controller.memory().filter;
@@ -81,8 +81,8 @@ fn any_magnitude(rng: &mut ChaCha8Rng) -> Vector3<f32> {
     Vector3::from_fn(|_, _| {
         let magnitude = match rng.random_range(0..8) {
             0 => 0.0,
-            1 => GREATEST,
-            _ => random::log_uniform(rng, 1e-30, GREATEST),
+            1 => STATE_MAX,
+            _ => random::log_uniform(rng, 1e-30, STATE_MAX),
         };
         if rng.random_bool(0.5) { magnitude } else { -magnitude }
     })
@@ -141,7 +141,7 @@ fn a_state_beyond_the_greatest_magnitude_is_a_typed_error() {
     for _ in 0..10_000 {
         let reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);
-        let beyond = random::log_uniform(&mut rng, 1.000_001 * GREATEST, f32::MAX);
+        let beyond = random::log_uniform(&mut rng, 1.000_001 * STATE_MAX, f32::MAX);
         let (axis, sign) = (rng.random_range(0..3), if rng.random_bool(0.5) { 1.0 } else { -1.0 });
         let (vector, field) = match rng.random_range(0..3) {
             0 => (&mut state.position, "state.position"),

@@ -21,7 +21,7 @@ use crate::support::extended::oracle::tick::{Answer, BRANCHES, Last, Nudge, Tick
 use crate::support::extended::rounding::{ACCELERATION_PLACE, NAMES, Scales, distances, tolerances};
 use crate::support::extended::{around_the_formulas, law, random_configuration, vehicle};
 use crate::support::oracle::lifting;
-use crate::support::oracle::rounding::{ROUNDINGS, vector4};
+use crate::support::oracle::rounding::{ROUNDINGS_MAX, vector4};
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::configuration::Configuration;
 use controller_core::controller::Diagnostics;
@@ -39,10 +39,10 @@ use rand::RngExt;
 const EITHER_SIDE: f64 = 1e-5;
 
 /// What such a tick cannot change.
-const ANYWAY: [&str; 7] = ["omega_d", "y", "zeta", "bias", "averages", "scale", "x"];
+const UNCHANGED_MEMORY: [&str; 7] = ["omega_d", "y", "zeta", "bias", "averages", "scale", "x"];
 
 fn reference(rng: &mut ChaCha8Rng, configuration: &Configuration) -> Reference {
-    let room = configuration.vehicle().gravity - configuration.greatest_fall();
+    let room = configuration.vehicle().gravity - configuration.max_fall();
     let (sin, cos) = rng.random_range(-3.2_f32..3.2).sin_cos();
     let turning = [rng.random_range(-3.0..3.0), rng.random_range(-8.0..8.0)];
     let mut acceleration = random::vector(rng, 3.0);
@@ -87,7 +87,7 @@ fn tick(memory: &Memory, hidden: &Hidden, state: &State, reference: &Reference) 
         filters: filters(memory),
         lift: memory.lift.map(|lift| lifting::Lift { memory: vector4(&lift.memory), sign: lift.sign.into() }),
         side: memory.side.map(|side| side.cast()),
-        yaw_room: memory.yaw_room.into(),
+        yaw_room: memory.yaw_torque_left.into(),
         averages: averages(memory),
         fallback: hidden.fallback,
         last: hidden.last,
@@ -131,7 +131,7 @@ fn of_core(memory: &Memory, wrench: &Wrench, shown: &Diagnostics, answer: &Answe
         averages: averages(memory),
         // Its length is the core's own.
         side: side * (answer.side.norm() / side.norm().max(1e-300)),
-        yaw_room: memory.yaw_room.into(),
+        yaw_room: memory.yaw_torque_left.into(),
         ..*answer
     }
 }
@@ -251,7 +251,7 @@ fn fly(
                 forward: hidden.forward.unwrap_or_default(),
             };
             let allowed = tolerances(&oracle, &before, &answer, &scales);
-            forward = Some(allowed[ACCELERATION_PLACE] / ROUNDINGS);
+            forward = Some(allowed[ACCELERATION_PLACE] / ROUNDINGS_MAX);
             let either = answer.edge < EITHER_SIDE;
             shown.either += u32::from(either);
             if !either {
@@ -268,7 +268,7 @@ fn fly(
             for (part, ((error, allowed), name)) in
                 distances(&core, &answer).into_iter().zip(allowed).zip(NAMES).enumerate()
             {
-                if number > 0 && hidden.forward.is_none() || either && !ANYWAY.contains(&name) {
+                if number > 0 && hidden.forward.is_none() || either && !UNCHANGED_MEMORY.contains(&name) {
                     continue;
                 }
                 let what = format!("tick {number}: {name} is off by {error:e}, allowed {allowed:e}");
@@ -299,31 +299,31 @@ fn fly(
 
 /// Throws vehicle and reference about.
 fn thrown(configuration: &Configuration, world: &mut World, rng: &mut ChaCha8Rng) {
-    const OFTEN: f64 = 0.02;
-    if rng.random_bool(OFTEN) {
+    const CHANGE_PROBABILITY: f64 = 0.02;
+    if rng.random_bool(CHANGE_PROBABILITY) {
         world.goal = reference(rng, configuration);
         world.wind = random::vector(rng, 4.0).cast::<f64>();
     }
-    if rng.random_bool(OFTEN) {
+    if rng.random_bool(CHANGE_PROBABILITY) {
         world.body.attitude = random::attitude(rng).cast();
         world.body.angular_velocity = random::vector(rng, 10.0).cast();
         world.body.velocity = random::vector(rng, 8.0).cast();
         world.body.position = (world.goal.position + random::vector(rng, 10.0)).cast();
     }
     // Upside down and turning on: beyond half a turn the other way round is nearer.
-    if rng.random_bool(OFTEN) {
+    if rng.random_bool(CHANGE_PROBABILITY) {
         let angle = rng.random_range(0.0..std::f64::consts::TAU);
         let axis = Vector3::new(angle.cos(), angle.sin(), 0.0);
         world.body.attitude = Quaternion::new(0.0, axis.x, axis.y, 0.0);
         world.body.angular_velocity = axis * rng.random_range(-20.0..20.0);
     }
     // Level, spinning and falling: yaw brakes while thrust is wanted.
-    if rng.random_bool(OFTEN) {
+    if rng.random_bool(CHANGE_PROBABILITY) {
         world.body.attitude = Quaternion::identity();
         world.body.angular_velocity = Vector3::z() * rng.random_range(-30.0..30.0);
         world.body.velocity = Vector3::z() * rng.random_range(-40.0..0.0);
     }
-    world.hold = rng.random_bool(0.5 * OFTEN);
+    world.hold = rng.random_bool(0.5 * CHANGE_PROBABILITY);
 }
 
 #[test]

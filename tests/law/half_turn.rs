@@ -14,10 +14,10 @@ use host_sim::rivals::quaternion_feedback::QuaternionFeedback;
 use host_sim::rivals::rival::Rival;
 use nalgebra::Quaternion;
 use scenario::Scenario;
-use verification::half_turn::{LIKE_TABLE_1, Trial};
+use verification::half_turn::{GAINS_LIKE_TABLE_1, Trial};
 
 fn rival(scenario: &Scenario, build: impl FnOnce(QuaternionFeedback) -> Box<dyn Rival>) -> Controller {
-    let feedback = QuaternionFeedback::new(model(scenario), LIKE_TABLE_1);
+    let feedback = QuaternionFeedback::new(model(scenario), GAINS_LIKE_TABLE_1);
     Controller::Rival(Box::new(RivalPilot::new(scenario, build(feedback))))
 }
 

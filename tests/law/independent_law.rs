@@ -136,8 +136,8 @@ fn a_tick_with_random_vehicles_and_gains_agrees_with_the_plain_transcription() {
 /// forgets them at the rate of the slower filter, which bounds how far the two drift apart.
 #[test]
 fn memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks() {
-    const TICKS: usize = 400;
-    const PERIOD: f32 = 0.01;
+    const FLIGHT_TICKS: usize = 400;
+    const PERIOD_S: f32 = 0.01;
     let mut rng = random::generator(3);
     let (mut switches, mut follows) = (0, 0);
     for number in 0..60 {
@@ -145,14 +145,14 @@ fn memory_agrees_with_the_plain_transcription_along_hundreds_of_ticks() {
         let vehicle = if table_i { random::paper_vehicle() } else { random::vehicle(&mut rng) };
         let gains = if table_i { random::paper_gains(&vehicle) } else { random::gains(&mut rng, &vehicle) };
         let law = Law::new(&vehicle, &gains);
-        let mut plain = oracle::Controller::new(law, PERIOD.into());
-        let mut core = Controller::uncertified(vehicle, gains, None, PERIOD).unwrap();
+        let mut plain = oracle::Controller::new(law, PERIOD_S.into());
+        let mut core = Controller::uncertified(vehicle, gains, None, PERIOD_S).unwrap();
         let reference = random::reference(&mut rng, &vehicle, &gains);
         let mut state = random::state_around(&mut rng, &reference);
         let slowest = -(-law.k_f.min(law.k_s) * plain.period).exp_m1();
         let drift = 16.0 * ULP * law.m_p / (slowest * slowest);
         let mut greatest_turn = 0.0_f64;
-        for tick in 0..TICKS {
+        for tick in 0..FLIGHT_TICKS {
             // An eighth of the ticks changes the spin, so that the error turns back as well as round and round.
             if rng.random_bool(0.125) {
                 state.angular_velocity = random::vector(&mut rng, 20.0);

@@ -19,7 +19,7 @@ fn apart(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
 
 /// Rotation entries are sums of at most six products below two, each with a rounding or two: 16 roundings at most. The
 /// parameters of a unit quaternion in single precision carry two more, which R turns into eight.
-const ENTRY: f64 = 24.0 * ULP;
+const ENTRY_TOLERANCE: f64 = 24.0 * ULP;
 
 #[test]
 fn parameters_and_their_shadow_describe_the_rotation_they_came_from() {
@@ -27,10 +27,10 @@ fn parameters_and_their_shadow_describe_the_rotation_they_came_from() {
     for _ in 0..100_000 {
         let q = random::attitude(&mut rng);
         let expected = lifting::rotation(&vector4(&q));
-        assert!(apart(&mrp::rotation(&q).cast(), &expected) < ENTRY, "R(q) at {q}");
+        assert!(apart(&mrp::rotation(&q).cast(), &expected) < ENTRY_TOLERANCE, "R(q) at {q}");
         // Towards q_0 = -1 the denominator of phi loses what q_0 was rounded by: eps / (1 + q_0), relative.
         let theta = mrp::from_quaternion(&q);
-        let room = ENTRY + 8.0 * ULP / f64::from(1.0 + q.w);
+        let room = ENTRY_TOLERANCE + 8.0 * ULP / f64::from(1.0 + q.w);
         assert!(apart(&mrp::to_rotation(&theta).cast(), &expected) < room, "R(phi(q)) at {q}");
         if theta.norm() > 1e-3 {
             let shadow = mrp::shadow(&theta);
@@ -133,8 +133,8 @@ where
 /// A wrong or missing term would be of the size of omega_d and omega_d' themselves.
 #[test]
 fn desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight() {
-    const TICK: f64 = 1e-4;
-    const SPACING: usize = 20;
+    const TICK_S: f64 = 1e-4;
+    const SPACING_TICKS: usize = 20;
     let vehicle = random::paper_vehicle();
     let mut rng = random::generator(63);
     let (mut worst_rate, mut worst_acceleration) = (0.0_f64, 0.0_f64);
@@ -143,13 +143,13 @@ fn desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight() {
         let start = random::vector(&mut rng, 6.0).cast();
         let mut body = Body::resting(start, random::attitude(&mut rng).cast().normalize());
         let mut controller =
-            Controller::uncertified(vehicle, random::paper_gains(&vehicle), None, TICK as f32).unwrap();
+            Controller::uncertified(vehicle, random::paper_gains(&vehicle), None, TICK_S as f32).unwrap();
         let offset = rng.random_range(0.0..10.0);
         let samples: Vec<Sample> = (0..40_000)
             .map(|tick| {
-                let reference = swinging_reference(offset + TICK * f64::from(tick));
+                let reference = swinging_reference(offset + TICK_S * f64::from(tick));
                 let (wrench, diagnostics) = controller.step(&body.state(), &reference).unwrap();
-                body.advance(&vehicle, &wrench, TICK, 1);
+                body.advance(&vehicle, &wrench, TICK_S, 1);
                 Sample {
                     attitude: lifting::rotation(&vector4(&diagnostics.desired_attitude)),
                     omega: diagnostics.desired_angular_velocity.cast(),
@@ -157,9 +157,9 @@ fn desired_rates_are_the_derivatives_of_the_desired_attitude_along_a_flight() {
                 }
             })
             .collect();
-        for centre in 3 * SPACING..samples.len() - 3 * SPACING {
-            let at = |k: i32| &samples[centre.strict_add_signed(k as isize * SPACING as isize)];
-            let spacing = TICK * SPACING as f64;
+        for centre in 3 * SPACING_TICKS..samples.len() - 3 * SPACING_TICKS {
+            let at = |k: i32| &samples[centre.strict_add_signed(k as isize * SPACING_TICKS as isize)];
+            let spacing = TICK_S * SPACING_TICKS as f64;
             let spin = at(0).attitude.transpose() * slope(|k| at(k).attitude, spacing);
             let rate = 0.5
                 * Vector3::new(spin[(2, 1)] - spin[(1, 2)], spin[(0, 2)] - spin[(2, 0)], spin[(1, 0)] - spin[(0, 1)]);

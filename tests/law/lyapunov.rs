@@ -18,8 +18,7 @@ use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::vehicle::Vehicle;
 use nalgebra::Vector3;
 
-/// Control period, s.
-const PERIOD: f64 = 0.01;
+const PERIOD_S: f64 = 0.01;
 
 /// At the origin, at rest, pointing forward.
 fn hover() -> Reference {

@@ -41,7 +41,7 @@ def card(file):
     ticks = log.get_dataset("tick").data
     assert len(ticks["timestamp"]) == 399, len(ticks["timestamp"])
     information = told("ulog_info", file)
-    for words in ["sys_name: saturated hybrid feedback", "vehicle: mine", "ver_sw: 0.1.0", "frames: world z up"]:
+    for words in ["sys_name: saturated hybrid feedback", "vehicle: mine", "ver_sw: 0.2.0", "frames: world z up"]:
         assert words in information, information
     parameters = dict(line.split(",") for line in told("ulog_params", file).splitlines())
     assert float(parameters["MOT_IDLE"]) == float(log.initial_parameters["MOT_IDLE"]) > 0.0

@@ -66,7 +66,7 @@ fn vehicles_that_act_without_delay_are_found_within_what_is_stated() {
 #[test]
 fn lags_of_vehicles_that_act_without_delay_are_identified_neither_too_great_nor_too_small() {
     // A tick's gyro noise is in the command that acts before the next tick.
-    const VEHICLES: u64 = 12;
+    const VEHICLE_COUNT: u64 = 12;
     let scenario = parse(HUMMINGBIRD);
     let off = |seed| {
         let trial = Trial::flown(HUMMINGBIRD, seed, Drag::Whole, Some(0.0)).unwrap();
@@ -74,7 +74,7 @@ fn lags_of_vehicles_that_act_without_delay_are_identified_neither_too_great_nor_
         let (_, lag, truth) = trial.truths(&identified).into_iter().find(|(name, ..)| *name == "lag").unwrap();
         lag.value - truth
     };
-    let mean = (1..=VEHICLES).into_par_iter().map(off).sum::<f64>() / VEHICLES as f64;
+    let mean = (1..=VEHICLE_COUNT).into_par_iter().map(off).sum::<f64>() / VEHICLE_COUNT as f64;
     // Each is known to 0.24 ms. None is greater than lag and delay together, which makes 0.12 ms.
     assert!(mean.abs() < 2e-4, "{mean}");
 }
@@ -140,7 +140,7 @@ fn a_hover_is_refused_with_what_to_fly_instead() {
 
 #[test]
 fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
-    const STEP: f64 = 1e-5;
+    const STEP_S: f64 = 1e-5;
     let log = FlightLog::from_csv(&fly(&hover().replace("duration = 40.0", "duration = 0.5")).unwrap()).unwrap();
     let scenario = parse(HUMMINGBIRD);
     let rotors = scenario.configuration.rotors().unwrap();
@@ -152,25 +152,25 @@ fn impulses_are_those_of_rotors_that_are_simulated_in_small_steps() {
     let (lag, delay) = (0.013, 0.0143);
     let impulses = Commands::new(&log, rotors).unwrap().impulses(lag + delay, lag * lag);
     let mixer = controller_core::allocation::Mixer::new(rotors);
-    let mut spinning = SpinningRotors::hovering(rotors, lag, 5.0, STEP);
+    let mut spinning = SpinningRotors::hovering(rotors, lag, 5.0, STEP_S);
     let thrusts: Vec<_> = log.moments.iter().map(|moment| mixer.allocate(&moment.commanded).unwrap().thrusts).collect();
-    let (steps, late) = ((log.period / STEP).round() as usize, (delay / STEP).round() as usize);
+    let (steps, late) = ((log.period / STEP_S).round() as usize, (delay / STEP_S).round() as usize);
     // The gyro's, at 1 kHz.
     let (mut own, mut ours) = (LowPass::new(116.0, 500.0, 1e3), LowPass::new(60.0, 100.0, 1e3));
-    let sample = (1e-3 / STEP).round() as usize;
+    let sample = (1e-3 / STEP_S).round() as usize;
     for (tick, impulse) in impulses.iter().enumerate() {
         let (mut thrust, mut torque, mut sampled) = (0.0, Vector3::zeros(), Vector3::zeros());
         for step in tick * steps..(tick + 1) * steps {
             spinning.command(&thrusts[step.saturating_sub(late) / steps]);
             let (f, tau) = spinning.advance();
-            thrust += f * STEP;
-            sampled += tau * STEP;
+            thrust += f * STEP_S;
+            sampled += tau * STEP_S;
             if (step + 1) % sample == 0 {
                 torque += ours.take(&own.take(&sampled.map(|torque: f64| torque as f32))).map(f64::from);
                 sampled = Vector3::zeros();
             }
         }
-        // After the start, which differs; midpoints of small steps are exact to (STEP / lag)^2.
+        // After the start, which differs; midpoints of small steps are exact to (STEP_S / lag)^2.
         if tick > 20 {
             assert!((thrust - impulse.thrust).abs() < 1e-6, "{tick}: {thrust} {impulse:?}");
             assert!((torque - impulse.torque).norm() < 1e-7, "{tick}: {torque} {impulse:?}");

@@ -10,7 +10,7 @@ use verification::identify_trials::{Drag, Trial};
 
 const HUMMINGBIRD: &str = include_str!("../../vehicles/hummingbird.toml");
 
-const TOPICS: [Topic; 5] = [
+const TOPICS_WRITTEN: [Topic; 5] = [
     Topic { name: "actuator_motors", fields: "uint64_t timestamp;float[12] control;" },
     Topic { name: "sensor_combined", fields: "uint64_t timestamp;float[3] gyro_rad;uint32_t gyro_integral_dt;" },
     Topic { name: "vehicle_attitude", fields: "uint64_t timestamp;float[4] q;" },
@@ -19,7 +19,7 @@ const TOPICS: [Topic; 5] = [
 ];
 
 /// Which rotor of the Hummingbird's file each of PX4's motors is: front right, rear left, front left, rear right.
-const ORDER: [usize; 4] = [1, 3, 0, 2];
+const ROTOR_ORDER: [usize; 4] = [1, 3, 0, 2];
 
 /// How it is logged.
 #[derive(Clone, Copy)]
@@ -32,7 +32,7 @@ struct Logged {
     lost: Option<usize>,
 }
 
-const WHOLE: Logged = Logged { geometry: None, motors_every: 1, lost: None };
+const WHOLE_LOG: Logged = Logged { geometry: None, motors_every: 1, lost: None };
 
 fn floats(numbers: &[f64]) -> Vec<u8> {
     numbers.iter().flat_map(|number| (*number as f32).to_le_bytes()).collect()
@@ -46,7 +46,7 @@ fn turned(vector: &Vector3<f64>) -> [f64; 3] {
 /// A flight as PX4 logs it.
 fn written(log: &FlightLog, rotors: &Rotors, how: Logged) -> Vec<u8> {
     let mut parameters = vec![];
-    for (motor, rotor) in ORDER.iter().enumerate().filter(|_| how.geometry.is_some()) {
+    for (motor, rotor) in ROTOR_ORDER.iter().enumerate().filter(|_| how.geometry.is_some()) {
         let [x, y] = [rotors[*rotor].position.x, rotors[*rotor].position.y].map(f64::from);
         let km = -0.05 * f64::from(rotors[*rotor].spin.sign());
         let km = if how.geometry == Some(Some(motor)) { -km } else { km };
@@ -57,7 +57,7 @@ fn written(log: &FlightLog, rotors: &Rotors, how: Logged) -> Vec<u8> {
         ]);
     }
     let parameters: Vec<(&str, f64)> = parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let mut writer = Writer::new(0, &TOPICS, &[], &parameters);
+    let mut writer = Writer::new(0, &TOPICS_WRITTEN, &[], &parameters);
     let mixer = Mixer::new(rotors);
     for (tick, moment) in log.moments.iter().enumerate() {
         // On a clock that began long before.
@@ -68,7 +68,7 @@ fn written(log: &FlightLog, rotors: &Rotors, how: Logged) -> Vec<u8> {
         if tick % how.motors_every == 0 {
             let thrusts = mixer.allocate(&moment.commanded).unwrap().thrusts;
             let level = |rotor: &usize| f64::from(thrusts[*rotor] / rotors[*rotor].thrust_max).sqrt();
-            let mut levels: Vec<f64> = ORDER.iter().map(level).collect();
+            let mut levels: Vec<f64> = ROTOR_ORDER.iter().map(level).collect();
             levels.resize(12, f64::NAN);
             writer.record(0, time, &floats(&levels));
         }
@@ -93,7 +93,7 @@ fn a_vehicle_is_found_in_px4s_log_as_in_our_own() {
     let trial = Trial::flown(HUMMINGBIRD, 3, Drag::Whole, None).unwrap();
     let flown = FlightLog::from_csv(&trial.log).unwrap();
     let read = |how: Logged| ulog::read(&written(&flown, rotors, how), rotors, None);
-    let log = read(WHOLE).unwrap();
+    let log = read(WHOLE_LOG).unwrap();
     assert_eq!((log.source, observability::unexcited(&log)), (Source::Px4, vec![]));
     let identified = identify(&log, &scenario, &trial.bench).unwrap();
     assert_eq!(observability::unobservable(&identified), Vec::<String>::new());
@@ -107,13 +107,13 @@ fn a_vehicle_is_found_in_px4s_log_as_in_our_own() {
         }
     }
     // Parameters that say the same of the motors change nothing, and others are refused by name.
-    assert_eq!(read(Logged { geometry: Some(None), ..WHOLE }).unwrap().moments[100], log.moments[100]);
-    let refused = read(Logged { geometry: Some(Some(2)), ..WHOLE }).unwrap_err();
+    assert_eq!(read(Logged { geometry: Some(None), ..WHOLE_LOG }).unwrap().moments[100], log.moments[100]);
+    let refused = read(Logged { geometry: Some(Some(2)), ..WHOLE_LOG }).unwrap_err();
     assert!(refused.starts_with("CA_ROTOR2_PX, _PY, _KM: no rotor of the scenario stands there"), "{refused}");
     // Default logging has motors ten times a second.
-    let slow = read(Logged { motors_every: 10, ..WHOLE }).unwrap_err();
+    let slow = read(Logged { motors_every: 10, ..WHOLE_LOG }).unwrap_err();
     assert!(slow.starts_with("actuator_motors: a record every 0.100 s") && slow.contains("SDLOG_PROFILE"), "{slow}");
     // The longer part without a gap is kept.
-    let cut = read(Logged { lost: Some(30), ..WHOLE }).unwrap();
+    let cut = read(Logged { lost: Some(30), ..WHOLE_LOG }).unwrap();
     assert!((cut.seconds() - 49.0).abs() < 0.3, "{}", cut.seconds());
 }

@@ -12,7 +12,7 @@ use scenario::Scenario;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const LAG: &str = "rotors.lag=0.05";
+const LAG_SETTING: &str = "rotors.lag=0.05";
 
 fn source(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/numbers/vehicle_import").join(name)
@@ -44,16 +44,16 @@ fn published(name: &str) -> Scenario {
 fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down_where_it_can() {
     let alternate = "rotors.spin=[\"ccw\", \"cw\", \"ccw\", \"cw\"]";
     let measured = ["vehicle.mass=2.064", "vehicle.inertia=[0.0217, 0.0217, 0.04]", "rotors.thrust_max=8.5"];
-    let px4 = [&measured[..], &["rotors.torque_per_thrust=0.016", LAG]].concat();
+    let px4 = [&measured[..], &["rotors.torque_per_thrust=0.016", LAG_SETTING]].concat();
     let with = |given: &[&'static str]| given.iter().flat_map(|given| ["--with", given]).collect::<Vec<_>>();
     for (name, format, more) in [
         ("crazyflie.py", "rotorpy", vec![]),
-        ("cf2x.urdf", "urdf", with(&[LAG])),
-        ("racer.urdf", "urdf", with(&[LAG])),
+        ("cf2x.urdf", "urdf", with(&[LAG_SETTING])),
+        ("racer.urdf", "urdf", with(&[LAG_SETTING])),
         ("x500/model.sdf", "sdf", vec![]),
         ("pelican.sdf", "sdf", vec![]),
         // Its rotors on one side turn the same way, so that it cannot yaw.
-        ("x2.xml", "mujoco", [with(&[LAG, alternate]), vec!["--neglect-products"]].concat()),
+        ("x2.xml", "mujoco", [with(&[LAG_SETTING, alternate]), vec!["--neglect-products"]].concat()),
         ("cf2.xml", "mujoco", vec![]),
         ("4001_gz_x500", "px4", with(&px4)),
     ] {
@@ -70,10 +70,10 @@ fn every_format_becomes_a_vehicle_that_is_judged_and_comes_back_from_upside_down
         assert!(stdout(&output).starts_with(decision), "{name}: {}", stdout(&output) + &stderr(&output));
 
         let read = Scenario::load(&directory.join("mine.toml")).unwrap();
-        let verdict = scenario::verdict::Verdict::of(&read).unwrap();
+        let verdict = scenario::verdict::Verdict::judge(&read).unwrap();
         let flown = if weak { read.clone() } else { recovery(&read, 15.0).unwrap() };
         let flight = host_sim::flight::Flight::certified(&flown, verdict.certified().unwrap()).unwrap();
-        let course = host_sim::flight::course::Course::over(&flown, flight, 0.1).unwrap();
+        let course = host_sim::flight::course::Course::fly(&flown, flight, 0.1).unwrap();
         let settled = course.settled.unwrap_or(f64::INFINITY);
         assert!(settled < 8.0 && course.clipped == 0, "{name}: {settled} s, {} clipped", course.clipped);
     }
@@ -181,10 +181,10 @@ fn what_a_source_lacks_is_marked_with_how_to_measure_it_and_every_command_refuse
 
 #[test]
 fn products_of_inertia_are_refused_with_their_axes_unless_they_are_to_be_neglected() {
-    let (code, said, _) = imported("products", &source("x2.xml"), &["--with", LAG]);
+    let (code, said, _) = imported("products", &source("x2.xml"), &["--with", LAG_SETTING]);
     assert_eq!(code, 1);
     assert!(said.contains("vehicle.inertia: must be diagonal") && said.contains("pitch -4.99"), "{said}");
-    let (_, said, directory) = imported("neglected", &source("x2.xml"), &["--with", LAG, "--neglect-products"]);
+    let (_, said, directory) = imported("neglected", &source("x2.xml"), &["--with", LAG_SETTING, "--neglect-products"]);
     let file = fs::read_to_string(directory.join("mine.toml")).unwrap();
     assert!(file.contains("# products of inertia neglected: xy = 0.0, xz = -0.0021"), "{file}");
     // The published model's rotors on one side turn the same way.
@@ -337,7 +337,7 @@ fn formats_are_told_apart_by_their_content_and_the_wrong_one_is_refused() {
         ("4001_gz_x500", Format::Px4),
     ] {
         let text = fs::read_to_string(source(name)).unwrap();
-        assert_eq!(Format::of(&text), Ok(format));
+        assert_eq!(Format::detect(&text), Ok(format));
         for (_, other) in Format::ALL.into_iter().filter(|(_, other)| *other != format) {
             assert!(read(&text, &source(name), Some(other)).is_err(), "{name} as {other:?}");
         }

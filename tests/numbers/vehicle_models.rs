@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A lag for sources that have none, s.
-const LAG: &str = "0.05";
+const LAG_TEXT: &str = "0.05";
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/numbers/vehicle_import")
@@ -26,7 +26,7 @@ fn vehicle(name: &str) -> Result<VehicleNumbers, String> {
 
 /// What becomes of a source, as the table says it.
 fn outcome(name: &str) -> String {
-    let given = |lag: bool| if lag { vec![("rotors.lag".to_owned(), LAG.to_owned())] } else { Vec::new() };
+    let given = |lag: bool| if lag { vec![("rotors.lag".to_owned(), LAG_TEXT.to_owned())] } else { Vec::new() };
     let whole = |lag: bool| {
         let wishes = Wishes { given: given(lag), neglect_products: false };
         vehicle(name).map(|vehicle| written(&vehicle, "corpus", name, &wishes).unwrap())
@@ -42,7 +42,7 @@ fn outcome(name: &str) -> String {
     let certified = if lag_alone { "certified, given a lag" } else { "certified" };
     match Scenario::parse(&whole(lag_alone).unwrap().text, "f") {
         Err(error) => format!("refused: {}", error.what),
-        Ok(scenario) => match Verdict::of(&scenario).unwrap().refusal() {
+        Ok(scenario) => match Verdict::judge(&scenario).unwrap().refusal() {
             Some(refusal) => format!("not certified: {refusal}"),
             None => certified.to_owned(),
         },

@@ -9,7 +9,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 const HUMMINGBIRD: &str = include_str!("../../vehicles/hummingbird.toml");
-const COMPLETE: [&str; 5] = ["campaign.arrow", "campaign.json", "report.html", "scenario.toml", "summary.txt"];
+const COMPLETE_DIRECTORY: [&str; 5] =
+    ["campaign.arrow", "campaign.json", "report.html", "scenario.toml", "summary.txt"];
 
 /// A directory of this suite, with a campaign of the Hummingbird in it.
 fn directory(test: &str, campaign: &str) -> PathBuf {
@@ -19,18 +20,18 @@ fn directory(test: &str, campaign: &str) -> PathBuf {
 }
 
 /// Not thrown at all: near where it is to be, at rest, level.
-const GENTLE: &str = "duration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
+const GENTLE_CAMPAIGN: &str = "duration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
 
 #[test]
 fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
-    let directory = directory("statuses", GENTLE);
+    let directory = directory("statuses", GENTLE_CAMPAIGN);
     let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--out", "out"]);
     let text = stdout(&flown);
     assert_eq!((status(&flown), stderr(&flown)), (0, String::new()), "{text}");
     assert!(text.starts_with("hummingbird: 20 flights of 2 s from seed 0, plant step 5 ms\n"), "{text}");
     assert!(text.contains("20 of 20 recover and track; 0 went beyond a certified bound; 0 commanded"), "{text}");
     assert!(text.contains("slowest: ") && !text.contains("failing: "), "{text}");
-    assert_eq!(files(&directory.join("out")), COMPLETE);
+    assert_eq!(files(&directory.join("out")), COMPLETE_DIRECTORY);
     assert!(text.starts_with(&fs::read_to_string(directory.join("out/summary.txt")).unwrap()));
 
     // Thrown, and out of time.
@@ -41,7 +42,7 @@ fn the_status_says_whether_every_flight_tracks_and_the_vehicle_is_certified() {
     let thrown = host_sim(&directory, &["campaign", "plain.toml", "--flights", "20", "--draws", "thrown.toml"]);
     let text = stdout(&thrown);
     assert!(status(&thrown) == 1 && text.contains("failing: 0 (away), 1 (away)"), "{text}{}", stderr(&thrown));
-    assert_eq!(files(&directory.join("campaigns/hummingbird")), COMPLETE);
+    assert_eq!(files(&directory.join("campaigns/hummingbird")), COMPLETE_DIRECTORY);
 
     let lagging = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "lag =", "lag = 1.0");
     fs::write(directory.join("lagging.toml"), lagging).unwrap();
@@ -89,7 +90,7 @@ fn a_flight_flown_again_is_the_flight_of_the_campaign() {
 fn rotors_fail_in_as_many_flights_as_the_file_says_and_again_where_one_is_flown_again() {
     use arrow_array::cast::AsArray;
     use arrow_array::types::{Float64Type, UInt64Type};
-    let gentle = GENTLE.replace("duration = 2", "duration = 6");
+    let gentle = GENTLE_CAMPAIGN.replace("duration = 2", "duration = 6");
     let directory = directory("failing", &format!("{gentle}rotor_failures = 0.5\nthrust_left = [0.0, 0.1]\n"));
     let flown = host_sim(&directory, &["campaign", "h.toml", "--flights", "20", "--out", "out"]);
     let file = fs::File::open(directory.join("out/campaign.arrow")).unwrap();
@@ -173,6 +174,8 @@ fn more_chunks(out: &Path, than: usize) -> Vec<String> {
     }
 }
 
+// Windows has no such signal.
+#[cfg(unix)]
 #[test]
 fn neither_a_signal_nor_a_kill_loses_what_was_finished() {
     let directory = directory("interrupted", "duration = 4\nflights = 400\n");
@@ -203,8 +206,8 @@ fn neither_a_signal_nor_a_kill_loses_what_was_finished() {
 
     spawn(&directory, "broken").wait_with_output().unwrap();
     spawn(&directory, "whole").wait_with_output().unwrap();
-    assert_eq!(files(&broken), COMPLETE);
-    for name in COMPLETE {
+    assert_eq!(files(&broken), COMPLETE_DIRECTORY);
+    for name in COMPLETE_DIRECTORY {
         assert_eq!(fs::read(broken.join(name)).unwrap(), fs::read(whole.join(name)).unwrap(), "{name}");
     }
 }

@@ -6,20 +6,20 @@ use crate::support::binary::{files, host_sim, status, stderr, stdout, with};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, UInt64Type};
 use host_sim::rivals::gains::{BUILT_IN, Set};
-use host_sim::rivals::kind::Kind;
+use host_sim::rivals::kind::RivalKind;
 use scenario::Scenario;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const HUMMINGBIRD: &str = include_str!("../../vehicles/hummingbird.toml");
 /// Not thrown at all: near where it is to be, at rest, level. Other scenes stay as they are.
-const GENTLE: &str = "[campaign]\nduration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
+const GENTLE_CAMPAIGN: &str = "[campaign]\nduration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
 /// Thrown, and out of time.
-const HOPELESS: &str = "[campaign]\nduration = 1.0\n";
+const HOPELESS_CAMPAIGN: &str = "[campaign]\nduration = 1.0\n";
 const LAWS: [&str; 8] = ["ours", "lee", "px4", "mellinger", "indi", "nested", "continuous", "memoryless"];
 const SCENES: [&str; 10] =
     ["own", "step", "far step", "upside down", "gust", "storm", "noise", "weak rotors", "heavy", "random"];
-const COMPARED: [&str; 4] = ["compare.csv", "random.svg", "report.html", "scenes.svg"];
+const WRITTEN_FILES: [&str; 4] = ["compare.csv", "random.svg", "report.html", "scenes.svg"];
 
 /// A directory of this suite, with the Hummingbird in it on a flight of its own that is over in 2 s.
 fn directory(test: &str, campaign: &str) -> PathBuf {
@@ -41,13 +41,13 @@ fn table(directory: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 
 #[test]
 fn a_comparison_has_every_scene_every_law_and_all_its_files() {
-    let directory = directory("files", GENTLE);
+    let directory = directory("files", GENTLE_CAMPAIGN);
     let compared = host_sim(&directory, &["compare", "h.toml", "--flights", "3", "--out", "out"]);
     let text = stdout(&compared);
     assert_eq!((status(&compared), stderr(&compared)), (0, String::new()), "{text}");
     assert!(text.starts_with("hummingbird: our law and 7 others; 3 random flights of each\n"), "{text}");
     assert!(text.contains("every random flight of ours settles, unclipped, within its bounds"), "{text}");
-    assert_eq!(files(&directory.join("out")), COMPARED);
+    assert_eq!(files(&directory.join("out")), WRITTEN_FILES);
 
     let (head, rows) = table(&directory.join("out"));
     assert_eq!(head[..3], ["scene", "figure", "unit"]);
@@ -97,10 +97,10 @@ fn a_comparison_has_every_scene_every_law_and_all_its_files() {
 
 #[test]
 fn the_status_says_what_became_of_ours() {
-    let directory = directory("statuses", HOPELESS);
+    let directory = directory("statuses", HOPELESS_CAMPAIGN);
     let lost = host_sim(&directory, &["compare", "h.toml", "--flights", "2", "--out", "lost"]);
     assert!(stdout(&lost).contains("NOT every random flight of ours settles"), "{}", stdout(&lost));
-    assert_eq!((status(&lost), files(&directory.join("lost")).len()), (1, COMPARED.len()));
+    assert_eq!((status(&lost), files(&directory.join("lost")).len()), (1, WRITTEN_FILES.len()));
 
     let hungry = with(&fs::read_to_string(directory.join("h.toml")).unwrap(), "snap =", "snap = 60000.0");
     fs::write(directory.join("hungry.toml"), hungry).unwrap();
@@ -133,7 +133,7 @@ fn the_status_says_what_became_of_ours() {
 
 #[test]
 fn gains_that_cannot_be_used_are_refused_by_file_field_and_reason() {
-    let directory = directory("gains", GENTLE);
+    let directory = directory("gains", GENTLE_CAMPAIGN);
     for (from, to, expected) in [
         ("[hummingbird.lee]", "[hummingbird.lee", "g.toml: "),
         ("[hummingbird.lee]", "[hummingbird.lea]", "g.toml: hummingbird.lee: missing"),
@@ -175,7 +175,7 @@ fn heavier(directory: &Path) {
 
 #[test]
 fn a_vehicle_without_gains_has_them_searched_and_kept_for_the_next_time() {
-    let directory = directory("searched", GENTLE);
+    let directory = directory("searched", GENTLE_CAMPAIGN);
     heavier(&directory);
     let compare = ["compare", "heavier.toml", "--flights", "1", "--out", "out"];
     let least = ["--generations", "1", "--population", "4"];
@@ -185,7 +185,7 @@ fn a_vehicle_without_gains_has_them_searched_and_kept_for_the_next_time() {
     let first = message.lines().next().unwrap_or_default();
     assert!(first.starts_with("hummingbird: no gains of the other laws are built in for this vehicle"), "{message}");
     assert!(text.contains("gains found in out/gains.toml: --gains out/gains.toml takes them the next time"), "{text}");
-    assert_eq!(files(&directory.join("out")), [&COMPARED[..1], &["gains.toml"], &COMPARED[1..]].concat());
+    assert_eq!(files(&directory.join("out")), [&WRITTEN_FILES[..1], &["gains.toml"], &WRITTEN_FILES[1..]].concat());
     let gains = fs::read_to_string(directory.join("out/gains.toml")).unwrap();
     assert!(
         gains.starts_with(
@@ -211,7 +211,7 @@ fn a_vehicle_without_gains_has_them_searched_and_kept_for_the_next_time() {
 
 #[test]
 fn a_search_does_not_begin_where_its_end_is_known() {
-    let directory = directory("in vain", GENTLE);
+    let directory = directory("in vain", GENTLE_CAMPAIGN);
     heavier(&directory);
     let text = fs::read_to_string(directory.join("heavier.toml")).unwrap();
     fs::write(directory.join("hungry.toml"), with(&text, "snap =", "snap = 60000.0")).unwrap();
@@ -231,7 +231,7 @@ fn a_search_does_not_begin_where_its_end_is_known() {
 
 #[test]
 fn a_rival_without_gains_is_left_out_and_named() {
-    let directory = directory("left out", GENTLE);
+    let directory = directory("left out", GENTLE_CAMPAIGN);
     let (before, rest) = BUILT_IN.split_once("[hummingbird.lee]").unwrap();
     let (_, after) = rest.split_once("[hummingbird.px4]").unwrap();
     let without = format!("{before}[hummingbird.lee]\ncost = inf\n\n[hummingbird.px4]{after}");
@@ -254,7 +254,7 @@ fn a_rival_without_gains_is_left_out_and_named() {
 
 #[test]
 fn chosen_laws_fly_at_their_own_rate_beside_ours_at_the_files() {
-    let directory = directory("rate", GENTLE);
+    let directory = directory("rate", GENTLE_CAMPAIGN);
     let compare = ["compare", "h.toml", "--flights", "2", "--only", "indi,lee"];
     let slow = host_sim(&directory, &[&compare[..], &["--out", "slow"]].concat());
     let quick = host_sim(&directory, &[&compare[..], &["--rate", "500", "--out", "quick"]].concat());
@@ -281,7 +281,7 @@ fn chosen_laws_fly_at_their_own_rate_beside_ours_at_the_files() {
 
 #[test]
 fn a_vehicle_that_is_not_as_its_file_says_flies_in_scenes_of_its_own() {
-    let directory = directory("realism", GENTLE);
+    let directory = directory("realism", GENTLE_CAMPAIGN);
     let compare = ["compare", "h.toml", "--realism", "--only", "indi", "--out", "out"];
     let flown = host_sim(&directory, &compare);
     let text = stdout(&flown);
@@ -297,7 +297,7 @@ fn a_vehicle_that_is_not_as_its_file_says_flies_in_scenes_of_its_own() {
 
 #[test]
 fn a_rotor_that_fails_has_scenes_of_its_own_and_needs_rotors() {
-    let directory = directory("rotor_loss", GENTLE);
+    let directory = directory("rotor_loss", GENTLE_CAMPAIGN);
     let flown = host_sim(&directory, &["compare", "h.toml", "--rotor-loss", "--only", "indi", "--out", "out"]);
     let text = stdout(&flown);
     assert!(text.starts_with("hummingbird: our law and 1 others; rotor 1 fails, and keeps so much"), "{text}");
@@ -327,9 +327,9 @@ fn a_rotor_that_fails_has_scenes_of_its_own_and_needs_rotors() {
 fn every_rival_has_gains_for_every_vehicle_that_is_compared() {
     for file in ["vehicles/hummingbird.toml", "vehicles/study.toml", "scenarios/paper-extended.toml"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
-        let set = Set::of(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml", &Kind::ALL).unwrap();
-        let kinds: Vec<Kind> = set.rivals.iter().map(|(kind, ..)| *kind).collect();
-        assert_eq!(kinds, Kind::ALL, "{file}");
+        let set = Set::parse(&Scenario::load(&path).unwrap(), BUILT_IN, "gains.toml", &RivalKind::ALL).unwrap();
+        let kinds: Vec<RivalKind> = set.rivals.iter().map(|(kind, ..)| *kind).collect();
+        assert_eq!(kinds, RivalKind::ALL, "{file}");
         assert!(
             set.rivals.iter().all(|(kind, gains, cost)| gains.len() == kind.gains().len() && *cost > 0.0),
             "{file}"
@@ -384,7 +384,7 @@ fn another_law_flies_the_very_draws_of_ours_and_of_a_comparison() {
     assert_eq!((indi_status, tracking), (0, 6), "{indi_text}");
     let manifest = fs::read_to_string(directory.join("indi/campaign.json")).unwrap();
     let vehicle = Scenario::load(&directory.join("h.toml")).unwrap();
-    let k_q_tilt = Set::built_in(&vehicle, &[Kind::Indi]).unwrap().rivals[0].1[4];
+    let k_q_tilt = Set::built_in(&vehicle, &[RivalKind::Indi]).unwrap().rivals[0].1[4];
     let said = format!("\"k_q_tilt\": {k_q_tilt}");
     assert!(manifest.contains("\"law\": \"indi\"") && manifest.contains(&said), "{manifest}");
     let manifest = fs::read_to_string(directory.join("ours/campaign.json")).unwrap();

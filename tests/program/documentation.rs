@@ -1,6 +1,6 @@
 //! Whatever the documentation names exists: the tests and theorems that the map of the paper names, the files and
 //! headings that the Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the
-//! columns of log.csv, the scenario examples and refusals. The front page stays short.
+//! columns of log.csv, the scenario examples and refusals, the names of the newcomer's walk. The front page stays short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
@@ -113,6 +113,31 @@ fn every_link_between_pages_leads_to_a_file() {
     assert!(followed > 20, "{followed}: the pages have lost their links");
 }
 
+#[test]
+fn the_walk_answers_fifteen_questions_with_names_that_are_in_their_files() {
+    assert!(read("README.md").contains("(docs/README.md#newcomers-walk)"), "more than two hops");
+    let page = read("docs/README.md");
+    let (_, walk) = page.split_once("\n## Newcomer's walk\n").unwrap();
+    let (questions, additions) = walk.split_once("\n### How do I add\n").unwrap();
+    assert_eq!(questions.matches("\n- **").count(), 15);
+    let mut found = 0;
+    for answer in questions.split("\n- **").skip(1).chain(additions.split("\n- **").skip(1)) {
+        let links = answer.split("](").skip(1);
+        for (before, target) in answer.split("](").zip(links.filter_map(|rest| rest.split_once(')'))) {
+            let (said, _) = before.rsplit_once('[').unwrap();
+            let said = said.rsplit_once(')').map_or(said, |(_, said)| said);
+            let file = target.0.split('#').next().unwrap();
+            let text = read(&format!("docs/{file}"));
+            // What stands before the link since the last is in its file: identifiers, that is, not other programs' names.
+            for name in said.split('`').skip(1).step_by(2).filter(|name| !name.contains("::") && !name.ends_with('/')) {
+                assert!(text.contains(name), "{file} has no `{name}`: {answer}");
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 20, "{found}: the walk has lost its names");
+}
+
 /// The modes for which `InTheAir` stands.
 const IN_THE_AIR: [&str; 5] = ["TakingOff", "Flying", "Holding", "Landing", "Descending"];
 
@@ -184,7 +209,7 @@ fn the_constants_of_the_extended_law_are_listed_as_declared_each_with_its_defaul
     let (listed, defaults): (Vec<&str>, Vec<&str>) = listed.unzip();
     let declared = ExtendedParameters::TABLE.iter().map(|constant| {
         let (about, range) = (constant.about.trim().trim_end_matches('.'), constant.range);
-        format!("| `{}` | {about} | {} to {}", constant.path, short(range.least), short(range.greatest))
+        format!("| `{}` | {about} | {} to {}", constant.path, short(range.min), short(range.max))
     });
     assert_eq!(listed, declared.collect::<Vec<_>>());
     assert!(defaults.iter().all(|default| !default.is_empty()));
@@ -197,7 +222,7 @@ fn the_front_pages_scenario_is_enough_to_fly() {
     let (file, _) = file.split_once("```").unwrap();
     assert!(file.lines().count() <= 12);
     let scenario = Scenario::parse(file, "README.md").unwrap();
-    assert!(Verdict::of(&scenario).unwrap().refusal().is_none());
+    assert!(Verdict::judge(&scenario).unwrap().refusal().is_none());
 }
 
 #[test]

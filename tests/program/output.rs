@@ -11,7 +11,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const STUDY: &str = include_str!("../../vehicles/study.toml");
-const FULL: &str = "/dev/full";
+const FULL_DEVICE: &str = "/dev/full";
 
 /// A directory of this suite.
 fn directory(test: &str) -> PathBuf {
@@ -19,7 +19,10 @@ fn directory(test: &str) -> PathBuf {
 }
 
 fn full() -> File {
-    File::options().write(true).open(FULL).unwrap_or_else(|error| panic!("this test needs {FULL}: {error}"))
+    File::options()
+        .write(true)
+        .open(FULL_DEVICE)
+        .unwrap_or_else(|error| panic!("this test needs {FULL_DEVICE}: {error}"))
 }
 
 fn command(directory: &Path, arguments: &[&str]) -> Command {
@@ -205,13 +208,13 @@ fn files_that_a_full_disk_does_not_take_exit_with_2_and_leave_nothing_half_writt
     std::fs::create_dir(directory.join("out")).unwrap();
     for name in ["log.csv", "fig1.svg", "report.md", "report.html"] {
         let place = directory.join("out").join(name);
-        std::os::unix::fs::symlink(FULL, &place).unwrap();
+        std::os::unix::fs::symlink(FULL_DEVICE, &place).unwrap();
         let output = host_sim(&directory, &["fly", "brief.toml", "--out", "out"]);
         assert_not_written(&output, &format!("out/{name}"));
         assert_eq!((stdout(&output), files(&directory.join("out"))), (String::new(), vec![name.to_owned()]));
         std::fs::remove_file(place).unwrap();
     }
-    std::os::unix::fs::symlink(FULL, directory.join("tuned.toml")).unwrap();
+    std::os::unix::fs::symlink(FULL_DEVICE, directory.join("tuned.toml")).unwrap();
     let tuned = host_sim(&directory, &search("brief.toml", "tuned.toml", "1"));
     assert_not_written(&tuned, "tuned.toml");
     assert_eq!(files(&directory), ["brief.toml", "out", "tuned.toml"]);

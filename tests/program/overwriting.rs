@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 
 const HUMMINGBIRD: &str = include_str!("../../vehicles/hummingbird.toml");
 /// Not thrown at all: near where it is to be, at rest, level.
-const GENTLE: &str = "[campaign]\nduration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
+const GENTLE_CAMPAIGN: &str = "[campaign]\nduration = 2\nreference = \"hover\"\nattitude = \"file\"\noffset = 0.1\nvelocity = 0\nrate = 0\nyaw_rate = 0\nwind = 0\n";
 
 /// A directory of this suite, with a gentle campaign of the Hummingbird in it.
 fn directory(test: &str) -> PathBuf {
     let directory = binary::directory("cli_overwriting", test);
     let brief = with(HUMMINGBIRD, "duration =", "duration = 2.0");
-    fs::write(directory.join("h.toml"), format!("{brief}\n{GENTLE}")).unwrap();
+    fs::write(directory.join("h.toml"), format!("{brief}\n{GENTLE_CAMPAIGN}")).unwrap();
     directory
 }
 

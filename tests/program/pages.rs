@@ -27,7 +27,7 @@ const NOT_RUN: &[(&str, &str)] = &[
     ("cargo add", "for a crate of the reader's own"),
     ("pip install", "`.ci/wheel` installs the same"),
     (".ci/rotorpy", "needs the network, and judges no figure"),
-    ("make -C proofs", "`.ci/proofs` runs both"),
+    ("make -C proofs", "`.ci/proofs broken` runs both"),
     ("python", "`.ci/wheel` runs the same code"),
     ("mavproxy.py", "a prompt; `.ci/clients` types the same"),
     ("openssl", "not ours; `.ci/clients signed` takes such a key"),

@@ -21,10 +21,9 @@ use nalgebra::{Vector2, Vector3};
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// How far the limits of a certified configuration are above what it needs, relative: next to nothing.
-const MARGIN: f64 = 1e-3;
-/// Length of one flight, s.
-const DURATION: f64 = 3.0;
+/// How far the limits of a certified configuration are above its needs: next to nothing.
+const LIMIT_MARGIN_SHARE: f64 = 1e-3;
+const FLIGHT_S: f64 = 3.0;
 
 /// A circle with a heave, flown with a turning or swinging heading, as hard as the bounds allow.
 pub struct Motion {
@@ -99,7 +98,13 @@ fn tightly_limited(rng: &mut ChaCha8Rng, spread: f32) -> Configuration {
         inequalities.iter().filter(|i| i.name.contains("thrust for") || i.name.contains("greatest thrust"));
     let thrust_max = thrust_max.map(|inequality| inequality.required).fold(0.0, f64::max);
     let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains().unwrap(), *loose.bounds());
-    let tight = limited(vehicle, gains, bounds, thrust_max * (1.0 + MARGIN), &(torque * (1.0 + MARGIN)));
+    let tight = limited(
+        vehicle,
+        gains,
+        bounds,
+        thrust_max * (1.0 + LIMIT_MARGIN_SHARE),
+        &(torque * (1.0 + LIMIT_MARGIN_SHARE)),
+    );
     if rng.random_bool(0.5) {
         let least = vehicle.mass * (vehicle.gravity - gains.m_p - bounds.vertical_acceleration);
         tight.with_thrust_floor(least * rng.random_range(0.05..0.99)).unwrap()
@@ -123,10 +128,10 @@ fn fitting_rotors(configuration: &Configuration, rng: &mut ChaCha8Rng) -> Option
     while arm < 10.0 {
         let unlimited = configuration.clone().with_rotors(quad(arm, drag, [0.0, 1e5])).unwrap();
         let demands = Certificate::new(&unlimited).unwrap().paper().unwrap().rotors.clone();
-        let least = demands.iter().map(|report| report.demand.least).fold(f64::INFINITY, f64::min);
-        let greatest = demands.iter().map(|report| report.demand.greatest).fold(0.0, f64::max);
+        let least = demands.iter().map(|report| report.demand.min).fold(f64::INFINITY, f64::min);
+        let greatest = demands.iter().map(|report| report.demand.max).fold(0.0, f64::max);
         if least > 0.0 {
-            return Some(quad(arm, drag, [least * (1.0 - MARGIN), greatest * (1.0 + MARGIN)]));
+            return Some(quad(arm, drag, [least * (1.0 - LIMIT_MARGIN_SHARE), greatest * (1.0 + LIMIT_MARGIN_SHARE)]));
         }
         (arm, drag) = (2.5 * arm, 2.5 * drag);
     }
@@ -143,7 +148,7 @@ fn fly(
     mut watch: impl FnMut(&Wrench),
 ) {
     let steps = (period / 1e-3).ceil() as usize;
-    for tick in 0..(DURATION / period) as u32 {
+    for tick in 0..(FLIGHT_S / period) as u32 {
         let (wrench, _) = controller.step(&body.state(), &reference(period * f64::from(tick))).unwrap();
         watch(&wrench);
         body.advance(configuration.vehicle(), &wrench, period, steps);
@@ -187,7 +192,7 @@ impl Usage {
     fn watch(&mut self, wrench: &Wrench, certified: &Certified) {
         let PaperCertificate { sharp, rotors, .. } = certified.certificate().paper().unwrap();
         let thrust = f64::from(wrench.thrust);
-        self.thrust = self.thrust.max(thrust / sharp.thrust.greatest).max(sharp.thrust.least / thrust);
+        self.thrust = self.thrust.max(thrust / sharp.thrust.max).max(sharp.thrust.min / thrust);
         self.torque = self.torque.sup(&wrench.torque.cast::<f64>().abs().component_div(&sharp.torque));
 
         // What flies never clips, and so is what the mixer does with all its priorities.
@@ -200,7 +205,7 @@ impl Usage {
         assert_eq!(bits(&allocation.thrusts), bits(&mixed.thrusts));
         for (thrust, report) in allocation.thrusts.iter().zip(rotors) {
             let thrust = f64::from(*thrust);
-            self.rotor = self.rotor.max(thrust / report.demand.greatest).max(report.demand.least / thrust);
+            self.rotor = self.rotor.max(thrust / report.demand.max).max(report.demand.min / thrust);
         }
     }
 
@@ -259,7 +264,8 @@ fn configurations_that_the_adversary_beats_do_leave_their_limits() {
         let axis = number % 3;
         let loose = around_table_1(&mut rng, 4.0);
         let found = worst(&loose, Domain::Reachable, Objective::Torque(axis), 3, &mut rng);
-        let mut torque_max = Certificate::new(&loose).unwrap().paper().unwrap().sharp.torque * (1.0 + MARGIN);
+        let mut torque_max =
+            Certificate::new(&loose).unwrap().paper().unwrap().sharp.torque * (1.0 + LIMIT_MARGIN_SHARE);
         torque_max[axis] = found.value * f64::from(rng.random_range(0.8..0.99_f32));
         let (vehicle, gains, bounds) = (*loose.vehicle(), *loose.gains().unwrap(), *loose.bounds());
         let configuration = limited(vehicle, gains, bounds, f64::from(loose.limits().thrust_max), &torque_max);

@@ -20,7 +20,7 @@ use controller_core::extended::controller::Controller;
 use controller_core::extended::demand::Demand;
 use controller_core::extended::measured::Measured;
 use controller_core::extended::parameters::Extended;
-use controller_core::extended::rotor_loss::spinning::SpinningLaw;
+use controller_core::extended::rotor_loss::spinning::RotorLossLaw;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
@@ -35,8 +35,8 @@ use std::path::Path;
 const TICKS_APART: [f32; 2] = [0.25e-3, 0.1];
 
 /// Ticks of a flight, and how many of its states are searched for worse ones.
-const TICKS: u32 = 200;
-const SEARCHED: f64 = 0.02;
+const FLIGHT_TICKS: u32 = 200;
+const SEARCHED_SHARE: f64 = 0.02;
 
 /// Steps of a search.
 const FINEST_STEP: f64 = 1e-2;
@@ -108,7 +108,7 @@ impl World {
             assert!(*thrust >= rotor.thrust_min && *thrust <= rotor.thrust_max);
         }
         let place = |(f, end): (&f32, &controller_core::certificate::form::Interval)| {
-            2.0 * (f64::from(*f) - end.least) / (end.greatest - end.least) - 1.0
+            2.0 * (f64::from(*f) - end.min) / (end.max - end.min) - 1.0
         };
         ours.thrusts.iter().zip(&self.bounds.rotors).map(place).collect()
     }
@@ -117,17 +117,17 @@ impl World {
     fn judge(&self, wrench: &Wrench, scale: f32) -> Shown {
         let places = self.places(&wrench.scaled(1.0 / scale));
         let shown = Shown {
-            thrust: f64::from(wrench.thrust) / self.bounds.thrust.greatest,
+            thrust: f64::from(wrench.thrust) / self.bounds.thrust.max,
             torque: wrench.torque.cast::<f64>().abs().component_div(&self.bounds.torque).into(),
             rotors: [places.iter().copied().fold(0.0, f64::max), -places.iter().copied().fold(0.0, f64::min)],
         };
         let within = shown.all().iter().all(|share| *share <= 1.0);
-        assert!(within && f64::from(wrench.thrust) >= self.bounds.thrust.least, "{shown:?}: {wrench:?}, scale {scale}");
+        assert!(within && f64::from(wrench.thrust) >= self.bounds.thrust.min, "{shown:?}: {wrench:?}, scale {scale}");
         shown
     }
 
     /// A command without a rotor, judged.
-    fn judge_without_a_rotor(&self, law: &SpinningLaw, wrench: &Wrench) {
+    fn judge_without_a_rotor(&self, law: &RotorLossLaw, wrench: &Wrench) {
         let limits = self.configuration().limits();
         let torque = limits.torque_max - wrench.torque.abs();
         assert!(wrench.thrust <= limits.thrust_max && torque.min() >= 0.0, "{wrench:?}");
@@ -213,7 +213,7 @@ impl World {
         };
         let (acceleration, jerk, snap) = (any(100.0), any(1e3), any(1e4));
         let (position, velocity) = (any(1e3), any(100.0));
-        let fall = self.configuration().greatest_fall() - self.configuration().vehicle().gravity;
+        let fall = self.configuration().max_fall() - self.configuration().vehicle().gravity;
         let acceleration = Vector3::new(acceleration.x, acceleration.y, acceleration.z.max(0.999 * fall));
         let weight = self.configuration().vehicle().mass * self.configuration().vehicle().gravity;
         match rng.random_range(0..10) {
@@ -265,7 +265,7 @@ impl World {
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         // Jumping back and forth between a few states drives the filters to their ends.
         let states = [(); 3].map(|()| anywhere(rng));
-        for _ in 0..TICKS {
+        for _ in 0..FLIGHT_TICKS {
             if rng.random_bool(varies) {
                 let length = random::log_uniform(rng, shortest, longest);
                 // Not all: a delay has at most three of them.
@@ -287,7 +287,7 @@ impl World {
                 controller.measured(&self.measured(rng));
             }
             let state = body.state();
-            if rng.random_bool(SEARCHED) {
+            if rng.random_bool(SEARCHED_SHARE) {
                 self.search(&controller, &state, &wanted, rng, &mut shown);
             }
             let Some(wrench) = self.step(&mut controller, &state, &wanted, &mut shown) else {

@@ -15,11 +15,10 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-/// How near is there, m.
-const NEAR: f64 = 0.1;
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
 
-/// Height lost from upside down under an INDI on differenced velocity, with gains searched for each vehicle, m.
-const INDI: [(&str, f64); 13] = [
+/// From upside down, under an INDI on differenced velocity, with gains searched for each vehicle.
+const INDI_HEIGHTS_LOST_M: [(&str, f64); 13] = [
     ("airsim-quad", 1.39),
     ("cf-rotorpy", 1.97),
     ("cf2-forster", 1.19),
@@ -37,7 +36,7 @@ const INDI: [(&str, f64); 13] = [
 
 /// Greatest height lost in multiples of that, and latest time of return, s: for a vehicle that lifts twice its weight,
 /// and for a weaker one, whose thrust brakes a fall hardly faster than gravity made it.
-const REQUIRED: (f64, f64) = (1.5, 3.0);
+const HEIGHT_AND_TIME_MAX: (f64, f64) = (1.5, 3.0);
 const REQUIRED_WEAK: (f64, f64) = (2.0, 5.0);
 
 /// Until the heading is within 0.1 rad for good after half a turn, s, where yaw's torque at hover needs no longer than
@@ -53,7 +52,7 @@ fn thrust_to_weight(scenario: &Scenario) -> f64 {
 
 fn read(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../vehicles/published");
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), INDI.len());
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), INDI_HEIGHTS_LOST_M.len());
     fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap()
 }
 
@@ -63,17 +62,18 @@ fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_con
         "| vehicle | rotors | thrust / weight | height lost, m (over INDI's) | within 0.1 m, s | tightest, margin |\n\
          |---|---|---|---|---|---|"
     );
-    for (name, indi) in INDI {
+    for (name, indi) in INDI_HEIGHTS_LOST_M {
         let text = read(name);
         assert!(!["[gains]", "[estimates]", "[reference_bounds]"].iter().any(|section| text.contains(section)));
         let scenario = Scenario::parse(&text, name).unwrap();
-        let verdict = Verdict::of(&scenario).unwrap();
+        let verdict = Verdict::judge(&scenario).unwrap();
         assert!(verdict.refusal().is_none(), "{name}: refused");
         let tightest = verdict.certificate().tightest().unwrap();
 
         let upside_down = recovery(&scenario, 15.0).unwrap();
         let flight = Flight::certified(&upside_down, verdict.certified().unwrap()).unwrap();
-        let Course { height_lost, settled, clipped, .. } = Course::over(&upside_down, flight, NEAR).unwrap();
+        let Course { height_lost, settled, clipped, .. } =
+            Course::fly(&upside_down, flight, ARRIVAL_DISTANCE_M).unwrap();
         let settled = settled.unwrap_or(f64::INFINITY);
         let lift = thrust_to_weight(&scenario);
         println!(
@@ -82,7 +82,7 @@ fn published_vehicles_are_certified_and_come_back_from_upside_down_without_a_con
             height_lost / indi,
             100.0 * tightest.margin()
         );
-        let (times, latest) = if lift < 2.0 { REQUIRED_WEAK } else { REQUIRED };
+        let (times, latest) = if lift < 2.0 { REQUIRED_WEAK } else { HEIGHT_AND_TIME_MAX };
         assert!(height_lost < times * indi && settled < latest, "{name}: {height_lost} m, {settled} s");
         assert_eq!(clipped, 0, "{name}: a rotor was commanded beyond its limits");
     }
@@ -111,7 +111,7 @@ fn half_a_turn_of_heading_takes_four_seconds_at_most_where_yaws_torque_allows_th
         let mut turning = hover(&scenario, Vector3::zeros(), 30.0).unwrap();
         turning.initial.attitude = attitude_from_euler(0.0, 0.0, 179.0_f64.to_radians());
         let Course { turned, excursion, clipped, .. } =
-            Course::over(&turning, Flight::new(&turning).unwrap(), NEAR).unwrap();
+            Course::fly(&turning, Flight::new(&turning).unwrap(), ARRIVAL_DISTANCE_M).unwrap();
         let turned = turned.unwrap_or(f64::INFINITY);
         println!("| `{}` | {turned:.2} | {least:.2} |", scenario.name);
         let (latest, allowed) = HALF_A_TURN;

@@ -2,7 +2,7 @@
 
 use crate::support::adversary_search;
 use crate::support::adversary_search::configurations::around_table_1;
-use crate::support::adversary_search::{COORDINATES, Domain, Situation};
+use crate::support::adversary_search::{COORDINATE_COUNT, Domain, Situation};
 use crate::support::random;
 use crate::support::random::ChaCha8Rng;
 use controller_core::certificate::Certificate;
@@ -18,7 +18,7 @@ use rand::RngExt;
 
 fn situation(rng: &mut ChaCha8Rng) -> Situation {
     let configuration = around_table_1(rng, 3.0);
-    let code = [(); COORDINATES].map(|()| rng.random_range(-1.0..=1.0));
+    let code = [(); COORDINATE_COUNT].map(|()| rng.random_range(-1.0..=1.0));
     Situation::decode(&configuration, Domain::Decoupled, &code)
 }
 
@@ -214,10 +214,10 @@ enum Gain {
 /// The derivation's bound on |omega_d'| with the gains up to `used`, at one (tilt, direction of w, split of u', psi').
 fn bound_at(reach: &Reachable, bounds: &ReferenceBounds, used: Gain, at: [f64; 4]) -> f64 {
     let [tilt, direction, split, turning] = at;
-    let tan = tilt * reach.horizontal / reach.vertical_least;
+    let tan = tilt * reach.horizontal / reach.vertical_min;
     let secant = tan.hypot(1.0);
     let (sin, cos) = (tan / secant, 1.0 / secant);
-    let n = reach.vertical_least * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
+    let n = reach.vertical_min * if used >= Gain::MagnitudeGrowsWithTilt { secant } else { 1.0 };
 
     let (along, across) = (reach.horizontal_snap * direction.cos(), reach.horizontal_snap * direction.sin());
     let (w, w_perp) = if used >= Gain::ShapeOfTheSnap {
@@ -291,7 +291,7 @@ fn the_derivation_states_the_codes_own_bounds_and_cells() {
 
 #[test]
 fn every_step_of_the_derivation_gains() {
-    const GRID: u32 = 24;
+    const GRID_STEPS: u32 = 24;
     let configuration = adversary_search::configurations::paper();
     let (gains, bounds) = (configuration.gains().unwrap(), configuration.bounds());
     let gravity = f64::from(configuration.vehicle().gravity);
@@ -315,11 +315,11 @@ fn every_step_of_the_derivation_gains() {
         (Gain::ShapeOfTheSnap, "the shape of $\\ddot u$"),
         (Gain::PartsApart, "tilting and yawing parts kept apart"),
     ] {
-        let share = |i: u32| f64::from(i) / f64::from(GRID);
+        let share = |i: u32| f64::from(i) / f64::from(GRID_STEPS);
         let quarter = |i: u32| share(i) * std::f64::consts::FRAC_PI_2;
         let mut greatest = 0.0_f64;
-        for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j))) {
-            for (k, l) in (0..=GRID).flat_map(|k| (0..=GRID).map(move |l| (k, l))) {
+        for (i, j) in (0..=GRID_STEPS).flat_map(|i| (0..=GRID_STEPS).map(move |j| (i, j))) {
+            for (k, l) in (0..=GRID_STEPS).flat_map(|k| (0..=GRID_STEPS).map(move |l| (k, l))) {
                 let at = [share(i), quarter(j), quarter(k), share(l)];
                 greatest = greatest.max(bound_at(&reach, bounds, used, at));
             }

@@ -5,7 +5,7 @@
 use crate::support::extended::vehicle;
 use crate::support::random;
 use crate::support::random::ChaCha8Rng;
-use controller_core::allocation::support::ROUNDING;
+use controller_core::allocation::support::TICK_ROUNDING_SHARE;
 use controller_core::allocation::{MinimumNorm, Mixer, Rotors};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
@@ -20,8 +20,8 @@ use scenario::body::attitude_from_euler;
 
 const VEHICLES: [&str; 2] = ["hummingbird-paper-law", "study-paper-law"];
 
-/// What every inequality must have to spare.
-const MARGIN: f64 = 0.05;
+/// Of every inequality.
+const MARGIN_MIN: f64 = 0.05;
 
 /// Greatest position error on the circle, m.
 const CIRCLE_ERROR: f64 = 0.01;
@@ -30,8 +30,8 @@ const CIRCLE_ERROR: f64 = 0.01;
 /// some sixteen roundings of single precision, half an EPSILON of gravity each, m/s^2.
 const ROUNDED_ACCELERATION: f64 = 16.0 * 0.5 * f32::EPSILON as f64 * 9.81;
 
-/// How long a recovery from upside down is watched, s: the slowest is back after a minute.
-const RECOVERY: f64 = 120.0;
+/// How long a recovery from upside down is watched: the slowest is back after a minute.
+const RECOVERY_S: f64 = 120.0;
 
 /// The greatest errors in one stretch of five seconds.
 #[derive(Debug, Clone, Copy, Default)]
@@ -75,8 +75,8 @@ fn flown(scenario: &Scenario) -> Shown {
         shown.saturated += u64::from(tick.clipped);
         shown.height_lost = shown.height_lost.max(start - tick.state.position.z);
         for (thrust, report) in tick.rotor_thrusts.iter().zip(rotors) {
-            let middle = 0.5 * (report.demand.least + report.demand.greatest);
-            let half = 0.5 * (report.demand.greatest - report.demand.least);
+            let middle = 0.5 * (report.demand.min + report.demand.max);
+            let half = 0.5 * (report.demand.max - report.demand.min);
             shown.demand_used = shown.demand_used.max((f64::from(*thrust) - middle).abs() / half);
         }
         let error = (tick.state.position - tick.reference.position.cast::<f64>()).norm();
@@ -118,7 +118,7 @@ fn both_are_certified_down_to_the_rotors_with_five_per_cent_to_spare() {
         let certificate = Certificate::new(&vehicle(name).configuration).unwrap();
         let tightest = certificate.tightest().unwrap();
         println!("{name}: tightest {tightest}, margin {:.2} %", 100.0 * tightest.margin());
-        assert!(certificate.holds() && tightest.margin() >= MARGIN, "{name}: {tightest}");
+        assert!(certificate.holds() && tightest.margin() >= MARGIN_MIN, "{name}: {tightest}");
         assert_eq!(certificate.paper().unwrap().rotors.len(), 4);
     }
 }
@@ -169,7 +169,7 @@ fn they_fly_a_circle_of_one_metre_without_a_saturated_rotor() {
 #[test]
 fn they_recover_from_upside_down_and_then_hold_still() {
     for name in VEHICLES {
-        let mut scenario = recovery(&vehicle(name), RECOVERY).unwrap();
+        let mut scenario = recovery(&vehicle(name), RECOVERY_S).unwrap();
         let attitudes = [[-179.0, 0.0, 100.0], [-179.0, 0.0, 0.0], [0.0, 178.0, 0.0], [-180.0, 0.0, 0.0]];
         for angles in attitudes.map(|angles| angles.map(f64::to_radians)) {
             let [roll, pitch, yaw] = angles;
@@ -226,8 +226,8 @@ fn allowed(scenario: &Scenario, certificate: &Certificate, used: f64, rng: &mut 
     let acceleration = ball(form.rates.angular_acceleration * raised, inertia.component_mul(&row));
     let velocity = ball(form.rates.angular_velocity * raised, most_gyroscopic(&inertia, &row));
     let torque = feedback + inertia.component_mul(&acceleration) + velocity.cross(&inertia.component_mul(&velocity));
-    let middle = 0.5 * (form.thrust.least + form.thrust.greatest);
-    let thrust = middle + used * 0.5 * up * (form.thrust.greatest - form.thrust.least);
+    let middle = 0.5 * (form.thrust.min + form.thrust.max);
+    let thrust = middle + used * 0.5 * up * (form.thrust.max - form.thrust.min);
     Wrench { thrust: thrust as f32, torque: torque.cast() }
 }
 
@@ -264,7 +264,7 @@ fn without_any_margin_clipping_takes_no_more_than_rounding() {
         let certificate = Certificate::new(&scenario.configuration).unwrap();
         let mut rotors = scenario.configuration.rotors().unwrap().to_vec();
         for (rotor, report) in rotors.iter_mut().zip(&certificate.paper().unwrap().rotors) {
-            (rotor.thrust_min, rotor.thrust_max) = (report.demand.least as f32, report.demand.greatest as f32);
+            (rotor.thrust_min, rotor.thrust_max) = (report.demand.min as f32, report.demand.max as f32);
         }
         let flown = MinimumNorm::new(&Rotors::new(&rotors).unwrap());
         for _ in 0..100_000 {
@@ -272,7 +272,7 @@ fn without_any_margin_clipping_takes_no_more_than_rounding() {
             let achieved = flown.wrench(&flown.allocate(&wrench).unwrap().thrusts);
             let thrust = f64::from((achieved.thrust - wrench.thrust).abs());
             let torque = f64::from((achieved.torque - wrench.torque).norm());
-            let rounding = ROUNDING * certificate.thrust().greatest;
+            let rounding = TICK_ROUNDING_SHARE * certificate.thrust().max;
             assert!(thrust < rounding && torque < rounding, "{name}: {wrench:?} {achieved:?}");
         }
     }

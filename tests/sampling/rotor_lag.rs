@@ -11,10 +11,10 @@ use scenario::{PAPER, Scenario};
 /// The start's turn about each body axis, degrees: 1.7e-4 rad. The law is linear up to about 4 M_theta / k_theta = 8e-3
 /// rad.
 const START_DEG: f64 = 0.01;
-/// Beyond what a decaying motion can have left of the start, and within the linear range, rad.
-const GROWN: f64 = 2e-3;
-/// Below this only the rounding of single precision is left of the motion, rad.
-const STILL: f64 = 1e-6;
+/// Beyond the rest of the start in a decaying motion, and within the linear range.
+const GROWN_RAD: f64 = 2e-3;
+/// Below this only the rounding of single precision is left of the motion.
+const STILL_RAD: f64 = 1e-6;
 
 /// Table I hovering at the origin, with rotors of the given lag, ms, and the given delay, s.
 fn hovering(lag_ms: f64, delay: f64) -> Scenario {
@@ -68,7 +68,7 @@ fn peaks(scenario: &Scenario, stretches: usize) -> Vec<f64> {
 fn grows(scenario: &Scenario) -> bool {
     let peaks = peaks(scenario, 10);
     let (early, late) = (peaks[4], peaks[9]);
-    late > GROWN || (late > early && late > STILL)
+    late > GROWN_RAD || (late > early && late > STILL_RAD)
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn five_milliseconds_of_lag_settle() {
     let scenario = hovering(5.0, 0.0);
     assert!(predicted(&scenario).0 < 1.0);
     let peaks = peaks(&scenario, 10);
-    assert!(peaks[9] < STILL, "{peaks:?}");
+    assert!(peaks[9] < STILL_RAD, "{peaks:?}");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn ten_milliseconds_and_more_end_in_a_limit_cycle() {
         let scenario = hovering(lag, 0.0);
         assert!(predicted(&scenario).0 > 1.0);
         let peaks = peaks(&scenario, 20);
-        assert!(peaks[19] > GROWN, "{lag} ms: {peaks:?}");
+        assert!(peaks[19] > GROWN_RAD, "{lag} ms: {peaks:?}");
         // Sustained: neither growing nor dying.
         assert!((peaks[19] / peaks[18] - 1.0).abs() < 0.05, "{lag} ms: {peaks:?}");
         amplitudes.push(peaks[19]);
@@ -133,7 +133,7 @@ fn the_table_of_lags() {
         let scenario = hovering(lag, delay);
         let (radius, axis) = predicted(&scenario);
         let late = peaks(&scenario, 10)[9];
-        let seen = if late < STILL { "still" } else { "moving" };
+        let seen = if late < STILL_RAD { "still" } else { "moving" };
         println!(
             "{lag:8}  {:10}  {radius:15.4}  {:10}  {seen}, {:.2e} deg",
             1e3 * delay,

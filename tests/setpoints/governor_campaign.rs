@@ -21,14 +21,14 @@ mod witness;
 
 use adversary::{Adversary, Trouble};
 use case::{Case, Random};
-use controller_core::governor::{Governor, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::prelude::{Vector2, Vector3};
 use core::f32::consts::PI;
 use witness::{Approach, Tally, Witness};
 
-const STREAMS: u64 = 25_000;
-/// No arrival from rest takes longer, s; the slowest bounds drawn need most of it.
-const PATIENCE: f32 = 150.0;
+const STREAM_COUNT: u64 = 25_000;
+/// No arrival from rest takes longer; the slowest bounds drawn need most of it.
+const ARRIVAL_TIMEOUT_S: f32 = 150.0;
 
 fn fly(seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed);
@@ -72,9 +72,9 @@ fn fly(seed: u64, tally: &mut Tally) {
     } else if ending == 1 && busy > 0 {
         // Silence: what was sent last runs out or is arrived at, unless it is a million metres away.
         let motion = Motion::Velocity(random.vector(2.0));
-        governor.accept(&Setpoint { motion, turn: Turn::Rate(0.5) }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Rate(0.5) }).unwrap();
     } else {
-        let turn = Turn::Angle { angle, rate: 0.0 };
+        let turn = HeadingSetpoint::Angle { angle, rate: 0.0 };
         governor.accept(&Setpoint { motion: Motion::Position(target), turn }).unwrap();
     }
     let mut approach = (busy == 0 && !moves && ending > 1).then(|| Approach {
@@ -86,7 +86,7 @@ fn fly(seed: u64, tally: &mut Tally) {
             3.0_f64.sqrt() / 65_536.0 * f64::from((horizontal / vertical).max(vertical / horizontal))
         },
     });
-    let patience = PATIENCE + 2.0 * case.returning(&start.velocity);
+    let patience = ARRIVAL_TIMEOUT_S + 2.0 * case.returning(&start.velocity);
     let mut time = 0.0;
     while !governor.at_rest() {
         let reference = governor.tick();
@@ -112,7 +112,7 @@ fn fly(seed: u64, tally: &mut Tally) {
 
 #[test]
 fn streams_never_leave_the_bounds_and_all_arrive() {
-    let streams = std::env::var("GOVERNOR_STREAMS").map_or(STREAMS, |number| number.parse().expect("a number"));
+    let streams = std::env::var("GOVERNOR_STREAMS").map_or(STREAM_COUNT, |number| number.parse().expect("a number"));
     let threads = std::thread::available_parallelism().map_or(2, usize::from).min(8) as u64;
     let tally = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)

@@ -1,6 +1,6 @@
 //! Policies that mean harm, behind the shield: a thousand short flights of a Hummingbird and of two published vehicles,
 //! the Hummingbird and one more in wind. No command is beyond a rotor or a limit, and no vehicle leaves its box by more
-//! than [`OUTSIDE`]. The same policies on the law alone, within the same limits, crash.
+//! than [`OUTSIDE_MAX_M`]. The same policies on the law alone, within the same limits, crash.
 //! `cargo test -p host-sim shield -- --nocapture` prints the table that stands in `docs/shield.md`.
 
 use crate::support::random::{self, ChaCha8Rng};
@@ -10,7 +10,7 @@ use controller_core::shield::{Demand, Reason, Settings, Shield};
 use controller_core::state::State;
 use host_sim::flight;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::sensors::Sensors;
 use nalgebra::{Quaternion, Vector3};
 use rand::RngExt;
@@ -18,15 +18,13 @@ use scenario::Scenario;
 use std::f32::consts::TAU;
 use std::path::Path;
 
-/// How far outside of its box a vehicle may come, m.
-const OUTSIDE: f64 = 0.1;
+/// How far outside of its box a vehicle may come.
+const OUTSIDE_MAX_M: f64 = 0.1;
 
-/// The box, m.
-const LOW: Vector3<f32> = Vector3::new(-4.0, -4.0, 0.5);
-const HIGH: Vector3<f32> = Vector3::new(4.0, 4.0, 5.0);
+const BOX_LOW_M: Vector3<f32> = Vector3::new(-4.0, -4.0, 0.5);
+const BOX_HIGH_M: Vector3<f32> = Vector3::new(4.0, 4.0, 5.0);
 
-/// The time of a flight, s.
-const DURATION: f64 = 5.0;
+const FLIGHT_S: f64 = 5.0;
 
 /// Vehicles, and what they fly in.
 const VEHICLES: [(&str, &[Air]); 3] = [
@@ -88,7 +86,7 @@ enum Kind {
     Silent,
 }
 
-const KINDS: [Kind; 8] = [
+const POLICY_KINDS: [Kind; 8] = [
     Kind::Random,
     Kind::BangBang,
     Kind::Floor,
@@ -169,7 +167,7 @@ struct Shown {
 /// One flight, behind the shield or on the law alone.
 fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, shown: &mut Shown) {
     let mut scenario = scenario.clone();
-    let inside = |axis: usize| rng.random_range(LOW[axis] + 1.0..HIGH[axis] - 1.0);
+    let inside = |axis: usize| rng.random_range(BOX_LOW_M[axis] + 1.0..BOX_HIGH_M[axis] - 1.0);
     let start = [0, 1, 2].map(inside);
     scenario.initial.position = Vector3::from(start).cast();
     let period = scenario.timing.period() as f32;
@@ -181,7 +179,8 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
     let mut vehicle = SimulatedVehicle::new(&scenario, configuration);
     let mut law = flight::law(&scenario).unwrap();
     let law = law.extended().unwrap();
-    let settings = Settings { patience: 0.2, patience_greatest: 0.2, hand_overs: 100, ..Settings::new(LOW, HIGH) };
+    let settings =
+        Settings { patience: 0.2, patience_greatest: 0.2, hand_overs: 100, ..Settings::new(BOX_LOW_M, BOX_HIGH_M) };
     let mut shield = Shield::new(configuration, &settings, period).unwrap();
     let weight = configuration.vehicle().mass * configuration.vehicle().gravity;
     let mut policy = Malicious::new(kind, weight, random::generator(rng.random()));
@@ -189,7 +188,7 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
     let mut last = Demand::Acceleration { acceleration: Vector3::zeros(), yaw_rate: 0.0 };
     let mut outside = f64::MIN;
     let mut lowest = f64::MAX;
-    for tick in 0..(DURATION / scenario.timing.period()) as u32 {
+    for tick in 0..(FLIGHT_S / scenario.timing.period()) as u32 {
         let truth = *vehicle.state();
         let state: State = sensors.as_mut().map_or_else(|| truth.measured(), |sensors| sensors.measure(&truth));
         let offers = policy.act(tick as f32 * period);
@@ -202,17 +201,17 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
             law.step_on_demand(&state, &level, &last).unwrap().0
         };
         let (clipped, _) = vehicle
-            .hold(&Asked::Wrench(wrench.scaled(1.0 / law.thrust_scale())), scenario.timing.steps_per_tick)
+            .hold(&ActuatorDemand::Wrench(wrench.scaled(1.0 / law.thrust_scale())), scenario.timing.steps_per_tick)
             .unwrap();
         assert!(!clipped, "{kind:?} {tick}: {wrench:?} is beyond the rotors or the limits");
         let body = vehicle.state();
         let place = body.position;
-        outside = outside.max((LOW.cast() - place).max()).max((place - HIGH.cast()).max());
+        outside = outside.max((BOX_LOW_M.cast() - place).max()).max((place - BOX_HIGH_M.cast()).max());
         lowest = lowest.min(place.z);
         shown.fastest = shown.fastest.max(body.velocity.norm());
         shown.ticks += 1;
     }
-    assert!(!shielded || outside <= OUTSIDE, "{kind:?} in {}: {outside} m outside", scenario.name);
+    assert!(!shielded || outside <= OUTSIDE_MAX_M, "{kind:?} in {}: {outside} m outside", scenario.name);
     shown.outside = shown.outside.max(outside);
     shown.lowest = shown.lowest.min(lowest);
     shown.crashed += u32::from(outside > 1.0 || lowest <= 0.0);
@@ -227,7 +226,7 @@ fn campaign(each: u32, shielded: bool) -> Vec<(&'static str, Air, Kind, Shown)> 
     for (name, airs) in VEHICLES {
         for air in airs {
             let scenario = read(name, *air);
-            for kind in KINDS {
+            for kind in POLICY_KINDS {
                 let mut shown = Shown { outside: f64::MIN, lowest: f64::MAX, ..Shown::default() };
                 for _ in 0..each {
                     fly(&scenario, kind, &mut rng, shielded, &mut shown);
@@ -266,13 +265,17 @@ fn a_calm_policy_flies_without_a_hand_over() {
         let period = scenario.timing.period() as f32;
         for _ in 0..10 {
             let mut scenario = scenario.clone();
-            let mut anywhere =
-                || Vector3::from([0, 1, 2].map(|axis: usize| rng.random_range(LOW[axis] + 1.0..HIGH[axis] - 1.0)));
+            let mut anywhere = || {
+                Vector3::from(
+                    [0, 1, 2].map(|axis: usize| rng.random_range(BOX_LOW_M[axis] + 1.0..BOX_HIGH_M[axis] - 1.0)),
+                )
+            };
             scenario.initial.position = anywhere().cast();
             let mut vehicle = SimulatedVehicle::new(&scenario, &scenario.configuration);
             let mut law = flight::law(&scenario).unwrap();
             let law = law.extended().unwrap();
-            let mut shield = Shield::new(&scenario.configuration, &Settings::new(LOW, HIGH), period).unwrap();
+            let mut shield =
+                Shield::new(&scenario.configuration, &Settings::new(BOX_LOW_M, BOX_HIGH_M), period).unwrap();
             let mut goal = anywhere();
             let at_most = |v: Vector3<f32>, length: f32| v * (length / v.norm().max(length));
             for tick in 0..1_500 {
@@ -287,7 +290,7 @@ fn a_calm_policy_flies_without_a_hand_over() {
                 let flown = shield.step(law, &state, Some(&demand)).unwrap();
                 assert_eq!(flown.reason, None, "{name} {tick} {state:?}");
                 let wrench = flown.wrench.scaled(1.0 / law.thrust_scale());
-                vehicle.hold(&Asked::Wrench(wrench), scenario.timing.steps_per_tick).unwrap();
+                vehicle.hold(&ActuatorDemand::Wrench(wrench), scenario.timing.steps_per_tick).unwrap();
             }
         }
     }

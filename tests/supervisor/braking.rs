@@ -4,7 +4,7 @@
 //! `cargo test -p host-sim braking -- --nocapture` prints the figures.
 
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request, Transition};
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -24,22 +24,22 @@ const FARTHER_MAX: (f64, f64) = (1.1, 0.3);
 
 /// The vehicles' greatest acceleration across of a reference and its jerk, and how they brake along the vertical, m/s^2
 /// and m/s^3.
-const ACROSS: (f64, f64) = (2.4675, 3.876);
-const VERTICAL: (f64, f64) = (4.0, 40.0);
+const LEVEL_BOUNDS: (f64, f64) = (2.4675, 3.876);
+const VERTICAL_BOUNDS: (f64, f64) = (4.0, 40.0);
 
-/// How fast a vehicle is that has stopped, m/s.
-const STOPPED: f64 = 0.05;
+/// A slower vehicle has stopped.
+const STOPPED_M_PER_S: f64 = 0.05;
 
 /// A fast flight for which there is room.
-const SETTINGS: FlightSettings =
+const FLIGHT_SETTINGS: FlightSettings =
     FlightSettings { fence_radius: 1_000.0, fence_height: 100.0, ..FlightSettings::DEFAULT };
 
-/// When the operator arms, and lets it fly, in ticks.
-const ARM: u64 = 250;
-const GO: u64 = 300;
+/// When the operator arms, and lets it fly.
+const ARM_TICK: u64 = 250;
+const GO_TICK: u64 = 300;
 
-/// For how long a flight on setpoints goes up to 5 m, in ticks.
-const UP: u64 = 1_000;
+/// For how long a flight on setpoints climbs to 5 m.
+const CLIMB_TICKS: u64 = 1_000;
 
 fn certified(name: &str) -> (Scenario, Certified) {
     let file = format!("{}/../vehicles/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -80,22 +80,26 @@ fn interrupted(
     due: impl Fn(u64, Vector3<f64>) -> bool,
 ) -> Stop {
     let mut place = Place::new(&scenario.configuration);
-    let mut vehicle = PilotedVehicle::new(scenario, Ok(certified), &SETTINGS, &mut place, 0).unwrap();
+    let mut vehicle = PilotedVehicle::new(scenario, Ok(certified), &FLIGHT_SETTINGS, &mut place, 0).unwrap();
     let (mut is_due, mut begun) = (false, None::<(u64, Vector3<f64>)>);
     let nothing = Vector3::zeros();
     let mut stop = Stop { from: nothing, way: nothing, rose: 0.0, back: 0.0, time: 0.0, tilt: 0.0 };
     let (mut farthest, mut still) = (0.0_f64, 0);
     for tick in 0..6_000_u64 {
         let was_due = is_due;
-        is_due |= tick > GO && due(tick - GO, vehicle.vehicle().state().velocity);
+        is_due |= tick > GO_TICK && due(tick - GO_TICK, vehicle.vehicle().state().velocity);
         let motion = match setpoint {
-            Some(velocity) if tick >= GO + UP => Motion::Velocity(velocity),
+            Some(velocity) if tick >= GO_TICK + CLIMB_TICKS => Motion::Velocity(velocity),
             _ => Motion::Position(Vector3::z() * 5.0),
         };
         let mut given = Inputs {
             ground_station: Some(vehicle.now()),
-            request: [(ARM, Request::Arm), (GO, begin)].into_iter().find(|(at, _)| *at == tick).map(|(_, it)| it),
-            setpoint: (setpoint.is_some() && tick.is_multiple_of(10)).then_some(Setpoint { motion, turn: Turn::Keep }),
+            request: [(ARM_TICK, Request::Arm), (GO_TICK, begin)]
+                .into_iter()
+                .find(|(at, _)| *at == tick)
+                .map(|(_, it)| it),
+            setpoint: (setpoint.is_some() && tick.is_multiple_of(10))
+                .then_some(Setpoint { motion, turn: HeadingSetpoint::Keep }),
             ..Inputs::default()
         };
         if is_due {
@@ -118,7 +122,7 @@ fn interrupted(
             stop.back = farthest - along;
             let up = UnitQuaternion::new_unchecked(state.attitude) * Vector3::z();
             stop.tilt = stop.tilt.max(up.z.clamp(-1.0, 1.0).acos().to_degrees());
-            still = if state.velocity.norm() < STOPPED { still + 1 } else { 0 };
+            still = if state.velocity.norm() < STOPPED_M_PER_S { still + 1 } else { 0 };
             if still == 1 {
                 (stop.way, stop.time) = (way, (tick - tick_begun) as f64 * 0.01);
             }
@@ -161,13 +165,13 @@ fn a_hold_at_full_speed_stops_within_what_the_references_braking_needs() {
     for name in ["study", "hummingbird", PAPER] {
         let vehicle = certified(name);
         for (velocity, fast, (acceleration, jerk)) in [
-            (Vector3::new(8.0, 0.0, 0.0), 4.9, ACROSS),
-            (Vector3::new(2.0, 0.0, 0.0), 1.95, ACROSS),
-            (Vector3::new(0.0, 0.0, 3.0), 1.9, VERTICAL),
-            (Vector3::new(0.0, 0.0, -2.0), 0.6, VERTICAL),
+            (Vector3::new(8.0, 0.0, 0.0), 4.9, LEVEL_BOUNDS),
+            (Vector3::new(2.0, 0.0, 0.0), 1.95, LEVEL_BOUNDS),
+            (Vector3::new(0.0, 0.0, 3.0), 1.9, VERTICAL_BOUNDS),
+            (Vector3::new(0.0, 0.0, -2.0), 0.6, VERTICAL_BOUNDS),
         ] {
             let toward = velocity.map(f64::from).normalize();
-            let due = |tick: u64, now: Vector3<f64>| tick > UP && now.dot(&toward) >= fast;
+            let due = |tick: u64, now: Vector3<f64>| tick > CLIMB_TICKS && now.dot(&toward) >= fast;
             let stop = interrupted(&vehicle, Request::FlySetpoints, Some(velocity), HOLD, due);
             let speed = stop.from.norm();
             let needed = 0.5 * speed * (speed / acceleration + acceleration / jerk);
@@ -197,7 +201,7 @@ fn every_failsafe_in_a_climb_brakes_as_a_command_does() {
         ("ticks that are late", |inputs, _| inputs.is_late = true),
     ];
     for (what, failsafe) in failsafes {
-        let due = |tick: u64, now: Vector3<f64>| tick > UP && now.z >= 0.5;
+        let due = |tick: u64, now: Vector3<f64>| tick > CLIMB_TICKS && now.z >= 0.5;
         let up = Some(Vector3::new(0.0, 0.0, 2.0));
         let stop = interrupted(&vehicle, Request::FlySetpoints, up, failsafe, due);
         println!("{what}: climbs on by {:.2} m from {:.2} m/s", stop.rose, stop.from.z);

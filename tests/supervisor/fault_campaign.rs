@@ -57,7 +57,7 @@ const NOT_BY_FAILURES: [Condition; 11] = [
 const FLIGHT_HEIGHT: f32 = 1.5;
 
 /// What an operator has chosen about failures: all of it within reach of a short flight.
-const SETTINGS: FlightSettings = FlightSettings {
+const FLIGHT_SETTINGS: FlightSettings = FlightSettings {
     ground_station_timeout: 5.0,
     fence_radius: 6.0,
     fence_height: 4.0,
@@ -78,7 +78,7 @@ fn vehicle(name: &str) -> Vehicle {
     let scenario = Scenario::load(&folder.join(format!("{name}.toml"))).unwrap();
     let configuration = scenario.configuration.clone();
     let refused = Certified::new(too_agile(&configuration)).unwrap_err();
-    Vehicle { certified: Certified::new(configuration).unwrap(), scenario, settings: SETTINGS, refused }
+    Vehicle { certified: Certified::new(configuration).unwrap(), scenario, settings: FLIGHT_SETTINGS, refused }
 }
 
 /// The same vehicle, with references that its torques are not enough for.
@@ -92,16 +92,15 @@ fn singles() -> Vec<Case> {
     Phase::ALL.into_iter().flat_map(single).collect()
 }
 
-/// When the second of two failures strikes, in ticks after the first: with it, some hundred milliseconds later, seconds
-/// later.
-const LATER: [Range<u64>; 3] = [0..1, 10..100, 100..500];
+/// When the second of two failures strikes, after the first: with it, some hundred milliseconds later, seconds later.
+const SECOND_FAILURE_TICKS: [Range<u64>; 3] = [0..1, 10..100, 100..500];
 
-/// Every ordered pair of failures in every phase, each as much later as `random` has it within one of [`LATER`].
+/// Every ordered pair of failures in every phase, each as much later as `random` has it within one of [`SECOND_FAILURE_TICKS`].
 pub fn pairs(random: &mut impl Rng) -> Vec<(Case, usize)> {
     let mut pairs = Vec::new();
     for phase in Phase::ALL {
         for (first, second) in Failure::ALL.into_iter().flat_map(|first| Failure::ALL.map(|second| (first, second))) {
-            for (which, later) in LATER.into_iter().enumerate().filter(|_| first != second) {
+            for (which, later) in SECOND_FAILURE_TICKS.into_iter().enumerate().filter(|_| first != second) {
                 let second = Some((second, random.random_range(later)));
                 pairs.push((Case { phase, first, second, height: FLIGHT_HEIGHT }, which));
             }

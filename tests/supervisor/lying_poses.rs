@@ -24,14 +24,13 @@ use scenario::Scenario;
 /// and not judged.
 const NOT_MENDED_SEED: u64 = 4352;
 
-/// Flights in each test run.
-const FLIGHTS: u64 = 300;
+const FLIGHT_COUNT: u64 = 300;
 
 /// Honest flights in each test run.
 const HONEST_FLIGHTS: u64 = 140;
 
-/// How high take-offs go, m: as far as the fence lets them.
-const HEIGHTS: std::ops::Range<f32> = 0.5..2.9;
+/// As far as the fence lets them.
+const TAKEOFF_HEIGHTS_M: std::ops::Range<f32> = 0.5..2.9;
 
 /// How long after a command something begins at most, s: as long as flights last.
 const BEGINS_WITHIN: f64 = 12.0;
@@ -112,11 +111,11 @@ fn begins(random: &mut ChaCha8Rng) -> Begins {
 
 #[test]
 fn whatever_poses_say_a_flight_ends_on_the_ground_with_motors_off() {
-    let count = std::env::var("LYING_FLIGHTS").ok().map_or(FLIGHTS, |count| count.parse().unwrap());
+    let count = std::env::var("LYING_FLIGHTS").ok().map_or(FLIGHT_COUNT, |count| count.parse().unwrap());
     let mut random = ChaCha8Rng::seed_from_u64(30);
     let cases = (0..count).map(|seed| Case {
         begins: begins(&mut random),
-        height: random.random_range(HEIGHTS),
+        height: random.random_range(TAKEOFF_HEIGHTS_M),
         lies: drawn(&mut random),
         ends_after: random.random_bool(0.3).then(|| random.random_range(0.5..10.0)),
         land_after: random.random_range(0.0..15.0),
@@ -145,7 +144,7 @@ fn a_landing_at_any_moment_on_honest_poses_rises_by_half_a_metre_at_most() {
     let mut random = ChaCha8Rng::seed_from_u64(44);
     let cases = (0..count).map(|seed| Case {
         begins: Begins::After(Event::ALL[seed as usize % Event::ALL.len()], random.random_range(0.0..BEGINS_WITHIN)),
-        height: random.random_range(HEIGHTS),
+        height: random.random_range(TAKEOFF_HEIGHTS_M),
         lies: Vec::new(),
         ends_after: None,
         land_after: 0.0,

@@ -5,9 +5,9 @@
 //! `cargo test -p host-sim rotor_loss -- --nocapture` prints the figures that stand in `docs/rotor-loss.md`.
 
 use crate::support::extended;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{FlightSettings, Inputs, Mode, Output, Pose, Reason, Refusal, Request, Stamped};
 use nalgebra::Vector3;
 use verification::piloted::{Meddler, PilotedVehicle, Place, PoseMeasurement};
@@ -55,7 +55,7 @@ impl Phase {
 }
 
 fn go_to(place: [f32; 3]) -> Request {
-    Request::GoTo(Setpoint { motion: Motion::Position(place.into()), turn: Turn::Keep })
+    Request::GoTo(Setpoint { motion: Motion::Position(place.into()), turn: HeadingSetpoint::Keep })
 }
 
 /// Poses, or none.
@@ -71,7 +71,7 @@ impl Meddler for Poses {
 #[derive(Debug, Default)]
 struct Flown {
     /// What was said of the rotor, and how long after it had failed, s.
-    found: Option<(Lost, f64)>,
+    found: Option<(LostRotor, f64)>,
     /// The greatest distance across from where it failed, m.
     farthest: f64,
     /// How far below that it fell in the first two seconds, m.
@@ -92,7 +92,7 @@ struct Flown {
 struct Case<'a> {
     vehicle: &'a str,
     phase: Phase,
-    lost: Lost,
+    lost: LostRotor,
     asked: Option<Request>,
 }
 
@@ -152,7 +152,7 @@ fn fly(case: &Case) -> Flown {
 }
 
 fn holding(vehicle: &str, asked: Option<Request>) -> Flown {
-    fly(&Case { vehicle, phase: Phase::Holding, lost: Lost { rotor: 2, left: 0.0 }, asked })
+    fly(&Case { vehicle, phase: Phase::Holding, lost: LostRotor { rotor: 2, left: 0.0 }, asked })
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn a_vehicle_without_a_rotor_lands_softly_from_every_phase() {
     println!("|---|---|---|---|---|---|---|");
     for vehicle in ["hummingbird", "pelican", "flightmare"] {
         for phase in Phase::ALL {
-            for lost in [(0, 0.0), (2, 0.0), (1, 0.3), (3, 0.6)].map(|(rotor, left)| Lost { rotor, left }) {
+            for lost in [(0, 0.0), (2, 0.0), (1, 0.3), (3, 0.6)].map(|(rotor, left)| LostRotor { rotor, left }) {
                 let flown = fly(&Case { vehicle, phase, lost, asked: None });
                 let (found, late) = flown.found.map_or((None, f64::NAN), |(lost, late)| (Some(lost), late));
                 println!(
@@ -176,7 +176,7 @@ fn a_vehicle_without_a_rotor_lands_softly_from_every_phase() {
                     flown.down
                 );
                 let what = format!("{vehicle} {phase:?} {lost:?}: {flown:?}");
-                let is_it = |found: Lost| found.rotor == lost.rotor && (found.left - lost.left).abs() < 0.15;
+                let is_it = |found: LostRotor| found.rotor == lost.rotor && (found.left - lost.left).abs() < 0.15;
                 // What has lost less than half may go on unfound without a pose.
                 let may_go_on = phase == Phase::WithoutPose && lost.left > 0.5;
                 assert!(found.map_or(may_go_on, is_it), "{what}");

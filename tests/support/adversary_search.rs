@@ -21,10 +21,10 @@ use controller_core::state::State;
 use nalgebra::{Quaternion, Vector2, Vector3};
 
 /// How many coordinates code a situation.
-pub const COORDINATES: usize = 30;
+pub const COORDINATE_COUNT: usize = 30;
 
 /// A situation's code: every coordinate in [-1, 1].
-pub type Code = [f64; COORDINATES];
+pub type Code = [f64; COORDINATE_COUNT];
 
 /// How close to |theta~| = 1 + delta an attitude error may come and still not be switched by rounding.
 const SWITCHING_ROOM: f64 = 1e-5;

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 pub const PAPER: &str = include_str!("../../scenarios/paper.toml");
 
 /// Requirements that Table I meets, so that a search may be quick.
-const REQUIREMENTS: [&str; 11] = [
+const EASY_REQUIREMENTS: [&str; 11] = [
     "--margin",
     "0",
     "--gain-margin",
@@ -23,7 +23,7 @@ const REQUIREMENTS: [&str; 11] = [
 
 /// The arguments of a search by them, so many generations long.
 pub fn search<'a>(file: &'a str, out: &'a str, generations: &'a str) -> Vec<&'a str> {
-    [&["tune", file, "--out", out, "--generations", generations, "--population", "8"][..], &REQUIREMENTS].concat()
+    [&["tune", file, "--out", out, "--generations", generations, "--population", "8"][..], &EASY_REQUIREMENTS].concat()
 }
 
 /// A directory of its own for each test, empty at the start.

@@ -44,7 +44,7 @@ pub fn random_parameters(rng: &mut ChaCha8Rng, formulas: &ExtendedParameters, ve
     let mut values = formulas.values();
     for (value, constant) in values.iter_mut().zip(&ExtendedParameters::TABLE) {
         let around = *value * random::log_uniform(rng, 0.25, 4.0);
-        *value = around.clamp(constant.range.least, constant.range.greatest);
+        *value = around.clamp(constant.range.min, constant.range.max);
     }
     let p = ExtendedParameters::from_values(values);
     let a_down = p.a_down.min(0.9 * vehicle.gravity);

@@ -11,7 +11,7 @@ use scenario::Scenario;
 use sha2::{Digest, Sha256};
 
 /// The number as published; `.ci/emulated` reads the same file.
-const PUBLISHED: &str = include_str!("../paper_flight.sha256");
+const PUBLISHED_HASH: &str = include_str!("../paper_flight.sha256");
 
 fn bits(wrench: &controller_core::state::Wrench) -> [u32; 4] {
     [wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z].map(f32::to_bits)
@@ -29,7 +29,7 @@ fn the_papers_flight_is_the_published_number_on_this_machine() {
         let replayed = replay.tick(&record(&flown.state.measured())).unwrap();
         assert_eq!(bits(&flown.wrench), bits(&replayed), "tick {tick}");
     }
-    assert_eq!(replay.digest(), PUBLISHED.trim());
+    assert_eq!(replay.digest(), PUBLISHED_HASH.trim());
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn one_bit_of_one_state_changes_the_number() {
         }
         replay.tick(&state).unwrap();
     }
-    assert_ne!(replay.digest(), PUBLISHED.trim());
+    assert_ne!(replay.digest(), PUBLISHED_HASH.trim());
 }
 
 /// a b + c d, each product and the sum rounded.
@@ -104,8 +104,8 @@ fn one_fused_multiplication_and_addition_changes_the_number() {
         number(|reference, diagnostics| thrust(mass, &diagnostics.acceleration_command, reference, sum))
     };
     // What is fused below is the law's own line: as it stands, it gives the law's bits and the published number.
-    assert_eq!(with(separate), (PUBLISHED.trim().to_owned(), 0));
+    assert_eq!(with(separate), (PUBLISHED_HASH.trim().to_owned(), 0));
     let (found, different) = with(fused);
     println!("fused: {different} of {FLIGHT_TICKS} thrusts have other bits");
-    assert!(different > 0 && found != PUBLISHED.trim(), "{different}");
+    assert!(different > 0 && found != PUBLISHED_HASH.trim(), "{different}");
 }

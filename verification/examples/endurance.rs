@@ -11,10 +11,10 @@ use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
-use verification::hours::{Hours, Obeyed, Plan, TIMED, fly};
+use verification::hours::{Hours, ParameterEffect, Plan, TIMED_REASONS, fly};
 
 /// Where a clock's milliseconds overflow 32 bits, us.
-const OVERFLOW: u64 = (1 << 32) * 1_000;
+const MILLISECONDS_OVERFLOW_US: u64 = (1 << 32) * 1_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -24,9 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (scenario, hours) = (Scenario::load(Path::new(file))?, hours.parse::<u64>()?);
     let certified = Certified::new(scenario.configuration.clone())
         .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
-    println!("hour  hover RMS  estimate's error, mm  delays, s: {TIMED:?}");
+    println!("hour  hover RMS  estimate's error, mm  delays, s: {TIMED_REASONS:?}");
     let (begun, mut number) = (Instant::now(), 0);
-    let start = OVERFLOW.checked_sub(hours * 1_800_000_000).ok_or("more hours than a clock has")?;
+    let start = MILLISECONDS_OVERFLOW_US.checked_sub(hours * 1_800_000_000).ok_or("more hours than a clock has")?;
     let flown = fly(&scenario, &certified, &Plan { hours, missions: 6, start, seed: 1 }, |hour| {
         number += 1;
         let delays = hour.delays.map(|ticks| format!("{:.3}", 0.01 * ticks)).join(" ");
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{missions} missions, the frame moved {moves} times, {refusals} requests to be asked again; shortest and longest delays, ticks: {extremes:?}"
     );
     for (what, unit, obeyed) in [("take-off", "m", &flown.heights), ("landing", "m/s", &flown.speeds)] {
-        for Obeyed { chosen, found: (least, most), .. } in obeyed {
+        for ParameterEffect { chosen, found: (least, most), .. } in obeyed {
             println!("{what}: {chosen} {unit} chosen on the ground, {least:.3} to {most:.3} {unit} found");
         }
     }

@@ -7,7 +7,7 @@
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::outcome::Outcome;
 use host_sim::studies::campaign::quantile;
-use host_sim::studies::campaign::step::longest;
+use host_sim::studies::campaign::step::with_longest_step;
 use scenario::Scenario;
 use scenario::campaign::{Ranges, Task};
 use scenario::verdict::Verdict;
@@ -15,7 +15,7 @@ use std::error::Error;
 use verification::campaign::fly_all;
 
 /// Hz.
-const RATES: [f64; 12] = [10.0, 12.5, 20.0, 25.0, 40.0, 50.0, 100.0, 125.0, 200.0, 250.0, 500.0, 1000.0];
+const CONTROL_RATES_HZ: [f64; 12] = [10.0, 12.5, 20.0, 25.0, 40.0, 50.0, 100.0, 125.0, 200.0, 250.0, 500.0, 1000.0];
 
 /// `text` at `rate`, Hz.
 fn at(rate: f64, text: &str) -> Result<Scenario, Box<dyn Error>> {
@@ -33,15 +33,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (count, mut wrong): (u64, usize) = (count.parse()?, 0);
     for file in files {
         let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
-        for rate in RATES {
+        for rate in CONTROL_RATES_HZ {
             let scenario = match at(rate, &text) {
-                Ok(scenario) => longest(&scenario),
+                Ok(scenario) => with_longest_step(&scenario),
                 Err(refusal) => {
                     println!("{file} at {rate} Hz: refused: {refusal}");
                     continue;
                 }
             };
-            let verdict = Verdict::of(&scenario)?;
+            let verdict = Verdict::judge(&scenario)?;
             if let Some(refusal) = verdict.refusal() {
                 println!("{} at {rate} Hz: not certified: {refusal}", scenario.name);
                 continue;
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let ranges = Ranges { reference: Task::Hover, ..scenario.campaign.ranges };
             let thrown = |number| circumstances(&scenario, &ranges, 0, number);
             let flown = fly_all(certified, count, thrown, |scenario, flight| {
-                Outcome::of(scenario, flight, certified.certificate())
+                Outcome::judge(scenario, flight, certified.certificate())
             })?;
             let settled: Vec<f64> = flown.iter().map(|flown| flown.settled.unwrap_or(f64::INFINITY)).collect();
             let [median, slowest] = [0.5, 1.0].map(|part| quantile(&settled, part).unwrap_or(f64::NAN));

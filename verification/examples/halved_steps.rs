@@ -6,7 +6,7 @@ use controller_core::certificate::certified::Certified;
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::outcome::Outcome;
 use host_sim::studies::campaign::quantile;
-use host_sim::studies::campaign::step::{longest, of};
+use host_sim::studies::campaign::step::{with_longest_step, with_step};
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
@@ -17,14 +17,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [file, count] = arguments.as_slice() else {
         return Err("expected FILE COUNT".into());
     };
-    let scenario = longest(&Scenario::load(Path::new(file))?);
-    let finer = of(&scenario, 0.5 * scenario.timing.step())?;
+    let scenario = with_longest_step(&Scenario::load(Path::new(file))?);
+    let finer = with_step(&scenario, 0.5 * scenario.timing.step())?;
     let certified = Certified::new(scenario.configuration.clone())
         .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
     let fly = |scenario: &Scenario| {
         let thrown = |number| circumstances(scenario, &scenario.campaign.ranges, scenario.campaign.seed, number);
         fly_all(&certified, count.parse::<u64>()?, thrown, |scenario, flight| {
-            Outcome::of(scenario, flight, certified.certificate())
+            Outcome::judge(scenario, flight, certified.certificate())
         })
         .map_err(Box::<dyn Error>::from)
     };

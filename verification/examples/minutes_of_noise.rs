@@ -9,7 +9,7 @@ use controller_core::certificate::certified::Certified;
 use host_sim::flight::Flight;
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::quantile;
-use host_sim::studies::campaign::step::longest;
+use host_sim::studies::campaign::step::with_longest_step;
 use scenario::Scenario;
 use scenario::campaign::Ranges;
 use std::error::Error;
@@ -19,14 +19,14 @@ const SENSORS: &str = "\n[sensors]\ngyro_noise = 0.01\nposition_noise = 0.02\nat
                        velocity = \"exact\"\nvelocity_noise = 0.15\n";
 
 /// m/s.
-const WIND_MAX: f64 = 4.0;
-const WIND_AT_20_FEET: f64 = 12.0;
+const WIND_MAX_M_PER_S: f64 = 4.0;
+const WIND_AT_20_FEET_M_PER_S: f64 = 12.0;
 
 /// Until when a vehicle may still be on its way, s.
-const ARRIVAL_TIME: f64 = 60.0;
+const ARRIVAL_TIME_S: f64 = 60.0;
 
 /// At its end a flight may be so far off, m.
-const LAST_DISTANCE_MAX: f64 = 1.0;
+const LAST_DISTANCE_MAX_M: f64 = 1.0;
 
 /// What a flight showed.
 struct Flown {
@@ -45,7 +45,7 @@ fn flown(scenario: &Scenario, mut flight: Flight) -> Flown {
             return Flown { farthest: f64::INFINITY, last: f64::INFINITY, ..flown };
         };
         flown.last = (tick.state.position - tick.reference.position.map(f64::from)).norm();
-        if time > ARRIVAL_TIME {
+        if time > ARRIVAL_TIME_S {
             flown.farthest = flown.farthest.max(flown.last);
         }
         if flight.fallback_times() as usize > flown.slowed.len() {
@@ -65,10 +65,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     for file in files {
         let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
         let scenario = Scenario::parse(&(text + SENSORS), file).map_err(|error| error.to_string())?;
-        let scenario = longest(&scenario);
+        let scenario = with_longest_step(&scenario);
         let certified = Certified::new(scenario.configuration.clone())
             .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
-        let ranges = Ranges { duration, wind: WIND_MAX, turbulence: WIND_AT_20_FEET, ..scenario.campaign.ranges };
+        let ranges = Ranges {
+            duration,
+            wind: WIND_MAX_M_PER_S,
+            turbulence: WIND_AT_20_FEET_M_PER_S,
+            ..scenario.campaign.ranges
+        };
         let all = fly_all(&certified, count, |number| circumstances(&scenario, &ranges, 0, number), flown)?;
         let row = |value: fn(&Flown) -> f64| {
             let values: Vec<f64> = all.iter().map(value).collect();
@@ -77,12 +82,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let [median, most, farthest] = row(|flown| flown.farthest);
         let [.., last] = row(|flown| flown.last);
         println!(
-            "{}: {count} flights of {duration} s; after {ARRIVAL_TIME} s at most {median:.2} m off (median), \
+            "{}: {count} flights of {duration} s; after {ARRIVAL_TIME_S} s at most {median:.2} m off (median), \
              {most:.2} m (99 %), {farthest:.2} m; at the end at most {last:.2} m",
             scenario.name
         );
         for (number, flown) in all.iter().enumerate() {
-            if flown.last > LAST_DISTANCE_MAX || !flown.slowed.is_empty() {
+            if flown.last > LAST_DISTANCE_MAX_M || !flown.slowed.is_empty() {
                 println!(
                     "  flight {number}: ends {:.2} m off; the fallback came at {:.0?} s",
                     flown.last, flown.slowed

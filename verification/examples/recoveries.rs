@@ -10,7 +10,7 @@ use controller_core::certificate::certified::Certified;
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::outcome::Outcome;
 use host_sim::studies::campaign::quantile;
-use host_sim::studies::campaign::step::longest;
+use host_sim::studies::campaign::step::with_longest_step;
 use scenario::Scenario;
 use scenario::campaign::{FailureRanges, ModelRanges, NoiseRanges, Ranges, Task};
 use std::error::Error;
@@ -39,12 +39,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [file, count] = arguments.as_slice() else {
         return Err("expected FILE COUNT".into());
     };
-    let scenario = longest(&Scenario::load(Path::new(file))?);
+    let scenario = with_longest_step(&Scenario::load(Path::new(file))?);
     let certified = Certified::new(scenario.configuration.clone())
         .map_err(|refused| format!("{file}: not certified: {refused:?}"))?;
     let thrown = |number| circumstances(&scenario, &RANGES, 0, number);
     let flown = fly_all(&certified, count.parse()?, thrown, |scenario, flight| {
-        Outcome::of(scenario, flight, certified.certificate())
+        Outcome::judge(scenario, flight, certified.certificate())
     })?;
     let row = |what: &str, unit: &str, value: fn(&Outcome) -> f64| {
         let values: Vec<f64> = flown.iter().map(value).collect();

@@ -14,7 +14,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::flight::controller::Controller;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::sensed::Sensed;
 use nalgebra::{Quaternion, Vector3};
 use rand::SeedableRng;
@@ -111,7 +111,7 @@ impl Trial {
             before = torque;
             course.roll.push((time, roll));
             course.torque.push((time, torque));
-            vehicle.hold(&Asked::Wrench(wrench), start.timing.steps_per_tick).ok()?;
+            vehicle.hold(&ActuatorDemand::Wrench(wrench), start.timing.steps_per_tick).ok()?;
             // Less than half a turn in a tick, so the nearer way is the way it went.
             let turn = (state.attitude.conjugate() * vehicle.state().attitude).normalize();
             let angle = 2.0 * turn.i.atan2(turn.w);
@@ -130,4 +130,4 @@ fn about_x(angle: f64) -> Quaternion<f64> {
 
 /// Gains of [quaternion feedback](host_sim::rivals::quaternion_feedback) that push as hard at half a turn as Table I,
 /// and damp as well.
-pub const LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];
+pub const GAINS_LIKE_TABLE_1: [f64; 7] = [9.0, 6.0, 2.0, 23.0, 12.0, 10.0, 8.0];

@@ -20,8 +20,8 @@
 //! how long each took. The vehicle's clock starts where the caller says: a counter of it with 32 bits overflows on the
 //! way, if there is one.
 
+mod results;
 mod script;
-mod shown;
 
 use crate::piloted::{Meddler, PilotedError, PilotedVehicle, Place};
 use controller_core::certificate::certified::Certified;
@@ -31,11 +31,11 @@ use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::Vector3;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use results::widened;
+pub use results::{Hour, Hours, ParameterEffect, TIMED_REASONS};
 use scenario::Scenario;
 use scenario::reality::estimator::Estimator;
-use script::{MISSION, Script};
-use shown::widened;
-pub use shown::{Hour, Hours, Obeyed, TIMED};
+use script::{MISSION_TICKS, Script};
 use std::fmt;
 
 /// The plan of a long flight.
@@ -52,7 +52,7 @@ pub struct Plan {
 }
 
 /// The hover that is measured, ticks of a mission.
-const HOVER: std::ops::Range<u64> = 3_000..8_000;
+const HOVER_TICKS: std::ops::Range<u64> = 3_000..8_000;
 
 /// Why it came to an end before its time.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,7 +115,7 @@ struct Sums {
     squares: f64,
     misses: f64,
     samples: f64,
-    delays: [(f64, f64); TIMED.len()],
+    delays: [(f64, f64); TIMED_REASONS.len()],
 }
 
 impl Sums {
@@ -156,7 +156,7 @@ pub fn fly(
         random: ChaCha8Rng::seed_from_u64(plan.seed),
         world: World { poses: true, ..World::default() },
         heartbeat: None,
-        shown: Hours::nothing(),
+        results: Hours::new(),
     };
     for _ in 0..plan.hours {
         let mut sums = Sums::default();
@@ -165,11 +165,11 @@ pub fn fly(
         }
         let hour = sums.hour();
         report(&hour);
-        campaign.shown.hours.push(hour);
+        campaign.results.hours.push(hour);
     }
-    let Campaign { vehicle, world, mut shown, .. } = campaign;
-    (shown.moves, shown.position) = (world.moves, vehicle.vehicle().state().position);
-    Ok(shown)
+    let Campaign { vehicle, world, mut results, .. } = campaign;
+    (results.moves, results.position) = (world.moves, vehicle.vehicle().state().position);
+    Ok(results)
 }
 
 /// Everything that goes on from mission to mission.
@@ -181,7 +181,7 @@ struct Campaign<'m> {
     world: World,
     /// When the ground station's last heartbeat came, us.
     heartbeat: Option<u64>,
-    shown: Hours,
+    results: Hours,
 }
 
 /// The state within a mission.
@@ -196,13 +196,13 @@ struct Course {
 }
 
 impl Campaign<'_> {
-    /// One mission, into the hour's `sums` and what is shown.
+    /// One mission, into the hour's `sums` and the results.
     fn mission(&mut self, sums: &mut Sums) -> Result<(), Ended> {
-        let number = self.shown.missions;
+        let number = self.results.missions;
         let script = Script::new(number, &mut self.random);
         self.wind();
         let mut course = Course::default();
-        for tick in 0..MISSION {
+        for tick in 0..MISSION_TICKS {
             // As control does, in every tick; what is armed keeps what it was armed with.
             self.vehicle.choose(&script.settings());
             self.meddle(&script, tick);
@@ -212,7 +212,7 @@ impl Campaign<'_> {
             self.measure(&script, tick, &outcome, sums, &mut course);
             match outcome.answer {
                 // A pose in a thousand is beyond its gates, and then there is a second to wait.
-                Some(Err(Refusal::PosesUnsettled)) => self.shown.refusals += 1,
+                Some(Err(Refusal::PosesUnsettled)) => self.results.refusals += 1,
                 Some(Err(refusal)) => return Err(Ended::Refused(number, refusal)),
                 _ => {}
             }
@@ -220,11 +220,11 @@ impl Campaign<'_> {
                 self.note(&script, tick, transition.reason, sums, &mut course);
             }
         }
-        if course.reasons != script.wanted() {
+        if course.reasons != script.expected_reasons() {
             return Err(Ended::Mission(number, course.reasons));
         }
-        self.shown.speeds[script.choice().1].find(course.sinking);
-        self.shown.missions += 1;
+        self.results.speeds[script.choice().1].find(course.sinking);
+        self.results.missions += 1;
         Ok(())
     }
 
@@ -247,10 +247,10 @@ impl Campaign<'_> {
     /// How well it hovers, how high, and how fast it comes down.
     fn measure(&mut self, script: &Script, tick: u64, outcome: &Outcome, sums: &mut Sums, course: &mut Course) {
         let state = self.vehicle.vehicle().state();
-        if HOVER.contains(&tick) {
+        if HOVER_TICKS.contains(&tick) {
             sums.hover(outcome, &state.position, &self.world.offset);
             // It stands on the ground at the origin.
-            self.shown.heights[script.choice().0].find(state.position.z);
+            self.results.heights[script.choice().0].find(state.position.z);
         }
         if outcome.mode == Mode::Landing {
             course.sinking = course.sinking.max(-state.velocity.z);
@@ -261,18 +261,18 @@ impl Campaign<'_> {
     fn note(&mut self, script: &Script, tick: u64, reason: Reason, sums: &mut Sums, course: &mut Course) {
         if !matches!(reason, Reason::Started | Reason::Ready | Reason::NotReady) {
             course.reasons.push(reason);
-            self.shown.taken.push((self.shown.missions * MISSION + tick, reason));
+            self.results.taken.push((self.results.missions * MISSION_TICKS + tick, reason));
         }
         if reason == Reason::TakeOffCommanded {
             course.up = tick;
         }
-        let Some(which) = TIMED.iter().position(|timed| *timed == reason) else { return };
+        let Some(which) = TIMED_REASONS.iter().position(|timed| *timed == reason) else { return };
         let since = if reason == Reason::TakenOff { course.up } else { script.cause(reason) };
         let took = tick - since;
         if reason == Reason::TakenOff {
-            self.shown.heights[script.choice().0].take(took);
+            self.results.heights[script.choice().0].take(took);
         }
-        self.shown.extremes[which] = widened(self.shown.extremes[which], took);
+        self.results.extremes[which] = widened(self.results.extremes[which], took);
         sums.delays[which].0 += took as f64;
         sums.delays[which].1 += 1.0;
     }

@@ -19,14 +19,14 @@ pub const MANOEUVRE: &str = include_str!("../../scenarios/identify.toml");
 
 /// How much younger the body rates are that the law gets at a tick than a scenario with an estimator counts at most,
 /// s: the last sample of the IMU came now, not a millisecond ago.
-pub const RATES_YOUNGER: f64 = 0.001;
+pub const RATES_YOUNGER_S: f64 = 0.001;
 
 /// RotorPy's coefficients of the Hummingbird's rotors: kg/rad, kg/rad, N/(m/s)^2.
 const AT_HUBS: [(&str, f64); 3] =
     [("rotor_across", 1.19e-4), ("rotor_along", 2.32e-4), ("translational_lift", 3.39e-3)];
 
 /// The standard uncertainty of a trial's scale, as a part of the mass.
-const SCALE: f64 = 1e-3;
+const MASS_UNCERTAINTY_SHARE: f64 = 1e-3;
 
 /// How the air pulls at a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,8 +110,11 @@ impl Trial {
         let text = document.to_string();
         let log = fly(&text)?;
         let normal: f64 = StandardNormal.sample(&mut random);
-        let weighed = truths.mass * (1.0 + SCALE * normal);
-        let bench = Bench { mass: Some(Measured { value: weighed, uncertainty: SCALE * weighed }), ..Bench::default() };
+        let weighed = truths.mass * (1.0 + MASS_UNCERTAINTY_SHARE * normal);
+        let bench = Bench {
+            mass: Some(Measured { value: weighed, uncertainty: MASS_UNCERTAINTY_SHARE * weighed }),
+            ..Bench::default()
+        };
         Ok(Self { text, log, bench, truths, drag })
     }
 
@@ -125,10 +128,10 @@ impl Trial {
             ("inertia x", identified.inertia[0], t.inertia[0]),
             ("inertia y", identified.inertia[1], t.inertia[1]),
             ("inertia z", identified.inertia[2], t.inertia[2]),
-            ("lag and delay", identified.whole_delay, t.lag + t.delay - RATES_YOUNGER),
+            ("lag and delay", identified.whole_delay, t.lag + t.delay - RATES_YOUNGER_S),
             ("lag", identified.lag, t.lag),
             // No estimate is below zero.
-            ("delay", identified.delay, (t.delay - RATES_YOUNGER).max(0.0)),
+            ("delay", identified.delay, (t.delay - RATES_YOUNGER_S).max(0.0)),
             ("centre of mass x", identified.centre_of_mass[0], t.centre[0]),
             ("centre of mass y", identified.centre_of_mass[1], t.centre[1]),
             ("drag x", identified.drag[0], t.drag[0]),

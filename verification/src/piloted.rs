@@ -22,7 +22,7 @@ use estimation::imu::{Calibration, Conditioner, ImuFault, ImuParameters};
 use firmware::hardware::{MOTOR_COUNT, MotorCommand};
 use firmware::outputs::Outputs;
 use flight::{FlightSettings, ImuSample, Inputs, Memory, Outcome, Pilot, Pose, Stamped};
-use host_sim::vehicle::instruments::{Felt, Instruments, SAMPLE};
+use host_sim::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -32,7 +32,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 /// The motors' idle command, part of a full one: the firmware's default.
-const IDLE: f32 = 0.03;
+const IDLE_COMMAND: f32 = 0.03;
 
 /// Where a pilot's estimator, governor and mixer lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,7 @@ pub trait Meddler {
     fn act(&mut self, _vehicle: &mut RealVehicle, _time: u64) {}
 
     /// The IMU's input at `time`, us, from the body's motion.
-    fn feel(&mut self, felt: Felt, _time: u64) -> Felt {
+    fn feel(&mut self, felt: TrueMotion, _time: u64) -> TrueMotion {
         felt
     }
 
@@ -164,7 +164,7 @@ impl<'m> PilotedVehicle<'m> {
             conditioner: Conditioner::new(&ImuParameters::BMI088, &Calibration::NONE, scenario.timing.period_us)?,
             outputs,
             curves: [curve(a)?, curve(b)?, curve(c)?, curve(d)?],
-            steps: (SAMPLE as f64 * 1e-6 / scenario.timing.step()).round() as u32,
+            steps: (SAMPLE_PERIOD_US as f64 * 1e-6 / scenario.timing.step()).round() as u32,
             delay: (scenario.delay() * 1e6).round() as u64,
             now,
             waiting: VecDeque::new(),
@@ -189,7 +189,7 @@ impl<'m> PilotedVehicle<'m> {
     ) -> Result<(Outcome, MotorCommand), PilotedError> {
         self.increments.clear();
         self.poses.clear();
-        for _ in 0..self.pilot.period() / SAMPLE {
+        for _ in 0..self.pilot.period() / SAMPLE_PERIOD_US {
             self.pass(meddler)?;
         }
         let inputs = Inputs {
@@ -201,7 +201,7 @@ impl<'m> PilotedVehicle<'m> {
             ..*given
         };
         let outcome = self.pilot.tick(&inputs);
-        let command = self.outputs.command(&outcome.output, 1.0, IDLE);
+        let command = self.outputs.command(&outcome.output, 1.0, IDLE_COMMAND);
         self.waiting.push_back((self.now + self.delay, command));
         Ok((outcome, command))
     }
@@ -215,7 +215,7 @@ impl<'m> PilotedVehicle<'m> {
         for _ in 0..self.steps {
             self.vehicle.drive(&thrusts).map_err(|_| PilotedError::Diverged)?;
         }
-        self.now += SAMPLE;
+        self.now += SAMPLE_PERIOD_US;
         meddler.act(&mut self.vehicle, self.now);
         let sample = self.instruments.sample_of(self.vehicle.state(), self.now, |felt| meddler.feel(felt, self.now));
         if let Some(sample) = meddler.sample(sample, self.now) {

@@ -24,10 +24,10 @@
 //! along a face, a.d is small, and the rounding of a.w becomes a large error in s. Three rules keep that from
 //! mattering:
 //!
-//! - a *steep* slab (|a.d| < [`STEEP`] |a||d|) is widened by that rounding, so that it never cuts off what is
-//!   attainable;
+//! - a *steep* slab (|a.d| < [`STEEP_FACE_COSINE`] |a||d|) is widened by that rounding, so that it never cuts off what
+//!   is attainable;
 //! - slabs narrow the range in the order of their steepness, and none moves it out of what the gentler ones left;
-//! - a slab with |a.d| below [`PARALLEL`] is left out.
+//! - a slab with |a.d| below [`PARALLEL_FACE_COSINE`] is left out.
 //!
 //! So a range errs by rounding across every face, whatever the face's slope; the mixer's last clip takes that back.
 
@@ -41,17 +41,17 @@ use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
 
 /// Pairs of eight rotors.
-pub(super) const PAIRS: usize = 28;
+pub(super) const ROTOR_PAIRS_MAX: usize = 28;
 
 /// What evaluating a.w in f32 may lose, relative to |a|.|w|: four products, four sums, and the rounding of a, w and the
 /// bounds, half an [`f32::EPSILON`] each at most.
-const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+const EVALUATION_ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
 /// The cosine between a and d below which a face is steep: rounding is magnified more than its inverse, 30 times.
-const STEEP: f64 = 1.0 / 30.0;
+const STEEP_FACE_COSINE: f64 = 1.0 / 30.0;
 
 /// The cosine below which a face does not bound movement along d: its widening hides the polytope.
-const PARALLEL: f64 = 1e-6;
+const PARALLEL_FACE_COSINE: f64 = 1e-6;
 
 /// A column of B with its rotor's range, the wrench scaled.
 #[derive(Debug, Clone, Copy)]
@@ -91,10 +91,11 @@ impl Slab {
         let along = normal.dot(direction);
         let cosine = along.abs() / math::sqrt_f64(normal.dot(normal) * direction.dot(direction));
         // Dependent triples have no normal (0 / 0 compares false): the faces they lie in come from other triples.
-        if cosine > PARALLEL {
+        if cosine > PARALLEL_FACE_COSINE {
             let normal = normal / along;
             let (low, high) = extent(generators, &normal);
-            let slack = if cosine < STEEP { ROUNDING * magnitude(generators, &normal) } else { 0.0 };
+            let slack =
+                if cosine < STEEP_FACE_COSINE { EVALUATION_ROUNDING * magnitude(generators, &normal) } else { 0.0 };
             let normal = normal.component_mul(&rotors.scale()).map(|x| x as f32);
             Some((cosine, Self { normal, low: (low - slack) as f32, high: (high + slack) as f32 }))
         } else {
@@ -147,9 +148,9 @@ impl<const N: usize> Slabs<N> {
 
     /// The least and greatest s with `wrench` - s d in the zonotope; if it misses the zonotope, nearly so.
     pub(super) fn range(&self, wrench: &Vector4<f32>) -> (f32, f32) {
-        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(least, greatest), slab| {
+        self.0.iter().fold((f32::NEG_INFINITY, f32::INFINITY), |(min, max), slab| {
             let at = slab.normal.dot(wrench);
-            let into = |s: f32| s.max(least).min(greatest);
+            let into = |s: f32| s.max(min).min(max);
             (into(at - slab.high), into(at - slab.low))
         })
     }
@@ -171,28 +172,24 @@ fn extent(generators: &[Generator], normal: &Vector4<f64>) -> (f64, f64) {
 
 /// The greatest torque about each body axis, N m, that `rotors` deliver to either side with none about the other two,
 /// at whatever thrust suits it best. Not above zero for some axis where they cannot push without turning the vehicle.
-#[must_use]
-pub fn greatest_torques(rotors: &Rotors) -> Vector3<f32> {
+pub fn max_torques(rotors: &Rotors) -> Vector3<f32> {
     let order: Vec<usize, ROTORS_MAX> = collected(0..rotors.len());
     let all = generators(rotors, order.iter());
     let about = |axis: Vector4<f64>| {
-        let along = Slabs::<PAIRS>::new(rotors, &all, Some(Vector4::x()), -axis);
-        let (least, greatest) = along.range(&Vector4::zeros());
-        greatest.min(-least)
+        let along = Slabs::<ROTOR_PAIRS_MAX>::new(rotors, &all, Some(Vector4::x()), -axis);
+        let (min, max) = along.range(&Vector4::zeros());
+        max.min(-min)
     };
     Vector3::new(about(Vector4::y()), about(Vector4::z()), about(Vector4::w()))
 }
 
 impl Rotors {
-    /// The limits that the rotors themselves are: all their greatest thrusts together, and [`greatest_torques`].
+    /// The limits that the rotors themselves are: all their greatest thrusts together, and [`max_torques`].
     ///
     /// # Errors
     /// If `vehicle` cannot hover by that, or the rotors cannot push without turning it.
     pub fn limits(&self, vehicle: &Vehicle) -> Result<Limits, ParameterError> {
-        Limits::new(
-            LimitParameters { thrust_max: self.thrust_together().1, torque_max: greatest_torques(self) },
-            vehicle,
-        )
+        Limits::new(LimitParameters { thrust_max: self.thrust_together().1, torque_max: max_torques(self) }, vehicle)
     }
 }
 

@@ -11,8 +11,8 @@
 //! thrusts.
 //!
 //! A motor sees u V, the command times the battery's voltage. So the command that gives at V what u gives at the
-//! nominal V_0 is u V_0 / V. The ratio V_0 / V is held within [[`RATIO_MIN`], [`RATIO_MAX`]], and without a plausible,
-//! recent reading it is one: no compensation.
+//! nominal V_0 is u V_0 / V. The ratio V_0 / V is held within [[`VOLTAGE_RATIO_MIN`], [`VOLTAGE_RATIO_MAX`]], and
+//! without a plausible, recent reading it is one: no compensation.
 //!
 //! A full command is all there is: below the nominal voltage the greatest thrust falls to f_max phi(V / V_0), and a
 //! certificate for the end of the battery must be made with that thrust as the rotors' maximum.
@@ -21,16 +21,16 @@ use crate::error::{ParameterError, Reason, require, require_finite, require_posi
 use crate::math;
 
 /// The least V_0 / V that a command is multiplied by: V at most 25 % above nominal.
-pub const RATIO_MIN: f32 = 0.8;
+pub const VOLTAGE_RATIO_MIN: f32 = 0.8;
 
 /// The greatest V_0 / V that a command is multiplied by: V at least 25 % below nominal.
-pub const RATIO_MAX: f32 = 4.0 / 3.0;
+pub const VOLTAGE_RATIO_MAX: f32 = 4.0 / 3.0;
 
 /// Readings below this part of the nominal voltage, or above its inverse multiple, are faults of the sensor.
-const PLAUSIBLE: f32 = 0.5;
+const PLAUSIBLE_VOLTAGE_SHARE: f32 = 0.5;
 
 /// The age from which a reading is not used, microseconds.
-pub const STALE_AFTER: u64 = 1_000_000;
+pub const VOLTAGE_STALE_AFTER_US: u64 = 1_000_000;
 
 /// Thrust of one rotor as a function of its command, exactly invertible.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,6 @@ impl ThrustCurve {
     /// The command in [0, 1] for a thrust, N, at a voltage ratio V_0 / V from [`Battery::ratio`].
     ///
     /// Thrusts out of reach give the nearest command; a NaN stops the rotor.
-    #[must_use]
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
         let fraction = (thrust / self.thrust_max).clamp(0.0, 1.0);
         let root = math::sqrt(self.linear * self.linear + 4.0 * (1.0 - self.linear) * fraction);
@@ -64,7 +63,6 @@ impl ThrustCurve {
     }
 
     /// The thrust, N, of a command in [0, 1] at a voltage ratio V_0 / V.
-    #[must_use]
     pub fn thrust(&self, command: f32, ratio: f32) -> f32 {
         let command = command / ratio;
         self.thrust_max * command * (self.linear + (1.0 - self.linear) * command)
@@ -87,14 +85,19 @@ impl Battery {
         Ok(Self { nominal })
     }
 
-    /// V_0 / V for a reading, V, taken `age` microseconds ago, in [[`RATIO_MIN`], [`RATIO_MAX`]].
+    /// V_0 / V for a reading, V, taken `age` microseconds ago, in [[`VOLTAGE_RATIO_MIN`], [`VOLTAGE_RATIO_MAX`]].
     ///
-    /// One, if the reading is older than [`STALE_AFTER`], not finite, or not within a factor of two of nominal.
-    #[must_use]
+    /// One, if the reading is older than [`VOLTAGE_STALE_AFTER_US`], not finite, or not within a factor of two of
+    /// nominal.
     pub fn ratio(&self, voltage: f32, age: u64) -> f32 {
         // Also false for a NaN.
-        let plausible = voltage > PLAUSIBLE * self.nominal && voltage * PLAUSIBLE < self.nominal;
-        if plausible && age < STALE_AFTER { (self.nominal / voltage).clamp(RATIO_MIN, RATIO_MAX) } else { 1.0 }
+        let plausible =
+            voltage > PLAUSIBLE_VOLTAGE_SHARE * self.nominal && voltage * PLAUSIBLE_VOLTAGE_SHARE < self.nominal;
+        if plausible && age < VOLTAGE_STALE_AFTER_US {
+            (self.nominal / voltage).clamp(VOLTAGE_RATIO_MIN, VOLTAGE_RATIO_MAX)
+        } else {
+            1.0
+        }
     }
 }
 

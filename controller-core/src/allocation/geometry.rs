@@ -29,15 +29,15 @@ pub const ROTORS_MIN: usize = 4;
 pub const ROTORS_MAX: usize = 8;
 
 /// The greatest distance of a rotor from the centre of mass along an axis, and the greatest k_m / k_eta, m.
-const LENGTH_MAX: f32 = 100.0;
+const ROTOR_LENGTH_MAX_M: f32 = 100.0;
 
 /// The greatest thrust of one rotor, N.
-const THRUST_MAX: f32 = 1e6;
+const ROTOR_THRUST_MAX_N: f32 = 1e6;
 
 /// How far each row of B must stay from every combination of the other three: the least sine of the angle between them.
 ///
 /// Below it, one wrench component can only be had with rotor thrusts 100 times those it would need alone.
-pub const INDEPENDENCE: f64 = 0.01;
+pub const ROW_INDEPENDENCE_SINE_MIN: f64 = 0.01;
 
 /// The eight names of a field that every rotor has; rotors are numbered from 1.
 macro_rules! of_each_rotor {
@@ -55,11 +55,11 @@ macro_rules! of_each_rotor {
     };
 }
 
-const POSITION: [&str; ROTORS_MAX] = of_each_rotor!("position");
-const THRUST_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("thrust_coefficient");
-const DRAG_COEFFICIENT: [&str; ROTORS_MAX] = of_each_rotor!("drag_coefficient");
-const MINIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_min");
-const MAXIMUM: [&str; ROTORS_MAX] = of_each_rotor!("thrust_max");
+const POSITION_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("position");
+const THRUST_COEFFICIENT_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_coefficient");
+const DRAG_COEFFICIENT_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("drag_coefficient");
+const THRUST_MIN_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_min");
+const THRUST_MAX_FIELDS: [&str; ROTORS_MAX] = of_each_rotor!("thrust_max");
 
 /// Which way a rotor turns, seen from above (from +z, looking down).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +73,6 @@ pub enum Spin {
 
 impl Spin {
     /// The sign s of the drag torque on the body about +z.
-    #[must_use]
     pub fn sign(self) -> f32 {
         match self {
             Self::Clockwise => 1.0,
@@ -101,13 +100,11 @@ pub struct Rotor {
 
 impl Rotor {
     /// Thrust, N, at a speed in rad/s.
-    #[must_use]
     pub fn thrust_at(&self, speed: f32) -> f32 {
         self.thrust_coefficient * speed * speed
     }
 
     /// Speed, rad/s, at a thrust in N (negative ones count as zero).
-    #[must_use]
     pub fn speed_at(&self, thrust: f32) -> f32 {
         math::sqrt(thrust.max(0.0) / self.thrust_coefficient)
     }
@@ -147,30 +144,30 @@ impl Rotors {
     ///
     /// # Errors
     /// Names the field, with the rotor's number from 1; [`Reason::DoesNotSpan`] for `rotors` when one row of B is a
-    /// combination of the others to within [`INDEPENDENCE`].
+    /// combination of the others to within [`ROW_INDEPENDENCE_SINE_MIN`].
     pub fn new(rotors: &[Rotor]) -> Result<Self, ParameterError> {
         require(rotors.len() >= ROTORS_MIN, "rotors", Reason::TooFew(ROTORS_MIN))?;
         let too_many = ParameterError { field: "rotors", reason: Reason::TooMany(ROTORS_MAX) };
         let list = Vec::from_slice(rotors).map_err(|_| too_many)?;
-        for (rotor, field) in rotors.iter().zip(POSITION) {
+        for (rotor, field) in rotors.iter().zip(POSITION_FIELDS) {
             for component in rotor.position.iter() {
                 require_finite(*component, field)?;
-                require(component.abs() < LENGTH_MAX, field, Reason::NotBelow(LENGTH_MAX))?;
+                require(component.abs() < ROTOR_LENGTH_MAX_M, field, Reason::NotBelow(ROTOR_LENGTH_MAX_M))?;
             }
         }
-        for (rotor, field) in rotors.iter().zip(THRUST_COEFFICIENT) {
+        for (rotor, field) in rotors.iter().zip(THRUST_COEFFICIENT_FIELDS) {
             require_positive(rotor.thrust_coefficient, field)?;
         }
-        for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT) {
+        for (rotor, field) in rotors.iter().zip(DRAG_COEFFICIENT_FIELDS) {
             require_positive(rotor.drag_coefficient, field)?;
-            let greatest = LENGTH_MAX * rotor.thrust_coefficient;
-            require(rotor.drag_coefficient < greatest, field, Reason::NotBelow(greatest))?;
+            let max = ROTOR_LENGTH_MAX_M * rotor.thrust_coefficient;
+            require(rotor.drag_coefficient < max, field, Reason::NotBelow(max))?;
         }
-        for (rotor, field) in rotors.iter().zip(MAXIMUM) {
+        for (rotor, field) in rotors.iter().zip(THRUST_MAX_FIELDS) {
             require_positive(rotor.thrust_max, field)?;
-            require(rotor.thrust_max < THRUST_MAX, field, Reason::NotBelow(THRUST_MAX))?;
+            require(rotor.thrust_max < ROTOR_THRUST_MAX_N, field, Reason::NotBelow(ROTOR_THRUST_MAX_N))?;
         }
-        for (rotor, field) in rotors.iter().zip(MINIMUM) {
+        for (rotor, field) in rotors.iter().zip(THRUST_MIN_FIELDS) {
             require_finite(rotor.thrust_min, field)?;
             require(rotor.thrust_min >= 0.0, field, Reason::Negative)?;
             require(rotor.thrust_min < rotor.thrust_max, field, Reason::NotBelow(rotor.thrust_max))?;
@@ -206,29 +203,25 @@ impl Rotors {
     }
 
     /// Column i of B: the wrench (T, tau_x, tau_y, tau_z) of one newton of rotor i.
-    #[must_use]
     pub fn effectiveness(&self) -> &[Vector4<f64>] {
         &self.columns
     }
 
     /// Row i of B+: the thrust of rotor i, N, per unit of (T, tau_x, tau_y, tau_z), least sum of squares.
-    #[must_use]
     pub fn pseudo_inverse(&self) -> &[Vector4<f64>] {
         &self.inverse
     }
 
     /// The least and the greatest thrust of all rotors together, N.
-    #[must_use]
     pub fn thrust_together(&self) -> (f32, f32) {
         let sum = |thrust: fn(&Rotor) -> f32| self.rotors.iter().map(thrust).sum();
         (sum(|rotor| rotor.thrust_min), sum(|rotor| rotor.thrust_max))
     }
 
     /// The greatest distance of a rotor from body z, m.
-    #[must_use]
-    pub fn longest_arm(&self) -> f32 {
+    pub fn max_arm(&self) -> f32 {
         let squares = self.rotors.iter().map(|rotor| rotor.position.xy().norm_squared());
-        math::sqrt(squares.fold(f32::MIN_POSITIVE, math::greater))
+        math::sqrt(squares.fold(f32::MIN_POSITIVE, math::max))
     }
 
     /// Checks that all rotors together can lift `weight`, N, and need not.
@@ -237,9 +230,9 @@ impl Rotors {
     /// Names `rotors.speed`: [`Reason::NotAbove`] where the greatest thrust is too little, [`Reason::NotBelow`] where
     /// the least is too much.
     pub fn check_hover(&self, weight: f32) -> Result<(), ParameterError> {
-        let (least, greatest) = self.thrust_together();
-        require(greatest > weight, "rotors.speed", Reason::NotAbove(weight))?;
-        require(least < weight, "rotors.speed", Reason::NotBelow(weight))
+        let (min, max) = self.thrust_together();
+        require(max > weight, "rotors.speed", Reason::NotAbove(weight))?;
+        require(min < weight, "rotors.speed", Reason::NotBelow(weight))
     }
 
     /// What each wrench component is multiplied by to make the rows of B unit vectors.
@@ -264,7 +257,8 @@ impl Rotors {
         let inverted =
             [(&x, normal(&y, &z, &w)), (&y, normal(&x, &z, &w)), (&z, normal(&x, &y, &w)), (&w, normal(&x, &y, &z))]
                 .map(|(row, normal)| normal / normal.dot(row));
-        let independent = |of_row: f64| of_row > 0.0 && of_row < 1.0 / (INDEPENDENCE * INDEPENDENCE);
+        let independent =
+            |of_row: f64| of_row > 0.0 && of_row < 1.0 / (ROW_INDEPENDENCE_SINE_MIN * ROW_INDEPENDENCE_SINE_MIN);
         let [x, y, z, w] = &inverted;
         if ![x.x, y.y, z.z, w.w].into_iter().all(independent) {
             return None;

@@ -3,8 +3,8 @@
 //! The certificate bounds every rotor's b . w, row b of B+, for every state and every reference inside Omega_r, from a
 //! reset on ([`crate::certificate`]); the governor's references are inside, and levelling is a reset onto a hover (the
 //! `flight` crate). So in flight B+ w never leaves the rotors' ranges, not even by the rounding of this module: its f32
-//! arithmetic is in the bound ([`super::support::ROUNDING`]), as the law's is. What to give up where a vehicle is not
-//! what it was certified as is [`Mixer`](super::Mixer)'s question, which starts from here.
+//! arithmetic is in the bound ([`super::support::TICK_ROUNDING_SHARE`]), as the law's is. What to give up where a
+//! vehicle is not what it was certified as is [`Mixer`](super::Mixer)'s question, which starts from here.
 //!
 //! Each thrust is clipped to its rotor's range nevertheless: nothing beyond leaves this module, whatever it is given.
 
@@ -25,21 +25,21 @@ pub(super) struct Actuator {
     pub(super) column: Vector4<f32>,
     /// Its row of B+.
     share: Vector4<f32>,
-    least: f32,
-    greatest: f32,
+    min: f32,
+    max: f32,
 }
 
 impl Actuator {
     fn new(rotor: &Rotor, column: &Vector4<f64>, share: &Vector4<f64>) -> Self {
         let single = |v: &Vector4<f64>| v.map(|x| x as f32);
-        Self { column: single(column), share: single(share), least: rotor.thrust_min, greatest: rotor.thrust_max }
+        Self { column: single(column), share: single(share), min: rotor.thrust_min, max: rotor.thrust_max }
     }
 
     /// `thrust` moved into the rotor's range.
     pub(super) fn clip(&self, thrust: f32) -> f32 {
         // Not `max` and `min`, which are calls; a NaN becomes the least.
-        let thrust = if thrust > self.least { thrust } else { self.least };
-        if thrust < self.greatest { thrust } else { self.greatest }
+        let thrust = if thrust > self.min { thrust } else { self.min };
+        if thrust < self.max { thrust } else { self.max }
     }
 }
 
@@ -63,7 +63,6 @@ impl MinimumNorm {
     pub(super) const NONE: Self = Self { actuators: Vec::new() };
 
     /// For `rotors`; configuration time.
-    #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
         let all = rotors.iter().zip(rotors.effectiveness()).zip(rotors.pseudo_inverse());
         Self { actuators: collected(all.map(|((rotor, column), share)| Actuator::new(rotor, column, share))) }
@@ -96,7 +95,6 @@ impl MinimumNorm {
     }
 
     /// The wrench that thrusts, N, in the rotors' order, act on the body with.
-    #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         let sum = self.sum(thrusts);
         Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) }

@@ -23,7 +23,7 @@
 //! It does not know the rotors' lag, nor what they delivered last tick. A certified flight whose vehicle matches its
 //! scenario never comes to step 2 ([`crate::certificate`]); a sagging battery or a failed rotor can lead there.
 
-use super::attainable::{PAIRS, Polygon, Slabs, generators};
+use super::attainable::{Polygon, ROTOR_PAIRS_MAX, Slabs, generators};
 use super::collected;
 use super::geometry::{ROTORS_MAX, ROTORS_MIN, Rotors, normal};
 use super::minimum_norm::{Delivered, MinimumNorm, Thrusts, components};
@@ -34,9 +34,9 @@ use heapless::Vec;
 use nalgebra::{Vector2, Vector4};
 
 /// Triples of eight rotors.
-const TRIPLES: usize = 56;
+const ROTOR_TRIPLES_MAX: usize = 56;
 /// Triples of the seven rotors after the first.
-const TRIPLES_AFTER_FIRST: usize = 35;
+const ROTOR_TRIPLES_AFTER_FIRST_MAX: usize = 35;
 
 /// The rotors' command, and the wrench it delivers.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,6 @@ pub struct Allocation {
 
 impl Allocation {
     /// Whether the delivered wrench is the commanded one (to rounding).
-    #[must_use]
     pub fn is_exact(&self) -> bool {
         !(self.roll_pitch_limited || self.thrust_limited || self.yaw_limited)
     }
@@ -63,7 +62,7 @@ impl Allocation {
 #[derive(Debug, Clone, PartialEq)]
 struct Spare {
     rotor: usize,
-    after: Slabs<TRIPLES_AFTER_FIRST>,
+    after: Slabs<ROTOR_TRIPLES_AFTER_FIRST_MAX>,
 }
 
 /// One of the four rotors that carry the rest: its row of the inverse of their columns.
@@ -78,8 +77,8 @@ struct Carrier {
 pub struct Mixer {
     minimum_norm: MinimumNorm,
     roll_pitch: Polygon,
-    thrust: Slabs<PAIRS>,
-    yaw: Slabs<TRIPLES>,
+    thrust: Slabs<ROTOR_PAIRS_MAX>,
+    yaw: Slabs<ROTOR_TRIPLES_MAX>,
     spares: Vec<Spare, { ROTORS_MAX - ROTORS_MIN }>,
     carriers: Vec<Carrier, ROTORS_MIN>,
 }
@@ -96,7 +95,6 @@ impl Mixer {
     };
 
     /// A mixer for `rotors`; configuration time.
-    #[must_use]
     pub fn new(rotors: &Rotors) -> Self {
         let mut mixer = Self::NONE;
         mixer.prepare(rotors);
@@ -151,7 +149,6 @@ impl Mixer {
     }
 
     /// B times the thrusts, N, in the rotors' order: the wrench they act on the body with.
-    #[must_use]
     pub fn wrench(&self, thrusts: &[f32]) -> Wrench {
         self.minimum_norm.wrench(thrusts)
     }
@@ -193,8 +190,8 @@ impl Mixer {
 }
 
 /// `value` moved into a range.
-fn within(value: f32, (least, greatest): (f32, f32)) -> f32 {
-    value.max(least).min(greatest)
+fn within(value: f32, (min, max): (f32, f32)) -> f32 {
+    value.max(min).min(max)
 }
 
 /// The four rotors whose (scaled) columns span the largest volume, and the inverse of these columns, row by row.

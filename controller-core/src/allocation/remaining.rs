@@ -33,20 +33,20 @@ use heapless::Vec;
 use nalgebra::{Matrix4, Vector3, Vector4};
 
 /// The diagonal of C: thrust, roll, pitch, yaw.
-const COMPLIANCE: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
+const WRENCH_COMPLIANCE: Vector4<f32> = Vector4::new(0.02, 1e-3, 1e-3, 1.0);
 
 /// Rounds for each rotor.
 const ROUNDS_PER_ROTOR: usize = 3;
 
 /// The part of a limit that is left unused: more than the rounding of a wrench.
-const UNUSED_SHARE: f32 = 1e-5;
+const UNUSED_LIMIT_SHARE: f32 = 1e-5;
 
 /// How strongly a rotor has to pull away from its bound to be let go, N.
-const PULL_LEAST: f32 = 1e-4;
+const RELEASE_PULL_MIN_N: f32 = 1e-4;
 
 /// What a rotor has left of its commanded thrust, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lost {
+pub struct LostRotor {
     /// Which one, counted from 0.
     pub rotor: usize,
     /// The delivered share of its commanded thrust.
@@ -57,8 +57,8 @@ pub struct Lost {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Remaining {
     column: Vector4<f32>,
-    least: f32,
-    greatest: f32,
+    min: f32,
+    max: f32,
     preferred: f32,
     /// The range of its command, N.
     commanded: [f32; 2],
@@ -68,12 +68,12 @@ struct Remaining {
 
 impl Remaining {
     fn new(column: Vector4<f32>, commanded: [f32; 2], left: f32, share: f32) -> Self {
-        let [least, greatest] = commanded.map(|thrust| thrust * left);
-        Self { column, least, greatest, preferred: math::between(share, least, greatest), commanded, left }
+        let [min, max] = commanded.map(|thrust| thrust * left);
+        Self { column, min, max, preferred: math::clamp(share, min, max), commanded, left }
     }
 
     fn within(&self, thrust: f32) -> f32 {
-        math::between(thrust, self.least, self.greatest)
+        math::clamp(thrust, self.min, self.max)
     }
 }
 
@@ -101,44 +101,41 @@ pub struct RemainingRotors {
 impl RemainingRotors {
     /// The `rotors` of a vehicle of so much `weight`, N, with these `limits`, without what is `lost`, all at a thrust
     /// `scale`: delivered over commanded.
-    #[must_use]
-    pub fn new(rotors: &Rotors, limits: &Limits, lost: &Lost, scale: f32, weight: f32) -> Self {
+    pub fn new(rotors: &Rotors, limits: &Limits, lost: &LostRotor, scale: f32, weight: f32) -> Self {
         let columns = || rotors.effectiveness().iter().map(|column| column.map(|x| x as f32));
-        let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::greater);
-        let arm = rotors.longest_arm();
+        let drag = columns().map(|column| column.w.abs()).fold(f32::MIN_POSITIVE, math::max);
+        let arm = rotors.max_arm();
         let newtons = Vector4::new(1.0, 1.0 / arm, 1.0 / arm, 1.0 / drag);
         let share = weight / rotors.len() as f32;
         let all = rotors.iter().zip(columns()).enumerate().map(|(index, (rotor, column))| {
-            let left = scale * if index == lost.rotor { math::between(lost.left, 0.0, 1.0) } else { 1.0 };
+            let left = scale * if index == lost.rotor { math::clamp(lost.left, 0.0, 1.0) } else { 1.0 };
             Remaining::new(column.component_mul(&newtons), [rotor.thrust_min, rotor.thrust_max], left, share)
         });
         let torque = &limits.torque_max;
-        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - UNUSED_SHARE);
+        let limits = Vector4::new(limits.thrust_max, torque.x, torque.y, torque.z) * (1.0 - UNUSED_LIMIT_SHARE);
         Self { rotors: collected(all), newtons, limits: limits.component_mul(&newtons), scale, share }
     }
 
     /// Changes what the failed rotor has left.
-    pub fn set_left(&mut self, lost: &Lost) {
+    pub fn set_left(&mut self, lost: &LostRotor) {
         if let Some(rotor) = self.rotors.get_mut(lost.rotor) {
             *rotor = Remaining::new(rotor.column, rotor.commanded, self.scale * lost.left, self.share);
         }
     }
 
     /// A rotor's share of the weight, N.
-    #[must_use]
     pub fn share(&self) -> f32 {
         self.share
     }
 
     /// The thrusts that the rotors are to deliver, N.
-    #[must_use]
     pub fn allocate(&self, wanted: &Wrench) -> Thrusts {
         let Wrench { thrust, torque } = wanted;
         let mut wanted = Vector4::new(*thrust, torque.x, torque.y, torque.z).component_mul(&self.newtons);
         // More would bend the tilt for a yaw that is not to be had.
-        wanted.w = math::within(wanted.w, self.share);
+        wanted.w = math::saturate(wanted.w, self.share);
         let mut places: Vec<Place, ROTORS_MAX> = collected(
-            self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.greatest > rotor.least }),
+            self.rotors.iter().map(|rotor| Place { thrust: rotor.preferred, is_free: rotor.max > rotor.min }),
         );
         for _ in 0..ROUNDS_PER_ROTOR * self.rotors.len() {
             let pull = self.pull(&wanted, &places);
@@ -148,7 +145,7 @@ impl RemainingRotors {
         }
         let share = self.share_within_limits(&places);
         let drawn_back =
-            |(rotor, place): (&Remaining, &Place)| rotor.within(rotor.least + (place.thrust - rotor.least) * share);
+            |(rotor, place): (&Remaining, &Place)| rotor.within(rotor.min + (place.thrust - rotor.min) * share);
         collected(self.rotors.iter().zip(&places).map(drawn_back))
     }
 
@@ -156,22 +153,22 @@ impl RemainingRotors {
     fn share_within_limits(&self, places: &[Place]) -> f32 {
         let mut sums = [[Vector4::zeros(); 2]; 2];
         for (rotor, place) in self.rotors.iter().zip(places) {
-            let [least, _] = rotor.commanded;
+            let [min, _] = rotor.commanded;
             let as_if_whole = |thrust: f32| thrust * self.scale / rotor.left;
-            let whole = [least * self.scale, as_if_whole(place.thrust)];
+            let whole = [min * self.scale, as_if_whole(place.thrust)];
             let commanded = if rotor.left > 0.0 { whole } else { [0.0; 2] };
-            for (sum, thrusts) in sums.iter_mut().zip([[rotor.least, place.thrust], commanded]) {
+            for (sum, thrusts) in sums.iter_mut().zip([[rotor.min, place.thrust], commanded]) {
                 for (sum, thrust) in sum.iter_mut().zip(thrusts) {
                     *sum += rotor.column * thrust;
                 }
             }
         }
         let mut share = 1.0;
-        for [least, wanted] in &sums {
-            for ((from, to), limit) in least.iter().zip(wanted).zip(&self.limits) {
+        for [min, wanted] in &sums {
+            for ((from, to), limit) in min.iter().zip(wanted).zip(&self.limits) {
                 if to.abs() > *limit {
                     let end = if *to > 0.0 { *limit } else { -limit };
-                    share = math::lesser(share, math::between((end - from) / (to - from), 0.0, 1.0));
+                    share = math::min(share, math::clamp((end - from) / (to - from), 0.0, 1.0));
                 }
             }
         }
@@ -180,17 +177,15 @@ impl RemainingRotors {
 
     /// What to command of each, N, for the rotors to deliver `delivered`, within what they may be commanded; nothing of
     /// one that is gone.
-    #[must_use]
     pub fn commands(&self, delivered: &Thrusts) -> Thrusts {
         let command = |(rotor, thrust): (&Remaining, &f32)| {
-            let [least, most] = rotor.commanded;
-            if rotor.left > 0.0 { math::between(thrust / rotor.left, least, most) } else { 0.0 }
+            let [min, max] = rotor.commanded;
+            if rotor.left > 0.0 { math::clamp(thrust / rotor.left, min, max) } else { 0.0 }
         };
         collected(self.rotors.iter().zip(delivered).map(command))
     }
 
     /// B times thrusts, N and N m.
-    #[must_use]
     pub fn wrench(&self, thrusts: &Thrusts) -> Wrench {
         let sum: Vector4<f32> = self.rotors.iter().zip(thrusts).map(|(rotor, thrust)| rotor.column * *thrust).sum();
         let sum = sum.component_div(&self.newtons);
@@ -200,7 +195,7 @@ impl RemainingRotors {
     /// (C + B B')^-1 (w - B f), with f_0 for the free rotors and B B' of these alone: how strongly each part of the
     /// wrench pulls at the thrusts.
     fn pull(&self, wanted: &Vector4<f32>, places: &[Place]) -> Vector4<f32> {
-        let mut inverse = Matrix4::from_diagonal(&COMPLIANCE.map(|way| 1.0 / way));
+        let mut inverse = Matrix4::from_diagonal(&WRENCH_COMPLIANCE.map(|way| 1.0 / way));
         let mut rest = *wanted;
         for (rotor, place) in self.rotors.iter().zip(places) {
             if place.is_free {
@@ -225,7 +220,7 @@ impl RemainingRotors {
             if place.is_free && bound != goal {
                 let reached = (bound - place.thrust) / (goal - place.thrust);
                 if reached < share || first.is_none() {
-                    (share, first) = (math::lesser(reached, share), Some((index, bound)));
+                    (share, first) = (math::min(reached, share), Some((index, bound)));
                 }
             }
         }
@@ -239,11 +234,11 @@ impl RemainingRotors {
 
     /// Lets the rotor go that pulls away from its bound most; whether one does.
     fn let_go(&self, pull: &Vector4<f32>, places: &mut [Place]) -> bool {
-        let (mut strongest, mut which) = (PULL_LEAST, None);
+        let (mut strongest, mut which) = (RELEASE_PULL_MIN_N, None);
         for (rotor, place) in self.rotors.iter().zip(places) {
             let inwards = rotor.preferred + rotor.column.dot(pull) - place.thrust;
-            let inwards = if place.thrust > rotor.least { -inwards } else { inwards };
-            if !place.is_free && rotor.greatest > rotor.least && inwards > strongest {
+            let inwards = if place.thrust > rotor.min { -inwards } else { inwards };
+            if !place.is_free && rotor.max > rotor.min && inwards > strongest {
                 (strongest, which) = (inwards, Some(place));
             }
         }

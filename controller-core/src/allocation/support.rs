@@ -23,7 +23,7 @@
 //!
 //! For four rotors this is exact: a set of wrenches fits the rotors if and only if every [`RotorDemand::fits`]. For
 //! more it is sufficient only: the mixer also reaches wrenches for which B+ leaves a range. T and tau count as
-//! independent. Results are rounded outwards by [`ROUNDING`], which covers the f32 of the mixer's tick.
+//! independent. Results are rounded outwards by [`TICK_ROUNDING_SHARE`], which covers the f32 of the mixer's tick.
 
 use super::collected;
 use super::geometry::{ROTORS_MAX, Rotor, Rotors};
@@ -33,7 +33,7 @@ use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
 /// Relative to the sum of all contributions: eight times the rounding of single precision.
-pub const ROUNDING: f64 = 1e-6;
+pub const TICK_ROUNDING_SHARE: f64 = 1e-6;
 
 /// A set of torques around zero, N m, body axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,13 +89,11 @@ impl<R: Real> TorqueTerm<R> {
     }
 
     /// The term's name.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
     /// h(d): the greatest d . tau over the set.
-    #[must_use]
     pub fn support(&self, direction: &Vector3<R>) -> R {
         let length = |v: Vector3<R>| square(&v).sqrt_of_rounded();
         match &self.shape {
@@ -114,7 +112,7 @@ impl<R: Real> TorqueTerm<R> {
 fn gyroscopic_gain<R: Real>(inertia: &Vector3<R>, direction: &Vector3<R>) -> R {
     let differences = Vector3::new(inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x);
     let form = differences.component_mul(direction).map(|product| product * 0.5);
-    R::greatest_cubic_root(square(&form), form.x * 2.0 * form.y * form.z)
+    R::max_cubic_root(square(&form), form.x * 2.0 * form.y * form.z)
 }
 
 fn sum<R: Real>(v: &Vector3<R>) -> R {
@@ -133,29 +131,28 @@ pub struct Commands<'a, R = f64> {
 }
 
 impl<'a, R: Real> Commands<'a, R> {
-    /// Thrust from `least` to `greatest`, N, with torques in the sum of the `torque` terms.
+    /// Thrust from `min` to `max`, N, with torques in the sum of the `torque` terms.
     ///
     /// # Errors
     /// Names `thrust` if its bounds are not finite or in the wrong order.
-    pub fn new(least: R, greatest: R, torque: &'a [TorqueTerm<R>]) -> Result<Self, ParameterError> {
-        let (lower, upper) = (least.lower(), greatest.upper());
+    pub fn new(min: R, max: R, torque: &'a [TorqueTerm<R>]) -> Result<Self, ParameterError> {
+        let (lower, upper) = (min.lower(), max.upper());
         require(lower.is_finite() && upper.is_finite(), "thrust", Reason::NotFinite)?;
         require(lower <= upper, "thrust", Reason::NotIncreasing)?;
-        Ok(Self { thrust: (least, greatest), torque })
+        Ok(Self { thrust: (min, max), torque })
     }
 
     /// The greatest row . (T, tau), rounded outwards.
-    fn greatest(&self, row: &Vector4<f64>) -> R {
-        let (least, greatest) = self.thrust;
-        let thrust = (least * row.x).greater(greatest * row.x);
+    fn max_along(&self, row: &Vector4<f64>) -> R {
+        let (min, max) = self.thrust;
+        let thrust = (min * row.x).greater(max * row.x);
         let direction = torque_part(row).map(R::from);
         let torque = self.torque.iter().fold(R::from(0.0), |sum, term| sum + term.support(&direction));
-        thrust + torque + (thrust.abs() + torque) * ROUNDING
+        thrust + torque + (thrust.abs() + torque) * TICK_ROUNDING_SHARE
     }
 }
 
 /// (tau_x, tau_y, tau_z) of a row over (T, tau).
-#[must_use]
 pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
     Vector3::new(row.y, row.z, row.w)
 }
@@ -164,9 +161,9 @@ pub fn torque_part(row: &Vector4<f64>) -> Vector3<f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotorDemand<R = f64> {
     /// Least commanded thrust.
-    pub least: R,
+    pub min: R,
     /// Greatest commanded thrust.
-    pub greatest: R,
+    pub max: R,
     /// Least thrust it can give.
     pub available_min: f64,
     /// Greatest thrust it can give.
@@ -175,25 +172,22 @@ pub struct RotorDemand<R = f64> {
 
 impl<R: Real> RotorDemand<R> {
     /// The demand of `commands` on `rotor`, whose thrust is `row` of B+ times the wrench.
-    #[must_use]
     pub fn new(rotor: &Rotor, row: &Vector4<f64>, commands: &Commands<R>) -> Self {
         Self {
-            least: -commands.greatest(&-row),
-            greatest: commands.greatest(row),
+            min: -commands.max_along(&-row),
+            max: commands.max_along(row),
             available_min: f64::from(rotor.thrust_min),
             available_max: f64::from(rotor.thrust_max),
         }
     }
 
     /// Whether the rotor's range covers its demand.
-    #[must_use]
     pub fn fits(&self) -> bool {
-        self.least.lower() >= self.available_min && self.greatest.upper() <= self.available_max
+        self.min.lower() >= self.available_min && self.max.upper() <= self.available_max
     }
 }
 
 /// The demand of `commands` on each rotor, in the rotors' order.
-#[must_use]
 pub fn demands<R: Real>(rotors: &Rotors, commands: &Commands<R>) -> Vec<RotorDemand<R>, ROTORS_MAX> {
     let all = rotors.iter().zip(rotors.pseudo_inverse());
     collected(all.map(|(rotor, row)| RotorDemand::new(rotor, row, commands)))

@@ -38,20 +38,18 @@ impl Certified {
     }
 
     /// What was certified.
-    #[must_use]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
     /// The proof.
-    #[must_use]
     pub fn certificate(&self) -> &Certificate {
         &self.certificate
     }
 }
 
 /// The configuration is for another law.
-const OTHER: ParameterError = ParameterError { field: "control.law", reason: Reason::OtherLaw };
+const IS_OTHER_LAW: ParameterError = ParameterError { field: "control.law", reason: Reason::OtherLaw };
 
 impl Law {
     /// The law of a certified configuration; `period` is the time between steps, s, in (0, 0.1].
@@ -71,7 +69,7 @@ impl Controller {
     /// Names `control.period` if it is outside, `control.law` if the configuration's is another.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
-        let PaperLaw { gains, thrust_floor } = *configuration.paper().ok_or(OTHER)?;
+        let PaperLaw { gains, thrust_floor } = *configuration.paper().ok_or(IS_OTHER_LAW)?;
         Self::build(*configuration.vehicle(), gains, thrust_floor, period)
     }
 }
@@ -85,7 +83,7 @@ impl extended::controller::Controller {
     /// allow them, `control.law` if the configuration is for another law.
     pub fn new(certified: &Certified, period: f32) -> Result<Self, ParameterError> {
         let configuration = certified.configuration();
-        let LawParameters::Extended(law) = configuration.law() else { return Err(OTHER) };
+        let LawParameters::Extended(law) = configuration.law() else { return Err(IS_OTHER_LAW) };
         Self::build(configuration.vehicle(), configuration.limits(), law, configuration.rotors(), period)
     }
 }

@@ -23,7 +23,7 @@ use crate::allocation::collected;
 use crate::allocation::geometry::ROTORS_MAX;
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::error::ParameterError;
-use crate::extended::budget::{Bound, Row, THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{BudgetRow, RowSource, TORQUE_THRUST_SHARE, TorqueBudget};
 use crate::extended::fallback::Slowed;
 use crate::extended::parameters::Extended;
 use crate::math::real::Real;
@@ -33,7 +33,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 /// The greatest number of inequalities.
-const MOST: usize = 11;
+const INEQUALITIES_MAX: usize = 11;
 
 /// Everything the extended law can command.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +52,7 @@ pub struct ExtendedCertificate<R = f64> {
     /// The law's greatest commands.
     pub bounds: ExtendedBounds<R>,
     /// The inequalities, in the order of this module's table.
-    pub inequalities: Vec<Inequality<R>, MOST>,
+    pub inequalities: Vec<Inequality<R>, INEQUALITIES_MAX>,
 }
 
 impl<R: Real> ExtendedCertificate<R> {
@@ -83,16 +83,16 @@ fn feasibility<R: Real>(
     let p = parameters;
     let reference = with_drag(bounds, p.drag_across);
     let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
-    let left = R::from(1.0) - THRUST_LEFT;
+    let left = R::from(1.0) - TORQUE_THRUST_SHARE;
     let vertical = R::from(bounds.vertical_acceleration);
     let up = R::from(p.force_up);
 
     let [tilt_reach, yaw_reach] = budget.reach;
     let yaw = yaw_reach * R::from(vehicle.inertia.z) * R::from(p.yaw_acceleration);
     let [bottom, _] = budget.ends;
-    let available = mass * budget.held(vehicle, configuration.limits(), R::from(p.scale_least));
+    let available = mass * budget.held_acceleration(vehicle, configuration.limits(), R::from(p.scale_least));
 
-    let slowed = Slowed::<R>::of(p, vehicle.gravity);
+    let slowed = Slowed::<R>::new(p, vehicle.gravity);
     let [slow_jerk, slow_snap] = slowed.derivatives(p);
     let jerk = R::from(reference.jerk) + slow_jerk;
     let snap = R::from(reference.snap) + slow_snap;
@@ -100,8 +100,8 @@ fn feasibility<R: Real>(
     let rate = jerk / least * raised;
     // 2 p r / n is at most rate^2 where p^2 + r^2 / n^2 = rate^2.
     let acceleration = (snap / least + rate * rate) * raised;
-    let [most_rate, most] = [p.turn_rate, p.turn_reserve].map(R::from);
-    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * most;
+    let [most_rate, max] = [p.turn_rate, p.turn_reserve].map(R::from);
+    let turning = tilt_reach * tilt_inertia::<R>(vehicle) * max;
     let floor = (R::from(p.scale_greatest) * bottom + budget.margin + yaw + turning) * raised;
     let weakest = left * mass * (gravity - vertical - up);
     [
@@ -113,7 +113,7 @@ fn feasibility<R: Real>(
             available,
         ),
         Inequality::new("A1 turning rate for the reference", "rad/s", positive(rate, least), most_rate),
-        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), most),
+        Inequality::new("A1 turning acceleration", "rad/s^2", positive(acceleration, least), max),
         Inequality::new("G floor at the target < thrust", "N", floor, weakest),
     ]
 }
@@ -162,16 +162,16 @@ fn heading<R: Real>(configuration: &Configuration, parameters: &Extended) -> Ine
     // With a feedback of zero the filters stay at zero, whatever their bandwidths.
     let alone = Reachable::new(one, one, R::from(0.0), gravity, &forced);
     let infinite = [R::from(f64::INFINITY); 2];
-    let fastest = if alone.vertical_least.lower() > 0.0 { sharp::turning_rates(&alone, &forced) } else { infinite };
+    let fastest = if alone.vertical_min.lower() > 0.0 { sharp::turning_rates(&alone, &forced) } else { infinite };
     let acceleration = fastest[1] * (one + ARITHMETIC_ALLOWANCE);
     Inequality::new("A1 heading acceleration", "rad/s^2", acceleration, R::from(parameters.yaw_acceleration))
 }
 
 /// The least R(s) of the rows about `bound`, N m; infinite without any.
-fn least_room<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>, bound: Bound) -> R {
+fn min_capacity<R: Real>(parameters: &Extended, budget: &TorqueBudget<R>, bound: RowSource) -> R {
     let ends = [parameters.scale_least, parameters.scale_greatest].map(R::from);
     let rows = budget.rows.iter().filter(|row| row.bound == bound);
-    rows.flat_map(|row| ends.map(|scale| row.room(scale))).fold(R::from(f64::INFINITY), R::lesser)
+    rows.flat_map(|row| ends.map(|scale| row.capacity(scale))).fold(R::from(f64::INFINITY), R::lesser)
 }
 
 /// The torque of the tilt's feedback beside the reserve, and that of the greatest bias; yaw's beside the thrust for the
@@ -186,11 +186,11 @@ fn torques<R: Real>(
     let raised = R::from(1.0) + ARITHMETIC_ALLOWANCE;
     let taken = tilt_inertia::<R>(vehicle) * R::from(p.turn_reserve);
     let rooms = [
-        ("T2 roll and pitch torque", Bound::Limit),
-        ("R rotors' range", Bound::Rotors),
-        ("T1 thrust floor at the greatest torque", Bound::Floor),
+        ("T2 roll and pitch torque", RowSource::Limit),
+        ("R rotors' range", RowSource::Rotors),
+        ("T1 thrust floor at the greatest torque", RowSource::Floor),
     ]
-    .map(|(name, bound)| (name, least_room(p, budget, bound)));
+    .map(|(name, bound)| (name, min_capacity(p, budget, bound)));
     let feedback = rooms.map(|(name, room)| Inequality::new(name, "N m", (R::from(p.m_tilt) + taken) * raised, room));
     let least = rooms.into_iter().map(|(_, room)| room).fold(R::from(f64::INFINITY), R::lesser);
     // The level is each axis's.
@@ -217,7 +217,7 @@ fn bounds<R: Real>(
     let scales = [p.scale_least, p.scale_greatest].map(R::from);
     let zero = R::from(0.0);
     let axes = [[R::from(1.0), zero], [zero, R::from(1.0)]];
-    let [roll, pitch] = axes.map(|axis| greatest_along(&budget.rows, axis, scales));
+    let [roll, pitch] = axes.map(|axis| max_along(&budget.rows, axis, scales));
     let limits = configuration.limits();
     let [mut together, mut yaw] = [limits.thrust_max, limits.torque_max.z].map(R::from);
     let mut rotors = Vec::new();
@@ -231,13 +231,13 @@ fn bounds<R: Real>(
             thrust += greatest;
             twist = [twist[0] + parts[0].greater(parts[1]), twist[1] - parts[0].lesser(parts[1])];
             // As many as there are rotors: it fits.
-            let _ = rotors.push(Interval { least, greatest });
+            let _ = rotors.push(Interval { min: least, max: greatest });
         }
         together = together.lesser(thrust * scales[1]);
         yaw = yaw.lesser(twist[0].greater(twist[1]) * scales[1]);
     }
     ExtendedBounds {
-        thrust: Interval { least: R::from(p.floor_margin) / raised, greatest: together },
+        thrust: Interval { min: R::from(p.floor_margin) / raised, max: together },
         torque: Vector3::new(roll * raised, pitch * raised, yaw * raised),
         rotors,
     }
@@ -245,7 +245,7 @@ fn bounds<R: Real>(
 
 /// The greatest torque along `axis` that all rows allow between two thrust scales, N m: `axis` is a sum of the
 /// directions of two rows, and the torque along it at most the sum of their rooms with the same weights.
-fn greatest_along<R: Real>(rows: &[Row<R>], axis: [R; 2], scales: [R; 2]) -> R {
+fn max_along<R: Real>(rows: &[BudgetRow<R>], axis: [R; 2], scales: [R; 2]) -> R {
     let mut least = R::from(f64::INFINITY);
     for (place, a) in rows.iter().enumerate() {
         for b in rows.iter().skip(place + 1) {
@@ -253,7 +253,7 @@ fn greatest_along<R: Real>(rows: &[Row<R>], axis: [R; 2], scales: [R; 2]) -> R {
             if determinant.abs().lower() > 1e-6 {
                 let of_a = ((axis[0] * b.direction[1] - axis[1] * b.direction[0]) / determinant).abs();
                 let of_b = ((a.direction[0] * axis[1] - a.direction[1] * axis[0]) / determinant).abs();
-                let [low, high] = scales.map(|scale| of_a * a.room(scale) + of_b * b.room(scale));
+                let [low, high] = scales.map(|scale| of_a * a.capacity(scale) + of_b * b.capacity(scale));
                 least = least.lesser(low.greater(high));
             }
         }

@@ -28,9 +28,9 @@ pub const ARITHMETIC_ALLOWANCE: f64 = 1e-4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval<R = f64> {
     /// Least value.
-    pub least: R,
+    pub min: R,
     /// Greatest value.
-    pub greatest: R,
+    pub max: R,
 }
 
 /// One evaluation of all inequalities on the wrench.
@@ -50,13 +50,11 @@ pub struct Form<R = f64> {
 
 impl Form {
     /// Whether every inequality holds.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.inequalities.iter().all(Inequality::holds)
     }
 
     /// The inequality with the least margin.
-    #[must_use]
     pub fn tightest(&self) -> Option<Inequality> {
         inequality::tightest(&self.inequalities)
     }
@@ -103,10 +101,10 @@ pub(super) fn form<R: Real>(configuration: &Configuration, law: &PaperLaw, deriv
         Derivation::Printed => R::from(3.0).sqrt() * m_p + horizontal.hypot(vertical + gravity),
         Derivation::Sharp => reach.magnitude(),
     };
-    let least_law = mass * reach.vertical_least;
+    let least_law = mass * reach.vertical_min;
     let floor = R::from(thrust_floor.unwrap_or(0.0));
-    let least = if floor.lower() > 0.0 { floor } else { least_law };
-    let thrust = Interval { least: least / raised, greatest: mass * magnitude * raised };
+    let min = if floor.lower() > 0.0 { floor } else { least_law };
+    let thrust = Interval { min: min / raised, max: mass * magnitude * raised };
 
     let alone = desired_rates(configuration, gains, R::from(0.0), derivation).feedforward_torque * raised;
     let rates = desired_rates(configuration, gains, m_p, derivation);
@@ -124,7 +122,7 @@ pub(super) fn form<R: Real>(configuration: &Configuration, law: &PaperLaw, deriv
         Inequality::new("A1 yaw torque for the reference", "N m", alone.z, available.z),
         Inequality::new("T1 saturation level M_p < g - K_a3", "m/s^2", m_p, gravity - vertical),
         Inequality::new("T1 least thrust > 0 and >= floor", "N", floor, least_law).or_equal(),
-        Inequality::new("T1 greatest thrust", "N", thrust.greatest, thrust_max),
+        Inequality::new("T1 greatest thrust", "N", thrust.max, thrust_max),
         Inequality::new("T2 roll torque", "N m", torque.x, available.x),
         Inequality::new("T2 pitch torque", "N m", torque.y, available.y),
         Inequality::new("T2 yaw torque", "N m", torque.z, available.z),

@@ -19,7 +19,6 @@ pub struct Inequality<R = f64> {
 
 impl<R: Real> Inequality<R> {
     /// `required < available`.
-    #[must_use]
     pub fn new(name: &'static str, unit: &'static str, required: R, available: R) -> Self {
         Self { name, unit, required, available, strict: true }
     }
@@ -31,7 +30,6 @@ impl<R: Real> Inequality<R> {
     }
 
     /// Whether it holds, whatever numbers the sides enclose; with a NaN on either side it does not.
-    #[must_use]
     pub fn holds(&self) -> bool {
         let (required, available) = (self.required.upper(), self.available.lower());
         required < available || (!self.strict && required == available)
@@ -40,7 +38,6 @@ impl<R: Real> Inequality<R> {
 
 impl Inequality {
     /// The margin as a share of what is available; negative where the inequality fails.
-    #[must_use]
     pub fn margin(&self) -> f64 {
         if self.available > 0.0 { 1.0 - self.required / self.available } else { f64::NEG_INFINITY }
     }

@@ -40,7 +40,7 @@ impl<R: Real> PaperCertificate<R> {
         wrench.get(place).or_else(|| {
             let of_rotors = place.checked_sub(wrench.len())?;
             let rotor = self.rotors.get(of_rotors / 2)?;
-            Some(if of_rotors.is_multiple_of(2) { &rotor.least } else { &rotor.greatest })
+            Some(if of_rotors.is_multiple_of(2) { &rotor.min } else { &rotor.max })
         })
     }
 }

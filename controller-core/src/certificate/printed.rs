@@ -17,7 +17,6 @@ use crate::reference::ReferenceBounds;
 use nalgebra::Vector3;
 
 /// Lemma 1's bounds for filters of bandwidth `k_f`, `k_s` fed with a feedback of level `m_p`.
-#[must_use]
 pub fn desired_rates<R: Real>(
     k_f: R,
     k_s: R,

@@ -24,9 +24,9 @@ use crate::reference::ReferenceBounds;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reachable<R = f64> {
     /// Least u_z = g - M_p - K_a3; the law is defined while it is positive.
-    pub vertical_least: R,
+    pub vertical_min: R,
     /// Greatest u_z = g + M_p + K_a3.
-    pub vertical_greatest: R,
+    pub vertical_max: R,
     /// Greatest |(u_x, u_y)| = sqrt(2) M_p + K_a12.
     pub horizontal: R,
     /// Greatest |u'|.
@@ -42,7 +42,6 @@ pub struct Reachable<R = f64> {
 }
 
 /// U_l of Lemma 1: half the L1 norm of the impulse response from ubar to u_f - u_s.
-#[must_use]
 pub fn half_l1_norm<R: Real>(k_f: R, k_s: R) -> R {
     // (k_f / k_s)^(k_f / (k_s - k_f)) = exp(-ln(1 + x) / x) with x = k_s / k_f - 1.
     let x = k_s / k_f - 1.0;
@@ -52,7 +51,6 @@ pub fn half_l1_norm<R: Real>(k_f: R, k_s: R) -> R {
 
 impl<R: Real> Reachable<R> {
     /// For filters of bandwidth `k_f`, `k_s` (1/s), feedback level `m_p` (m/s^2) and a reference within `bounds`.
-    #[must_use]
     pub fn new(k_f: R, k_s: R, m_p: R, gravity: R, bounds: &ReferenceBounds) -> Self {
         let half_l1 = half_l1_norm(k_f, k_s);
         let axis_jerk = k_f * 2.0 * half_l1 * m_p;
@@ -62,8 +60,8 @@ impl<R: Real> Reachable<R> {
         // The Euclidean norms of two and of three axes.
         let [both, all] = [2.0, 3.0].map(|axes| R::from(axes).sqrt());
         Self {
-            vertical_least: gravity - m_p - vertical,
-            vertical_greatest: gravity + m_p + vertical,
+            vertical_min: gravity - m_p - vertical,
+            vertical_max: gravity + m_p + vertical,
             horizontal: both * m_p + horizontal,
             jerk: all * axis_jerk + jerk,
             horizontal_jerk: both * axis_jerk + jerk,
@@ -74,8 +72,7 @@ impl<R: Real> Reachable<R> {
     }
 
     /// Greatest |u|.
-    #[must_use]
     pub fn magnitude(&self) -> R {
-        self.horizontal.hypot(self.vertical_greatest)
+        self.horizontal.hypot(self.vertical_max)
     }
 }

@@ -42,9 +42,9 @@ pub struct RotorReport<R = f64> {
     /// Its extremes, and what it has.
     pub demand: RotorDemand<R>,
     /// How far below hovering the law may take it, against the room there, N.
-    pub least: Inequality<R>,
+    pub min: Inequality<R>,
     /// How far above, N.
-    pub greatest: Inequality<R>,
+    pub max: Inequality<R>,
 }
 
 /// The sets that the law's torque is a sum of, under the bounds of `form`.
@@ -79,7 +79,7 @@ pub fn reports<R: Real>(
         return Ok(reports);
     };
     let terms = torque_terms(configuration, form)?;
-    let commands = Commands::new(form.thrust.least, form.thrust.greatest, &terms)?;
+    let commands = Commands::new(form.thrust.min, form.thrust.max, &terms)?;
     let hover = R::from(configuration.vehicle().mass) * R::from(configuration.vehicle().gravity);
     for ((demand, row), (least, greatest)) in demands(rotors, &commands).iter().zip(rotors.pseudo_inverse()).zip(&NAMES)
     {
@@ -87,8 +87,8 @@ pub fn reports<R: Real>(
         let [available_min, available_max] = [demand.available_min, demand.available_max].map(R::from);
         let report = RotorReport {
             demand: *demand,
-            least: Inequality::new(least, "N", share - demand.least, share - available_min).or_equal(),
-            greatest: Inequality::new(greatest, "N", demand.greatest - share, available_max - share).or_equal(),
+            min: Inequality::new(least, "N", share - demand.min, share - available_min).or_equal(),
+            max: Inequality::new(greatest, "N", demand.max - share, available_max - share).or_equal(),
         };
         // As many reports as rotors: it fits.
         let _ = reports.push(report);

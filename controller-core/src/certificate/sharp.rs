@@ -48,7 +48,6 @@ pub struct DesiredRates<R = f64> {
 
 impl<R: Real> DesiredRates<R> {
     /// The componentwise lesser of two bounds.
-    #[must_use]
     pub fn min(&self, other: &Self) -> Self {
         Self {
             angular_velocity: self.angular_velocity.lesser(other.angular_velocity),
@@ -81,7 +80,6 @@ impl<R: Real> DesiredRates<R> {
 }
 
 /// J_ii a + |J_jj - J_kk| v^2 / 2 for each axis: the bound under |omega_d'| <= a and |omega_d| <= v in any body frame.
-#[must_use]
 pub fn feedforward_torque<R: Real>(inertia: &Vector3<R>, velocity: R, acceleration: R) -> Vector3<R> {
     let differences = Vector3::new(inertia.y - inertia.z, inertia.z - inertia.x, inertia.x - inertia.y).map(R::abs);
     inertia * acceleration + differences * (velocity * 0.5 * velocity)
@@ -96,30 +94,29 @@ fn acceleration_square<R: Real>(
     shares: &[Shares<R>; SPLIT_CELLS],
 ) -> R {
     let (worst_linear, worst_shares) = (Parts::worst(linear), Shares::worst(shares));
-    let mut greatest = R::from(0.0);
+    let mut max = R::from(0.0);
     for heading in headings {
-        if worst_linear.square_of_sum(&tilt.quadratic_part(heading, &worst_shares)).upper() <= greatest.upper() {
+        if worst_linear.square_of_sum(&tilt.quadratic_part(heading, &worst_shares)).upper() <= max.upper() {
             continue;
         }
         for shares in shares {
             let quadratic = tilt.quadratic_part(heading, shares);
-            let is_covered = worst_linear.square_of_sum(&quadratic).upper() <= greatest.upper();
+            let is_covered = worst_linear.square_of_sum(&quadratic).upper() <= max.upper();
             if !is_covered {
                 for linear in linear {
-                    greatest = greatest.greater(linear.square_of_sum(&quadratic));
+                    max = max.greater(linear.square_of_sum(&quadratic));
                 }
             }
         }
     }
-    greatest
+    max
 }
 
 /// Bounds on how the desired frame turns about its third axis: |omega_d3|, rad/s, and |omega'_d3|, rad/s^2, for
 /// everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
-#[must_use]
 #[inline(never)] // a board's stack is not to hold it beside the other bounds
 pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) -> [R; 2] {
-    let steepest = reach.horizontal / reach.vertical_least;
+    let steepest = reach.horizontal / reach.vertical_min;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
@@ -127,7 +124,7 @@ pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) ->
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
-        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
+        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_min);
         let tangential = directions.map(|d| tilt.tangential(reach.horizontal_jerk, reach.vertical_jerk, &d));
         for tangential in &tangential {
             rate = rate.greater(tilt.velocity(tangential, worst_heading.rate).yawing);
@@ -154,21 +151,20 @@ pub fn turning_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds) ->
 }
 
 /// The sharp bound for everything in `reach` and any heading within `bounds`; `reach.vertical_least` must be positive.
-#[must_use]
 pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, inertia: &Vector3<R>) -> DesiredRates<R> {
-    let steepest = reach.horizontal / reach.vertical_least;
+    let steepest = reach.horizontal / reach.vertical_min;
     let directions = Direction::quarter_turn();
     let headings = HeadingCell::all(bounds);
     // |psi'| is greatest in the first cell, |psi''| in the last, where nothing is left to |psi'|.
     let worst_heading = HeadingCell { rate: headings[0].rate, acceleration: headings[HEADING_CELLS - 1].acceleration };
     let zero = R::from(0.0);
     let nothing = Parts { tilting: zero, yawing: zero };
-    let mut greatest =
+    let mut max =
         DesiredRates { angular_velocity: zero, angular_acceleration: zero, feedforward_torque: Vector3::repeat(zero) };
     // The steepest first: they are the likeliest to matter.
     for cell in (0..TILT_CELLS).rev() {
         let ends = [cell, cell + 1].map(|end| steepest * end as f64 / TILT_CELLS as f64);
-        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_least);
+        let tilt = Tilt::between(ends[0], ends[1], reach.vertical_min);
 
         let (mut velocity_square, mut longest) = (zero, zero);
         for direction in &directions {
@@ -183,14 +179,13 @@ pub fn desired_rates<R: Real>(reach: &Reachable<R>, bounds: &ReferenceBounds, in
         let shares = core::array::from_fn(|split| tilt.shares(reach, longest, split));
 
         let quadratic = tilt.quadratic_part(&worst_heading, &Shares::worst(&shares));
-        let at_most =
-            greatest.with(inertia, velocity, Parts::worst(&linear).square_of_sum(&quadratic).sqrt_of_rounded());
-        if at_most.exceed(&greatest) {
+        let at_most = max.with(inertia, velocity, Parts::worst(&linear).square_of_sum(&quadratic).sqrt_of_rounded());
+        if at_most.exceed(&max) {
             let square = acceleration_square(&tilt, &linear, &headings, &shares);
-            greatest = greatest.with(inertia, velocity, square.sqrt_of_rounded());
+            max = max.with(inertia, velocity, square.sqrt_of_rounded());
         }
     }
-    greatest
+    max
 }
 
 #[cfg(test)]

@@ -46,13 +46,13 @@ fn table_1_is_certified_by_the_sharp_bound_within_the_published_figures() {
     assert!(sharp.holds());
     let published = Vector3::new(0.29, 0.33, 0.48);
     assert!(sharp.torque.iter().zip(published.iter()).all(|(ours, theirs)| ours <= theirs), "{}", sharp.torque);
-    assert!(sharp.thrust.greatest <= 6.19 && (sharp.thrust.least - 3.512).abs() < 1e-3, "{:?}", sharp.thrust);
+    assert!(sharp.thrust.max <= 6.19 && (sharp.thrust.min - 3.512).abs() < 1e-3, "{:?}", sharp.thrust);
 }
 
 #[test]
 fn theorem_1s_interval_is_the_published_one() {
     let thrust = printed_and_sharp(&paper())[0].thrust;
-    assert!((thrust.least - 3.512).abs() < 1e-3 && (thrust.greatest - 6.188).abs() < 1e-3, "{thrust:?}");
+    assert!((thrust.min - 3.512).abs() < 1e-3 && (thrust.max - 6.188).abs() < 1e-3, "{thrust:?}");
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn a_reference_that_leaves_no_upward_thrust_is_no_configuration() {
 fn with_a_floor_the_least_thrust_is_the_floors() {
     let configuration = paper().with_thrust_floor(2.0).unwrap();
     for form in printed_and_sharp(&configuration) {
-        assert!((form.thrust.least - 2.0).abs() < 1e-3, "{:?}", form.thrust);
+        assert!((form.thrust.min - 2.0).abs() < 1e-3, "{:?}", form.thrust);
     }
 }
 

@@ -5,15 +5,15 @@ use crate::extended::{actuators::ActuatorParameters, parameters::Extended, tests
 use nalgebra::Vector3;
 
 /// Rotors on arms of 0.17 m, for 0.5 kg or so; their least thrust and their greatest, all together, N.
-fn rotors(least: f32, greatest: f32) -> Rotors {
+fn rotors(min: f32, max: f32) -> Rotors {
     let coefficient = 5.57e-6;
     let speed = |thrust: f32| (0.25 * thrust / coefficient).sqrt();
     let quad = QuadX {
         arm: 0.17,
         thrust_coefficient: coefficient,
         drag_coefficient: 1.36e-7,
-        speed_min: speed(least),
-        speed_max: speed(greatest),
+        speed_min: speed(min),
+        speed_max: speed(max),
     };
     Rotors::quad_x(quad).unwrap()
 }
@@ -22,21 +22,21 @@ fn rotors(least: f32, greatest: f32) -> Rotors {
 fn rotors_that_cannot_hover_or_cannot_but_climb_are_refused() {
     let hover = 0.46 * 9.81;
     assert!(paper().with_rotors(rotors(0.99 * hover, 1.01 * hover)).is_ok());
-    for (least, greatest, reason) in
+    for (min, max, reason) in
         [(0.0, 0.99 * hover, Reason::NotAbove(hover)), (1.01 * hover, 3.0 * hover, Reason::NotBelow(hover))]
     {
-        let error = paper().with_rotors(rotors(least, greatest)).unwrap_err();
+        let error = paper().with_rotors(rotors(min, max)).unwrap_err();
         assert_eq!(error, ParameterError { field: "rotors.speed", reason });
     }
 }
 
 #[test]
 fn a_floor_is_at_most_the_laws_own_least_thrust() {
-    let least = paper().least_thrust();
-    assert_eq!(paper().with_thrust_floor(least).unwrap().thrust_floor(), Some(least));
+    let min = paper().min_thrust();
+    assert_eq!(paper().with_thrust_floor(min).unwrap().thrust_floor(), Some(min));
     let refused = |floor: f32| paper().with_thrust_floor(floor).unwrap_err();
     let field = "control.thrust_floor";
-    assert_eq!(refused(least.next_up()), ParameterError { field, reason: Reason::Above(least) });
+    assert_eq!(refused(min.next_up()), ParameterError { field, reason: Reason::Above(min) });
     assert_eq!(refused(0.0), ParameterError { field, reason: Reason::NotPositive });
 }
 

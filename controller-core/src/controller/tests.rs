@@ -5,6 +5,7 @@ use crate::gains::GainParameters;
 use crate::heading::Heading;
 use crate::reference::Trajectory;
 use crate::reference::hover::Hover;
+use crate::reference::{DERIVATIVE_RANGE, examine, passes_at_a_glance};
 use crate::vehicle::VehicleParameters;
 
 fn controller() -> Controller {
@@ -81,9 +82,9 @@ fn what_passes_at_a_glance_passes_the_examination() {
                 _ => reference.acceleration.z = if size > 0.0 { fall.next_up() } else { fall },
             }
             state.attitude *= turn;
-            if controller.passes_at_a_glance(&state, &reference) {
+            if passes_at_a_glance(&state, &reference, controller.steepest_fall) {
                 glances += 1;
-                assert_eq!(controller.examine(&state, &reference), Ok(()), "{size} at {place}");
+                assert_eq!(examine(&state, &reference, controller.steepest_fall), Ok(()), "{size} at {place}");
             } else {
                 examined += 1;
             }

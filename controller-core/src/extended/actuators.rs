@@ -14,13 +14,13 @@ use crate::math;
 use nalgebra::Vector4;
 
 /// The number of remembered commands, a power of two, so that an index wraps by a remainder.
-const REMEMBERED: usize = 32;
+const COMMANDS_KEPT: usize = 32;
 
 /// The greatest delay of the model, samples.
-pub const DELAY_MAX: usize = 31;
+pub const DELAY_MAX_TICKS: usize = 31;
 
 /// The greatest rounding error of a delay in single precision, samples.
-const ROUNDING: f64 = 1e-5;
+const DELAY_ROUNDING_TICKS: f64 = 1e-5;
 
 /// How a vehicle's wrench follows its commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,6 @@ pub struct ActuatorParameters {
 impl ActuatorParameters {
     /// After how many ticks a command no longer matters to the wrench that acts: its delay and five lags, rounded up,
     /// and one.
-    #[must_use]
     pub fn settling(&self, period: f32) -> u32 {
         // Converting to an integer rounds towards zero, and ends at the greatest.
         (((self.delay + 5.0 * self.lag) / period) as u32).saturating_add(2)
@@ -50,7 +49,7 @@ struct Response {
 }
 
 impl Response {
-    fn of(&self, state: &Vector4<f32>, older: &Vector4<f32>, newer: &Vector4<f32>) -> Vector4<f32> {
+    fn apply(&self, state: &Vector4<f32>, older: &Vector4<f32>, newer: &Vector4<f32>) -> Vector4<f32> {
         state * self.state + older * self.older + newer * self.newer
     }
 }
@@ -73,28 +72,27 @@ pub struct ActuatorModel {
 pub struct ActuatorState {
     acting: Vector4<f32>,
     /// A ring of commands, with the index of the newest.
-    commanded: [Vector4<f32>; REMEMBERED],
+    commanded: [Vector4<f32>; COMMANDS_KEPT],
     newest: usize,
 }
 
 impl ActuatorState {
     /// The memory after the same command for ever.
-    #[must_use]
     pub fn steady(wrench: Vector4<f32>) -> Self {
-        Self { acting: wrench, commanded: [wrench; REMEMBERED], newest: 0 }
+        Self { acting: wrench, commanded: [wrench; COMMANDS_KEPT], newest: 0 }
     }
 
     /// Takes up the command of this tick.
     pub fn command(&mut self, wrench: Vector4<f32>) {
-        self.newest = (self.newest + 1) % REMEMBERED;
+        self.newest = (self.newest + 1) % COMMANDS_KEPT;
         if let Some(slot) = self.commanded.get_mut(self.newest) {
             *slot = wrench;
         }
     }
 
-    /// The command of `age` ticks before the newest, at most [`DELAY_MAX`].
+    /// The command of `age` ticks before the newest, at most [`DELAY_MAX_TICKS`].
     fn command_before(&self, age: usize) -> Vector4<f32> {
-        self.commanded.get(self.newest.wrapping_sub(age) % REMEMBERED).copied().unwrap_or_default()
+        self.commanded.get(self.newest.wrapping_sub(age) % COMMANDS_KEPT).copied().unwrap_or_default()
     }
 }
 
@@ -102,19 +100,24 @@ impl ActuatorModel {
     /// For ticks `period` seconds apart.
     ///
     /// # Errors
-    /// Names `rotors.lag` or `sampling.delay` if negative or not finite, or a delay beyond [`DELAY_MAX`] - 1 periods.
+    /// Names `rotors.lag` or `sampling.delay` if negative or not finite, or a delay beyond [`DELAY_MAX_TICKS`] - 1
+    /// periods.
     pub fn new(parameters: &ActuatorParameters, period: f32) -> Result<Self, ParameterError> {
         let ActuatorParameters { lag, delay } = *parameters;
         for (value, field) in [(lag, "rotors.lag"), (delay, "sampling.delay")] {
             require_finite(value, field)?;
             require(value >= 0.0, field, Reason::Negative)?;
         }
-        let longest = (DELAY_MAX - 1) as f32 * period;
+        let longest = (DELAY_MAX_TICKS - 1) as f32 * period;
         let (lag, period) = (f64::from(lag), f64::from(period));
         let samples = f64::from(delay) / period;
         // A delay of whole samples that rounding put just below or above is one.
-        require(samples <= (DELAY_MAX - 1) as f64 + ROUNDING, "sampling.delay", Reason::Above(longest))?;
-        let whole = math::floor(samples + ROUNDING);
+        require(
+            samples <= (DELAY_MAX_TICKS - 1) as f64 + DELAY_ROUNDING_TICKS,
+            "sampling.delay",
+            Reason::Above(longest),
+        )?;
+        let whole = math::floor(samples + DELAY_ROUNDING_TICKS);
         let late = (samples - whole).max(0.0) * period;
         // e(t), and the mean of e over t times t, which is the lag times 1 - e(t).
         let decay = |time: f64| if lag > 0.0 { math::exp(-time / lag) } else { 0.0 };
@@ -142,7 +145,6 @@ impl ActuatorModel {
     /// The impulse that past commands will still deliver: the integral of the wrench, N s and N m s, if all commands
     /// were zero from now on. The lag passes on the whole command, so the integral is the lag times the acting wrench
     /// plus the commands still in the delay.
-    #[must_use]
     pub fn pending(&self, state: &ActuatorState) -> Vector4<f32> {
         let whole = (0..self.whole_delay).fold(Vector4::zeros(), |sum, age| sum + state.command_before(age));
         let oldest = state.command_before(self.whole_delay);
@@ -152,8 +154,8 @@ impl ActuatorModel {
     /// Lets one period pass; returns the mean wrench over it.
     pub fn advance(&self, state: &mut ActuatorState) -> Vector4<f32> {
         let (newer, older) = (state.command_before(self.whole_delay), state.command_before(self.whole_delay + 1));
-        let mean = self.mean.of(&state.acting, &older, &newer);
-        state.acting = self.end.of(&state.acting, &older, &newer);
+        let mean = self.mean.apply(&state.acting, &older, &newer);
+        state.acting = self.end.apply(&state.acting, &older, &newer);
         mean
     }
 }

@@ -25,15 +25,13 @@ pub struct Approach {
 
 impl Approach {
     /// For k_p, 1/s^2, k_v, 1/s, and v_c, m/s.
-    #[must_use]
     pub fn new(k_p: f32, k_v: f32, speed: f32) -> Self {
         let answering = k_v / k_p;
         Self { answering, answering_squared: answering * answering, speed: Saturation::new(1.0, speed) }
     }
 
     /// The velocity of approach over -z_1, 1/s, for |z_1|^2 = `square`, m^2, and a = `braking`, m/s^2, not zero.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn factor(&self, square: f32, braking: f32) -> f32 {
         let root = math::sqrt(self.answering_squared + 2.0 * math::sqrt(square) / braking);
         let factor = 2.0 / (self.answering + root);

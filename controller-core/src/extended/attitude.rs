@@ -26,10 +26,10 @@
 //!
 //! q_p = q (1, T omega~ / 2),   omega_p = omega~ + J^-1 (I + T tau_b) - T a:
 //!
-//! a is the acceleration fed forward in the last tick. With a first-order lag and small motions omega_p' is the
-//! commanded acceleration and the projected angle's rate is omega_p, as if the actuators were ideal. The paper's z_1
-//! and z_2 do the same for its filters. Every bound holds for any errors, so also for projected ones. Torques in the
-//! body frame, N m.
+//! a is the acceleration fed forward in the last tick: this tick's omega_d' is known only after the budget is spent.
+//! With a first-order lag and small motions omega_p' is the commanded acceleration and the projected angle's rate is
+//! omega_p, as if the actuators were ideal. The paper's z_1 and z_2 do the same for its filters. Every bound holds for
+//! any errors, so also for projected ones. Torques in the body frame, N m.
 
 use super::parameters::ExtendedParameters;
 use crate::attitude::rotate_back;
@@ -78,7 +78,6 @@ pub struct AttitudeLaw {
 
 impl AttitudeLaw {
     /// For the diagonal of J, kg m^2.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>) -> Self {
         let p = parameters;
         Self {
@@ -92,7 +91,6 @@ impl AttitudeLaw {
     }
 
     /// The errors as they will be once `late` has arrived: q_p, of any length, and omega_p.
-    #[must_use]
     pub fn projected(
         &self,
         error: &Quaternion<f32>,
@@ -108,8 +106,7 @@ impl AttitudeLaw {
     }
 
     /// The tilt of an error quaternion of any length, from the desired frame to the body; `side` is the last tick's.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn tilt(&self, error: &Quaternion<f32>, side: Option<&Vector2<f32>>) -> Tilt {
         let (w, x, y, z) = (error.w, error.i, error.j, error.k);
         let (along, across) = (w * w + z * z, x * x + y * y);
@@ -141,7 +138,7 @@ impl AttitudeLaw {
         let across = error.i * error.i + error.j * error.j;
         let b = Vector3::new(2.0 * came_from.x, 2.0 * came_from.y, square - 2.0 * across) / square;
         let sine = b.xy().dot(&side);
-        let cosine = math::sqrt(math::greater(1.0 - sine * sine, 0.0));
+        let cosine = math::sqrt(math::max(1.0 - sine * sine, 0.0));
         // Of theta_s / 2.
         let half = sine / math::sqrt(2.0 * (1.0 + cosine));
         if half <= self.switching {
@@ -153,7 +150,6 @@ impl AttitudeLaw {
     }
 
     /// P, at most `level` long, N m.
-    #[must_use]
     #[inline(always)]
     pub fn potential(&self, tilt: &Tilt, level: f32) -> Vector2<f32> {
         let scaled = tilt.mrp * self.gain;
@@ -161,14 +157,12 @@ impl AttitudeLaw {
     }
 
     /// D, N m, for omega~_12.
-    #[must_use]
     #[inline(always)]
     pub fn damping(&self, tilt: &Tilt, rate_error: &Vector2<f32>) -> Vector2<f32> {
         rate_error * (self.damping / math::sqrt(math::sqrt(1.0 + tilt.sine_squared * self.easing)))
     }
 
     /// g about the tilt's axes, N m, for r, omega and omega~_12, rad/s.
-    #[must_use]
     #[inline(always)]
     pub fn gyroscopic(&self, turning: &Vector3<f32>, velocity: &Vector3<f32>, error: &Vector2<f32>) -> Vector2<f32> {
         let [j_1, j_2, j_3] = self.inertia.into();
@@ -181,14 +175,12 @@ impl AttitudeLaw {
     }
 
     /// h, N m, for omega and omega~_12, rad/s.
-    #[must_use]
     #[inline(always)]
     pub fn precession(&self, velocity: &Vector3<f32>, error: &Vector2<f32>) -> Vector2<f32> {
         Vector2::new(error.y, -error.x) * (self.inertia.z * velocity.z)
     }
 
     /// J times an acceleration about the tilt's axes.
-    #[must_use]
     #[inline(always)]
     pub fn torque(&self, acceleration: &Vector3<f32>) -> Vector2<f32> {
         Vector2::new(self.inertia.x * acceleration.x, self.inertia.y * acceleration.y)

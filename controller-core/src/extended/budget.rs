@@ -28,17 +28,17 @@ use heapless::Vec;
 use nalgebra::{Vector2, Vector3, Vector4};
 
 /// mu: the part of a thrust that torques may use near the target.
-pub const THRUST_LEFT: f64 = 0.05;
+pub const TORQUE_THRUST_SHARE: f64 = 0.05;
 
 /// The part of a row that a tick leaves unused: more than the rounding of what it adds up.
-const ROW_LEFT: f64 = 1e-3;
+const UNUSED_ROW_SHARE: f64 = 1e-3;
 
 /// The greatest number of rows: pairs of rotors, rotors, two limits.
-const ROWS: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
+const ROWS_MAX: usize = ROTORS_MAX * (ROTORS_MAX - 1) / 2 + ROTORS_MAX + 2;
 
 /// The source of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Bound {
+pub enum RowSource {
     /// The limit of roll or pitch.
     Limit,
     /// Two rotors at their ends at once.
@@ -49,9 +49,9 @@ pub enum Bound {
 
 /// |w . tau| <= R(s) = per_scale s - fixed, w of length one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row<R = f64> {
+pub struct BudgetRow<R = f64> {
     /// Its source.
-    pub bound: Bound,
+    pub bound: RowSource,
     /// w.
     pub direction: [R; 2],
     /// The part of R that is proportional to the thrust scale, N m.
@@ -60,9 +60,9 @@ pub struct Row<R = f64> {
     pub fixed: R,
 }
 
-impl<R: Real> Row<R> {
+impl<R: Real> BudgetRow<R> {
     /// R(s), N m.
-    pub fn room(&self, scale: R) -> R {
+    pub fn capacity(&self, scale: R) -> R {
         self.per_scale * scale - self.fixed
     }
 }
@@ -71,7 +71,7 @@ impl<R: Real> Row<R> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorqueBudget<R = f64> {
     /// The rows.
-    pub rows: Vec<Row<R>, ROWS>,
+    pub rows: Vec<BudgetRow<R>, ROWS_MAX>,
     /// |beta_12| and |beta_3|, the greatest of all rotors, 1/m; none without rotors.
     pub reach: [R; 2],
     /// max f_min / b_T and min f_max / b_T, N; without rotors none and infinitely much.
@@ -82,14 +82,13 @@ pub struct TorqueBudget<R = f64> {
 
 /// Row of B+ over b_T with the rotor's range.
 struct Share<R> {
-    least: R,
-    greatest: R,
+    min: R,
+    max: R,
     torque: Vector3<R>,
 }
 
 impl<R: Real> TorqueBudget<R> {
     /// For the margin of the law's thrust range, N, limits, and rotors if there are any.
-    #[must_use]
     pub fn new(margin: f32, limits: &Limits, rotors: Option<&Rotors>) -> Self {
         let (zero, one) = (R::from(0.0), R::from(1.0));
         let margin = R::from(margin);
@@ -98,7 +97,7 @@ impl<R: Real> TorqueBudget<R> {
         let mut push = |bound, [x, y]: [R; 2], per_scale: R, fixed: R| {
             let length = x.hypot(y);
             if length.lower() > 0.0 {
-                let row = Row {
+                let row = BudgetRow {
                     bound,
                     direction: [x / length, y / length],
                     per_scale: per_scale / length,
@@ -108,19 +107,19 @@ impl<R: Real> TorqueBudget<R> {
             }
         };
         let torque_max = limits.torque_max.map(R::from);
-        push(Bound::Limit, [one, zero], zero, -torque_max.x);
-        push(Bound::Limit, [zero, one], zero, -torque_max.y);
+        push(RowSource::Limit, [one, zero], zero, -torque_max.x);
+        push(RowSource::Limit, [zero, one], zero, -torque_max.y);
 
         let shares = shares::<R>(rotors);
-        let top = shares.iter().map(|share| share.greatest).fold(R::from(f64::INFINITY), R::lesser);
-        let bottom = shares.iter().map(|share| share.least).fold(zero, R::greater);
+        let top = shares.iter().map(|share| share.max).fold(R::from(f64::INFINITY), R::lesser);
+        let bottom = shares.iter().map(|share| share.min).fold(zero, R::greater);
         for (place, share) in shares.iter().enumerate() {
             for other in shares.iter().skip(place + 1) {
                 let difference = share.torque - other.torque;
-                push(Bound::Rotors, [difference.x, difference.y], top - bottom, margin * 2.0);
+                push(RowSource::Rotors, [difference.x, difference.y], top - bottom, margin * 2.0);
             }
             let fixed = margin * 2.0 - R::from(limits.thrust_max);
-            push(Bound::Floor, [share.torque.x, share.torque.y], -bottom, fixed);
+            push(RowSource::Floor, [share.torque.x, share.torque.y], -bottom, fixed);
         }
         let reach = shares.iter().fold([zero; 2], |[tilt, yaw], share| {
             [tilt.greater(share.torque.x.hypot(share.torque.y)), yaw.greater(share.torque.z.abs())]
@@ -129,28 +128,26 @@ impl<R: Real> TorqueBudget<R> {
     }
 
     /// (1 - mu) U for a thrust scale and no bias, m/s^2.
-    #[must_use]
-    pub fn held(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
-        let most = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
-        most * (1.0 - THRUST_LEFT) / R::from(vehicle.mass)
+    pub fn held_acceleration(&self, vehicle: &Vehicle, limits: &Limits, scale: R) -> R {
+        let max = (scale * self.ends[1] - self.margin).lesser(R::from(limits.thrust_max));
+        max * (1.0 - TORQUE_THRUST_SHARE) / R::from(vehicle.mass)
     }
 
     /// The greatest torque about the tilt's axes that fits in every direction at a thrust scale, N m.
     pub fn radius(&self, scale: R) -> R {
-        self.rows.iter().map(|row| row.room(scale)).fold(R::from(f64::INFINITY), R::lesser)
+        self.rows.iter().map(|row| row.capacity(scale)).fold(R::from(f64::INFINITY), R::lesser)
     }
 }
 
 impl TorqueBudget {
     /// U as a tick works it out.
-    #[must_use]
     pub fn ceiling(&self, vehicle: &Vehicle, limits: &Limits) -> Ceiling {
         let mass = f64::from(vehicle.mass);
         Ceiling {
             per_scale: (self.ends[1] / mass) as f32,
             fixed: (self.margin / mass) as f32,
             per_bias: self.reach.map(|reach| (reach / mass) as f32),
-            most: (f64::from(limits.thrust_max) / mass) as f32,
+            max: (f64::from(limits.thrust_max) / mass) as f32,
         }
     }
 }
@@ -162,17 +159,16 @@ pub struct Ceiling {
     per_scale: f32,
     fixed: f32,
     per_bias: [f32; 2],
-    most: f32,
+    max: f32,
 }
 
 impl Ceiling {
     /// U, m/s^2, for a thrust scale and a bias in N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn at(&self, scale: f32, bias: &Vector3<f32>) -> f32 {
         let [lean, twist] = self.per_bias;
         let taken = self.fixed + lean * math::sqrt(bias.xy().norm_squared()) + twist * bias.z.abs();
-        math::lesser(scale * self.per_scale - taken, self.most)
+        math::min(scale * self.per_scale - taken, self.max)
     }
 }
 
@@ -181,8 +177,8 @@ fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
     collected(rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())).map(|(rotor, row)| {
         let row: &Vector4<f64> = row;
         let torque = Vector3::new(row.y, row.z, row.w).map(|part| R::from(part) / row.x);
-        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
-        Share { least, greatest, torque }
+        let [min, max] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| R::from(thrust) / row.x);
+        Share { min, max, torque }
     }))
 }
 
@@ -190,14 +186,13 @@ fn shares<R: Real>(rotors: Option<&Rotors>) -> Vec<Share<R>, ROTORS_MAX> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TickBudget {
     /// w, and R's two parts.
-    rows: Vec<[f32; 4], ROWS>,
+    rows: Vec<[f32; 4], ROWS_MAX>,
 }
 
 impl TickBudget {
     /// Of `budget`, without the rows that others imply for every thrust scale from `scales[0]` to `scales[1]`.
-    #[must_use]
     pub fn new(budget: &TorqueBudget, scales: [f32; 2]) -> Self {
-        let mut binding: Vec<Row, ROWS> = Vec::new();
+        let mut binding: Vec<BudgetRow, ROWS_MAX> = Vec::new();
         for (place, row) in budget.rows.iter().enumerate() {
             let others = || binding.iter().chain(budget.rows.iter().skip(place + 1));
             if !implied(row, others, scales.map(f64::from)) {
@@ -205,22 +200,20 @@ impl TickBudget {
                 let _ = binding.push(*row);
             }
         }
-        let single = |row: &Row| {
-            let left = 1.0 - ROW_LEFT;
+        let single = |row: &BudgetRow| {
+            let left = 1.0 - UNUSED_ROW_SHARE;
             [row.direction[0], row.direction[1], left * row.per_scale, left * row.fixed].map(|x| x as f32)
         };
         Self { rows: collected(binding.iter().map(single)) }
     }
 
     /// The greatest torque that fits in every direction at a thrust scale, N m.
-    #[must_use]
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub fn radius(&self, scale: f32) -> f32 {
-        self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::lesser)
+        self.rows.iter().map(|[_, _, per_scale, fixed]| per_scale * scale - fixed).fold(f32::MAX, math::min)
     }
 
     /// A tick's spending at a thrust scale, nothing spent.
-    #[must_use]
     #[inline(always)]
     pub fn spending(&self, scale: f32) -> Spending<'_> {
         Spending { rows: &self.rows, scale, radius: self.radius(scale), spent: Vector2::zeros() }
@@ -229,7 +222,7 @@ impl TickBudget {
 
 /// Whether two of the `others` imply `row` between the two scales: w is a sum of theirs with weights that are not
 /// negative, and R is at least the sum of theirs with these weights.
-fn implied<'a, I: Iterator<Item = &'a Row>>(row: &Row, others: impl Fn() -> I, scales: [f64; 2]) -> bool {
+fn implied<'a, I: Iterator<Item = &'a BudgetRow>>(row: &BudgetRow, others: impl Fn() -> I, scales: [f64; 2]) -> bool {
     let [x, y] = row.direction;
     others().any(|a| {
         others().any(|b| {
@@ -246,7 +239,7 @@ fn implied<'a, I: Iterator<Item = &'a Row>>(row: &Row, others: impl Fn() -> I, s
                 let of_b = (a.direction[0] * y - a.direction[1] * x) / determinant;
                 [of_a.abs(), of_b.abs()]
             };
-            scales.iter().all(|s| weights[0] * a.room(*s) + weights[1] * b.room(*s) <= row.room(*s))
+            scales.iter().all(|s| weights[0] * a.capacity(*s) + weights[1] * b.capacity(*s) <= row.capacity(*s))
         })
     })
 }
@@ -263,7 +256,6 @@ pub struct Spending<'a> {
 
 impl Spending<'_> {
     /// The greatest torque that fits in every direction if nothing is spent, N m.
-    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -297,7 +289,7 @@ impl Spending<'_> {
             let (spent, more) = (x * self.spent.x + y * self.spent.y, x * wanted.x + y * wanted.y);
             if (spent + more).abs() > room {
                 let left = if more > 0.0 { room - spent } else { room + spent };
-                share = math::lesser(share, math::greater(left, 0.0) / more.abs());
+                share = math::min(share, math::max(left, 0.0) / more.abs());
             }
         }
         share

@@ -16,37 +16,34 @@ use super::actuators::ActuatorModel;
 use super::attitude::AttitudeLaw;
 use super::budget::{Ceiling, TickBudget};
 use super::demand::Demand;
-use super::force;
-use super::heading::{HeadingLaw, Seen};
-use super::learning::Learning;
+use super::direction_limiter::DirectionLimiter;
+use super::estimates::{Learning, held};
+use super::heading::HeadingLaw;
 use super::measured::Measured;
-use super::memory::{Averages, Estimates, Last, Memory};
-use super::position::{Filters, Most, PositionLaw};
+use super::memory::{Averages, Estimates, LastTick, Memory};
+use super::position::{FeedbackLimits, Filters, PositionLaw};
 use super::rotor_loss::detector::Detector;
-use super::rotor_loss::spinning::SpinningLaw;
+use super::rotor_loss::spinning::RotorLossLaw;
 use super::thrust_range::ThrustRange;
-use super::turning::TurningLimit;
 use crate::allocation::Rotors;
-use crate::attitude::rotate_back;
 use crate::configuration::ExtendedLaw;
 use crate::controller::Diagnostics;
 use crate::error::InputError;
-use crate::reference::{DERIVATIVE_RANGE, Reference};
+use crate::reference::{Reference, admit};
 use crate::state::{State, Wrench, length_squared};
 use crate::vehicle::{Limits, Vehicle};
 use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// Where ubar comes from.
-enum Wanted<'a> {
+enum FeedbackSource<'a> {
     /// The law, with these levels at most.
-    Feedback(&'a Most),
-    /// A policy.
-    Demand(&'a Demand),
+    Law(&'a FeedbackLimits),
+    Policy(&'a Demand),
 }
 
 /// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
-struct Rotating {
+struct PastCommands {
     /// The mean wrench since the last tick.
     acted: Vector4<f32>,
     /// The impulse that is still to come, N s and N m s.
@@ -73,13 +70,13 @@ pub struct Controller {
     /// The same, slowed: the fallback's.
     slowed: PositionLaw,
     /// M_s, m/s^2.
-    slow: Most,
+    slow: FeedbackLimits,
     attitude: AttitudeLaw,
     heading: HeadingLaw,
     budget: TickBudget,
     /// J_max alpha_0, N m.
     reserve: f32,
-    turning: TurningLimit,
+    turning: DirectionLimiter,
     /// For the interval since the last tick.
     learning: Learning,
     /// For the next interval, if its length differs.
@@ -91,7 +88,7 @@ pub struct Controller {
     memory: Memory,
     detector: Detector,
     /// In force once a rotor is lost.
-    spinning: Option<SpinningLaw>,
+    spinning: Option<RotorLossLaw>,
     /// For the next step.
     measured: Measured,
 }
@@ -123,7 +120,7 @@ impl Controller {
     /// Likewise, for every tick whose velocity is not the vehicle's: what rates tell is learnt on, and what is measured
     /// of the acceleration tells whether a rotor fails.
     pub fn hold_without_velocity(&mut self) {
-        self.memory.blind = self.settling;
+        self.memory.without_velocity = self.settling;
     }
 
     /// What was measured since the last step: for the next one alone, whether that is refused or not. Without it the
@@ -134,27 +131,23 @@ impl Controller {
 
     /// The estimated thrust scale, delivered over commanded: the caller divides the wrench by it before commanding
     /// rotors.
-    #[must_use]
     pub fn thrust_scale(&self) -> f32 {
         self.memory.averages.scale.scale
     }
 
     /// The law's memory.
-    #[must_use]
     pub fn memory(&self) -> &Memory {
         &self.memory
     }
 
     /// The estimates; force and torque bias cut to their levels.
-    #[must_use]
     pub fn estimates(&self) -> Estimates {
-        let believed = self.learning.believed(&self.memory.averages);
+        let believed = self.learning.estimates(&self.memory.averages);
         self.spinning.as_ref().map_or(believed, |law| Estimates { force: law.force(), ..believed })
     }
 
     /// The law without a rotor, once one is lost.
-    #[must_use]
-    pub fn spinning(&self) -> Option<&SpinningLaw> {
+    pub fn spinning(&self) -> Option<&RotorLossLaw> {
         self.spinning.as_ref()
     }
 
@@ -166,7 +159,7 @@ impl Controller {
     // Always inlined: diagnostics that a caller does not read then cost it nothing.
     #[inline(always)]
     pub fn step(&mut self, state: &State, reference: &Reference) -> Result<(Wrench, Diagnostics), InputError> {
-        self.tick(state, reference, &Wanted::Feedback(&Most::ALL))
+        self.tick(state, reference, &FeedbackSource::Law(&FeedbackLimits::UNLIMITED))
     }
 
     /// One tick with a demand in place of the position law's feedback. The reference gives the heading, and where the
@@ -181,10 +174,10 @@ impl Controller {
         demand: &Demand,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         demand.check()?;
-        self.shielded_tick(state, reference, &Wanted::Demand(demand))
+        self.shielded_tick(state, reference, &FeedbackSource::Policy(demand))
     }
 
-    /// One tick whose feedback has levels of at most `most`. Every theorem on feedback holds for lower levels as well.
+    /// One tick whose feedback keeps to `limits`. Every theorem on feedback holds for lower levels as well.
     ///
     /// # Errors
     /// As [`Self::step`]'s.
@@ -192,9 +185,9 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        most: &Most,
+        limits: &FeedbackLimits,
     ) -> Result<(Wrench, Diagnostics), InputError> {
-        self.shielded_tick(state, reference, &Wanted::Feedback(most))
+        self.shielded_tick(state, reference, &FeedbackSource::Law(limits))
     }
 
     /// Behind a shield: compiled once for both.
@@ -203,9 +196,9 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        wanted: &Wanted,
+        source: &FeedbackSource,
     ) -> Result<(Wrench, Diagnostics), InputError> {
-        self.tick(state, reference, wanted)
+        self.tick(state, reference, source)
     }
 
     #[inline(always)]
@@ -213,28 +206,29 @@ impl Controller {
         &mut self,
         state: &State,
         reference: &Reference,
-        wanted: &Wanted,
+        source: &FeedbackSource,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         let measured = core::mem::take(&mut self.measured);
-        self.admit(state, reference)?;
+        admit(state, reference, self.steepest_fall)?;
         let suspicion = self.memory.suspicion;
         let axis = thrust_axis(&state.attitude);
-        let Rotating { acted, pending, lasting } = self.rotating(measured.wrench.as_ref());
+        let PastCommands { acted, pending, lasting } = self.past_commands(measured.wrench.as_ref());
         if self.has_lost(state, &axis, &measured, &acted) {
             cold_path();
             return Ok(self.spin(state, reference, &axis, &pending));
         }
-        let learnt = self.learning.learnt(&self.memory, state, &axis, &measured, &acted);
-        let Estimates { force, torque: bias, scale } = self.learning.believed(&learnt);
-        let greatest = self.ceiling.at(scale, &bias);
-        let force = force::held(&force, &self.acceleration_command(reference, &Vector3::zeros()), greatest);
+        let averages = self.learning.updated(&self.memory, state, &axis, &measured, &acted);
+        let Estimates { force, torque: bias, scale } = self.learning.estimates(&averages);
+        let acceleration_max = self.ceiling.at(scale, &bias);
+        let rest = self.acceleration_command(reference, &Vector3::zeros());
+        let force = held(&force, &rest, acceleration_max);
 
         let filters = self.memory.filters;
-        let feedback = self.feedback(state, reference, &force, greatest, wanted);
-        let course = self.course(reference, &filters, &feedback, greatest);
-        let errors = self.errors(state, reference, &course, &self.late(scale, &bias, &pending));
-        let tilting = self.tilting(state, &course, &errors, &bias, scale);
-        let motion = course.desired.motion_of(&course.turn.rate, &tilting.turn, &reference.heading);
+        let feedback = self.feedback(state, reference, &force, acceleration_max, source);
+        let direction = self.direction_command(reference, &filters, &feedback, acceleration_max);
+        let errors = self.attitude_errors(state, reference, &direction, &self.late(scale, &bias, &pending));
+        let tilt = self.tilt_torque(state, &direction, &errors, &bias, scale);
+        let motion = direction.desired.motion_of_direction(&direction.turn.rate, &tilt.turn, &reference.heading);
         // Inputs in range can overflow together, on a reference that all but cancels gravity.
         if !motion.is_in_range() {
             self.memory.suspicion = suspicion;
@@ -242,82 +236,50 @@ impl Controller {
         }
 
         // Nothing can fail from here on: every part of the memory advances as soon as its last value has served.
-        let drive = self.drive(&feedback, &course, &tilting, greatest);
-        self.memory.filters = self.position_law().advance(&filters, &feedback.smoothed, &drive, greatest);
-        self.memory.averages = learnt;
+        let drive = self.drive(&feedback, &direction, &tilt, acceleration_max);
+        self.memory.filters = self.position_law().advance(&filters, &feedback.smoothed, &drive, acceleration_max);
+        self.memory.averages = averages;
         self.memory.lift = Some(errors.lifted.lift);
         self.memory.side = Some(errors.tilt.side);
-        let counts = matches!(wanted, Wanted::Feedback(_));
+        let counts = matches!(source, FeedbackSource::Law(_));
         if counts && self.memory.fallback.observe(&feedback.errors.position, &feedback.errors.velocity, self.period) {
             cold_path();
             self.memory.filters = Filters::at(-force);
         }
 
-        let velocity = &state.angular_velocity;
-        let seen = Seen { rate: errors.frame, acceleration: rotate_back(&errors.error, &motion.acceleration).z };
-        let forward = self.heading.forward(&seen, velocity);
-        let [angle, rate] = [2.0 * errors.lifted.quaternion.k, errors.projected_yaw];
-        let yaw = self.heading.torque(angle, rate, forward, velocity, self.memory.yaw_room) - bias.z;
-        let along = self.vehicle.mass * course.length * course.command.dot(&axis) / course.turn.magnitude;
-        let yaw = [yaw, self.heading.braking(yaw, rate)];
-        let (wrench, yaw_room) = self.range.admitted(along, &tilting.torque, yaw, scale);
+        let yaw = self.yaw_torque(&state.angular_velocity, &errors, &motion, bias.z);
+        let along = self.vehicle.mass * direction.length * direction.command.dot(&axis) / direction.turn.magnitude;
+        let (wrench, yaw_torque_left) = self.range.limited(along, &tilt.torque, [yaw.torque, yaw.braking], scale);
+        self.memory.yaw_torque_left = yaw_torque_left;
+        self.memory.wrench_offset = lasting;
+        let forward = Vector3::new(tilt.acceleration.x, tilt.acceleration.y, yaw.forward);
+        self.remember(state, axis, forward, &wrench, scale);
+        Ok((wrench, diagnostics(&filters, &feedback, &direction, &errors, &tilt, &motion)))
+    }
 
+    /// What the next tick needs of this one.
+    #[inline(always)]
+    fn remember(
+        &mut self,
+        state: &State,
+        thrust_axis: Vector3<f32>,
+        forward: Vector3<f32>,
+        wrench: &Wrench,
+        scale: f32,
+    ) {
         if let Some(changed) = self.changed {
             cold_path();
             self.learning = changed;
             self.changed = None;
         }
         let memory = &mut self.memory;
-        memory.yaw_room = yaw_room;
-        memory.lasting = lasting;
         memory.held = memory.held.saturating_sub(1);
-        memory.blind = memory.blind.saturating_sub(1);
-        memory.last = Some(Last {
-            velocity: state.velocity,
-            thrust_axis: axis,
-            angular_velocity: *velocity,
-            forward: Vector3::new(tilting.acceleration.x, tilting.acceleration.y, forward),
-        });
-        let Wrench { thrust, torque } = wrench;
+        memory.without_velocity = memory.without_velocity.saturating_sub(1);
+        let State { velocity, angular_velocity, .. } = *state;
+        memory.last = Some(LastTick { velocity, thrust_axis, angular_velocity, forward });
+        let Wrench { thrust, torque } = *wrench;
         memory.actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z) * (1.0 / scale));
         memory.acted = self.actuators.advance(&mut memory.actuators);
-
-        let diagnostics = Diagnostics {
-            position_error: feedback.errors.position,
-            velocity_error: feedback.errors.velocity,
-            z_1: feedback.errors.z_1,
-            z_2: feedback.errors.z_2,
-            feedback: feedback.feedback,
-            filtered: filters.command,
-            intermediate: filters.intermediate,
-            acceleration_command: course.command,
-            desired_attitude: course.desired.attitude(),
-            desired_angular_velocity: motion.velocity,
-            desired_angular_acceleration: motion.acceleration,
-            attitude_error: errors.lifted.quaternion,
-            mrp: errors.lifted.mrp,
-            lift_sign: errors.lifted.lift.sign,
-            angular_velocity_error: errors.projected.push(errors.projected_yaw),
-            attitude_feedback: tilting.potential.push(0.0),
-            rate_feedback: tilting.damping.push(0.0),
-        };
-        Ok((wrench, diagnostics))
-    }
-
-    /// Refuses inputs for which the law is undefined. Nearly every input passes the first comparison.
-    #[inline(always)] // see position.rs
-    fn admit(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
-        let small = state.squares() + reference.squares() <= DERIVATIVE_RANGE * DERIVATIVE_RANGE;
-        let climbs = reference.acceleration.z > self.steepest_fall;
-        if small & climbs & state.has_unit_attitude() { Ok(()) } else { self.examine(state, reference) }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn examine(&self, state: &State, reference: &Reference) -> Result<(), InputError> {
-        state.check()?;
-        reference.check()?;
-        if reference.acceleration.z > self.steepest_fall { Ok(()) } else { Err(InputError::FallsTooFast) }
     }
 }
 
@@ -332,11 +294,12 @@ fn thrust_axis(q: &Quaternion<f32>) -> Vector3<f32> {
 }
 
 mod building;
-mod prospect;
+mod forecast;
 mod sections;
 mod without_a_rotor;
 
-pub use prospect::Prospect;
+pub use forecast::StoppingForecast;
+use sections::diagnostics;
 
 #[cfg(test)]
 mod tests;

@@ -28,8 +28,8 @@ use nalgebra::Vector3;
 pub fn check(parameters: &ExtendedParameters, period: f32) -> Result<(), ParameterError> {
     let ExtendedParameters { c_1, c_2, .. } = *parameters;
     require(c_2 * period <= 1.0, "gains.c_2", Reason::Above(1.0 / period))?;
-    let most = 0.5 * c_2 / period;
-    require(c_1 <= most, "gains.c_1", Reason::Above(most))
+    let max = 0.5 * c_2 / period;
+    require(c_1 <= max, "gains.c_1", Reason::Above(max))
 }
 
 /// The part of the torque at hand that a turn is to be braked with.
@@ -54,18 +54,8 @@ pub struct HeadingLaw {
     difference: f32,
 }
 
-/// How the desired frame moves, seen from the body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
-    /// f, rad/s.
-    pub rate: Vector3<f32>,
-    /// (R~^T omega_d')_3, rad/s^2.
-    pub acceleration: f32,
-}
-
 impl HeadingLaw {
     /// For the diagonal of J, kg m^2.
-    #[must_use]
     pub fn new(parameters: &ExtendedParameters, inertia: &Vector3<f32>) -> Self {
         let p = parameters;
         let k = p.c_1 / p.c_2;
@@ -81,20 +71,17 @@ impl HeadingLaw {
         }
     }
 
-    /// The acceleration fed forward, rad/s^2, for omega.
-    #[must_use]
-    #[inline(always)] // see position.rs
-    pub fn forward(&self, seen: &Seen, velocity: &Vector3<f32>) -> f32 {
-        let Seen { rate, acceleration } = seen;
+    /// The acceleration fed forward, rad/s^2: `rate` is f, `acceleration` (R~^T omega_d')_3, `velocity` omega.
+    #[inline(always)]
+    pub fn forward(&self, rate: &Vector3<f32>, acceleration: f32, velocity: &Vector3<f32>) -> f32 {
         acceleration - (velocity.x * rate.y - velocity.y * rate.x)
     }
 
     /// The wanted yaw torque beside the bias, N m: for psi and omega_3 - f_3, both projected, the acceleration fed
     /// forward and omega.
-    #[must_use]
     #[inline(always)]
     pub fn torque(&self, angle: f32, rate_error: f32, forward: f32, velocity: &Vector3<f32>, room: f32) -> f32 {
-        let braked = math::greater(BRAKED_SHARE * room, self.acceleration * self.inertia);
+        let braked = math::max(BRAKED_SHARE * room, self.acceleration * self.inertia);
         let braking = self.braking * self.inertia / braked;
         let slowed = math::sqrt(1.0 + angle.abs() * braking + angle * angle * self.cruising);
         let wanted = forward - self.damping * (rate_error + self.approach * angle / slowed);
@@ -103,10 +90,9 @@ impl HeadingLaw {
 
     /// The part of a yaw `torque` that comes before thrust, N m: what brakes omega_3 - f_3 where that is above W_max,
     /// up to a part of J_3 A that is all of it from 2 W_max on.
-    #[must_use]
     #[inline(always)]
     pub fn braking(&self, torque: f32, rate_error: f32) -> f32 {
-        let spin = math::between(rate_error.abs() * self.per_spin - 1.0, 0.0, 1.0);
-        if torque * rate_error < 0.0 { math::within(torque, spin * self.inertia * self.acceleration) } else { 0.0 }
+        let spin = math::clamp(rate_error.abs() * self.per_spin - 1.0, 0.0, 1.0);
+        if torque * rate_error < 0.0 { math::saturate(torque, spin * self.inertia * self.acceleration) } else { 0.0 }
     }
 }

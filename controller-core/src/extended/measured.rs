@@ -3,9 +3,9 @@
 //! | here | equation |
 //! |---|---|
 //! | [`Measured::acceleration`] | A, the mean of R f - g e3, f an accelerometer's specific force |
-//! | [`Sensors::acceleration`] | v' = A - B; B += (1 - e^(-SLOW h)) (A - B - (v_k - v_(k-1)) / h) |
-//! | [`Sensors::beside`] | e = W - W_c - E: how the rotors turned beside the model of their commands |
-//! | [`Sensors::beside`] | E += (1 - e^(-SLOW h)) e |
+//! | [`Sensors::acceleration`] | v' = A - B; B += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) (A - B - (v_k - v_(k-1)) / h) |
+//! | [`Sensors::quick_difference`] | e = W - W_c - E: how the rotors turned beside the model of their commands |
+//! | [`Sensors::quick_difference`] | E += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) e |
 //!
 //! W is the mean wrench by the rotors' speeds, W_c the model's. Sensors say what is quick, states and commands what
 //! lasts: a bias or a tilt that nobody knows of moves no vehicle, and rotors that turn too slowly for good show in the
@@ -18,13 +18,13 @@ use crate::vehicle::{Limits, Vehicle};
 use nalgebra::{Vector3, Vector4};
 
 /// The greatest acceleration that counts as measured, m/s^2: twice what a sensor of 24 g shows.
-const GREATEST_ACCELERATION: f32 = 500.0;
+const ACCELERATION_MAX_M_PER_S2: f32 = 500.0;
 
 /// Bandwidth of B and E, 1/s.
-const SLOW: f64 = 1.0;
+const OFFSET_BANDWIDTH_PER_S: f64 = 1.0;
 
 /// W counts up to so many times the greatest thrust, along each axis, with the vehicle's radius for an arm.
-const GREATEST_THRUSTS: f32 = 2.0;
+const THRUSTS_MAX: f32 = 2.0;
 
 /// What was measured since the last tick, as means over that time. Absent, or out of range, it does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,10 +37,9 @@ pub struct Measured {
 
 impl Measured {
     /// A, if it can be used.
-    #[must_use]
     pub fn usable_acceleration(&self) -> Option<&Vector3<f32>> {
         // A NaN compares false.
-        let in_range = |a: &&Vector3<f32>| a.norm_squared() < GREATEST_ACCELERATION * GREATEST_ACCELERATION;
+        let in_range = |a: &&Vector3<f32>| a.norm_squared() < ACCELERATION_MAX_M_PER_S2 * ACCELERATION_MAX_M_PER_S2;
         self.acceleration.as_ref().filter(in_range)
     }
 }
@@ -48,7 +47,7 @@ impl Measured {
 /// The constants for both, for intervals of one length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensors {
-    /// 1 - e^(-SLOW h).
+    /// 1 - e^(-OFFSET_BANDWIDTH_PER_S h).
     averaging: f32,
     /// 1 / N, and about each axis 1 / (N m): of the greatest wrench that counts.
     per_greatest: Vector4<f32>,
@@ -56,20 +55,18 @@ pub struct Sensors {
 
 impl Sensors {
     /// For intervals of `period`, s.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, limits: &Limits, period: f32) -> Self {
-        let thrust = GREATEST_THRUSTS * limits.thrust_max;
-        let radius = 2.0 * math::sqrt(math::greater(vehicle.inertia.x, vehicle.inertia.y) / vehicle.mass);
+        let thrust = THRUSTS_MAX * limits.thrust_max;
+        let radius = 2.0 * math::sqrt(math::max(vehicle.inertia.x, vehicle.inertia.y) / vehicle.mass);
         let per_torque = 1.0 / (thrust * radius);
         Self {
-            averaging: -math::exp_m1(-SLOW * f64::from(period)) as f32,
+            averaging: -math::exp_m1(-OFFSET_BANDWIDTH_PER_S * f64::from(period)) as f32,
             per_greatest: Vector4::new(1.0 / thrust, per_torque, per_torque, per_torque),
         }
     }
 
     /// v', m/s^2, and B with it, for an acceleration that was `measured` while velocities have `differed` by theirs and
     /// B was `offset`.
-    #[must_use]
     pub fn acceleration(
         &self,
         measured: &Vector3<f32>,
@@ -82,8 +79,7 @@ impl Sensors {
 
     /// e, and E with it, for a wrench that was `measured` while the model has `acted` and E was `lasting`, N and N m.
     /// The first interval starts E. None for a wrench out of range.
-    #[must_use]
-    pub fn beside(
+    pub fn quick_difference(
         &self,
         measured: &Wrench,
         acted: &Vector4<f32>,

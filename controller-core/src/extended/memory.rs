@@ -4,7 +4,6 @@ use super::actuators::ActuatorState;
 use super::fallback::Fallback;
 use super::position::Filters;
 use super::rotor_loss::detector::Suspicion;
-use super::thrust_scale::ScaleEstimate;
 use crate::path_lifting::Lift;
 use crate::vehicle::Vehicle;
 use nalgebra::{Vector2, Vector3, Vector4};
@@ -25,6 +24,15 @@ impl Estimates {
     pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0), scale: 1.0 };
 }
 
+/// The thrust scale and the averages behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaleEstimate {
+    /// ybar and fbar, m/s^2. The first interval starts them: any other start would look like a variation.
+    pub slow: Option<[Vector3<f32>; 2]>,
+    /// s.
+    pub scale: f32,
+}
+
 /// The averages, before they are cut to their levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Averages {
@@ -40,15 +48,14 @@ pub struct Averages {
 
 impl Averages {
     /// With torque bias and thrust scale known.
-    #[must_use]
     pub fn known(torque: Vector3<f32>, scale: f32) -> Self {
-        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate::at(scale), offset: Vector3::zeros() }
+        Self { force: Vector3::zeros(), torque, scale: ScaleEstimate { slow: None, scale }, offset: Vector3::zeros() }
     }
 }
 
 /// The last tick, as far as the estimates need it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Last {
+pub(super) struct LastTick {
     pub velocity: Vector3<f32>,
     /// R e3.
     pub thrust_axis: Vector3<f32>,
@@ -67,7 +74,7 @@ pub struct Memory {
     /// The side that the thrust axis came from; none before the first step.
     pub side: Option<Vector2<f32>>,
     /// The torque about z, either way, that was left in the last tick, N m.
-    pub yaw_room: f32,
+    pub yaw_torque_left: f32,
     /// The averages behind the estimates.
     pub averages: Averages,
     /// The fallback.
@@ -75,13 +82,13 @@ pub struct Memory {
     /// Ticks for which the estimates are still held.
     pub(super) held: u32,
     /// Ticks for which they are held because no velocity was known.
-    pub(super) blind: u32,
-    pub(super) last: Option<Last>,
+    pub(super) without_velocity: u32,
+    pub(super) last: Option<LastTick>,
     pub(super) actuators: ActuatorState,
     /// The mean wrench since the last tick, as commanded: (T, tau) divided by the scale.
     pub(super) acted: Vector4<f32>,
     /// E of [`measured`](super::measured); none before rotor speeds were measured.
-    pub(super) lasting: Option<Vector4<f32>>,
+    pub(super) wrench_offset: Option<Vector4<f32>>,
     /// Whether a rotor fails.
     pub(super) suspicion: Suspicion,
 }
@@ -94,15 +101,15 @@ impl Memory {
             filters: Filters::at(Vector3::zeros()),
             lift: None,
             side: None,
-            yaw_room: 0.0,
+            yaw_torque_left: 0.0,
             averages,
             fallback: Fallback::FRESH,
             held: 0,
-            blind: 0,
+            without_velocity: 0,
             last: None,
             actuators: ActuatorState::steady(hover),
             acted: hover,
-            lasting: None,
+            wrench_offset: None,
             suspicion: Suspicion::NONE,
         }
     }

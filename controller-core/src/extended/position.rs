@@ -17,12 +17,12 @@
 //! | s(x; M) = M x / sqrt(M^2 + \|x\|^2) | [`super::saturation`]: radial across |
 //! | M_z+ = U - g + d_z upwards, M_z- = A_- - d_z downwards | the vertical gets the part that the force does not use |
 //! | M_h = min(A_h, u_z tan gamma, sqrt(U^2 - u_z^2)) - \|d_h\|, u_z = g + ubar_z | across gets the part that the vertical does not use |
-//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::turning`] may change the drive |
+//! | c' = k_f (x - c), x' = `drive`, wanted: k_s (y - x), y' = k_d (ubar - y) | the paper's (7); [`super::direction_limiter`] may change the drive |
 //!
 //! So ubar is in the envelope -A_- <= ubar_z <= U - g, |g e3 + ubar| <= U, |ubar_h| <= A_h, and every level is as wide
 //! as that allows. Where d leaves less than the least level, 0.3 m/s^2, the least level holds and ubar may be outside;
-//! [`super::turning`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only that s is
-//! monotone, has a slope of at most one and the sign of its argument.
+//! [`super::direction_limiter`] bounds u itself. World frame; accelerations in m/s^2. The theorems on ubar need only
+//! that s is monotone, has a slope of at most one and the sign of its argument.
 
 use super::approach::Approach;
 use super::parameters::ExtendedParameters;
@@ -35,7 +35,7 @@ use core::hint::cold_path;
 use nalgebra::{Vector2, Vector3};
 
 /// The least level of a feedback, m/s^2, where a force takes the whole envelope.
-const LEVEL_LEAST: f32 = 0.3;
+const LEVEL_MIN_M_PER_S2: f32 = 0.3;
 
 /// The share of tilt and horizontal thrust for the feedback: the reference needs the rest.
 const SHARE_ACROSS: f32 = 0.95;
@@ -53,7 +53,6 @@ pub struct Filters {
 
 impl Filters {
     /// All three at `value`.
-    #[must_use]
     pub const fn at(value: Vector3<f32>) -> Self {
         Self { command: value, intermediate: value, smoothed: value }
     }
@@ -64,7 +63,7 @@ const FILTER_REACH: f32 = 2.0;
 
 /// The errors that the feedback sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Errors {
+pub struct PositionErrors {
     /// p~, m.
     pub position: Vector3<f32>,
     /// v~, m/s.
@@ -79,7 +78,7 @@ pub struct Errors {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionFeedback {
     /// What it answers.
-    pub errors: Errors,
+    pub errors: PositionErrors,
     /// ubar, m/s^2.
     pub feedback: Vector3<f32>,
     /// c', m/s^3.
@@ -92,7 +91,7 @@ pub struct PositionFeedback {
 
 /// The greatest levels of feedback, whatever the envelope leaves, m/s^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Most {
+pub struct FeedbackLimits {
     /// Upwards.
     pub up: f32,
     /// Downwards.
@@ -101,12 +100,11 @@ pub struct Most {
     pub across: f32,
 }
 
-impl Most {
+impl FeedbackLimits {
     /// What the envelope leaves.
-    pub const ALL: Self = Self::each(f32::MAX);
+    pub const UNLIMITED: Self = Self::each(f32::MAX);
 
     /// The same every way.
-    #[must_use]
     pub const fn each(level: f32) -> Self {
         Self { up: level, down: level, across: level }
     }
@@ -151,7 +149,7 @@ impl PositionLaw {
     pub fn new(parameters: &ExtendedParameters, gravity: f32, period: f32) -> Result<Self, ParameterError> {
         let p = parameters;
         require_positive(period, "control.period")?;
-        let longest = FilterTransition::LONGEST_PERIOD;
+        let longest = FilterTransition::PERIOD_MAX_S;
         require(period <= longest, "control.period", Reason::Above(longest))?;
         let lags = [p.k_f, p.k_s, p.k_d].map(|bandwidth| 1.0 / bandwidth);
         let [of_command, of_intermediate, of_smoothed] = lags;
@@ -181,13 +179,11 @@ impl PositionLaw {
     }
 
     /// k_f, 1/s.
-    #[must_use]
     pub fn k_f(&self) -> f32 {
         self.k_f
     }
 
-    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `greatest` U, m/s^2.
-    #[must_use]
+    /// Evaluates the law at one instant; the filters are read, not advanced. `force` is d, `max` U, m/s^2.
     #[inline(always)] // into the law's step
     pub fn feedback(
         &self,
@@ -195,32 +191,36 @@ impl PositionLaw {
         reference: &Reference,
         filters: &Filters,
         force: &Vector3<f32>,
-        greatest: f32,
-        most: &Most,
+        max: f32,
+        most: &FeedbackLimits,
     ) -> PositionFeedback {
         let errors = self.errors(state, reference, filters, force);
-        self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, greatest, most))
+        self.passed_on(&errors, filters, self.saturated([&errors.z_1, &errors.z_2], force, max, most))
     }
 
     /// The same with a demand in place of feedback: `wanted`, m/s^2, cut to the envelope.
-    #[must_use]
     #[inline(always)] // likewise
-    pub fn demanded(
+    pub fn feedback_on_demand(
         &self,
         state: &State,
         reference: &Reference,
         filters: &Filters,
         force: &Vector3<f32>,
-        greatest: f32,
+        max: f32,
         wanted: &Vector3<f32>,
     ) -> PositionFeedback {
-        self.passed_on(&self.errors(state, reference, filters, force), filters, self.within(wanted, greatest))
+        self.passed_on(&self.errors(state, reference, filters, force), filters, self.within(wanted, max))
     }
 
     /// p~, v~, z_1 and z_2.
-    #[must_use]
     #[inline(always)]
-    pub fn errors(&self, state: &State, reference: &Reference, filters: &Filters, force: &Vector3<f32>) -> Errors {
+    pub fn errors(
+        &self,
+        state: &State,
+        reference: &Reference,
+        filters: &Filters,
+        force: &Vector3<f32>,
+    ) -> PositionErrors {
         let Filters { command: c, intermediate: x, smoothed: y } = filters;
         let (p, v) = (state.position - reference.position, state.velocity - reference.velocity);
         let [of_command, of_intermediate, of_smoothed] = self.lags;
@@ -230,12 +230,12 @@ impl PositionLaw {
         let mut z_2 = v + c_d * of_command + x_d * of_intermediate + y_d * of_smoothed;
         z_1.z = p.z + v.z * of_smoothed;
         z_2.z = v.z + y_d.z * of_smoothed;
-        Errors { position: p, velocity: v, z_1, z_2 }
+        PositionErrors { position: p, velocity: v, z_1, z_2 }
     }
 
     /// Passes ubar, `feedback`, on to the filters.
     #[inline(always)]
-    fn passed_on(&self, errors: &Errors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
+    fn passed_on(&self, errors: &PositionErrors, filters: &Filters, feedback: Vector3<f32>) -> PositionFeedback {
         let Filters { intermediate: x, smoothed: y, .. } = filters;
         let smoothed = y + (feedback - y) * self.smoothing;
         PositionFeedback {
@@ -249,22 +249,21 @@ impl PositionLaw {
 
     /// How far ubar may reach across, m/s^2, where `lift` is g + ubar_z.
     #[inline(always)]
-    fn reach(&self, lift: f32, greatest: f32) -> f32 {
-        let thrust_left = math::sqrt(math::greater(greatest * greatest - lift * lift, 0.0)) * SHARE_ACROSS;
-        math::lesser(self.a_across, math::lesser(lift * self.tangent, thrust_left))
+    fn reach(&self, lift: f32, max: f32) -> f32 {
+        let thrust_left = math::sqrt(math::max(max * max - lift * lift, 0.0)) * SHARE_ACROSS;
+        math::min(self.a_across, math::min(lift * self.tangent, thrust_left))
     }
 
     /// A demand cut to the envelope: the vertical first, then what it leaves across.
-    fn within(&self, wanted: &Vector3<f32>, greatest: f32) -> Vector3<f32> {
-        let vertical = math::greater(math::lesser(wanted.z, greatest - self.gravity), -self.a_down);
-        let reach = math::greater(self.reach(self.gravity + vertical, greatest), 0.0);
+    fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
+        let vertical = math::max(math::min(wanted.z, max - self.gravity), -self.a_down);
+        let reach = math::max(self.reach(self.gravity + vertical, max), 0.0);
         let length = math::sqrt(wanted.xy().norm_squared());
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, vertical)
     }
 
     /// c', m/s^3.
-    #[must_use]
     #[inline(always)]
     pub fn rate(&self, filters: &Filters) -> Vector3<f32> {
         (filters.intermediate - filters.command) * self.k_f
@@ -276,13 +275,13 @@ impl PositionLaw {
         &self,
         [z_1, z_2]: [&Vector3<f32>; 2],
         force: &Vector3<f32>,
-        greatest: f32,
-        most: &Most,
+        max: f32,
+        most: &FeedbackLimits,
     ) -> Vector3<f32> {
         let [braking_across, braking_vertical] = self.braking;
-        let up = math::greater(greatest - self.gravity + force.z, LEVEL_LEAST);
-        let down = math::greater(self.a_down - force.z, LEVEL_LEAST);
-        let (up, down) = (math::lesser(up, most.up), math::lesser(down, most.down));
+        let up = math::max(max - self.gravity + force.z, LEVEL_MIN_M_PER_S2);
+        let down = math::max(self.a_down - force.z, LEVEL_MIN_M_PER_S2);
+        let (up, down) = (math::min(up, most.up), math::min(down, most.down));
         // Above the reference the vehicle descends, and what pushes up brakes it.
         let (approach, braking) = if z_1.z > 0.0 { (&self.approach_down, up) } else { (&self.approach_up, down) };
         let closing = z_1.z * approach.factor(z_1.z * z_1.z, braking_vertical * braking);
@@ -290,35 +289,34 @@ impl PositionLaw {
         let level = if vertical > 0.0 { down } else { up };
         let vertical = -vertical * unit_factor(level, vertical * vertical) - force.z;
 
-        let reach = self.reach(self.gravity + vertical, greatest);
+        let reach = self.reach(self.gravity + vertical, max);
         let (across, wind) = (z_1.xy(), force.xy());
-        let level = math::greater(reach - math::sqrt(wind.norm_squared()), LEVEL_LEAST);
-        let level = math::lesser(level, most.across);
+        let level = math::max(reach - math::sqrt(wind.norm_squared()), LEVEL_MIN_M_PER_S2);
+        let level = math::min(level, most.across);
         let closing = across * self.approach_across.factor(across.norm_squared(), braking_across * level);
         let wanted = (z_2.xy() + closing) * self.k_v_across;
         let across: Vector2<f32> = -wanted * unit_factor(level, wanted.norm_squared()) - wind;
         Vector3::new(across.x, across.y, vertical)
     }
 
-    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `greatest`. c_z never
+    /// The filters' states one period later, with `drive` held and y at `smoothed`, where U is `max`. c_z never
     /// falls below -A_-, to the last bit; x_z does not lead it there. x stays within `FILTER_REACH` U along each axis,
     /// and c with it: a reference whose derivatives fit no motion cannot drive them away.
-    #[must_use]
-    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, greatest: f32) -> Filters {
+    pub fn advance(&self, filters: &Filters, smoothed: &Vector3<f32>, drive: &Vector3<f32>, max: f32) -> Filters {
         let Filters { command: c, intermediate: x, .. } = filters;
         let (mut drive, mut intermediate) = (*drive, x + drive * self.period);
-        let farthest = FILTER_REACH * greatest;
+        let farthest = FILTER_REACH * max;
         let near = intermediate.amax() <= farthest;
         if !near {
             cold_path();
-            intermediate = intermediate.map(|x| math::within(x, farthest));
+            intermediate = intermediate.map(|x| math::saturate(x, farthest));
             drive = (intermediate - x) / self.period;
         }
         let mut command = c + ((x - c) * self.towards + drive * self.ramp);
         if command.z < -self.a_down {
             cold_path();
             command.z = -self.a_down;
-            intermediate.z = math::greater(intermediate.z, -self.a_down);
+            intermediate.z = math::max(intermediate.z, -self.a_down);
         }
         Filters { command, intermediate, smoothed: *smoothed }
     }

@@ -22,13 +22,11 @@ pub struct Saturation {
 
 impl Saturation {
     /// For k and M.
-    #[must_use]
     pub fn new(gain: f32, level: f32) -> Self {
         Self { product: gain * level, level_squared: level * level, gain_squared: gain * gain }
     }
 
     /// What a vector or a number whose square is `square` is multiplied by.
-    #[must_use]
     pub fn factor(&self, square: f32) -> f32 {
         self.product / math::sqrt(self.level_squared + self.gain_squared * square)
     }

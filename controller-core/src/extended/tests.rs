@@ -9,6 +9,7 @@ mod attitude;
 mod budget;
 mod constants;
 mod defaults;
+mod direction_limiter;
 mod estimates;
 pub(crate) mod example;
 mod fallback;
@@ -17,7 +18,6 @@ mod late;
 mod position;
 mod saturation;
 mod thrust_range;
-mod turning;
 
 /// Xorshift, for tests that repeat to the bit.
 pub(crate) struct Random(pub u64);
@@ -30,12 +30,12 @@ impl Random {
         (self.0 >> 40) as f32 / 8_388_608.0 - 1.0
     }
 
-    pub fn between(&mut self, least: f32, greatest: f32) -> f32 {
-        least + (greatest - least) * 0.5 * (self.signed() + 1.0)
+    pub fn between(&mut self, min: f32, max: f32) -> f32 {
+        min + (max - min) * 0.5 * (self.signed() + 1.0)
     }
 
-    pub fn logarithmic(&mut self, least: f32, greatest: f32) -> f32 {
-        self.between(least.ln(), greatest.ln()).exp()
+    pub fn logarithmic(&mut self, min: f32, max: f32) -> f32 {
+        self.between(min.ln(), max.ln()).exp()
     }
 
     pub fn below(&mut self, count: usize) -> usize {

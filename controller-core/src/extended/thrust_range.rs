@@ -29,8 +29,8 @@ use nalgebra::{Vector2, Vector3};
 /// One rotor's part: f_min,i / b_T,i, f_max,i / b_T,i and beta_i.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Part {
-    least: f32,
-    greatest: f32,
+    min: f32,
+    max: f32,
     per_torque: Vector3<f32>,
 }
 
@@ -46,62 +46,58 @@ pub struct ThrustRange {
 
 impl ThrustRange {
     /// For `rotors`, if there are any, a margin and a greatest thrust in N, and the limit of yaw in N m.
-    #[must_use]
     pub fn new(rotors: Option<&Rotors>, margin: f32, thrust_max: f32, yaw_max: f32) -> Self {
         let mut parts = Vec::new();
         for (rotor, row) in rotors.into_iter().flat_map(|rotors| rotors.iter().zip(rotors.pseudo_inverse())) {
             let per_torque = Vector3::new(row.y / row.x, row.z / row.x, row.w / row.x).map(|x| x as f32);
-            let [least, greatest] =
-                [rotor.thrust_min, rotor.thrust_max].map(|thrust| (f64::from(thrust) / row.x) as f32);
+            let [min, max] = [rotor.thrust_min, rotor.thrust_max].map(|thrust| (f64::from(thrust) / row.x) as f32);
             // As many as there are rotors: it fits.
-            let _ = parts.push(Part { least, greatest, per_torque });
+            let _ = parts.push(Part { min, max, per_torque });
         }
         Self { rotors: parts, margin, thrust_max, yaw_max }
     }
 
     /// T nearest to `thrust`, N, and tau_3 nearest to `yaw`, N m, of which `braking` comes before thrust, for a torque
     /// about the tilt's axes that the budget allows and the thrust scale s; and how much of tau_3 either way there is.
-    #[must_use]
-    #[inline(always)] // see position.rs
-    pub fn admitted(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
-        let (mut least, mut most) = (self.margin, self.thrust_max);
+    #[inline(always)] // into the law's step
+    pub fn limited(&self, thrust: f32, tilt: &Vector2<f32>, [yaw, braking]: [f32; 2], scale: f32) -> (Wrench, f32) {
+        let (mut min, mut max) = (self.margin, self.thrust_max);
         for part in &self.rotors {
             let tilted = part.per_torque.xy().dot(tilt);
-            least = math::greater(least, scale * part.least + (self.margin - tilted));
+            min = math::max(min, scale * part.min + (self.margin - tilted));
             // Of the rotor's greatest, what tilting takes, or tilting and braking together if that is more.
-            let taken = math::greater(tilted, tilted + part.per_torque.z * braking);
-            most = math::lesser(most, scale * part.greatest - (taken + self.margin));
+            let taken = math::max(tilted, tilted + part.per_torque.z * braking);
+            max = math::min(max, scale * part.max - (taken + self.margin));
         }
         // A thrust or a yaw torque that is no number becomes the least one.
-        let thrust = math::lesser(math::greater(least, most), math::greater(least, thrust));
-        let [least, most] = self.yaw(thrust, tilt, scale);
-        let torque = Vector3::new(tilt.x, tilt.y, math::lesser(most, math::greater(least, yaw)));
-        (Wrench { thrust, torque }, math::lesser(most, -least))
+        let thrust = math::min(math::max(min, max), math::max(min, thrust));
+        let [min, max] = self.yaw(thrust, tilt, scale);
+        let torque = Vector3::new(tilt.x, tilt.y, math::min(max, math::max(min, yaw)));
+        (Wrench { thrust, torque }, math::min(max, -min))
     }
 
     /// The greatest share of a further torque about the tilt's axes, N m, beside the one that is spent, with which N is
     /// at most `thrust`, N, or what it is already.
-    #[must_use]
     #[inline(always)]
     pub fn share(&self, spent: &Vector2<f32>, wanted: &Vector2<f32>, thrust: f32, scale: f32) -> f32 {
-        let least = |part: &Part| scale * part.least + (self.margin - part.per_torque.xy().dot(spent));
+        let min = |part: &Part| scale * part.min + (self.margin - part.per_torque.xy().dot(spent));
         let raised = |part: &Part| -part.per_torque.xy().dot(wanted);
         let (mut floor, mut whole) = (self.margin, self.margin);
         for part in &self.rotors {
-            let least = least(part);
-            floor = math::greater(floor, least);
-            whole = math::greater(whole, least + raised(part));
+            let min = min(part);
+            floor = math::max(floor, min);
+            whole = math::max(whole, min + raised(part));
         }
-        let most = math::greater(thrust, floor);
-        if whole <= most {
+        let max = math::max(thrust, floor);
+        if whole <= max {
             return 1.0;
         }
         cold_path();
         let mut share = 1.0;
         for part in &self.rotors {
-            let (least, raised) = (least(part), raised(part));
-            if least + raised > most {
-                share = math::lesser(share, (most - least) / raised);
+            let (min, raised) = (min(part), raised(part));
+            if min + raised > max {
+                share = math::min(share, (max - min) / raised);
             }
         }
         share
@@ -110,7 +106,7 @@ impl ThrustRange {
     /// The interval of tau_3, N m, with which no rotor leaves its range; zero is inside.
     #[inline(always)]
     fn yaw(&self, thrust: f32, tilt: &Vector2<f32>, scale: f32) -> [f32; 2] {
-        let (mut least, mut most) = (-self.yaw_max, self.yaw_max);
+        let (mut min, mut max) = (-self.yaw_max, self.yaw_max);
         for part in &self.rotors {
             let share = thrust + part.per_torque.xy().dot(tilt);
             let per_torque = part.per_torque.z;
@@ -118,29 +114,26 @@ impl ThrustRange {
                 cold_path();
                 continue;
             }
-            let [a, b] = [scale * part.least + self.margin - share, scale * part.greatest - self.margin - share]
+            let [a, b] = [scale * part.min + self.margin - share, scale * part.max - self.margin - share]
                 .map(|left| left / per_torque);
             let (low, high) = if per_torque > 0.0 { (a, b) } else { (b, a) };
-            least = math::greater(least, low);
-            most = math::lesser(most, high);
+            min = math::max(min, low);
+            max = math::min(max, high);
         }
-        [math::lesser(least, 0.0), math::greater(most, 0.0)]
+        [math::min(min, 0.0), math::max(max, 0.0)]
     }
 
     /// N(tau), N, for a torque in N m and the thrust scale s.
-    #[must_use]
     #[inline(always)]
-    pub fn least(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let least = self.rotors.iter().map(|part| scale * part.least + (self.margin - part.per_torque.dot(torque)));
-        least.fold(self.margin, math::greater)
+    pub fn min_thrust(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
+        let min = self.rotors.iter().map(|part| scale * part.min + (self.margin - part.per_torque.dot(torque)));
+        min.fold(self.margin, math::max)
     }
 
     /// C(tau), N, likewise; at most T_max.
-    #[must_use]
     #[inline(always)]
-    pub fn greatest(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
-        let greatest =
-            self.rotors.iter().map(|part| scale * part.greatest - (part.per_torque.dot(torque) + self.margin));
-        greatest.fold(self.thrust_max, math::lesser)
+    pub fn max_thrust(&self, torque: &Vector3<f32>, scale: f32) -> f32 {
+        let max = self.rotors.iter().map(|part| scale * part.max - (part.per_torque.dot(torque) + self.margin));
+        max.fold(self.thrust_max, math::min)
     }
 }

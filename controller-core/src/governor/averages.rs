@@ -3,14 +3,14 @@
 //! With lengths N_1, N_2 in ticks the second difference of N_1 N_2 times the averaged acceleration is the command alpha
 //! at four delays with signs: a comb. It is what [`super::smoother`] sums up again, in integers, so nothing rounds.
 
-use super::limits::HISTORY;
+use super::limits::HISTORY_TICKS;
 use super::windows::Windows;
 use nalgebra::Vector3;
 
 /// The commands that the averages remember, and what they add up to. Length units and ticks.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Averages {
-    history: [Vector3<i32>; HISTORY],
+    history: [Vector3<i32>; HISTORY_TICKS],
     newest: usize,
     /// N_1, N_2 and their sum.
     delays: [usize; 3],
@@ -21,7 +21,7 @@ pub(super) struct Averages {
 impl Averages {
     /// Not designed yet, at rest at the origin.
     pub const NONE: Self = Self {
-        history: [Vector3::new(0, 0, 0); HISTORY],
+        history: [Vector3::new(0, 0, 0); HISTORY_TICKS],
         newest: 0,
         delays: [0; 3],
         commanded: Vector3::new(0, 0, 0),
@@ -43,7 +43,7 @@ impl Averages {
 
     /// Takes one tick of commanded acceleration; the second difference of N_1 N_2 times its averages.
     pub fn push(&mut self, acceleration: &Vector3<i32>) -> Vector3<i32> {
-        self.newest = (self.newest + 1) % HISTORY;
+        self.newest = (self.newest + 1) % HISTORY_TICKS;
         if let Some(slot) = self.history.get_mut(self.newest) {
             *slot = *acceleration;
         }
@@ -56,7 +56,7 @@ impl Averages {
 
     /// The command `delay` ticks ago.
     fn past(&self, delay: usize) -> Vector3<i32> {
-        self.history.get((self.newest + HISTORY - delay) % HISTORY).copied().unwrap_or_default()
+        self.history.get((self.newest + HISTORY_TICKS - delay) % HISTORY_TICKS).copied().unwrap_or_default()
     }
 
     /// The commanded position x_0.

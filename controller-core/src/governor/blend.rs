@@ -15,28 +15,28 @@
 //!
 //! over powers of T_b. The head is steered, so p is kept as what it is ahead of the head by.
 
-use super::envelope::{Envelope, Moving};
-use super::stream::{Point, Sought};
+use super::envelope::{Envelope, HeadMotion};
+use super::stream::{Point, StreamTarget};
 use crate::math;
 use nalgebra::Vector3;
 
 /// The greatest beta' to beta'''', times powers of T_b.
-const STEEPEST: [f32; 4] = [2.461, 9.373, 78.75, 622.0];
+const STEP_DERIVATIVES_MAX: [f32; 4] = [2.461, 9.373, 78.75, 622.0];
 
 /// The share of the bounds left by a stream that blending may need. More than one: each term counts with its greatest
 /// value, and these do not come together.
-const BLENDING: f32 = 1.2;
+const BLENDING_SHARE: f32 = 1.2;
 
 /// T_b: the longest, s; from one span of the averages on it is tried this much longer.
-const LONGEST: f32 = 40.0;
-const LONGER: f32 = 1.15;
+const DURATION_MAX_S: f32 = 40.0;
+const DURATION_FACTOR: f32 = 1.15;
 
 /// How far a stream was from the averages, and what it took of the bounds, at most, for some ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Watched {
     pub ticks: u32,
-    /// f to f''', SI units, and the first two with the vertical as [`super::direct`] counts it.
-    most: [f32; 4],
+    /// f to f''', SI units, and the first two with the vertical as [`super::stream_follower`] counts it.
+    max: [f32; 4],
     flat: [f32; 2],
     /// The share of the bounds.
     used: f32,
@@ -44,7 +44,7 @@ pub(super) struct Watched {
 
 impl Watched {
     /// Nothing yet.
-    pub const NONE: Self = Self { ticks: 0, most: [0.0; 4], flat: [0.0; 2], used: 0.0 };
+    pub const NONE: Self = Self { ticks: 0, max: [0.0; 4], flat: [0.0; 2], used: 0.0 };
 
     /// A tick later.
     pub fn later(&self) -> Self {
@@ -54,23 +54,23 @@ impl Watched {
     /// A tick later, in which the stream `used` this share of the bounds.
     pub fn with(&self, error: &Point, flat: [f32; 2], used: f32) -> Self {
         let Point { position, velocity, acceleration, jerk, .. } = error;
-        let [f, f1, f2, f3] = self.most;
-        let length = |most: f32, y: &Vector3<f32>| math::greater(most, math::sqrt(y.norm_squared()));
-        let most = [length(f, position), length(f1, velocity), length(f2, acceleration), length(f3, jerk)];
+        let [f, f1, f2, f3] = self.max;
+        let length = |max: f32, y: &Vector3<f32>| math::max(max, math::sqrt(y.norm_squared()));
+        let max = [length(f, position), length(f1, velocity), length(f2, acceleration), length(f3, jerk)];
         let ([across, along], [now, moving]) = (self.flat, flat);
         Self {
-            most,
-            flat: [math::greater(across, now), math::greater(along, moving)],
-            used: math::greater(self.used, used),
+            max,
+            flat: [math::max(across, now), math::max(along, moving)],
+            used: math::max(self.used, used),
             ..self.later()
         }
     }
 
     /// The shortest T_b, s, from one `span` on, whose terms fit into what is left of the bounds.
     fn duration(&self, envelope: &Envelope, span: f32) -> Option<f32> {
-        let left = BLENDING * (1.0 - self.used);
-        let [b1, b2, b3, b4] = STEEPEST;
-        let ([f, f1, f2, f3], [across, along]) = (self.most, self.flat);
+        let left = BLENDING_SHARE * (1.0 - self.used);
+        let [b1, b2, b3, b4] = STEP_DERIVATIVES_MAX;
+        let ([f, f1, f2, f3], [across, along]) = (self.max, self.flat);
         let fits = |duration: f32| {
             let x = 1.0 / duration;
             let along_x = |size: f32| Vector3::new(size, 0.0, 0.0);
@@ -79,12 +79,12 @@ impl Watched {
             let jerk = along_x((3.0 * b1 * f2 + (3.0 * b2 * f1 + b3 * f * x) * x) * x);
             let snap = along_x((4.0 * b1 * f3 + (6.0 * b2 * f2 + (4.0 * b3 * f1 + b4 * f * x) * x) * x) * x);
             let speed = math::sqrt(envelope.share_of_speed(&speed));
-            math::greater(envelope.used([&acceleration, &jerk, &snap]), speed) <= left
+            math::max(envelope.used([&acceleration, &jerk, &snap]), speed) <= left
         };
         let mut duration = span;
         while !fits(duration) {
-            duration *= LONGER;
-            if duration > LONGEST {
+            duration *= DURATION_FACTOR;
+            if duration > DURATION_MAX_S {
                 return None;
             }
         }
@@ -98,7 +98,7 @@ impl Watched {
             elapsed: 0.0,
             duration,
             ahead: zero,
-            moving: Moving { velocity: zero, acceleration: zero, difference: zero },
+            moving: HeadMotion { velocity: zero, acceleration: zero, difference: zero },
         })
     }
 }
@@ -111,18 +111,18 @@ pub(super) struct Blend {
     duration: f32,
     /// What p is ahead of the head by, m, and how that moves.
     ahead: Vector3<f32>,
-    moving: Moving,
+    moving: HeadMotion,
 }
 
 impl Blend {
     /// beta to beta''''.
     fn step(&self) -> [f32; 5] {
         let x = 1.0 / self.duration;
-        let u = math::between(self.elapsed * x, 0.0, 1.0);
+        let u = math::clamp(self.elapsed * x, 0.0, 1.0);
         let (q, r) = (u * (1.0 - u), 1.0 - 2.0 * u);
         let rate = x * x;
         // From the nearer end: the sum rounds less there.
-        let w = math::lesser(u, 1.0 - u);
+        let w = math::min(u, 1.0 - u);
         let square = w * w;
         let risen = square * square * w * (126.0 + w * (-420.0 + w * (540.0 + w * (-315.0 + w * 70.0))));
         [
@@ -135,10 +135,10 @@ impl Blend {
     }
 
     /// T, with the `head` at hand and the averages' `snap`, m/s^2 per tick squared.
-    pub fn target(&self, head: &Moving, sought: &Sought, snap: &Vector3<f32>, period: f32) -> Sought {
+    pub fn target(&self, head: &HeadMotion, sought: &StreamTarget, snap: &Vector3<f32>, period: f32) -> StreamTarget {
         let [b, b1, b2, b3, b4] = self.step();
-        let (per_tick, Sought { point, error }) = (1.0 / period, sought);
-        let Moving { velocity, acceleration, difference } = &self.moving;
+        let (per_tick, StreamTarget { point, error }) = (1.0 / period, sought);
+        let HeadMotion { velocity, acceleration, difference } = &self.moving;
         let jerk = difference * per_tick;
         let snap = snap * (per_tick * per_tick);
         let f = error.position - self.ahead;
@@ -161,7 +161,7 @@ impl Blend {
             snap: snap + f4 * b + f3 * (4.0 * b1) + f2 * (6.0 * b2) + f1 * (4.0 * b3) + f * b4,
             rate: point.rate * b,
         };
-        Sought { point, error }
+        StreamTarget { point, error }
     }
 
     /// A tick later, in which p's snap was greater than the head's by `snap`, m/s^2 per tick squared.
@@ -172,7 +172,7 @@ impl Blend {
         Self {
             elapsed: self.elapsed + period,
             ahead: self.ahead + (self.moving.velocity + velocity) * (0.5 * period),
-            moving: Moving { velocity, acceleration, difference },
+            moving: HeadMotion { velocity, acceleration, difference },
             ..*self
         }
     }

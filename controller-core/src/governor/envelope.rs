@@ -1,8 +1,8 @@
-//! The bounds that a head is kept in, tick by tick, whatever snap is wanted of it.
+//! The bounds that a head is kept in, tick by tick, whatever snap is desired.
 //!
 //! The head is a velocity v, an acceleration a, its difference d a tick, and the second difference q that is chosen
 //! each tick (d+ = d + q, a+ = a + d+). Required always: a in the cylinder C, |d| <= D, |q| <= Q, v in another
-//! cylinder. A head inside may be lost nevertheless: too fast to be stopped before the wall. So a *way out* is kept in
+//! cylinder. A head inside may be lost nevertheless: too fast to be stopped before the wall. So a *retreat* is kept at
 //! hand: a turn of some ticks with one constant q, then braking of d, straight, then a brought to zero, straight.
 //!
 //! - **Braking**: q = -Q d/|d|, at the end -d. The ticks that it takes add up to at most d |d|/(2 Q), so a moves along
@@ -13,7 +13,7 @@
 //! - **Speed**: until d is zero at most t_1 passes, and a is in the hull of these points p and r; then r fades to zero
 //!   evenly, which adds at most r t_2. So v stays in the hull of v, v + t_1 p and these moved by r t_2.
 //!
-//! A q is taken only if from where it leads there is a way out, and that one is kept. Otherwise the way out in hand is
+//! A q is taken only if from where it leads there is a retreat, and that one is kept. Otherwise the retreat at hand is
 //! followed. So the bounds hold for ever, by induction, however poor the guess of a turn; a poor guess gives way too
 //! early.
 
@@ -22,14 +22,14 @@ use crate::math;
 use nalgebra::Vector3;
 
 /// Relative room for rounding, of the head to whole units and of all this to single precision.
-const ROOM: f32 = 1e-4;
+const ROUNDING_MARGIN: f32 = 1e-4;
 
 /// The turn's direction: so much inwards, so much back.
-const INWARDS: f32 = 0.8;
-const BACK: f32 = 0.6;
+const TURN_INWARDS_WEIGHT: f32 = 0.8;
+const TURN_BACK_WEIGHT: f32 = 0.6;
 
-/// How often what is wanted is halved towards the way out before that is taken.
-const HALVINGS: u32 = 3;
+/// How often the desired snap is halved towards the retreat's before that is taken.
+const HALVINGS_MAX: u32 = 3;
 
 /// A cylinder about the vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ impl Cylinder {
     /// The square of the share that `y` takes of it.
     fn share(&self, y: &Vector3<f32>) -> f32 {
         let share = |square: f32, bound: f32| square / (bound * bound);
-        math::greater(share(y.xy().norm_squared(), self.horizontal), share(y.z * y.z, self.vertical))
+        math::max(share(y.xy().norm_squared(), self.horizontal), share(y.z * y.z, self.vertical))
     }
 
     /// The same with other measures.
@@ -68,13 +68,13 @@ pub(super) struct Bounds {
 
 /// The head at hand: m/s, m/s^2, m/s^2 per tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moving {
+pub(super) struct HeadMotion {
     pub velocity: Vector3<f32>,
     pub acceleration: Vector3<f32>,
     pub difference: Vector3<f32>,
 }
 
-impl Moving {
+impl HeadMotion {
     /// A tick later.
     fn after(&self, snap: &Vector3<f32>, period: f32) -> Self {
         let difference = self.difference + snap;
@@ -98,16 +98,16 @@ pub(super) struct Envelope {
     fading: f32,
 }
 
-/// A way out: a snap for some ticks, then braking, then a to zero.
+/// A retreat: a snap for some ticks, then braking, then a to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WayOut {
+pub(super) struct Retreat {
     snap: Vector3<f32>,
     ticks: u32,
     /// Whether braking has ended.
     braked: bool,
 }
 
-impl WayOut {
+impl Retreat {
     /// Braking at once.
     const STRAIGHT: Self = Self { snap: Vector3::new(0.0, 0.0, 0.0), ticks: 0, braked: false };
 }
@@ -129,23 +129,23 @@ impl Envelope {
     pub fn new(bounds: &Bounds, blur: f32, period: f32) -> Self {
         let Bounds { speed, acceleration, jerk, snap } = bounds;
         let turn = (0.25 * jerk / (snap * period)).max(1.0) as u32 as f32;
-        let greatest = acceleration.horizontal + acceleration.vertical;
+        let max = acceleration.horizontal + acceleration.vertical;
         let few = 4.0 * period;
         Self {
             period,
-            speed: speed.map(|speed| (speed * (1.0 - ROOM) - blur).max(0.0)),
-            acceleration: acceleration.map(|acceleration| acceleration * (1.0 - ROOM)),
-            jerk: jerk * period * (1.0 - ROOM),
-            snap: snap * period * period * (1.0 - ROOM),
+            speed: speed.map(|speed| (speed * (1.0 - ROUNDING_MARGIN) - blur).max(0.0)),
+            acceleration: acceleration.map(|acceleration| acceleration * (1.0 - ROUNDING_MARGIN)),
+            jerk: jerk * period * (1.0 - ROUNDING_MARGIN),
+            snap: snap * period * period * (1.0 - ROUNDING_MARGIN),
             turn,
             stopping: turn * period + jerk / snap + few,
-            fading: (greatest / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
+            fading: (max / jerk + jerk / snap) / (2.0 * BRAKING_SHARE * BRAKING_SHARE) + few,
         }
     }
 
     /// The greatest share of a bound that acceleration, jerk and snap take, SI units.
     pub fn used(&self, derivatives: [&Vector3<f32>; 3]) -> f32 {
-        math::sqrt(self.shares(derivatives).into_iter().fold(0.0, math::greater))
+        math::sqrt(self.shares(derivatives).into_iter().fold(0.0, math::max))
     }
 
     /// The squares of the shares of the bounds that acceleration, jerk and snap take, SI units.
@@ -174,38 +174,39 @@ impl Envelope {
     /// Where braking ends, and whether it stays inside.
     fn braked(&self, a: &Vector3<f32>, d: &Vector3<f32>) -> Option<Vector3<f32>> {
         let square = d.norm_squared();
-        let reach = a + d * (math::sqrt(square) / (2.0 * (1.0 - ROOM) * self.snap));
+        let reach = a + d * (math::sqrt(square) / (2.0 * (1.0 - ROUNDING_MARGIN) * self.snap));
         let inside = square <= self.jerk * self.jerk && self.acceleration.holds(&reach) && self.acceleration.holds(a);
         inside.then_some(reach)
     }
 
-    /// A way out, if one is known.
-    pub fn way_out(&self, head: &Moving) -> Option<WayOut> {
-        let Moving { velocity: v, acceleration: a, difference: d } = head;
+    /// A retreat, if one is known.
+    pub fn retreat(&self, head: &HeadMotion) -> Option<Retreat> {
+        let HeadMotion { velocity: v, acceleration: a, difference: d } = head;
         if let Some(reach) = self.braked(a, d) {
-            return self.is_slow(v, &[a, &reach], &reach).then_some(WayOut::STRAIGHT);
+            return self.is_slow(v, &[a, &reach], &reach).then_some(Retreat::STRAIGHT);
         }
         let inwards = -Vector3::new(a.x, a.y, 0.0);
-        let snap = unit(&(unit(&inwards) * INWARDS - unit(d) * BACK)) * ((1.0 - ROOM) * self.snap);
+        let snap = unit(&(unit(&inwards) * TURN_INWARDS_WEIGHT - unit(d) * TURN_BACK_WEIGHT))
+            * ((1.0 - ROUNDING_MARGIN) * self.snap);
         let n = self.turn;
         let middle = a + (d + snap * 0.5) * (0.5 * n);
         let turned = a + d * n + snap * (0.5 * n * (n + 1.0));
         let inside =
             d.norm_squared() <= self.jerk * self.jerk && self.acceleration.holds(a) && self.acceleration.holds(&middle);
         let reach = self.braked(&turned, &(d + snap * n)).filter(|_| inside)?;
-        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(WayOut {
+        self.is_slow(v, &[a, &middle, &turned, &reach], &reach).then_some(Retreat {
             snap,
             ticks: n as u32,
             braked: false,
         })
     }
 
-    /// The snap nearest to `wanted` that leaves a way out, and that way; with the way `out` in hand.
-    pub fn step(&self, head: &Moving, wanted: &Vector3<f32>, out: &WayOut) -> (Vector3<f32>, WayOut) {
-        let mut snap = self.limited(wanted);
-        let (fallback, after) = self.follow(head, out);
-        for _ in 0..HALVINGS {
-            if let Some(way) = self.way_out(&head.after(&snap, self.period)) {
+    /// The snap nearest to `desired` that leaves a retreat, and that one; with `retreat` at hand.
+    pub fn step(&self, head: &HeadMotion, desired: &Vector3<f32>, retreat: &Retreat) -> (Vector3<f32>, Retreat) {
+        let mut snap = self.limited(desired);
+        let (fallback, after) = self.follow(head, retreat);
+        for _ in 0..HALVINGS_MAX {
+            if let Some(way) = self.retreat(&head.after(&snap, self.period)) {
                 return (snap, way);
             }
             snap = (snap + fallback) * 0.5;
@@ -213,13 +214,13 @@ impl Envelope {
         (fallback, after)
     }
 
-    /// A tick of a way out, and what is left of it. It ends at rest from acceleration, and stays there.
-    pub fn follow(&self, head: &Moving, out: &WayOut) -> (Vector3<f32>, WayOut) {
-        let Moving { acceleration: a, difference: d, .. } = head;
-        if out.ticks > 0 {
-            return (out.snap, WayOut { ticks: out.ticks - 1, ..*out });
+    /// A tick of a retreat, and what is left of it. It ends at rest from acceleration, and stays there.
+    pub fn follow(&self, head: &HeadMotion, retreat: &Retreat) -> (Vector3<f32>, Retreat) {
+        let HeadMotion { acceleration: a, difference: d, .. } = head;
+        if retreat.ticks > 0 {
+            return (retreat.snap, Retreat { ticks: retreat.ticks - 1, ..*retreat });
         }
-        let braked = out.braked || *d == Vector3::zeros();
+        let braked = retreat.braked || *d == Vector3::zeros();
         let step = BRAKING_SHARE * self.snap;
         let distance = math::sqrt(a.norm_squared()) / step;
         let snap = if !braked || distance == 0.0 {
@@ -228,7 +229,7 @@ impl Envelope {
             let fastest = (step * approach_speed(distance)).min(BRAKING_SHARE * self.jerk);
             a * (-fastest / (distance * step)) - d
         };
-        (self.limited(&snap), WayOut { braked, ..*out })
+        (self.limited(&snap), Retreat { braked, ..*retreat })
     }
 
     /// A snap brought down to Q along its own direction.

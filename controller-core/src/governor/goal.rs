@@ -4,7 +4,7 @@ use super::stream::Stream;
 use nalgebra::Vector3;
 
 /// Setpoints that are nearer to each other, s, say nothing of how the acceleration changes.
-const AT_ONCE: f32 = 0.0015;
+const SAME_TIME_S: f32 = 0.0015;
 
 /// What the position is to do: be at a point, or, on the axes without one, move. What moves is renewed or stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ impl Goal {
         match last.filter(|last| last.is_point() && held == [true; 3]) {
             None => Stream::new(velocity, acceleration),
             // Two at once: too little time to tell a change from an error of its own.
-            Some(last) if time < AT_ONCE => Stream { velocity, acceleration, ..last.stream },
+            Some(last) if time < SAME_TIME_S => Stream { velocity, acceleration, ..last.stream },
             Some(last) => last.stream.followed_by(velocity, acceleration, time),
         }
     }

@@ -16,10 +16,10 @@ use crate::reference::phase::swing;
 use nalgebra::Vector3;
 
 /// Turns slower than this, rad/s, are parabolas to within single precision.
-const SLOWEST: f32 = 1e-2;
+const TURNING_RATE_MIN_RAD_PER_S: f32 = 1e-2;
 
 /// Speeds squared below this, m^2/s^2, have no direction to turn.
-const STILL: f32 = 1e-6;
+const SPEED_SQUARED_MIN_M2_PER_S2: f32 = 1e-6;
 
 /// The share of the acceleration bound that following a circle may take; the rest is for getting onto it.
 const CIRCLING_SHARE: f32 = 0.9;
@@ -40,13 +40,18 @@ impl Lead {
     pub const NONE: Self = Self { delay: 0.0, variance: 0.0, acceleration: 0.0 };
 
     /// How far ahead of where a point was `age` seconds ago the command must be (m), and how fast it must move (m/s).
-    pub fn of(&self, velocity: &Vector3<f32>, acceleration: &Vector3<f32>, age: f32) -> (Vector3<f32>, Vector3<f32>) {
+    pub fn ahead_and_velocity(
+        &self,
+        velocity: &Vector3<f32>,
+        acceleration: &Vector3<f32>,
+        age: f32,
+    ) -> (Vector3<f32>, Vector3<f32>) {
         let lead = self.delay + age;
         let spread = 0.5 * (lead * lead - self.variance);
         let (v, a) = (velocity.xy(), acceleration.xy());
         let speed_squared = v.norm_squared();
         let turning = v.x * a.y - v.y * a.x;
-        if speed_squared < STILL || turning.abs() <= SLOWEST * speed_squared {
+        if speed_squared < SPEED_SQUARED_MIN_M2_PER_S2 || turning.abs() <= TURNING_RATE_MIN_RAD_PER_S * speed_squared {
             return (velocity * lead + acceleration * spread, velocity + acceleration * lead);
         }
         // Faster than 1/sigma the averages leave too little of a circle to make up for.

@@ -1,13 +1,13 @@
 //! The governor's own limits, beside the bounds of the reference, and their ranges.
 
 /// Ticks of commands remembered: what the three averages may span together.
-pub(super) const HISTORY: usize = 512;
+pub(super) const HISTORY_TICKS: usize = 512;
 
 /// The longest last average, ticks.
-pub(super) const LAST: usize = HISTORY / 4;
+pub(super) const LAST_AVERAGE_MAX_TICKS: usize = HISTORY_TICKS / 4;
 
 /// The greatest speed limit and starting speed, m/s.
-pub const SPEED_RANGE: f32 = 256.0;
+pub const SPEED_RANGE_M_PER_S: f32 = 256.0;
 
 /// What the governor needs beyond the bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -45,12 +45,12 @@ impl Cylinder {
 
 /// `y` as single precision has it.
 fn single(y: &Vector3<i64>) -> Vector3<f32> {
-    y.map(math::single)
+    y.map(math::i64_to_f32)
 }
 
 /// `y` with its measure brought down to `to`, rounded towards zero; as it is if its measure is one or less.
 fn shortened(y: &Vector3<i64>, measure: f32, to: f32) -> Vector3<i64> {
-    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::whole) }
+    if measure <= 1.0 { *y } else { (single(y) * (to / measure)).map(math::f32_to_i64) }
 }
 
 /// The law, in length units and ticks.
@@ -87,14 +87,14 @@ impl Pursuit {
     /// (units per tick squared): the greatest along `error` from which braking ends on it. Braking is planned with what
     /// following the target leaves.
     pub fn approach(&self, error: &Vector3<i64>, feed: &Vector3<i64>, acceleration: &Vector3<f32>) -> Vector3<i64> {
-        let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(LEAST_SHARE);
+        let share = (BRAKING_SHARE - self.accelerations.measure(acceleration)).max(CLOSING_SHARE_MIN);
         let distance = self.accelerations.measure(&single(error)) / share;
         feed + shortened(error, distance, approach_speed(distance))
     }
 }
 
 /// The share of the acceleration with which targets are closed in on that take all of it.
-const LEAST_SHARE: f32 = 0.1;
+const CLOSING_SHARE_MIN: f32 = 0.1;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use crate::state::check_vectors;
 use nalgebra::Vector3;
 
 /// The greatest magnitude of a setpoint's or a starting position's component, m.
-pub const POSITION_RANGE: f32 = 1e7;
+pub const POSITION_RANGE_M: f32 = 1e7;
 
 /// Where to be, or how to move. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ pub enum Motion {
 
 /// Which way to point. World frame, counter-clockwise from x seen from above.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Turn {
+pub enum HeadingSetpoint {
     /// As commanded before: an angle on the way is still turned to, a rate still runs out.
     Keep,
     /// Turn to an angle, the shorter way round; any real number of radians is an angle.
@@ -57,7 +57,7 @@ pub struct Setpoint {
     /// Position, velocity, or both with feed-forward.
     pub motion: Motion,
     /// Heading.
-    pub turn: Turn,
+    pub turn: HeadingSetpoint,
 }
 
 /// A setpoint taken apart.
@@ -93,13 +93,13 @@ impl Setpoint {
             Motion::Mixed { position, velocity } => (position, velocity, still),
         };
         let turn = match self.turn {
-            Turn::Keep => None,
-            Turn::Angle { angle, rate } => Some((Some(angle), rate)),
-            Turn::Rate(rate) => Some((None, rate)),
+            HeadingSetpoint::Keep => None,
+            HeadingSetpoint::Angle { angle, rate } => Some((Some(angle), rate)),
+            HeadingSetpoint::Rate(rate) => Some((None, rate)),
         };
         let (angle, rate) = turn.unwrap_or_default();
         check_vectors(&[
-            (&Vector3::from(position.map(Option::unwrap_or_default)), POSITION_RANGE, "setpoint.position"),
+            (&Vector3::from(position.map(Option::unwrap_or_default)), POSITION_RANGE_M, "setpoint.position"),
             (&velocity, DERIVATIVE_RANGE, "setpoint.velocity"),
             (&acceleration, DERIVATIVE_RANGE, "setpoint.acceleration"),
             (&Vector3::repeat(angle.unwrap_or_default()), DERIVATIVE_RANGE, "setpoint.yaw"),

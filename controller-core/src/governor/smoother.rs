@@ -13,10 +13,10 @@
 //!
 //! All sums carry the factor N = N_1 N_2 N_3 of the averages: nothing is divided, nothing rounds, nothing drifts.
 
-use super::limits::LAST;
+use super::limits::LAST_AVERAGE_MAX_TICKS;
 use super::steady::{Outcome, Steady};
 use super::windows::Windows;
-use crate::math::{single, whole};
+use crate::math::{f32_to_i64, i64_to_f32};
 use nalgebra::Vector3;
 
 /// Position and derivatives at a knot of the spline: of one axis, or of all three.
@@ -94,20 +94,20 @@ impl Axis {
         *first += *second;
         self.part += *first - 2 * *second + *third;
         // Whole units go over to the place. How many need not be exact: what is left goes over in the next ticks.
-        let units = whole(single(self.part) * scales.per_product);
+        let units = f32_to_i64(i64_to_f32(self.part) * scales.per_product);
         self.place += units;
         self.part -= units * scales.product;
     }
 
     fn knot(&self, scales: &Scales) -> Derivatives<f32> {
-        let [first, second, third, fourth] = self.difference.map(single);
+        let [first, second, third, fourth] = self.difference.map(i64_to_f32);
         let here = second - third;
         // The central third difference.
         let around = third - 0.5 * fourth;
-        let part = (single(self.part) + 0.25 * here + fourth / 120.0) * scales.per_product;
+        let part = (i64_to_f32(self.part) + 0.25 * here + fourth / 120.0) * scales.per_product;
         let Derivatives { position, velocity, acceleration, jerk, snap } = &scales.knot;
         Derivatives {
-            position: single(self.place) * position + part * position,
+            position: i64_to_f32(self.place) * position + part * position,
             velocity: (first - second - 0.5 * here + around / 12.0) * velocity,
             acceleration: (here + fourth / 6.0) * acceleration,
             jerk: around * jerk,
@@ -128,7 +128,7 @@ struct Scales {
 /// The filter's memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Smoother {
-    history: [Vector3<i32>; LAST],
+    history: [Vector3<i32>; LAST_AVERAGE_MAX_TICKS],
     newest: usize,
     /// N_3.
     length: usize,
@@ -139,7 +139,7 @@ pub(super) struct Smoother {
 impl Smoother {
     /// Not designed yet, at rest at the origin.
     pub const NONE: Self = Self {
-        history: [Vector3::new(0, 0, 0); LAST],
+        history: [Vector3::new(0, 0, 0); LAST_AVERAGE_MAX_TICKS],
         newest: 0,
         length: 0,
         scales: Scales {
@@ -184,14 +184,14 @@ impl Smoother {
     /// ticks.
     pub fn steady(&self, windows: &Windows) -> [Steady; 3] {
         self.axes.map(|Axis { difference: [first, second, ..], place, part, .. }| {
-            Steady::of(&Outcome { place, part, first, second }, windows)
+            Steady::from_outcome(&Outcome { place, part, first, second }, windows)
         })
     }
 
     /// Advances by one tick of the head's snap: its second difference.
     pub fn push(&mut self, snap: &Vector3<i32>) {
-        self.newest = (self.newest + 1) % LAST;
-        let oldest = (self.newest + LAST - self.length) % LAST;
+        self.newest = (self.newest + 1) % LAST_AVERAGE_MAX_TICKS;
+        let oldest = (self.newest + LAST_AVERAGE_MAX_TICKS - self.length) % LAST_AVERAGE_MAX_TICKS;
         // Read first: a window as long as the history drops what is about to be overwritten.
         let dropped = self.history.get(oldest).copied().unwrap_or_default();
         if let Some(slot) = self.history.get_mut(self.newest) {

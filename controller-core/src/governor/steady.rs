@@ -59,7 +59,7 @@ impl Steady {
     }
 
     /// The command that comes out as nearly like `outcome` as whole units can.
-    pub fn of(outcome: &Outcome, windows: &Windows) -> Self {
+    pub fn from_outcome(outcome: &Outcome, windows: &Windows) -> Self {
         let product = windows.product();
         let nearest = |sum: i64| (sum + product / 2).checked_div_euclid(product).unwrap_or(0);
         let (mean, _) = moments(windows);

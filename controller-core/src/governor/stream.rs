@@ -18,16 +18,16 @@ use nalgebra::Vector3;
 
 /// Turns slower than this, rad/s, are zero to within single precision; faster ones are those of points that nearly
 /// rest, and do not last.
-const SLOWEST: f32 = 1e-2;
-const FASTEST: f32 = 5.0;
+const TURNING_RATE_MIN_RAD_PER_S: f32 = 1e-2;
+const TURNING_RATE_MAX_RAD_PER_S: f32 = 5.0;
 
 /// Speeds squared below this, m^2/s^2, have no direction to turn.
-const STILL: f32 = 1e-6;
+const SPEED_SQUARED_MIN_M2_PER_S2: f32 = 1e-6;
 
 /// The time in which b settles, s, and the longest between two setpoints that say something of c: not much longer, so
 /// that corrections die out however the two change.
-const SETTLING: f32 = 0.1;
-const LONGEST: f32 = 0.3;
+const SNAP_SETTLING_S: f32 = 0.1;
+const INTERVAL_MAX_S: f32 = 0.3;
 
 /// Velocity and acceleration of a setpoint, c and b. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ pub(super) struct Point {
 
 /// A stream's point, and what it is ahead of the head by; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sought {
+pub(super) struct StreamTarget {
     pub point: Point,
     pub error: Point,
 }
@@ -73,14 +73,14 @@ impl Stream {
     pub fn followed_by(&self, velocity: Vector3<f32>, acceleration: Vector3<f32>, time: f32) -> Self {
         let (turned, across) = turning(&self.velocity, &self.acceleration);
         let rests = self.velocity == Vector3::zeros() && self.acceleration == Vector3::zeros();
-        if rests || time > LONGEST {
+        if rests || time > INTERVAL_MAX_S {
             return Self::new(velocity, acceleration);
         }
         let expected = self.ahead(time);
         // What jerk and snap were other than expected.
         let missing = (acceleration - expected.acceleration) / time;
         let is_known = self.change != Vector3::zeros();
-        let bent = if is_known { missing / math::greater(time, SETTLING) } else { Vector3::zeros() };
+        let bent = if is_known { missing / math::max(time, SNAP_SETTLING_S) } else { Vector3::zeros() };
         let jerk = expected.jerk + missing + bent * (0.5 * time);
         // Turned as far as turning explains the jerk.
         let turn = math::sin_cos_turns(swing(expected.rate * time));
@@ -118,7 +118,9 @@ impl Stream {
 fn turning(v: &Vector3<f32>, a: &Vector3<f32>) -> (f32, Vector3<f32>) {
     let square = v.xy().norm_squared();
     let turning = v.x * a.y - v.y * a.x;
-    let turns = square > STILL && turning.abs() > SLOWEST * square && turning.abs() < FASTEST * square;
+    let turns = square > SPEED_SQUARED_MIN_M2_PER_S2
+        && turning.abs() > TURNING_RATE_MIN_RAD_PER_S * square
+        && turning.abs() < TURNING_RATE_MAX_RAD_PER_S * square;
     let rate = if turns { turning / square } else { 0.0 };
     (rate, quarter(v) * rate)
 }

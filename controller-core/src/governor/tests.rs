@@ -35,7 +35,7 @@ pub(super) fn governor() -> &'static mut Governor {
 }
 
 pub(super) fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
-    Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
+    Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: HeadingSetpoint::Keep }
 }
 
 /// Seconds until at rest, and the last reference.
@@ -52,12 +52,12 @@ pub(super) fn run(governor: &mut Governor) -> (f32, Reference) {
 
 #[test]
 fn ten_metres_take_less_than_six_and_a_half_seconds() {
-    for (target, most) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
+    for (target, max) in [(10.0, 6.5), (1.0, 3.7), (0.1, 2.8)] {
         let governor = governor();
         governor.accept(&go_to(target, 0.0, 0.0)).unwrap();
         let (time, last) = run(governor);
         assert_eq!(last.position, Vector3::new(target, 0.0, 0.0));
-        assert!(time < most, "{target} m took {time} s");
+        assert!(time < max, "{target} m took {time} s");
     }
 }
 
@@ -65,7 +65,7 @@ fn ten_metres_take_less_than_six_and_a_half_seconds() {
 fn a_half_turn_takes_less_than_four_seconds_and_stays_on_its_shorter_side() {
     for (angle, side) in [(3.1, 1.0), (-3.1, -1.0), (3.3, -1.0), (-40.0 * core::f32::consts::TAU + 2.0, 1.0)] {
         let governor = governor();
-        let setpoint = Setpoint { turn: Turn::Angle { angle, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) };
+        let setpoint = Setpoint { turn: HeadingSetpoint::Angle { angle, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) };
         governor.accept(&setpoint).unwrap();
         assert!((0..30).map(|_| governor.tick().heading.rate() * side).last().unwrap() > 0.1);
         let (time, last) = run(governor);
@@ -79,7 +79,8 @@ fn a_half_turn_takes_less_than_four_seconds_and_stays_on_its_shorter_side() {
 #[test]
 fn a_velocity_is_reached_held_and_left_when_it_is_not_renewed() {
     let governor = governor();
-    let setpoint = Setpoint { motion: Motion::Velocity(Vector3::new(1.0, -2.0, 0.3)), turn: Turn::Rate(0.4) };
+    let setpoint =
+        Setpoint { motion: Motion::Velocity(Vector3::new(1.0, -2.0, 0.3)), turn: HeadingSetpoint::Rate(0.4) };
     for _ in 0..600 {
         governor.accept(&setpoint).unwrap();
         governor.tick();
@@ -115,7 +116,7 @@ fn at_any_rate_the_reference_takes_the_same_way_and_stops_as_long_after_the_last
         let governor = Governor::new(&TYPICAL, &GovernorLimits::default(), 1.0 / f32::from(rate), memory()).unwrap();
         let tick = |number: u16| {
             if number.is_multiple_of(rate) && number < 3 * rate {
-                governor.accept(&Setpoint { motion, turn: Turn::Rate(0.4) }).unwrap();
+                governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Rate(0.4) }).unwrap();
             }
             let reference = governor.tick();
             assert!(TYPICAL.contain(&reference, 0.0), "{rate} Hz: {reference:?}");
@@ -143,7 +144,7 @@ fn a_limit_on_the_speed_beyond_the_bounds_does_not_count() {
     let mut fastest = 0.0_f32;
     for _ in 0..1_000 {
         let motion = Motion::Velocity(Vector3::new(6.0, -8.0, 0.0));
-        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         let reference = governor.tick();
         assert!(TYPICAL.contain(&reference, 0.0), "{reference:?}");
         fastest = fastest.max(reference.velocity.norm());
@@ -156,7 +157,7 @@ fn position_on_some_axes_and_velocity_on_the_others_are_reached_together() {
     let governor = governor();
     let motion = Motion::Mixed { position: [None, None, Some(2.0)], velocity: Vector3::new(1.0, -0.5, 0.0) };
     for _ in 0..900 {
-        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         assert!(TYPICAL.contain(&governor.tick(), 0.0));
     }
     let reference = governor.tick();
@@ -168,7 +169,7 @@ fn position_on_some_axes_and_velocity_on_the_others_are_reached_together() {
     // A place is gone to while another axis moves on.
     let motion = Motion::Mixed { position: [Some(1.0), Some(-3.0), None], velocity: Vector3::new(0.0, 0.0, 0.4) };
     for _ in 0..1_500 {
-        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         governor.tick();
     }
     let reference = governor.tick();
@@ -187,7 +188,9 @@ fn a_moving_point_is_followed_without_lag() {
             let position = velocity * time + acceleration * (0.5 * time * time);
             let velocity = velocity + acceleration * time;
             let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
-            governor.accept(&Setpoint { motion, turn: Turn::Angle { angle: 0.3 * time, rate: 0.3 } }).unwrap();
+            governor
+                .accept(&Setpoint { motion, turn: HeadingSetpoint::Angle { angle: 0.3 * time, rate: 0.3 } })
+                .unwrap();
         }
         let reference = governor.tick();
         let time = time + PERIOD;
@@ -213,13 +216,16 @@ fn a_setpoint_that_is_not_a_number_is_refused_by_name_and_changes_nothing() {
         (
             Setpoint {
                 motion: Motion::Mixed { position: [None, None, Some(nan)], velocity: Vector3::zeros() },
-                turn: Turn::Keep,
+                turn: HeadingSetpoint::Keep,
             },
             "setpoint.position",
         ),
-        (Setpoint { motion: Motion::Velocity(Vector3::new(nan, 0.0, 0.0)), turn: Turn::Keep }, "setpoint.velocity"),
-        (Setpoint { turn: Turn::Angle { angle: nan, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw"),
-        (Setpoint { turn: Turn::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),
+        (
+            Setpoint { motion: Motion::Velocity(Vector3::new(nan, 0.0, 0.0)), turn: HeadingSetpoint::Keep },
+            "setpoint.velocity",
+        ),
+        (Setpoint { turn: HeadingSetpoint::Angle { angle: nan, rate: 0.0 }, ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw"),
+        (Setpoint { turn: HeadingSetpoint::Rate(f32::INFINITY), ..go_to(0.0, 0.0, 0.0) }, "setpoint.yaw_rate"),
     ] {
         assert_eq!(governor.accept(&setpoint), Err(InputError::NotFinite { field }));
     }
@@ -235,7 +241,9 @@ fn a_flight_starts_anew_at_the_given_state_and_keeps_nothing_of_the_last() {
         let (sin, cos) = (core::f32::consts::TAU * turn as f32 / 48.0).sin_cos();
         let heading = Heading::new(Vector2::new(cos, sin), 0.3, -0.2).unwrap();
         let (governor, fresh) = (governor(), governor());
-        governor.accept(&Setpoint { turn: Turn::Angle { angle: 1.0, rate: 0.0 }, ..go_to(9.0, 0.0, 0.0) }).unwrap();
+        governor
+            .accept(&Setpoint { turn: HeadingSetpoint::Angle { angle: 1.0, rate: 0.0 }, ..go_to(9.0, 0.0, 0.0) })
+            .unwrap();
         (0..100).for_each(|_| _ = governor.tick());
         governor.start(&start, &Vector3::zeros(), &heading).unwrap();
         fresh.start(&start, &Vector3::zeros(), &heading).unwrap();
@@ -317,11 +325,11 @@ fn the_farthest_targets_in_the_finest_units_stay_within_the_integers() {
         let governor = Governor::new(&weak, &patient, PERIOD, memory()).unwrap();
         let all = |range: f32| Vector3::repeat(sign * range);
         let motion = Motion::PositionVelocityAcceleration {
-            position: all(0.99 * POSITION_RANGE),
+            position: all(0.99 * POSITION_RANGE_M),
             velocity: all(0.0),
             acceleration: all(0.99 * crate::reference::DERIVATIVE_RANGE),
         };
-        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         for _ in 0..7_000 {
             let reference = governor.tick();
             assert!(weak.contain(&reference, 1e-5) && reference.position.x * sign >= 0.0, "{reference:?}");

@@ -12,24 +12,24 @@
 //! So T_1 = max(D/K_j, sqrt(2D/K_s)), T_2 = 2D/(K_s T_1): the least T_1 + T_2 that satisfies both. Should the windows
 //! not fit the memory, the authority A is lowered until they do: slower, never beyond a bound.
 
-use super::limits::{GovernorLimits, HISTORY, LAST, SPEED_RANGE};
+use super::limits::{GovernorLimits, HISTORY_TICKS, LAST_AVERAGE_MAX_TICKS, SPEED_RANGE_M_PER_S};
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
 use crate::reference::ReferenceBounds;
 
 /// Relative room left below each bound for single-precision rounding of the emitted numbers (about 20 roundings of
 /// 6e-8 lie between an exact integer and a Euclidean norm).
-pub(super) const ROUNDING_ROOM: f32 = 4e-6;
+pub(super) const ROUNDING_MARGIN: f32 = 4e-6;
 
 /// Greatest integer value of a commanded acceleration: single precision has every whole number up to it, a comb of four
 /// still fits 32 bits, three averages 64.
-const GREATEST_LEVEL: f32 = 16_777_216.0;
+const LEVEL_MAX: f32 = 16_777_216.0;
 
 /// Fewest integer steps from zero to an acceleration bound.
-const FEWEST_LEVELS: f32 = 64.0;
+const LEVELS_MIN: f32 = 64.0;
 
-/// The finest length unit is 2^-38 m: positions up to [`super::POSITION_RANGE`] still fit 64 bits.
-const FINEST_EXPONENT: u32 = 38;
+/// The finest length unit is 2^-38 m: positions up to [`super::POSITION_RANGE_M`] still fit 64 bits.
+const UNIT_EXPONENT_MAX: u32 = 38;
 
 /// Windows, and the integer scales that go with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,10 +51,14 @@ impl Windows {
     /// The windows for `bounds`, all of them positive, at `period` seconds a tick.
     pub fn design(bounds: &ReferenceBounds, limits: &GovernorLimits, period: f32) -> Result<Self, ParameterError> {
         let third = (2 * ticks(0.5 * limits.snap_ramp, period)).max(2);
-        require(third <= LAST, "governor.snap_ramp", Reason::Above(LAST as f32 * period))?;
-        let mut share = 1.0 - ROUNDING_ROOM;
+        require(
+            third <= LAST_AVERAGE_MAX_TICKS,
+            "governor.snap_ramp",
+            Reason::Above(LAST_AVERAGE_MAX_TICKS as f32 * period),
+        )?;
+        let mut share = 1.0 - ROUNDING_MARGIN;
         let mut fitted = Self::lengths(bounds, share, period, third);
-        for _ in 0..FITTING_STEPS {
+        for _ in 0..FITTING_STEPS_MAX {
             if fitted.is_some() {
                 break;
             }
@@ -70,10 +74,10 @@ impl Windows {
         let (horizontal, vertical) = (bounds.horizontal_acceleration, bounds.vertical_acceleration);
         let diameter = 2.0 * share * math::sqrt(horizontal * horizontal + vertical * vertical);
         // Bounds shrunk by the room for rounding, as the authority is.
-        let (jerk, snap) = (bounds.jerk * (1.0 - ROUNDING_ROOM), bounds.snap * (1.0 - ROUNDING_ROOM));
+        let (jerk, snap) = (bounds.jerk * (1.0 - ROUNDING_MARGIN), bounds.snap * (1.0 - ROUNDING_MARGIN));
         let first = ticks((diameter / jerk).max(math::sqrt(2.0 * diameter / snap)), period);
         let second = ticks(2.0 * diameter / (snap * first as f32 * period), period);
-        (first.saturating_add(second).saturating_add(third) < HISTORY).then_some([first, second, third])
+        (first.saturating_add(second).saturating_add(third) < HISTORY_TICKS).then_some([first, second, third])
     }
 
     /// Chooses the length unit: as fine as the integers allow.
@@ -84,10 +88,11 @@ impl Windows {
         let product: usize = lengths.iter().product();
         let (product, total) = (product as f32, total as f32);
         // The greatest sums: of speed, and of what a steady acceleration trails by. Kept below 2^61.
-        let sums = (4.0 * SPEED_RANGE * period * product).max(horizontal.max(vertical) * product * total * total);
-        let mut per_metre = (1_u64 << FINEST_EXPONENT) as f32;
-        for _ in 0..FINEST_EXPONENT {
-            if horizontal.max(vertical) * per_metre <= GREATEST_LEVEL && sums * per_metre < (1_u64 << 61) as f32 {
+        let sums =
+            (4.0 * SPEED_RANGE_M_PER_S * period * product).max(horizontal.max(vertical) * product * total * total);
+        let mut per_metre = (1_u64 << UNIT_EXPONENT_MAX) as f32;
+        for _ in 0..UNIT_EXPONENT_MAX {
+            if horizontal.max(vertical) * per_metre <= LEVEL_MAX && sums * per_metre < (1_u64 << 61) as f32 {
                 break;
             }
             per_metre *= 0.5;
@@ -96,8 +101,8 @@ impl Windows {
             (horizontal, "reference_bounds.horizontal_acceleration"),
             (vertical, "reference_bounds.vertical_acceleration"),
         ] {
-            let least = FEWEST_LEVELS / (per_metre * share * period * period);
-            require(level * per_metre >= FEWEST_LEVELS, field, Reason::Below(least))?;
+            let min = LEVELS_MIN / (per_metre * share * period * period);
+            require(level * per_metre >= LEVELS_MIN, field, Reason::Below(min))?;
         }
         // Converting to an integer rounds towards zero.
         let whole = |level: f32| (level * per_metre) as u32 as f32;
@@ -134,11 +139,11 @@ impl Windows {
 }
 
 /// How often the authority may be lowered by 3 %: down to about 2e-4 of the bound.
-const FITTING_STEPS: usize = 280;
+const FITTING_STEPS_MAX: usize = 280;
 
 /// The least whole number of ticks that lasts `duration` seconds, at least one.
 pub(super) fn ticks(duration: f32, period: f32) -> usize {
-    let exact = duration / period * (1.0 + ROUNDING_ROOM);
+    let exact = duration / period * (1.0 + ROUNDING_MARGIN);
     let whole = exact as usize;
     whole.saturating_add(usize::from((whole as f32) < exact)).max(1)
 }

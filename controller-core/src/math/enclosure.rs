@@ -28,7 +28,7 @@ impl Enclosure {
     /// From the least to the greatest of some, moved outwards by one number.
     fn around(ends: [f64; 4]) -> Self {
         let [first, rest @ ..] = ends;
-        Self::outwards(rest.into_iter().fold(first, math::lesser_f64), rest.into_iter().fold(first, math::greater_f64))
+        Self::outwards(rest.into_iter().fold(first, math::min_f64), rest.into_iter().fold(first, math::max_f64))
     }
 
     /// Itself, if it has both ends.
@@ -40,7 +40,7 @@ impl Enclosure {
     fn square(self) -> Self {
         let magnitude = self.abs();
         let Self { lower, upper } = magnitude * magnitude;
-        Self { lower: math::greater_f64(lower, 0.0), upper }
+        Self { lower: math::max_f64(lower, 0.0), upper }
     }
 
     /// x (x^2 - p) - q at a point.
@@ -135,27 +135,27 @@ impl Div<f64> for Enclosure {
 }
 
 /// Terms of the exponential's series, and the greatest |x| they are for: the remainder is below |x|^11.
-const TERMS: u32 = 11;
-const SMALL: f64 = 1.0 / 64.0;
+const SERIES_TERMS: u32 = 11;
+const SERIES_ARGUMENT_MAX: f64 = 1.0 / 64.0;
 
 /// How often an argument of the exponential may be halved to be small.
-const HALVINGS: u32 = 1_024;
+const HALVINGS_MAX: u32 = 1_024;
 
 /// How far on either side of a root or a logarithm its confirmation is tried, from near to far.
-const WIDTHS: [f64; 5] = [1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
+const CONFIRMATION_WIDTHS: [f64; 5] = [1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
 
 /// e^x: the series about zero, after x was halved until it is small; then squared as often.
 fn exponential(x: f64) -> Enclosure {
     let (mut small, mut halvings) = (x, 0);
-    while small.abs() > SMALL && halvings < HALVINGS {
+    while small.abs() > SERIES_ARGUMENT_MAX && halvings < HALVINGS_MAX {
         // Exact: a power of two. Arguments that could fall below the normal numbers are small already.
         small *= 0.5;
         halvings += 1;
     }
-    if small.abs() <= SMALL {
+    if small.abs() <= SERIES_ARGUMENT_MAX {
         let point = Enclosure::from(small);
         let one = Enclosure::from(1.0);
-        let series = (1..TERMS).rev().fold(one, |sum, term| one + point * sum / f64::from(term));
+        let series = (1..SERIES_TERMS).rev().fold(one, |sum, term| one + point * sum / f64::from(term));
         // What follows is below |x|^11 / 11! (1 + |x| + …), and |x|^11 is below |x| / 64^10.
         let rest = small.abs() * 1e-18;
         let sum = series + Enclosure { lower: -rest, upper: rest };
@@ -175,7 +175,7 @@ fn logarithm(x: f64) -> Enclosure {
         let inside = exponential(lower).upper <= argument.lower && argument.upper <= exponential(upper).lower;
         inside.then_some(Enclosure { lower, upper })
     };
-    WIDTHS.iter().find_map(confirmed).unwrap_or(Enclosure::UNDEFINED)
+    CONFIRMATION_WIDTHS.iter().find_map(confirmed).unwrap_or(Enclosure::UNDEFINED)
 }
 
 impl Real for Enclosure {
@@ -188,11 +188,11 @@ impl Real for Enclosure {
     }
 
     fn greater(self, other: Self) -> Self {
-        Self { lower: math::greater_f64(self.lower, other.lower), upper: math::greater_f64(self.upper, other.upper) }
+        Self { lower: math::max_f64(self.lower, other.lower), upper: math::max_f64(self.upper, other.upper) }
     }
 
     fn lesser(self, other: Self) -> Self {
-        Self { lower: math::lesser_f64(self.lower, other.lower), upper: math::lesser_f64(self.upper, other.upper) }
+        Self { lower: math::min_f64(self.lower, other.lower), upper: math::min_f64(self.upper, other.upper) }
     }
 
     fn abs(self) -> Self {
@@ -201,13 +201,13 @@ impl Real for Enclosure {
         } else if self.upper <= 0.0 {
             -self
         } else {
-            Self { lower: math::greater_f64(self.lower, 0.0), upper: math::greater_f64(-self.lower, self.upper) }
+            Self { lower: math::max_f64(self.lower, 0.0), upper: math::max_f64(-self.lower, self.upper) }
         }
     }
 
     fn sqrt(self) -> Self {
         let Self { lower, upper } = Self::outwards(math::sqrt_f64(self.lower), math::sqrt_f64(self.upper));
-        Self { lower: math::greater_f64(lower, 0.0), upper }.whole()
+        Self { lower: math::max_f64(lower, 0.0), upper }.whole()
     }
 
     fn sqrt_of_rounded(self) -> Self {
@@ -228,9 +228,9 @@ impl Real for Enclosure {
 
     /// Beyond sqrt(p/3), where it turns, the cubic rises: where it is positive there, the greatest root is below, and
     /// where it is negative, above.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self {
+    fn max_cubic_root(p: Self, q: Self) -> Self {
         let middle = |x: Self| 0.5 * (x.lower + x.upper);
-        let near = f64::greatest_cubic_root(middle(p), middle(q));
+        let near = f64::max_cubic_root(middle(p), middle(q));
         let turn = (p / 3.0).sqrt_of_rounded();
         let above = |width: &f64| {
             let x = near * (1.0 + width);
@@ -241,8 +241,8 @@ impl Real for Enclosure {
             (Self::cubic(x, p, q).upper <= 0.0).then_some(x)
         };
         Self {
-            lower: WIDTHS.iter().find_map(below).unwrap_or(turn.lower),
-            upper: WIDTHS.iter().find_map(above).unwrap_or((turn * 2.0).upper),
+            lower: CONFIRMATION_WIDTHS.iter().find_map(below).unwrap_or(turn.lower),
+            upper: CONFIRMATION_WIDTHS.iter().find_map(above).unwrap_or((turn * 2.0).upper),
         }
     }
 }

@@ -60,7 +60,7 @@ pub trait Real:
     fn ln_1p(self) -> Self;
 
     /// The greatest root of x^3 - p x - q, whose roots are all real: p >= 0 and 27 q^2 <= 4 p^3.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self;
+    fn max_cubic_root(p: Self, q: Self) -> Self;
 
     /// The square root of a number that only rounding can have taken below zero.
     fn sqrt_of_rounded(self) -> Self;
@@ -80,11 +80,11 @@ impl Real for f64 {
     }
 
     fn greater(self, other: Self) -> Self {
-        math::greater_f64(self, other)
+        math::max_f64(self, other)
     }
 
     fn lesser(self, other: Self) -> Self {
-        math::lesser_f64(self, other)
+        math::min_f64(self, other)
     }
 
     fn abs(self) -> Self {
@@ -112,7 +112,7 @@ impl Real for f64 {
     }
 
     /// No root exceeds 2 sqrt(p/3): from there Newton's method falls towards the greatest without passing it.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self {
+    fn max_cubic_root(p: Self, q: Self) -> Self {
         let mut root = 2.0 * math::sqrt_f64(p / 3.0);
         for _ in 0..NEWTON_STEPS {
             let value = root * (root * root - p) - q;

@@ -40,7 +40,7 @@ fn tanh_is_within_its_stated_error_odd_and_bounded() {
 #[test]
 fn tanh_of_little_has_the_bits_of_the_whole_formula() {
     // Every 61st number from zero to twice as far as the short formula reaches, subnormal ones among them.
-    let end = (2.0 * LINEAR.sqrt()).to_bits();
+    let end = (2.0 * LINEAR_SQUARE_MAX.sqrt()).to_bits();
     for z in (0..end).step_by(61).flat_map(|bits| [f32::from_bits(bits), -f32::from_bits(bits)]) {
         assert_eq!(tanh_of_scaled(z).to_bits(), unsaturated(z).to_bits(), "{z:e}");
         let three = Vector3::new(z, 0.5 * z, -0.25 * z);
@@ -76,29 +76,26 @@ fn integers_and_their_whole_parts_convert_in_halves_as_well_as_in_one() {
     for step in 0..2_000_000_i64 {
         x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let integer = x >> (step % 63);
-        let (found, exact) = (f64::from(single(integer)), integer as f64);
+        let (found, exact) = (f64::from(i64_to_f32(integer)), integer as f64);
         worst = worst.max((found - exact).abs() / exact.abs().max(1.0));
         if integer.abs() < 1 << 24 {
             assert_eq!(found, exact);
         }
         if integer.abs() < 1 << 61 {
             let number = integer as f32 / 3.0;
-            assert_eq!((whole(number), whole(-number)), (number as i64, -number as i64), "{number}");
+            assert_eq!((f32_to_i64(number), f32_to_i64(-number)), (number as i64, -number as i64), "{number}");
         }
     }
     assert!(worst < 1.2e-7, "{worst:e}");
-    assert_eq!((whole(f32::NAN), whole(0.99), whole(-0.99)), (0, 0, 0));
-    assert!(whole(1e30) >= 1 << 61 && whole(-1e30) <= -(1 << 61));
+    assert_eq!((f32_to_i64(f32::NAN), f32_to_i64(0.99), f32_to_i64(-0.99)), (0, 0, 0));
+    assert!(f32_to_i64(1e30) >= 1 << 61 && f32_to_i64(-1e30) <= -(1 << 61));
 }
 
 #[test]
 fn a_nan_is_neither_greater_nor_lesser_and_stays_a_nan() {
-    assert_eq!(
-        (greater_f64(1.0, 2.0), greater_f64(2.0, 1.0), lesser_f64(1.0, 2.0), lesser_f64(2.0, 1.0)),
-        (2.0, 2.0, 1.0, 1.0)
-    );
+    assert_eq!((max_f64(1.0, 2.0), max_f64(2.0, 1.0), min_f64(1.0, 2.0), min_f64(2.0, 1.0)), (2.0, 2.0, 1.0, 1.0));
     for number in [f64::NEG_INFINITY, 0.0, f64::INFINITY] {
-        for of_two in [greater_f64, lesser_f64] {
+        for of_two in [max_f64, min_f64] {
             assert!(of_two(f64::NAN, number).is_nan() && of_two(number, f64::NAN).is_nan());
         }
     }

@@ -19,7 +19,7 @@ pub(super) const DEGREE_ZERO: Weights = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
 /// With u = 2^-24: `rest` and `done` carry 3 u each (two conversions, one division), a step of [`raise`] adds 2 u, so
 /// weights of degree n carry 5 n u, and the sum adds (n + 1) u: at most 55 u = 3.3e-6 for n = 9. A bound on
 /// (psi''^2 + psi'^4)^(1/2) sees psi' twice (2 * 49 u, degree 8) and psi'' once (43 u, degree 7), 8.4e-6 in all.
-const ROUNDING: f64 = 1e-5;
+const EVALUATION_ROUNDING: f64 = 1e-5;
 
 /// Raises the weights' degree by one: B_i of degree n + 1 is (1 - s) B_i + s B_(i-1) of degree n.
 pub(super) fn raise(weights: &mut Weights, rest: f32, done: f32) {
@@ -71,9 +71,9 @@ pub(super) struct Supremum<F> {
 
 impl<F> Supremum<F> {
     /// Greatest number of times a curve is halved.
-    const DEPTH: u32 = 10;
+    const HALVINGS_MAX: u32 = 10;
     /// How close, relative, the bound on the square comes before splitting stops.
-    const TIGHTNESS: f64 = 1e-6;
+    const BOUND_TOLERANCE: f64 = 1e-6;
 
     /// Of no curve yet: zero.
     pub(super) fn new(square: F) -> Self {
@@ -87,7 +87,7 @@ impl<F> Supremum<F> {
         F: Fn(&V) -> f64,
     {
         self.hull = self.hull.max(self.largest(points));
-        self.refine(points, Self::DEPTH);
+        self.refine(points, Self::HALVINGS_MAX);
     }
 
     fn largest<V>(&self, points: &[V]) -> f64
@@ -107,7 +107,7 @@ impl<F> Supremum<F> {
         for end in points.first().into_iter().chain(points.last()) {
             self.attained = self.attained.max((self.square)(end));
         }
-        if depth == 0 || above <= self.attained * (1.0 + Self::TIGHTNESS) {
+        if depth == 0 || above <= self.attained * (1.0 + Self::BOUND_TOLERANCE) {
             self.bound = self.bound.max(above);
         } else {
             let (left, right) = split(points);
@@ -123,7 +123,7 @@ impl<F> Supremum<F> {
 
     /// The bound on what [`combine`] computes, to be rounded outwards to single precision by the caller.
     pub(super) fn bound_when_evaluated(&self) -> f64 {
-        self.bound() + ROUNDING * math::sqrt_f64(self.hull)
+        self.bound() + EVALUATION_ROUNDING * math::sqrt_f64(self.hull)
     }
 }
 

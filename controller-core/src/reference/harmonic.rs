@@ -21,16 +21,16 @@ use crate::state::STATE_RANGE;
 use nalgebra::{Vector2, Vector3};
 
 /// Largest |center| and |amplitude|, m: both together are in the law's range.
-const GREATEST_LENGTH: f64 = 0.5 * STATE_RANGE as f64;
+const LENGTH_MAX_M: f64 = 0.5 * STATE_RANGE as f64;
 /// Largest amplitude of one axis' acceleration, jerk and snap: three of them together are in the law's range.
-const GREATEST_DERIVATIVE: f64 = 0.5 * DERIVATIVE_RANGE as f64;
-/// Largest |r| and |B w|, rad/s: psi'^2 <= 6.4e5 and |psi''| <= [`GREATEST_DERIVATIVE`] stay in the law's range.
-const GREATEST_HEADING_RATE: f64 = 400.0;
+const DERIVATIVE_MAX: f64 = 0.5 * DERIVATIVE_RANGE as f64;
+/// Largest |r| and |B w|, rad/s: psi'^2 <= 6.4e5 and |psi''| <= [`DERIVATIVE_MAX`] stay in the law's range.
+const HEADING_RATE_MAX_RAD_PER_S: f64 = 400.0;
 /// Largest |B|, rad.
-const GREATEST_SWING: f64 = 1000.0;
+const SWING_MAX_RAD: f64 = 1000.0;
 /// Relative error of a derivative evaluated in single precision, and of its bound: with u = 2^-24 a coefficient carries
 /// u, the sine 2 u, their product u and a sum u; squares double that to 10 u = 6e-7, vector norms add 5 u.
-const ROUNDING: f64 = 2e-6;
+const EVALUATION_ROUNDING: f64 = 2e-6;
 
 /// psi(t) = offset + rate t + amplitude sin(frequency t).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,10 +106,10 @@ struct Axis {
 impl Axis {
     fn new(center: f64, amplitude: f64, frequency: f64, phase: f64, names: &Names) -> Result<Self, ParameterError> {
         let phase = Phase::new(frequency, phase, names.frequency, names.phase)?;
-        require_within(center, GREATEST_LENGTH, names.center)?;
+        require_within(center, LENGTH_MAX_M, names.center)?;
         let omega2 = frequency * frequency;
         let steepest = omega2.max(omega2 * omega2);
-        let limit = if steepest > 0.0 { GREATEST_LENGTH.min(GREATEST_DERIVATIVE / steepest) } else { GREATEST_LENGTH };
+        let limit = if steepest > 0.0 { LENGTH_MAX_M.min(DERIVATIVE_MAX / steepest) } else { LENGTH_MAX_M };
         require_within(amplitude, limit, names.amplitude)?;
         let velocity = amplitude * frequency;
         let acceleration = amplitude * omega2;
@@ -189,11 +189,11 @@ impl Harmonic {
         ];
         let turn = Phase::new(heading.rate, heading.offset, "reference.heading.rate", "reference.heading.offset")?;
         let swing = Phase::new(heading.frequency, 0.0, "reference.heading.frequency", "reference.heading.frequency")?;
-        require_within(heading.rate, GREATEST_HEADING_RATE, "reference.heading.rate")?;
+        require_within(heading.rate, HEADING_RATE_MAX_RAD_PER_S, "reference.heading.rate")?;
         let w = heading.frequency.abs();
-        let mut limit = GREATEST_SWING;
+        let mut limit = SWING_MAX_RAD;
         if w > 0.0 {
-            limit = limit.min(GREATEST_HEADING_RATE / w).min(GREATEST_DERIVATIVE / (w * w));
+            limit = limit.min(HEADING_RATE_MAX_RAD_PER_S / w).min(DERIVATIVE_MAX / (w * w));
         }
         require_within(heading.amplitude, limit, "reference.heading.amplitude")?;
         let swing_rate = heading.amplitude * heading.frequency;
@@ -210,7 +210,7 @@ impl Harmonic {
         let speed = Wave::bound(&[x, y]);
         let [x, y, z] = wave(2);
         let (heading_rate, heading_second_derivative) = heading_bounds(heading.rate, swing_rate, heading.frequency);
-        let round = |bound: f64| outwards(bound * (1.0 + ROUNDING));
+        let round = |bound: f64| outwards(bound * (1.0 + EVALUATION_ROUNDING));
         let bounds = ReferenceBounds {
             horizontal_speed: round(speed),
             horizontal_acceleration: round(Wave::bound(&[x, y])),
@@ -229,24 +229,21 @@ impl Harmonic {
             swing_rate: swing_rate as f32,
             swing_acceleration: (-swing_rate * heading.frequency) as f32,
             bounds,
-            fifth_derivative: Wave::bound(&wave(5)) * (1.0 + ROUNDING),
+            fifth_derivative: Wave::bound(&wave(5)) * (1.0 + EVALUATION_ROUNDING),
         })
     }
 
     /// omega_i t + phi_i of the three axes, in 2^-64 turns.
-    #[must_use]
     pub fn axis_phases(&self, time_us: u64) -> [u64; 3] {
         self.axes.map(|axis| axis.phase.at(time_us))
     }
 
     /// psi_0 + r t, the heading without its swing, in 2^-64 turns.
-    #[must_use]
     pub fn turn_phase(&self, time_us: u64) -> u64 {
         self.turn.at(time_us)
     }
 
     /// w t of the heading's swing, in 2^-64 turns.
-    #[must_use]
     pub fn swing_phase(&self, time_us: u64) -> u64 {
         self.swing.at(time_us)
     }

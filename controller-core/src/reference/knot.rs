@@ -7,7 +7,7 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::{Vector3, Vector4};
 
 /// Turns this close (rad) to half a turn count as exactly half: degrees become radians with errors of 1e-16.
-const HALF_TURN_ROOM: f64 = 1e-9;
+const HALF_TURN_TOLERANCE_RAD: f64 = 1e-9;
 
 /// Velocity, acceleration, jerk and snap of x, y, z (m) and heading (rad), per second to the first to fourth.
 pub type Derivatives = [Vector4<f64>; 4];
@@ -54,7 +54,7 @@ impl Knot {
         let difference = next.position - self.position;
         let turn = next.heading - self.heading;
         let shorter = turn - TAU * math::round(turn / TAU);
-        let shorter = if shorter <= HALF_TURN_ROOM - PI { shorter + TAU } else { shorter };
+        let shorter = if shorter <= HALF_TURN_TOLERANCE_RAD - PI { shorter + TAU } else { shorter };
         Vector4::new(difference.x, difference.y, difference.z, shorter)
     }
 }

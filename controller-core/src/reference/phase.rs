@@ -10,7 +10,7 @@ use crate::math;
 use core::f64::consts::TAU;
 
 /// One turn, 2^64, as a floating-point number.
-const TURN: f64 = 18_446_744_073_709_551_616.0;
+const UNITS_PER_TURN: f64 = 18_446_744_073_709_551_616.0;
 
 /// omega t + phi on the circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,12 +21,13 @@ pub struct Phase {
 
 impl Phase {
     /// The greatest |omega|, rad/s: far above anything a vehicle can follow, far below what would alias.
-    pub const GREATEST_RATE: f64 = 1e5;
+    pub const RATE_MAX_RAD_PER_S: f64 = 1e5;
 
     /// From omega in rad/s and phi in rad.
     ///
     /// # Errors
-    /// Names `rate_field` or `offset_field` if the number is not finite or |omega| exceeds [`Self::GREATEST_RATE`].
+    /// Names `rate_field` or `offset_field` if the number is not finite or |omega| exceeds
+    /// [`Self::RATE_MAX_RAD_PER_S`].
     pub fn new(
         rate: f64,
         offset: f64,
@@ -35,32 +36,30 @@ impl Phase {
     ) -> Result<Self, ParameterError> {
         require(rate.is_finite(), rate_field, Reason::NotFinite)?;
         require(offset.is_finite(), offset_field, Reason::NotFinite)?;
-        require(rate.abs() < Self::GREATEST_RATE, rate_field, Reason::NotBelow(Self::GREATEST_RATE as f32))?;
-        let per_microsecond = math::round(rate / TAU * 1e-6 * TURN) as i64;
+        require(rate.abs() < Self::RATE_MAX_RAD_PER_S, rate_field, Reason::NotBelow(Self::RATE_MAX_RAD_PER_S as f32))?;
+        let per_microsecond = math::round(rate / TAU * 1e-6 * UNITS_PER_TURN) as i64;
         Ok(Self { per_microsecond, offset: turns(offset) })
     }
 
     /// The phase at `time_us`, in units of 2^-64 turns.
-    #[must_use]
     pub fn at(&self, time_us: u64) -> u64 {
         self.offset.wrapping_add((self.per_microsecond as u64).wrapping_mul(time_us))
     }
 }
 
 /// An angle in radians as 2^-64 turns, modulo a full one.
-#[must_use]
 pub fn turns(angle: f64) -> u64 {
     let turns = angle / TAU;
     let fraction = turns - math::floor(turns);
     // 2^64 itself would saturate rather than wrap: count half as many units twice the size, then double on the circle.
-    (math::round(fraction * (TURN / 2.0)) as u64).wrapping_mul(2)
+    (math::round(fraction * (UNITS_PER_TURN / 2.0)) as u64).wrapping_mul(2)
 }
 
 /// A swing of a few turns, in radians, as 2^-64 turns: cheap enough for a tick, exact to 2^-32 turns.
 pub(crate) fn swing(angle: f32) -> u64 {
     /// 2^32 / (2 pi).
-    const PER_RADIAN: f32 = 683_565_275.576_431_6;
-    ((angle * PER_RADIAN) as i64 as u64).wrapping_shl(32)
+    const UNITS_PER_RAD: f32 = 683_565_275.576_431_6;
+    ((angle * UNITS_PER_RAD) as i64 as u64).wrapping_shl(32)
 }
 
 #[cfg(test)]

@@ -50,7 +50,6 @@ fn derivative<const N: usize, const M: usize>(
 
 impl Segment {
     /// From one knot to the next, passing both as they say.
-    #[must_use]
     pub fn between(knot: &Knot, next: &Knot) -> Self {
         let (start_us, end_us, origin) = (knot.time_us, next.time_us, knot.anchor());
         let (difference, start, end) = (knot.difference_to(next), &knot.derivatives, &next.derivatives);
@@ -119,7 +118,6 @@ impl Segment {
     }
 
     /// The reference at `time_us`, from the segment's start to its end.
-    #[must_use]
     pub fn at(&self, time_us: u64) -> Reference {
         let duration = self.end_us.saturating_sub(self.start_us) as f32;
         let done = time_us.saturating_sub(self.start_us) as f32 / duration;

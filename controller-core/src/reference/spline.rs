@@ -23,7 +23,7 @@ use crate::math;
 use nalgebra::Vector4;
 
 /// P_m^(k)(1) of the shifted Legendre polynomials: one row per k, in it m = 0..4.
-const LEGENDRE: [[f64; 5]; 5] = [
+const LEGENDRE_DERIVATIVES: [[f64; 5]; 5] = [
     [1.0, 1.0, 1.0, 1.0, 1.0],
     [0.0, 2.0, 6.0, 12.0, 20.0],
     [0.0, 0.0, 12.0, 60.0, 180.0],
@@ -32,20 +32,20 @@ const LEGENDRE: [[f64; 5]; 5] = [
 ];
 
 /// Four equations carried over from earlier segments, then a segment's five.
-const CARRIED: usize = 4;
-const ROWS: usize = CARRIED + 5;
+const EQUATIONS_CARRIED: usize = 4;
+const EQUATIONS_MAX: usize = EQUATIONS_CARRIED + 5;
 /// One unknown's coefficients, or one axis' right-hand sides.
-type Column = [f64; ROWS];
+type Column = [f64; EQUATIONS_MAX];
 /// Unknowns at the segment's start (velocity to snap), unknowns at its end, right-hand sides of the four axes.
-const COLUMNS: usize = 12;
-const UNKNOWNS: usize = 8;
+const MATRIX_COLUMNS: usize = 12;
+const UNKNOWN_COUNT: usize = 8;
 /// What is left of a segment's equations for its start once its end is known: the first rows of its columns.
 #[derive(Debug, Clone, Copy)]
-pub struct Stage([Vector4<f64>; COLUMNS]);
+pub struct Stage([Vector4<f64>; MATRIX_COLUMNS]);
 
 impl Stage {
     /// Nothing yet.
-    pub const EMPTY: Self = Self([Vector4::new(0.0, 0.0, 0.0, 0.0); COLUMNS]);
+    pub const EMPTY: Self = Self([Vector4::new(0.0, 0.0, 0.0, 0.0); MATRIX_COLUMNS]);
 }
 
 /// Finds how to pass each of the `knots`, whose times increase, with room for as many `stages`. Knots without a stage
@@ -57,20 +57,20 @@ pub fn solve(knots: &mut [Knot], stages: &mut [Stage]) {
 /// One run from rest to rest.
 fn solve_run(knots: &mut [Knot], stages: &mut [Stage]) {
     let segments = knots.len().saturating_sub(1);
-    let mut carried = [[0.0; CARRIED]; COLUMNS - CARRIED];
+    let mut carried = [[0.0; EQUATIONS_CARRIED]; MATRIX_COLUMNS - EQUATIONS_CARRIED];
     // A knot's stage is written while the segment that begins there is looked at.
     for (i, (pair, stage)) in knots.windows(2).zip(stages.iter_mut()).enumerate() {
         let [knot, next] = pair else { return };
         let mut columns = equations(knot, next, i > 0, i + 1 < segments);
         // The carried equations are about this segment's start, and their right-hand sides.
-        let (start_and_end, right) = columns.split_at_mut(UNKNOWNS);
-        let about = start_and_end.iter_mut().take(CARRIED).chain(right);
+        let (start_and_end, right) = columns.split_at_mut(UNKNOWN_COUNT);
+        let about = start_and_end.iter_mut().take(EQUATIONS_CARRIED).chain(right);
         for (column, old) in about.zip(&carried) {
             column.iter_mut().zip(old).for_each(|(to, from)| *to = *from);
         }
         triangularise(&mut columns);
-        for (new, column) in carried.iter_mut().zip(columns.iter().skip(CARRIED)) {
-            new.iter_mut().zip(column.iter().skip(CARRIED)).for_each(|(to, from)| *to = *from);
+        for (new, column) in carried.iter_mut().zip(columns.iter().skip(EQUATIONS_CARRIED)) {
+            new.iter_mut().zip(column.iter().skip(EQUATIONS_CARRIED)).for_each(|(to, from)| *to = *from);
         }
         *stage = Stage(columns.map(|[a, b, c, d, ..]| Vector4::new(a, b, c, d)));
     }
@@ -82,21 +82,21 @@ fn solve_run(knots: &mut [Knot], stages: &mut [Stage]) {
 }
 
 /// A segment's five equations, in the rows after the carried ones. Ends that are not free are at rest.
-fn equations(knot: &Knot, next: &Knot, free_start: bool, free_end: bool) -> [Column; COLUMNS] {
+fn equations(knot: &Knot, next: &Knot, free_start: bool, free_end: bool) -> [Column; MATRIX_COLUMNS] {
     /// (2 m + 1)^(1/2).
-    const NORMS: [f64; 5] = [1.0, 1.732_050_807_568_877_2, 2.236_067_977_499_79, 2.645_751_311_064_590_7, 3.0];
+    const LEGENDRE_NORMS: [f64; 5] = [1.0, 1.732_050_807_568_877_2, 2.236_067_977_499_79, 2.645_751_311_064_590_7, 3.0];
     let (t, differences) = (knot.duration_to(next), knot.difference_to(next));
     let weight = 1.0 / (t * t * t * t * math::sqrt_f64(t));
-    let mut columns = [[0.0; ROWS]; COLUMNS];
+    let mut columns = [[0.0; EQUATIONS_MAX]; MATRIX_COLUMNS];
     let (start, rest) = columns.split_at_mut(4);
     let (end, right) = rest.split_at_mut(4);
     // k = 0 belongs to snap, k = 3 to velocity: the columns run backwards.
     let mut scale = weight * t * t * t * t;
     let mut sign = 1.0;
-    for ((start, end), legendre) in start.iter_mut().zip(end).rev().zip(&LEGENDRE) {
+    for ((start, end), legendre) in start.iter_mut().zip(end).rev().zip(&LEGENDRE_DERIVATIVES) {
         let mut parity = -1.0;
-        let rows = start.iter_mut().zip(end).skip(CARRIED);
-        for ((start, end), (value, norm)) in rows.zip(legendre.iter().zip(&NORMS)) {
+        let rows = start.iter_mut().zip(end).skip(EQUATIONS_CARRIED);
+        for ((start, end), (value, norm)) in rows.zip(legendre.iter().zip(&LEGENDRE_NORMS)) {
             let coefficient = scale * norm * value;
             *start = if free_start { parity * coefficient } else { 0.0 };
             *end = if free_end { sign * coefficient } else { 0.0 };
@@ -118,9 +118,9 @@ fn equations(knot: &Knot, next: &Knot, free_start: bool, free_end: bool) -> [Col
 ///
 /// The row with the largest entry goes on top first: without it, the heavy equations of a short segment would drown the
 /// lighter ones (Powell and Reid).
-fn triangularise(columns: &mut [Column; COLUMNS]) {
+fn triangularise(columns: &mut [Column; MATRIX_COLUMNS]) {
     let mut remaining = columns.as_mut_slice();
-    for step in 0..UNKNOWNS {
+    for step in 0..UNKNOWN_COUNT {
         let Some((pivot, others)) = remaining.split_first_mut() else { return };
         let below = pivot.iter().enumerate().skip(step);
         let (top, largest) =
@@ -163,8 +163,8 @@ fn exchange(column: &mut Column, i: usize, j: usize) {
 /// The derivatives at a segment's start from those at its end.
 fn substitute(stage: &Stage, end: &Derivatives) -> Derivatives {
     let mut start = REST;
-    let (coefficients, right) = stage.0.split_at(UNKNOWNS);
-    let (own, others) = coefficients.split_at(CARRIED);
+    let (coefficients, right) = stage.0.split_at(UNKNOWN_COUNT);
+    let (own, others) = coefficients.split_at(EQUATIONS_CARRIED);
     for (axis, right) in right.iter().enumerate() {
         let mut rest = *right;
         for (column, derivative) in others.iter().zip(end) {

@@ -5,7 +5,7 @@
 //! and the next ([`super::spline`]). A heading belongs to every point; between two points it
 //! turns the shorter way round, an exact half turn counter-clockwise, as smoothly as the position moves.
 //!
-//! World frame; m, s, rad. At most [`CAPACITY`] points, without allocation; [`super::path::Path`] takes any number.
+//! World frame; m, s, rad. At most [`POINTS_MAX`] points, without allocation; [`super::path::Path`] takes any number.
 //!
 //! Such a path may swing out between points, most of all where legs differ much in duration, because bending a long one
 //! costs little. [`Waypoints::inside`] takes another one that never does ([`super::inside`]), at the cost of more
@@ -21,10 +21,10 @@ use crate::state::STATE_RANGE;
 use nalgebra::Vector3;
 
 /// Largest number of waypoints.
-pub const CAPACITY: usize = 16;
+pub const POINTS_MAX: usize = 16;
 
 /// Largest time of a waypoint, s: beyond 285 years a double no longer counts microseconds.
-pub const GREATEST_TIME: f64 = 9e9;
+pub const TIME_MAX_S: f64 = 9e9;
 
 /// A point to pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,9 +47,9 @@ macro_rules! names {
     };
 }
 
-const TIME: [&str; CAPACITY] = names!("t");
-const POSITION: [&str; CAPACITY] = names!("position");
-const HEADING: [&str; CAPACITY] = names!("heading_deg");
+const TIME_FIELDS: [&str; POINTS_MAX] = names!("t");
+const POSITION_FIELDS: [&str; POINTS_MAX] = names!("position");
+const HEADING_FIELDS: [&str; POINTS_MAX] = names!("heading_deg");
 
 impl Waypoint {
     /// In the units flown; not known yet how it is passed. `before` is the knot before it, or none for the first.
@@ -60,7 +60,7 @@ impl Waypoint {
     pub fn knot(&self, before: Option<&Knot>, fields: [&'static str; 3]) -> Result<Knot, ParameterError> {
         let [time, position, heading] = fields;
         require(self.time.is_finite(), time, Reason::NotFinite)?;
-        require(self.time < GREATEST_TIME, time, Reason::NotBelow(GREATEST_TIME as f32))?;
+        require(self.time < TIME_MAX_S, time, Reason::NotBelow(TIME_MAX_S as f32))?;
         for component in self.position {
             require(component.is_finite(), position, Reason::NotFinite)?;
             require(component.abs() < f64::from(STATE_RANGE), position, Reason::NotBelow(STATE_RANGE))?;
@@ -77,16 +77,16 @@ impl Waypoint {
 
 /// A reference through waypoints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Waypoints(Path<heapless::Vec<Segment, { CAPACITY - 1 }>>);
+pub struct Waypoints(Path<heapless::Vec<Segment, { POINTS_MAX - 1 }>>);
 
 impl Waypoints {
     /// The smoothest path through `points`, times strictly increasing from zero; a single point is a hover.
     ///
     /// # Errors
-    /// Names the field, as in the scenario file: no point or more than [`CAPACITY`]; what [`Waypoint::knot`] refuses;
+    /// Names the field, as in the scenario file: no point or more than [`POINTS_MAX`]; what [`Waypoint::knot`] refuses;
     /// points so far apart in so short a time that a derivative leaves the range of the law.
     pub fn new(points: &[Waypoint]) -> Result<Self, ParameterError> {
-        Self::through(points, |knots| spline::solve(knots, &mut [spline::Stage::EMPTY; CAPACITY]))
+        Self::through(points, |knots| spline::solve(knots, &mut [spline::Stage::EMPTY; POINTS_MAX]))
     }
 
     /// As [`Self::new`], on a path that stays on every leg inside the box of the leg's two points.
@@ -98,14 +98,14 @@ impl Waypoints {
     }
 
     fn through(points: &[Waypoint], solve: impl FnOnce(&mut [Knot])) -> Result<Self, ParameterError> {
-        let mut knots: heapless::Vec<Knot, CAPACITY> = heapless::Vec::new();
-        let names = TIME.into_iter().zip(POSITION).zip(HEADING);
+        let mut knots: heapless::Vec<Knot, POINTS_MAX> = heapless::Vec::new();
+        let names = TIME_FIELDS.into_iter().zip(POSITION_FIELDS).zip(HEADING_FIELDS);
         for (point, ((time, position), heading)) in points.iter().zip(names) {
             let knot = point.knot(knots.last(), [time, position, heading])?;
             // There is room: the names ran out first.
             let _ = knots.push(knot);
         }
-        require(points.len() <= CAPACITY, "reference.points", Reason::TooMany(CAPACITY))?;
+        require(points.len() <= POINTS_MAX, "reference.points", Reason::TooMany(POINTS_MAX))?;
         solve(&mut knots);
         let too_few = ParameterError { field: "reference.points", reason: Reason::TooFew(1) };
         let last = knots.last().ok_or(too_few)?;

@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 const RATE_SHARE: f32 = 0.8;
 
 /// The rate per angle near its end, 1/s.
-const SLOPE: f32 = 3.0;
+const HEADING_RATE_GAIN_PER_S: f32 = 3.0;
 
 /// The heading at hand, and how it may turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,9 +31,9 @@ impl HeadingGenerator {
     /// At rest along world x, for steps of `period`, s.
     pub fn new(bounds: &ReferenceBounds, period: f32) -> Self {
         let second = bounds.heading_second_derivative;
-        let fastest = math::lesser(bounds.heading_rate, RATE_SHARE * math::sqrt(second));
+        let fastest = math::min(bounds.heading_rate, RATE_SHARE * math::sqrt(second));
         let square = fastest * fastest;
-        let strongest = math::sqrt(math::greater(second * second - square * square, 0.0));
+        let strongest = math::sqrt(math::max(second * second - square * square, 0.0));
         Self { heading: Heading::FORWARD, fastest, strongest, period }
     }
 
@@ -70,13 +70,13 @@ impl HeadingGenerator {
             return 0.0;
         }
         let left = if along > 0.0 { across.abs() / length } else { 1.0 };
-        math::lesser(SLOPE * left, math::sqrt(self.strongest * left)).copysign(across)
+        math::min(HEADING_RATE_GAIN_PER_S * left, math::sqrt(self.strongest * left)).copysign(across)
     }
 
     fn turn(&mut self, wanted: f32) {
         let rate = self.heading.rate();
-        let change = math::within(wanted, self.fastest) - rate;
-        let acceleration = math::within(change / self.period, self.strongest);
+        let change = math::saturate(wanted, self.fastest) - rate;
+        let acceleration = math::saturate(change / self.period, self.strongest);
         // The angle of this tick, of which half is enough for its tangent.
         let half = 0.5 * self.period * (rate + 0.5 * self.period * acceleration);
         let here = self.heading.direction();

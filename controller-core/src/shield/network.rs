@@ -23,10 +23,10 @@ use crate::math;
 use nalgebra::{Quaternion, Vector3};
 
 /// The number of inputs.
-pub const INPUTS: usize = 22;
+pub const INPUT_COUNT: usize = 22;
 
 /// The number of outputs.
-pub const OUTPUTS: usize = 4;
+pub const OUTPUT_COUNT: usize = 4;
 
 /// The greatest number of outputs of a layer.
 pub const WIDTH_MAX: usize = 64;
@@ -50,7 +50,7 @@ pub struct Layer<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Network<'a> {
     layers: &'a [Layer<'a>],
-    scale: [f32; OUTPUTS],
+    scale: [f32; OUTPUT_COUNT],
 }
 
 impl<'a> Network<'a> {
@@ -58,11 +58,11 @@ impl<'a> Network<'a> {
     ///
     /// # Errors
     /// Names what does not fit, is not finite or too great.
-    pub fn new(layers: &'a [Layer<'a>], scale: [f32; OUTPUTS]) -> Result<Self, ParameterError> {
+    pub fn new(layers: &'a [Layer<'a>], scale: [f32; OUTPUT_COUNT]) -> Result<Self, ParameterError> {
         let (count, sizes) = (layers.len(), "network.layers");
         require(count >= 1, sizes, Reason::TooFew(1))?;
         require(count <= LAYERS_MAX, sizes, Reason::TooMany(LAYERS_MAX))?;
-        let mut inputs = INPUTS;
+        let mut inputs = INPUT_COUNT;
         for Layer { weights, biases } in layers {
             let outputs = biases.len();
             require(outputs >= 1, "network.layers.biases", Reason::TooFew(1))?;
@@ -74,26 +74,24 @@ impl<'a> Network<'a> {
             biases.iter().try_for_each(|bias| checked(*bias, "network.layers.biases"))?;
             inputs = outputs;
         }
-        require(inputs >= OUTPUTS, "network.layers.biases", Reason::TooFew(OUTPUTS))?;
-        require(inputs <= OUTPUTS, "network.layers.biases", Reason::TooMany(OUTPUTS))?;
+        require(inputs >= OUTPUT_COUNT, "network.layers.biases", Reason::TooFew(OUTPUT_COUNT))?;
+        require(inputs <= OUTPUT_COUNT, "network.layers.biases", Reason::TooMany(OUTPUT_COUNT))?;
         scale.iter().try_for_each(|scale| checked(*scale, "network.scale"))?;
         Ok(Self { layers, scale })
     }
 
     /// What its outputs are multiplied by.
-    #[must_use]
-    pub fn scale(&self) -> [f32; OUTPUTS] {
+    pub fn scale(&self) -> [f32; OUTPUT_COUNT] {
         self.scale
     }
 
     /// The outputs for these inputs.
-    #[must_use]
-    pub fn outputs(&self, inputs: &[f32; INPUTS]) -> [f32; OUTPUTS] {
+    pub fn outputs(&self, inputs: &[f32; INPUT_COUNT]) -> [f32; OUTPUT_COUNT] {
         let mut values = [0.0; WIDTH_MAX];
         for (value, input) in values.iter_mut().zip(inputs) {
             *value = *input;
         }
-        let mut count = INPUTS;
+        let mut count = INPUT_COUNT;
         for Layer { weights, biases } in self.layers {
             let mut next = [0.0; WIDTH_MAX];
             for ((next, bias), weights) in next.iter_mut().zip(*biases).zip(weights.chunks_exact(count)) {
@@ -107,8 +105,7 @@ impl<'a> Network<'a> {
     }
 
     /// The demand that outputs make.
-    #[must_use]
-    pub fn demand(&self, outputs: &[f32; OUTPUTS], heading: &Heading) -> Demand {
+    pub fn demand(&self, outputs: &[f32; OUTPUT_COUNT], heading: &Heading) -> Demand {
         let ([x, y, z, turn], [of_x, of_y, of_z, of_turn]) = (*outputs, self.scale);
         let (forwards, heading) = (Vector3::new(x * of_x, y * of_y, z * of_z), heading.direction());
         let acceleration = Vector3::new(
@@ -126,8 +123,7 @@ fn checked(value: f32, field: &'static str) -> Result<(), ParameterError> {
 }
 
 /// The inputs for an observation, after these outputs.
-#[must_use]
-pub fn inputs(observation: &Observation, last: &[f32; OUTPUTS]) -> [f32; INPUTS] {
+pub fn inputs(observation: &Observation, last: &[f32; OUTPUT_COUNT]) -> [f32; INPUT_COUNT] {
     let Observation { state, goal, heading } = observation;
     let (cos, sin) = (heading.direction().x, heading.direction().y);
     let turned = |v: &Vector3<f32>| [cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z];
@@ -145,7 +141,7 @@ pub fn inputs(observation: &Observation, last: &[f32; OUTPUTS]) -> [f32; INPUTS]
         third,
         [w.x, w.y, w.z],
     ];
-    let mut inputs = [0.0; INPUTS];
+    let mut inputs = [0.0; INPUT_COUNT];
     for (input, value) in inputs.iter_mut().zip(parts.iter().flatten().chain(last)) {
         *input = *value;
     }
@@ -166,14 +162,13 @@ fn rows(q: &Quaternion<f32>) -> [[f32; 3]; 3] {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkPolicy<'a> {
     network: Network<'a>,
-    last: [f32; OUTPUTS],
+    last: [f32; OUTPUT_COUNT],
 }
 
 impl<'a> NetworkPolicy<'a> {
     /// Before its first output.
-    #[must_use]
     pub const fn new(network: Network<'a>) -> Self {
-        Self { network, last: [0.0; OUTPUTS] }
+        Self { network, last: [0.0; OUTPUT_COUNT] }
     }
 }
 
@@ -182,7 +177,7 @@ impl Policy for NetworkPolicy<'_> {
         let outputs = self.network.outputs(&inputs(observation, &self.last));
         // A NaN would stay in its inputs for ever.
         let finite = outputs.iter().all(|output| output.is_finite());
-        self.last = if finite { outputs } else { [0.0; OUTPUTS] };
+        self.last = if finite { outputs } else { [0.0; OUTPUT_COUNT] };
         Some(self.network.demand(&outputs, &observation.heading))
     }
 }

@@ -28,7 +28,6 @@ impl Reason {
         [Self::Demand, Self::Silent, Self::Tilt, Self::Rate, Self::Speed, Self::Stop, Self::Estimate];
 
     /// In a word.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Silent => "silent",

@@ -6,13 +6,13 @@ use crate::state::check_vectors;
 use nalgebra::Vector3;
 
 /// The least side of the box, m.
-pub const SIDE_LEAST: f32 = 1.0;
+pub const BOX_SIDE_MIN_M: f32 = 1.0;
 
 /// The farthest corner of a box, m.
-const FARTHEST: f32 = 1e5;
+const BOX_CORNER_MAX_M: f32 = 1e5;
 
 /// How far inside the box refuges are, m.
-const INSET: f32 = 0.25;
+const REFUGE_INSET_M: f32 = 0.25;
 
 /// The settings. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,6 @@ pub struct Settings {
 
 impl Settings {
     /// The usual settings for a box.
-    #[must_use]
     pub const fn new(low: Vector3<f32>, high: Vector3<f32>) -> Self {
         Self { low, high, speed: 10.0, silence: 0.1, patience: 1.0, patience_greatest: 16.0, hand_overs: 10 }
     }
@@ -48,10 +47,14 @@ impl Settings {
     pub fn check(&self) -> Result<(), ParameterError> {
         for (corner, field) in [(&self.low, "shield.low"), (&self.high, "shield.high")] {
             require(corner.iter().all(|place| place.is_finite()), field, Reason::NotFinite)?;
-            require(check_vectors(&[(corner, FARTHEST, field)]).is_ok(), field, Reason::Above(FARTHEST))?;
+            require(
+                check_vectors(&[(corner, BOX_CORNER_MAX_M, field)]).is_ok(),
+                field,
+                Reason::Above(BOX_CORNER_MAX_M),
+            )?;
         }
-        let least = (self.high - self.low).min();
-        require(least >= SIDE_LEAST, "shield.high - shield.low", Reason::Below(SIDE_LEAST))?;
+        let min = (self.high - self.low).min();
+        require(min >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
         for (value, field) in [
             (self.speed, "shield.speed"),
             (self.silence, "shield.silence"),
@@ -64,22 +67,19 @@ impl Settings {
     }
 
     /// For how long the vehicle is to be near its refuge after so many hand-overs, s.
-    #[must_use]
     pub fn patience(&self, hand_overs: u32) -> f32 {
         let doubled = (1_u32 << hand_overs.saturating_sub(1).min(16)) as f32;
-        math::lesser(self.patience * doubled, self.patience_greatest)
+        math::min(self.patience * doubled, self.patience_greatest)
     }
 
     /// The place nearest to `place` in the box, less a quarter of a metre.
-    #[must_use]
     pub fn refuge(&self, place: &Vector3<f32>) -> Vector3<f32> {
-        let axis = |place: f32, low: f32, high: f32| math::between(place, low + INSET, high - INSET);
+        let axis = |place: f32, low: f32, high: f32| math::clamp(place, low + REFUGE_INSET_M, high - REFUGE_INSET_M);
         let (low, high) = (&self.low, &self.high);
         Vector3::new(axis(place.x, low.x, high.x), axis(place.y, low.y, high.y), axis(place.z, low.z, high.z))
     }
 
     /// Whether `place` is in the box.
-    #[must_use]
     pub fn contain(&self, place: &Vector3<f32>) -> bool {
         // Not a comparison that a NaN passes.
         let inside = |(place, (low, high)): (&f32, (&f32, &f32))| low <= place && place <= high;

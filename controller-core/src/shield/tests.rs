@@ -55,14 +55,14 @@ fn reasons(
 fn every_rule_of_the_table_hands_over_with_its_own_reason() {
     let p = example::parameters();
     let inertia = example::vehicle().inertia;
-    let fastest = 1.15 * p.turn_rate + (2.0 * monitor::TILT * p.m_tilt / inertia.x.max(inertia.y)).sqrt();
+    let fastest = 1.15 * p.turn_rate + (2.0 * monitor::TILT_MAX_RAD * p.m_tilt / inertia.x.max(inertia.y)).sqrt();
     let tilted = |angle: f32| Quaternion::new((0.5 * angle).cos(), (0.5 * angle).sin(), 0.0, 0.0);
     let turning = |x, z| Vector3::new(x, 0.0, z);
     let middle = resting(MIDDLE);
     for (state, reason) in [
         (middle, None),
-        (State { attitude: tilted(0.99 * monitor::TILT), ..middle }, None),
-        (State { attitude: tilted(1.01 * monitor::TILT), ..middle }, Some(Reason::Tilt)),
+        (State { attitude: tilted(0.99 * monitor::TILT_MAX_RAD), ..middle }, None),
+        (State { attitude: tilted(1.01 * monitor::TILT_MAX_RAD), ..middle }, Some(Reason::Tilt)),
         (State { attitude: tilted(3.1), ..middle }, Some(Reason::Tilt)),
         (State { angular_velocity: turning(0.99 * fastest, 0.0), ..middle }, None),
         (State { angular_velocity: turning(1.01 * fastest, 0.0), ..middle }, Some(Reason::Rate)),
@@ -122,7 +122,7 @@ fn the_policy_waits_twice_as_long_after_each_hand_over_and_in_the_end_for_a_pers
     let said = reasons(&mut shield, &mut law, 500, |tick| Some(if tick == 0 { NONSENSE } else { HOVER }));
     assert!(said.iter().all(|reason| *reason == Some(Reason::Demand)));
     assert_eq!(shield.hand_overs(), 5);
-    shield.ask_again();
+    shield.request_again();
     let said = reasons(&mut shield, &mut law, 1, |_| Some(HOVER));
     assert_eq!((said[0], shield.hand_overs()), (None, 0));
 }

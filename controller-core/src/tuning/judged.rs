@@ -9,46 +9,43 @@
 use super::{Factors, Percent};
 
 /// Choices of four factors, and of two.
-const ACROSS: usize = Percent::COUNT.pow(4);
-const VERTICAL: usize = Percent::COUNT.pow(2);
+const CHOICES_ACROSS: usize = Percent::COUNT.pow(4);
+const CHOICES_VERTICAL: usize = Percent::COUNT.pow(2);
 
 /// Bytes of the bits for each.
-pub const ACROSS_BYTES: usize = ACROSS.div_ceil(8);
-/// See [`ACROSS_BYTES`].
-pub const VERTICAL_BYTES: usize = VERTICAL.div_ceil(8);
+pub const CHOICES_ACROSS_BYTES: usize = CHOICES_ACROSS.div_ceil(8);
+/// See [`CHOICES_ACROSS_BYTES`].
+pub const CHOICES_VERTICAL_BYTES: usize = CHOICES_VERTICAL.div_ceil(8);
 
 /// One bit for each choice of factors.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JudgedLoops {
-    across: [u8; ACROSS_BYTES],
-    vertical: [u8; VERTICAL_BYTES],
+    across: [u8; CHOICES_ACROSS_BYTES],
+    vertical: [u8; CHOICES_VERTICAL_BYTES],
 }
 
 impl JudgedLoops {
     /// Only the gains as built.
     pub const BUILT: Self = {
-        let (mut across, mut vertical) = ([0; ACROSS_BYTES], [0; VERTICAL_BYTES]);
+        let (mut across, mut vertical) = ([0; CHOICES_ACROSS_BYTES], [0; CHOICES_VERTICAL_BYTES]);
         // The middle of an odd number of choices.
-        across[ACROSS / 2 / 8] = 1 << (ACROSS / 2 % 8);
-        vertical[VERTICAL / 2 / 8] = 1 << (VERTICAL / 2 % 8);
+        across[CHOICES_ACROSS / 2 / 8] = 1 << (CHOICES_ACROSS / 2 % 8);
+        vertical[CHOICES_VERTICAL / 2 / 8] = 1 << (CHOICES_VERTICAL / 2 % 8);
         Self { across, vertical }
     };
 
     /// An earlier judgement, as [`Self::bits`] gave it.
-    #[must_use]
-    pub const fn from_bits(across: [u8; ACROSS_BYTES], vertical: [u8; VERTICAL_BYTES]) -> Self {
+    pub const fn from_bits(across: [u8; CHOICES_ACROSS_BYTES], vertical: [u8; CHOICES_VERTICAL_BYTES]) -> Self {
         Self { across, vertical }
     }
 
     /// To be kept: the bits of the choices of four factors, and of two.
-    #[must_use]
-    pub fn bits(&self) -> (&[u8; ACROSS_BYTES], &[u8; VERTICAL_BYTES]) {
+    pub fn bits(&self) -> (&[u8; CHOICES_ACROSS_BYTES], &[u8; CHOICES_VERTICAL_BYTES]) {
         (&self.across, &self.vertical)
     }
 
     /// Calls `across` for every choice of the first four factors, and `vertical` for every choice of the other two; the
     /// factors that are not varied are as built.
-    #[must_use]
     pub fn judge(mut across: impl FnMut(&Factors) -> bool, mut vertical: impl FnMut(&Factors) -> bool) -> Self {
         let mut judged = Self { across: [0; _], vertical: [0; _] };
         for attitude in Percent::all() {
@@ -71,7 +68,6 @@ impl JudgedLoops {
     }
 
     /// Whether every loop was found stable, with margin, under these factors.
-    #[must_use]
     pub fn hold(&self, factors: &Factors) -> bool {
         get(&self.across, index_across(factors)) && get(&self.vertical, index_vertical(factors))
     }

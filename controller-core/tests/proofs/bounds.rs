@@ -1,6 +1,6 @@
 //! What the filters reach and what follows by Lemma 1: `Reachable.v`, `Lemma1.v`, `SharpFlight.v`.
 
-use super::{TRIALS, alike, direction, near, of, signed};
+use super::{TRIALS, alike, as_f64, direction, near, signed};
 use crate::support::Random;
 use crate::support::coq::{Proofs, Value};
 use crate::support::hummingbird;
@@ -46,7 +46,7 @@ impl Given {
     /// Under the proofs' names.
     pub fn proofs(&self, file: &str) -> Proofs {
         let Self { k_f, k_s, m_p, gravity, bounds } = *self;
-        Proofs::read(file).with(&[("k_f", k_f), ("k_s", k_s), ("M", m_p), ("g", gravity)]).with(&of(&[
+        Proofs::read(file).with(&[("k_f", k_f), ("k_s", k_s), ("M", m_p), ("g", gravity)]).with(&as_f64(&[
             ("K_12", bounds.horizontal_acceleration),
             ("K_3", bounds.vertical_acceleration),
             ("K_j", bounds.jerk),
@@ -80,7 +80,7 @@ pub(super) fn what_the_filters_reach_is_that_of_the_proofs() {
             .with_value("u_1", bounded().moving())
             .with_value("u_2", bounded());
         let [least, _] = proofs.sides("reachable", "<= z ( u t )")[..] else { panic!("two sides") };
-        alike(reach.vertical_least, least, "u_z");
+        alike(reach.vertical_min, least, "u_z");
         for (found, standing) in [
             (reach.horizontal, "plane_length ( x ( u t ) ) ( y ( u t ) ) <="),
             (reach.jerk, "length ( u_1 t ) <= sqrt"),
@@ -118,9 +118,14 @@ pub(super) fn the_command_and_its_derivatives_are_those_of_the_proofs() {
         let found = law.command(&state, &reference, &filter).acceleration_command;
         let CommandRates { jerk_command, snap_command } = law.rates(&reference, &filter, &feedback);
 
-        let space = |v: &Vector3<f32>| Value::record(&of(&[("x", v.x), ("y", v.y), ("z", v.z)]));
+        let space = |v: &Vector3<f32>| Value::record(&as_f64(&[("x", v.x), ("y", v.y), ("z", v.z)]));
         let proofs = Proofs::read("Lemma1")
-            .with(&of(&[("k_f", gains.k_f), ("k_s", gains.k_s), ("g", configuration.vehicle().gravity), ("t", 0.0)]))
+            .with(&as_f64(&[
+                ("k_f", gains.k_f),
+                ("k_s", gains.k_s),
+                ("g", configuration.vehicle().gravity),
+                ("t", 0.0),
+            ]))
             .with_value("u_f", space(&filtered).moving())
             .with_value("u_s", space(&intermediate).moving())
             .with_value("ubar", space(&feedback).moving())

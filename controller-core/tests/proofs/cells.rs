@@ -73,7 +73,7 @@ impl Tilt {
         let reach = given.reach();
         let proofs = Proofs::read("SharpCover")
             .with(&[
-                ("vertical_least", reach.vertical_least),
+                ("vertical_least", reach.vertical_min),
                 ("horizontal", reach.horizontal),
                 ("jerk", reach.jerk),
                 ("horizontal_jerk", reach.horizontal_jerk),
@@ -191,7 +191,7 @@ pub(super) fn the_bounds_on_the_third_axis_are_the_greatest_of_the_proofs_cells(
                 let heading_second = f64::from(given.bounds.heading_second_derivative);
                 let turning = all.number("heading_acceleration", &[heading_second, slow]);
                 let shares = [fast, turning, reach.jerk, reach.horizontal_jerk, least, most];
-                let cell = [&[near, far, reach.vertical_least, f64::NAN, snap], &shares[..]].concat();
+                let cell = [&[near, far, reach.vertical_min, f64::NAN, snap], &shares[..]].concat();
                 // What turns about the third axis, without u'' and with it.
                 ["yawing_bound", "far * snap_mixed"]
                     .map(|part| all.part("acceleration_square", &cell, part))

@@ -1,18 +1,19 @@
 //! The extended law's flows: `Limiter.v`, `Envelope.v`, `Attitude.v`, `Heading.v`, `Fallback.v`.
 
 use super::{
-    TRIALS, certificate, constants, direction, extended_law, field, near, of, plane, row, same, signed, unit_quaternion,
+    TRIALS, as_f64, certificate, constants, direction, extended_law, field, near, plane, row, same, signed,
+    unit_quaternion,
 };
 use crate::support::coq::{Proofs, Value};
 use crate::support::{Random, hummingbird};
-use controller_core::attitude_reference::{DesiredAttitude, Turn};
+use controller_core::attitude_reference::{DesiredAttitude, DirectionMotion};
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::extended::attitude::AttitudeLaw;
-use controller_core::extended::fallback::{Fallback, Slowed, WINDOW};
-use controller_core::extended::heading::{HeadingLaw, Seen};
+use controller_core::extended::direction_limiter::DirectionLimiter;
+use controller_core::extended::fallback::{Fallback, PROGRESS_WINDOW_S, Slowed};
+use controller_core::extended::heading::HeadingLaw;
 use controller_core::extended::parameters::ExtendedParameters;
-use controller_core::extended::position::{Filters, Most, PositionLaw};
-use controller_core::extended::turning::TurningLimit;
+use controller_core::extended::position::{FeedbackLimits, Filters, PositionLaw};
 use controller_core::heading::Heading;
 use controller_core::mrp;
 use controller_core::path_lifting::switching_scalar;
@@ -35,7 +36,7 @@ fn near_plane(found: &Vector2<f32>, proven: &Value, scale: f64, what: &str) {
 pub(super) fn the_limiter_is_that_of_the_proofs() {
     let p = constants();
     let (period, alpha) = (0.01_f32, 40.0_f32);
-    let limit = TurningLimit::new(&p, alpha, period);
+    let limit = DirectionLimiter::new(&p, alpha, period);
     let mut random = Random(3);
     let (mut cut, mut kept) = (0, 0);
     for _ in 0..TRIALS {
@@ -44,11 +45,12 @@ pub(super) fn the_limiter_is_that_of_the_proofs() {
         // Near the cone's edge as well.
         let tilt = random.within(0.0, 1.1) as f32 * p.tilt_max;
         let across = direction(&mut random).xy().normalize() * tilt.sin();
-        let turn = Turn { rate, acceleration: wanted, magnitude: 9.81, radial_rate: 0.0, radial_acceleration: 0.0 };
-        let found = limit.turned(&turn, &across.push(tilt.cos()));
+        let turn =
+            DirectionMotion { rate, acceleration: wanted, magnitude: 9.81, radial_rate: 0.0, radial_acceleration: 0.0 };
+        let found = limit.limited(&turn, &across.push(tilt.cos()));
         let proofs = Proofs::read("Limiter")
-            .with(&of(&[("period", period), ("alpha", alpha), ("rate_max", p.turn_rate), ("along", tilt.cos())]))
-            .with(&of(&[("closing", (0.5 * alpha).sqrt()), ("cosine", p.tilt_max.cos())]))
+            .with(&as_f64(&[("period", period), ("alpha", alpha), ("rate_max", p.turn_rate), ("along", tilt.cos())]))
+            .with(&as_f64(&[("closing", (0.5 * alpha).sqrt()), ("cosine", p.tilt_max.cos())]))
             .with_value("rate", plane(&rate))
             .with_value("wanted", plane(&wanted))
             .with_value("across", plane(&across));
@@ -66,7 +68,7 @@ pub(super) fn the_limiter_is_that_of_the_proofs() {
         let (heading, q) = (Heading::new(Vector2::x(), signed(&mut random), 0.0).unwrap(), wanted);
         let command = Vector3::new(signed(&mut random), signed(&mut random), 9.0);
         let desired = DesiredAttitude::new(&command, &heading);
-        let motion = desired.motion_of(&rate, &q, &heading);
+        let motion = desired.motion_of_direction(&rate, &q, &heading);
         let carried = Proofs::read("Limiter").value("quarter", &[plane(&rate)]);
         let rate_moves = Vector2::new(motion.acceleration.y, -motion.acceleration.x);
         near_plane(&((rate_moves - q) / motion.velocity.z), &carried, 1e3, "carried");
@@ -81,7 +83,7 @@ pub(super) fn what_a_command_asks_of_the_frame_is_that_of_the_proofs() {
     let bounds = configuration.bounds();
     // As the certificate has them, but for the last digit of single precision.
     let with_drag = |value: f32, below: f32| f64::from(value) + f64::from(p.drag_across) * f64::from(below);
-    let slowed = Slowed::<f64>::of(&p, configuration.vehicle().gravity);
+    let slowed = Slowed::<f64>::new(&p, configuration.vehicle().gravity);
     let [slow_jerk, slow_snap] = slowed.derivatives(&p);
     let jerk = with_drag(bounds.jerk, bounds.horizontal_acceleration) + slow_jerk;
     let snap = with_drag(bounds.snap, bounds.jerk) + slow_snap;
@@ -104,10 +106,10 @@ pub(super) fn what_a_command_asks_of_the_frame_is_that_of_the_proofs() {
         let command = Vector3::new(signed(&mut random), signed(&mut random), 9.0);
         let [u_1, u_2] = [5.0, 20.0].map(|size| direction(&mut random) * size);
         let desired = DesiredAttitude::new(&command, &Heading::FORWARD);
-        let turn = desired.turn(&u_1, &u_2);
-        let [across_1, across_2] = [&u_1, &u_2].map(|v| desired.turn(v, v).rate * desired.magnitude());
+        let turn = desired.direction_motion(&u_1, &u_2);
+        let [across_1, across_2] = [&u_1, &u_2].map(|v| desired.direction_motion(v, v).rate * desired.magnitude());
         let proofs = Proofs::read("Limiter")
-            .with(&of(&[("n", turn.magnitude), ("radial", turn.radial_rate)]))
+            .with(&as_f64(&[("n", turn.magnitude), ("radial", turn.radial_rate)]))
             .with_value("u_1", plane(&across_1))
             .with_value("u_2", plane(&across_2));
         let lengths = [(turn.rate, "length p <="), (turn.acceleration, "length q <=")];
@@ -132,10 +134,10 @@ fn least(k: f32, y: f32, y_1: f32) -> f64 {
 pub(super) fn the_ends_of_u_are_those_of_the_proofs() {
     const FAR: f32 = 1e6;
     let p = constants();
-    let limit = TurningLimit::new(&p, 40.0, 0.01);
+    let limit = DirectionLimiter::new(&p, 40.0, 0.01);
     let change = |magnitude, radial_rate, radial_acceleration, vertical| {
         let still = Vector2::zeros();
-        let turn = Turn { rate: still, acceleration: still, magnitude, radial_rate, radial_acceleration };
+        let turn = DirectionMotion { rate: still, acceleration: still, magnitude, radial_rate, radial_acceleration };
         limit.change(&turn, &still, &Vector3::z(), 30.0, vertical).unwrap().z
     };
     // c_z'' as limited, for y = c_z + A_-: far below U, where n has all room. It falls without end as wanted.
@@ -178,7 +180,7 @@ pub(super) fn the_tilts_error_and_its_pull_are_those_of_the_proofs() {
         let tilt = law.tilt(&error, Some(&side));
         let [m_1, m_2, sine] = in_the_body(&error, &side.push(0.0));
         let [rho_1, rho_2, cosine] = in_the_body(&error, &Vector3::z());
-        let proofs = Proofs::read("Attitude").with(&of(&[("k", p.k_tilt), ("M", p.m_tilt)]));
+        let proofs = Proofs::read("Attitude").with(&as_f64(&[("k", p.k_tilt), ("M", p.m_tilt)]));
         let beyond = proofs.number("held_half", &[sine]) <= switching;
         if (half + 2.0 * switching).abs() < 1e-4 || (proofs.number("held_half", &[sine]) - switching).abs() < 1e-4 {
             continue;
@@ -230,8 +232,14 @@ pub(super) fn the_tilts_torque_is_that_of_the_proofs() {
 
         let angle = 4.0 * f64::from(tilt.mrp.norm()).atan();
         let mut proofs = Proofs::read("Attitude")
-            .with(&of(&[("j_1", inertia.x), ("j_2", inertia.y), ("j_3", inertia.z), ("lambda", lambda), ("nu", nu)]))
-            .with(&of(&[("a_1", a.x), ("a_2", a.y), ("k", p.k_tilt), ("M", p.m_tilt)]))
+            .with(&as_f64(&[
+                ("j_1", inertia.x),
+                ("j_2", inertia.y),
+                ("j_3", inertia.z),
+                ("lambda", lambda),
+                ("nu", nu),
+            ]))
+            .with(&as_f64(&[("a_1", a.x), ("a_2", a.y), ("k", p.k_tilt), ("M", p.m_tilt)]))
             .with(&[NOW])
             .with_value("angle", Value::Number(angle).moving())
             .with_value("e", plane(&(tilt.mrp / tilt.mrp.norm())))
@@ -262,12 +270,12 @@ pub(super) fn the_heading_is_that_of_the_proofs() {
     let mut random = Random(23);
     for _ in 0..TRIALS {
         let velocity = direction(&mut random) * 10.0;
-        let seen = Seen { rate: direction(&mut random) * 3.0, acceleration: 10.0 * signed(&mut random) };
-        let forward = law.forward(&seen, &velocity);
+        let (frame_rate, acceleration) = (direction(&mut random) * 3.0, 10.0 * signed(&mut random));
+        let forward = law.forward(&frame_rate, acceleration, &velocity);
         let (psi, rate_error) = (2.0 * signed(&mut random), 12.0 * signed(&mut random));
         // Where nothing was left for yaw, A brakes.
         let found = law.torque(psi, rate_error, forward, &velocity, 0.0);
-        let proofs = Proofs::read("Heading").with(&of(&[
+        let proofs = Proofs::read("Heading").with(&as_f64(&[
             ("k", p.c_1 / p.c_2),
             ("A", p.yaw_acceleration),
             ("W", p.yaw_rate),
@@ -285,7 +293,7 @@ pub(super) fn the_heading_is_that_of_the_proofs() {
         // What it makes of the rate, where the ends cut it.
         let ends = [("Y_1", random.within(0.0, 0.2)), ("Y_2", random.within(0.0, 0.2))];
         let proofs = proofs.with(&ends).with(&[("j_3", j_3), ("others", others), ("feedback", feedback)]);
-        let proofs = proofs.with(&of(&[("a_d", forward)]));
+        let proofs = proofs.with(&as_f64(&[("a_d", forward)]));
         let [left, right] = proofs.sides("yaw_closed_loop", "= - got")[..] else { panic!("two sides") };
         let made = f64::from(found).clamp(-ends[0].1, ends[1].1) + others;
         for side in [left, right] {
@@ -301,7 +309,7 @@ pub(super) fn the_slowed_law_is_that_of_the_proofs() {
     for _ in 0..TRIALS {
         let [k_f, k_s] = [0; 2].map(|_| random.magnitude(1.0, 40.0) as f32);
         let parameters = ExtendedParameters { k_f, k_s, ..p };
-        let found = Slowed::<f64>::of(&parameters, gravity);
+        let found = Slowed::<f64>::new(&parameters, gravity);
         let [k_f, k_s] = [k_f, k_s].map(|bandwidth| found.factor * f64::from(bandwidth));
         // The derivatives of c, across and along the vertical at once.
         let nothing = || plane(&Vector2::zeros());
@@ -329,7 +337,7 @@ pub(super) fn the_slowed_law_is_that_of_the_proofs() {
     for _ in 0..TRIALS {
         let [command, intermediate, smoothed] = [0; 3].map(|_| direction(&mut random) * 5.0);
         let filters = Filters { command, intermediate, smoothed };
-        let found = law.feedback(&state, &reference, &filters, &still, 20.0, &Most::ALL);
+        let found = law.feedback(&state, &reference, &filters, &still, 20.0, &FeedbackLimits::UNLIMITED);
         let proofs = Proofs::read("Fallback");
         let [c, x, y] = [command, intermediate, found.smoothed].map(|v| plane(&v.xy()));
         let rate = proofs.value("command_rate", &[number(p.k_f), c.clone(), x.clone()]);
@@ -342,7 +350,7 @@ pub(super) fn the_slowed_law_is_that_of_the_proofs() {
 
 /// Flies a window from a distance to another, at a speed: whether the law is slowed at its end.
 fn window(fallback: &mut Fallback, from: f32, to: f32, speed: f32) -> bool {
-    let ticks = WINDOW as usize;
+    let ticks = PROGRESS_WINDOW_S as usize;
     let far = |tick: usize| if to < from { to } else { from + (to - from) * (tick as f32 / ticks as f32) };
     let velocity = Vector3::new(0.0, speed, 0.0);
     let mut slow = false;
@@ -365,7 +373,7 @@ pub(super) fn progress_is_that_of_the_proofs() {
             let [distance_next, speed_now] = [distance, speed].map(|record| record * random.within(0.85, 1.03) as f32);
             let distance_next = distance_next.max(0.55);
             let less = |now: f32, best: f32| {
-                let proofs = Proofs::read("Fallback").with(&of(&[("now", now), ("best", best)]));
+                let proofs = Proofs::read("Fallback").with(&as_f64(&[("now", now), ("best", best)]));
                 let [over, under] = ["1 / 2 <", "now <"].map(|side| proofs.sides("less", side));
                 let sure = (under[0] - under[1]).abs() > 1e-4 * under[1];
                 sure.then_some(over[0] < over[1] && under[0] < under[1])

@@ -3,7 +3,7 @@
 use super::{TRIALS, direction, near, signed};
 use crate::support::Random;
 use crate::support::coq::{Proofs, Value};
-use controller_core::attitude_reference::{AngularMotion, DesiredAttitude, Turn, attitude_reference};
+use controller_core::attitude_reference::{AngularMotion, DesiredAttitude, DirectionMotion, attitude_reference};
 use controller_core::heading::Heading;
 use nalgebra::{Vector2, Vector3};
 
@@ -28,7 +28,7 @@ struct Moving {
     command: [Vector3<f32>; 3],
     heading: Heading,
     desired: DesiredAttitude,
-    turn: Turn,
+    turn: DirectionMotion,
     motion: AngularMotion,
     proofs: Proofs,
 }
@@ -55,7 +55,7 @@ impl Moving {
             command: [u, u_1, u_2],
             heading,
             desired,
-            turn: desired.turn(&u_1, &u_2),
+            turn: desired.direction_motion(&u_1, &u_2),
             motion: desired.motion(&u_1, &u_2, &heading),
             proofs: proofs.with(&[("s", 0.0)]).with_value("side", side.moving()),
         }

@@ -1,6 +1,6 @@
 //! The paper's law: `Filters.v`, `Mrp.v`, `Torque.v`.
 
-use super::{TRIALS, direction, lifted, near, of, same, signed, unit_quaternion};
+use super::{TRIALS, as_f64, direction, lifted, near, same, signed, unit_quaternion};
 use crate::support::coq::Proofs;
 use crate::support::{Random, hummingbird};
 use controller_core::attitude::AttitudeLaw;
@@ -23,7 +23,7 @@ pub(super) fn the_filters_are_those_of_the_proofs() {
         let (f, s, h) =
             (random.within(0.3, 20.0) as f32, random.within(0.5, 40.0) as f32, random.within(0.001, 0.02) as f32);
         let transition = FilterTransition::new(f, s, h).unwrap();
-        let proofs = Proofs::read("Filters").with(&of(&[("f", f), ("s", s), ("h", h)]));
+        let proofs = Proofs::read("Filters").with(&as_f64(&[("f", f), ("s", s), ("h", h)]));
         let a = proofs.bound("weights_of_the_exact_solution", "a");
         let b = proofs.bound("weights_of_the_exact_solution", "whole") - a;
         let [_, c, _] = proofs.sides("weights_of_the_exact_solution", "<= 1 - exp")[..] else { panic!("0 to 1") };
@@ -35,7 +35,7 @@ pub(super) fn the_filters_are_those_of_the_proofs() {
 
         // The rounded weights are such weights too: a, b and c are what one of u_s and ubar makes of zeros.
         let ((a, _), (b, c)) = (transition.advance_axis(0.0, 1.0, 0.0), transition.advance_axis(0.0, 0.0, 1.0));
-        let proofs = proofs.with(&of(&[("a", a), ("b", b), ("c", c)]));
+        let proofs = proofs.with(&as_f64(&[("a", a), ("b", b), ("c", c)]));
         for premise in ["0 <= a", "0 <= b", "a + b <=", "0 <= c"] {
             assert!(proofs.sides("box_is_kept", premise).is_sorted(), "{premise}: {a} {b} {c}");
         }
@@ -75,7 +75,7 @@ pub(super) fn the_switch_is_that_of_the_proofs() {
     let mut random = Random(6);
     for _ in 0..TRIALS / 10 {
         let delta = random.magnitude(1e-3, 0.5) as f32;
-        let proofs = Proofs::read("Mrp").with(&of(&[("delta", delta), ("a", 0.0)]));
+        let proofs = Proofs::read("Mrp").with(&as_f64(&[("delta", delta), ("a", 0.0)]));
         let [proven, _] = proofs.sides("switch_without_division", "<= a")[..] else { panic!("two sides") };
         let scalar = path_lifting::switching_scalar(delta);
         near(scalar, proven, 1.0, "the switching scalar");
@@ -87,7 +87,7 @@ pub(super) fn the_switch_is_that_of_the_proofs() {
             let found = path_lifting::lift(Some(&Lift { memory: q, sign: 1.0 }), &q, scalar, 0.1);
             assert_eq!(found.lift.sign < 0.0, switches, "{w} about {scalar}");
             if switches {
-                let sides = Proofs::read("Mrp").with(&of(&[("delta", delta), ("a", w)]));
+                let sides = Proofs::read("Mrp").with(&as_f64(&[("delta", delta), ("a", w)]));
                 let sides = sides.sides("switch_goes_inside", "<= / ( ( 1 + delta )");
                 near(found.mrp.norm_squared(), sides[0], 1.0, "|phi| after the switch");
                 assert!(sides.is_sorted());
@@ -119,7 +119,7 @@ pub(super) fn the_torque_is_that_of_the_proofs() {
         let theta = mrp::from_quaternion(&q);
         let saturated = |x: &Vector3<f32>, gain: f32, level: f32| {
             let proofs =
-                Proofs::read("Torque").with(&of(&[("M", level), ("k", gain), ("x", x.x), ("y", x.y), ("z", x.z)]));
+                Proofs::read("Torque").with(&as_f64(&[("M", level), ("k", gain), ("x", x.x), ("y", x.y), ("z", x.z)]));
             let whole = proofs.number("square", &<[f64; 3]>::from(x.map(f64::from)));
             let arguments = |component: f32| [level, gain, component].map(f64::from);
             let part = |component| {
@@ -136,7 +136,7 @@ pub(super) fn the_torque_is_that_of_the_proofs() {
             near(found.attitude_feedback[axis], s_theta[axis], f64::from(gains.m_theta), "s_theta");
             near(found.rate_feedback[axis], s_omega[axis], f64::from(gains.m_omega), "s_omega");
             let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
-            let numbers = of(&[
+            let numbers = as_f64(&[
                 ("j", inertia[axis]),
                 ("j_next", inertia[next]),
                 ("j_last", inertia[last]),
@@ -179,7 +179,7 @@ pub(super) fn the_certificates_thrust_and_torque_are_those_of_the_proofs() {
 
     let bounds = *configuration.bounds();
     let law = PositionLaw::new(&gains, vehicle.gravity);
-    let levels = of(&[
+    let levels = as_f64(&[
         ("g", vehicle.gravity),
         ("M", gains.m_p),
         ("K_12", bounds.horizontal_acceleration),
@@ -202,7 +202,7 @@ pub(super) fn the_certificates_thrust_and_torque_are_those_of_the_proofs() {
         };
         let filter = FilterState { filtered: f, intermediate: f };
         let u = law.command(&state, &reference, &filter).acceleration_command;
-        let proofs = Proofs::read("Filters").with(&levels).with(&of(&[
+        let proofs = Proofs::read("Filters").with(&levels).with(&as_f64(&[
             ("f_1", f.x),
             ("f_2", f.y),
             ("f_3", f.z),
@@ -213,12 +213,12 @@ pub(super) fn the_certificates_thrust_and_torque_are_those_of_the_proofs() {
         let sides = proofs.sides("thrust_interval", "<= T <=");
         near(vehicle.mass * u.norm(), sides[1], 10.0, "T = m |u|");
         assert!(sides.is_sorted());
-        same(sharp.thrust.least * raised, sides[0], "the least thrust");
-        same(sharp.thrust.greatest / raised, sides[2], "the greatest thrust");
+        same(sharp.thrust.min * raised, sides[0], "the least thrust");
+        same(sharp.thrust.max / raised, sides[2], "the greatest thrust");
         let wider = proofs.sides("thrust_interval_as_printed", "<= T <=");
         assert!(sides[0] == wider[0] && sides[2] <= wider[2]);
-        same(printed.thrust.least * raised, wider[0], "the least thrust as printed");
-        same(printed.thrust.greatest / raised, wider[2], "the greatest thrust as printed");
+        same(printed.thrust.min * raised, wider[0], "the least thrust as printed");
+        same(printed.thrust.max / raised, wider[2], "the greatest thrust as printed");
     }
     let left = Proofs::read("Filters").with(&levels).sides("hover_is_left", "M + K_3 <");
     let level = row(&sharp, "T1 saturation level");

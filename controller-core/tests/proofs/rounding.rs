@@ -1,15 +1,15 @@
 //! Rounding: `Rounding.v`, `limiter.gappa`, `filters.gappa`. The same steps in the same order give the same bits.
 
 use super::tick::{budget, used};
-use super::{TRIALS, constants, direction, of, rotors, signed};
+use super::{TRIALS, as_f64, constants, direction, rotors, signed};
 use crate::support::coq::Proofs;
 use crate::support::gappa::Rounding;
 use crate::support::{Random, hummingbird};
 use controller_core::allocation::{MinimumNorm, Rotor, Rotors, Spin};
-use controller_core::attitude_reference::Turn;
+use controller_core::attitude_reference::DirectionMotion;
+use controller_core::extended::direction_limiter::DirectionLimiter;
 use controller_core::extended::parameters::{Extended, ExtendedParameters};
 use controller_core::extended::thrust_range::ThrustRange;
-use controller_core::extended::turning::TurningLimit;
 use controller_core::position::FilterTransition;
 use nalgebra::{Vector2, Vector3, Vector4};
 
@@ -35,14 +35,14 @@ pub(super) fn the_limiter_rounds_as_in_the_proofs() {
         // The first step shortens to alpha; of a vehicle at rest and upright the others do nothing.
         let alpha = within(length, &mut random);
         let p = ExtendedParameters { turn_rate: f32::MAX.sqrt(), ..constants() };
-        let turn = Turn {
+        let turn = DirectionMotion {
             rate: Vector2::zeros(),
             acceleration: v,
             magnitude: 9.81,
             radial_rate: 0.0,
             radial_acceleration: 0.0,
         };
-        let found = TurningLimit::new(&p, alpha, 0.01).turned(&turn, &Vector3::z());
+        let found = DirectionLimiter::new(&p, alpha, 0.01).limited(&turn, &Vector3::z());
         if found == v {
             continue;
         }
@@ -64,7 +64,7 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
     let proofs = Proofs::read("Rounding");
     let [unit, margin_least] = ["unit", "margin_least"].map(|name| proofs.number(name, &[]));
     assert!(unit > 0.5 * f64::from(f32::EPSILON) * (1.0 + f64::from(f32::EPSILON)), "{unit}");
-    assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_LEAST), "{margin_least}");
+    assert!(margin_least < f64::from(Extended::FLOOR_MARGIN_SHARE_MIN), "{margin_least}");
     let tiny = proofs.number("tiny", &[]);
     assert!(tiny > 0.5 * f64::from(f32::from_bits(1)) * (1.0 + f64::from(f32::EPSILON)), "{tiny}");
     the_slack_is_there(proofs.number("slack", &[]));
@@ -81,7 +81,7 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
         // All of yaw that there is, either way, or none.
         let yaw = [f32::MAX, -f32::MAX, 0.0][(random.bits() % 3) as usize];
         let braking = 0.2 * signed(&mut random);
-        let (wrench, room) = range.admitted(wanted, &tilt, [yaw, braking], scale);
+        let (wrench, room) = range.limited(wanted, &tilt, [yaw, braking], scale);
         let torque = wrench.torque;
         let allocated = allocation.allocate(&wrench.scaled(1.0 / scale)).unwrap();
         delivered += usize::from(!allocated.clipped);
@@ -99,9 +99,9 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
         for ((rotor, row), thrust) in rotors.iter().zip(rotors.pseudo_inverse()).zip(allocated.thrusts) {
             let ends = [("thrust_min", rotor.thrust_min), ("thrust_max", rotor.thrust_max)];
             let proofs = Proofs::read("Rounding")
-                .with(&of(&asked))
-                .with(&of(&ends))
-                .with(&of(&[("G", greatest)]))
+                .with(&as_f64(&asked))
+                .with(&as_f64(&ends))
+                .with(&as_f64(&[("G", greatest)]))
                 .with(&[("B", row.x), ("Q_1", row.y / row.x), ("Q_2", row.z / row.x), ("Q_3", row.w / row.x)]);
             for quantity in ["s", "B", "G"] {
                 assert!(proofs.sides("sizes", &format!("<= {quantity} <=")).is_sorted(), "{quantity}");
@@ -126,9 +126,9 @@ pub(super) fn a_rotors_command_rounds_as_in_the_proofs() {
             assert!(proofs.sides("between_ends", between).is_sorted(), "{torque} {between}");
         }
         let (along, least, most) = (tilt.push(0.0), least.min(0.0), most.max(0.0));
-        assert_eq!(f64::from(range.least(&along, scale)), floor, "{tilt} {scale} {margin}");
-        assert_eq!(f64::from(range.greatest(&along, scale)), ceiling, "{tilt} {scale} {margin}");
-        let beside = f64::from(range.greatest(&tilt.push(braking), scale));
+        assert_eq!(f64::from(range.min_thrust(&along, scale)), floor, "{tilt} {scale} {margin}");
+        assert_eq!(f64::from(range.max_thrust(&along, scale)), ceiling, "{tilt} {scale} {margin}");
+        let beside = f64::from(range.max_thrust(&tilt.push(braking), scale));
         let thrust = floor.max(ceiling.min(beside)).min(floor.max(f64::from(wanted)));
         assert_eq!(f64::from(wrench.thrust), thrust, "{tilt} {scale} {margin}");
         assert_eq!(f64::from(torque.z), most.min(least.max(f64::from(yaw))), "{tilt} {scale} {margin}");
@@ -187,7 +187,7 @@ pub(super) fn the_margins_size_is_that_of_the_proofs() {
         let (size, parts) = sizes.fold((0.0, false), |a, b| if b.0 > a.0 { b } else { a });
         by_parts += usize::from(parts);
         let p = constants();
-        let least = f64::from(Extended::FLOOR_MARGIN_LEAST) * f64::from(p.scale_greatest) * size;
+        let least = f64::from(Extended::FLOOR_MARGIN_SHARE_MIN) * f64::from(p.scale_greatest) * size;
         let accepted = |share: f64| {
             let with = ExtendedParameters { floor_margin: (share * least) as f32, ..p };
             Extended::new(with, &hummingbird::vehicle()).unwrap().check_rotors(&rotors).is_ok()

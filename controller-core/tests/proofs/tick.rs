@@ -1,8 +1,8 @@
 //! A tick of the extended law, from its torque's parts to the rotors: `Allocation.v`, `Spending.v`.
 
 use super::{
-    TRIALS, across, certificate, constants, direction, extended_law, field, near, of, plane, rotors, row, same, signed,
-    unit_quaternion,
+    TRIALS, across, as_f64, certificate, constants, direction, extended_law, field, near, plane, rotors, row, same,
+    signed, unit_quaternion,
 };
 use crate::support::coq::{Proofs, Value};
 use crate::support::{Random, hummingbird};
@@ -10,10 +10,10 @@ use controller_core::allocation::{MinimumNorm, Rotors};
 use controller_core::attitude::rotate_back;
 use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::extended::attitude::AttitudeLaw;
-use controller_core::extended::budget::{Row, Spending, TickBudget, TorqueBudget};
+use controller_core::extended::budget::{BudgetRow, Spending, TickBudget, TorqueBudget};
+use controller_core::extended::direction_limiter::PUSH_ACROSS_MAX_M_PER_S2;
 use controller_core::extended::heading::HeadingLaw;
 use controller_core::extended::thrust_range::ThrustRange;
-use controller_core::extended::turning::PUSH_ACROSS;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::mrp;
@@ -50,18 +50,18 @@ pub(super) fn the_thrust_range_is_that_of_the_proofs() {
         let tau = tilt(&mut random);
         let scale = random.within(0.9, 1.15) as f32;
         let whole = Proofs::read("Allocation")
-            .with(&of(&[("s", scale), ("margin", p.floor_margin), ("T_max", thrust_max), ("yaw_max", yaw_max)]))
+            .with(&as_f64(&[("s", scale), ("margin", p.floor_margin), ("T_max", thrust_max), ("yaw_max", yaw_max)]))
             .with_value("rotors", Value::List(rotors_of(&rotors)));
         let proofs = whole.clone().with_value("tau", plane(&tau));
         let floor = proofs.number("floor", &[]);
-        near(range.least(&tau.push(0.0), scale), floor, 10.0, "floor");
-        near(range.greatest(&tau.push(0.0), scale), proofs.number("ceiling", &[]), 10.0, "ceiling");
+        near(range.min_thrust(&tau.push(0.0), scale), floor, 10.0, "floor");
+        near(range.max_thrust(&tau.push(0.0), scale), proofs.number("ceiling", &[]), 10.0, "ceiling");
         let (wanted, yaw) = (40.0 * signed(&mut random), signed(&mut random));
         let braking = 0.3 * signed(&mut random);
         let [alone, beside] = [0.0, f64::from(braking)].map(|braking| proofs.number("ceiling_beside", &[braking]));
-        near(range.greatest(&tau.push(braking), scale), beside, 10.0, "ceiling beside what brakes");
+        near(range.max_thrust(&tau.push(braking), scale), beside, 10.0, "ceiling beside what brakes");
         cut += usize::from(beside < alone && beside < f64::from(wanted));
-        let (found, room) = range.admitted(wanted, &tau, [yaw, braking], scale);
+        let (found, room) = range.limited(wanted, &tau, [yaw, braking], scale);
         near(found.thrust, proofs.number("thrust", &[braking, wanted].map(f64::from)), 10.0, "thrust");
         let thrust = f64::from(found.thrust);
         near(found.torque.z, proofs.number("yaw", &[thrust, f64::from(yaw)]), 1.0, "yaw");
@@ -120,7 +120,7 @@ pub(super) fn used() -> f64 {
 }
 
 /// A row as the proofs have it, with a part of its room.
-fn row_of(row: &Row, part: f64) -> Value {
+fn row_of(row: &BudgetRow, part: f64) -> Value {
     let numbers = [("per_scale", part * row.per_scale), ("fixed", part * row.fixed)];
     let Value::Record(mut fields) = Value::record(&numbers) else { unreachable!() };
     fields.insert("direction".to_owned(), across(row.direction));
@@ -140,7 +140,7 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
     let (p, rotors_there, limits) = (constants(), rotors(), configuration.limits());
     let rotors = rotors_of(&rotors_there);
     let ends = Proofs::read("Allocation")
-        .with(&of(&[("s", 1.0), ("margin", p.floor_margin), ("T_max", limits.thrust_max)]))
+        .with(&as_f64(&[("s", 1.0), ("margin", p.floor_margin), ("T_max", limits.thrust_max)]))
         .with(&[("top", 0.0), ("bottom", 0.0)]);
     let (mut top, mut bottom) = (f64::INFINITY, 0.0_f64);
     for rotor in &rotors {
@@ -164,7 +164,7 @@ pub(super) fn the_budgets_rows_are_those_of_the_proofs() {
             assert!((found - direction[axis].number()).abs() < 1e-12, "{found} {direction:?}");
         }
         for scale in [0.9, 1.0, 1.15] {
-            same(found.room(scale), proven_at(proven, scale), "R");
+            same(found.capacity(scale), proven_at(proven, scale), "R");
         }
     }
     for (found, limit) in budget.rows.iter().zip(limits.torque_max.xy().iter()) {
@@ -195,7 +195,7 @@ pub(super) fn the_certificates_rows_of_torque_are_those_of_the_proofs() {
         .with_value("rows", Value::List(rows))
         .with_value("bias", none)
         .with_value("pull", plane(&Vector2::new(p.m_tilt, 0.0)));
-    let at = |scale: f32| whole.clone().with(&of(&[("s", scale)]));
+    let at = |scale: f32| whole.clone().with(&as_f64(&[("s", scale)]));
     let ends = [p.scale_least, p.scale_greatest].map(at);
     let raised = 1.0 + ARITHMETIC_ALLOWANCE;
     let least = |sides: [Vec<f64>; 2]| sides[0][1].min(sides[1][1]);
@@ -280,8 +280,8 @@ pub(super) fn a_ticks_spending_is_that_of_the_proofs() {
         let a = direction(&mut random);
         let found = law.torque(&a);
         let lengths = Proofs::read("Spending")
-            .with(&of(&[("j_1", inertia.x), ("j_2", inertia.y), ("j_max", inertia.x.max(inertia.y))]))
-            .with(&of(&[("q", a.xy().norm())]))
+            .with(&as_f64(&[("j_1", inertia.x), ("j_2", inertia.y), ("j_max", inertia.x.max(inertia.y))]))
+            .with(&as_f64(&[("q", a.xy().norm())]))
             .with_value("a", plane(&a.xy()))
             .sides("torque_of_a_turn", "<= j_max * q");
         near(found.norm(), lengths[0], 1e-2, "J a");
@@ -334,13 +334,13 @@ pub(super) fn the_laws_parts_and_their_order_are_those_of_the_proofs() {
         near(wrench.torque.y, field(&proven, "y").number(), 100.0, "tau_2");
         // Then thrust, beside what brakes the heading.
         let proofs = Proofs::read("Allocation")
-            .with(&of(&[("s", scale), ("margin", p.floor_margin), ("T_max", configuration.limits().thrust_max)]))
+            .with(&as_f64(&[("s", scale), ("margin", p.floor_margin), ("T_max", configuration.limits().thrust_max)]))
             .with_value("rotors", Value::List(rotors_of(&rotors())))
             .with_value("tau", plane(&wrench.torque.xy()));
         // n* of section 1, along rho.
         let (u, y) = (found.acceleration_command, controller.memory().filters.smoothed);
         let rho = u / u.norm();
-        let across = PUSH_ACROSS / rho.xy().norm();
+        let across = PUSH_ACROSS_MAX_M_PER_S2 / rho.xy().norm();
         let more = (y.z - found.filtered.z) / rho.z.max(p.tilt_max.cos());
         let greatest = budget.ceiling(configuration.vehicle(), configuration.limits());
         let length = (u.norm() + more.clamp(-across, across)).max(0.0);
@@ -370,12 +370,12 @@ pub(super) fn no_tick_takes_a_rotor_out_of_its_range() {
             spending.spend(&part, kept);
         }
         let [thrust, yaw, braking] = [100.0, 2.0, 2.0].map(|most| most * signed(&mut random));
-        let (found, _) = range.admitted(thrust, &spending.spent, [yaw, braking], scale);
+        let (found, _) = range.limited(thrust, &spending.spent, [yaw, braking], scale);
         let Wrench { thrust, torque } = found;
         let proofs = Proofs::read("Spending")
             .with(&numbers)
-            .with(&of(&[("s", scale), ("T_max", limits.thrust_max), ("yaw_max", limits.torque_max.z)]))
-            .with(&of(&[("T", thrust), ("tau_z", torque.z)]))
+            .with(&as_f64(&[("s", scale), ("T_max", limits.thrust_max), ("yaw_max", limits.torque_max.z)]))
+            .with(&as_f64(&[("T", thrust), ("tau_z", torque.z)]))
             .with_value("tau", plane(&spending.spent));
         for row in &rows.rows {
             let proofs = proofs.clone().with_value("w", row_of(row, 1.0));

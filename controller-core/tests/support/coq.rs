@@ -130,12 +130,12 @@ impl Contents {
                         continue;
                     }
                     if rest[..is].ends_with(&["Prop".to_owned()]) {
-                        self.statements.insert(name.clone(), Statement::of(&file, &term));
+                        self.statements.insert(name.clone(), Statement::parse(&file, &term));
                     }
                     self.definitions.insert(name, Definition { file, variables, arguments, term, rounded: false });
                 }
                 "Theorem" | "Hypothesis" => {
-                    self.statements.insert(name, Statement::of(&file, &rest[1..]));
+                    self.statements.insert(name, Statement::parse(&file, &rest[1..]));
                 }
                 _ => {}
             }
@@ -158,7 +158,7 @@ impl Proofs {
     }
 
     /// Of these definitions.
-    pub(super) fn of(definitions: BTreeMap<String, Definition>) -> Self {
+    pub(super) fn from_definitions(definitions: BTreeMap<String, Definition>) -> Self {
         let contents = Rc::new(Contents { definitions, ..Contents::default() });
         Self { contents, variables: BTreeMap::new() }
     }

@@ -31,7 +31,7 @@ impl Rounding {
             }
         }
         let bounds = proven.split("->").flat_map(|part| part.split("/\\")).map(interval).collect();
-        Self { file: file.to_owned(), formulas: Proofs::of(read), intervals: bounds }
+        Self { file: file.to_owned(), formulas: Proofs::from_definitions(read), intervals: bounds }
     }
 
     /// A formula of these inputs.

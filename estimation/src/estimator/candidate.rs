@@ -2,10 +2,10 @@
 //!
 //! A candidate is a filter that starts at a pose and knows no velocity. It fuses the poses that come, through the same
 //! gates as any filter, and may pass over [`MISSES_MAX`] in a row; one more is the start of a new candidate. After
-//! [`POSES_MIN`] poses over [`PROVEN_AFTER`] they agree among themselves and with the gyro, about every turn, and with
-//! the accelerometer, about every change of velocity. Where up is comes out of that too, at rest as in motion: with an
-//! attitude that is off by an angle e, gravity is an acceleration of g sin(e) that the poses do not show. The filter
-//! has nowhere to put it but the accelerometer's bias, which is then not plausible.
+//! [`POSES_MIN`] poses over [`PROVING_MIN_US`] they agree among themselves and with the gyro, about every turn, and
+//! with the accelerometer, about every change of velocity. Where up is comes out of that too, at rest as in motion:
+//! with an attitude that is off by an angle e, gravity is an acceleration of g sin(e) that the poses do not show. The
+//! filter has nowhere to put it but the accelerometer's bias, which is then not plausible.
 //!
 //! Where there is an estimate already, coasting since it believed no pose any more, a candidate that has proven itself
 //! is the same body found again if it is no further away than coasting for T seconds may have drifted:
@@ -31,7 +31,7 @@ use nalgebra::Vector3;
 pub const POSES_MIN: u16 = 5;
 
 /// The least time from its first pose to its last, us.
-pub const PROVEN_AFTER: u64 = 500_000;
+pub const PROVING_MIN_US: u64 = 500_000;
 
 /// Poses in a row that a candidate may not believe: an outlier is no reason to begin anew.
 pub const MISSES_MAX: u8 = 2;
@@ -67,7 +67,7 @@ impl Candidate {
     ) -> Result<(), Rejected> {
         self.filter.advance(time, history, settings);
         self.misses = self.misses.saturating_add(1);
-        let tested = self.filter.test(pose, settings)?;
+        let tested = self.filter.weigh(pose, settings)?;
         tested.gate()?;
         self.filter.fuse(pose, &tested)?;
         self.poses = self.poses.saturating_add(1);
@@ -84,23 +84,19 @@ impl Candidate {
 
     /// Whether it has proven itself.
     pub fn is_proven(&self) -> bool {
-        self.poses >= POSES_MIN && self.until.saturating_sub(self.since) >= PROVEN_AFTER
+        self.poses >= POSES_MIN && self.until.saturating_sub(self.since) >= PROVING_MIN_US
     }
 
     /// Whether up is where the accelerometer says.
     pub fn check_gravity(&self, settings: &Settings) -> Result<(), Rejected> {
-        let most = settings.parameters().accelerometer_bias_max;
-        if self.filter.nominal.accelerometer_bias.norm_squared() > most * most {
-            Err(Rejected::Gravity)
-        } else {
-            Ok(())
-        }
+        let max = settings.parameters().accelerometer_bias_max;
+        if self.filter.nominal.accelerometer_bias.norm_squared() > max * max { Err(Rejected::Gravity) } else { Ok(()) }
     }
 
     /// Whether it may be what `filter`, at the same time, has lost sight of `lost` us ago.
     pub fn compare(&self, filter: &Filter, lost: u64) -> Result<(), Rejected> {
         let t = lost as f32 * 1e-6;
-        let exceeds = |apart: &Vector3<f32>, most: f32| math::sqrt(apart.norm_squared()) > most;
+        let exceeds = |apart: &Vector3<f32>, max: f32| math::sqrt(apart.norm_squared()) > max;
         let (there, here) = (&self.filter.nominal, &filter.nominal);
         let turned = super::nominal::difference(&there.attitude, &here.attitude);
         if exceeds(&turned, 0.1 + 0.02 * t) {

@@ -8,7 +8,7 @@ use crate::measurement::Stamped;
 use heapless::{Deque, Vec};
 
 /// Poses that can be taken back: 40 ms of them at 200 Hz, and the jitter of a network at 100 Hz.
-pub const DEPTH: usize = 8;
+pub const CHECKPOINTS_MAX: usize = 8;
 
 /// A pose that was fused, and the filter before that.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,11 +20,11 @@ struct Checkpoint {
 /// The last of them, oldest first.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Checkpoints {
-    kept: Deque<Checkpoint, DEPTH>,
+    kept: Deque<Checkpoint, CHECKPOINTS_MAX>,
 }
 
 /// Poses that were taken back, newest first.
-pub(super) type Later = Vec<Stamped<PoseMeasurement>, DEPTH>;
+pub(super) type Later = Vec<Stamped<PoseMeasurement>, CHECKPOINTS_MAX>;
 
 impl Checkpoints {
     pub const EMPTY: Self = Self { kept: Deque::new() };

@@ -18,7 +18,7 @@
 //!
 //! A shear costs as many products as it has blocks, keeps every symmetry and keeps P positive definite, rounding apart.
 //! R is that of the increment's middle. Then the noise of h seconds is added; and where a sensor was at full scale,
-//! what that may have left out of the velocity (`SHOCK`) or of the turn (`WHIRL`).
+//! what that may have left out of the velocity (`CLIPPED_VELOCITY_M_PER_S`) or of the turn (`CLIPPED_ANGLE_RAD`).
 //!
 //! A measured part x (position, velocity or attitude) with noise covariance V and residual r is fused with
 //!
@@ -31,18 +31,18 @@
 //! kinematics for the error-state Kalman filter*, 2017, chapters 5 to 7 (global angular error).
 
 use super::history::Clipped;
-use super::nominal::Motion;
+use super::nominal::IncrementEffect;
 use super::settings::EstimatorParameters;
 use controller_core::math;
 use nalgebra::{Matrix3, Vector3};
 
 /// The deviation of what the accelerometer may have missed of a change of velocity within an increment, in any
 /// direction, m/s: in a touchdown at a few metres a second, nearly all of it.
-const SHOCK: f32 = 1.0;
+const CLIPPED_VELOCITY_M_PER_S: f32 = 1.0;
 
 /// The deviation of what the gyro may have missed of a turn within an increment, about any axis, rad: 5 ms at twice the
 /// range of 2000 deg/s, of which it showed one half, are 0.17.
-const WHIRL: f32 = 0.1;
+const CLIPPED_ANGLE_RAD: f32 = 0.1;
 
 /// The upper blocks of P; p, v, t(heta), g(yro's bias), a(ccelerometer's bias). SI units, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,7 +108,7 @@ impl Covariance {
     }
 
     /// The block of a measured part alone.
-    pub(super) fn of(&self, part: Part) -> &Matrix3<f32> {
+    pub(super) fn block(&self, part: Part) -> &Matrix3<f32> {
         match part {
             Part::Position => &self.pp,
             Part::Velocity => &self.vv,
@@ -126,7 +126,7 @@ impl Covariance {
     }
 
     /// Carries P through what the nominal state went through.
-    pub(super) fn advance(&mut self, motion: &Motion, noise: &EstimatorParameters) {
+    pub(super) fn advance(&mut self, motion: &IncrementEffect, noise: &EstimatorParameters) {
         let h = motion.seconds;
         let turned_bias = motion.rotation * (-0.5 * h);
         self.shear_position(0.5 * h);
@@ -146,7 +146,9 @@ impl Covariance {
             block.m33 += variance;
         }
         let Clipped { gyro, accelerometer } = motion.clipped;
-        for (block, missed, deviation) in [(&mut self.vv, accelerometer, SHOCK), (&mut self.tt, gyro, WHIRL)] {
+        for (block, missed, deviation) in
+            [(&mut self.vv, accelerometer, CLIPPED_VELOCITY_M_PER_S), (&mut self.tt, gyro, CLIPPED_ANGLE_RAD)]
+        {
             if missed {
                 // Alike in every direction: a narrow doubt would not survive single precision.
                 *block += Matrix3::from_diagonal_element(deviation * deviation);

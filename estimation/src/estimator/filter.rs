@@ -5,8 +5,8 @@
 //! - `Filter::rebase`: the pose source reports a move of its frame.
 //!
 //! Normalised innovations squared (NIS) are r' S^-1 r of a residual r whose covariance is S: for a filter and a pose
-//! that are what they say, chi-square distributed with three degrees of freedom, 3 on average, and above [`GATE`] once
-//! in a hundred thousand times.
+//! that are what they say, chi-square distributed with three degrees of freedom, 3 on average, and above [`NIS_GATE`]
+//! once in a hundred thousand times.
 
 use super::covariance::{Correction, Covariance, Part, inverse};
 use super::history::History;
@@ -17,14 +17,14 @@ use super::verdict::Rejected;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// The greatest NIS of a pose that is believed: chi-square with 3 degrees of freedom, 1 - 1e-5.
-pub const GATE: f32 = 25.9;
+pub const NIS_GATE: f32 = 25.9;
 
 /// The greatest residuals that may be errors of estimation, m and rad (as error vectors).
-const POSITION_RESIDUAL_MAX: f32 = 1.0;
-const ATTITUDE_RESIDUAL_MAX: f32 = 0.52;
+const POSITION_RESIDUAL_MAX_M: f32 = 1.0;
+const ATTITUDE_RESIDUAL_MAX_RAD: f32 = 0.52;
 
 /// The deviation of a velocity of which nothing is known, m/s.
-const VELOCITY_UNKNOWN: f32 = 10.0;
+const UNKNOWN_VELOCITY_M_PER_S: f32 = 10.0;
 
 /// Nominal state and covariance at `time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,13 +73,13 @@ impl Biases {
 
 /// A pose, weighed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tested {
+pub(super) struct WeighedPose {
     position: Innovation,
     attitude: Innovation,
     velocity: Option<Innovation>,
 }
 
-impl Tested {
+impl WeighedPose {
     /// NIS of position and attitude.
     pub fn nis(&self) -> (f32, f32) {
         (self.position.nis, self.attitude.nis)
@@ -87,7 +87,7 @@ impl Tested {
 
     /// Whether every part is within its gate.
     pub fn gate(&self) -> Result<(), Rejected> {
-        let within = |innovation: &Innovation| innovation.nis <= GATE;
+        let within = |innovation: &Innovation| innovation.nis <= NIS_GATE;
         if !within(&self.position) {
             Err(Rejected::Position)
         } else if !within(&self.attitude) {
@@ -105,7 +105,7 @@ impl Filter {
     pub(super) fn start(time: u64, pose: &PoseMeasurement, biases: &Biases, settings: &Settings) -> Self {
         let parameters = settings.parameters();
         let (position, attitude) = settings.deviations(pose.deviations);
-        let mut covariance = Covariance::diagonal([position, VELOCITY_UNKNOWN, attitude, 1.0, 1.0]);
+        let mut covariance = Covariance::diagonal([position, UNKNOWN_VELOCITY_M_PER_S, attitude, 1.0, 1.0]);
         (covariance.gg, covariance.ga, covariance.aa) = (biases.gg, biases.ga, biases.aa);
         let nominal = Nominal {
             position: pose.position,
@@ -143,14 +143,14 @@ impl Filter {
     ///
     /// # Errors
     /// Where it is too far from the state to be an error of estimation, or a covariance is invalid.
-    pub(super) fn test(&self, pose: &PoseMeasurement, settings: &Settings) -> Result<Tested, Rejected> {
+    pub(super) fn weigh(&self, pose: &PoseMeasurement, settings: &Settings) -> Result<WeighedPose, Rejected> {
         let parameters = settings.parameters();
         let (position, attitude) = settings.deviations(pose.deviations);
         let (apart, turned) = self.residuals(pose);
-        if apart.norm_squared() > POSITION_RESIDUAL_MAX * POSITION_RESIDUAL_MAX {
+        if apart.norm_squared() > POSITION_RESIDUAL_MAX_M * POSITION_RESIDUAL_MAX_M {
             return Err(Rejected::Position);
         }
-        if turned.norm_squared() > ATTITUDE_RESIDUAL_MAX * ATTITUDE_RESIDUAL_MAX {
+        if turned.norm_squared() > ATTITUDE_RESIDUAL_MAX_RAD * ATTITUDE_RESIDUAL_MAX_RAD {
             return Err(Rejected::Attitude);
         }
         let noise = |deviation: f32, per_second: &Vector3<f32>| {
@@ -158,7 +158,7 @@ impl Filter {
             Matrix3::from_diagonal_element(deviation * deviation) + late * late.transpose()
         };
         let weigh = |part: Part, residual: &Vector3<f32>, noise: Matrix3<f32>| {
-            let weight = inverse(&(self.covariance.of(part) + noise)).ok_or(Rejected::NotFinite)?;
+            let weight = inverse(&(self.covariance.block(part) + noise)).ok_or(Rejected::NotFinite)?;
             Ok(Innovation { noise, nis: residual.dot(&(weight * residual)) })
         };
         let velocity = match pose.velocity {
@@ -168,7 +168,7 @@ impl Filter {
             }
             _ => None,
         };
-        Ok(Tested {
+        Ok(WeighedPose {
             position: weigh(Part::Position, &apart, noise(position, &self.nominal.velocity))?,
             attitude: weigh(Part::Attitude, &turned, noise(attitude, &self.turn_rate))?,
             velocity,
@@ -179,7 +179,7 @@ impl Filter {
     ///
     /// # Errors
     /// Where a covariance is invalid; the filter is then of no use.
-    pub(super) fn fuse(&mut self, pose: &PoseMeasurement, tested: &Tested) -> Result<(), Rejected> {
+    pub(super) fn fuse(&mut self, pose: &PoseMeasurement, tested: &WeighedPose) -> Result<(), Rejected> {
         let (apart, _) = self.residuals(pose);
         self.take(Part::Position, &apart, &tested.position.noise)?;
         let (_, turned) = self.residuals(pose);
@@ -212,7 +212,7 @@ impl Filter {
     }
 
     fn take(&mut self, part: Part, residual: &Vector3<f32>, noise: &Matrix3<f32>) -> Result<(), Rejected> {
-        let weight = inverse(&(self.covariance.of(part) + noise)).ok_or(Rejected::NotFinite)?;
+        let weight = inverse(&(self.covariance.block(part) + noise)).ok_or(Rejected::NotFinite)?;
         let Correction { position, velocity, attitude, gyro_bias, accelerometer_bias } =
             self.covariance.fuse(part, residual, noise, &weight);
         let nominal = &mut self.nominal;

@@ -5,19 +5,19 @@
 //! [`NIS_MAX`]); a filter whose sensors match its settings has 3.
 
 use super::filter::Filter;
-use super::history::EXTRAPOLATION_MAX;
+use super::history::EXTRAPOLATION_MAX_US;
 use super::settings::Settings;
-use super::verdict::{Fault, Rejected, Taken};
+use super::verdict::{Accepted, Fault, Rejected};
 use controller_core::math;
 use nalgebra::Matrix3;
 
 /// The age of the last pose that was fused at which the estimate counts as coasting, us: poses of 10 Hz that come 150
 /// ms late, and their jitter.
-pub const COASTING_AFTER: u64 = 300_000;
+pub const COASTING_AFTER_US: u64 = 300_000;
 
 /// Deviations beyond which an estimate is not good enough to fly on: m, m/s, rad (each the root of a trace). As with
-/// poses, not for longer than [`COASTING_AFTER`]: a few poses restore what a shock has left out.
-const UNCERTAIN: (f32, f32, f32) = (0.3, 0.5, 0.1);
+/// poses, not for longer than [`COASTING_AFTER_US`]: a few poses restore what a shock has left out.
+const DEVIATIONS_MAX: (f32, f32, f32) = (0.3, 0.5, 0.1);
 
 /// The mean NIS beyond which poses are noisier than their covariance: by a factor of 1.7, or not white.
 pub const NIS_MEAN_MAX: f32 = 9.0;
@@ -26,7 +26,7 @@ pub const NIS_MEAN_MAX: f32 = 9.0;
 pub const NIS_MAX: f32 = 50.0;
 
 /// One over the poses that a mean runs over.
-const AVERAGING: f32 = 0.02;
+const NIS_AVERAGING_SHARE: f32 = 0.02;
 
 /// A set of faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,13 +40,11 @@ impl Faults {
     }
 
     /// Whether `fault` is one of them.
-    #[must_use]
     pub const fn contain(self, fault: Fault) -> bool {
         self.0 >> fault as u8 & 1 == 1
     }
 
     /// The worst of them.
-    #[must_use]
     pub fn worst(self) -> Option<Fault> {
         Fault::ALL.into_iter().find(|&fault| self.contain(fault))
     }
@@ -60,7 +58,7 @@ pub struct Health {
     /// The age of the last pose that was fused, us; none before the first.
     pub pose_age: Option<u64>,
     /// The verdict on the last pose that did not have to wait.
-    pub last: Option<Result<Taken, Rejected>>,
+    pub last: Option<Result<Accepted, Rejected>>,
     /// Poses that were believed, and not.
     pub counts: (u32, u32),
     /// How often the state has jumped.
@@ -81,7 +79,7 @@ pub(super) struct Statistics {
     /// When the estimate last was certain, us.
     pub certain_at: u64,
     pub jumps: u32,
-    last: Option<Result<Taken, Rejected>>,
+    last: Option<Result<Accepted, Rejected>>,
     counts: (u32, u32),
     nis: (f32, f32),
 }
@@ -95,8 +93,8 @@ impl Statistics {
     }
 
     /// Takes the verdict on a pose that was true at `time`, us.
-    pub fn record(&mut self, verdict: Result<Taken, Rejected>, time: u64) {
-        if verdict == Ok(Taken::Waiting) {
+    pub fn record(&mut self, verdict: Result<Accepted, Rejected>, time: u64) {
+        if verdict == Ok(Accepted::Waiting) {
             return;
         }
         self.last = Some(verdict);
@@ -112,7 +110,7 @@ impl Statistics {
     }
 
     /// Takes the uncertainty of `filter` after a pose.
-    pub fn look(&mut self, filter: &Filter) {
+    pub fn record_certainty(&mut self, filter: &Filter) {
         if is_certain(deviations(filter)) {
             self.certain_at = filter.time;
         }
@@ -124,8 +122,8 @@ impl Statistics {
     }
 
     /// The NIS of a pose, believed or not.
-    pub fn weigh(&mut self, (position, attitude): (f32, f32)) {
-        let average = |mean: f32, nis: f32| mean + AVERAGING * (math::between(nis, 0.0, NIS_MAX) - mean);
+    pub fn record_nis(&mut self, (position, attitude): (f32, f32)) {
+        let average = |mean: f32, nis: f32| mean + NIS_AVERAGING_SHARE * (math::clamp(nis, 0.0, NIS_MAX) - mean);
         self.nis = (average(self.nis.0, position), average(self.nis.1, attitude));
     }
 }
@@ -144,7 +142,6 @@ impl Health {
     };
 
     /// No fault.
-    #[must_use]
     pub fn is_good(&self) -> bool {
         self.faults == Faults::default()
     }
@@ -157,7 +154,7 @@ impl Health {
         now: u64,
     ) -> Self {
         let Statistics { fused_at, certain_at, jumps, last, counts, nis } = *statistics;
-        let stale = imu_age > EXTRAPOLATION_MAX;
+        let stale = imu_age > EXTRAPOLATION_MAX_US;
         let mut health = Self {
             faults: Faults::default().with(Fault::NotStarted, filter.is_none()).with(Fault::ImuStale, stale),
             pose_age: filter.map(|_| now.saturating_sub(fused_at)),
@@ -173,10 +170,10 @@ impl Health {
         let accelerometer = math::sqrt(filter.nominal.accelerometer_bias.norm_squared());
         health.biases = (gyro, accelerometer);
         let parameters = settings.parameters();
-        let uncertain = !is_certain(health.deviations) && now.saturating_sub(certain_at) > COASTING_AFTER;
+        let uncertain = !is_certain(health.deviations) && now.saturating_sub(certain_at) > COASTING_AFTER_US;
         health.faults = health
             .faults
-            .with(Fault::NoPose, now.saturating_sub(fused_at) > COASTING_AFTER)
+            .with(Fault::NoPose, now.saturating_sub(fused_at) > COASTING_AFTER_US)
             .with(Fault::Uncertain, uncertain)
             .with(Fault::GyroBias, !within(gyro, parameters.gyro_bias_max))
             .with(Fault::AccelerometerBias, !within(accelerometer, parameters.accelerometer_bias_max))
@@ -193,12 +190,12 @@ fn deviations(filter: &Filter) -> (f32, f32, f32) {
 }
 
 fn is_certain((position, velocity, attitude): (f32, f32, f32)) -> bool {
-    within(position, UNCERTAIN.0) && within(velocity, UNCERTAIN.1) && within(attitude, UNCERTAIN.2)
+    within(position, DEVIATIONS_MAX.0) && within(velocity, DEVIATIONS_MAX.1) && within(attitude, DEVIATIONS_MAX.2)
 }
 
 /// Written so that NaN is a fault.
-fn within(value: f32, most: f32) -> bool {
-    value <= most
+fn within(value: f32, max: f32) -> bool {
+    value <= max
 }
 
 #[cfg(test)]

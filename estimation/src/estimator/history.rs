@@ -14,13 +14,13 @@ use heapless::Deque;
 use nalgebra::Vector3;
 
 /// How far beyond the last increment a state is extrapolated, and the longest increment, us.
-pub const EXTRAPOLATION_MAX: u64 = 22_000;
+pub const EXTRAPOLATION_MAX_US: u64 = 22_000;
 
 /// How long the slow force is averaged over, s.
-const SLOW: f32 = 0.05;
+const SLOW_FORCE_TIME_CONSTANT_S: f32 = 0.05;
 
 /// Increments that are kept: 320 ms of them at 5 ms.
-pub const CAPACITY: usize = 64;
+pub const INCREMENTS_MAX: usize = 64;
 
 /// Which of the IMU's sensors were at full scale: the truth is beyond, by an unknown amount.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,7 +59,6 @@ pub struct Increment {
 
 impl Increment {
     /// h, s.
-    #[must_use]
     pub fn seconds(&self) -> f32 {
         self.end.saturating_sub(self.start) as f32 * 1e-6
     }
@@ -119,13 +118,13 @@ pub(super) fn slow_force(before: Option<&Vector3<f32>>, increment: &Increment) -
     let (push, seconds) = (increment.push_at_end(), increment.seconds());
     let Some(before) = before else { return push / seconds };
     let before = increment.turned_back(before);
-    before + (push - before * seconds) / SLOW
+    before + (push - before * seconds) / SLOW_FORCE_TIME_CONSTANT_S
 }
 
 /// The ring.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct History {
-    increments: Deque<Increment, CAPACITY>,
+    increments: Deque<Increment, INCREMENTS_MAX>,
     /// f_slow, m/s^2, body; of no meaning while there is no increment.
     slow_force: Vector3<f32>,
 }

@@ -22,32 +22,27 @@ pub struct PoseMeasurement {
 
 impl PoseMeasurement {
     /// Position and attitude of `pose`, with deviations as in the settings, from a frame that never moved.
-    #[must_use]
     pub fn new(pose: &Pose) -> Self {
         let (position, attitude) = (pose.position(), pose.attitude());
         Self { position, attitude, velocity: None, deviations: None, failed: false, resets: 0 }
     }
 
     /// p, m, world.
-    #[must_use]
     pub fn position(&self) -> Vector3<f32> {
         self.position
     }
 
     /// v, m/s, world, if its source gave one.
-    #[must_use]
     pub fn velocity(&self) -> Option<Vector3<f32>> {
         self.velocity
     }
 
     /// q, body to world, unit.
-    #[must_use]
     pub fn attitude(&self) -> Quaternion<f32> {
         self.attitude
     }
 
     /// The same with the velocity of `pose`: believed only where the settings give velocities a deviation.
-    #[must_use]
     pub fn with_velocity(pose: &Pose) -> Self {
         Self { velocity: Some(pose.velocity()), ..Self::new(pose) }
     }

@@ -37,7 +37,7 @@ pub struct Nominal {
 
 /// What an increment did to the nominal state, as the covariance needs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Motion {
+pub(super) struct IncrementEffect {
     /// R half-way through, to first order in the turn.
     pub rotation: Matrix3<f32>,
     /// R d, m/s, world.
@@ -52,7 +52,7 @@ pub(super) struct Motion {
 
 impl Nominal {
     /// Carries the state through `increment`, under `gravity`, m/s^2.
-    pub(super) fn advance(&mut self, increment: &Increment, gravity: f32) -> Motion {
+    pub(super) fn advance(&mut self, increment: &Increment, gravity: f32) -> IncrementEffect {
         let seconds = increment.seconds();
         let rotation = UnitQuaternion::new_unchecked(self.attitude).to_rotation_matrix().into_inner();
         let bias_turn = self.gyro_bias * seconds;
@@ -66,7 +66,7 @@ impl Nominal {
         self.attitude = unit(&(self.attitude * half_rotation(&(turn * 0.5))));
         let turn_rate = if seconds > 0.0 { rotation * turn / seconds } else { Vector3::zeros() };
         let rotation = rotation + rotation * (turn * 0.5).cross_matrix();
-        Motion { rotation, velocity_change, turn_rate, seconds, clipped: increment.clipped }
+        IncrementEffect { rotation, velocity_change, turn_rate, seconds, clipped: increment.clipped }
     }
 }
 

@@ -28,16 +28,16 @@ use nalgebra::Vector3;
 
 /// Of the last two increments, in the body frame at their end.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Present {
+pub(super) struct PresentMotion {
     /// f, m/s^2.
     pub force: Vector3<f32>,
     /// D - H f_slow, m/s: the velocity's part that is vibration.
     pub vibration: Vector3<f32>,
 }
 
-impl Present {
+impl PresentMotion {
     /// By the last increment, the one before it, and f_slow with both. The first one alone is cut in half.
-    pub fn of(last: &Increment, before: Option<&Increment>, slow: &Vector3<f32>) -> Self {
+    pub fn from_increments(last: &Increment, before: Option<&Increment>, slow: &Vector3<f32>) -> Self {
         let (newer, h_0) = (last.push_at_end(), last.seconds());
         let Some(before) = before else {
             return Self { force: newer / h_0, vibration: (newer - slow * h_0) * 0.5 };

@@ -73,14 +73,13 @@ impl EstimatorParameters {
 pub struct Settings(EstimatorParameters);
 
 /// The least deviation of a position and of an attitude that single precision resolves with room to spare, m and rad.
-const DEVIATION_LEAST: f32 = 1e-4;
+const DEVIATION_MIN: f32 = 1e-4;
 
 /// The greatest of any deviation or density.
 const DEVIATION_MAX: f32 = 10.0;
 
 impl Settings {
     /// [`EstimatorParameters::BMI088`], with a vehicle's gravity.
-    #[must_use]
     pub fn bmi088(vehicle: &Vehicle) -> Self {
         // A vehicle's gravity is positive, and the rest is checked by a test.
         Self(EstimatorParameters { gravity: vehicle.gravity, ..EstimatorParameters::BMI088 })
@@ -120,7 +119,6 @@ impl Settings {
     }
 
     /// What they were made from.
-    #[must_use]
     pub fn parameters(&self) -> &EstimatorParameters {
         &self.0
     }
@@ -130,8 +128,8 @@ impl Settings {
     pub(super) fn deviations(&self, given: Option<(f32, f32)>) -> (f32, f32) {
         let usual = (self.0.position_noise, self.0.attitude_noise);
         let floor = |value: f32, usual: f32| {
-            let least = if usual > DEVIATION_LEAST { usual } else { DEVIATION_LEAST };
-            controller_core::math::between(value, least, DEVIATION_MAX)
+            let min = if usual > DEVIATION_MIN { usual } else { DEVIATION_MIN };
+            controller_core::math::clamp(value, min, DEVIATION_MAX)
         };
         let (position, attitude) = given.unwrap_or(usual);
         (floor(position, usual.0), floor(attitude, usual.1))

@@ -1,8 +1,8 @@
 //! The stream of poses, judged by itself: its sender's quality, its time stamps, and whether it moves at all.
 //!
 //! - A pose whose sender reports failed tracking is refused.
-//! - A time stamp serves once. The last [`SEEN`] are remembered; what is older than all of them might be one of those
-//!   forgotten.
+//! - A time stamp serves once. The last [`STAMPS_KEPT`] are remembered; what is older than all of them might be one of
+//!   those forgotten.
 //! - A stream is frozen after [`IDENTICAL_MAX`] poses in a row that are the same to the last bit, if the IMU has moved
 //!   meanwhile. A simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the
 //!   least of the IMU's noise is motion enough: a vehicle that hovers well hardly moves, and poses that stand still
@@ -11,11 +11,11 @@
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;
-use crate::measurement::{STAMP_LEAD_MAX, Stamped};
+use crate::measurement::{STAMP_LEAD_MAX_US, Stamped};
 use heapless::Deque;
 
 /// Time stamps that are remembered: 160 ms of them at 100 Hz.
-const SEEN: usize = 32;
+const STAMPS_KEPT: usize = 32;
 
 /// Poses in a row that may be the same.
 pub const IDENTICAL_MAX: u16 = 9;
@@ -27,7 +27,7 @@ const MOVED_MIN: u16 = 3;
 /// What is remembered of the stream.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stream {
-    seen: Deque<u64, SEEN>,
+    seen: Deque<u64, STAMPS_KEPT>,
     newest: Option<Stamped<PoseMeasurement>>,
     identical: u16,
     moved: u16,
@@ -51,7 +51,7 @@ impl Stream {
     /// # Errors
     /// The reason for a refusal.
     pub fn admit(&mut self, pose: &Stamped<PoseMeasurement>, now: u64) -> Result<(), Rejected> {
-        if pose.time > now.saturating_add(STAMP_LEAD_MAX) {
+        if pose.time > now.saturating_add(STAMP_LEAD_MAX_US) {
             return Err(Rejected::Future);
         }
         self.remember(pose.time)?;

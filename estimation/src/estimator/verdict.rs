@@ -2,7 +2,7 @@
 
 worded! {
     /// What a pose was taken for.
-    pub enum Taken {
+    pub enum Accepted {
         /// Fused.
         Fused = "Poses: believed",
         /// Kept until the IMU's increments reach its time; then [`super::Health::last`] has the verdict.
@@ -54,10 +54,9 @@ worded! {
     }
 }
 
-impl Taken {
+impl Accepted {
     /// Whether it agrees with the estimate, or the estimate with it: not one that waits for more, nor one that moves
     /// the frame, which agrees with nothing yet.
-    #[must_use]
     pub const fn is_believed(self) -> bool {
         match self {
             Self::Fused | Self::Started | Self::Refound => true,
@@ -68,7 +67,6 @@ impl Taken {
 
 impl Rejected {
     /// Whether it was refused for its values: not for its time or quality, nor for want of an estimate.
-    #[must_use]
     pub const fn is_lie(self) -> bool {
         match self {
             Self::Frozen
@@ -96,9 +94,9 @@ worded! {
     pub enum Fault {
         /// There is no estimate yet, or the IMU's data broke off.
         NotStarted = "Estimator: not started, no consistent poses",
-        /// No IMU increment for [`super::EXTRAPOLATION_MAX`].
+        /// No IMU increment for [`super::EXTRAPOLATION_MAX_US`].
         ImuStale = "Estimator: no IMU",
-        /// No pose was fused for [`super::COASTING_AFTER`].
+        /// No pose was fused for [`super::COASTING_AFTER_US`].
         NoPose = "Estimator: no believable pose",
         /// The estimate is too uncertain to be flown on.
         Uncertain = "Estimator: too uncertain",

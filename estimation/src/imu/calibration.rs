@@ -8,7 +8,7 @@
 //! *vehicle* level: the rotation about a horizontal axis that takes the mean force to straight up. A turn of the sensor
 //! about the vertical cannot be seen by standing still; the mounting must have that right.
 
-use super::standstill::Rest;
+use super::standstill::StandstillMeans;
 use controller_core::math;
 use nalgebra::{Matrix3, Vector3};
 
@@ -49,20 +49,17 @@ impl Calibration {
     };
 
     /// omega, rad/s.
-    #[must_use]
     pub fn rate(&self, measured: &Vector3<f32>) -> Vector3<f32> {
         self.level * (measured - self.gyro_bias)
     }
 
     /// f, m/s^2.
-    #[must_use]
     pub fn force(&self, measured: &Vector3<f32>) -> Vector3<f32> {
         self.level * (measured - self.offset).component_mul(&self.scale)
     }
 
     /// The same with the gyro's bias as a standstill showed it.
-    #[must_use]
-    pub fn with_gyro_bias(&self, rest: &Rest) -> Self {
+    pub fn with_gyro_bias(&self, rest: &StandstillMeans) -> Self {
         Self { gyro_bias: rest.angular_velocity, ..*self }
     }
 
@@ -75,7 +72,7 @@ impl Calibration {
     ///
     /// # Errors
     /// If the sensor is tilted by more than 5 degrees, or feels no gravity.
-    pub fn levelled(&self, rest: &Rest) -> Result<Self, NotLevel> {
+    pub fn levelled(&self, rest: &StandstillMeans) -> Result<Self, NotLevel> {
         let force = (rest.specific_force - self.offset).component_mul(&self.scale);
         let up = force / math::sqrt(force.norm_squared());
         // Without gravity the direction up is NaN, and not level.

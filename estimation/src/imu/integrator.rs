@@ -50,7 +50,6 @@ impl Integrator {
     };
 
     /// How long after the last sample `time` is, us: zero for one that is not later; none without a last one.
-    #[must_use]
     pub fn age(&self, time: u64) -> Option<u64> {
         self.last.map(|last| time.saturating_sub(last.time))
     }
@@ -60,9 +59,9 @@ impl Integrator {
         *self = Self { last: Some(*sample), start: sample.time, ..Self::EMPTY };
     }
 
-    /// Takes the next sample, and gives the increment if that is now as long as `least`, us. A force that is missing is
+    /// Takes the next sample, and gives the increment if that is now as long as `min`, us. A force that is missing is
     /// the last one.
-    pub fn take(&mut self, sample: &Sample, least: u64) -> Option<Increment> {
+    pub fn take(&mut self, sample: &Sample, min: u64) -> Option<Increment> {
         let (last, time) = (self.last?, sample.time);
         let before = last.force.unwrap_or_default();
         let force = sample.force.unwrap_or(before);
@@ -73,7 +72,7 @@ impl Integrator {
         self.angle += turn + self.angle.cross(&turn) * 0.5;
         self.clipped = self.clipped.or(last.clipped).or(sample.clipped);
         self.last = Some(Sample { force: Some(force), ..*sample });
-        if time.saturating_sub(self.start) < least {
+        if time.saturating_sub(self.start) < min {
             return None;
         }
         let increment = self.under_way();
@@ -82,7 +81,6 @@ impl Integrator {
     }
 
     /// The increment so far, if it has a length.
-    #[must_use]
     pub fn under_way(&self) -> Option<Increment> {
         let end = self.last?.time;
         (end > self.start).then_some(Increment {

@@ -6,10 +6,10 @@
 //! ```
 //!
 //! The zeros are at the rate of the control ticks, because what swings as fast as one looks seems to stand still; or at
-//! the first multiple of it above `SLOWEST_ROTOR`, since nothing vibrates below that. The poles are at `POLES` of
-//! the zeros, no higher than `CUTOFF_MAX`. Zeros beyond half the rate of the samples are at that half, where a
-//! digital Butterworth filter has its own. In front of w_z the numerator is real and positive: the phase, and with it
-//! the delay, are those of the poles alone.
+//! the first multiple of it above `ROTOR_FREQUENCY_MIN_HZ`, since nothing vibrates below that. The poles are at
+//! `POLE_FREQUENCY_SHARE` of the zeros, no higher than `CUTOFF_MAX_HZ`. Zeros beyond half the rate of the samples are
+//! at that half, where a digital Butterworth filter has its own. In front of w_z the numerator is real and positive:
+//! the phase, and with it the delay, are those of the poles alone.
 //!
 //! | ticks | zeros | poles | delay at 1 kHz |
 //! |---|---|---|---|
@@ -33,14 +33,14 @@ use controller_core::math;
 use nalgebra::Vector3;
 
 /// The lowest frequency at which rotors vibrate, Hz.
-const SLOWEST_ROTOR: f64 = 70.0;
+const ROTOR_FREQUENCY_MIN_HZ: f64 = 70.0;
 
 /// The poles' frequency over that of the zeros.
-const POLES: f64 = 0.6;
+const POLE_FREQUENCY_SHARE: f64 = 0.6;
 
 /// The poles' highest frequency, Hz: about that of a sensor's own filter. Higher ones would gain half a millisecond at
 /// most, and pass all of the rotors' vibration on to the rotors.
-const CUTOFF_MAX: f64 = 120.0;
+const CUTOFF_MAX_HZ: f64 = 120.0;
 
 /// The filter and its memory, in transposed direct form: two numbers per axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,17 +56,15 @@ pub struct LowPass {
 
 impl LowPass {
     /// In front of control ticks every `period` us, of `rate` samples a second.
-    #[must_use]
     pub fn before_ticks(period: u64, rate: f64) -> Self {
         let ticks = 1e6 / period.max(1) as f64;
-        let multiple = (SLOWEST_ROTOR / ticks) as u32 + 1;
+        let multiple = (ROTOR_FREQUENCY_MIN_HZ / ticks) as u32 + 1;
         let stopped = (ticks * f64::from(multiple)).min(0.5 * rate);
-        Self::new((POLES * stopped).min(CUTOFF_MAX).min(0.25 * rate), stopped, rate)
+        Self::new((POLE_FREQUENCY_SHARE * stopped).min(CUTOFF_MAX_HZ).min(0.25 * rate), stopped, rate)
     }
 
     /// Poles at `cutoff`, where the gain of a Butterworth filter would be half the power; zeros at `stopped`; `rate`
     /// samples a second; all in Hz.
-    #[must_use]
     pub fn new(cutoff: f64, stopped: f64, rate: f64) -> Self {
         let k = math::tan(core::f64::consts::PI * cutoff / rate);
         let tangent = math::tan(core::f64::consts::PI * stopped / rate);
@@ -84,7 +82,6 @@ impl LowPass {
     }
 
     /// The delay of slow changes, s.
-    #[must_use]
     pub fn delay(&self) -> f32 {
         self.delay
     }

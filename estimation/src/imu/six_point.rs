@@ -10,20 +10,20 @@
 //! means of opposite faces. Only lengths count, so the faces need not be level: 10 degrees off are as good as none.
 //! Calibration time, on the ground; a few thousand instructions.
 
-use super::standstill::Rest;
+use super::standstill::StandstillMeans;
 use core::fmt;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 /// How much of gravity the upper axis must feel: within 30 degrees.
-const FACE: f64 = 0.866;
+const FACE_COSINE_MIN: f64 = 0.866;
 
 /// The greatest offset, m/s^2, and the greatest error of scale, that are an accelerometer's and no mistake: BMI088, 20
 /// mg and 1 % at most, times four.
-const OFFSET_MAX: f64 = 0.8;
+const OFFSET_MAX_M_PER_S2: f64 = 0.8;
 const SCALE_ERROR_MAX: f64 = 0.04;
 
 /// Newton's steps: four suffice from anywhere within those.
-const STEPS: usize = 6;
+const NEWTON_STEPS: usize = 6;
 
 /// Why a calibration failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,11 +61,11 @@ impl SixPoint {
     ///
     /// # Errors
     /// If no axis points up or down, or this one did before.
-    pub fn add(&mut self, rest: &Rest, gravity: f32) -> Result<(), SixPointError> {
+    pub fn add(&mut self, rest: &StandstillMeans, gravity: f32) -> Result<(), SixPointError> {
         let force = &rest.specific_force;
-        let least = FACE as f32 * gravity;
+        let min = FACE_COSINE_MIN as f32 * gravity;
         let wanted = [force.x, force.y, force.z, -force.x, -force.y, -force.z];
-        let up = self.faces.iter_mut().zip(wanted).find(|(_, along)| *along >= least);
+        let up = self.faces.iter_mut().zip(wanted).find(|(_, along)| *along >= min);
         let (face, _) = up.ok_or(SixPointError::NoFace)?;
         if face.is_some() {
             return Err(SixPointError::FaceTwice);
@@ -87,7 +87,7 @@ impl SixPoint {
         let middle = |up: f32, down: f32| 0.5 * (f64::from(up) + f64::from(down));
         let mut offset = Vector3::new(middle(a.x, d.x), middle(b.y, e.y), middle(c.z, f.z));
         let mut scale = Vector3::repeat(1.0_f64);
-        for _ in 0..STEPS {
+        for _ in 0..NEWTON_STEPS {
             // Residuals and their slopes by scale and offset, in parts of g^2.
             let rows = points.map(|point| {
                 let apart = point - offset;
@@ -103,7 +103,7 @@ impl SixPoint {
             scale += Vector3::new(step.x, step.y, step.z);
             offset += Vector3::new(step.w, step.a, step.b);
         }
-        let plausible = offset.iter().all(|value| value.abs() <= OFFSET_MAX)
+        let plausible = offset.iter().all(|value| value.abs() <= OFFSET_MAX_M_PER_S2)
             && scale.iter().all(|value| (value - 1.0).abs() <= SCALE_ERROR_MAX);
         if plausible {
             Ok((offset.map(|value| value as f32), scale.map(|value| value as f32)))

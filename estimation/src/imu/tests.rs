@@ -52,7 +52,7 @@ fn missing_samples_are_bridged_and_gaps_begin_anew() {
     assert_eq!(faults, [ImuFault::Gap]);
     let gaps = increments.windows(2).filter(|pair| pair[0].end != pair[1].start).count();
     assert_eq!(gaps, 1);
-    assert!(increments.iter().all(|one| one.is_usable(crate::estimator::EXTRAPOLATION_MAX)));
+    assert!(increments.iter().all(|one| one.is_usable(crate::estimator::EXTRAPOLATION_MAX_US)));
     assert_eq!(increments.last().unwrap().start, seen(231_001));
     let turn: Vector3<f32> = increments.iter().map(|increment| increment.delta_angle).sum();
     let covered: f32 = increments.iter().map(Increment::seconds).sum();

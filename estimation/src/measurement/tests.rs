@@ -27,10 +27,11 @@ fn no_number_of_a_pose_may_be_nan_or_infinite() {
 #[test]
 fn a_pose_is_near_and_slow_enough_to_be_believed() {
     let corner = |length: f32| Vector3::new(0.6, 0.0, -0.8) * length;
-    for (distance, taken) in [(0.999 * DISTANCE_MAX, true), (1.001 * DISTANCE_MAX, false), (f32::MAX, false)] {
+    for (distance, taken) in [(0.999 * DISTANCE_MAX_M, true), (1.001 * DISTANCE_MAX_M, false), (f32::MAX, false)] {
         assert_eq!(Pose::new(corner(distance), STILL, LEVEL).is_ok(), taken, "{distance} m");
     }
-    for (speed, taken) in [(0.999 * SPEED_RANGE, true), (1.001 * SPEED_RANGE, false), (f32::MAX, false)] {
+    for (speed, taken) in [(0.999 * SPEED_RANGE_M_PER_S, true), (1.001 * SPEED_RANGE_M_PER_S, false), (f32::MAX, false)]
+    {
         for velocity in [Velocity::World(corner(speed)), Velocity::Body(corner(speed))] {
             assert_eq!(Pose::new(Vector3::zeros(), velocity, LEVEL).is_ok(), taken, "{speed} m/s");
         }
@@ -61,6 +62,6 @@ fn a_velocity_of_the_body_is_turned_into_the_world() {
 
 #[test]
 fn a_future_time_stamp_is_not_fresh() {
-    assert!(is_fresh(STAMP_LEAD_MAX, 0, 0) && !is_fresh(STAMP_LEAD_MAX + 1, u64::MAX, 0));
+    assert!(is_fresh(STAMP_LEAD_MAX_US, 0, 0) && !is_fresh(STAMP_LEAD_MAX_US + 1, u64::MAX, 0));
     assert!(is_fresh(u64::MAX, 0, u64::MAX) && is_fresh(5, 10, 15) && !is_fresh(5, 10, 16));
 }

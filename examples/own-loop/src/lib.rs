@@ -21,7 +21,7 @@ pub fn hummingbird() -> Result<(Certified, Rotors), ParameterError> {
         period: 0.01,
         drag: 0.0,
     };
-    let certified = Certified::new(Configuration::of_airframe(&airframe)?).expect("its limits hold");
+    let certified = Certified::new(Configuration::from_airframe(&airframe)?).expect("its limits hold");
     Ok((certified, rotors))
 }
 

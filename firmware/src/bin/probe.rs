@@ -11,14 +11,14 @@ mod target {
     use controller_core::state::State;
     use core::hint::black_box;
     use core::panic::PanicInfo;
-    use estimation::estimator::{EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected, Taken};
+    use estimation::estimator::{Accepted, EstimatedState, Estimator, Health, Increment, PoseMeasurement, Rejected};
     use estimation::imu::{Conditioned, Conditioner};
     use flight::Stamped;
     use nalgebra::Vector3;
 
     type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
     type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
-    type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
+    type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Accepted, Rejected>;
     type Estimation = (
         Sample,
         fn(&mut Estimator, &Increment),

@@ -24,7 +24,7 @@ use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
 use estimation::imu::six_point::{SixPoint, SixPointError};
-use estimation::imu::standstill::{Moved, Rest, Standstill};
+use estimation::imu::standstill::{Moved, Standstill, StandstillMeans};
 use mavlink::dialects::common::MavResult;
 
 /// How long a sensor may need for a second's samples.
@@ -37,7 +37,7 @@ const SIDE_TIMEOUT_US: u64 = 60_000_000;
 #[derive(Default)]
 struct Findings {
     standstill: Standstill,
-    rest: Option<Result<Rest, Moved>>,
+    rest: Option<Result<StandstillMeans, Moved>>,
     sides: SixPoint,
 }
 
@@ -187,7 +187,7 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
     }
 
     /// Solves the requested calibration from standstills; that of `unit` is among them.
-    fn conclude(&mut self, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
+    fn conclude(&mut self, unit: Unit, rests: &[Option<&StandstillMeans>; 2], time: u64) -> bool {
         let Some(job) = &mut self.job else { return false };
         let procedure = job.procedure;
         if procedure == Procedure::SixSides && !Self::add_sides(self.shared, job, unit, rests, time) {
@@ -234,7 +234,13 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
     }
 
     /// Adds a side, and reports progress; whether all six are there.
-    fn add_sides(shared: ImuView<'_, M>, job: &mut Job, unit: Unit, rests: &[Option<&Rest>; 2], time: u64) -> bool {
+    fn add_sides(
+        shared: ImuView<'_, M>,
+        job: &mut Job,
+        unit: Unit,
+        rests: &[Option<&StandstillMeans>; 2],
+        time: u64,
+    ) -> bool {
         for (index, (findings, rest)) in job.findings.iter_mut().zip(rests).enumerate() {
             let Some(rest) = rest else { continue };
             let added = findings.sides.add(rest, GRAVITY_M_PER_S2);

@@ -11,7 +11,7 @@ use crate::hardware::RawImu;
 use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT, ImuFault, ImuParameters};
+use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters};
 
 /// How long a fault must have been absent to be reported again.
 const FAULT_REPORT_PAUSE_US: u64 = 1_000_000;
@@ -71,7 +71,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         }
         let Some(newest) = self.conditioner.newest().filter(|newest| Some(newest.time) != before) else { return };
         let mut sample = newest.value;
-        let is_slow = before.is_some_and(|before| raw.time - before >= self.period.min(INCREMENT));
+        let is_slow = before.is_some_and(|before| raw.time - before >= self.period.min(INCREMENT_US));
         if self.is_simulated && is_slow {
             sample.angular_velocity = raw.angular_velocity;
         }

@@ -5,7 +5,7 @@ use core::fmt::{self, Display};
 use estimation::imu::Calibration;
 use estimation::imu::calibration::NotLevel;
 use estimation::imu::six_point::{SixPoint, SixPointError};
-use estimation::imu::standstill::Rest;
+use estimation::imu::standstill::StandstillMeans;
 use nalgebra::Vector3;
 
 /// What a sensor at rest feels.
@@ -39,7 +39,7 @@ impl Display for Problem {
 pub fn solve(
     procedure: Procedure,
     before: &Calibration,
-    rest: &Rest,
+    rest: &StandstillMeans,
     sides: Option<SixPoint>,
 ) -> Result<Calibration, Problem> {
     let level = Calibration::NONE.level;

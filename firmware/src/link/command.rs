@@ -27,7 +27,7 @@ use super::telemetry::vehicle;
 use crate::frames;
 use crate::hardware::MOTOR_COUNT;
 use crate::shared::{Procedure, Reply};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{MotorSetting, MotorTest, Request, Setting};
 use mavlink::dialects::common::{
     ActuatorConfiguration, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavModeFlag, MavResult,
@@ -235,9 +235,9 @@ fn reposition(call: &Call, origin: &Origin, home: &Vector3<f32>) -> Action {
         return unsupported("Reposition: yaw from north only");
     }
     let turn = if yaw.is_finite() && !is_relative {
-        Turn::Angle { angle: frames::heading(yaw), rate: 0.0 }
+        HeadingSetpoint::Angle { angle: frames::heading(yaw), rate: 0.0 }
     } else {
-        Turn::Keep
+        HeadingSetpoint::Keep
     };
     Action::Request(Request::GoTo(Setpoint { motion: Motion::Position(frames::world(&place)), turn }))
 }

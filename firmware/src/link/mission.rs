@@ -21,7 +21,7 @@
 
 use super::origin::{Origin, Place};
 use crate::frames;
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use core::fmt;
 use flight::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal};
 use mavlink::dialects::common::{MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult};
@@ -265,8 +265,8 @@ impl Item {
             }
         };
         let turn = match self.yaw {
-            NO_YAW => Turn::Keep,
-            yaw => Turn::Angle { angle: frames::heading((f32::from(yaw) * 0.01).to_radians()), rate: 0.0 },
+            NO_YAW => HeadingSetpoint::Keep,
+            yaw => HeadingSetpoint::Angle { angle: frames::heading((f32::from(yaw) * 0.01).to_radians()), rate: 0.0 },
         };
         MissionItem {
             leg: self.leg,

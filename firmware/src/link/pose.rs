@@ -310,7 +310,7 @@ fn deviation(variances: [f32; 3]) -> f32 {
     if !variances.iter().all(|&variance| variance > 0.0) {
         return f32::NAN;
     }
-    math::sqrt(variances.iter().fold(0.0, |greatest, &variance| math::greater(greatest, variance)))
+    math::sqrt(variances.iter().fold(0.0, |greatest, &variance| math::max(greatest, variance)))
 }
 
 /// The pose at a position of NED with an attitude FRD to NED, scalar first, and a velocity in the law's frames.

@@ -22,7 +22,7 @@
 
 use crate::frames;
 use crate::words::worded;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::math;
 use controller_core::state::State;
 use mavlink::dialects::common::{MavFrame, PositionTargetTypemask as Mask, SET_POSITION_TARGET_LOCAL_NED_DATA};
@@ -187,7 +187,7 @@ impl Used {
 }
 
 /// Which way to point: from north, or from where the vehicle points.
-fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA, from: Option<&Here>) -> Result<Turn, SetpointRefusal> {
+fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA, from: Option<&Here>) -> Result<HeadingSetpoint, SetpointRefusal> {
     let turns = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
     let rotates = !message.type_mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
     if turns && !message.yaw.is_finite() || rotates && !message.yaw_rate.is_finite() {
@@ -200,8 +200,8 @@ fn turn(message: &SET_POSITION_TARGET_LOCAL_NED_DATA, from: Option<&Here>) -> Re
         Some(here) => RealField::atan2(here.ahead.y, here.ahead.x) - message.yaw,
     };
     Ok(match (turns, rotates) {
-        (false, false) => Turn::Keep,
-        (false, true) => Turn::Rate(rate),
-        (true, _) => Turn::Angle { angle, rate: if rotates { rate } else { 0.0 } },
+        (false, false) => HeadingSetpoint::Keep,
+        (false, true) => HeadingSetpoint::Rate(rate),
+        (true, _) => HeadingSetpoint::Angle { angle, rate: if rotates { rate } else { 0.0 } },
     })
 }

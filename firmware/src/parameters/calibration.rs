@@ -9,7 +9,7 @@ use crate::hardware::Unit;
 use crate::shared::Write;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
-use estimation::imu::standstill::Rest;
+use estimation::imu::standstill::StandstillMeans;
 use nalgebra::Vector3;
 
 /// Rows of one sensor: bias, offset and scale on three axes, level on two.
@@ -35,7 +35,8 @@ pub fn load<M: RawMutex>(parameters: Write<'_, Parameters<M>>, unit: Unit) -> Re
     let (offset, scale) = (Vector3::new(o_x, o_y, o_z), Vector3::new(s_x, s_y, s_z));
     let unlevelled = Calibration { gyro_bias: Vector3::new(b_x, b_y, b_z), offset, scale, ..Calibration::NONE };
     let up = Vector3::new(level_x, level_y, 1.0);
-    let level = Rest { angular_velocity: Vector3::zeros(), specific_force: offset + up.component_div(&scale) };
+    let level =
+        StandstillMeans { angular_velocity: Vector3::zeros(), specific_force: offset + up.component_div(&scale) };
     unlevelled.levelled(&level).map_err(|_| unlevelled)
 }
 

@@ -43,7 +43,7 @@ const fn built(parameter: Name, name: &'static str, range: [f32; 2], unit: &'sta
 
 /// A row of a factor on a gain of the configuration.
 const fn gain(parameter: Name, name: &'static str) -> Row {
-    let (min, step) = (Percent::LEAST as f32, Percent::STEP as f32);
+    let (min, step) = (Percent::FACTOR_MIN_PERCENT as f32, Percent::FACTOR_STEP_PERCENT as f32);
     row(parameter, name, [min, min + step * (Percent::COUNT - 1) as f32], AS_BUILT, "%", step)
 }
 

@@ -61,7 +61,7 @@ impl Built {
     /// Errors: values that the constructors refuse; or gains whose loops the build found without margin.
     #[inline(never)] // its stack must not be beside that of certifying
     pub fn tuned(&self, value: impl Fn(Name) -> f32) -> Result<Configuration, ParameterError> {
-        let mut tuning = Tuning { figures: Figures::of(&self.configuration), factors: Factors::BUILT };
+        let mut tuning = Tuning { figures: Figures::from_configuration(&self.configuration), factors: Factors::BUILT };
         for name in Name::tuned() {
             let value = value(name);
             if value.is_nan() {
@@ -94,7 +94,7 @@ impl Built {
 
     /// The value of a parameter as built; none of one that is no part of the configuration.
     pub fn value(&self, name: Name) -> Option<f32> {
-        let mut figures = Figures::of(&self.configuration);
+        let mut figures = Figures::from_configuration(&self.configuration);
         let factor = factor(&mut Factors::BUILT.clone(), name).map(|factor| factor.percent());
         figure(&mut figures, name).copied().or(factor)
     }

@@ -3,7 +3,7 @@
 //! Near their centre is a dead zone; beyond it the setpoint grows from zero in proportion.
 
 use crate::link::setpoint::Here;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::state::State;
 use nalgebra::Vector3;
 
@@ -64,7 +64,7 @@ impl Sticks {
         // To the right is clockwise from above.
         Some(Setpoint {
             motion: Motion::Velocity(velocity),
-            turn: Turn::Rate(-live(self.yaw) * YAW_RATE_MAX_RAD_PER_S),
+            turn: HeadingSetpoint::Rate(-live(self.yaw) * YAW_RATE_MAX_RAD_PER_S),
         })
     }
 }

@@ -6,7 +6,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::InputError;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
-use controller_core::shield::network::{INPUTS, Layer, Network, NetworkPolicy, OUTPUTS};
+use controller_core::shield::network::{INPUT_COUNT, Layer, Network, NetworkPolicy, OUTPUT_COUNT};
 use controller_core::shield::{Demand, Observation, Policy, Settings, Shield};
 use nalgebra::Vector3;
 
@@ -30,9 +30,9 @@ const fn weights<const COUNT: usize>() -> [f32; COUNT] {
     weights
 }
 
-static FIRST_WEIGHTS: [f32; INPUTS * HIDDEN_OUTPUTS] = weights();
+static FIRST_WEIGHTS: [f32; INPUT_COUNT * HIDDEN_OUTPUTS] = weights();
 static SECOND_WEIGHTS: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
-static THIRD_WEIGHTS: [f32; HIDDEN_OUTPUTS * OUTPUTS] = weights();
+static THIRD_WEIGHTS: [f32; HIDDEN_OUTPUTS * OUTPUT_COUNT] = weights();
 static BIASES: [f32; HIDDEN_OUTPUTS] = weights();
 static LAYERS: [Layer<'static>; 3] = [
     Layer { weights: &FIRST_WEIGHTS, biases: &BIASES },

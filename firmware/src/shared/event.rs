@@ -1,10 +1,10 @@
 //! Events for the operator. An event is put into words where it is sent or logged, not in the control task it may come
 //! from.
 
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
-use estimation::estimator::{Fault, Rejected, Taken};
+use estimation::estimator::{Accepted, Fault, Rejected};
 use flight::{Handover, MissionStep, Reason, Refusal, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
@@ -56,7 +56,7 @@ pub enum Event {
     /// A request or a setpoint was refused.
     Refused(Refusal),
     /// What became of a pose.
-    Pose(Result<Taken, Rejected>),
+    Pose(Result<Accepted, Rejected>),
     /// The estimate is not what it should be.
     Estimator(Fault),
     /// The law cannot use its input.
@@ -64,7 +64,7 @@ pub enum Event {
     /// For a while now the rotors have delivered this share of the commanded thrust.
     Thrust(f32),
     /// A rotor is found to fail.
-    RotorLost(Lost),
+    RotorLost(LostRotor),
     /// How a stream of setpoints is flown.
     Streamed(Streamed),
     /// Who flies, the policy or the law.
@@ -126,7 +126,7 @@ impl fmt::Display for Event {
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
-            Self::RotorLost(Lost { rotor, left }) => {
+            Self::RotorLost(LostRotor { rotor, left }) => {
                 write!(f, "Rotor {} lost: {:.0} % of its thrust left", rotor + 1, 100.0 * left)
             }
             Self::Streamed(streamed) => streamed.fmt(f),

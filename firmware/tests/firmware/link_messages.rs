@@ -3,7 +3,7 @@
 
 use crate::support::receiver::{Fed, Local};
 use crate::support::{v1, v2};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use core::f32::consts::PI;
 use firmware::frames;
 use firmware::link::frame::{Frame, Parser};
@@ -73,7 +73,7 @@ proptest! {
         let world = |x, y, z| frames::world(&Vector3::new(x, y, z));
         let (position, velocity, acceleration) = (world(x, y, z), world(vx, vy, vz), world(afx, afy, afz));
         let motion = Motion::PositionVelocityAcceleration { position, velocity, acceleration };
-        let turn = Turn::Angle { angle: frames::heading(yaw), rate: frames::heading_rate(yaw_rate) };
+        let turn = HeadingSetpoint::Angle { angle: frames::heading(yaw), rate: frames::heading_rate(yaw_rate) };
         for bytes in [v1(1, &message), v2(1, &message)] {
             let message = read(&bytes, |frame| frame.decode()).unwrap();
             prop_assert_eq!(setpoint(&message, None), Ok(Setpoint { motion, turn }));

@@ -4,7 +4,7 @@
 
 use crate::support::receiver::{Fed, Local, command, replies, texts};
 use crate::support::{extended, from};
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use core::f32::consts::FRAC_PI_2;
 use firmware::frames;
 use firmware::link::mission::{Item, SentItem};
@@ -365,12 +365,12 @@ fn places_are_those_of_their_frames() {
     ] {
         let placed = item_of(&item, true).placed(&origin, &home);
         assert!((frames::world(&placed.position) - local).norm() < 0.02, "{item:?} {placed:?}");
-        assert_eq!((placed.leg, placed.turn, placed.radius), (Leg::Waypoint, Turn::Keep, ACCEPTANCE_RADIUS_M));
+        assert_eq!((placed.leg, placed.turn, placed.radius), (Leg::Waypoint, HeadingSetpoint::Keep, ACCEPTANCE_RADIUS_M));
     }
     // Yaw is from north to the right, degrees; the law's heading from east to the left.
     let turned = MISSION_ITEM_INT_DATA { param1: 2.5, param2: 1.25, param4: 180.0, ..waypoint(0, 0.0, 0.0, -1.0) };
     let placed = item_of(&turned, true).placed(&origin, &home);
-    let Turn::Angle { angle, .. } = placed.turn else { panic!("{placed:?}") };
+    let HeadingSetpoint::Angle { angle, .. } = placed.turn else { panic!("{placed:?}") };
     assert!((angle + FRAC_PI_2).abs() < 1e-4, "{angle}");
     assert_eq!((placed.hold, placed.radius), (2_500_000, 1.25));
 }

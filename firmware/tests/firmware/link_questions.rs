@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, answer, command, ordered, replies, texts};
 use crate::support::{extended, v2_of_payload};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::telemetry::kind::Kind;
@@ -90,10 +90,13 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
         shared.requests.take().map(|asked| asked.request)
     };
     for (message, turn) in [
-        (goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, f32::NAN), Turn::Keep),
-        (goto(MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, 3.0, f32::NAN), Turn::Keep),
+        (goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, f32::NAN), HeadingSetpoint::Keep),
+        (goto(MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, 3.0, f32::NAN), HeadingSetpoint::Keep),
         // North: a quarter turn to the left of east, where the law's heading is zero.
-        (goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, 0.0), Turn::Angle { angle: core::f32::consts::FRAC_PI_2, rate: 0.0 }),
+        (
+            goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, 0.0),
+            HeadingSetpoint::Angle { angle: core::f32::consts::FRAC_PI_2, rate: 0.0 },
+        ),
     ] {
         let Some(Request::GoTo(Setpoint { motion: Motion::Position(position), turn: turned })) = asked(&message) else {
             panic!("{message:?}")
@@ -104,7 +107,8 @@ fn a_place_on_the_globe_is_flown_to_by_command_int() {
     // A yaw relative to the vehicle's heading is not one from north.
     let relative = |yaw: f32| COMMAND_INT_DATA { param2: 3.0, ..goto(MavFrame::MAV_FRAME_GLOBAL, 3.0, yaw) };
     for yaw in [0.0, f32::NAN] {
-        let turn = asked(&relative(yaw)).map(|request| matches!(request, Request::GoTo(to) if to.turn == Turn::Keep));
+        let turn = asked(&relative(yaw))
+            .map(|request| matches!(request, Request::GoTo(to) if to.turn == HeadingSetpoint::Keep));
         assert_eq!(turn, Some(true), "{yaw}");
     }
     let shared = Local::new();

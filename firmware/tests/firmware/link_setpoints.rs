@@ -2,7 +2,7 @@
 
 use crate::support::receiver::{Fed, Local, texts};
 use crate::support::{patched, v1};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use firmware::shared::Report;
@@ -57,12 +57,12 @@ fn the_type_mask_says_what_a_setpoint_is() {
     let moving = |acceleration| Motion::PositionVelocityAcceleration { position, velocity, acceleration };
     let angle = FRAC_PI_2 - 0.5;
     for (used, motion, turn) in [
-        (POSITION | YAW, Motion::Position(position), Turn::Angle { angle, rate: 0.0 }),
-        (POSITION | YAW | YAW_RATE, Motion::Position(position), Turn::Angle { angle, rate: -0.25 }),
-        (VELOCITY | YAW_RATE, Motion::Velocity(velocity), Turn::Rate(-0.25)),
-        (VELOCITY, Motion::Velocity(velocity), Turn::Keep),
-        (POSITION | VELOCITY, moving(Vector3::zeros()), Turn::Keep),
-        (POSITION | VELOCITY | ACCELERATION | YAW, moving(acceleration), Turn::Angle { angle, rate: 0.0 }),
+        (POSITION | YAW, Motion::Position(position), HeadingSetpoint::Angle { angle, rate: 0.0 }),
+        (POSITION | YAW | YAW_RATE, Motion::Position(position), HeadingSetpoint::Angle { angle, rate: -0.25 }),
+        (VELOCITY | YAW_RATE, Motion::Velocity(velocity), HeadingSetpoint::Rate(-0.25)),
+        (VELOCITY, Motion::Velocity(velocity), HeadingSetpoint::Keep),
+        (POSITION | VELOCITY, moving(Vector3::zeros()), HeadingSetpoint::Keep),
+        (POSITION | VELOCITY | ACCELERATION | YAW, moving(acceleration), HeadingSetpoint::Angle { angle, rate: 0.0 }),
     ] {
         assert_eq!(accepted(&target(only(used))), Some(Setpoint { motion, turn }), "{used:?}");
     }
@@ -82,7 +82,7 @@ fn a_mask_may_ask_for_position_on_some_axes_and_velocity_on_the_others() {
         (down | VELOCITY, [None, None, Some(3.0)], [0.2, 0.1, 0.3]),
     ] {
         let motion = Motion::Mixed { position, velocity: velocity.into() };
-        assert_eq!(accepted(&target(only(used))), Some(Setpoint { motion, turn: Turn::Keep }), "{used:?}");
+        assert_eq!(accepted(&target(only(used))), Some(Setpoint { motion, turn: HeadingSetpoint::Keep }), "{used:?}");
     }
 }
 
@@ -182,7 +182,9 @@ fn setpoints_of_the_body_are_ahead_right_and_down_however_it_leans() {
     assert!((velocity - Vector3::new(1.0, 0.0, -0.5)).norm() < 1e-4, "{velocity}");
     // A yaw of the body's is from where it points; to the right, east, where the law's heading is zero.
     let turning = SET_POSITION_TARGET_LOCAL_NED_DATA { yaw: FRAC_PI_2, ..target(only(VELOCITY.union(YAW))) };
-    let Turn::Angle { angle, .. } = setpoint_of(turning, MavFrame::MAV_FRAME_BODY_NED).turn else { panic!() };
+    let HeadingSetpoint::Angle { angle, .. } = setpoint_of(turning, MavFrame::MAV_FRAME_BODY_NED).turn else {
+        panic!()
+    };
     assert!(angle.abs() < 1e-4, "{angle}");
 }
 

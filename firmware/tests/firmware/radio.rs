@@ -5,7 +5,7 @@ use crate::support::Simulated;
 use crate::support::desk::Desk;
 use crate::support::line::Live;
 use crate::support::receiver::{Fed, Local, command, texts};
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::state::State;
 use core::f32::consts::FRAC_PI_2;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
@@ -252,18 +252,22 @@ fn steered(mode: Mode, is_airborne: bool, sticks: [f32; 4]) -> (Option<Setpoint>
 #[test]
 fn sticks_command_velocities_relative_to_the_heading() {
     let (setpoint, requests) = steered(Mode::Flying, true, [0.0, 1.0, 0.0, 0.0]);
-    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(rate) }) = setpoint else { panic!() };
+    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: HeadingSetpoint::Rate(rate) }) = setpoint else {
+        panic!()
+    };
     // Ahead is world y.
     assert!((velocity - Vector3::new(0.0, 3.0, 0.0)).norm() < 0.01 && rate == 0.0, "{velocity}");
     assert!(requests.is_empty());
     let (setpoint, _) = steered(Mode::Flying, true, [1.0, 0.0, -0.5, 1.0]);
-    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: Turn::Rate(rate) }) = setpoint else { panic!() };
+    let Some(Setpoint { motion: Motion::Velocity(velocity), turn: HeadingSetpoint::Rate(rate) }) = setpoint else {
+        panic!()
+    };
     // To the right of it is world x; to the right is clockwise from above.
     assert!((velocity.x - 3.0).abs() < 0.01 && velocity.y.abs() < 0.01 && velocity.z < -0.4, "{velocity}");
     assert!((rate + 1.0).abs() < 0.01, "{rate}");
     // A trembling hand stays in the dead zone.
     let (setpoint, _) = steered(Mode::Flying, true, [0.05, -0.05, 0.05, 0.05]);
-    let zero = Setpoint { motion: Motion::Velocity(Vector3::zeros()), turn: Turn::Rate(0.0) };
+    let zero = Setpoint { motion: Motion::Velocity(Vector3::zeros()), turn: HeadingSetpoint::Rate(0.0) };
     assert_eq!(setpoint, Some(zero));
 }
 

@@ -45,7 +45,7 @@ impl Chain<'_> {
         if self.is_nearly_at_rest() {
             return;
         }
-        let sinking = Vector3::new(0.0, 0.0, math::between(state.velocity.z, -speed, 0.0));
+        let sinking = Vector3::new(0.0, 0.0, math::clamp(state.velocity.z, -speed, 0.0));
         // Out of its range it goes down from where the reference is.
         let _ = self.brake(state, &sinking, f32::NEG_INFINITY);
     }

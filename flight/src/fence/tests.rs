@@ -1,5 +1,5 @@
 use super::*;
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use nalgebra::UnitQuaternion;
 
 #[test]
@@ -17,10 +17,10 @@ fn it_is_a_cylinder_about_home_without_a_floor() {
     ] {
         let position = Vector3::new(x, y, z);
         assert_eq!(fence.contains(&position), inside, "{position}");
-        let setpoint = Setpoint { motion: Motion::Position(position), turn: Turn::Keep };
+        let setpoint = Setpoint { motion: Motion::Position(position), turn: HeadingSetpoint::Keep };
         assert_eq!(fence.allows(&setpoint), inside);
     }
-    assert!(fence.allows(&Setpoint { motion: Motion::Velocity(Vector3::repeat(9.0)), turn: Turn::Keep }));
+    assert!(fence.allows(&Setpoint { motion: Motion::Velocity(Vector3::repeat(9.0)), turn: HeadingSetpoint::Keep }));
     for (position, inside) in [
         ([None, None, Some(4.0)], true),
         ([None, None, Some(4.1)], false),
@@ -29,7 +29,7 @@ fn it_is_a_cylinder_about_home_without_a_floor() {
         ([Some(15.1), None, None], false),
     ] {
         let motion = Motion::Mixed { position, velocity: Vector3::repeat(9.0) };
-        assert_eq!(fence.allows(&Setpoint { motion, turn: Turn::Keep }), inside, "{position:?}");
+        assert_eq!(fence.allows(&Setpoint { motion, turn: HeadingSetpoint::Keep }), inside, "{position:?}");
     }
 }
 

@@ -6,7 +6,7 @@ fn item(leg: Leg, x: f32, y: f32, z: f32) -> MissionItem {
     MissionItem {
         leg,
         position: HOME_M + Vector3::new(x, y, z),
-        turn: Turn::Keep,
+        turn: HeadingSetpoint::Keep,
         radius: ACCEPTANCE_RADIUS_M,
         hold: 0,
     }

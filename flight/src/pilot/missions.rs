@@ -9,7 +9,7 @@ use crate::policy::Aboard;
 use crate::refusal::Refusal;
 use crate::request::Request;
 use crate::rules::Mode;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use nalgebra::Vector3;
 
 impl<P: Aboard> Pilot<'_, P> {
@@ -125,7 +125,7 @@ impl<P: Aboard> Pilot<'_, P> {
         let home = self.fence.home();
         item.check(&home, &self.settings)?;
         let rises = self.mission.rises;
-        let turn = if rises { Turn::Keep } else { item.turn };
+        let turn = if rises { HeadingSetpoint::Keep } else { item.turn };
         let aimed = self.chain.as_mut().map_err(|_| MissionRefusal::NoItem).and_then(|chain| {
             let target = item.target(&chain.reference().position, &home, rises);
             let setpoint = Setpoint { motion: Motion::Position(target), turn };

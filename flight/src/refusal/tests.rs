@@ -1,7 +1,7 @@
 use super::*;
 use crate::hummingbird;
 use crate::reason::{Reason, TEXT_MAX};
-use estimation::estimator::{Rejected, Taken};
+use estimation::estimator::{Accepted, Rejected};
 extern crate std;
 use std::format;
 use std::string::ToString;
@@ -57,7 +57,7 @@ fn every_text_fits_a_statustext_and_is_unlike_the_others() {
         Refusal::Setpoint(LONG),
     ];
     let reasons = Reason::ALL.iter().map(ToString::to_string);
-    let poses = Rejected::ALL.map(Rejected::text).into_iter().chain(Taken::ALL.map(Taken::text));
+    let poses = Rejected::ALL.map(Rejected::text).into_iter().chain(Accepted::ALL.map(Accepted::text));
     let refusals = refusals
         .into_iter()
         .chain(mission.map(Refusal::Mission))

@@ -1,5 +1,5 @@
 use super::*;
-use controller_core::governor::Turn;
+use controller_core::governor::HeadingSetpoint;
 use nalgebra::Vector3;
 
 #[test]
@@ -9,7 +9,7 @@ fn a_moving_vehicle_times_out_and_a_resting_one_does_not() {
     let zero = Vector3::zeros();
     let moving = Motion::PositionVelocityAcceleration { position: zero, velocity: zero, acceleration: zero };
     for (motion, ends) in [(Motion::Position(zero), false), (Motion::Velocity(zero), true), (moving, true)] {
-        let setpoint = Setpoint { motion, turn: Turn::Keep };
+        let setpoint = Setpoint { motion, turn: HeadingSetpoint::Keep };
         newest.keep(&setpoint, 7);
         assert_eq!(newest.fresh(6 + SETPOINT_AGE_MAX_US), Some(&setpoint));
         assert!(!newest.has_ended(6 + SETPOINT_AGE_MAX_US));

@@ -1,7 +1,7 @@
 extern crate std;
 use super::*;
 use crate::PERIOD_US;
-use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::reference::ReferenceBounds;
 use nalgebra::Vector3;
 use std::boxed::Box;
@@ -34,7 +34,7 @@ fn reported(radius: impl Fn(u64) -> Option<f32>, ticks: u64) -> Vec<(u64, String
             }
             None => Motion::Position(Vector3::zeros()),
         };
-        governor.accept(&Setpoint { motion, turn: Turn::Keep }).unwrap();
+        governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).unwrap();
         governor.tick();
         reports.extend(check.tick(governor.following(), tick * PERIOD_US).map(|said| (tick, said.to_string())));
     }

@@ -3,7 +3,7 @@ use super::*;
 const TICK_US: u64 = 10_000;
 
 /// The same verdict on poses for some seconds.
-fn judge(trust: &mut Trust, now: &mut u64, pose: Result<Taken, Rejected>, seconds: f32) {
+fn judge(trust: &mut Trust, now: &mut u64, pose: Result<Accepted, Rejected>, seconds: f32) {
     for _ in 0..(seconds * 100.0) as u32 {
         *now += TICK_US;
         trust.judge(Some(pose), true, *now);
@@ -14,14 +14,14 @@ fn judge(trust: &mut Trust, now: &mut u64, pose: Result<Taken, Rejected>, second
 fn a_source_that_is_refused_and_found_again_over_and_over_is_given_up() {
     let (mut trust, mut now, mut cycles) = (Trust::default(), 0, 0);
     while !trust.is_given_up() && cycles < 100 {
-        judge(&mut trust, &mut now, Ok(Taken::Fused), 5.0);
+        judge(&mut trust, &mut now, Ok(Accepted::Fused), 5.0);
         judge(&mut trust, &mut now, Err(Rejected::Position), 0.5);
-        judge(&mut trust, &mut now, Ok(Taken::Refound), 0.01);
+        judge(&mut trust, &mut now, Ok(Accepted::Refound), 0.01);
         cycles += 1;
     }
     assert!((2..=3).contains(&cycles), "{cycles}");
     // For good.
-    judge(&mut trust, &mut now, Ok(Taken::Fused), 1_000.0);
+    judge(&mut trust, &mut now, Ok(Accepted::Fused), 1_000.0);
     assert!(trust.is_given_up());
 }
 
@@ -29,9 +29,9 @@ fn a_source_that_is_refused_and_found_again_over_and_over_is_given_up() {
 fn one_that_is_lost_once_a_minute_and_found_again_is_kept() {
     let (mut trust, mut now) = (Trust::default(), 0);
     for _ in 0..60 {
-        judge(&mut trust, &mut now, Ok(Taken::Fused), 60.0);
+        judge(&mut trust, &mut now, Ok(Accepted::Fused), 60.0);
         judge(&mut trust, &mut now, Err(Rejected::Position), 0.6);
-        judge(&mut trust, &mut now, Ok(Taken::Refound), 0.01);
+        judge(&mut trust, &mut now, Ok(Accepted::Refound), 0.01);
     }
     assert!(!trust.is_given_up());
 }
@@ -41,7 +41,7 @@ fn a_few_refused_poses_among_many_do_no_harm_and_every_second_one_does() {
     for (good, refused, given_up) in [(99, 1, false), (1, 1, true)] {
         let (mut trust, mut now) = (Trust::default(), 0);
         for _ in 0..100 {
-            judge(&mut trust, &mut now, Ok(Taken::Fused), good as f32 * 0.0101);
+            judge(&mut trust, &mut now, Ok(Accepted::Fused), good as f32 * 0.0101);
             judge(&mut trust, &mut now, Err(Rejected::Position), refused as f32 * 0.0101);
         }
         if given_up {
@@ -72,6 +72,6 @@ fn what_is_refused_for_its_time_or_its_quality_is_no_lie() {
 #[test]
 fn poses_that_imply_an_implausible_gyro_bias_are_given_up() {
     let mut trust = Trust::default();
-    (1..=310).for_each(|tick| trust.judge(Some(Ok(Taken::Fused)), false, tick * TICK_US));
+    (1..=310).for_each(|tick| trust.judge(Some(Ok(Accepted::Fused)), false, tick * TICK_US));
     assert!(trust.is_given_up());
 }

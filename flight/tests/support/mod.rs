@@ -15,7 +15,7 @@ pub mod outputs;
 pub use body::Body;
 use controller_core::allocation::Mixer;
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::*;
 use controller_core::state::Wrench;
 use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Settings};
@@ -165,7 +165,7 @@ pub const SPOOLING_TICKS: u64 = 100;
 pub const SETTLING_TICKS: u64 = 160;
 
 pub fn go_to(x: f32, y: f32, z: f32) -> Setpoint {
-    Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: Turn::Keep }
+    Setpoint { motion: Motion::Position(Vector3::new(x, y, z)), turn: HeadingSetpoint::Keep }
 }
 
 /// What arrives from outside.
@@ -317,8 +317,8 @@ impl<P: Aboard> Flight<P> {
         if let Some(Ok(flown)) = &outcome.flown {
             let certificate = self.certified.certificate();
             let (thrust, most) = (certificate.thrust(), certificate.torque());
-            assert!(f64::from(flown.wrench.thrust) <= thrust.greatest, "{flown:?}");
-            assert!(f64::from(flown.wrench.thrust) >= thrust.least, "{flown:?}");
+            assert!(f64::from(flown.wrench.thrust) <= thrust.max, "{flown:?}");
+            assert!(f64::from(flown.wrench.thrust) >= thrust.min, "{flown:?}");
             let torque = flown.wrench.torque.map(|torque| f64::from(torque.abs()));
             assert!(torque.x <= most.x && torque.y <= most.y && torque.z <= most.z);
         }

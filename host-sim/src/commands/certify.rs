@@ -3,15 +3,15 @@
 //! extended law's. The sampled loops below them decide about small motions, a model's flights about large ones, and
 //! under the extended law the judge of paths about the file's own reference. A scenario is certified if all of them
 //! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What
-//! becomes of it without a rotor (`rotor_gone`) decides nothing. What may be flown comes last ([`may_fly`]).
+//! becomes of it without a rotor (`rotor_failure`) decides nothing. What may be flown comes last ([`may_fly`]).
 
 mod advice;
 mod blame;
+pub mod constants;
 pub mod may_fly;
 mod pilot;
 pub mod rigorous;
-mod rotor_gone;
-pub mod shown;
+mod rotor_failure;
 
 use crate::output::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
@@ -28,14 +28,14 @@ use scenario::stability::{LoopMargin, Shortfall};
 use scenario::verdict::Verdict;
 
 /// The paper's published bounds, Section VI, for the one scenario they are about.
-const PUBLISHED: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
+const PUBLISHED_BOUNDS: &str = "published (Section VI): thrust in [3.51, 6.19] N, torques 0.29, 0.33, 0.48 N m";
 
 /// The report on `scenario`, and whether it is certified.
 ///
 /// # Errors
 /// If a number of the scenario is beyond what the certificate or the loops can work with.
 pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
-    let verdict = Verdict::of(scenario)?;
+    let verdict = Verdict::judge(scenario)?;
     let certificate = verdict.certificate();
     let mut text = head(scenario, &verdict);
     text += "\n";
@@ -48,7 +48,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     if let LawParameters::Extended(law) = scenario.configuration.law() {
         text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
     }
-    let gone = rotor_gone::lines(scenario, verdict.certified())?;
+    let gone = rotor_failure::lines(scenario, verdict.certified())?;
     if !gone.is_empty() {
         text += &format!("\n{gone}");
     }
@@ -60,7 +60,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
 /// # Errors
 /// As [`certify`].
 pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
-    Ok(head(scenario, &Verdict::of(scenario)?))
+    Ok(head(scenario, &Verdict::judge(scenario)?))
 }
 
 /// The failing inequalities, loop and flight; without any, the tightest inequality.
@@ -86,7 +86,7 @@ fn papers(scenario: &Scenario, certificate: &PaperCertificate) -> Result<String,
     text += &bounds("as printed", &certificate.printed);
     text += &bounds("sharp", &certificate.sharp);
     if scenario.is_papers() {
-        text += PUBLISHED;
+        text += PUBLISHED_BOUNDS;
         text += "\n";
     }
     if !certificate.rotors.is_empty() {
@@ -110,8 +110,8 @@ fn extended(certificate: &ExtendedCertificate) -> String {
     aligned(&rows)
         + &format!(
             "thrust in [{}, {}] N, torques {}, {}, {} N m\n",
-            short(thrust.least),
-            short(thrust.greatest),
+            short(thrust.min),
+            short(thrust.max),
             short(torque.x),
             short(torque.y),
             short(torque.z)
@@ -128,7 +128,7 @@ fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let decision = verdict.refusal().map_or("CERTIFIED".to_owned(), |refusal| format!("NOT certified: {refusal}"));
     let commands =
         if certificate.holds() { "within every limit, whatever the vehicle does" } else { "NOT within every limit" };
-    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let LoopMargin { gain, delay } = LoopMargin::FLYABLE_MIN;
     let stable = match verdict.lacking().map(|lack| lack.what) {
         None => {
             format!("stable about hover, with {gain} times the gain, 1 / {gain} of it or {} ms more delay", 1e3 * delay)
@@ -195,8 +195,8 @@ fn bounds(name: &str, form: &Form) -> String {
         "{name}: |omega_d| <= {} rad/s, |omega_d'| <= {} rad/s^2; thrust in [{}, {}] N, torques {}, {}, {} N m\n",
         short(form.rates.angular_velocity),
         short(form.rates.angular_acceleration),
-        short(form.thrust.least),
-        short(form.thrust.greatest),
+        short(form.thrust.min),
+        short(form.thrust.max),
         short(form.torque.x),
         short(form.torque.y),
         short(form.torque.z)
@@ -206,7 +206,7 @@ fn bounds(name: &str, form: &Form) -> String {
 fn rotors(certificate: &PaperCertificate) -> String {
     let head = ["rotor, excursion from hover", "available", "", "required", "margin", ""];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for inequality in certificate.rotors.iter().flat_map(|report| [&report.least, &report.greatest]) {
+    for inequality in certificate.rotors.iter().flat_map(|report| [&report.min, &report.max]) {
         let mut row = vec![inequality.name.to_owned(), short(inequality.available), inequality.unit.to_owned()];
         row.extend(required(inequality));
         rows.push(row);
@@ -222,7 +222,7 @@ fn loops(scenario: &Scenario, verdict: &Verdict) -> Result<String, ParameterErro
         let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
             [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
         });
-        let verdict = match LoopMargin::LEAST.lacking(report).map(|lack| lack.what) {
+        let verdict = match LoopMargin::FLYABLE_MIN.lacking(report).map(|lack| lack.what) {
             None => "stable",
             Some(Shortfall::Unstable { .. }) => "UNSTABLE",
             Some(_) => "TOO LITTLE MARGIN",

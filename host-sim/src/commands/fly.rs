@@ -1,10 +1,10 @@
 //! The `fly` command: a whole flight, its log, its figures, its report.
 
-pub mod show;
+pub mod default_task;
 
 use crate::flight::claims::{self, Claim};
-use crate::flight::flier::Flier;
-use crate::flight::flown::Flown;
+use crate::flight::extremes::FlightExtremes;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::flight::{Flight, FlightError, Tick};
 use crate::output::directory_lock::DirectoryLock;
 use crate::output::interrupt::Interrupt;
@@ -13,7 +13,7 @@ use crate::output::whole_file::WholeFile;
 use crate::reports::log;
 use crate::reports::recording::{Recording, flight};
 use crate::reports::report::flight as report_page;
-use crate::reports::report::recorder::Recorder as PageRecorder;
+use crate::reports::report::recorder::ReportRecorder as PageRecorder;
 use crate::reports::report::track::Track;
 use crate::rivals::choice::LawChoice;
 use controller_core::error::ParameterError;
@@ -25,12 +25,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Ticks between two looks at the clock.
-const TICKS_PER_SHOW: u64 = 5000;
-/// The recording's name.
-const RECORDING: &str = "flight.mcap";
+const PROGRESS_PERIOD_TICKS: u64 = 5000;
+const RECORDING_FILE: &str = "flight.mcap";
 
-/// The files written after the flight; whether they can be written is checked before.
-const TEXTS: [&str; 6] = ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
+/// Whether they can be written is checked before the flight.
+const WRITTEN_AFTER_FLIGHT: [&str; 6] =
+    ["fig1.svg", "fig2.svg", "first-seconds.svg", "flight.svg", "report.md", "report.html"];
 
 /// Why a flight left no report.
 #[derive(Debug)]
@@ -98,11 +98,12 @@ pub fn fly(
     mcap: bool,
     interrupt: &Interrupt,
 ) -> Result<Outcome, FlyError> {
-    let verdict = Verdict::of(scenario)?;
-    let flier = Flier::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
-    let mut flight = flier.flight(scenario)?;
+    let verdict = Verdict::judge(scenario)?;
+    let law_on_vehicle =
+        LawOnVehicle::new(law, scenario, verdict.certified()).ok_or(FlyError::Undefined(law.name()))?;
+    let mut flight = law_on_vehicle.flight(scenario)?;
     let _lock = DirectoryLock::take(directory).map_err(failed(directory))?;
-    for path in TEXTS.map(|name| directory.join(name)) {
+    for path in WRITTEN_AFTER_FLIGHT.map(|name| directory.join(name)) {
         WholeFile::try_name(&path).map_err(failed(&path))?;
     }
     let mut log = Output::create(directory, "log.csv")?;
@@ -139,7 +140,7 @@ pub fn fly(
     interrupted(interrupt)?;
     outputs.into_iter().try_for_each(|Output { file, path }| file.finish().map_err(failed(&path)))?;
     if !mcap {
-        forget(&directory.join(RECORDING))?;
+        forget(&directory.join(RECORDING_FILE))?;
     }
     Ok(outcome)
 }
@@ -157,11 +158,11 @@ fn log_flight(
     log: &mut Output,
     mut recording: Option<&mut Recorder>,
     interrupt: &Interrupt,
-) -> Result<(Flown, PageRecorder), FlyError> {
+) -> Result<(FlightExtremes, PageRecorder), FlyError> {
     let ticks = scenario.timing.ticks;
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let estimates = scenario.configuration.paper().is_none();
-    let (mut flown, mut page) = (Flown::new(scenario), report_page::recorder(scenario));
+    let (mut flown, mut page) = (FlightExtremes::new(scenario), report_page::recorder(scenario));
     let mut progress = Progress::new("flying", ticks);
     let reality = log::reality_header(&scenario.reality);
     log.write(|file| writeln!(file, "{}{reality}", log::header(rotors, estimates)))?;
@@ -174,7 +175,7 @@ fn log_flight(
         }
         flown.observe(&tick);
         page.observe(&tick);
-        if done % TICKS_PER_SHOW == 0 {
+        if done % PROGRESS_PERIOD_TICKS == 0 {
             progress.show(done);
         }
     }
@@ -191,7 +192,7 @@ pub fn watched(scenario: &Scenario, interrupt: &Interrupt) -> Result<Track, FlyE
     for done in 0..scenario.timing.ticks {
         interrupted(interrupt)?;
         page.observe(&flight.tick()?);
-        if done % TICKS_PER_SHOW == 0 {
+        if done % PROGRESS_PERIOD_TICKS == 0 {
             progress.show(done);
         }
     }
@@ -227,8 +228,8 @@ struct Recorder {
 
 impl Recorder {
     fn create(directory: &Path, scenario: &Scenario, text: &str) -> Result<Self, FlyError> {
-        let Output { file, path } = Output::create(directory, RECORDING)?;
-        let recording = Recording::begin(file, scenario, text, flight::TOPICS).map_err(failed(&path))?;
+        let Output { file, path } = Output::create(directory, RECORDING_FILE)?;
+        let recording = Recording::begin(file, scenario, text, flight::FLIGHT_TOPICS).map_err(failed(&path))?;
         Ok(Self { recording, path })
     }
 

@@ -24,31 +24,31 @@ use scenario::timing::check_period;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 
-/// Numbers of a line.
-const NUMBERS: usize = 33;
+/// Numbers of an input line.
+const INPUT_NUMBERS: usize = 33;
 
 /// What messages call them, what their elements are called, and how large they may be: beyond what any vehicle of this
 /// kind does, they are nonsense, which the law would remember.
-const FIELDS: [(&str, &[&str], f64); 14] = [
+const INPUT_FIELDS: [(&str, &[&str], f64); 14] = [
     ("t", &[""], f64::MAX),
     ("dt", &[""], f64::MAX),
-    ("x", &AXES, 1e6),
-    ("v", &AXES, 1e4),
+    ("x", &AXIS_NAMES, 1e6),
+    ("v", &AXIS_NAMES, 1e4),
     ("q", &[".x", ".y", ".z", ".w"], 2.0),
-    ("omega", &AXES, 1e4),
-    ("reference x", &AXES, 1e6),
-    ("reference v", &AXES, 1e4),
-    ("reference a", &AXES, 1e4),
-    ("reference j", &AXES, 1e6),
-    ("reference s", &AXES, 1e8),
+    ("omega", &AXIS_NAMES, 1e4),
+    ("reference x", &AXIS_NAMES, 1e6),
+    ("reference v", &AXIS_NAMES, 1e4),
+    ("reference a", &AXIS_NAMES, 1e4),
+    ("reference j", &AXIS_NAMES, 1e6),
+    ("reference s", &AXIS_NAMES, 1e8),
     ("yaw", &[""], 1e6),
     ("yaw", &["_rate"], 1e4),
     ("yaw", &["_acceleration"], 1e6),
 ];
-const AXES: [&str; 3] = ["[0]", "[1]", "[2]"];
+const AXIS_NAMES: [&str; 3] = ["[0]", "[1]", "[2]"];
 
-/// Longest line, bytes: whatever is sent, memory is not what runs out.
-const LONGEST: usize = 1 << 16;
+/// Whatever is sent, memory does not run out.
+const INPUT_LINE_MAX_BYTES: usize = 1 << 16;
 
 /// Why lines could not be served to their end.
 #[derive(Debug)]
@@ -78,11 +78,11 @@ pub struct LawServer {
 }
 
 /// The numbers of one line, in order.
-struct Numbers<'a> {
+struct InputLine<'a> {
     values: &'a [f64],
 }
 
-impl Numbers<'_> {
+impl InputLine<'_> {
     fn next(&mut self) -> f64 {
         let (first, rest) = self.values.split_first().unwrap_or((&0.0, &[]));
         self.values = rest;
@@ -101,7 +101,7 @@ impl LawServer {
     /// As [`Law::new`]'s.
     pub fn new(scenario: &Scenario) -> Result<Self, ParameterError> {
         let configuration = &scenario.configuration;
-        let (fall, gravity) = (f64::from(configuration.greatest_fall()), f64::from(configuration.vehicle().gravity));
+        let (fall, gravity) = (f64::from(configuration.max_fall()), f64::from(configuration.vehicle().gravity));
         Ok(Self {
             law: flight::law(scenario)?,
             // A step of single precision above the limit, so that rounding never turns a refused number into a served
@@ -116,11 +116,11 @@ impl LawServer {
     /// If the input cannot be read or the output not written, but for a closed pipe.
     pub fn serve(&mut self, mut input: impl BufRead, mut output: impl Write) -> Result<(), ServeError> {
         let mut line = Vec::new();
-        let longest = LONGEST as u64 + 1;
+        let longest = INPUT_LINE_MAX_BYTES as u64 + 1;
         while input.by_ref().take(longest).read_until(b'\n', &mut line).map_err(ServeError::Input)? > 0 {
-            let is_too_long = line.len() > LONGEST;
+            let is_too_long = line.len() > INPUT_LINE_MAX_BYTES;
             let answer = if is_too_long {
-                Err(format!("a line must have at most {LONGEST} bytes, its end included"))
+                Err(format!("a line must have at most {INPUT_LINE_MAX_BYTES} bytes, its end included"))
             } else {
                 self.answer(&String::from_utf8_lossy(&line))
             };
@@ -155,7 +155,7 @@ impl LawServer {
     /// One line of text; the controller's memory is then unchanged.
     pub fn answer(&mut self, line: &str) -> Result<Wrench, String> {
         let values = parse(line)?;
-        let mut numbers = Numbers { values: &values };
+        let mut numbers = InputLine { values: &values };
         let time = numbers.next();
         let at_time = |problem: String| format!("t = {time}: {problem}");
 
@@ -192,13 +192,13 @@ impl LawServer {
 }
 
 /// Exactly 33 finite numbers within their ranges.
-fn parse(line: &str) -> Result<[f64; NUMBERS], String> {
+fn parse(line: &str) -> Result<[f64; INPUT_NUMBERS], String> {
     let found = line.split_whitespace().count();
-    if found != NUMBERS {
-        return Err(format!("needs {NUMBERS} numbers on a line, found {found}"));
+    if found != INPUT_NUMBERS {
+        return Err(format!("needs {INPUT_NUMBERS} numbers on a line, found {found}"));
     }
-    let fields = FIELDS.iter().flat_map(|field| field.1.iter().map(move |element| (field.0, element, field.2)));
-    let mut values = [0.0; NUMBERS];
+    let fields = INPUT_FIELDS.iter().flat_map(|field| field.1.iter().map(move |element| (field.0, element, field.2)));
+    let mut values = [0.0; INPUT_NUMBERS];
     for ((value, word), (name, element, greatest)) in values.iter_mut().zip(line.split_whitespace()).zip(fields) {
         *value = number(word, greatest).map_err(|problem| format!("{name}{element}: {problem}"))?;
     }

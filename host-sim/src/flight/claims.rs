@@ -8,13 +8,13 @@
 //! ```
 //!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
-//! [`LoopMargin::LEAST`]; under the extended law, that a model of it arrives from [far away, fast and upside
+//! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside
 //! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
-//! duration and stayed near it ([`crate::flight::flown`] says how near); and that once there it never strayed further than the
+//! duration and stayed near it ([`crate::flight::extremes`] says how near); and that once there it never strayed further than the
 //! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
 //! errors of its last quarter are reported without a verdict.
 
-use crate::flight::flown::{Flown, NEAR_MRP, NEAR_POSITION};
+use crate::flight::extremes::{FlightExtremes, MRP_TOLERANCE, POSITION_TOLERANCE_M};
 use crate::output::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
@@ -24,14 +24,14 @@ use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 use std::fmt::Write;
 
-/// Section VI: thrust, N.
-pub const PUBLISHED_THRUST: (f64, f64) = (3.51, 6.19);
-/// Section VI: |torque| about each axis, N m.
-pub const PUBLISHED_TORQUE: [f64; 3] = [0.29, 0.33, 0.48];
-/// Section VI: steady-state position error, m.
-pub const PUBLISHED_POSITION_ERROR: f64 = 1e-3;
+/// Section VI: thrust.
+pub const PUBLISHED_THRUST_N: (f64, f64) = (3.51, 6.19);
+/// Section VI: |torque| about each axis.
+pub const PUBLISHED_TORQUE_N_M: [f64; 3] = [0.29, 0.33, 0.48];
+/// Section VI: steady-state position error.
+pub const PUBLISHED_POSITION_ERROR_M: f64 = 1e-3;
 /// By when a flight must have reached its reference, as a fraction of its duration.
-pub const REACHED_BY: f64 = 0.9;
+pub const REACHED_BY_SHARE: f64 = 0.9;
 /// Section VI: steady-state norm of the modified Rodrigues parameters.
 pub const PUBLISHED_MRP_ERROR: f64 = 1e-4;
 /// One line of the table.
@@ -49,20 +49,20 @@ pub struct Claim {
 
 /// The claims about a flight of `scenario`, with its `verdict` and the figures `flown`.
 #[must_use]
-pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
+pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let published = scenario.is_papers();
     let duration = scenario.timing.duration();
     let steady = format!("steady state, last {} s", short(duration / 4.0));
     let mut claims = vec![
         commands(verdict),
         loops(verdict),
-        near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration),
-        near(format!("within {NEAR_MRP} of its attitude for good"), flown.attitude_reached(), duration),
+        near(format!("within {POSITION_TOLERANCE_M} m of the reference for good"), flown.position_reached(), duration),
+        near(format!("within {MRP_TOLERANCE} of its attitude for good"), flown.attitude_reached(), duration),
         tracking(scenario, flown),
         at_most(
             format!("position error, {steady}"),
             flown.steady_position_error,
-            published.then_some(PUBLISHED_POSITION_ERROR),
+            published.then_some(PUBLISHED_POSITION_ERROR_M),
             " m",
         ),
         at_most(format!("MRP error, {steady}"), flown.steady_mrp_error, published.then_some(PUBLISHED_MRP_ERROR), ""),
@@ -71,8 +71,8 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
         claims.insert(2, large_motions(&flights));
     }
     if published {
-        claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST));
-        claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE));
+        claims.push(within("thrust, published bound".to_owned(), flown.thrust, PUBLISHED_THRUST_N));
+        claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE_N_M));
     }
     claims.extend(bounds(verdict.certificate(), flown));
     let limits = scenario.configuration.limits();
@@ -94,9 +94,10 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Clai
 /// The claims about a flight of `scenario` under another law: that it reached its position. Our law's bounds stand
 /// beside its figures, without a verdict.
 #[must_use]
-pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &Flown) -> Vec<Claim> {
+pub fn of_rival(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Claim> {
     let duration = scenario.timing.duration();
-    let own = near(format!("within {NEAR_POSITION} m of the reference for good"), flown.position_reached(), duration);
+    let own =
+        near(format!("within {POSITION_TOLERANCE_M} m of the reference for good"), flown.position_reached(), duration);
     let reported = claims(scenario, verdict, flown).into_iter().skip(3).map(|claim| Claim { holds: None, ..claim });
     std::iter::once(own).chain(reported).collect()
 }
@@ -113,7 +114,7 @@ fn commands(verdict: &Verdict) -> Claim {
 }
 
 /// How far the flight strayed from its reference on the way. One that was never there fails by arriving too late.
-fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
+fn tracking(scenario: &Scenario, flown: &FlightExtremes) -> Claim {
     let tolerance = scenario.tolerance;
     Claim {
         claim: "farthest from the reference, once there".to_owned(),
@@ -128,7 +129,7 @@ fn tracking(scenario: &Scenario, flown: &Flown) -> Claim {
 
 /// Whether the sampled loops are stable, with margins.
 fn loops(verdict: &Verdict) -> Claim {
-    let LoopMargin { gain, delay } = LoopMargin::LEAST;
+    let LoopMargin { gain, delay } = LoopMargin::FLYABLE_MIN;
     let margins = verdict.loops().iter().filter_map(|report| report.margins);
     let least = margins.fold((f64::INFINITY, f64::INFINITY), |(gain, delay), margins| {
         (margins.gain_up.min(gain), margins.delay.min(delay))
@@ -158,13 +159,13 @@ fn large_motions(flights: &Result<Farthest, NotArrived>) -> Claim {
 
 /// Whether a flight reached its reference, position and attitude, in time and for good.
 #[must_use]
-pub fn reached(scenario: &Scenario, flown: &Flown) -> bool {
-    let latest = REACHED_BY * scenario.timing.duration();
+pub fn reached(scenario: &Scenario, flown: &FlightExtremes) -> bool {
+    let latest = REACHED_BY_SHARE * scenario.timing.duration();
     [flown.position_reached(), flown.attitude_reached()].iter().all(|since| since.is_some_and(|since| since <= latest))
 }
 
 fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
-    let latest = REACHED_BY * duration;
+    let latest = REACHED_BY_SHARE * duration;
     Claim {
         claim,
         required: format!("<= {} s", short(latest)),
@@ -174,8 +175,8 @@ fn near(claim: String, since: Option<f64>, duration: f64) -> Claim {
 }
 
 /// The certificate's bounds. They hold for every configuration, whether or not they fit the limits.
-fn bounds(certificate: &Certificate, flown: &Flown) -> Vec<Claim> {
-    let interval = |Interval { least, greatest }: Interval| (least, greatest);
+fn bounds(certificate: &Certificate, flown: &FlightExtremes) -> Vec<Claim> {
+    let interval = |Interval { min: least, max: greatest }: Interval| (least, greatest);
     let printed = certificate.paper().map(|paper| paper.printed.thrust);
     let printed = printed.map(|thrust| within("thrust, Theorem 1".to_owned(), flown.thrust, interval(thrust)));
     let mut claims: Vec<Claim> = printed.into_iter().collect();

@@ -1,9 +1,9 @@
 //! The controller of a simulated vehicle: our law, or a rival to compare it with.
 
 use crate::rivals::pilot::RivalPilot;
-use crate::vehicle::actuators::Asked;
+use crate::vehicle::actuators::ActuatorDemand;
 use crate::vehicle::sensed::Sensed;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::controller::Diagnostics;
 use controller_core::error::InputError;
 use controller_core::extended::measured::Measured;
@@ -71,16 +71,16 @@ impl Controller {
     /// allocated by itself.
     #[must_use]
     #[inline]
-    pub fn asked(&self, wrench: &Wrench) -> Asked {
+    pub fn demand(&self, wrench: &Wrench) -> ActuatorDemand {
         match self {
-            Self::Ours(law) if let Some(thrusts) = law.commands() => Asked::Thrusts(thrusts.clone()),
-            _ => Asked::Wrench(wrench.scaled(1.0 / self.thrust_scale())),
+            Self::Ours(law) if let Some(thrusts) = law.commands() => ActuatorDemand::Thrusts(thrusts.clone()),
+            _ => ActuatorDemand::Wrench(wrench.scaled(1.0 / self.thrust_scale())),
         }
     }
 
     /// The rotor that our law has found to fail.
     #[must_use]
-    pub fn lost(&self) -> Option<Lost> {
+    pub fn lost(&self) -> Option<LostRotor> {
         match self {
             Self::Ours(law) => law.lost(),
             Self::Rival(_) => None,

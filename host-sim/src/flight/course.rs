@@ -18,8 +18,8 @@ use controller_core::allocation::Thrusts;
 use scenario::Scenario;
 use std::collections::VecDeque;
 
-/// How near the yaw is to be, rad.
-const NEAR_YAW: f64 = 0.1;
+/// How near the yaw is to be.
+const YAW_TOLERANCE_RAD: f64 = 0.1;
 
 /// A flight's course.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,10 +54,10 @@ struct LastHalf {
     activity: Activity,
 }
 
-/// The time within which a rotor's command changes, us: the same for laws of every rate.
-const CHANGING: u64 = 10_000;
+/// The time within which a rotor's command changes: the same for laws of every rate.
+const COMMAND_CHANGE_PERIOD_US: u64 = 10_000;
 
-/// How much rotors' commands change within `CHANGING`.
+/// How much rotors' commands change within `COMMAND_CHANGE_PERIOD_US`.
 #[derive(Debug, Clone)]
 pub struct Activity {
     /// Commands that are younger, N, and how many that may be.
@@ -72,7 +72,12 @@ impl Activity {
     /// Of commands that are `period_us` apart.
     #[must_use]
     pub fn new(period_us: u64) -> Self {
-        Self { past: VecDeque::new(), ticks: (CHANGING / period_us).max(1) as usize, squares: 0.0, changes: 0 }
+        Self {
+            past: VecDeque::new(),
+            ticks: (COMMAND_CHANGE_PERIOD_US / period_us).max(1) as usize,
+            squares: 0.0,
+            changes: 0,
+        }
     }
 
     /// Takes a tick's commands, N.
@@ -99,7 +104,7 @@ impl Course {
     ///
     /// # Errors
     /// If it cannot be flown to its end.
-    pub fn over(scenario: &Scenario, flight: Flight, near: f64) -> Result<Self, FlightError> {
+    pub fn fly(scenario: &Scenario, flight: Flight, near: f64) -> Result<Self, FlightError> {
         Self::until_settled(scenario, flight, near, f64::INFINITY)
     }
 
@@ -107,7 +112,7 @@ impl Course {
     /// where nothing acts on it.
     ///
     /// # Errors
-    /// As [`Self::over`].
+    /// As [`Self::fly`].
     pub fn until_settled(scenario: &Scenario, mut flight: Flight, near: f64, rest: f64) -> Result<Self, FlightError> {
         let ticks = scenario.timing.ticks;
         let start = scenario.initial.position.z;
@@ -138,7 +143,7 @@ impl Course {
         }
         let end = (ticks * scenario.timing.period_us) as f64 / 1e6;
         course.settled = course.settled.filter(|since| *since < end);
-        course.turned = course.turned.filter(|_| course.yaw_error <= NEAR_YAW);
+        course.turned = course.turned.filter(|_| course.yaw_error <= YAW_TOLERANCE_RAD);
         course.rms = (last_half.squares / last_half.ticks.max(1) as f64).sqrt();
         course.activity = last_half.activity.rms();
         Ok(course)
@@ -157,7 +162,7 @@ impl Course {
             self.settled = Some(next);
         }
         self.yaw_error = tick.state.heading_error(&tick.reference.heading);
-        if self.yaw_error > NEAR_YAW {
+        if self.yaw_error > YAW_TOLERANCE_RAD {
             self.turned = Some(next);
         }
     }

@@ -6,15 +6,15 @@
 //! every tick          Estimator::state -> law
 //! ```
 //!
-//! Before a flight the vehicle moves into its start for [`ALIGNING`], at constant velocity and body rates, without
+//! Before a flight the vehicle moves into its start for [`ALIGNMENT_US`], at constant velocity and body rates, without
 //! forces: so the estimator aligns in motion, too.
 
-use crate::vehicle::instruments::{Instruments, SAMPLE};
+use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use crate::vehicle::sensed::Sensed;
 use controller_core::error::ParameterError;
 use controller_core::state::State;
 use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
-use estimation::imu::{Calibration, Conditioner, INCREMENT, ImuParameters};
+use estimation::imu::{Calibration, Conditioner, INCREMENT_US, ImuParameters};
 use flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use scenario::Scenario;
@@ -23,8 +23,8 @@ use scenario::reality::estimator;
 use std::collections::VecDeque;
 use std::fmt;
 
-/// How long the vehicle is carried before its flight, us.
-pub const ALIGNING: u64 = 3_000_000;
+/// How long the vehicle is carried before its flight.
+pub const ALIGNMENT_US: u64 = 3_000_000;
 
 /// There is no state to fly on: why, as far as the estimator says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl fmt::Display for NoEstimate {
 #[derive(Debug, Clone)]
 pub struct Estimation {
     instruments: Instruments,
-    /// The sensors' clock, us: [`ALIGNING`] when the flight begins.
+    /// The sensors' clock, us: [`ALIGNMENT_US`] when the flight begins.
     clock: u64,
     conditioner: Conditioner,
     estimator: Estimator,
@@ -68,7 +68,7 @@ impl Estimation {
         // Both are checked: the file's numbers when it was read.
         let (conditioner, settings) = Self::parts(&what, gravity, scenario.timing.period_us).ok()?;
         let mut estimation = Self {
-            instruments: Instruments::new(&what, gravity.into(), scenario.initial.velocity, ALIGNING),
+            instruments: Instruments::new(&what, gravity.into(), scenario.initial.velocity, ALIGNMENT_US),
             clock: 0,
             conditioner,
             estimator: Estimator::new(&settings),
@@ -79,11 +79,11 @@ impl Estimation {
             period: scenario.timing.period_us,
             gravity,
         };
-        while estimation.clock < ALIGNING {
-            let left = (ALIGNING - estimation.clock - SAMPLE) as f64 * 1e-6;
+        while estimation.clock < ALIGNMENT_US {
+            let left = (ALIGNMENT_US - estimation.clock - SAMPLE_PERIOD_US) as f64 * 1e-6;
             estimation.sample(&before(&scenario.initial, left));
         }
-        estimation.jumps = estimation.estimator.health(ALIGNING).jumps;
+        estimation.jumps = estimation.estimator.health(ALIGNMENT_US).jumps;
         Some(estimation)
     }
 
@@ -99,12 +99,12 @@ impl Estimation {
     /// How many samples there are in a period, us.
     #[must_use]
     pub fn samples(&self, period: u64) -> u32 {
-        (period / SAMPLE) as u32
+        (period / SAMPLE_PERIOD_US) as u32
     }
 
     /// Takes the sample of a vehicle at `state`, a millisecond after the last, and the poses that arrive now.
     pub fn sample(&mut self, state: &BodyState) {
-        self.clock += SAMPLE;
+        self.clock += SAMPLE_PERIOD_US;
         let sample = self.instruments.sample(state, self.clock);
         let force = Some(&sample.specific_force);
         if let Some(increment) = self.conditioner.sample(self.clock, &sample.angular_velocity, force).increment {
@@ -127,7 +127,7 @@ impl Estimation {
         let Some(estimated) = estimated else {
             return Err(NoEstimate(self.estimator.health(self.clock).faults.worst()));
         };
-        self.felt = self.estimator.felt(self.clock, under_way.as_ref());
+        self.felt = self.estimator.mean_acceleration(self.clock, under_way.as_ref());
         let jumped = estimated.jumps != self.jumps;
         self.jumps = estimated.jumps;
         let force = estimated.acceleration + Vector3::z() * self.gravity;
@@ -138,14 +138,14 @@ impl Estimation {
 
     /// v' from the last estimate but one to the last, m/s^2, world, by accelerometer.
     #[must_use]
-    pub fn felt(&self) -> Option<Vector3<f32>> {
+    pub fn sensed_force(&self) -> Option<Vector3<f32>> {
         self.felt
     }
 
     /// What is known beside the last estimate, while the rotors act with `truth`: the mean over the same time of both.
     pub fn sense(&mut self, truth: &Sensed) -> Sensed {
         self.acted.push_front(truth.wrench);
-        self.acted.truncate((2 * INCREMENT).div_ceil(self.period) as usize);
+        self.acted.truncate((2 * INCREMENT_US).div_ceil(self.period) as usize);
         let wrench = self.acted.iter().sum::<Vector4<f64>>() / self.acted.len() as f64;
         Sensed { specific_force: self.specific_force, wrench }
     }

@@ -12,7 +12,7 @@
 //! | [`fit`] | the most likely numbers and their covariance |
 //! | [`mod@bench`] | weighing, swings, thrust stand |
 //! | [`quantities`] | flight and bench together |
-//! | [`student`] | how wide intervals are, by the length of the flight |
+//! | [`student_t`] | how wide intervals are, by the length of the flight |
 //! | [`agreement`] | whether the two can be of one vehicle |
 //! | [`observability`] | what is not observable in a log, and what to fly for it |
 //! | [`output`], [`margins`] | the scenario with these numbers; its margins within their uncertainty |
@@ -34,15 +34,15 @@ pub mod observability;
 pub mod output;
 pub mod px4;
 pub mod quantities;
-pub mod student;
+pub mod student_t;
 pub mod ulog;
 
 use bench::Bench;
 use flight_log::{FlightLog, Source};
-use model::Model;
+use model::IdentifiedModel;
 use quantities::Quantities;
 use scenario::Scenario;
-use scenario::reality::estimator::IMU_RATE;
+use scenario::reality::estimator::IMU_RATE_HZ;
 
 /// The vehicle's numbers from `log` and `bench`; `scenario` is its model.
 ///
@@ -51,7 +51,8 @@ use scenario::reality::estimator::IMU_RATE;
 pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Quantities, String> {
     let configuration = &scenario.configuration;
     let reference = log.of_reference();
-    let (flown, reference) = (Model::new(log, configuration)?, Model::new(&reference, configuration)?);
+    let (flown, reference) =
+        (IdentifiedModel::new(log, configuration)?, IdentifiedModel::new(&reference, configuration)?);
     let fit = fit::fit(&flown, &reference, log.period)?;
     Quantities::combined(&fit, bench, configuration.vehicle(), late(log, scenario))
 }
@@ -60,7 +61,7 @@ pub fn identify(log: &FlightLog, scenario: &Scenario, bench: &Bench) -> Result<Q
 /// IMU, besides the [`low_passes`].
 fn late(log: &FlightLog, scenario: &Scenario) -> f64 {
     match log.source {
-        Source::Estimator => 1.0 / IMU_RATE,
+        Source::Estimator => 1.0 / IMU_RATE_HZ,
         Source::Sensors => scenario.input_delay(),
         // PX4's are brought to the time at which they were true.
         Source::Truth | Source::Px4 => 0.0,

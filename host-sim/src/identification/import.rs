@@ -62,7 +62,7 @@ impl Format {
     ///
     /// # Errors
     /// If it looks like none.
-    pub fn of(text: &str) -> Result<Self, String> {
+    pub fn detect(text: &str) -> Result<Self, String> {
         let all = Self::ALL.map(|(name, _)| name).join(", ");
         let text = text.trim_start_matches('\u{feff}').trim_start();
         if text.starts_with('<') {
@@ -91,7 +91,7 @@ impl Format {
 /// Names line or element, the reason and a remedy, but not the file.
 pub fn read(text: &str, file: &Path, format: Option<Format>) -> Result<VehicleNumbers, String> {
     let text = text.trim_start_matches('\u{feff}');
-    let format = format.map_or_else(|| Format::of(text), Ok)?;
+    let format = format.map_or_else(|| Format::detect(text), Ok)?;
     let rooted = |name: &str, read: &dyn Fn(&roxmltree::Node) -> Result<VehicleNumbers, String>| {
         let document = xml::document(text)?;
         let root = document.root_element();

@@ -20,8 +20,8 @@ pub mod writer;
 /// The first bytes of every ULog; the format's version follows.
 pub const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 
-/// Bytes before the first message: magic, version, time.
-pub const HEAD: usize = 16;
+/// Before the first message: magic, version, time.
+pub const HEAD_BYTES: usize = 16;
 
 #[cfg(test)]
 mod tests;

@@ -4,8 +4,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::time::{Duration, Instant};
 
-/// How long something may take before a bar shows its progress.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Work that takes longer shows a bar.
+const BAR_AFTER: Duration = Duration::from_secs(1);
 /// Between two lines at least, and until the first.
 const LINES_APART: Duration = Duration::from_secs(10);
 /// Silence that is broken by a line even where little has been done.
@@ -47,7 +47,7 @@ impl Progress {
             self.say(done);
         } else if let Some(bar) = &self.bar {
             bar.set_position(done);
-        } else if self.started.elapsed() >= PATIENCE {
+        } else if self.started.elapsed() >= BAR_AFTER {
             self.bar = Some(start(self.total, done, self.name()));
         }
     }
@@ -85,13 +85,13 @@ fn due(silence: Duration, share: f64) -> bool {
 fn line(name: &str, done: u64, total: u64, elapsed: Duration) -> String {
     let share = done as f64 / total.max(1) as f64;
     let left = elapsed.as_secs_f64() * (1.0 / share - 1.0);
-    let left = if left.is_finite() { format!(", about {} left", spoken(left)) } else { String::new() };
+    let left = if left.is_finite() { format!(", about {} left", in_words(left)) } else { String::new() };
     format!("{name}: {:.0} %{left}", 100.0 * share)
 }
 
 /// A time, s, in seconds or whole minutes.
 #[must_use]
-pub fn spoken(seconds: f64) -> String {
+pub fn in_words(seconds: f64) -> String {
     match (seconds / 60.0).ceil() {
         minutes if minutes > 1.0 => format!("{minutes:.0} minutes"),
         _ => format!("{:.0} s", seconds.max(0.0).ceil()),

@@ -6,11 +6,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The longest chain of symbolic links, as Linux has it.
-const LINKS: usize = 40;
+/// As Linux has it.
+const LINK_CHAIN_MAX: usize = 40;
 
-/// How the name ends under which a file grows.
-const UNFINISHED: &str = ".part";
+/// Of the name under which a file grows.
+const UNFINISHED_SUFFIX: &str = ".part";
 
 /// Unix's mode of a file that only its owner reads and writes.
 #[cfg(unix)]
@@ -58,7 +58,7 @@ impl WholeFile {
         let beginning = hidden(&path).ok_or(io::ErrorKind::InvalidInput)?;
         loop {
             let (number, process) = (STARTED.fetch_add(1, Ordering::Relaxed), std::process::id());
-            let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED}"));
+            let temporary = path.with_file_name(format!("{beginning}{process}.{number}{UNFINISHED_SUFFIX}"));
             match opened(&temporary, &path, is_private) {
                 // What a killed program of this number left, or a link that somebody laid there.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -191,7 +191,8 @@ fn hidden(path: &Path) -> Option<String> {
 pub fn is_unfinished(found: &Path, path: &Path) -> bool {
     let name = found.file_name().map(|name| name.to_string_lossy());
     let beginning = hidden(path);
-    name.zip(beginning).is_some_and(|(name, beginning)| name.starts_with(&beginning) && name.ends_with(UNFINISHED))
+    name.zip(beginning)
+        .is_some_and(|(name, beginning)| name.starts_with(&beginning) && name.ends_with(UNFINISHED_SUFFIX))
 }
 
 /// Whether this program started what grows under the name `found`.
@@ -204,7 +205,7 @@ fn is_own(found: &Path) -> bool {
 /// What a name stands for that is a symbolic link, whether that exists or not: the link stays one.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
-    for _ in 0..LINKS {
+    for _ in 0..LINK_CHAIN_MAX {
         match std::fs::read_link(&path) {
             Ok(target) => path = path.with_file_name("").join(target),
             Err(_) => return Ok(path),

@@ -175,6 +175,9 @@ pub enum Command {
     /// Run the firmware's own tasks with a simulated vehicle; MAVLink clients connect by UDP on this machine.
     #[command(after_help = SITL_HELP)]
     Sitl(SitlArguments),
+    /// Print the JSON schema of scenario files, with which editors complete and check keys.
+    #[command(after_help = shells::SCHEMA_HELP)]
+    Schema,
     /// Print what a shell needs to complete commands, options and their values.
     #[command(after_help = shells::COMPLETIONS_HELP)]
     Completions(CompletionsArguments),

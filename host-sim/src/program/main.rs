@@ -11,8 +11,8 @@ use arguments::{
 };
 use clap::{CommandFactory, Parser};
 use host_sim::commands::certify::rigorous::{self, Rigorous};
-use host_sim::commands::certify::{certify, may_fly, shown};
-use host_sim::commands::fly::show::{Show, show};
+use host_sim::commands::certify::{certify, constants, may_fly};
+use host_sim::commands::fly::default_task::{FlownFile, with_default_task};
 use host_sim::commands::fly::{FlyError, fly, watched};
 use host_sim::commands::law::LawServer;
 use host_sim::flight::claims;
@@ -22,7 +22,7 @@ use host_sim::reports::log::bytes_per_row;
 use host_sim::reports::plots::replay::gif;
 use host_sim::reports::reference_rows;
 use host_sim::rivals::choice::LawChoice;
-use host_sim::sessions::hil::port::Port;
+use host_sim::sessions::hil::port::SimulatorPort;
 use host_sim::sessions::hil::relay::Relay;
 use host_sim::sessions::hil::{self, Clients, End, HilError};
 use host_sim::sessions::sitl::{self, SitlError};
@@ -39,8 +39,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use terminal::{BAD_INPUT, complain, not_a_campaigns, print, print_text, same_file, status, text_of, watch};
 
-/// The largest log without `--large-log`, bytes.
-const LARGE_LOG: u64 = 1_000_000_000;
+/// The largest log without `--large-log`.
+const LARGE_LOG_BYTES: u64 = 1_000_000_000;
 
 fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
@@ -61,6 +61,9 @@ fn main() -> ExitCode {
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
+            Some(Command::Schema) => {
+                print_text(&format!("{:#}\n", scenario::schema::schema())).map(|()| ExitCode::SUCCESS)
+            }
             Some(Command::Completions(arguments)) => {
                 print(|| io::stdout().write_all(&completions(&arguments, Arguments::command())))
                     .map(|()| ExitCode::SUCCESS)
@@ -92,7 +95,7 @@ fn load(file: Option<&Path>) -> Result<Scenario, String> {
 fn run_fly(file: Option<&Path>, out: Option<PathBuf>, mcap: bool, large_log: bool) -> Result<ExitCode, String> {
     let text = text_of(file)?;
     let name = file.map_or_else(|| "scenarios/paper.toml (built in)".to_owned(), |file| file.display().to_string());
-    let Show { scenario, text, added } = show(text, &name).map_err(|error| error.to_string())?;
+    let FlownFile { scenario, text, added } = with_default_task(text, &name).map_err(|error| error.to_string())?;
     let named = file.map_or_else(String::new, |file| format!("{}: ", file.display()));
     permit(&scenario, &named, "duration", large_log)?;
     let directory = out.unwrap_or_else(|| Path::new("flights").join(&scenario.name));
@@ -149,7 +152,7 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
     let mut file = WholeFile::create(path).map_err(unwritable)?;
     let rows = reference_rows::write(&scenario, rate, arguments.slower()?, &mut file).map_err(unwritable)?;
     file.finish().map_err(unwritable)?;
-    let refusal = Verdict::of(&scenario).map_err(|error| error.to_string())?.refusal();
+    let refusal = Verdict::judge(&scenario).map_err(|error| error.to_string())?.refusal();
     print_text(&format!("{}: {rows} rows in {name}\n", scenario.name))?;
     if let Some(refusal) = &refusal {
         complain(format_args!("{}: not certified for this reference: {refusal}", scenario.name));
@@ -160,7 +163,7 @@ fn run_reference(arguments: &ReferenceArguments) -> Result<ExitCode, String> {
 fn run_replay(arguments: &ReplayArguments) -> Result<ExitCode, String> {
     let file = arguments.file.as_deref();
     let name = file.map_or_else(String::new, |file| file.display().to_string());
-    let scenario = show(text_of(file)?, &name).map_err(|error| error.to_string())?.scenario;
+    let scenario = with_default_task(text_of(file)?, &name).map_err(|error| error.to_string())?.scenario;
     let stretch = arguments.stretch(scenario.timing.duration())?;
     let path = &arguments.gif;
     if arguments.file.as_ref().is_some_and(|file| same_file(path, file)) {
@@ -229,7 +232,7 @@ fn show_campaign(flown: Result<Summary, CampaignError>, directory: &Path) -> Res
 fn permit(scenario: &Scenario, named: &str, duration: &str, allowed: bool) -> Result<(), String> {
     let rows = scenario.timing.ticks;
     let bytes = rows.saturating_mul(bytes_per_row(&scenario.reality));
-    if bytes <= LARGE_LOG {
+    if bytes <= LARGE_LOG_BYTES {
         return Ok(());
     }
     let size = format!("{named}log.csv will take about {} GB, {rows} rows", short(bytes as f64 / 1e9));
@@ -255,7 +258,8 @@ fn run_hil(arguments: &HilArguments) -> Result<ExitCode, String> {
         let alone = WholeFile::alone(log).map(drop);
         alone.map_err(|error| format!("--log {}: cannot be written: {error}", log.display()))?;
     }
-    let mut port = Port::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
+    let mut port =
+        SimulatorPort::open(&arguments.address()?, patience, &interrupt).map_err(|error| error.to_string())?;
     let mut show = |line: &str| drop(print_text(&format!("{line}\n")));
     let clients = match ground {
         None => None,
@@ -325,7 +329,7 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
     text += &format!("\n{may_fly}");
     if show {
         // Sections to paste are never folded.
-        let constants = shown::constants(&scenario);
+        let constants = constants::constants(&scenario);
         let may_fly: String = may_fly.lines().map(|line| format!("# {line}\n")).collect();
         print(|| io::stdout().write_all(format!("{constants}\n{may_fly}").as_bytes()))?;
     } else {

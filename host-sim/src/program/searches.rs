@@ -3,7 +3,7 @@
 use crate::arguments::{CompareArguments, GainsWanted, TuneArguments};
 use crate::terminal::{complain, not_a_campaigns, print_text, same_file, status, text_of, watch};
 use host_sim::commands::certify::summary;
-use host_sim::output::progress::spoken;
+use host_sim::output::progress::in_words;
 use host_sim::output::table::{percent, short};
 use host_sim::output::whole_file::WholeFile;
 use host_sim::rivals::gains::Set;
@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A comparison's name for gains that `--tune` found.
-const RIVALS: &str = "rivals.toml";
+const TUNED_GAINS_FILE: &str = "rivals.toml";
 /// Its name for gains that it searched because none are built in.
-const FOUND: &str = "gains.toml";
+const SEARCHED_GAINS_FILE: &str = "gains.toml";
 
 pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
     let requirements = arguments.requirements()?;
@@ -36,7 +36,7 @@ pub fn run_tune(arguments: &TuneArguments) -> Result<ExitCode, String> {
         Ok(tuned) => tuned,
         Err(closest) => {
             let what = closest.failed.clone().unwrap_or_default();
-            let lost = short(closest.shown.height_lost);
+            let lost = short(closest.figures.height_lost);
             let stopped = if interrupt.signal().is_some() { "interrupted before any gains were found; " } else { "" };
             complain(format_args!(
                 "error: {}: {stopped}no gains meet the requirements, nothing is written; the closest fail in: {what} \
@@ -84,8 +84,8 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     // The gains, or how hard to search for them and in which file to keep them.
     let known = match wanted {
         GainsWanted::Of(file) => Ok(Set::read(&theirs, Some(&file), &kinds).map_err(|error| error.to_string())?),
-        GainsWanted::Searched(effort) => Err((effort, RIVALS)),
-        GainsWanted::BuiltInOr(effort) => Set::built_in(&theirs, &kinds).ok_or((effort, FOUND)),
+        GainsWanted::Searched(effort) => Err((effort, TUNED_GAINS_FILE)),
+        GainsWanted::BuiltInOr(effort) => Set::built_in(&theirs, &kinds).ok_or((effort, SEARCHED_GAINS_FILE)),
     };
     none_but(arguments.gains.as_deref(), known.as_ref().err().map(|(_, name)| *name), &directory)?;
     let interrupt = watch()?;
@@ -105,12 +105,12 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
     let (set, found) = match known {
         Ok(set) => (set, None),
         Err((effort, name)) => {
-            if name == FOUND {
+            if name == SEARCHED_GAINS_FILE {
                 complain(format_args!(
                     "{}: no gains of the other laws are built in for this vehicle: they are searched first, each as \
                      hard as `tune` searches ours, which may take {}",
                     scenario.name,
-                    spoken(rivals::expected(&theirs, &kinds, &effort).as_secs_f64())
+                    in_words(rivals::expected(&theirs, &kinds, &effort).as_secs_f64())
                 ));
             }
             match rivals::tune(&theirs, &kinds, effort, &interrupt) {
@@ -171,7 +171,7 @@ pub fn run_compare(arguments: &CompareArguments) -> Result<ExitCode, String> {
 /// Refuses a directory with other gains than those that will fly (from `gains`, or written as `written`): a reader
 /// would take them for the flown ones. They are not removed, because a search for them takes long.
 fn none_but(gains: Option<&Path>, written: Option<&str>, directory: &Path) -> Result<(), String> {
-    for name in [RIVALS, FOUND] {
+    for name in [TUNED_GAINS_FILE, SEARCHED_GAINS_FILE] {
         let there = directory.join(name);
         let flies = written == Some(name) || gains.is_some_and(|gains| same_file(gains, &there));
         if there.exists() && !flies {

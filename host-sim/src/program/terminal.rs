@@ -2,7 +2,7 @@
 //! they end with.
 
 use host_sim::output::interrupt::Interrupt;
-use host_sim::studies::campaign::manifest::MANIFEST;
+use host_sim::studies::campaign::manifest::MANIFEST_FILE;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,7 +14,7 @@ const CLAIMS_FAIL: u8 = 1;
 /// Input that cannot be used, or output that cannot be written.
 pub const BAD_INPUT: u8 = 2;
 /// The status of signal 0, as shells have it.
-const INTERRUPTED: u8 = 128;
+const SIGNAL_STATUS_BASE: u8 = 128;
 
 /// Writes to standard output, whole. A reader that has gone away changes no verdict.
 pub fn print(write: impl FnOnce() -> io::Result<()>) -> Result<(), String> {
@@ -64,7 +64,7 @@ fn coloured(text: &str) -> String {
 /// A scenario's text, read once: a pipe cannot be read twice.
 pub fn text_of(file: Option<&Path>) -> Result<String, String> {
     let read = |file: &Path| {
-        scenario::whole::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+        scenario::self_contained::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
     };
     file.map_or_else(|| Ok(scenario::PAPER.to_owned()), read)
 }
@@ -76,7 +76,7 @@ pub fn watch() -> Result<Interrupt, String> {
 /// The status of a run that held or did not, unless it was cut short.
 pub fn status(holds: bool, signal: Option<u8>) -> ExitCode {
     match (signal, holds) {
-        (Some(signal), _) => ExitCode::from(INTERRUPTED + signal),
+        (Some(signal), _) => ExitCode::from(SIGNAL_STATUS_BASE + signal),
         (None, true) => ExitCode::SUCCESS,
         (None, false) => ExitCode::from(CLAIMS_FAIL),
     }
@@ -84,7 +84,7 @@ pub fn status(holds: bool, signal: Option<u8>) -> ExitCode {
 
 /// Refuses a directory in which a report would be written over that of a campaign, which may have taken hours.
 pub fn not_a_campaigns(directory: &Path) -> Result<(), String> {
-    if directory.join(MANIFEST).exists() {
+    if directory.join(MANIFEST_FILE).exists() {
         return Err(format!(
             "{}: holds a campaign with a report of its own: choose another --out",
             directory.display()

@@ -19,12 +19,12 @@ mrp_x,mrp_y,mrp_z,lift_sign,position_error,mrp_error,ubar_x,ubar_y,ubar_z,uf_x,u
 qdw,qdx,qdy,qdz,wdx,wdy,wdz,wddot_x,wddot_y,wddot_z,clipped";
 
 /// Columns of a law that estimates: force, m/s^2; torque, N m; thrust scale.
-const ESTIMATES: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
+const ESTIMATES_HEADER: &str = ",d_x,d_y,d_z,tau_d_x,tau_d_y,tau_d_z,thrust_scale";
 
 /// The header row for a vehicle with so many rotors, under a law that estimates or not.
 #[must_use]
 pub fn header(rotors: usize, estimates: bool) -> String {
-    let law = HEADER.to_owned() + if estimates { ESTIMATES } else { "" };
+    let law = HEADER.to_owned() + if estimates { ESTIMATES_HEADER } else { "" };
     (1..=rotors).fold(law, |header, rotor| header + &format!(",rotor_{rotor}"))
 }
 
@@ -32,29 +32,30 @@ pub fn header(rotors: usize, estimates: bool) -> String {
 #[must_use]
 pub fn reality_header(reality: &Reality) -> String {
     [
-        (reality.wind.is_some(), WIND),
-        (reality.battery.is_some(), BATTERY),
-        (reality.sensors.is_some(), MEASURED),
-        (reality.estimator.is_some(), ESTIMATED),
+        (reality.wind.is_some(), WIND_HEADER),
+        (reality.battery.is_some(), BATTERY_HEADER),
+        (reality.sensors.is_some(), MEASURED_HEADER),
+        (reality.estimator.is_some(), ESTIMATED_HEADER),
     ]
     .into_iter()
     .fold(String::new(), |header, (there, columns)| if there { header + columns } else { header })
 }
 
-const WIND: &str = ",wind_x,wind_y,wind_z";
-const BATTERY: &str = ",voltage,current";
-const MEASURED: &str = ",measured_px,measured_py,measured_pz,measured_vx,measured_vy,measured_vz,\
+const WIND_HEADER: &str = ",wind_x,wind_y,wind_z";
+const BATTERY_HEADER: &str = ",voltage,current";
+const MEASURED_HEADER: &str = ",measured_px,measured_py,measured_pz,measured_vx,measured_vy,measured_vz,\
 measured_qw,measured_qx,measured_qy,measured_qz,measured_wx,measured_wy,measured_wz";
 
-const ESTIMATED: &str = ",est_px,est_py,est_pz,est_vx,est_vy,est_vz,est_qw,est_qx,est_qy,est_qz,est_wx,est_wy,est_wz";
+const ESTIMATED_HEADER: &str =
+    ",est_px,est_py,est_pz,est_vx,est_vy,est_vz,est_qw,est_qx,est_qy,est_qz,est_wx,est_wy,est_wz";
 
 /// What a row takes, bytes: 689 to 796 in the flights of `scenarios/` and `vehicles/`, and a number for each further
 /// column.
 #[must_use]
 pub fn bytes_per_row(reality: &Reality) -> u64 {
-    const MODEL: u64 = 740;
-    const NUMBER: u64 = 14;
-    MODEL + NUMBER * reality_header(reality).matches(',').count() as u64
+    const MODEL_ROW_BYTES: u64 = 740;
+    const NUMBER_BYTES: u64 = 14;
+    MODEL_ROW_BYTES + NUMBER_BYTES * reality_header(reality).matches(',').count() as u64
 }
 
 /// Writes one row.
@@ -136,8 +137,8 @@ mod tests {
         for (sections, further) in [
             (String::new(), ""),
             ("[truth]\n".into(), ""),
-            (wind.into(), WIND),
-            (battery.into(), BATTERY),
+            (wind.into(), WIND_HEADER),
+            (battery.into(), BATTERY_HEADER),
             (format!("{wind}{battery}[sensors]\n"), ",wind_x,wind_y,wind_z,voltage,current,measured_px"),
         ] {
             let scenario = Scenario::parse(&format!("{hummingbird}\n{sections}"), "f").unwrap();

@@ -19,8 +19,8 @@ pub const FIGURE_2: [&str; 4] =
     ["Thrust", "Torques", "Position feedback and its filters", "Saturated attitude and rate feedback"];
 /// What happens in the first seconds, which a whole flight squeezes into a few pixels.
 pub const FIRST_SECONDS: [&str; 4] = ["Yaw", "Attitude error (MRP)", "Torques", "Saturated attitude and rate feedback"];
-/// What the transient's figure shows of a flight, s.
-const TRANSIENT: f64 = 5.0;
+/// The part of a flight that the transient's figure shows.
+const TRANSIENT_S: f64 = 5.0;
 
 /// The plots of these titles, two by two.
 #[must_use]
@@ -33,7 +33,7 @@ pub fn figure(plots: &[Plot], titles: [&str; 4], track: &Track) -> String {
 /// The same of the first seconds.
 #[must_use]
 pub fn first_seconds(plots: &[Plot], track: &Track) -> String {
-    figure(plots, FIRST_SECONDS, &track.until(TRANSIENT))
+    figure(plots, FIRST_SECONDS, &track.until(TRANSIENT_S))
 }
 
 /// Four plots, each with its tracks and of that size, two by two.

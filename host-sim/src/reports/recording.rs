@@ -25,7 +25,7 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions, Writer};
 use scenario::Scenario;
 use scenario::body::BodyState;
-use schemas::{FRAME_TRANSFORM, LAW, POSE_IN_FRAME, ROTORS, SCENE_UPDATE, Schema};
+use schemas::{FRAME_TRANSFORM, LAW_SCHEMA, POSE_IN_FRAME, ROTORS_SCHEMA, SCENE_UPDATE, Schema};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -34,15 +34,14 @@ use std::io::{self, Write};
 /// A topic, and what its messages look like.
 pub type Topic = (&'static str, Schema);
 
-/// The topics of every recording.
-const COMMON: [Topic; 7] = [
+const COMMON_TOPICS: [Topic; 7] = [
     ("/vehicle", POSE_IN_FRAME),
     ("/reference", POSE_IN_FRAME),
     ("/told", POSE_IN_FRAME),
     ("/tf", FRAME_TRANSFORM),
     ("/scene", SCENE_UPDATE),
-    ("/law", LAW),
-    ("/rotors", ROTORS),
+    ("/law", LAW_SCHEMA),
+    ("/rotors", ROTORS_SCHEMA),
 ];
 
 /// A recording that grows tick by tick.
@@ -62,7 +61,7 @@ impl<W: Write> Recording<W> {
         let options = WriteOptions::new().compression(None).disable_seeking(true).library("host-sim");
         let mut recording =
             Self { writer: options.create(NoSeek::new(out)).map_err(failed)?, channels: BTreeMap::new() };
-        for (topic, schema) in COMMON.iter().chain(topics) {
+        for (topic, schema) in COMMON_TOPICS.iter().chain(topics) {
             recording.channel(topic, schema)?;
         }
         let attachment = Attachment {

@@ -8,10 +8,10 @@ use scenario::Scenario;
 use std::io::{self, Write};
 
 /// The most rows a second: a reference's time is in whole microseconds.
-pub const GREATEST_RATE: f64 = 1000.0;
+pub const ROW_RATE_MAX_HZ: f64 = 1000.0;
 
 /// How many times slower than the reference rows are that a vehicle follows to within 2 cm.
-pub const SLOWER: f64 = 1.1;
+pub const FOLLOWED_WITHIN_2_CM_FACTOR: f64 = 1.1;
 
 /// Writes the rows of `scenario`, `rate` of them a second, `slower` times slower than it; returns how many.
 ///

@@ -22,7 +22,7 @@
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::low_pass::LowPass;
-use super::rival::{Commanded, Model, Rival, Seen, Wanted, gyroscopic, paired};
+use super::rival::{Commanded, Rival, RivalModel, RivalReference, RivalState, gyroscopic, paired};
 use super::start::Pace;
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
@@ -48,10 +48,10 @@ pub const NAMES: [&str; 18] = [
     "cut_off",
 ];
 /// Where a search starts: PX4's defaults, in accelerations.
-pub const START: [f64; 18] =
+pub const START_GAINS: [f64; 18] =
     [0.95, 1.0, 1.8, 0.4, 0.2, 4.0, 2.0, 0.01, 12.0, 3.0, 6.5, 0.4, 18.0, 6.0, 0.05, 4.0, 1.0, 100.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 18] = [
+pub const GAIN_PACES: [Pace; 18] = [
     Pace::Position(1),
     Pace::Position(1),
     Pace::Position(1),
@@ -72,21 +72,21 @@ pub const PACES: [Pace; 18] = [
     Pace::Kept,
 ];
 
-/// Greatest commanded tilt, rad; greatest body rates, rad/s: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
+/// Greatest commanded tilt; greatest body rates: PX4's `MPC_TILTMAX_AIR`, `MC_ROLLRATE_MAX` and
 /// `MC_YAWRATE_MAX`.
-const TILT_MAX: f64 = 0.785;
-const RATES_MAX: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
-/// Level of the rate's integral, rad/s^2.
-const RATE_INTEGRAL_MAX: f64 = 20.0;
-/// Error of a rate beyond which its integral takes nothing in, rad/s: 400 degrees/s.
-const RATE_ERROR_MAX: f64 = 6.98;
+const TILT_MAX_RAD: f64 = 0.785;
+const RATES_MAX_RAD_PER_S: Vector3<f64> = Vector3::new(3.84, 3.84, 3.49);
+/// Level of the rate's integral.
+const RATE_INTEGRAL_MAX_RAD_PER_S2: f64 = 20.0;
+/// Error of a rate beyond which its integral takes nothing in: 400 degrees/s.
+const RATE_ERROR_MAX_RAD_PER_S: f64 = 6.98;
 /// Share of the thrust kept for moving across, however hard the vertical asks.
-const THRUST_KEPT: f64 = 0.3;
+const LEVEL_THRUST_SHARE: f64 = 0.3;
 
 /// The law and its memory.
 #[derive(Debug, Clone)]
 pub struct Cascade {
-    model: Model,
+    model: RivalModel,
     k_p: Vector3<f64>,
     k_v: Vector3<f64>,
     k_i: Vector3<f64>,
@@ -108,7 +108,7 @@ pub struct Cascade {
 impl Cascade {
     /// With gains as in [`NAMES`].
     #[must_use]
-    pub fn new(model: Model, gains: [f64; 18]) -> Self {
+    pub fn new(model: RivalModel, gains: [f64; 18]) -> Self {
         let [p_a, p_v, v_a, i_a, d_a, v_v, i_v, d_v, v_across, v_vertical, k_q, weight, w_t, j_t, k_e, w_y, j_y, cut] =
             gains;
         Self {
@@ -133,24 +133,24 @@ impl Cascade {
     }
 
     /// The commanded force per mass, m/s^2, world: position and velocity loop with their limits.
-    fn force(&mut self, seen: &Seen, wanted: &Wanted) -> Vector3<f64> {
-        let towards = self.k_p.component_mul(&(wanted.position - seen.position));
-        let across = limited(wanted.velocity.xy() + towards.xy(), self.v_across);
-        let along = (wanted.velocity.z + towards.z).clamp(-self.v_vertical, self.v_vertical);
-        let error = across.push(along) - seen.velocity;
-        let (_, acceleration) = self.velocity.take(&seen.velocity);
-        let commanded = wanted.acceleration.0[0] + self.k_v.component_mul(&error) + self.velocity_integral
-            - self.k_d.component_mul(&(acceleration - wanted.motion));
+    fn force(&mut self, state: &RivalState, target: &RivalReference) -> Vector3<f64> {
+        let towards = self.k_p.component_mul(&(target.position - state.position));
+        let across = limited(target.velocity.xy() + towards.xy(), self.v_across);
+        let along = (target.velocity.z + towards.z).clamp(-self.v_vertical, self.v_vertical);
+        let error = across.push(along) - state.velocity;
+        let (_, acceleration) = self.velocity.take(&state.velocity);
+        let commanded = target.acceleration.0[0] + self.k_v.component_mul(&error) + self.velocity_integral
+            - self.k_d.component_mul(&(acceleration - target.motion));
 
         // The vertical first, but some of the thrust is kept for moving across.
         let greatest = self.model.thrust_max / self.model.mass;
         let vertical = self.model.gravity + commanded.z;
         let wanted_across = commanded.xy().norm();
-        let kept = wanted_across.min(THRUST_KEPT * greatest);
+        let kept = wanted_across.min(LEVEL_THRUST_SHARE * greatest);
         let up = vertical.clamp(0.0, (greatest * greatest - kept * kept).sqrt());
         let room = (greatest * greatest - up * up).max(0.0).sqrt();
         // The tilt counts from gravity, as if the vertical were not accelerated.
-        let produced = limited(commanded.xy(), room.min(TILT_MAX.tan() * up.max(self.model.gravity)));
+        let produced = limited(commanded.xy(), room.min(TILT_MAX_RAD.tan() * up.max(self.model.gravity)));
 
         let period = self.model.period;
         let lost = (commanded.xy() - produced) * (2.0 / self.k_v.x);
@@ -164,43 +164,48 @@ impl Cascade {
     }
 
     /// The desired body rates, rad/s, and the desired attitude.
-    fn rates(&self, seen: &Seen, force: Vector3<f64>, wanted: &Wanted) -> (Vector3<f64>, UnitQuaternion<f64>) {
-        let heading = Jet::constant(wanted.heading.0[0]);
+    fn rates(
+        &self,
+        state: &RivalState,
+        force: Vector3<f64>,
+        target: &RivalReference,
+    ) -> (Vector3<f64>, UnitQuaternion<f64>) {
+        let heading = Jet::constant(target.heading.0[0]);
         let full = Frame::new(&Jet::constant(force), &heading, HeadingRule::Horizontal).attitude;
-        let reduced = shortest(&(seen.attitude * Vector3::z()), &(full * Vector3::z())) * seen.attitude;
+        let reduced = shortest(&(state.attitude * Vector3::z()), &(full * Vector3::z())) * state.attitude;
         let rest = reduced.inverse() * full;
         let twist = 2.0 * rest.k.atan2(rest.w);
         let twist = twist.sin().atan2(twist.cos());
         let desired = reduced * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.yaw_weight * twist);
-        let error = seen.attitude.inverse() * desired;
+        let error = state.attitude.inverse() * desired;
         let sign = if error.w < 0.0 { -1.0 } else { 1.0 };
         (error.imag() * (2.0 * sign * self.k_q), full)
     }
 }
 
 impl Rival for Cascade {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
-        let force = self.force(seen, wanted);
-        let (rates, desired) = self.rates(seen, force, wanted);
-        let needed = wanted.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
-        let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);
-        let forward = seen.attitude.inverse() * (reference.attitude * reference.rate);
-        let commanded = (rates + forward).zip_map(&RATES_MAX, |rate, limit| rate.clamp(-limit, limit));
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
+        let force = self.force(state, target);
+        let (rates, desired) = self.rates(state, force, target);
+        let needed = target.acceleration.plus(&Jet::constant(Vector3::z() * self.model.gravity));
+        let reference = Frame::new(&needed, &target.heading, HeadingRule::Horizontal);
+        let forward = state.attitude.inverse() * (reference.attitude * reference.rate);
+        let commanded = (rates + forward).zip_map(&RATES_MAX_RAD_PER_S, |rate, limit| rate.clamp(-limit, limit));
 
-        let error = commanded - seen.rate;
-        let (_, acceleration) = self.rate.take(&seen.rate);
+        let error = commanded - state.rate;
+        let (_, acceleration) = self.rate.take(&state.rate);
         let turning = self.k_w.component_mul(&error) + self.rate_integral
             - Vector3::new(acceleration.x, acceleration.y, 0.0) * self.k_e;
         if !self.saturated {
-            let share = error.map(|error| (1.0 - (error / RATE_ERROR_MAX).powi(2)).max(0.0));
+            let share = error.map(|error| (1.0 - (error / RATE_ERROR_MAX_RAD_PER_S).powi(2)).max(0.0));
             let taken = self.k_j.component_mul(&error).component_mul(&share) * self.model.period;
-            self.rate_integral =
-                (self.rate_integral + taken).map(|part| part.clamp(-RATE_INTEGRAL_MAX, RATE_INTEGRAL_MAX));
+            self.rate_integral = (self.rate_integral + taken)
+                .map(|part| part.clamp(-RATE_INTEGRAL_MAX_RAD_PER_S2, RATE_INTEGRAL_MAX_RAD_PER_S2));
         }
         let inertia = &self.model.inertia;
         Commanded {
-            thrust: self.model.mass * force.dot(&(seen.attitude * Vector3::z())),
-            torque: inertia.component_mul(&turning) + gyroscopic(inertia, &seen.rate),
+            thrust: self.model.mass * force.dot(&(state.attitude * Vector3::z())),
+            torque: inertia.component_mul(&turning) + gyroscopic(inertia, &state.rate),
             desired,
             desired_rate: reference.rate,
         }

@@ -1,9 +1,9 @@
 //! Which law flies: ours, or a rival with its gains. It can be written and read.
 
-use super::kind::Kind;
+use super::kind::RivalKind;
 
 /// Our law's name beside others.
-pub const OURS: &str = "ours";
+pub const OUR_LAW: &str = "ours";
 
 /// Which law.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +11,7 @@ pub enum LawChoice {
     /// The scenario's own.
     Ours,
     /// Another one with its gains, each in the place of its name.
-    Rival(Kind, Vec<f64>),
+    Rival(RivalKind, Vec<f64>),
 }
 
 impl LawChoice {
@@ -19,7 +19,7 @@ impl LawChoice {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Ours => OURS,
+            Self::Ours => OUR_LAW,
             Self::Rival(kind, _) => kind.name(),
         }
     }

@@ -9,10 +9,10 @@
 //! Home: errors that never pass half a turn.
 
 use super::quaternion_feedback::QuaternionFeedback;
-use super::rival::{Commanded, Rival, Seen, Wanted};
+use super::rival::{Commanded, Rival, RivalReference, RivalState};
 use nalgebra::Quaternion;
 
-pub use super::quaternion_feedback::{NAMES, PACES, START};
+pub use super::quaternion_feedback::{GAIN_PACES, NAMES, START_GAINS};
 
 /// The law and the quaternion it was at.
 #[derive(Debug, Clone)]
@@ -36,10 +36,10 @@ impl Continuous {
 }
 
 impl Rival for Continuous {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
         let before = self.before.unwrap_or_else(Quaternion::identity);
         let mut chosen = before;
-        let commanded = self.law.step(seen, wanted, |error| {
+        let commanded = self.law.step(state, target, |error| {
             chosen = if error.dot(&before) < 0.0 { -error } else { error };
             chosen
         });

@@ -37,26 +37,26 @@ pub struct Frame {
     pub acceleration: Vector3<f64>,
 }
 
-/// A force per mass shorter than this, m/s^2, points nowhere; an x or y axis shorter than the other has no direction.
-const LEAST_FORCE: f64 = 1e-2;
-const LEAST_AXIS: f64 = 1e-2;
+/// A force per mass shorter than this points nowhere; an x or y axis shorter than the other has no direction.
+const FORCE_MIN_M_PER_S2: f64 = 1e-2;
+const AXIS_MIN_SHARE: f64 = 1e-2;
 /// An axis shorter than this has no direction.
-const LEAST_LENGTH: f64 = 1e-9;
+const AXIS_LENGTH_MIN: f64 = 1e-9;
 
 impl Frame {
     /// For the force per mass `force`, m/s^2, and the heading's unit vector, both world, with their derivatives.
     #[must_use]
     pub fn new(force: &Jet, heading: &Jet, rule: HeadingRule) -> Self {
         // Free fall asks for no direction: upright is as good as any.
-        let force = if force.0[0].norm() < LEAST_FORCE { Jet::constant(Vector3::z()) } else { *force };
-        let z = force.unit(LEAST_FORCE);
+        let force = if force.0[0].norm() < FORCE_MIN_M_PER_S2 { Jet::constant(Vector3::z()) } else { *force };
+        let z = force.unit(FORCE_MIN_M_PER_S2);
         let (x, y) = match rule {
             HeadingRule::Projected => {
-                let y = z.cross(heading).unit(LEAST_AXIS);
+                let y = z.cross(heading).unit(AXIS_MIN_SHARE);
                 (y.cross(&z), y)
             }
             HeadingRule::Horizontal => {
-                let x = Jet::constant(Vector3::z()).cross(heading).cross(&z).unit(LEAST_AXIS);
+                let x = Jet::constant(Vector3::z()).cross(heading).cross(&z).unit(AXIS_MIN_SHARE);
                 (x, z.cross(&x))
             }
         };
@@ -77,12 +77,12 @@ impl Frame {
 /// where the heading hardly says where they point.
 fn nearest(x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Rotation3<f64> {
     let length = x.norm();
-    if length > LEAST_LENGTH {
+    if length > AXIS_LENGTH_MIN {
         return Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x / length, y / length, *z]));
     }
     // Without a heading: of all attitudes with this z, one near level.
     let matrix = Matrix3::from_columns(&[*x, *y, *z]);
-    Rotation3::from_matrix_eps(&matrix, LEAST_LENGTH, 50, Rotation3::identity())
+    Rotation3::from_matrix_eps(&matrix, AXIS_LENGTH_MIN, 50, Rotation3::identity())
 }
 
 #[cfg(test)]

@@ -23,10 +23,10 @@
 //! Where there are none of this vehicle at this rate, its gains of another rate serve as they are: they stand in 1/s,
 //! and every filter is exact for its period. [`Set::of_other_rates`] says so: a search finds better ones.
 
-use super::kind::Kind;
+use super::kind::RivalKind;
 use super::pilot::model;
 use crate::output::table::short;
-use crate::rivals::choice::{LawChoice, OURS};
+use crate::rivals::choice::{LawChoice, OUR_LAW};
 use scenario::Scenario;
 use scenario::number::{self, Number};
 use std::fmt::Write;
@@ -43,11 +43,11 @@ const BUILT_IN_NAME: &str = "the built-in gains";
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Set {
     /// Each rival's, in the order of its names, with what the search made of them.
-    pub rivals: Vec<(Kind, Vec<f64>, f64)>,
+    pub rivals: Vec<(RivalKind, Vec<f64>, f64)>,
     /// Rivals for which a search found no gains that fly every trial to its end.
-    pub lost: Vec<Kind>,
+    pub lost: Vec<RivalKind>,
     /// Rivals whose gains were found at another rate, Hz.
-    pub from_other_rates: Vec<(Kind, f64)>,
+    pub from_other_rates: Vec<(RivalKind, f64)>,
 }
 
 /// A file of gains that cannot be used, in one line.
@@ -63,20 +63,20 @@ impl std::fmt::Display for GainsError {
 impl std::error::Error for GainsError {}
 
 /// The key of a table that says at which rate its gains were found.
-const PERIOD: &str = "period";
+const PERIOD_KEY: &str = "period";
 
 impl Set {
     /// The gains of `kinds` in `text`, called `file` in messages, that were found for the vehicle of `scenario`.
     ///
     /// # Errors
     /// If the text is no TOML, has no table of that vehicle, or if a rival's gains are incomplete or not positive.
-    pub fn of(scenario: &Scenario, text: &str, file: &str, kinds: &[Kind]) -> Result<Self, GainsError> {
+    pub fn parse(scenario: &Scenario, text: &str, file: &str, kinds: &[RivalKind]) -> Result<Self, GainsError> {
         let failed = |what: String| GainsError(format!("{file}: {what}"));
         let document: DocumentMut =
             text.parse().map_err(|error: toml_edit::TomlError| failed(error.message().replace('\n', " ")))?;
         let own = vehicle(scenario);
         let is_own = |item: &Item, rate: bool| {
-            own.iter().all(|(key, values)| *key == PERIOD && !rate || is_said(item.get(key), key, values))
+            own.iter().all(|(key, values)| *key == PERIOD_KEY && !rate || is_said(item.get(key), key, values))
         };
         let of_rate = document.iter().filter(|(_, item)| is_own(item, true));
         let of_others = document.iter().filter(|(_, item)| is_own(item, false) && !is_own(item, true));
@@ -115,8 +115,9 @@ impl Set {
             }
             let gains = kind.gains().iter().map(|key| number(key)).collect::<Result<Vec<f64>, _>>()?;
             if !is_own(item, true) {
-                let period = item.get(PERIOD).and_then(Item::as_float).filter(|period| *period > 0.0);
-                let period = period.ok_or_else(|| failed(format!("{of}: its {PERIOD} must be greater than zero")))?;
+                let period = item.get(PERIOD_KEY).and_then(Item::as_float).filter(|period| *period > 0.0);
+                let period =
+                    period.ok_or_else(|| failed(format!("{of}: its {PERIOD_KEY} must be greater than zero")))?;
                 set.from_other_rates.push((kind, 1.0 / period));
             }
             if kind.build(scenario, &gains).is_none() {
@@ -129,20 +130,20 @@ impl Set {
 
     /// The gains of `kinds` that are built in for the vehicle of `scenario`, if there are any.
     #[must_use]
-    pub fn built_in(scenario: &Scenario, kinds: &[Kind]) -> Option<Self> {
-        Self::of(scenario, BUILT_IN, BUILT_IN_NAME, kinds).ok()
+    pub fn built_in(scenario: &Scenario, kinds: &[RivalKind]) -> Option<Self> {
+        Self::parse(scenario, BUILT_IN, BUILT_IN_NAME, kinds).ok()
     }
 
     /// The gains of `kinds` in `file`, or those that are built in.
     ///
     /// # Errors
-    /// If the file cannot be read, and as [`Self::of`]'s.
-    pub fn read(scenario: &Scenario, file: Option<&Path>, kinds: &[Kind]) -> Result<Self, GainsError> {
-        let Some(file) = file else { return Self::of(scenario, BUILT_IN, BUILT_IN_NAME, kinds) };
+    /// If the file cannot be read, and as [`Self::parse`]'s.
+    pub fn read(scenario: &Scenario, file: Option<&Path>, kinds: &[RivalKind]) -> Result<Self, GainsError> {
+        let Some(file) = file else { return Self::parse(scenario, BUILT_IN, BUILT_IN_NAME, kinds) };
         let name = file.display().to_string();
         let text =
             scenario::text::read(file).map_err(|error| GainsError(format!("{name}: cannot be read: {error}")))?;
-        Self::of(scenario, &text, &name, kinds)
+        Self::parse(scenario, &text, &name, kinds)
     }
 
     /// The laws, in the order of their names.
@@ -152,7 +153,7 @@ impl Set {
 
     /// One of them.
     #[must_use]
-    pub fn law(&self, kind: Kind) -> Option<LawChoice> {
+    pub fn law(&self, kind: RivalKind) -> Option<LawChoice> {
         self.laws().find(|law| law.name() == kind.name())
     }
 
@@ -187,7 +188,7 @@ impl Set {
     /// The rivals whose gains were found at another rate than `rate`, Hz; `None` if there are none.
     #[must_use]
     pub fn of_other_rates(&self, rate: f64) -> Option<String> {
-        let from = |(kind, from): &(Kind, f64)| format!("{} at {} Hz", kind.name(), short(*from));
+        let from = |(kind, from): &(RivalKind, f64)| format!("{} at {} Hz", kind.name(), short(*from));
         let all: Vec<String> = self.from_other_rates.iter().map(from).collect();
         let said = format!("gains not found at {} Hz: {}; --tune searches better ones", short(rate), all.join(", "));
         (!all.is_empty()).then_some(said)
@@ -199,10 +200,10 @@ impl Set {
 /// # Errors
 /// The argument that is refused, `law` or `gains`, and why.
 pub fn chosen(name: &str, scenario: &Scenario, file: Option<&Path>) -> Result<LawChoice, (&'static str, String)> {
-    let Some(kind) = Kind::named(name) else {
-        let names: Vec<&str> = std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)).collect();
+    let Some(kind) = RivalKind::named(name) else {
+        let names: Vec<&str> = std::iter::once(OUR_LAW).chain(RivalKind::ALL.map(RivalKind::name)).collect();
         return match file {
-            _ if name != OURS => Err(("law", format!("must be one of {}, found {name:?}", names.join(", ")))),
+            _ if name != OUR_LAW => Err(("law", format!("must be one of {}, found {name:?}", names.join(", ")))),
             Some(_) => Err(("gains", "our law's gains are the scenario's: choose another law".to_owned())),
             None => Ok(LawChoice::Ours),
         };

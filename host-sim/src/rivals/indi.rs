@@ -22,7 +22,7 @@
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
 use super::low_pass::LowPass;
-use super::rival::{Commanded, Model, Rival, Seen, Wanted, paired};
+use super::rival::{Commanded, Rival, RivalModel, RivalReference, RivalState, paired};
 use super::start::{Pace, STIFFNESS_AND_DAMPING};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -40,9 +40,9 @@ pub const NAMES: [&str; 10] = [
     "cut_off_force",
 ];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
+pub const START_GAINS: [f64; 10] = [4.0, 3.3, 5.0, 4.0, 200.0, 18.0, 12.0, 5.0, 50.0, 30.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 10] = {
+pub const GAIN_PACES: [Pace; 10] = {
     let [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y] = STIFFNESS_AND_DAMPING;
     [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, Pace::Attitude(1), Pace::Attitude(1)]
 };
@@ -50,7 +50,7 @@ pub const PACES: [Pace; 10] = {
 /// The law and its memory.
 #[derive(Debug, Clone)]
 pub struct Indi {
-    model: Model,
+    model: RivalModel,
     k_p: Vector3<f64>,
     k_v: Vector3<f64>,
     k_q: Vector3<f64>,
@@ -66,7 +66,7 @@ pub struct Indi {
 impl Indi {
     /// With gains as in [`NAMES`].
     #[must_use]
-    pub fn new(model: Model, [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, cut_rate, cut_force]: [f64; 10]) -> Self {
+    pub fn new(model: RivalModel, [p_a, v_a, p_v, v_v, q_t, w_t, q_y, w_y, cut_rate, cut_force]: [f64; 10]) -> Self {
         let [rate, torque] = [cut_rate; 2].map(|cut| LowPass::new(cut, model.period));
         let [acceleration, force] = [cut_force; 2].map(|cut| LowPass::new(cut, model.period));
         Self {
@@ -85,44 +85,44 @@ impl Indi {
 
     /// After the filters: w', rad/s^2; the torque that acts, N m; the acceleration, m/s^2, and the rotors' force per
     /// mass, m/s^2, both world.
-    fn measured(&mut self, seen: &Seen) -> [Vector3<f64>; 4] {
-        let halfway = self.attitude.replace(seen.attitude).unwrap_or(seen.attitude).slerp(&seen.attitude, 0.5);
+    fn measured(&mut self, state: &RivalState) -> [Vector3<f64>; 4] {
+        let halfway = self.attitude.replace(state.attitude).unwrap_or(state.attitude).slerp(&state.attitude, 0.5);
         let gravity = Vector3::z() * self.model.gravity;
-        let (_, angular) = self.rate.take(&seen.rate);
-        let (torque, _) = self.torque.take(&seen.sensed.wrench.fixed_rows::<3>(1).into());
-        let (linear, _) = self.acceleration.take(&(halfway * seen.sensed.specific_force - gravity));
-        let (force, _) = self.force.take(&(halfway * Vector3::z() * (seen.sensed.wrench.x / self.model.mass)));
+        let (_, angular) = self.rate.take(&state.rate);
+        let (torque, _) = self.torque.take(&state.sensed.wrench.fixed_rows::<3>(1).into());
+        let (linear, _) = self.acceleration.take(&(halfway * state.sensed.specific_force - gravity));
+        let (force, _) = self.force.take(&(halfway * Vector3::z() * (state.sensed.wrench.x / self.model.mass)));
         [angular, torque, linear, force]
     }
 }
 
-/// The turn from `seen` to `desired`, rad, body: the shortest that brings body z to its place, and about z the rest.
-fn turn(seen: &UnitQuaternion<f64>, desired: &UnitQuaternion<f64>) -> Vector3<f64> {
-    let error = seen.inverse() * desired;
+/// The rotation from `state` to `desired`, rad, body: the shortest that brings body z to its place, and about z the rest.
+fn turn(state: &UnitQuaternion<f64>, desired: &UnitQuaternion<f64>) -> Vector3<f64> {
+    let error = state.inverse() * desired;
     let about = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 2.0 * error.k.atan2(error.w));
     (error * about.inverse()).scaled_axis() + about.scaled_axis()
 }
 
 impl Rival for Indi {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
-        let [angular, torque, linear, force] = self.measured(seen);
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
+        let [angular, torque, linear, force] = self.measured(state);
         let gravity = Vector3::z() * self.model.gravity;
         // The measured acceleration includes drag, so the commanded one is the motion's own.
-        let commanded = wanted.motion
-            + self.k_p.component_mul(&(wanted.position - seen.position))
-            + self.k_v.component_mul(&(wanted.velocity - seen.velocity));
+        let commanded = target.motion
+            + self.k_p.component_mul(&(target.position - state.position))
+            + self.k_v.component_mul(&(target.velocity - state.velocity));
         let force = force + commanded - linear;
 
         let desired =
-            Frame::new(&Jet::constant(force), &Jet::constant(wanted.heading.0[0]), HeadingRule::Horizontal).attitude;
-        let needed = wanted.acceleration.plus(&Jet::constant(gravity));
-        let reference = Frame::new(&needed, &wanted.heading, HeadingRule::Horizontal);
-        let back = seen.attitude.inverse() * reference.attitude;
+            Frame::new(&Jet::constant(force), &Jet::constant(target.heading.0[0]), HeadingRule::Horizontal).attitude;
+        let needed = target.acceleration.plus(&Jet::constant(gravity));
+        let reference = Frame::new(&needed, &target.heading, HeadingRule::Horizontal);
+        let back = state.attitude.inverse() * reference.attitude;
         let turning = back * reference.acceleration
-            + self.k_w.component_mul(&(back * reference.rate - seen.rate))
-            + self.k_q.component_mul(&turn(&seen.attitude, &desired));
+            + self.k_w.component_mul(&(back * reference.rate - state.rate))
+            + self.k_q.component_mul(&turn(&state.attitude, &desired));
         Commanded {
-            thrust: self.model.mass * force.dot(&(seen.attitude * Vector3::z())),
+            thrust: self.model.mass * force.dot(&(state.attitude * Vector3::z())),
             torque: torque + self.model.inertia.component_mul(&(turning - angular)),
             desired,
             desired_rate: reference.rate,

@@ -13,12 +13,12 @@ use super::rival::Rival;
 use super::start::{Pace, Start};
 use scenario::Scenario;
 
-/// About x and y, of a vehicle that the starts serve, kg m^2: the Hummingbird's.
-const START_INERTIA: f64 = 3.665e-3;
+/// About x and y, of a vehicle that the starts serve: the Hummingbird's.
+const START_INERTIA_KG_M2: f64 = 3.665e-3;
 
 /// A rival.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum RivalKind {
     /// [`lee`].
     Lee,
     /// [`cascade`].
@@ -35,7 +35,7 @@ pub enum Kind {
     Memoryless,
 }
 
-impl Kind {
+impl RivalKind {
     /// All of them.
     pub const ALL: [Self; 7] =
         [Self::Lee, Self::Cascade, Self::Mellinger, Self::Indi, Self::Nested, Self::Continuous, Self::Memoryless];
@@ -94,15 +94,15 @@ impl Kind {
     #[must_use]
     pub fn start(self, scenario: &Scenario) -> Start {
         let (gains, paces): (&[f64], &[Pace]) = match self {
-            Self::Lee => (&lee::START, &lee::PACES),
-            Self::Cascade => (&cascade::START, &cascade::PACES),
-            Self::Mellinger => (&mellinger::START, &mellinger::PACES),
-            Self::Indi => (&indi::START, &indi::PACES),
-            Self::Nested => (&nested::START, &nested::PACES),
-            Self::Continuous => (&continuous::START, &continuous::PACES),
-            Self::Memoryless => (&memoryless::START, &memoryless::PACES),
+            Self::Lee => (&lee::START_GAINS, &lee::GAIN_PACES),
+            Self::Cascade => (&cascade::START_GAINS, &cascade::GAIN_PACES),
+            Self::Mellinger => (&mellinger::START_GAINS, &mellinger::GAIN_PACES),
+            Self::Indi => (&indi::START_GAINS, &indi::GAIN_PACES),
+            Self::Nested => (&nested::START_GAINS, &nested::GAIN_PACES),
+            Self::Continuous => (&continuous::START_GAINS, &continuous::GAIN_PACES),
+            Self::Memoryless => (&memoryless::START_GAINS, &memoryless::GAIN_PACES),
         };
-        Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA }
+        Start { gains, paces, inertia: model(scenario).inertia.xy().mean() / START_INERTIA_KG_M2 }
     }
 
     /// The law with `gains`, each in the place of its name, on the vehicle of `scenario`; `None` if there are

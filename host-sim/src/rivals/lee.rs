@@ -19,7 +19,7 @@
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
-use super::rival::{Commanded, Model, Rival, Seen, Wanted, gyroscopic, paired};
+use super::rival::{Commanded, Rival, RivalModel, RivalReference, RivalState, gyroscopic, paired};
 use super::start::{Pace, STIFFNESS_AND_DAMPING};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -27,14 +27,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub const NAMES: [&str; 8] =
     ["k_x_across", "k_v_across", "k_x_vertical", "k_v_vertical", "k_r_tilt", "k_w_tilt", "k_r_yaw", "k_w_yaw"];
 /// Where a search starts, on a vehicle like the Hummingbird.
-pub const START: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
+pub const START_GAINS: [f64; 8] = [5.0, 3.8, 6.0, 4.5, 150.0, 20.0, 8.0, 5.0];
 /// The quantity that each gain scales with.
-pub const PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
+pub const GAIN_PACES: [Pace; 8] = STIFFNESS_AND_DAMPING;
 
 /// The law.
 #[derive(Debug, Clone)]
 pub struct Lee {
-    model: Model,
+    model: RivalModel,
     k_x: Vector3<f64>,
     k_v: Vector3<f64>,
     k_r: Vector3<f64>,
@@ -44,18 +44,18 @@ pub struct Lee {
 impl Lee {
     /// With gains as in [`NAMES`].
     #[must_use]
-    pub fn new(model: Model, [x_a, v_a, x_v, v_v, r_t, w_t, r_y, w_y]: [f64; 8]) -> Self {
+    pub fn new(model: RivalModel, [x_a, v_a, x_v, v_v, r_t, w_t, r_y, w_y]: [f64; 8]) -> Self {
         Self { model, k_x: paired(x_a, x_v), k_v: paired(v_a, v_v), k_r: paired(r_t, r_y), k_w: paired(w_t, w_y) }
     }
 
     /// u with its derivatives along the motion, and f / m.
-    fn force(&self, seen: &Seen, wanted: &Wanted) -> (Jet, f64) {
+    fn force(&self, state: &RivalState, target: &RivalReference) -> (Jet, f64) {
         let gravity = Vector3::z() * self.model.gravity;
-        let [acceleration, jerk, snap] = wanted.acceleration.0;
+        let [acceleration, jerk, snap] = target.acceleration.0;
         let feedback = |x: Vector3<f64>, v: Vector3<f64>| -(self.k_x.component_mul(&x) + self.k_v.component_mul(&v));
-        let (x, v) = (seen.position - wanted.position, seen.velocity - wanted.velocity);
-        let axis = seen.attitude * Vector3::z();
-        let axis_rate = seen.attitude * seen.rate.cross(&Vector3::z());
+        let (x, v) = (state.position - target.position, state.velocity - target.velocity);
+        let axis = state.attitude * Vector3::z();
+        let axis_rate = state.attitude * state.rate.cross(&Vector3::z());
 
         let u = feedback(x, v) + gravity + acceleration;
         let thrust = u.dot(&axis);
@@ -75,18 +75,18 @@ pub fn attitude_error(desired: &UnitQuaternion<f64>, attitude: &UnitQuaternion<f
 }
 
 impl Rival for Lee {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
-        let (force, thrust) = self.force(seen, wanted);
-        let frame = Frame::new(&force, &wanted.heading, HeadingRule::Projected);
-        let back = seen.attitude.inverse() * frame.attitude;
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
+        let (force, thrust) = self.force(state, target);
+        let frame = Frame::new(&force, &target.heading, HeadingRule::Projected);
+        let back = state.attitude.inverse() * frame.attitude;
         let rate = back * frame.rate;
-        let feedback = self.k_r.component_mul(&attitude_error(&frame.attitude, &seen.attitude))
-            + self.k_w.component_mul(&(seen.rate - rate));
-        let forward = back * frame.acceleration - seen.rate.cross(&rate);
+        let feedback = self.k_r.component_mul(&attitude_error(&frame.attitude, &state.attitude))
+            + self.k_w.component_mul(&(state.rate - rate));
+        let forward = back * frame.acceleration - state.rate.cross(&rate);
         let inertia = &self.model.inertia;
         Commanded {
             thrust: self.model.mass * thrust,
-            torque: inertia.component_mul(&(forward - feedback)) + gyroscopic(inertia, &seen.rate),
+            torque: inertia.component_mul(&(forward - feedback)) + gyroscopic(inertia, &state.rate),
             desired: frame.attitude,
             desired_rate: frame.rate,
         }

@@ -9,17 +9,17 @@
 //! Home: errors that stay away from half a turn.
 
 use super::quaternion_feedback::QuaternionFeedback;
-use super::rival::{Commanded, Rival, Seen, Wanted};
+use super::rival::{Commanded, Rival, RivalReference, RivalState};
 
-pub use super::quaternion_feedback::{NAMES, PACES, START};
+pub use super::quaternion_feedback::{GAIN_PACES, NAMES, START_GAINS};
 
 /// The law; it remembers nothing.
 #[derive(Debug, Clone)]
 pub struct Memoryless(pub QuaternionFeedback);
 
 impl Rival for Memoryless {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
-        self.0.step(seen, wanted, |error| if error.w < 0.0 { -error } else { error })
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
+        self.0.step(state, target, |error| if error.w < 0.0 { -error } else { error })
     }
 
     fn boxed(&self) -> Box<dyn Rival> {

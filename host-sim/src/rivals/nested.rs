@@ -21,7 +21,7 @@
 
 use super::frame::{Frame, HeadingRule};
 use super::jet::Jet;
-use super::rival::{Commanded, Model, Rival, Seen, Wanted};
+use super::rival::{Commanded, Rival, RivalModel, RivalReference, RivalState};
 use super::start::Pace;
 use controller_core::attitude::AttitudeLaw;
 use controller_core::gains::{GainParameters, Gains};
@@ -33,9 +33,9 @@ use nalgebra::{Quaternion, Vector3};
 pub const NAMES: [&str; 10] =
     ["k_v", "k_p", "k_i", "m_v", "m_p_share", "m_i_share", "k_theta", "m_theta", "k_omega", "m_omega"];
 /// Where a search starts, on a vehicle like the Hummingbird with rotors that lag. Table I's attitude gains bear no lag.
-pub const START: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
+pub const START_GAINS: [f64; 10] = [3.0, 2.5, 0.3, 4.0, 0.49, 0.3, 4.0, 0.3, 0.06, 0.4];
 /// The speed that each of them scales with.
-pub const PACES: [Pace; 10] = [
+pub const GAIN_PACES: [Pace; 10] = [
     Pace::Position(1),
     Pace::Position(2),
     Pace::Position(3),
@@ -49,8 +49,8 @@ pub const PACES: [Pace; 10] = [
 ];
 
 /// The paper's hysteresis and memory.
-const DELTA: f32 = 0.02;
-const ALPHA: f32 = 0.25;
+const PAPER_DELTA: f32 = 0.02;
+const PAPER_ALPHA: f32 = 0.25;
 /// The integral's greatest value, in multiples of what saturates it.
 const INTEGRAL_SPAN: f64 = 2.0;
 
@@ -89,7 +89,7 @@ impl Outer {
 /// The law and what it remembers.
 #[derive(Debug, Clone)]
 pub struct Nested {
-    model: Model,
+    model: RivalModel,
     outer: Outer,
     attitude: AttitudeLaw,
     integral: Vector3<f64>,
@@ -100,7 +100,7 @@ pub struct Nested {
 impl Nested {
     /// With gains as in [`NAMES`], for the `vehicle` of `model`; none if the attitude law is undefined for them.
     #[must_use]
-    pub fn new(model: Model, vehicle: &Vehicle, gains: [f64; 10]) -> Option<Self> {
+    pub fn new(model: RivalModel, vehicle: &Vehicle, gains: [f64; 10]) -> Option<Self> {
         let [k_v, k_p, k_i, m_v, p_share, i_share, k_theta, m_theta, k_omega, m_omega] = gains;
         // Thrust must never vanish: u_z stays above zero for a reference that falls with up to a tenth of g.
         let m_v = m_v.min(0.9 * model.gravity);
@@ -118,13 +118,13 @@ impl Nested {
     }
 
     /// u and its derivatives: twice, since v~' is that of the thrust which u itself asks for.
-    fn force(&self, seen: &Seen, wanted: &Wanted) -> Jet {
+    fn force(&self, state: &RivalState, target: &RivalReference) -> Jet {
         let gravity = Vector3::z() * self.model.gravity;
-        let [acceleration, jerk, _] = wanted.acceleration.0;
-        let needed = wanted.acceleration.plus(&Jet::constant(gravity));
-        let (p, v) = (seen.position - wanted.position, seen.velocity - wanted.velocity);
-        let axis = seen.attitude * Vector3::z();
-        let axis_rate = seen.attitude * seen.rate.cross(&Vector3::z());
+        let [acceleration, jerk, _] = target.acceleration.0;
+        let needed = target.acceleration.plus(&Jet::constant(gravity));
+        let (p, v) = (state.position - target.position, state.velocity - target.velocity);
+        let axis = state.attitude * Vector3::z();
+        let axis_rate = state.attitude * state.rate.cross(&Vector3::z());
         let command = |a: Vector3<f64>, j: Vector3<f64>| {
             let integral = Jet([self.integral, p, v]);
             self.outer.feedback(&Jet([p, v, a]), &Jet([v, a, j]), &integral).plus(&needed)
@@ -139,22 +139,22 @@ impl Nested {
 }
 
 impl Rival for Nested {
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded {
-        let force = self.force(seen, wanted);
-        let frame = Frame::new(&force, &wanted.heading, HeadingRule::Projected);
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded {
+        let force = self.force(state, target);
+        let frame = Frame::new(&force, &target.heading, HeadingRule::Projected);
         let single = |v: &Vector3<f64>| v.map(|x| x as f32);
-        let error = frame.attitude.inverse() * seen.attitude;
+        let error = frame.attitude.inverse() * state.attitude;
         let error = Quaternion::from(error.coords.map(|x| x as f32));
-        let lifted = lift(self.lift.as_ref(), &error, switching_scalar(DELTA), ALPHA);
+        let lifted = lift(self.lift.as_ref(), &error, switching_scalar(PAPER_DELTA), PAPER_ALPHA);
         self.lift = Some(lifted.lift);
         let torque = self
             .attitude
-            .command(&error, lifted.factor, &single(&seen.rate), &single(&frame.rate), &single(&frame.acceleration))
+            .command(&error, lifted.factor, &single(&state.rate), &single(&frame.rate), &single(&frame.acceleration))
             .torque;
         if !self.cut {
             let [_, _, m_i] = self.outer.levels;
             let span = INTEGRAL_SPAN * m_i / self.outer.k_i;
-            let taken = self.integral + (seen.position - wanted.position) * self.model.period;
+            let taken = self.integral + (state.position - target.position) * self.model.period;
             self.integral = taken.map(|part| part.clamp(-span, span));
         }
         Commanded {

@@ -6,7 +6,7 @@
 //! whether either cuts something of it.
 
 use super::jet::Jet;
-use super::rival::{Commanded, Model, Rival, Seen, Wanted};
+use super::rival::{Commanded, Rival, RivalModel, RivalReference, RivalState};
 use crate::vehicle::sensed::Sensed;
 use controller_core::allocation::Mixer;
 use controller_core::configuration::LawParameters;
@@ -39,13 +39,13 @@ impl Clone for RivalPilot {
 
 /// A rival's model of the vehicle of `scenario`.
 #[must_use]
-pub fn model(scenario: &Scenario) -> Model {
+pub fn model(scenario: &Scenario) -> RivalModel {
     let (configuration, timing) = (&scenario.configuration, &scenario.timing);
     let vehicle = configuration.vehicle();
     let limit = f64::from(configuration.limits().thrust_max);
     let rotors = configuration.rotors();
     let together = rotors.map(|rotors| rotors.iter().map(|rotor| f64::from(rotor.thrust_max)).sum::<f64>());
-    Model {
+    RivalModel {
         mass: vehicle.mass.into(),
         inertia: vehicle.inertia.map(f64::from),
         gravity: vehicle.gravity.into(),
@@ -85,31 +85,31 @@ impl RivalPilot {
         sensed: &Sensed,
         reference: &Reference,
     ) -> Result<(Wrench, Diagnostics), InputError> {
-        let seen = Seen {
+        let rival_state = RivalState {
             position: state.position.map(f64::from),
             velocity: state.velocity.map(f64::from),
             attitude: UnitQuaternion::new_normalize(Quaternion::from(state.attitude.coords.map(f64::from))),
             rate: state.angular_velocity.map(f64::from),
             sensed: *sensed,
         };
-        let wanted = self.wanted(reference);
-        let commanded = self.rival.step(&seen, &wanted);
+        let rival_reference = self.rival_reference(reference);
+        let commanded = self.rival.step(&rival_state, &rival_reference);
         let wrench =
             Wrench { thrust: commanded.thrust as f32, torque: commanded.torque.map(|component| component as f32) };
         let limited = self.limited(&wrench);
         self.is_cut = limited != wrench || self.is_beyond_the_rotors(&limited)?;
         self.rival.was_cut(self.is_cut);
-        Ok((limited, diagnostics(&seen, reference, &commanded)))
+        Ok((limited, diagnostics(&rival_state, reference, &commanded)))
     }
 
-    fn wanted(&self, reference: &Reference) -> Wanted {
+    fn rival_reference(&self, reference: &Reference) -> RivalReference {
         let [velocity, acceleration, jerk, snap] =
             [reference.velocity, reference.acceleration, reference.jerk, reference.snap].map(|v| v.map(f64::from));
         let drag = Vector3::new(self.drag, self.drag, 0.0);
         let with_drag = |v: &Vector3<f64>, rate: &Vector3<f64>| rate + v.component_mul(&drag);
         let flat = |v: Vector2<f32>| Vector3::new(f64::from(v.x), f64::from(v.y), 0.0);
         let heading = &reference.heading;
-        Wanted {
+        RivalReference {
             position: reference.position.map(f64::from),
             velocity,
             motion: acceleration,
@@ -149,16 +149,16 @@ impl RivalPilot {
 }
 
 /// The paper's quantities as far as any law has them; the rest is zero.
-fn diagnostics(seen: &Seen, reference: &Reference, commanded: &Commanded) -> Diagnostics {
+fn diagnostics(rival_state: &RivalState, reference: &Reference, commanded: &Commanded) -> Diagnostics {
     let single = |v: Vector3<f64>| v.map(|component| component as f32);
     let quaternion = |q: &UnitQuaternion<f64>| Quaternion::from(q.coords.map(|component| component as f32));
-    let error = commanded.desired.inverse() * seen.attitude;
+    let error = commanded.desired.inverse() * rival_state.attitude;
     let error = if error.w < 0.0 { UnitQuaternion::new_unchecked(-error.into_inner()) } else { error };
     let rate = error.inverse() * commanded.desired_rate;
     let zero = Vector3::zeros();
     Diagnostics {
-        position_error: single(seen.position) - reference.position,
-        velocity_error: single(seen.velocity) - reference.velocity,
+        position_error: single(rival_state.position) - reference.position,
+        velocity_error: single(rival_state.velocity) - reference.velocity,
         z_1: zero,
         z_2: zero,
         feedback: zero,
@@ -171,7 +171,7 @@ fn diagnostics(seen: &Seen, reference: &Reference, commanded: &Commanded) -> Dia
         attitude_error: quaternion(&error),
         mrp: single(error.imag() / (1.0 + error.w)),
         lift_sign: 1.0,
-        angular_velocity_error: single(seen.rate - rate),
+        angular_velocity_error: single(rival_state.rate - rate),
         attitude_feedback: zero,
         rate_feedback: zero,
     }

@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rival's model of its vehicle: the same numbers as ours has, rotor lag and delay included.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Model {
+pub struct RivalModel {
     /// kg.
     pub mass: f64,
     /// Diagonal of J, kg m^2.
@@ -27,7 +27,7 @@ pub struct Model {
 
 /// The vehicle's state, as measured, and what is measured beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct RivalState {
     /// m, world.
     pub position: Vector3<f64>,
     /// m/s, world.
@@ -42,7 +42,7 @@ pub struct Seen {
 
 /// The reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub struct RivalReference {
     /// m.
     pub position: Vector3<f64>,
     /// m/s.
@@ -72,7 +72,7 @@ pub struct Commanded {
 /// A control law to compare with.
 pub trait Rival: std::fmt::Debug + Send + Sync {
     /// One tick.
-    fn step(&mut self, seen: &Seen, wanted: &Wanted) -> Commanded;
+    fn step(&mut self, state: &RivalState, target: &RivalReference) -> Commanded;
 
     /// Whether limits or rotors cut something of the tick's command. Laws without memory of it ignore it.
     fn was_cut(&mut self, _cut: bool) {}

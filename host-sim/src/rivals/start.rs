@@ -44,7 +44,7 @@ pub struct Speed {
 
 impl Speed {
     /// START's own.
-    pub const OWN: Self = Self { attitude: 1.0, position: 1.0, inertia: 1.0 };
+    pub const UNSCALED: Self = Self { attitude: 1.0, position: 1.0, inertia: 1.0 };
 
     /// Itself, and with other position loops.
     #[must_use]
@@ -68,9 +68,9 @@ impl Start {
     /// Its own speed, and other attitude loops for the vehicle's inertia.
     #[must_use]
     pub fn attitudes(&self) -> Vec<Speed> {
-        let of_vehicle = |attitude| Speed { attitude, inertia: self.inertia, ..Speed::OWN };
+        let of_vehicle = |attitude| Speed { attitude, inertia: self.inertia, ..Speed::UNSCALED };
         let all = [2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.35].map(of_vehicle);
-        std::iter::once(Speed::OWN).chain(all).collect()
+        std::iter::once(Speed::UNSCALED).chain(all).collect()
     }
 
     /// The gains at `speed`.
@@ -98,14 +98,14 @@ mod tests {
 
     #[test]
     fn each_gain_follows_its_loop_by_its_power() {
-        assert_eq!(START.at(Speed::OWN), START.gains);
+        assert_eq!(START.at(Speed::UNSCALED), START.gains);
         assert_eq!(START.at(Speed { attitude: 2.0, position: 0.5, inertia: 0.25 }), [40.0, 10.0, 7.5, 40.0]);
     }
 
     #[test]
     fn the_speeds_that_are_tried_begin_with_the_one_they_are_made_from() {
         let attitudes = START.attitudes();
-        assert_eq!(attitudes[0], Speed::OWN);
+        assert_eq!(attitudes[0], Speed::UNSCALED);
         assert!(attitudes[1..].iter().all(|speed| speed.inertia == 0.5 && speed.position == 1.0), "{attitudes:?}");
         let positions = attitudes[2].positions();
         assert_eq!(positions[0], attitudes[2]);

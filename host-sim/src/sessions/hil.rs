@@ -20,8 +20,8 @@ pub mod vehicle;
 use crate::output::progress::Progress;
 use crate::output::whole_file::WholeFile;
 use crate::sessions::pace::Pace as Speed;
-use pace::Pace;
-use port::{Port, PortError};
+use pace::HilPace;
+use port::{PortError, SimulatorPort};
 use relay::Relay;
 use scenario::Scenario;
 use scenario::number::Number;
@@ -34,7 +34,7 @@ use vehicle::HilVehicle;
 
 /// How a session is run.
 #[derive(Debug, Clone, Default)]
-pub struct Session {
+pub struct HilSession {
     /// Vehicle time after which it ends, s; none: when the other side goes.
     pub duration: Option<f64>,
     /// Vehicle time from which poses are withheld, s.
@@ -68,9 +68,9 @@ impl fmt::Display for HilError {
 
 /// A session's summary.
 #[derive(Debug, Clone)]
-pub struct Summary {
+pub struct HilSummary {
     /// How regular the commands were.
-    pub pace: Pace,
+    pub pace: HilPace,
     /// Where the vehicle ended, m.
     pub position: [f64; 3],
     /// Each touchdown: vehicle time, s, speed, m/s, and tilt, rad.
@@ -92,7 +92,7 @@ pub enum End {
     Interrupted(u8),
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for HilSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.position;
         writeln!(f, "{}, in {:.1} s", self.pace, self.took.as_secs_f64())?;
@@ -120,8 +120,8 @@ pub struct Clients<'a> {
     pub show: &'a mut dyn FnMut(&str),
 }
 
-/// Time between lines of status, by the desk's clock.
-const STATUS: Duration = Duration::from_secs(1);
+/// By the desk's clock.
+const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// Serves one flight controller with the scenario's vehicle until the duration is over, the other side goes, or
 /// a signal comes.
@@ -130,11 +130,11 @@ const STATUS: Duration = Duration::from_secs(1);
 /// [`HilError`].
 pub fn serve(
     scenario: &Scenario,
-    port: &mut Port,
-    session: &Session,
+    port: &mut SimulatorPort,
+    session: &HilSession,
     log: Option<&Path>,
     mut clients: Option<Clients<'_>>,
-) -> Result<Summary, HilError> {
+) -> Result<HilSummary, HilError> {
     let mut vehicle = HilVehicle::new(scenario).map_err(HilError::Scenario)?;
     let mut senses = Senses::new(scenario);
     let unwritable = |error| HilError::Log(log.unwrap_or(Path::new("")).to_owned(), error);
@@ -143,7 +143,7 @@ pub fn serve(
     let ticks = |seconds: f64| (seconds / period).round() as u64;
     let (end, pose_end) = (session.duration.map(ticks), session.pose_until.map(ticks));
     let mut progress = end.map(|end| Progress::new("flying", end));
-    let mut pace = Pace::new(scenario.timing.period_us);
+    let mut pace = HilPace::new(scenario.timing.period_us);
     let mut touchdowns = Vec::new();
     let mut started = None;
     let mut speed = None;
@@ -182,7 +182,7 @@ pub fn serve(
         port.answer(&answer).map_err(HilError::Port)?;
         if let Some(Clients { relay, show }) = &mut clients {
             relay.texts().iter().for_each(|text| show(&format!("{time:9.2} s  \"{text}\"")));
-            if shown.elapsed() >= STATUS {
+            if shown.elapsed() >= STATUS_PERIOD {
                 shown = Instant::now();
                 let [x, y, z]: [f64; 3] = moved.state.position.into();
                 show(&format!("{time:9.2} s  {:<11}  at {x:8.3} {y:8.3} {z:8.3} m", relay.state()));
@@ -197,7 +197,7 @@ pub fn serve(
     }
     let position = vehicle.state().position;
     let took = started.map_or(Duration::ZERO, |started: Instant| started.elapsed());
-    Ok(Summary { pace, position: position.into(), touchdowns, took, end })
+    Ok(HilSummary { pace, position: position.into(), touchdowns, took, end })
 }
 
 /// A row for each command: the state one period after it, the commands, the thrust at the end, the command's own time.
@@ -206,12 +206,12 @@ struct Log {
 }
 
 impl Log {
-    const HEADER: &'static str =
+    const SESSION_HEADER: &'static str =
         "t,px,py,pz,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,thrust,armed,command_1,command_2,command_3,command_4,controller_us";
 
     fn create(path: &Path) -> io::Result<Self> {
         let mut file = WholeFile::alone(path)?;
-        writeln!(file, "{}", Self::HEADER)?;
+        writeln!(file, "{}", Self::SESSION_HEADER)?;
         Ok(Self { file })
     }
 

@@ -13,13 +13,13 @@ use mavlink::dialects::common::{
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 
 /// Motors that a flight controller commands.
-pub const MOTORS: usize = 4;
+pub const MOTOR_COUNT: usize = 4;
 
 /// This side's MAVLink system: beside the vehicle's own.
-const SYSTEM: u8 = 142;
+const OWN_SYSTEM: u8 = 142;
 
 /// Where the variances of x, y, z, roll, pitch and yaw lie in the upper triangle of a covariance, row by row.
-const DIAGONAL: [usize; 6] = [0, 6, 11, 15, 18, 20];
+const COVARIANCE_DIAGONAL: [usize; 6] = [0, 6, 11, 15, 18, 20];
 
 /// One tick's motor commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Controls {
     /// Whether it drives the motors.
     pub armed: bool,
     /// 0 to 1 each, in the rotors' order.
-    pub commands: [f32; MOTORS],
+    pub commands: [f32; MOTOR_COUNT],
 }
 
 impl Controls {
@@ -79,8 +79,8 @@ impl Encoder {
         let (velocity, rates) = (frames::body(&velocity), frames::body(&rates));
         let mut pose_covariance = [0.0; 21];
         if let Some((of_position, of_attitude)) = deviations {
-            DIAGONAL[..3].iter().for_each(|&place| pose_covariance[place] = of_position * of_position);
-            DIAGONAL[3..].iter().for_each(|&place| pose_covariance[place] = of_attitude * of_attitude);
+            COVARIANCE_DIAGONAL[..3].iter().for_each(|&place| pose_covariance[place] = of_position * of_position);
+            COVARIANCE_DIAGONAL[3..].iter().for_each(|&place| pose_covariance[place] = of_attitude * of_attitude);
         }
         let mut velocity_covariance = [0.0; 21];
         if motion.is_none() {
@@ -135,7 +135,7 @@ impl Encoder {
     }
 
     fn append(&mut self, message: &impl MessageData, bytes: &mut Vec<u8>) {
-        let header = MavHeader { system_id: SYSTEM.into(), component_id: 1, sequence: self.sequence };
+        let header = MavHeader { system_id: OWN_SYSTEM.into(), component_id: 1, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message_data(header, message);

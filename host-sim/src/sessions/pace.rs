@@ -5,8 +5,8 @@
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// The slice, us of the desk's time, and the shortest slice of the vehicle's.
-const SLICE: f64 = 1_000.0;
+/// The slice of the desk's time, and the shortest slice of the vehicle's.
+const SLICE_US: f64 = 1_000.0;
 
 /// The most that is caught up with.
 const LAG_MAX: Duration = Duration::from_millis(200);
@@ -33,7 +33,7 @@ impl Pace {
     /// The end of the slice that begins at `now`, us of the vehicle's time.
     #[must_use]
     pub fn next(&self, now: u64) -> u64 {
-        now + (SLICE * self.speed.max(1.0)) as u64
+        now + (SLICE_US * self.speed.max(1.0)) as u64
     }
 
     /// Waits until the vehicle's time may be `time`, us. Whether it keeps up with the desk's.

@@ -3,7 +3,7 @@
 //! Each datagram is parsed by itself. What it leaves unfinished is dropped, and so is whatever is no frame: nothing
 //! that one client sends can swallow a frame of another's.
 //!
-//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `REMEMBERED`.
+//! Every frame goes to two fixed addresses, and to each other client that has sent within the last `CLIENT_TIMEOUT`.
 //! Nothing from outside this machine gets in.
 
 use firmware::link::frame::Parser;
@@ -13,13 +13,13 @@ use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 /// How long after its last datagram a client still gets frames.
-const REMEMBERED: Duration = Duration::from_secs(10);
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The most clients beside the two addresses.
-const CLIENTS: usize = 8;
+/// Beside the two addresses.
+const CLIENTS_MAX: usize = 8;
 
-/// The most datagrams that are taken at once: a flood must not stop time.
-const DATAGRAMS: usize = 64;
+/// A flood must not stop time.
+const DATAGRAMS_AT_ONCE_MAX: usize = 64;
 
 /// The ports, all on 127.0.0.1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,14 +56,14 @@ impl fmt::Display for PortTaken {
 
 /// The socket and the clients' addresses.
 #[derive(Debug)]
-pub struct Port {
+pub struct ClientPort {
     socket: UdpSocket,
     fixed: [SocketAddr; 2],
     /// The others, and when each last sent.
     clients: Vec<(SocketAddr, Instant)>,
 }
 
-impl Port {
+impl ClientPort {
     /// Opens the local port.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl Port {
     /// Hands over the frames that have come, one by one.
     pub fn receive(&mut self, mut take: impl FnMut(&[u8])) {
         let mut datagram = [0; 65_536];
-        for _ in 0..DATAGRAMS {
+        for _ in 0..DATAGRAMS_AT_ONCE_MAX {
             match self.socket.recv_from(&mut datagram) {
                 Ok((length, from)) => {
                     self.remember(from);
@@ -97,7 +97,7 @@ impl Port {
 
     /// Sends one frame to every address. What does not go out is lost, as on any radio.
     pub fn send(&mut self, frame: &[u8]) {
-        self.clients.retain(|(_, last)| last.elapsed() < REMEMBERED);
+        self.clients.retain(|(_, last)| last.elapsed() < CLIENT_TIMEOUT);
         let others = self.clients.iter().map(|(address, _)| *address);
         for address in self.fixed.into_iter().chain(others) {
             let _ = self.socket.send_to(frame, address);
@@ -108,7 +108,7 @@ impl Port {
         let now = Instant::now();
         if let Some((_, last)) = self.clients.iter_mut().find(|(address, _)| *address == from) {
             *last = now;
-        } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS {
+        } else if !self.fixed.contains(&from) && self.clients.len() < CLIENTS_MAX {
             self.clients.push((from, now));
         }
     }
@@ -142,7 +142,7 @@ mod tests {
     }
 
     /// What has arrived at the port.
-    fn taken(port: &mut Port) -> Vec<Vec<u8>> {
+    fn taken(port: &mut ClientPort) -> Vec<Vec<u8>> {
         std::thread::sleep(Duration::from_millis(50));
         let mut frames = Vec::new();
         port.receive(|frame| frames.push(frame.to_vec()));
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn fragments_and_noise_swallow_no_frame_of_another_client_nor_of_the_same() {
         let ((good, _), (bad, _)) = (client(), client());
-        let mut port = Port::open(&Ports { local: 0, ..Ports::default() }).unwrap();
+        let mut port = ClientPort::open(&Ports { local: 0, ..Ports::default() }).unwrap();
         let address = port.socket.local_addr().unwrap();
         let frames: Vec<Vec<u8>> = (0..20).map(heartbeat).collect();
         let longest = [0xFD, 0xFF, 0, 0, 0, 255, 190, 0, 0, 0];
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn both_addresses_receive_everything_and_each_sender_is_answered() {
         let ((offboard, first), (ground, second), (other, _)) = (client(), client(), client());
-        let mut port = Port::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
+        let mut port = ClientPort::open(&Ports { offboard: first, ground: second, local: 0 }).unwrap();
         port.send(b"one");
         assert_eq!((received(&offboard), received(&ground)), (b"one".to_vec(), b"one".to_vec()));
         let here = heartbeat(0);
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn a_port_that_is_taken_is_named_with_a_way_out() {
         let (_taken, local) = client();
-        let refused = Port::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
+        let refused = ClientPort::open(&Ports { local, ..Ports::default() }).unwrap_err().to_string();
         assert!(
             refused.starts_with(&format!("--local-port {local}: ")) && refused.contains("choose another"),
             "{refused}"

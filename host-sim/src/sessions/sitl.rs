@@ -7,9 +7,9 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`clock`], [`mod@line`] | time that moves when every task waits; bytes in memory |
-//! | [`world`] | vehicle, air, ground, sensors and the camera that sends poses |
-//! | `voice` | the vehicle's frames to the clients ([`crate::sessions::ports`]) |
+//! | [`clock`], [`mod@memory_line`] | time that moves when every task waits; bytes in memory |
+//! | [`simulated_hardware`] | vehicle, air, ground, sensors and the camera that sends poses |
+//! | `downlink` | the vehicle's frames to the clients ([`crate::sessions::ports`]) |
 //! | [`faults`] | simulated faults and their times |
 //! | [`flash`] | the parameters' memory |
 //! | [`key`] | the key that signs frames |
@@ -21,26 +21,27 @@
 //! certified as at a board's boot, and a scenario that could not be built for a board is refused ([`scenario::board`]).
 
 pub mod clock;
+mod downlink;
 pub mod faults;
 pub mod flash;
 pub mod key;
-pub mod line;
+pub mod memory_line;
 mod record;
 pub mod session;
+pub mod simulated_hardware;
 mod truth;
-mod voice;
-pub mod world;
 
 use crate::output::interrupt::Interrupt;
-use crate::reports::recording::session::Moment;
+use crate::reports::recording::session::SessionMoment;
 use crate::sessions::pace::Pace;
-use crate::sessions::ports::{Port, Ports};
+use crate::sessions::ports::{ClientPort, Ports};
 use clock::SimClock;
 use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::tuning::judged::JudgedLoops;
+use downlink::Downlink;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
-use faults::{Faults, Part};
+use faults::{Faults, FaultyPart};
 use firmware::control::Control;
 use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
@@ -52,33 +53,32 @@ use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
-use line::Line;
-use record::Record;
+use memory_line::MemoryLine;
+use record::SessionRecord;
 use scenario::{Scenario, board};
-pub use session::{Session, SitlError, Summary};
+pub use session::{SitlError, SitlSession, SitlSummary};
+use simulated_hardware::{PoseSource, SimulatedHardware};
 use std::cell::{Cell, RefCell};
 use std::future::Future;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 use truth::Truth;
-use voice::Voice;
-use world::{PoseSource, World};
 
 /// Records that the flight recorder holds: a minute.
-const RECORDED: usize = 6_000;
+const RECORDER_CAPACITY: usize = 6_000;
 
-/// Time between lines of status, by the desk's clock.
-const STATUS: Duration = Duration::from_secs(1);
+/// By the desk's clock.
+const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
 /// The firmware and its world on one thread.
 pub struct Sitl {
     pool: LocalPool,
     clock: SimClock,
-    world: World,
+    hardware: SimulatedHardware,
     shared: &'static Shared<NoopRawMutex>,
-    port: Rc<RefCell<Port>>,
-    up: Line,
+    port: Rc<RefCell<ClientPort>>,
+    up: MemoryLine,
     faults: Faults,
     texts: Rc<RefCell<Vec<(u64, String)>>>,
     flash: DeskFlash,
@@ -118,16 +118,17 @@ impl Sitl {
     /// In words: what the firmware cannot fly, and files and ports that cannot be used.
     pub fn boot(
         scenario: &Scenario,
-        session: &Session,
+        session: &SitlSession,
         say: impl FnOnce(&str),
     ) -> Result<(Self, Option<String>), String> {
         board::fits(scenario, &session.file)?;
-        let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), Line::default());
+        let (clock, faults, up) = (SimClock::default(), Faults(session.faults.clone()), MemoryLine::default());
         faults.check(scenario.configuration.rotors().map_or(0, |rotors| rotors.len()))?;
         let in_file = |what| format!("{}: {what}", session.file);
-        let world = World::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
+        let hardware =
+            SimulatedHardware::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;
-        let port = Rc::new(RefCell::new(Port::open(&session.ports).map_err(|error| error.to_string())?));
+        let port = Rc::new(RefCell::new(ClientPort::open(&session.ports).map_err(|error| error.to_string())?));
         say(&format!("{}: starting; its loops and its model's flights are judged first, some seconds", scenario.name));
         let warning = board::check(scenario, &session.file)?;
 
@@ -140,7 +141,7 @@ impl Sitl {
         let mut sitl = Self {
             pool: LocalPool::new(),
             clock,
-            world,
+            hardware,
             shared: Box::leak(Box::new(Shared::new())),
             port,
             up,
@@ -160,7 +161,7 @@ impl Sitl {
         }
         // Also with one that was kept from an earlier session.
         if let Some(key) = sitl.shared.signing.key() {
-            sitl.world.sign(key, key::now());
+            sitl.hardware.sign(key, key::now());
         }
         Ok((sitl, warning))
     }
@@ -170,7 +171,7 @@ impl Sitl {
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<NoopRawMutex> = Box::leak(Box::new(Shared::new()));
         let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
-        let memory = Box::leak(vec![[0; SLOT_BYTES]; RECORDED].into_boxed_slice());
+        let memory = Box::leak(vec![[0; SLOT_BYTES]; RECORDER_CAPACITY].into_boxed_slice());
         shared.recorder.attach(Ring::recover(memory), self.name);
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);
@@ -179,39 +180,39 @@ impl Sitl {
 
         let pool = LocalPool::new();
         let spawner = pool.spawner();
-        let (clock, world) = (&self.clock, &self.world);
-        let voice = Voice {
+        let (clock, hardware) = (&self.clock, &self.hardware);
+        let downlink = Downlink {
             clock: clock.clone(),
             faults: self.faults.clone(),
             port: Rc::clone(&self.port),
-            world: world.clone(),
+            hardware: hardware.clone(),
             texts: Rc::clone(&self.texts),
             parser: Parser::new(),
         };
-        let (mut motors, mut watchdog, time) = (world.clone(), world.clone(), clock.clone());
+        let (mut motors, mut watchdog, time) = (hardware.clone(), hardware.clone(), clock.clone());
         spawn(&spawner, async move {
             Control::new(shared.for_control(), pilot, outputs).run(&time, &mut motors, &mut watchdog).await
         });
-        let (mut sensor, time) = (world.clone(), clock.clone());
+        let (mut sensor, time) = (hardware.clone(), clock.clone());
         spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor, period).await });
         let (ear, time) = (self.up.clone(), clock.clone());
         spawn(&spawner, async move { link::receive::receive(ear, &time, shared.for_receive()).await });
         let time = clock.clone();
-        spawn(&spawner, async move { link::transmit::transmit(voice, &time, shared.for_transmit()).await });
-        let (light, battery, time) = (world.clone(), world.clone(), clock.clone());
+        spawn(&spawner, async move { link::transmit::transmit(downlink, &time, shared.for_transmit()).await });
+        let (light, battery, time) = (hardware.clone(), hardware.clone(), clock.clone());
         spawn(&spawner, async move { status::run(light, battery, &time, shared.for_status()).await });
         let time = clock.clone();
         spawn(&spawner, async move { parameters.keep(&time, shared.for_storage()).await });
         let (mut desk, time) = (Desk(Rc::clone(&self.restart)), clock.clone());
         spawn(&spawner, async move { restart::run(shared.for_restart(), &time, &mut desk).await });
-        spawn(&spawner, world.clone().run());
+        spawn(&spawner, hardware.clone().run());
         (self.pool, self.shared) = (pool, shared);
         Ok(())
     }
 
     /// Takes what clients have sent.
     pub fn receive(&mut self) {
-        let (up, silent) = (&self.up, self.faults.has(Part::GroundStation, self.clock.now()));
+        let (up, silent) = (&self.up, self.faults.has(FaultyPart::GroundStation, self.clock.now()));
         self.port.borrow_mut().receive(|frame| {
             if !silent {
                 up.push(frame);
@@ -229,11 +230,11 @@ impl Sitl {
     }
 
     /// Its state, for a line of status.
-    fn moment(&self) -> Moment {
-        Moment {
+    fn moment(&self) -> SessionMoment {
+        SessionMoment {
             now: self.clock.now(),
-            truth: self.world.state(),
-            rotors: self.world.thrusts(),
+            truth: self.hardware.state(),
+            rotors: self.hardware.thrusts(),
             report: self.shared.report.get().map(|report| report.value),
             voltage: self.shared.voltage.get().map(|voltage| voltage.value),
         }
@@ -251,12 +252,12 @@ impl Sitl {
         format!("{:9.2} s  {mode:<11}  {place}{battery}", self.clock.now() as f64 * 1e-6)
     }
 
-    fn summary(&self, signal: Option<u8>) -> Summary {
+    fn summary(&self, signal: Option<u8>) -> SitlSummary {
         let report = self.shared.report.get().map(|report| report.value);
-        Summary {
+        SitlSummary {
             time: self.clock.now() as f64 * 1e-6,
             mode: report.as_ref().map(|report| report.mode),
-            position: self.world.state().position.into(),
+            position: self.hardware.state().position.into(),
             missed: report.map_or(0, |report| report.timing.missed),
             signal,
         }
@@ -275,12 +276,12 @@ fn spawn<T: 'static>(spawner: &LocalSpawner, task: impl Future<Output = T> + 'st
 /// [`SitlError`].
 pub fn run(
     scenario: &Scenario,
-    session: &Session,
+    session: &SitlSession,
     interrupt: &Interrupt,
     say: impl FnOnce(&str),
     mut show: impl FnMut(&str),
-) -> Result<Summary, SitlError> {
-    let create = |(path, text): &(PathBuf, String)| Record::create(path, scenario, text);
+) -> Result<SitlSummary, SitlError> {
+    let create = |(path, text): &(PathBuf, String)| SessionRecord::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
     let (mut sitl, warning) = Sitl::boot(scenario, session, say).map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
@@ -301,7 +302,7 @@ pub fn run(
         if end.is_some_and(|end| now >= end) {
             break Ok(sitl.summary(None));
         }
-        let due = record.as_ref().map_or(u64::MAX, Record::due);
+        let due = record.as_ref().map_or(u64::MAX, SessionRecord::due);
         let due = due.min(truth.as_ref().map_or(u64::MAX, Truth::due));
         let next = pace.next(now).min(end.unwrap_or(u64::MAX)).min(due);
         // What a client stamps by the desk's clock must not come before that time of a vehicle that lags behind.
@@ -311,23 +312,23 @@ pub fn run(
         }
         sitl.pass(next);
         if let Some(truth) = &mut truth {
-            truth.look(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.world.state());
+            truth.write_when_due(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.hardware.state());
         }
-        if sitl.world.check().is_err() {
+        if sitl.hardware.check().is_err() {
             break Err(SitlError::Diverged(next as f64 * 1e-6));
         }
         for (time, text) in sitl.texts.take() {
             show(&format!("{:9.2} s  \"{text}\"", time as f64 * 1e-6));
-            record.iter_mut().try_for_each(|record| record.said(time, &text)).map_err(SitlError::Input)?;
+            record.iter_mut().try_for_each(|record| record.observe_text(time, &text)).map_err(SitlError::Input)?;
         }
-        record.iter_mut().try_for_each(|record| record.look(&sitl.moment())).map_err(SitlError::Input)?;
-        if shown.elapsed() >= STATUS {
-            shown += STATUS;
+        record.iter_mut().try_for_each(|record| record.observe(&sitl.moment())).map_err(SitlError::Input)?;
+        if shown.elapsed() >= STATUS_PERIOD {
+            shown += STATUS_PERIOD;
             show(&sitl.status());
         }
     };
     // Also of a session that ended badly: what led to it is in there.
-    record.map_or(Ok(()), Record::finish).map_err(SitlError::Input)?;
+    record.map_or(Ok(()), SessionRecord::finish).map_err(SitlError::Input)?;
     ended
 }
 

@@ -7,7 +7,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`draw`], [`throw`] | the circumstances of a flight, from seed and number; that flight under a law |
+//! | [`draw`], [`random_flight`] | the circumstances of a flight, from seed and number; that flight under a law |
 //! | [`written`] | those circumstances in the report of one flight |
 //! | [`step`] | the plant step of a campaign's flights |
 //! | [`outcome`], [`rows`] | what a flight showed; that as columns in Arrow's format |
@@ -22,13 +22,13 @@ pub mod fly;
 pub mod losses;
 pub mod manifest;
 pub mod outcome;
+pub mod random_flight;
 pub mod report;
 pub mod rotor_loss;
 pub mod rows;
 pub mod step;
 pub mod store;
 pub mod summary;
-pub mod throw;
 pub mod written;
 
 use arrow_schema::ArrowError;

@@ -12,10 +12,10 @@ pub mod pictures;
 pub mod realism;
 pub mod rotor_loss;
 pub mod rows;
+pub mod scene_figures;
 pub mod scenes;
-pub mod shown;
 
-use crate::flight::flier::Flier;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::output::directory_lock::DirectoryLock;
 use crate::output::interrupt::Interrupt;
 use crate::output::progress::Progress;
@@ -27,10 +27,10 @@ use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::ParameterError;
 use limit::Limit;
 use rotor_loss::Landing;
-use rows::Row;
+use rows::FigureRow;
 use scenario::Scenario;
+use scene_figures::RandomFlights;
 use scenes::Scene;
-use shown::Thrown;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ pub fn certified(file: &Scenario) -> Result<Certified, CompareError> {
 }
 
 /// A law, and the file at its rate.
-type Law<'a> = (Flier, &'a Scenario);
+type Law<'a> = (LawOnVehicle, &'a Scenario);
 /// Each law's figures in each scene; none where it could not be flown to its end.
 type Figures<T> = Vec<(&'static str, Vec<Option<T>>)>;
 
@@ -107,11 +107,11 @@ fn laws<'a>(
     set: &Set,
     certified: &Certified,
 ) -> Result<Vec<Law<'a>>, CompareError> {
-    let flier = |(law, file): (LawChoice, &'a Scenario)| {
-        Ok((Flier::new(&law, file, Some(certified)).ok_or(CompareError::Undefined(law.name()))?, file))
+    let on_vehicle = |(law, file): (LawChoice, &'a Scenario)| {
+        Ok((LawOnVehicle::new(&law, file, Some(certified)).ok_or(CompareError::Undefined(law.name()))?, file))
     };
     let others = set.laws().map(|law| (law, theirs));
-    std::iter::once((LawChoice::Ours, file)).chain(others).map(flier).collect()
+    std::iter::once((LawChoice::Ours, file)).chain(others).map(on_vehicle).collect()
 }
 
 /// Shows a progress of so many steps, one at each call.
@@ -132,17 +132,17 @@ fn steps(work: usize, interrupt: &Interrupt) -> impl FnMut() -> Result<(), Compa
 fn flown<T>(
     laws: &[Law],
     scenes: fn(&Scenario) -> Result<Vec<Scene>, ParameterError>,
-    show: fn(&Flier, &Scene) -> Option<T>,
+    show: fn(&LawOnVehicle, &Scene) -> Option<T>,
     next: &mut impl FnMut() -> Result<(), CompareError>,
 ) -> Result<Figures<T>, CompareError> {
     let mut figures = Figures::new();
-    for (flier, file) in laws {
+    for (law, file) in laws {
         for (place, scene) in scenes(file)?.iter().enumerate() {
             next()?;
             if figures.len() == place {
                 figures.push((scene.name, Vec::new()));
             }
-            figures[place].1.push(show(flier, scene));
+            figures[place].1.push(show(law, scene));
         }
     }
     Ok(figures)
@@ -163,19 +163,25 @@ pub fn compare(
     let certified = certified(files.0)?;
     let file = files.0;
     let laws = laws(files, set, &certified)?;
-    let names: Vec<&'static str> = laws.iter().map(|(flier, _)| flier.name()).collect();
+    let names: Vec<&'static str> = laws.iter().map(|(law, _)| law.name()).collect();
     let scenes = scenes::all(file)?;
     let mut next = steps((scenes.len() + 1) * laws.len(), interrupt);
-    let shown = flown(&laws, scenes::all, shown::show, &mut next)?;
+    let figures = flown(&laws, scenes::all, scene_figures::fly_scene, &mut next)?;
     let mut thrown = Vec::new();
-    for (flier, file) in &laws {
+    for (law, file) in &laws {
         next()?;
-        thrown.push(shown::throw_all(flier, &step::longest(file), certified.certificate(), flights, interrupt));
+        thrown.push(scene_figures::fly_random_flights(
+            law,
+            &step::with_longest_step(file),
+            certified.certificate(),
+            flights,
+            interrupt,
+        ));
     }
     next()?;
     drop(next);
-    let rows = rows::all(&shown, &thrown, &Limit::new(file), file.configuration.rotors().is_some());
-    let clean = |thrown: &Thrown| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
+    let rows = rows::all(&figures, &thrown, &Limit::new(file), file.configuration.rotors().is_some());
+    let clean = |thrown: &RandomFlights| thrown.outcomes.iter().all(|outcome| outcome.holds() && outcome.clipped == 0);
     let holds = thrown.first().and_then(Option::as_ref).is_some_and(clean);
     let compared = page::Compared {
         file,
@@ -184,7 +190,7 @@ pub fn compare(
         names: &names,
         rows: &rows,
         scenes: &scenes,
-        shown: &shown,
+        figures: &figures,
         thrown: &thrown,
         flights,
         holds,
@@ -192,8 +198,8 @@ pub fn compare(
     let files = vec![
         ("report.html", page::page(&compared).html()),
         ("compare.csv", rows::csv(&names, &rows)),
-        ("scenes.svg", pictures::scenes(&names, &shown)),
-        ("random.svg", pictures::random(&names, &thrown, &shown)),
+        ("scenes.svg", pictures::scenes(&names, &figures)),
+        ("random.svg", pictures::random(&names, &thrown, &figures)),
     ];
     Ok(Comparison { text: rows::table(&names, &rows), holds, files })
 }
@@ -208,7 +214,7 @@ pub fn compare_in_reality(
     set: &Set,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
-    in_scenes(files, set, realism::all, (realism::show, realism::rows, realism::is_held), interrupt)
+    in_scenes(files, set, realism::all, (realism::fly_realism_scene, realism::rows, realism::is_held), interrupt)
 }
 
 /// Flies ours, and all laws of `set`, as a rotor fails, to the ground: [`rotor_loss`]. `files` as in [`compare`], of a
@@ -221,11 +227,12 @@ pub fn compare_without_a_rotor(
     set: &Set,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
-    in_scenes(files, set, rotor_loss::all, (rotor_loss::show, rotor_loss::rows, Landing::is_soft), interrupt)
+    in_scenes(files, set, rotor_loss::all, (rotor_loss::fly_loss_scene, rotor_loss::rows, Landing::is_soft), interrupt)
 }
 
 /// How a law is flown in a scene, the rows of such figures, and whether ours are as they must be.
-type Judged<T> = (fn(&Flier, &Scene) -> Option<T>, fn(&[(&'static str, Vec<Option<T>>)]) -> Vec<Row>, fn(&T) -> bool);
+type Judged<T> =
+    (fn(&LawOnVehicle, &Scene) -> Option<T>, fn(&[(&'static str, Vec<Option<T>>)]) -> Vec<FigureRow>, fn(&T) -> bool);
 
 /// A comparison in scenes of its own: a table, and whether ours `holds` in all of them.
 fn in_scenes<T>(
@@ -236,7 +243,7 @@ fn in_scenes<T>(
     interrupt: &Interrupt,
 ) -> Result<Comparison, CompareError> {
     let laws = laws(files, set, &certified(files.0)?)?;
-    let names: Vec<&'static str> = laws.iter().map(|(flier, _)| flier.name()).collect();
+    let names: Vec<&'static str> = laws.iter().map(|(law, _)| law.name()).collect();
     let mut next = steps(scenes(files.0)?.len() * laws.len(), interrupt);
     let figures = flown(&laws, scenes, show, &mut next)?;
     next()?;

@@ -34,7 +34,7 @@ use effort::Effort;
 use evolution::Evolution;
 use requirements::Requirements;
 use scenario::Scenario;
-use trials::{BEYOND, FIGURES};
+use trials::{MODEL_FIGURES, OWN_MODEL_FIGURES};
 
 /// The search's result.
 #[derive(Clone)]
@@ -60,14 +60,15 @@ impl Tuned {
     #[must_use]
     pub fn table(&self) -> String {
         let own = |verdict: &Verdict| {
-            let beyond = verdict.shown.beyond.map_or([f64::INFINITY; BEYOND.len()], |beyond| beyond.values());
-            [&verdict.shown.values()[..], &beyond].concat()
+            let beyond =
+                verdict.figures.beyond.map_or([f64::INFINITY; OWN_MODEL_FIGURES.len()], |beyond| beyond.values());
+            [&verdict.figures.values()[..], &beyond].concat()
         };
         let number = |value: f64| if value.is_finite() { short((1e4 * value).round() / 1e4) } else { "-".to_owned() };
         let pairs = [own(&self.before), own(&self.verdict), self.before.mean.to_vec(), self.verdict.mean.to_vec()];
         let head = ["", "", "file's model: before", "after", "mean of four models: before", "after"];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
-        for (place, (name, unit, ..)) in FIGURES.iter().chain(&BEYOND).enumerate() {
+        for (place, (name, unit, ..)) in MODEL_FIGURES.iter().chain(&OWN_MODEL_FIGURES).enumerate() {
             let values = pairs.iter().map(|values| values.get(place).map_or(String::new(), |value| number(*value)));
             rows.push([*name, *unit].map(str::to_owned).into_iter().chain(values).collect());
         }

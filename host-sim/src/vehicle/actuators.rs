@@ -52,14 +52,14 @@ impl From<Diverged> for ActuationError {
 
 /// What is asked of the actuators.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Asked {
+pub enum ActuatorDemand {
     /// A wrench, to be allocated.
     Wrench(Wrench),
     /// Each rotor's thrust, N: the law has allocated by itself.
     Thrusts(Thrusts),
 }
 
-impl Asked {
+impl ActuatorDemand {
     /// Each rotor's thrust, N, and whether the wrench could not be delivered in full.
     ///
     /// # Errors
@@ -93,9 +93,9 @@ pub struct Actuators {
     /// Plant steps since the start.
     now: u64,
     /// What is on its way, with the step at which it acts.
-    waiting: VecDeque<(u64, Asked)>,
+    waiting: VecDeque<(u64, ActuatorDemand)>,
     /// What acts now.
-    acting: Asked,
+    acting: ActuatorDemand,
     /// What acted since it was asked for.
     pub(crate) acted: Acted,
 }
@@ -105,7 +105,7 @@ impl Actuators {
     /// tick. Without rotors wrenches act on the body directly.
     #[must_use]
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
-        let acting = Asked::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
+        let acting = ActuatorDemand::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
         Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting, acted: Acted::default() }
     }
 
@@ -131,7 +131,12 @@ impl Actuators {
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, plant: &mut Plant, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(
+        &mut self,
+        plant: &mut Plant,
+        asked: &ActuatorDemand,
+        steps: u32,
+    ) -> Result<(bool, Thrusts), ActuationError> {
         if self.are_ideal() {
             self.acting = asked.clone();
             self.act(plant.body());

@@ -6,7 +6,7 @@
 //!
 //! A vehicle that comes down stops its fall and its turning where it touches: the impact is perfectly plastic, without
 //! a bounce. Along the ground it stops if friction suffices, and else slides on, slower. One that leans is then on its
-//! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX`] (its `rocking`); one that
+//! lowest foot, and falls back onto all of them if it leaned by no more than [`TILT_MAX_RAD`] (its `rocking`); one that
 //! leaned further lies as it fell, and does not slide: arms and rotors catch on what they lie on. No energy comes from
 //! any of this: a body is not lifted back to the ground's height, which it passes by at most what it falls in one plant
 //! step, or, after a hop that leaned, by what its foot did.
@@ -17,7 +17,7 @@
 mod friction;
 mod rocking;
 
-pub use rocking::TILT_MAX;
+pub use rocking::TILT_MAX_RAD;
 
 use crate::vehicle::plant::Plant;
 use controller_core::vehicle::Vehicle;
@@ -119,7 +119,7 @@ impl Ground {
 
     /// Where a vehicle that moved freely to `state` ends if it touches the ground there.
     pub fn touch(&mut self, state: &BodyState) -> Option<(BodyState, Touchdown)> {
-        let (lean, climbing) = (Lean::of(state), state.velocity.z);
+        let (lean, climbing) = (Lean::measure(state), state.velocity.z);
         let (rise, rising) = lean.as_ref().map_or((0.0, 0.0), Lean::rise);
         // What is no number touches nothing.
         let touches = state.position.z <= self.height + rise && climbing <= 0.0 && climbing <= rising;
@@ -153,7 +153,7 @@ impl Ground {
 
 /// Whether a vehicle that is on no single foot is on all of them.
 fn is_upright(state: &BodyState) -> bool {
-    tilt(state) <= TILT_MAX
+    tilt(state) <= TILT_MAX_RAD
 }
 
 /// Level, with the yaw that `state` has.

@@ -22,19 +22,19 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use scenario::body::BodyState;
-use scenario::reality::estimator::{Estimator, IMU_RATE};
+use scenario::reality::estimator::{Estimator, IMU_RATE_HZ};
 use std::collections::VecDeque;
 
-/// Between two samples, us.
-pub const SAMPLE: u64 = 1_000;
+/// Of the instruments.
+pub const SAMPLE_PERIOD_US: u64 = 1_000;
 
-/// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them, Hz.
-const GYRO_BANDWIDTH: f64 = 116.0;
-const ACCELEROMETER_BANDWIDTH: f64 = 145.0;
+/// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them.
+const GYRO_BANDWIDTH_HZ: f64 = 116.0;
+const ACCELEROMETER_BANDWIDTH_HZ: f64 = 145.0;
 
 /// An IMU's input, before filters and noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Felt {
+pub struct TrueMotion {
     /// rad/s, body.
     pub angular_velocity: Vector3<f64>,
     /// m/s^2, body.
@@ -50,13 +50,13 @@ struct OwnFilter {
 
 /// With zeros at half the rate, where the bilinear transform puts a Butterworth filter's.
 fn butterworth(bandwidth: f64) -> LowPass {
-    LowPass::new(bandwidth, 0.5 * IMU_RATE, IMU_RATE)
+    LowPass::new(bandwidth, 0.5 * IMU_RATE_HZ, IMU_RATE_HZ)
 }
 
-/// The gyro's own filter, sampled at [`IMU_RATE`].
+/// The gyro's own filter, sampled at [`IMU_RATE_HZ`].
 #[must_use]
 pub fn gyro_filter() -> LowPass {
-    butterworth(GYRO_BANDWIDTH)
+    butterworth(GYRO_BANDWIDTH_HZ)
 }
 
 impl OwnFilter {
@@ -113,7 +113,7 @@ impl Instruments {
             gyro_bias,
             accelerometer_bias,
             velocity,
-            filters: Some([gyro_filter(), butterworth(ACCELEROMETER_BANDWIDTH)].map(OwnFilter::new)),
+            filters: Some([gyro_filter(), butterworth(ACCELEROMETER_BANDWIDTH_HZ)].map(OwnFilter::new)),
             late: VecDeque::new(),
         }
     }
@@ -131,31 +131,37 @@ impl Instruments {
     }
 
     /// The same where the IMU feels something else than the body does: `feels` of it.
-    pub fn sample_of(&mut self, state: &BodyState, time: u64, feels: impl FnOnce(Felt) -> Felt) -> ImuSample {
-        self.clock += SAMPLE;
+    pub fn sample_of(
+        &mut self,
+        state: &BodyState,
+        time: u64,
+        feels: impl FnOnce(TrueMotion) -> TrueMotion,
+    ) -> ImuSample {
+        self.clock += SAMPLE_PERIOD_US;
         let real = EstimatorParameters::BMI088;
         let scale = |density: f32| self.what.imu_noise * f64::from(density);
-        let (each, walk) = (IMU_RATE.sqrt(), 1.0 / IMU_RATE.sqrt());
+        let (each, walk) = (IMU_RATE_HZ.sqrt(), 1.0 / IMU_RATE_HZ.sqrt());
         self.gyro_bias += noise(&mut self.random, scale(real.gyro_walk) * walk);
         self.accelerometer_bias += noise(&mut self.random, scale(real.accelerometer_walk) * walk);
-        let acceleration = (state.velocity - self.velocity) * IMU_RATE;
+        let acceleration = (state.velocity - self.velocity) * IMU_RATE_HZ;
         self.velocity = state.velocity;
         let attitude = UnitQuaternion::new_normalize(state.attitude);
         let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * self.gravity));
-        let felt = feels(Felt { angular_velocity: state.angular_velocity, specific_force: force });
+        let felt = feels(TrueMotion { angular_velocity: state.angular_velocity, specific_force: force });
         let rate = felt.angular_velocity + self.gyro_bias + noise(&mut self.random, scale(real.gyro_noise) * each);
         let force = felt.specific_force
             + self.accelerometer_bias
             + noise(&mut self.random, scale(real.accelerometer_noise) * each);
-        if (self.clock / SAMPLE).is_multiple_of(self.what.pose_every) {
-            self.look(state, &attitude, time);
+        if (self.clock / SAMPLE_PERIOD_US).is_multiple_of(self.what.pose_every) {
+            self.measure_pose(state, &attitude, time);
         }
         let ImuParameters { gyro_range, accelerometer_range, .. } = ImuParameters::BMI088;
-        let (mut rate, mut force) = (shown(&single(&rate), gyro_range), shown(&single(&force), accelerometer_range));
+        let (mut rate, mut force) =
+            (clipped(&single(&rate), gyro_range), clipped(&single(&force), accelerometer_range));
         if let Some([gyro, accelerometer]) = &mut self.filters {
             (rate, force) = (gyro.take(&rate), accelerometer.take(&force));
         }
-        ImuSample { angular_velocity: shown(&rate, gyro_range), specific_force: shown(&force, accelerometer_range) }
+        ImuSample { angular_velocity: clipped(&rate, gyro_range), specific_force: clipped(&force, accelerometer_range) }
     }
 
     /// The next pose that has arrived by the last sample, with the time at which it was true. Its velocity is zero: the
@@ -165,7 +171,7 @@ impl Instruments {
     }
 
     /// The pose source takes a picture.
-    fn look(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
+    fn measure_pose(&mut self, state: &BodyState, attitude: &UnitQuaternion<f64>, time: u64) {
         let position = state.position + noise(&mut self.random, self.what.position_noise);
         let turned = UnitQuaternion::from_scaled_axis(noise(&mut self.random, self.what.attitude_noise));
         let attitude = (turned * attitude).into_inner().coords.map(|value| value as f32);
@@ -175,19 +181,20 @@ impl Instruments {
         let nothing = Velocity::World(Vector3::zeros());
         // A vehicle that is too far away for a pose has none.
         if let Ok(value) = Pose::new(single(&position), nothing, Quaternion::from(attitude)) {
-            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE, Stamped { value, time }));
+            self.late.push_back((self.clock + self.what.pose_delay * SAMPLE_PERIOD_US, Stamped { value, time }));
         }
     }
 
     /// Whether poses are out, a delay before they would arrive.
     fn is_out(&self) -> bool {
-        let arrival = (self.clock + self.what.pose_delay * SAMPLE) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
+        let arrival =
+            (self.clock + self.what.pose_delay * SAMPLE_PERIOD_US) as f64 * 1e-6 - self.beginning as f64 * 1e-6;
         self.what.outage.is_some_and(|outage| (outage.start..outage.start + outage.duration).contains(&arrival))
     }
 }
 
 /// The output of a sensor with this `range`.
-fn shown(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
+fn clipped(truth: &Vector3<f32>, range: f32) -> Vector3<f32> {
     truth.map(|component| component.clamp(-range, range))
 }
 

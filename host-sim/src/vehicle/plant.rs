@@ -27,7 +27,7 @@ use body::Body;
 use controller_core::state::Wrench;
 use controller_core::vehicle::{Limits, Vehicle};
 use lanes::{Lanes, Vectors};
-use motion::Moving;
+use motion::BodyMotion;
 use nalgebra::{Quaternion, Vector3, Vector4};
 use pulp::Scalar;
 use scenario::body::BodyState;
@@ -100,7 +100,7 @@ impl Plant {
 
     fn advance(&mut self, thrust: f64, torque: &Vector3<f64>, steps: u32) {
         let BodyState { position, velocity, attitude, angular_velocity } = self.state;
-        let moving = Moving {
+        let moving = BodyMotion {
             position: alone(position.into()),
             velocity: alone(velocity.into()),
             attitude: alone(attitude.coords.into()),

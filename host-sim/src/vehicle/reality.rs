@@ -30,7 +30,7 @@ pub mod dryden;
 pub mod propulsion;
 pub mod wind;
 
-use crate::vehicle::actuators::{ActuationError, Asked};
+use crate::vehicle::actuators::{ActuationError, ActuatorDemand};
 use crate::vehicle::ground::{Ground, Touchdown};
 use crate::vehicle::plant::Diverged;
 use crate::vehicle::sensed::Acted;
@@ -80,9 +80,9 @@ pub struct RealVehicle {
     /// Plant steps since the start.
     now: u64,
     /// What is on its way, with the step at which it acts.
-    waiting: VecDeque<(u64, Asked)>,
+    waiting: VecDeque<(u64, ActuatorDemand)>,
     /// What acts now.
-    acting: Asked,
+    acting: ActuatorDemand,
     /// What acted since it was asked for, by the model's coefficients.
     pub(crate) acted: Acted,
     /// Its origin, where the controller takes the centre of mass to be.
@@ -95,7 +95,7 @@ impl RealVehicle {
     pub fn new(scenario: &Scenario, configuration: &Configuration) -> Self {
         let (reality, step) = (&scenario.reality, scenario.timing.step());
         let model = configuration.vehicle();
-        let truth = reality.truth.clone().unwrap_or_else(|| Truth::of_model(model));
+        let truth = reality.truth.clone().unwrap_or_else(|| Truth::model(model));
         let propulsion = Propulsion::new(configuration, truth.lag.unwrap_or(scenario.rotor_lag), reality, step);
         let gravity = f64::from(model.gravity);
         let (ground, start) = match reality.ground {
@@ -121,7 +121,7 @@ impl RealVehicle {
             delay_steps: scenario.delay_steps,
             now: 0,
             waiting: VecDeque::new(),
-            acting: Asked::Wrench(Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() }),
+            acting: ActuatorDemand::Wrench(Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() }),
             acted: Acted::default(),
             body: RigidBody::new(&truth, gravity, &start),
             state: start,
@@ -208,7 +208,7 @@ impl RealVehicle {
     ///
     /// # Errors
     /// [`ActuationError`].
-    pub fn hold(&mut self, asked: &Asked, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
+    pub fn hold(&mut self, asked: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
         self.waiting.push_back((self.now + self.delay_steps, asked.clone()));
         let mut clipped = false;
         let mut thrusts = Thrusts::new();

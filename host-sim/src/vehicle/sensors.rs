@@ -128,7 +128,7 @@ impl Sensors {
             self.carry_on(state, &gyro);
         }
         let seen = self.tick.is_multiple_of(self.what.pose_every) && !self.random.random_bool(self.what.dropout);
-        let pose = seen.then(|| self.look(state));
+        let pose = seen.then(|| self.sample(state));
         self.past.push_back(Past { gyro, filtered: self.filtered, pose });
         if self.past.len() as u64 > self.what.pose_delay_ticks
             && let Some(then) = self.past.pop_front()
@@ -154,7 +154,7 @@ impl Sensors {
 
     /// v' before the state that [`Self::measure`] gave last, m/s^2, world; none without an accelerometer.
     #[must_use]
-    pub fn felt(&self) -> Option<Vector3<f32>> {
+    pub fn sensed_force(&self) -> Option<Vector3<f32>> {
         self.arrived
     }
 
@@ -199,7 +199,7 @@ impl Sensors {
     }
 
     /// A pose of this moment: position, m, and attitude.
-    fn look(&mut self, state: &BodyState) -> (Vector3<f64>, Quaternion<f32>) {
+    fn sample(&mut self, state: &BodyState) -> (Vector3<f64>, Quaternion<f32>) {
         let turned = UnitQuaternion::from_scaled_axis(self.noise(self.what.attitude_noise));
         let attitude = (state.attitude * turned.into_inner()).coords.map(|value| value as f32);
         (state.position + self.noise(self.what.position_noise), Quaternion::from(attitude))

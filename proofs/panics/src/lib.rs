@@ -12,12 +12,12 @@ use nalgebra::Vector2;
 
 #[unsafe(no_mangle)]
 extern "C" fn checked_whole(x: f32) -> i64 {
-    math::whole(x)
+    math::f32_to_i64(x)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn checked_single(x: i64) -> f32 {
-    math::single(x)
+    math::i64_to_f32(x)
 }
 
 #[unsafe(no_mangle)]

@@ -1,35 +1,32 @@
-//! What one rotor of `[rotors]` delivers, in either of two forms:
+//! What one rotor of `[rotors]` delivers, in either of two forms: coefficients and speeds, or, where the speeds are not
+//! known, thrusts and the torque for each newton of them.
 //!
-//! ```toml
-//! thrust_coefficient = 5.57e-6          # k_eta, N/(rad/s)^2
-//! drag_coefficient = 1.36e-7            # k_m, N m/(rad/s)^2
-//! speed = [0.0, 1500.0]                 # least and greatest while flying, rad/s
-//! ```
-//!
-//! or, where the speeds are not known,
-//!
-//! ```toml
-//! thrust_max = 12.5                     # N, each rotor's
-//! thrust_min = 0.0                      # N, each rotor's; 0 where it is left out
-//! torque_per_thrust = 0.0244            # k_m / k_eta, m
-//! ```
-//!
-//! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED`]
-//! at its greatest thrust: k_eta = thrust_max / [`NOMINAL_SPEED`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
+//! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED_RAD_PER_S`]
+//! at its greatest thrust: k_eta = thrust_max / [`NOMINAL_SPEED_RAD_PER_S`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
 //! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power
 //! that it draws from a `[battery]` do.
 
+use crate::key::{Bounds, Key, Values};
 use crate::section::{FieldError, Section};
 use controller_core::error::{ParameterError, Reason};
 
 /// The speed of a rotor of the second form at its greatest thrust, rad/s.
-pub const NOMINAL_SPEED: f64 = 1000.0;
+pub const NOMINAL_SPEED_RAD_PER_S: f64 = 1000.0;
 
 /// The keys of the first form.
-pub const SPEEDS: [&str; 3] = ["thrust_coefficient", "drag_coefficient", "speed"];
+pub const SPEED_KEYS: [Key; 3] = [
+    Key::number("thrust_coefficient", Bounds::physical("N/(rad/s)^2"), "k_eta, of the thrust.").optional(),
+    Key::number("drag_coefficient", Bounds::physical("N m/(rad/s)^2"), "k_m, of the drag torque.").optional(),
+    Key::new("speed", Values::Range(Bounds::not_negative("rad/s")), "Least and greatest while flying, rad/s.")
+        .optional(),
+];
 
 /// The keys of the second form.
-pub const THRUSTS: [&str; 3] = ["thrust_max", "thrust_min", "torque_per_thrust"];
+pub const THRUST_KEYS: [Key; 3] = [
+    Key::number("thrust_max", Bounds::physical("N"), "Of each rotor.").optional(),
+    Key::number("thrust_min", Bounds::not_negative("N").checked_later(), "Of each rotor while flying.").or(0.0),
+    Key::number("torque_per_thrust", Bounds::physical("m"), "k_m / k_eta.").optional(),
+];
 
 /// The coefficients of each rotor; all are alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,9 +94,12 @@ impl Propulsion {
 
 /// Which form the file has.
 fn form(section: &Section) -> Result<Form, FieldError> {
-    let first = |keys: [&'static str; 3]| keys.into_iter().find(|key| section.has(key));
-    let either = format!("{}, or thrust_max, torque_per_thrust and, unless it is zero, thrust_min", SPEEDS.join(", "));
-    match (first(SPEEDS), first(THRUSTS)) {
+    let first = |keys: [Key; 3]| keys.map(|key| key.name).into_iter().find(|key| section.has(key));
+    let either = format!(
+        "{}, or thrust_max, torque_per_thrust and, unless it is zero, thrust_min",
+        SPEED_KEYS.map(|key| key.name).join(", ")
+    );
+    match (first(SPEED_KEYS), first(THRUST_KEYS)) {
         (Some(_), None) => Ok(Form::Speeds),
         (None, Some(_)) => Ok(Form::Thrusts),
         (Some(of_speeds), Some(of_thrusts)) => Err(FieldError::new(
@@ -125,21 +125,22 @@ fn read_speeds(section: &Section) -> Result<Propulsion, FieldError> {
 fn read_thrusts(section: &Section) -> Result<Propulsion, FieldError> {
     const LEVER: &str = "torque_per_thrust";
     let thrust_max = section.number("thrust_max")?;
-    let thrust_min = section.number_or("thrust_min", 0.0)? as f32;
+    let thrust_min = section.number("thrust_min")? as f32;
     if !section.has(LEVER) {
         let problem = "missing, must be the propeller's drag torque over its thrust, m: yaw cannot be known without it \
                        (a thrust stand or the propeller's data have it)";
         return Err(FieldError::new(section.path_of(LEVER), problem));
     }
-    let thrust_coefficient = thrust_max / (NOMINAL_SPEED * NOMINAL_SPEED);
+    let thrust_coefficient = thrust_max / (NOMINAL_SPEED_RAD_PER_S * NOMINAL_SPEED_RAD_PER_S);
     let drag_coefficient = (section.number(LEVER)? * thrust_coefficient) as f32;
     let (thrust_coefficient, thrust_max) = (thrust_coefficient as f32, thrust_max as f32);
     Ok(Propulsion { form: Form::Thrusts, thrust_coefficient, drag_coefficient, thrust_min, thrust_max })
 }
 
 fn read_range(section: &Section) -> Result<[f64; 2], FieldError> {
-    const WANTED: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
-    section.range("speed", WANTED, |least, greatest| 0.0 <= least && least < greatest && greatest.is_finite())
+    const SPEED_REQUIREMENT: &str = "[least, greatest] in rad/s, 0 <= least < greatest";
+    section
+        .range("speed", SPEED_REQUIREMENT, |least, greatest| 0.0 <= least && least < greatest && greatest.is_finite())
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use controller_core::allocation::Mixer;
 use controller_core::state::Wrench;
 use nalgebra::Vector3;
 
-const ROTORS: &str = "
+const ROTORS_SECTION: &str = "
 [rotors]
 position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]
 spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]
@@ -26,7 +26,7 @@ fn read(sections: &str) -> Result<Scenario, String> {
 
 #[test]
 fn rotors_and_delay_become_what_the_file_says() {
-    let scenario = read(ROTORS).unwrap();
+    let scenario = read(ROTORS_SECTION).unwrap();
     let rotors = scenario.configuration.rotors().unwrap();
     assert_eq!((rotors.len(), scenario.rotor_lag, scenario.delay_steps), (4, 0.005, 10));
     assert_eq!(rotors[1].position, Vector3::new(-0.12, 0.12, 0.0));
@@ -85,9 +85,9 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("delay", "dealy = 0.01", "sampling.dealy", "did you mean \"delay\"?"),
         ("[sampling]", "[samplings]", "samplings", "did you mean \"sampling\"?"),
     ] {
-        assert_eq!(ROTORS.lines().filter(|found| found.starts_with(line)).count(), 1, "{line}");
+        assert_eq!(ROTORS_SECTION.lines().filter(|found| found.starts_with(line)).count(), 1, "{line}");
         let swap = |found| if str::starts_with(found, line) { replacement } else { found };
-        let text = ROTORS.lines().map(swap).collect::<Vec<_>>().join("\n");
+        let text = ROTORS_SECTION.lines().map(swap).collect::<Vec<_>>().join("\n");
         let what = read(&text).err().unwrap_or_else(|| panic!("{replacement} was accepted"));
         assert!(what.starts_with(&format!("{field}: ")) && what.contains(words), "{replacement}: {what}");
         assert_eq!(what.lines().count(), 1, "{what}");
@@ -160,7 +160,7 @@ fn six_to_eight_rotors_deliver_what_they_can_deliver() {
             assert!(given.is_exact() && error < 1e-4, "{name}: {commanded:?} {delivered:?}");
         }
         // The certificate reaches every rotor, whatever it says of these gains.
-        let verdict = Verdict::of(&scenario).unwrap();
+        let verdict = Verdict::judge(&scenario).unwrap();
         let last = format!("rotor {}", rotors.len());
         assert!(verdict.certificate().inequalities().any(|inequality| inequality.name.contains(&last)), "{name}");
     }
@@ -170,7 +170,7 @@ fn six_to_eight_rotors_deliver_what_they_can_deliver() {
 fn the_limits_are_the_rotors_where_the_file_has_none() {
     let (before, rest) = PAPER.split_once("[limits]").unwrap();
     let after = &rest[rest.find("\n[").unwrap()..];
-    let scenario = Scenario::parse(&format!("{before}{after}{ROTORS}"), "f").unwrap();
+    let scenario = Scenario::parse(&format!("{before}{after}{ROTORS_SECTION}"), "f").unwrap();
     let limits = scenario.configuration.limits();
     let (least, greatest) = (5.57e-6 * 100.0_f32.powi(2), 5.57e-6 * 1500.0_f32.powi(2));
     // Two rotors at their greatest thrust and two at their least.
@@ -180,7 +180,7 @@ fn the_limits_are_the_rotors_where_the_file_has_none() {
     let apart = (limits.torque_max - Vector3::new(tilt, tilt, yaw)).component_div(&limits.torque_max);
     assert!(apart.amax() < 1e-5, "{limits:?}");
     // One of the two keys alone.
-    let thrust = Scenario::parse(&format!("{before}[limits]\nthrust_max = 9.0{after}{ROTORS}"), "f").unwrap();
+    let thrust = Scenario::parse(&format!("{before}[limits]\nthrust_max = 9.0{after}{ROTORS_SECTION}"), "f").unwrap();
     assert_eq!(thrust.configuration.limits().thrust_max, 9.0);
     assert_eq!(thrust.configuration.limits().torque_max, limits.torque_max);
     // Not without rotors.
@@ -193,7 +193,8 @@ fn the_limits_are_the_rotors_where_the_file_has_none() {
             "{what}"
         );
     }
-    let what = Scenario::parse(&format!("{before}[limits]\nthrust = 9.0{after}{ROTORS}"), "f").err().unwrap().what;
+    let what =
+        Scenario::parse(&format!("{before}[limits]\nthrust = 9.0{after}{ROTORS_SECTION}"), "f").err().unwrap().what;
     assert!(what.starts_with("limits.thrust: unknown key, did you mean \"thrust_max\"?"), "{what}");
 }
 
@@ -201,7 +202,7 @@ fn the_limits_are_the_rotors_where_the_file_has_none() {
 fn rotors_that_do_not_surround_the_centre_of_mass_are_refused() {
     let (before, rest) = PAPER.split_once("[limits]").unwrap();
     let after = &rest[rest.find("\n[").unwrap()..];
-    let ahead = ROTORS.replace("[0.12,", "[0.52,").replace("[-0.12,", "[0.28,");
+    let ahead = ROTORS_SECTION.replace("[0.12,", "[0.52,").replace("[-0.12,", "[0.28,");
     let what = Scenario::parse(&format!("{before}{after}{ahead}"), "f").err().unwrap().what;
     assert!(what.starts_with("rotors.position: ") && what.contains("must lie amid the rotors"), "{what}");
     // With limits of its own the extended law refuses it: its thrust floor could not lift the rotors behind.

@@ -29,21 +29,21 @@ fn eight(seconds: f64) -> Scenario {
 #[test]
 fn a_path_beyond_the_bounds_of_streams_certifies_along_itself() {
     let scenario = circle(6.5, "");
-    let along = Along::of(&scenario).unwrap();
+    let along = Along::judge(&scenario).unwrap();
     assert!(along.holds() && along.remedy.is_none(), "{along}");
     let taken = scenario.trajectory.bounds();
     assert!(taken.horizontal_acceleration > 4.0 * scenario.configuration.bounds().horizontal_acceleration);
     let paper = Scenario::parse(include_str!("../../../vehicles/hummingbird-paper-law.toml"), "f").unwrap();
-    assert_eq!(Along::of(&paper), None);
+    assert_eq!(Along::judge(&paper), None);
 }
 
 #[test]
 fn a_path_as_slow_as_is_said_certifies_and_a_little_faster_it_does_not() {
-    let along = Along::of(&eight(3.0)).unwrap();
+    let along = Along::judge(&eight(3.0)).unwrap();
     let slower = along.remedy.and_then(|remedy| remedy.slower).expect("too fast");
     assert!(slower > 1.1 && along.at.time > 0.1 && along.at.time < 6.0, "{along}");
     assert!(along.to_string().contains(&format!("; {slower:.2} times as slowly it certifies")), "{along}");
-    let at = |slower: f64| Along::of(&eight(3.0 * slower)).unwrap();
+    let at = |slower: f64| Along::judge(&eight(3.0 * slower)).unwrap();
     // The path is fitted to the rows anew: it is the same within its tolerance.
     assert!(at(1.02 * slower).holds(), "{}", at(1.02 * slower));
     assert!(!at(0.95 * slower).holds(), "{}", at(0.95 * slower));
@@ -52,12 +52,12 @@ fn a_path_as_slow_as_is_said_certifies_and_a_little_faster_it_does_not() {
 #[test]
 fn a_path_that_certifies_with_less_force_kept_free_says_how_much() {
     let fast = circle(8.0, "force_kept = 2.0\n");
-    let remedy = Along::of(&fast).unwrap().remedy.expect("too fast");
+    let remedy = Along::judge(&fast).unwrap().remedy.expect("too fast");
     let force = remedy.force_kept.expect("with less force");
     assert!(force > 0.0 && force < 2.0, "{force}");
-    let with = |force: f32| Along::of(&circle(8.0, &format!("force_kept = {force}\n"))).unwrap().holds();
+    let with = |force: f32| Along::judge(&circle(8.0, &format!("force_kept = {force}\n"))).unwrap().holds();
     assert!(with(force - 0.01) && !with(force + 0.01), "{force}");
-    let much_too_fast = Along::of(&circle(30.0, "")).unwrap();
+    let much_too_fast = Along::judge(&circle(30.0, "")).unwrap();
     assert_eq!(much_too_fast.remedy.unwrap().force_kept, None, "{much_too_fast}");
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const OWN: ReferenceBounds = ReferenceBounds {
+const REFERENCE_TAKES: ReferenceBounds = ReferenceBounds {
     horizontal_speed: 5.0,
     horizontal_acceleration: 2.0,
     vertical_acceleration: 0.25,
@@ -12,7 +12,7 @@ const OWN: ReferenceBounds = ReferenceBounds {
     heading_second_derivative: 1.5,
 };
 
-const WIDER: &str = "[reference_bounds]
+const WIDER_SECTION: &str = "[reference_bounds]
 horizontal_acceleration = 2.5
 vertical_acceleration = 0.5
 jerk = 4.0
@@ -22,22 +22,22 @@ heading_second_derivative = 2.0
 ";
 
 fn read(text: &str) -> Result<ReferenceBounds, FieldError> {
-    read_bounds(&Section::root(&text.parse().unwrap()), &OWN, || OWN)
+    read_bounds(&Section::root(&text.parse().unwrap()), &REFERENCE_TAKES, || REFERENCE_TAKES)
 }
 
 #[test]
 fn left_out_they_are_the_references_own() {
-    assert_eq!(read(""), Ok(OWN));
+    assert_eq!(read(""), Ok(REFERENCE_TAKES));
 }
 
 #[test]
 fn left_out_they_are_what_the_vehicle_can_fly_where_that_is_more() {
     let flyable = ReferenceBounds { horizontal_speed: 5.0, jerk: 6.0, snap: 4.0, ..ReferenceBounds::REST };
-    assert_eq!(OWN.covering(&flyable), ReferenceBounds { jerk: 6.0, ..OWN });
+    assert_eq!(REFERENCE_TAKES.covering(&flyable), ReferenceBounds { jerk: 6.0, ..REFERENCE_TAKES });
     // Stated ones are what was stated, and those that are left out beside them are what the vehicle can fly.
     let stated = |text: &str| read_bounds(&Section::root(&text.parse().unwrap()), &ReferenceBounds::REST, || flyable);
-    assert_eq!(stated(WIDER).unwrap().jerk, 4.0);
-    let wider = ReferenceBounds { snap: 9.0, ..OWN };
+    assert_eq!(stated(WIDER_SECTION).unwrap().jerk, 4.0);
+    let wider = ReferenceBounds { snap: 9.0, ..REFERENCE_TAKES };
     assert_eq!(read("[reference_bounds]\nsnap = 9.0"), Ok(wider));
     // What would be zero is needed.
     let needed = stated("[reference_bounds]\nsnap = 3.0").unwrap_err();
@@ -55,7 +55,7 @@ fn stated_they_replace_the_references_own() {
         heading_rate: 1.0,
         heading_second_derivative: 2.0,
     };
-    assert_eq!(read(WIDER), Ok(wider));
+    assert_eq!(read(WIDER_SECTION), Ok(wider));
     assert_eq!(read(&crate::constants::written(wider.entries())), Ok(wider));
 }
 
@@ -69,8 +69,8 @@ fn each_unusable_bound_is_named_with_the_reason() {
         ("snap = 7.0", "snapp = 7.0", "reference_bounds.snapp", "did you mean \"snap\"?"),
         ("heading_rate = 1.0", "heading_rate = 0.999", "reference_bounds.heading_rate", "at least 1"),
     ] {
-        assert!(WIDER.contains(from), "{from}");
-        let error = read(&WIDER.replace(from, to)).unwrap_err();
+        assert!(WIDER_SECTION.contains(from), "{from}");
+        let error = read(&WIDER_SECTION.replace(from, to)).unwrap_err();
         assert!(error.field == field && error.problem.contains(words), "{to}: {error}");
     }
     assert_eq!(read("reference_bounds = 3").unwrap_err().field, "reference_bounds");

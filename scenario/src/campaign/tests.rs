@@ -13,14 +13,27 @@ fn hummingbird(keys: &str) -> Result<Campaign, String> {
     parse(HUMMINGBIRD, &format!("[campaign]\n{keys}"))
 }
 
-/// The example at the top of the module, which shows the defaults.
+/// The page's table of keys, of which the third column has the defaults.
 #[test]
 fn the_documented_defaults_are_the_defaults() {
-    let module = include_str!("../campaign.rs");
-    let (_, example) = module.split_once("//! ```toml\n").unwrap();
-    let (example, _) = example.split_once("//! ```\n").unwrap();
-    let written = parse(HUMMINGBIRD, &example.replace("//! ", ""));
-    assert_eq!(written.unwrap(), parse(HUMMINGBIRD, "").unwrap());
+    let page = include_str!("../../../docs/scenario-file.md");
+    let (_, page) = page.split_once("\n## campaign\n").unwrap();
+    let (table, _) = page.split_once("\n## ").unwrap();
+    let mut written = String::new();
+    for row in table.lines().filter(|line| line.starts_with("| `")) {
+        let columns: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, keys, _, defaults, ..] = columns[..] else { panic!("{row}") };
+        let (defaults, _) = defaults.split_once(';').unwrap_or((defaults, ""));
+        let list: Vec<&str> = match defaults.strip_prefix('`') {
+            Some(text) => vec![text.trim_end_matches('`')],
+            None => defaults.split(", ").collect(),
+        };
+        for (place, key) in keys.split('`').skip(1).step_by(2).enumerate() {
+            written += &format!("{key} = {}\n", list.get(place).unwrap_or(&list[0]));
+        }
+    }
+    assert_eq!(written.lines().count(), LAYOUT.keys.len(), "{written}");
+    assert_eq!(hummingbird(&written).unwrap(), parse(HUMMINGBIRD, "").unwrap());
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn any_number_that_differs_makes_another_flight() {
 fn a_thrust_floor_lowers_the_thrust_interval_and_is_checked() {
     let with = |floor: &str| Scenario::parse(&PAPER.replace("rate = 100.0", &format!("thrust_floor = {floor}")), "f");
     let thrust = Certificate::new(&with("1.0").unwrap().configuration).unwrap().paper().unwrap().printed.thrust;
-    assert!(thrust.least < 1.0 && thrust.least > 0.999, "{thrust:?}");
+    assert!(thrust.min < 1.0 && thrust.min > 0.999, "{thrust:?}");
     for bad in ["0.0", "-1", "4.0"] {
         assert!(with(bad).err().unwrap().what.starts_with("control.thrust_floor: "), "{bad}");
     }

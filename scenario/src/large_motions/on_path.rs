@@ -3,9 +3,9 @@
 //! A known path certifies whatever heading it asks for ([`controller_core::certificate::path`]), and the desired frame
 //! turns about a tilted thrust axis even where the heading stands still. Yaw follows as fast as it can: here is how far
 //! behind that leaves the heading. The model has the drag across that the law counts with, and starts on the reference.
-//! A motion that repeats is measured once it has flown for `SETTLING`.
+//! A motion that repeats is measured once it has flown for `SETTLING_TIME_S`.
 
-use super::{Model, NotArrived, RESTING, Start};
+use super::{AT_REST, Model, NotArrived, Start};
 use crate::sampled_loop::Timing;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::LawParameters;
@@ -15,13 +15,13 @@ use controller_core::reference::Trajectory;
 use std::fmt;
 
 /// s.
-const SETTLING: f64 = 15.0;
+const SETTLING_TIME_S: f64 = 15.0;
 
 /// The longest that is flown of one reference, s.
-const LONGEST: f64 = 120.0;
+const FLIGHT_DURATION_MAX_S: f64 = 120.0;
 
 /// The name of the start.
-const START: &str = "its own reference";
+const START_NAME: &str = "its own reference";
 
 /// How far off the model is along its reference, at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,18 +54,18 @@ impl Path<'_> {
         let begin = self.trajectory.at(0);
         let [x, y] = begin.heading.direction().map(f64::from).into();
         let start = Start {
-            name: START,
+            name: START_NAME,
             position: begin.position.map(f64::from).into(),
             velocity: begin.velocity.map(f64::from).into(),
             turned: [0.0, 0.0, y.atan2(x)],
-            ..RESTING
+            ..AT_REST
         };
         let mut model = Model::new(certified.configuration().vehicle(), timing, &start);
         if let LawParameters::Extended(law) = certified.configuration().law() {
             model.drag = f64::from(law.parameters.drag_across);
         }
-        let settled = if self.repeats { SETTLING } else { 0.0 };
-        let end = (settled + self.end_us as f64 * 1e-6).min(LONGEST);
+        let settled = if self.repeats { SETTLING_TIME_S } else { 0.0 };
+        let end = (settled + self.end_us as f64 * 1e-6).min(FLIGHT_DURATION_MAX_S);
         let mut farthest = OnPath { distance: 0.0, turned: 0.0 };
         for tick in 0..(end / timing.period).ceil() as u64 {
             let time = tick as f64 * timing.period;
@@ -74,7 +74,7 @@ impl Path<'_> {
             let turned = model.body.heading_error(&reference.heading);
             let lost = time >= settled && distance > self.tolerance;
             let (Ok(command), false) = (law.command(&model.body.measured(), &reference), lost) else {
-                return Ok(Err(NotArrived { start: START, time, distance, turned }));
+                return Ok(Err(NotArrived { start: START_NAME, time, distance, turned }));
             };
             if time >= settled {
                 farthest = OnPath { distance: farthest.distance.max(distance), turned: farthest.turned.max(turned) };

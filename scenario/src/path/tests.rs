@@ -2,7 +2,7 @@ use super::*;
 use crate::Scenario;
 
 fn swing(scenario: &Scenario) -> Option<Swing> {
-    Swing::of(&scenario.reference, &*scenario.trajectory)
+    Swing::find(&scenario.reference, &*scenario.trajectory)
 }
 
 /// The paper's vehicle on five gates, one leg much longer than the others: the smoothest path dives.

@@ -44,13 +44,13 @@ fn assert_refused(text: &str, field: &str, words: &[&str]) {
 
 #[test]
 fn each_slip_of_units_is_refused_with_the_value_that_would_be_right() {
-    const INERTIA: &str = "[0.0025, 0.0029, 0.0048]";
+    const INERTIA_LIST: &str = "[0.0025, 0.0029, 0.0048]";
     for (line, field, words) in [
-        ("inertia = [25000, 29000, 48000]", "vehicle.inertia", ["in g cm^2", INERTIA]),
-        ("inertia = [2500, 2900, 4800]", "vehicle.inertia", ["in kg mm^2", INERTIA]),
-        ("inertia = [25, 29, 48]", "vehicle.inertia", ["in kg cm^2", INERTIA]),
-        ("inertia = [2.5, 2.9, 4.8]", "vehicle.inertia", ["in g m^2", INERTIA]),
-        ("inertia = [2.5e6, 2.9e6, 4.8e6]", "vehicle.inertia", ["in g mm^2", INERTIA]),
+        ("inertia = [25000, 29000, 48000]", "vehicle.inertia", ["in g cm^2", INERTIA_LIST]),
+        ("inertia = [2500, 2900, 4800]", "vehicle.inertia", ["in kg mm^2", INERTIA_LIST]),
+        ("inertia = [25, 29, 48]", "vehicle.inertia", ["in kg cm^2", INERTIA_LIST]),
+        ("inertia = [2.5, 2.9, 4.8]", "vehicle.inertia", ["in g m^2", INERTIA_LIST]),
+        ("inertia = [2.5e6, 2.9e6, 4.8e6]", "vehicle.inertia", ["in g mm^2", INERTIA_LIST]),
         ("mass = 620.0", "rotors.thrust_max", ["cannot hover", "if vehicle.mass is in g, write 0.62"]),
         (
             "position = [[80, 80, 0], [80, -80, 0], [-80, -80, 0], [-80, 80, 0]]",

@@ -1,15 +1,6 @@
 //! `[disturbance]`: an unmodelled force and torque.
-//!
-//! ```toml
-//! [disturbance]
-//! acceleration = [1.0, 0.0, 0.0]       # m/s^2, world: a force on the centre of mass, over vehicle.mass
-//! torque = [0.0, 0.0, 0.002]           # N m, body
-//! start = 5.0                          # s; left out: 0
-//! ```
-//!
-//! Constant from `start` on. Left out, acceleration and torque are zero.
 
-use super::numbers::Allowed;
+use crate::key::{Bounds, Key, Layout};
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 
@@ -24,18 +15,28 @@ pub struct Disturbance {
     pub start: f64,
 }
 
+/// The keys of `[disturbance]`.
+pub const LAYOUT: Layout = Layout {
+    name: "disturbance",
+    about: "An unmodelled force and torque, constant from start on.",
+    keys: &[
+        Key::vector("acceleration", Bounds::between(-100.0, 100.0, "m/s^2"), "World: force over vehicle.mass.").or(0.0),
+        Key::vector("torque", Bounds::between(-100.0, 100.0, "N m"), "Body.").or(0.0),
+        Key::number("start", Bounds::between(0.0, 1e7, "s"), "When it begins.").or(0.0),
+    ],
+};
+
 /// Reads `[disturbance]`.
 ///
 /// # Errors
 /// Names the field that is refused.
 pub fn read(root: &Section) -> Result<Option<Disturbance>, FieldError> {
-    let Some(section) = root.optional_section("disturbance")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    section.allow(&["acceleration", "torque", "start"])?;
     Ok(Some(Disturbance {
-        acceleration: Allowed::new(-100.0..=100.0, "m/s^2").vector_or_zero(&section, "acceleration")?,
-        torque: Allowed::new(-100.0..=100.0, "N m").vector_or_zero(&section, "torque")?,
-        start: Allowed::new(0.0..=1e7, "s").number_or(&section, "start", 0.0)?,
+        acceleration: section.vector("acceleration")?,
+        torque: section.vector("torque")?,
+        start: section.number("start")?,
     }))
 }

@@ -1,18 +1,6 @@
-//! `[drag]`: the air's forces on a vehicle that moves through it.
-//!
-//! ```toml
-//! [drag]
-//! linear = [0.3, 0.3, 0.1]             # kg/s: the whole vehicle at hover, N per m/s, body axes
-//! frame = [5e-3, 5e-3, 1e-2]           # N/(m/s)^2, body axes: RotorPy's c_Dx, c_Dy, c_Dz
-//! rotor_across = 1.19e-4               # kg/rad, each rotor, across its axis: k_d
-//! rotor_along = 2.32e-4                # kg/rad, each rotor, along its axis: k_z
-//! translational_lift = 3.39e-3         # N/(m/s)^2, each rotor: k_h
-//! flapping = 0.0                       # N m per (rad/s)(m/s), each rotor: k_flap
-//! ```
-//!
-//! Every key may be left out: zero. `host-sim` has the equations. The rotors' coefficients need `[rotors]`.
+//! `[drag]`: the air's forces on a vehicle that moves through it. `host-sim` has the equations.
 
-use super::numbers::Allowed;
+use crate::key::{Bounds, Key, Layout};
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 
@@ -33,28 +21,40 @@ pub struct Drag {
     pub flapping: f64,
 }
 
+const COEFFICIENT: Bounds = Bounds::between(0.0, 1e3, "");
+
+/// The keys of `[drag]`; those from the third on are the rotors'.
+pub const LAYOUT: Layout = Layout {
+    name: "drag",
+    about: "The air's forces on a vehicle that moves through it.",
+    keys: &[
+        Key::vector("linear", COEFFICIENT, "kg/s, body axes: the whole vehicle at hover, N per m/s.").or(0.0),
+        Key::vector("frame", COEFFICIENT, "N/(m/s)^2, body axes: RotorPy's c_Dx, c_Dy, c_Dz.").or(0.0),
+        Key::number("rotor_across", COEFFICIENT, "kg/rad, each rotor, across its axis: k_d.").or(0.0),
+        Key::number("rotor_along", COEFFICIENT, "kg/rad, each rotor, along its axis: k_z.").or(0.0),
+        Key::number("translational_lift", COEFFICIENT, "N/(m/s)^2, each rotor: k_h.").or(0.0),
+        Key::number("flapping", COEFFICIENT, "N m per (rad/s)(m/s), each rotor: k_flap.").or(0.0),
+    ],
+};
+
 /// Reads `[drag]`.
 ///
 /// # Errors
 /// Names the field that is refused.
 pub fn read(root: &Section, has_rotors: bool) -> Result<Option<Drag>, FieldError> {
-    const OF_ROTORS: [&str; 4] = ["rotor_across", "rotor_along", "translational_lift", "flapping"];
-    let Some(section) = root.optional_section("drag")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    section.allow(&[["linear", "frame"].as_slice(), OF_ROTORS.as_slice()].concat())?;
-    if let Some(key) = OF_ROTORS.into_iter().find(|key| section.has(key) && !has_rotors) {
+    if let Some(Key { name, .. }) = LAYOUT.keys[2..].iter().find(|key| section.has(key.name) && !has_rotors) {
         let problem = "needs [rotors]: add that section or say drag.linear instead";
-        return Err(FieldError::new(section.path_of(key), problem));
+        return Err(FieldError::new(section.path_of(name), problem));
     }
-    let coefficient = Allowed::new(0.0..=1e3, "");
-    let number = |key| coefficient.number_or(&section, key, 0.0);
     Ok(Some(Drag {
-        linear: coefficient.vector_or_zero(&section, "linear")?,
-        frame: coefficient.vector_or_zero(&section, "frame")?,
-        rotor_across: number("rotor_across")?,
-        rotor_along: number("rotor_along")?,
-        translational_lift: number("translational_lift")?,
-        flapping: number("flapping")?,
+        linear: section.vector("linear")?,
+        frame: section.vector("frame")?,
+        rotor_across: section.number("rotor_across")?,
+        rotor_along: section.number("rotor_along")?,
+        translational_lift: section.number("translational_lift")?,
+        flapping: section.number("flapping")?,
     }))
 }

@@ -1,28 +1,16 @@
 //! `[estimator]`: the controller flies on the core's estimator, fed by an IMU at 1 kHz and by poses that come late.
 //!
-//! ```toml
-//! [estimator]
-//! imu_noise = 1.0                      # times a BMI088's noise and biases; 0 for a perfect one
-//! pose_rate = 100.0                    # Hz, 1000 over a whole number
-//! pose_delay = 0.02                    # s, from the moment a pose is true to its arrival, whole milliseconds
-//! position_noise = 0.001               # m, each pose
-//! attitude_noise_deg = 0.3             # degrees about each axis, each pose
-//! dropout = 0.0                        # the part of the poses that never arrive
-//! outage = { start = 10.0, duration = 0.5 }   # s: no pose arrives meanwhile
-//! seed = 0
-//! ```
-//!
-//! Every key may be left out; these are the defaults, without the outage. The estimator believes a BMI088 and the
+//! Every key may be left out. The estimator believes a BMI088 and the
 //! poses' noise as given. Instead of `[sensors]`, which has no estimator: a file has one of the two.
 
-use super::numbers::{Allowed, seed};
+use crate::key::{Bounds, Key, Layout, SEED, read_seed};
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use estimation::estimator::EstimatorParameters;
 use estimation::imu::ImuParameters;
 
 /// Samples of the IMU each second.
-pub const IMU_RATE: f64 = 1e3;
+pub const IMU_RATE_HZ: f64 = 1e3;
 
 /// Noise of a pose's attitude where the file says nothing, degrees.
 const ATTITUDE_NOISE_DEG: f64 = 0.3;
@@ -77,10 +65,10 @@ impl Estimator {
     #[must_use]
     pub fn believed(&self, gravity: f32) -> EstimatorParameters {
         /// The least that single precision separates from zero, with room to spare.
-        const LEAST: f64 = 1e-4;
+        const NOISE_MIN: f64 = 1e-4;
         EstimatorParameters {
-            position_noise: self.position_noise.max(LEAST) as f32,
-            attitude_noise: self.attitude_noise.max(LEAST) as f32,
+            position_noise: self.position_noise.max(NOISE_MIN) as f32,
+            attitude_noise: self.attitude_noise.max(NOISE_MIN) as f32,
             gravity,
             ..EstimatorParameters::BMI088
         }
@@ -93,28 +81,45 @@ pub fn rates_delay(timing: &Timing) -> f64 {
     ImuParameters::BMI088.rates_late(timing.period_us).into()
 }
 
+/// The keys of `[estimator]`; their defaults are those of [`Estimator`].
+pub const LAYOUT: Layout = Layout {
+    name: "estimator",
+    about: "The controller flies on the core's estimator, fed by an IMU at 1 kHz and by poses that come late. Not \
+            beside [sensors].",
+    keys: &[
+        Key::number("imu_noise", Bounds::between(0.0, 100.0, ""), "Times a BMI088's noise and biases.").or(1.0),
+        Key::number("pose_rate", Bounds::between(10.0, 200.0, "Hz"), "1000 over a whole number.").or(100.0),
+        Key::number("pose_delay", Bounds::between(0.0, 0.15, "s"), "Until a pose arrives; whole milliseconds.")
+            .or(0.02),
+        Key::number("position_noise", Bounds::between(0.0, 1.0, "m"), "Of each pose.").or(1e-3),
+        Key::number("attitude_noise_deg", Bounds::between(0.0, 30.0, "degrees"), "About each axis, of each pose.")
+            .or(ATTITUDE_NOISE_DEG),
+        Key::number("dropout", Bounds::between(0.0, 0.99, ""), "The share of the poses that never arrive.").or(0.0),
+        Key::table(&OUTAGE),
+        SEED,
+    ],
+};
+
+const OUTAGE: Layout = Layout {
+    name: "outage",
+    about: "A time in which no pose arrives.",
+    keys: &[
+        Key::number("start", Bounds::between(0.0, 1e7, "s"), "When it begins."),
+        Key::number("duration", Bounds::between(1e-3, 1e7, "s"), "How long it lasts."),
+    ],
+};
+
 /// Reads `[estimator]`.
 ///
 /// # Errors
 /// Names the field that is refused, or what `timing` or another section lacks for it.
 pub fn read(root: &Section, timing: &Timing) -> Result<Option<Estimator>, FieldError> {
-    let Some(section) = root.optional_section("estimator")? else {
+    if root.has("estimator") && root.has("sensors") {
+        return Err(FieldError::new("estimator", "has sensors of its own: leave [sensors] or [estimator] out"));
+    }
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    if root.has("sensors") {
-        let problem = "has sensors of its own: leave [sensors] or [estimator] out";
-        return Err(FieldError::new("estimator", problem.to_owned()));
-    }
-    section.allow(&[
-        "imu_noise",
-        "pose_rate",
-        "pose_delay",
-        "position_noise",
-        "attitude_noise_deg",
-        "dropout",
-        "outage",
-        "seed",
-    ])?;
     check_timing(timing)?;
     let milliseconds = |key: &str, value: f64, what: &str| {
         let whole = value.round();
@@ -124,31 +129,20 @@ pub fn read(root: &Section, timing: &Timing) -> Result<Option<Estimator>, FieldE
         }
         Ok(whole as u64)
     };
-    let default = Estimator::default();
-    let rate = IMU_RATE / default.pose_every as f64;
-    let rate = Allowed::new(10.0..=200.0, "Hz").number_or(&section, "pose_rate", rate)?;
-    let delay = default.pose_delay as f64 / IMU_RATE;
-    let delay = Allowed::new(0.0..=0.15, "s").number_or(&section, "pose_delay", delay)?;
+    let (rate, delay) = (section.number("pose_rate")?, section.number("pose_delay")?);
+    let outage = section.open(&OUTAGE)?.map(|outage| {
+        Ok::<_, FieldError>(Outage { start: outage.number("start")?, duration: outage.number("duration")? })
+    });
     Ok(Some(Estimator {
-        imu_noise: Allowed::new(0.0..=100.0, "").number_or(&section, "imu_noise", default.imu_noise)?,
-        pose_every: milliseconds("pose_rate", IMU_RATE / rate, "the time between two poses")?,
-        pose_delay: milliseconds("pose_delay", IMU_RATE * delay, "the delay")?,
-        position_noise: Allowed::new(0.0..=1.0, "m").number_or(&section, "position_noise", default.position_noise)?,
-        attitude_noise: Allowed::new(0.0..=30.0, "degrees")
-            .number_or(&section, "attitude_noise_deg", ATTITUDE_NOISE_DEG)?
-            .to_radians(),
-        dropout: Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", default.dropout)?,
-        outage: section.optional_section("outage")?.map(|outage| read_outage(&outage)).transpose()?,
-        seed: seed(&section)?,
+        imu_noise: section.number("imu_noise")?,
+        pose_every: milliseconds("pose_rate", IMU_RATE_HZ / rate, "the time between two poses")?,
+        pose_delay: milliseconds("pose_delay", IMU_RATE_HZ * delay, "the delay")?,
+        position_noise: section.number("position_noise")?,
+        attitude_noise: section.number("attitude_noise_deg")?.to_radians(),
+        dropout: section.number("dropout")?,
+        outage: outage.transpose()?,
+        seed: read_seed(&section)?,
     }))
-}
-
-fn read_outage(section: &Section) -> Result<Outage, FieldError> {
-    section.allow(&["start", "duration"])?;
-    Ok(Outage {
-        start: Allowed::new(0.0..=1e7, "s").number(section, "start")?,
-        duration: Allowed::new(1e-3..=1e7, "s").number(section, "duration")?,
-    })
 }
 
 /// The IMU's samples must fall on plant steps and ticks.
@@ -157,11 +151,11 @@ fn check_timing(timing: &Timing) -> Result<(), FieldError> {
     if !timing.period_us.is_multiple_of(1_000) || timing.period_us > 20_000 {
         let problem =
             "must be 50 to 1000 Hz, and 1000 over a whole number, with [estimator], whose IMU samples at 1 kHz";
-        return Err(FieldError::new("control.rate", problem.to_owned()));
+        return Err(FieldError::new("control.rate", problem));
     }
     if !whole(1e-3 / timing.step()) {
         let problem = "must be 1 ms over a whole number with [estimator], whose IMU samples at 1 kHz";
-        return Err(FieldError::new("plant.step", problem.to_owned()));
+        return Err(FieldError::new("plant.step", problem));
     }
     Ok(())
 }

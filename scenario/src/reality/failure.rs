@@ -1,13 +1,6 @@
 //! `[failure]`: a rotor that fails.
-//!
-//! ```toml
-//! [failure]
-//! rotor = 2                            # numbered from 1
-//! time = 5.0                           # s
-//! thrust_left = 0.0                    # share of its command; left out: 0, it stops
-//! ```
 
-use super::numbers::Allowed;
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::section::{FieldError, Section};
 
 /// A rotor that fails.
@@ -21,15 +14,25 @@ pub struct Failure {
     pub thrust_left: f64,
 }
 
+/// The keys of `[failure]`.
+pub const LAYOUT: Layout = Layout {
+    name: "failure",
+    about: "A rotor that fails. Needs [rotors].",
+    keys: &[
+        Key::new("rotor", Values::Whole(Bounds::between(1.0, 8.0, "")), "Which one, numbered from 1."),
+        Key::number("time", Bounds::between(0.0, 1e7, "s"), "When it fails."),
+        Key::number("thrust_left", Bounds::SHARE, "Share of its commanded thrust; 0: it stops.").or(0.0),
+    ],
+};
+
 /// Reads `[failure]` of one of so many rotors.
 ///
 /// # Errors
 /// Names the field that is missing or refused.
 pub fn read(root: &Section, rotors: usize) -> Result<Option<Failure>, FieldError> {
-    let Some(section) = root.optional_section("failure")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    section.allow(&["rotor", "time", "thrust_left"])?;
     let number = section.number("rotor")?;
     if number.fract() != 0.0 || !(1.0..=rotors as f64).contains(&number) {
         let problem = format!("must be a rotor's number, 1 to {rotors}, found {number}");
@@ -37,7 +40,7 @@ pub fn read(root: &Section, rotors: usize) -> Result<Option<Failure>, FieldError
     }
     Ok(Some(Failure {
         rotor: number as usize - 1,
-        time: Allowed::new(0.0..=1e7, "s").number(&section, "time")?,
-        thrust_left: Allowed::new(0.0..=1.0, "").number_or(&section, "thrust_left", 0.0)?,
+        time: section.number("time")?,
+        thrust_left: section.number("thrust_left")?,
     }))
 }

@@ -1,27 +1,10 @@
 //! `[sensors]`: noise, bias and delay of the state that the controller gets.
 //!
-//! ```toml
-//! [sensors]
-//! gyro_noise = 0.01                    # rad/s, each sample
-//! gyro_bias = [0.005, 0.0, 0.0]        # rad/s, body
-//! position_noise = 0.002               # m, each pose
-//! attitude_noise_deg = 0.2             # degrees, each pose
-//! velocity = "observer"                # or "exact", or "alpha-beta"; left out: "exact"
-//! velocity_noise = 0.0                 # m/s, each sample; "exact" only
-//! velocity_bandwidth = 20.0            # rad/s; "alpha-beta" and "observer" only
-//! accelerometer_noise = 0.1            # m/s^2, each sample; "observer" only
-//! accelerometer_bias = [0.0, 0.0, 0.0] # m/s^2, body; "observer" only
-//! pose_rate = 50.0                     # Hz, control.rate over a whole number; left out: control.rate
-//! dropout = 0.01                       # the part of the poses that never arrive
-//! delay = 0.02                         # s, of all of it; a whole number of control periods
-//! seed = 1
-//! ```
-//!
 //! Every key may be left out, for perfect, immediate sensors. Noise is white and normal, on each axis alone; the number
 //! is its standard deviation.
 
-use super::numbers::{Allowed, seed};
-use crate::sampled_loop::GREATEST_DELAY;
+use crate::key::{Bounds, Key, Layout, SEED, read_seed};
+use crate::sampled_loop::DELAY_MAX_SAMPLES;
 use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use nalgebra::Vector3;
@@ -77,32 +60,46 @@ pub enum VelocitySource {
     },
 }
 
+const POSE_RATE: Bounds = Bounds::between(0.1, 4000.0, "Hz").checked_later();
+const DELAY: Bounds = Bounds::not_negative("s").checked_later();
+const ACCELERATION: Bounds = Bounds::between(-100.0, 100.0, "m/s^2");
+
+/// The keys of `[sensors]`.
+pub const LAYOUT: Layout = Layout {
+    name: "sensors",
+    about: "Noise, bias and delay of the state that the controller gets. Noise is white and normal on each axis; the \
+            number is its standard deviation. Not beside [estimator].",
+    keys: &[
+        Key::number("gyro_noise", Bounds::between(0.0, 10.0, "rad/s"), "Of each sample.").or(0.0),
+        Key::vector("gyro_bias", Bounds::between(-10.0, 10.0, "rad/s"), "Body.").or(0.0),
+        Key::number("position_noise", Bounds::between(0.0, 100.0, "m"), "Of each pose.").or(0.0),
+        Key::number("attitude_noise_deg", Bounds::between(0.0, 30.0, "degrees"), "Of each pose.").or(0.0),
+        Key::choice("velocity", &["exact", "alpha-beta", "observer"], "Its source; left out: \"exact\"."),
+        Key::number("velocity_noise", Bounds::between(0.0, 100.0, "m/s"), "Only of \"exact\".").or(0.0),
+        Key::number("velocity_bandwidth", Bounds::between(0.01, 1e4, "rad/s"), "Not of \"exact\".").optional(),
+        Key::number("accelerometer_noise", Bounds::between(0.0, 100.0, "m/s^2"), "Only of \"observer\".").or(0.0),
+        Key::vector("accelerometer_bias", ACCELERATION, "Body; only of \"observer\".").or(0.0),
+        Key::number("pose_rate", POSE_RATE, "control.rate over a whole number.").optional(),
+        Key::number("dropout", Bounds::between(0.0, 0.99, ""), "The share of the poses that never arrive.").or(0.0),
+        Key::number("delay", DELAY, "Of all; a whole number of control periods.").or(0.0),
+        SEED,
+    ],
+};
+
+/// The keys of [`LAYOUT`] that some sources of the velocity have.
+const VELOCITY_KEYS: [&str; 4] = ["velocity_noise", "velocity_bandwidth", "accelerometer_noise", "accelerometer_bias"];
+
 /// Reads `[sensors]`, beside a delay of `sampling` control periods on the way to the rotors.
 ///
 /// # Errors
 /// Names the field that is refused.
 pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sensors>, FieldError> {
-    let Some(section) = root.optional_section("sensors")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    section.allow(&[
-        "gyro_noise",
-        "gyro_bias",
-        "position_noise",
-        "attitude_noise_deg",
-        "velocity",
-        "velocity_noise",
-        "velocity_bandwidth",
-        "accelerometer_noise",
-        "accelerometer_bias",
-        "pose_rate",
-        "dropout",
-        "delay",
-        "seed",
-    ])?;
     let velocity = read_velocity(&section)?;
     let pose_every = read_pose_rate(&section, timing)?;
-    let dropout = Allowed::new(0.0..=0.99, "").number_or(&section, "dropout", 0.0)?;
+    let dropout = section.number("dropout")?;
     if let VelocitySource::AlphaBeta { .. } = velocity {
         for (is_left_out, key) in [(pose_every > 1, "pose_rate"), (dropout > 0.0, "dropout")] {
             if is_left_out {
@@ -113,62 +110,53 @@ pub fn read(root: &Section, timing: &Timing, sampling: f64) -> Result<Option<Sen
         }
     }
     Ok(Some(Sensors {
-        gyro_noise: Allowed::new(0.0..=10.0, "rad/s").number_or(&section, "gyro_noise", 0.0)?,
-        gyro_bias: Allowed::new(-10.0..=10.0, "rad/s").vector_or_zero(&section, "gyro_bias")?,
-        position_noise: Allowed::new(0.0..=100.0, "m").number_or(&section, "position_noise", 0.0)?,
-        attitude_noise: Allowed::new(0.0..=30.0, "degrees")
-            .number_or(&section, "attitude_noise_deg", 0.0)?
-            .to_radians(),
+        gyro_noise: section.number("gyro_noise")?,
+        gyro_bias: section.vector("gyro_bias")?,
+        position_noise: section.number("position_noise")?,
+        attitude_noise: section.number("attitude_noise_deg")?.to_radians(),
         velocity,
         pose_every,
         dropout,
         delay_ticks: read_delay(&section, timing, sampling)?,
         pose_delay_ticks: 0,
         imu_delay: 0.0,
-        seed: seed(&section)?,
+        seed: read_seed(&section)?,
     }))
 }
 
 fn read_velocity(section: &Section) -> Result<VelocitySource, FieldError> {
-    const OPTIONS: [&str; 4] = ["velocity_noise", "velocity_bandwidth", "accelerometer_noise", "accelerometer_bias"];
-    let kind = if section.has("velocity") { section.text("velocity")? } else { "exact" };
-    let known: &[&str] = match kind {
-        "exact" => &OPTIONS[..1],
-        "alpha-beta" => &OPTIONS[1..2],
-        "observer" => &OPTIONS[1..],
-        other => {
-            let problem = format!("must be \"exact\", \"alpha-beta\" or \"observer\", found {other:?}");
-            return Err(FieldError::new(section.path_of("velocity"), problem));
-        }
+    let kind = if section.has("velocity") { section.choice("velocity")? } else { "exact" };
+    let known = match kind {
+        "exact" => &VELOCITY_KEYS[..1],
+        "alpha-beta" => &VELOCITY_KEYS[1..2],
+        _ => &VELOCITY_KEYS[1..],
     };
-    if let Some(key) = OPTIONS.into_iter().find(|key| section.has(key) && !known.contains(key)) {
+    if let Some(key) = VELOCITY_KEYS.into_iter().find(|key| section.has(key) && !known.contains(key)) {
         let problem =
             format!("means nothing with sensors.velocity = \"{kind}\": leave it out, or take another velocity");
         return Err(FieldError::new(section.path_of(key), problem));
     }
-    let bandwidth = || Allowed::new(0.01..=1e4, "rad/s").number(section, "velocity_bandwidth");
     Ok(match kind {
-        "alpha-beta" => VelocitySource::AlphaBeta { bandwidth: bandwidth()? },
-        "observer" => VelocitySource::Observer {
-            bandwidth: bandwidth()?,
-            noise: Allowed::new(0.0..=100.0, "m/s^2").number_or(section, "accelerometer_noise", 0.0)?,
-            bias: Allowed::new(-100.0..=100.0, "m/s^2").vector_or_zero(section, "accelerometer_bias")?,
+        "exact" => VelocitySource::Exact { noise: section.number("velocity_noise")? },
+        "alpha-beta" => VelocitySource::AlphaBeta { bandwidth: section.number("velocity_bandwidth")? },
+        _ => VelocitySource::Observer {
+            bandwidth: section.number("velocity_bandwidth")?,
+            noise: section.number("accelerometer_noise")?,
+            bias: section.vector("accelerometer_bias")?,
         },
-        _ => {
-            VelocitySource::Exact { noise: Allowed::new(0.0..=100.0, "m/s").number_or(section, "velocity_noise", 0.0)? }
-        }
     })
 }
 
 /// How far from a whole number a quotient of the file's decimal fractions may be, relative.
-const WHOLE: f64 = 1e-6;
+const WHOLE_TOLERANCE: f64 = 1e-6;
 
 fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError> {
     let control = 1.0 / timing.period();
-    let rate = Allowed::new(0.1..=control * (1.0 + WHOLE), "Hz").number_or(section, "pose_rate", control)?;
+    let rate = section.number_or("pose_rate", control)?;
+    Bounds::between(0.1, control * (1.0 + WHOLE_TOLERANCE), "Hz").check(section.path_of("pose_rate"), rate)?;
     let ticks = control / rate;
     let whole = ticks.round();
-    if (ticks - whole).abs() > WHOLE * ticks {
+    if (ticks - whole).abs() > WHOLE_TOLERANCE * ticks {
         let problem = format!(
             "must be control.rate = {control} Hz over a whole number, found {rate} (nearest: {} Hz)",
             control / whole
@@ -181,11 +169,11 @@ fn read_pose_rate(section: &Section, timing: &Timing) -> Result<u64, FieldError>
 /// Together with `sampling`, control periods, no longer than the sampled loops can be judged with.
 fn read_delay(section: &Section, timing: &Timing, sampling: f64) -> Result<u64, FieldError> {
     let period = timing.period();
-    let greatest = (f64::from(GREATEST_DELAY) - sampling).floor() * period;
-    let delay = Allowed::new(0.0..=greatest, "s").number_or(section, "delay", 0.0)?;
+    let greatest = (f64::from(DELAY_MAX_SAMPLES) - sampling).floor() * period;
+    let delay = Bounds::between(0.0, greatest, "s").check(section.path_of("delay"), section.number("delay")?)?;
     let ticks = delay / period;
     let whole = ticks.round();
-    if (ticks - whole).abs() > WHOLE * ticks.max(1.0) {
+    if (ticks - whole).abs() > WHOLE_TOLERANCE * ticks.max(1.0) {
         let problem = format!(
             "must be a whole number of control periods, found {delay} s (nearest: {:e} s; sampling.delay may be finer)",
             whole * period

@@ -123,7 +123,7 @@ fn every_key_becomes_what_the_file_says() {
 fn a_file_without_them_is_the_model_and_a_section_without_keys_changes_little() {
     let model = read("").unwrap();
     assert_eq!(model.reality, Reality::default());
-    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTIONS[..8]);
+    assert!(model.reality.sections().is_empty() && read(REALITY).unwrap().reality.sections() == SECTION_NAMES[..8]);
     assert!(model.reality.is_model());
     let empty = read("[truth]\n[drag]\n[wind]\n[sensors]\n").unwrap().reality;
     assert_eq!(empty.truth.as_ref().unwrap().mass, f64::from(0.5_f32));

@@ -1,24 +1,10 @@
 //! `[truth]`: the true vehicle, where it differs from its controller's model.
 //!
-//! ```toml
-//! [truth]
-//! mass = 0.55                          # kg;            left out: vehicle.mass
-//! inertia = [3.9e-3, 3.9e-3, 7.5e-3]   # kg m^2, about the true centre of mass; left out: vehicle.inertia
-//! centre_of_mass = [0.005, 0.0, 0.0]   # m, body, from the model's; left out: zero
-//! thrust_scale = 0.8                   # scale of every rotor's thrust and drag torque; left out: 1
-//! rotor_scales = [1.0, 0.95, 1.0, 1.0] # the same for each rotor, besides; left out: 1
-//! thrust_curve = 0.3                   # a of the thrust a u + (1 - a) u^2 of a motor command u; left out: 0
-//! lag = 0.015                          # s, of the rotors' speeds; left out: rotors.lag
-//! rotor_inertia = 6e-7                 # kg m^2, of each rotor about its axis; left out: none
-//! deadband = 0.02                      # of a rotor's speed: a nearer command changes nothing; left out: 0
-//! rotor_radius = 0.1                   # m: [ground] lifts rotors of this radius; left out: no ground effect
-//! ```
-//!
 //! The state that a flight reports and its controller gets is that of the body's origin, the *model's* centre of
 //! mass, from which the rotors' positions are measured: it is where the markers and the flight controller are.
 
-use super::numbers::Allowed;
 use crate::inertia;
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::section::{FieldError, Section};
 use controller_core::error::ParameterError;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
@@ -52,7 +38,7 @@ pub struct Truth {
 impl Truth {
     /// The model itself.
     #[must_use]
-    pub fn of_model(vehicle: &Vehicle) -> Self {
+    pub fn model(vehicle: &Vehicle) -> Self {
         Self {
             mass: f64::from(vehicle.mass),
             inertia: vehicle.inertia.map(f64::from),
@@ -68,17 +54,40 @@ impl Truth {
     }
 }
 
+const SCALE: Bounds = Bounds::between(0.0, 10.0, "");
+
+/// How many keys of [`LAYOUT`] come before those of the rotors.
+const BODY_KEYS: usize = 4;
+
+/// The keys of `[truth]`.
+pub const LAYOUT: Layout = Layout {
+    name: "truth",
+    about: "The true vehicle, where it differs from its controller's model.",
+    keys: &[
+        Key::number("mass", Bounds::physical("kg"), "Left out: vehicle.mass.").optional(),
+        Key::new("inertia", inertia::VALUES, "About the true centre of mass, kg m^2; left out: vehicle.inertia.")
+            .optional(),
+        Key::vector("centre_of_mass", Bounds::between(-100.0, 100.0, "m"), "Body, from the model's.").or(0.0),
+        Key::number("thrust_scale", SCALE, "Of every rotor's thrust and drag torque.").or(1.0),
+        Key::new("rotor_scales", Values::List(&Values::Number(SCALE)), "Of each, besides; left out: 1.").optional(),
+        Key::number("thrust_curve", Bounds::SHARE, "a of the thrust a u + (1 - a) u^2 of a command u.").or(0.0),
+        Key::number("lag", Bounds::between(0.0, 1.0, "s"), "Of the rotors' speeds; left out: rotors.lag.").optional(),
+        Key::number("rotor_inertia", Bounds::between(0.0, 1.0, "kg m^2"), "Of each rotor about its axis.").or(0.0),
+        Key::number("deadband", Bounds::between(0.0, 0.5, ""), "Share of the speed that a command must differ by.")
+            .or(0.0),
+        Key::number("rotor_radius", Bounds::between(0.0, 10.0, "m"), "For [ground]; 0: no ground effect.").or(0.0),
+    ],
+};
+
 /// Reads `[truth]` of a vehicle with so many rotors, if it has any.
 ///
 /// # Errors
 /// Names the field that is refused.
 pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Option<Truth>, FieldError> {
-    let Some(section) = root.optional_section("truth")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    const OF_ROTORS: [&str; 6] = ["rotor_scales", "thrust_curve", "lag", "rotor_inertia", "deadband", "rotor_radius"];
-    section.allow(&[&["mass", "inertia", "centre_of_mass", "thrust_scale"][..], &OF_ROTORS].concat())?;
-    let modelled = Truth::of_model(model);
+    let modelled = Truth::model(model);
     let mass = section.number_or("mass", modelled.mass)?;
     let moments = if section.has("inertia") { inertia::read(&section, "inertia")? } else { modelled.inertia };
     let parameters =
@@ -87,23 +96,22 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
         let impossible = inertia::impossible("truth.inertia", &moments, &error);
         impossible.unwrap_or_else(|| root.refused(&in_truth(error)))
     })?;
-    let scale = Allowed::new(0.0..=10.0, "");
-    let rotor_scales = read_rotor_scales(&section, rotors, &scale)?;
-    if let Some(key) = OF_ROTORS[1..].iter().find(|key| section.has(key) && rotors.is_none()) {
-        return Err(without_rotors(&section, key));
+    let needs_rotors = LAYOUT.keys[BODY_KEYS..].iter().find(|key| section.has(key.name) && rotors.is_none());
+    if let Some(Key { name, .. }) = needs_rotors {
+        let problem = "needs [rotors]: add that section or leave this key out";
+        return Err(FieldError::new(section.path_of(name), problem));
     }
-    let lag = section.has("lag").then(|| Allowed::new(0.0..=1.0, "s").number(&section, "lag")).transpose()?;
     Ok(Some(Truth {
         mass,
         inertia: moments,
-        centre_of_mass: Allowed::new(-100.0..=100.0, "m").vector_or_zero(&section, "centre_of_mass")?,
-        thrust_scale: scale.number_or(&section, "thrust_scale", 1.0)?,
-        rotor_scales,
-        thrust_curve: Allowed::new(0.0..=1.0, "").number_or(&section, "thrust_curve", 0.0)?,
-        lag,
-        rotor_inertia: Allowed::new(0.0..=1.0, "kg m^2").number_or(&section, "rotor_inertia", 0.0)?,
-        deadband: Allowed::new(0.0..=0.5, "").number_or(&section, "deadband", 0.0)?,
-        rotor_radius: Allowed::new(0.0..=10.0, "m").number_or(&section, "rotor_radius", 0.0)?,
+        centre_of_mass: section.vector("centre_of_mass")?,
+        thrust_scale: section.number("thrust_scale")?,
+        rotor_scales: read_rotor_scales(&section, rotors.unwrap_or(0))?,
+        thrust_curve: section.number("thrust_curve")?,
+        lag: section.optional_number("lag")?,
+        rotor_inertia: section.number("rotor_inertia")?,
+        deadband: section.number("deadband")?,
+        rotor_radius: section.number("rotor_radius")?,
     }))
 }
 
@@ -120,14 +128,11 @@ fn in_truth(error: ParameterError) -> ParameterError {
     ParameterError { field, ..error }
 }
 
-fn read_rotor_scales(section: &Section, rotors: Option<usize>, scale: &Allowed) -> Result<Vec<f64>, FieldError> {
+fn read_rotor_scales(section: &Section, rotors: usize) -> Result<Vec<f64>, FieldError> {
     const KEY: &str = "rotor_scales";
     if !section.has(KEY) {
         return Ok(Vec::new());
     }
-    let Some(rotors) = rotors else {
-        return Err(without_rotors(section, KEY));
-    };
     let elements = section.elements(KEY, "a list of numbers, one for each rotor")?;
     if elements.len() != rotors {
         let problem = format!("must have one element for each of {rotors} rotors, found {}", elements.len());
@@ -136,11 +141,7 @@ fn read_rotor_scales(section: &Section, rotors: Option<usize>, scale: &Allowed) 
     let number = |(path, value): (String, &toml::Value)| {
         let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         let found = number.ok_or_else(|| FieldError::new(&path, format!("must be a number, found {value}")))?;
-        scale.check(path, found)
+        SCALE.check(path, found)
     };
     elements.into_iter().map(number).collect()
-}
-
-fn without_rotors(section: &Section, key: &str) -> FieldError {
-    FieldError::new(section.path_of(key), "needs [rotors]: add that section or leave this key out")
 }

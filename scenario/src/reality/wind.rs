@@ -1,12 +1,5 @@
 //! `[wind]`: how the air moves. World frame, z up; where the air goes to, not where it comes from.
 //!
-//! ```toml
-//! [wind]
-//! steady = [3.0, 0.0, 0.0]                                       # m/s; left out: none
-//! gust = { kind = "step", start = 5.0, velocity = [5.0, 0.0, 0.0] }
-//! turbulence = { wind_at_20_feet = 5.0, altitude = 10.0, seed = 1 }
-//! ```
-//!
 //! A gust is added to the steady wind from `start` (s) on:
 //! - `"step"`: all of `velocity` (m/s) at once and for good;
 //! - `"one-cosine"`: rises to it within `duration` (s) and stays, MIL-F-8785C's discrete gust;
@@ -16,7 +9,7 @@
 //! and for the wind at 20 feet (m/s) that states its strength. The pattern of the air drifts past the vehicle with
 //! `airspeed` (m/s; left out: the steady wind's, which is what a hovering vehicle feels).
 
-use super::numbers::{Allowed, seed};
+use crate::key::{Bounds, Key, Layout, SEED, Values, read_seed};
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 
@@ -66,66 +59,83 @@ pub struct Turbulence {
     pub seed: u64,
 }
 
+/// Winds that a vehicle may be simulated in.
+const SPEED: Bounds = Bounds::between(-100.0, 100.0, "m/s");
+
+/// The keys of `[wind]`.
+pub const LAYOUT: Layout = Layout {
+    name: "wind",
+    about: "How the air moves, world frame, z up; where it goes to. Needs [drag].",
+    keys: &[Key::vector("steady", SPEED, "The steady wind.").or(0.0), Key::table(&GUST), Key::table(&TURBULENCE)],
+};
+
+const GUST: Layout = Layout {
+    name: "gust",
+    about: "A gust, added to the steady wind from a time on.",
+    keys: &[
+        Key::new("kind", Values::Choice(&["step", "one-cosine", "pulse"]), "At once; rising; rising and falling."),
+        Key::number("start", Bounds::between(0.0, 1e7, "s"), "When it begins."),
+        Key::vector("velocity", SPEED, "The greatest one."),
+        Key::number("duration", Bounds::between(1e-3, 1e4, "s"), "Of the rise, or of the pulse; a step has none.")
+            .optional(),
+    ],
+};
+
+const TURBULENCE: Layout = Layout {
+    name: "turbulence",
+    about: "MIL-F-8785C's, in Dryden's form for low altitudes.",
+    keys: &[
+        Key::number("wind_at_20_feet", Bounds::between(0.0, 100.0, "m/s"), "States its strength."),
+        Key::number("altitude", Bounds::between(3.048, 304.8, "m"), "Above ground."),
+        Key::number("airspeed", AIRSPEED, "Past the vehicle; left out: the steady wind's.").optional(),
+        SEED,
+    ],
+};
+
+const AIRSPEED_MIN_M_PER_S: f64 = 0.01;
+const AIRSPEED: Bounds = Bounds::between(AIRSPEED_MIN_M_PER_S, 100.0, "m/s");
+
 /// Reads `[wind]`.
 ///
 /// # Errors
 /// Names the field that is refused.
 pub fn read(root: &Section) -> Result<Option<Wind>, FieldError> {
-    let Some(section) = root.optional_section("wind")? else {
+    let Some(section) = root.open(&LAYOUT)? else {
         return Ok(None);
     };
-    section.allow(&["steady", "gust", "turbulence"])?;
-    let steady = speed().vector_or_zero(&section, "steady")?;
-    let gust = section.optional_section("gust")?.map(|gust| read_gust(&gust)).transpose()?;
-    let turbulence =
-        section.optional_section("turbulence")?.map(|turbulence| read_turbulence(&turbulence, &steady)).transpose()?;
+    let steady = section.vector("steady")?;
+    let gust = section.open(&GUST)?.map(|gust| read_gust(&gust)).transpose()?;
+    let turbulence = section.open(&TURBULENCE)?.map(|turbulence| read_turbulence(&turbulence, &steady)).transpose()?;
     Ok(Some(Wind { steady, gust, turbulence }))
 }
 
-/// Winds that a vehicle may be simulated in.
-fn speed() -> Allowed {
-    Allowed::new(-100.0..=100.0, "m/s")
-}
-
 fn read_gust(section: &Section) -> Result<Gust, FieldError> {
-    section.allow(&["kind", "start", "velocity", "duration"])?;
-    let duration = || Allowed::new(1e-3..=1e4, "s").number(section, "duration");
-    let shape = match section.text("kind")? {
+    let shape = match section.choice("kind")? {
         "step" if section.has("duration") => {
             let problem = "a step has none: leave it out, or take kind = \"one-cosine\" or \"pulse\"";
             return Err(FieldError::new(section.path_of("duration"), problem));
         }
         "step" => Shape::Step,
-        "one-cosine" => Shape::OneCosine(duration()?),
-        "pulse" => Shape::Pulse(duration()?),
-        other => {
-            let problem = format!("must be \"step\", \"one-cosine\" or \"pulse\", found {other:?}");
-            return Err(FieldError::new(section.path_of("kind"), problem));
-        }
+        "one-cosine" => Shape::OneCosine(section.number("duration")?),
+        _ => Shape::Pulse(section.number("duration")?),
     };
-    section.vector("velocity")?;
-    Ok(Gust {
-        shape,
-        start: Allowed::new(0.0..=1e7, "s").number(section, "start")?,
-        velocity: speed().vector_or_zero(section, "velocity")?,
-    })
+    Ok(Gust { shape, start: section.number("start")?, velocity: section.vector("velocity")? })
 }
 
 fn read_turbulence(section: &Section, steady: &Vector3<f64>) -> Result<Turbulence, FieldError> {
-    section.allow(&["wind_at_20_feet", "altitude", "airspeed", "seed"])?;
-    let allowed = Allowed::new(0.01..=100.0, "m/s");
-    let airspeed = if section.has("airspeed") {
-        allowed.number(section, "airspeed")?
-    } else if steady.norm() >= 0.01 {
-        steady.norm()
-    } else {
-        let problem = "missing, must be how fast the air drifts past the vehicle, m/s, where wind.steady does not say";
-        return Err(FieldError::new(section.path_of("airspeed"), problem));
+    let airspeed = match section.optional_number("airspeed")? {
+        Some(airspeed) => airspeed,
+        None if steady.norm() >= AIRSPEED_MIN_M_PER_S => steady.norm(),
+        None => {
+            let problem =
+                "missing, must be how fast the air drifts past the vehicle, m/s, where wind.steady does not say";
+            return Err(FieldError::new(section.path_of("airspeed"), problem));
+        }
     };
     Ok(Turbulence {
-        wind_at_20_feet: Allowed::new(0.0..=100.0, "m/s").number(section, "wind_at_20_feet")?,
-        altitude: Allowed::new(3.048..=304.8, "m").number(section, "altitude")?,
+        wind_at_20_feet: section.number("wind_at_20_feet")?,
+        altitude: section.number("altitude")?,
         airspeed,
-        seed: seed(section)?,
+        seed: read_seed(section)?,
     })
 }

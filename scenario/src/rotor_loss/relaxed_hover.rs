@@ -27,7 +27,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 const ROTORS_LEFT: usize = 3;
 
 /// The fastest turning that is looked for, rad/s, and how often that is halved.
-const FASTEST_RATE: f64 = 500.0;
+const RATE_MAX_RAD_PER_S: f64 = 500.0;
 const RATE_HALVINGS: u32 = 60;
 
 /// How often the air's part is put in anew: it shrinks by the drag's small share each time.
@@ -84,10 +84,10 @@ impl RelaxedHover {
         }
         let sense = torque.signum();
         let goes_on = |rate: f64| turning.balanced(sense * rate).is_some_and(|(_, torque)| torque * sense > 0.0);
-        if goes_on(FASTEST_RATE) {
+        if goes_on(RATE_MAX_RAD_PER_S) {
             return Err(NoHover::Unbounded);
         }
-        let (mut slower, mut faster) = (0.0, FASTEST_RATE);
+        let (mut slower, mut faster) = (0.0, RATE_MAX_RAD_PER_S);
         for _ in 0..RATE_HALVINGS {
             let middle = 0.5 * (slower + faster);
             if goes_on(middle) { slower = middle } else { faster = middle }
@@ -119,14 +119,14 @@ impl Turning<'_> {
     fn balanced(&self, rate: f64) -> Option<(Vector3<f64>, f64)> {
         let omega = self.axis * rate;
         let gyroscopic = omega.cross(&self.inertia.component_mul(&omega));
-        let wanted = Vector3::new(self.weight, gyroscopic.x, gyroscopic.y);
+        let required = Vector3::new(self.weight, gyroscopic.x, gyroscopic.y);
         let column = |rotor: &Rotor| Vector3::new(self.axis.z, rotor.position.y.into(), (-rotor.position.x).into());
         let inverse = Matrix3::from_columns(&self.rotors.map(column)).try_inverse()?;
-        let mut thrusts = inverse * wanted;
+        let mut thrusts = inverse * required;
         let mut of_air = Vector4::zeros();
         for _ in 0..DRAG_ROUNDS {
             of_air = self.air(&omega, &thrusts);
-            thrusts = inverse * (wanted - of_air.xyz());
+            thrusts = inverse * (required - of_air.xyz());
         }
         let own = self.rotors.iter().zip(thrusts.iter()).map(|(rotor, thrust)| {
             f64::from(rotor.spin.sign()) * f64::from(rotor.drag_coefficient / rotor.thrust_coefficient) * thrust

@@ -20,16 +20,16 @@ use controller_core::vehicle::Vehicle;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector2, Vector3, Vector4};
 
 /// The differences' steps: rad, and rad/s; an impulse's is what makes that rate.
-const TILT_STEP: f64 = 5e-3;
-const RATE_STEP: f64 = 0.05;
+const TILT_STEP_RAD: f64 = 5e-3;
+const RATE_STEP_RAD_PER_S: f64 = 0.05;
 
 /// The least lag, in periods: below it a rotor is at its thrust long before the next tick.
-const LEAST_LAG: f64 = 0.01;
+const LAG_MIN_PERIODS: f64 = 0.01;
 
 /// The states between ticks: epsilon, delta, tau, two of each.
-const STATES: usize = 6;
+const STATE_COUNT: usize = 6;
 /// The same with the two components of the held command.
-const STATES_AND_COMMAND: usize = STATES + 2;
+const STATES_AND_COMMAND: usize = STATE_COUNT + 2;
 
 /// Of the matrix exponential: what is left out, of |A| up to 100, is below 1e-15.
 const EXPONENTIAL_SQUARINGS: u32 = 16;
@@ -42,7 +42,7 @@ type State = SMatrix<f64, STATES_AND_COMMAND, STATES_AND_COMMAND>;
 #[must_use]
 pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing) -> f64 {
     let Timing { period, rotor_lag, delay_samples } = *timing;
-    let lag = rotor_lag.max(LEAST_LAG * period);
+    let lag = rotor_lag.max(LAG_MIN_PERIODS * period);
     let (whole, fraction) = (delay_samples.floor() as usize, delay_samples.fract());
     let axis = law.axis();
     let [of_error, of_rate, of_pending] = slopes(law, (&axis, rate), vehicle, rotor_lag + delay_samples * period);
@@ -50,14 +50,14 @@ pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing
     let continuous = continuous((&axis, rate), vehicle, lag);
     let [late, rest] = [fraction * period, (1.0 - fraction) * period].map(|time| exponential(&(continuous * time)));
     // A command of so many ticks ago: first the older one, for the fraction, then the newer one.
-    let older = rest.fixed_view::<STATES, STATES>(0, 0) * late.fixed_view::<STATES, 2>(0, STATES);
-    let newer = rest.fixed_view::<STATES, 2>(0, STATES);
-    let free = rest.fixed_view::<STATES, STATES>(0, 0) * late.fixed_view::<STATES, STATES>(0, 0);
+    let older = rest.fixed_view::<STATE_COUNT, STATE_COUNT>(0, 0) * late.fixed_view::<STATE_COUNT, 2>(0, STATE_COUNT);
+    let newer = rest.fixed_view::<STATE_COUNT, 2>(0, STATE_COUNT);
+    let free = rest.fixed_view::<STATE_COUNT, STATE_COUNT>(0, 0) * late.fixed_view::<STATE_COUNT, STATE_COUNT>(0, 0);
 
     // c_(k-1), c_(k-2), ... follow epsilon, delta and tau.
     let held = whole + 1;
-    let size = STATES + 2 * held;
-    let before = |age: usize| STATES + 2 * (age - 1);
+    let size = STATE_COUNT + 2 * held;
+    let before = |age: usize| STATE_COUNT + 2 * (age - 1);
     let mut command = DMatrix::zeros(2, size);
     command.view_mut((0, 0), (2, 2)).copy_from(&of_error);
     command.view_mut((0, 2), (2, 2)).copy_from(&of_rate);
@@ -67,17 +67,17 @@ pub fn radius(law: &WithoutARotor, rate: f64, vehicle: &Vehicle, timing: &Timing
         command.view_mut((0, before(age)), (2, 2)).copy_from(&(of_pending * time));
     }
     let mut tick = DMatrix::zeros(size, size);
-    tick.view_mut((0, 0), (STATES, STATES)).copy_from(&free);
+    tick.view_mut((0, 0), (STATE_COUNT, STATE_COUNT)).copy_from(&free);
     for (age, response) in [(whole, newer.into_owned()), (whole + 1, older)] {
         if age == 0 {
-            let mut now = tick.view_mut((0, 0), (STATES, size));
+            let mut now = tick.view_mut((0, 0), (STATE_COUNT, size));
             now += response * &command;
         } else {
-            let mut then = tick.view_mut((0, before(age)), (STATES, 2));
+            let mut then = tick.view_mut((0, before(age)), (STATE_COUNT, 2));
             then += response;
         }
     }
-    tick.view_mut((STATES, 0), (2, size)).copy_from(&command);
+    tick.view_mut((STATE_COUNT, 0), (2, size)).copy_from(&command);
     for age in 2..=held {
         tick.view_mut((before(age), before(age - 1)), (2, 2)).fill_with_identity();
     }
@@ -135,10 +135,10 @@ fn slopes(law: &WithoutARotor, (n, rate): (&Vector3<f64>, f64), vehicle: &Vehicl
         let each = [Vector2::x(), Vector2::y()].map(|axis| (at(axis * step) - at(axis * -step)) / (2.0 * step));
         Matrix2::from_columns(&each)
     };
-    let impulse = RATE_STEP * inertia.xy().min();
+    let impulse = RATE_STEP_RAD_PER_S * inertia.xy().min();
     [
-        difference(TILT_STEP, &|error| torque(error, zero, zero)),
-        difference(RATE_STEP, &|rate| torque(zero, rate, zero)),
+        difference(TILT_STEP_RAD, &|error| torque(error, zero, zero)),
+        difference(RATE_STEP_RAD_PER_S, &|rate| torque(zero, rate, zero)),
         if late > 0.0 { difference(impulse, &|pending| torque(zero, zero, pending)) } else { Matrix2::zeros() },
     ]
 }

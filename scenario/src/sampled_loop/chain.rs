@@ -8,7 +8,7 @@
 //! response.
 
 use super::compensator::{Compensator, Response};
-use super::lag::{Arrival, INTEGRATORS, INVERSE_FACTORIAL};
+use super::lag::{Arrival, INTEGRATORS_MAX, INVERSE_FACTORIAL};
 use super::spectral_radius::spectral_radius;
 use nalgebra::{Complex, DMatrix};
 
@@ -104,7 +104,7 @@ impl<'a> SampledLoop<'a> {
         let input = |m: usize| z.conj() * older[m] + newer[m];
 
         let actual = input(0) / (z - free[0]);
-        let mut y = [Complex::new(0.0, 0.0); INTEGRATORS + 1];
+        let mut y = [Complex::new(0.0, 0.0); INTEGRATORS_MAX + 1];
         let mut command = Complex::new(0.0, 0.0);
         for m in 1..=self.integrators {
             let mut sum = input(m) + actual * free[m];

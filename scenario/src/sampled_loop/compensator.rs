@@ -11,12 +11,12 @@
 //! For responses A is kept in upper Hessenberg form as well, to which an orthogonal change of x takes it: z - A is then
 //! solved by one elimination per column, for every frequency that is looked at.
 
-use super::lag::INTEGRATORS;
+use super::lag::INTEGRATORS_MAX;
 use nalgebra::linalg::Hessenberg;
 use nalgebra::{Complex, DMatrix, RowDVector, RowSVector};
 
 /// w per y_m at some z; entry m - 1.
-pub(super) type Response = [Complex<f64>; INTEGRATORS];
+pub(super) type Response = [Complex<f64>; INTEGRATORS_MAX];
 
 /// Of the law for one axis.
 #[derive(Debug, Clone)]
@@ -28,7 +28,7 @@ pub(super) struct Compensator {
     /// C.
     pub output: RowDVector<f64>,
     /// D.
-    pub direct: RowSVector<f64, INTEGRATORS>,
+    pub direct: RowSVector<f64, INTEGRATORS_MAX>,
     reduced: Reduced,
 }
 
@@ -42,7 +42,7 @@ struct Reduced {
 }
 
 impl Reduced {
-    fn of(transition: &DMatrix<f64>, input: &DMatrix<f64>, output: &RowDVector<f64>) -> Self {
+    fn reduce(transition: &DMatrix<f64>, input: &DMatrix<f64>, output: &RowDVector<f64>) -> Self {
         if transition.nrows() < 3 {
             return Self { transition: transition.clone(), input: input.clone(), output: output.clone() };
         }
@@ -54,24 +54,24 @@ impl Reduced {
 impl Compensator {
     /// The system that `tick` steps: it takes x and y, puts the next x in x's place and returns w. It must be linear.
     /// `size` is the number of its states.
-    pub fn of(size: usize, tick: impl Fn(&mut [f64], &[f64; INTEGRATORS]) -> f64) -> Self {
+    pub fn from_tick(size: usize, tick: impl Fn(&mut [f64], &[f64; INTEGRATORS_MAX]) -> f64) -> Self {
         let mut transition = DMatrix::zeros(size, size);
-        let mut input = DMatrix::zeros(size, INTEGRATORS);
+        let mut input = DMatrix::zeros(size, INTEGRATORS_MAX);
         let mut output = RowDVector::zeros(size);
         let mut direct = RowSVector::zeros();
         let mut x = vec![0.0; size];
         for i in 0..size {
             x.fill(0.0);
             x[i] = 1.0;
-            output[i] = tick(&mut x, &[0.0; INTEGRATORS]);
+            output[i] = tick(&mut x, &[0.0; INTEGRATORS_MAX]);
             transition.column_mut(i).copy_from_slice(&x);
         }
-        for m in 0..INTEGRATORS {
+        for m in 0..INTEGRATORS_MAX {
             x.fill(0.0);
             direct[m] = tick(&mut x, &core::array::from_fn(|i| f64::from(u8::from(i == m))));
             input.column_mut(m).copy_from_slice(&x);
         }
-        let reduced = Reduced::of(&transition, &input, &output);
+        let reduced = Reduced::reduce(&transition, &input, &output);
         Self { transition, input, output, direct, reduced }
     }
 

@@ -10,18 +10,18 @@
 //! any ratio of t to the lag, and a lag of zero is an ordinary case.
 
 /// The longest chain: from the torque through rate, tilt and velocity to the position.
-pub(super) const INTEGRATORS: usize = 4;
+pub(super) const INTEGRATORS_MAX: usize = 4;
 
 /// 1/m!.
-pub(super) const INVERSE_FACTORIAL: [f64; INTEGRATORS + 2] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0];
+pub(super) const INVERSE_FACTORIAL: [f64; INTEGRATORS_MAX + 2] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0];
 
 /// Entry m is for y_m (y_0 = a) at the end of a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LagResponse {
     /// The effect of a unit of `a` at the start on y_m.
-    pub free: [f64; INTEGRATORS + 1],
+    pub free: [f64; INTEGRATORS_MAX + 1],
     /// The effect of a unit of held input on y_m.
-    pub forced: [f64; INTEGRATORS + 1],
+    pub forced: [f64; INTEGRATORS_MAX + 1],
 }
 
 impl LagResponse {
@@ -60,11 +60,11 @@ pub(super) struct Arrival {
     /// n.
     pub whole_delay: usize,
     /// Per `a`.
-    pub free: [f64; INTEGRATORS + 1],
+    pub free: [f64; INTEGRATORS_MAX + 1],
     /// Per w_(k-n).
-    pub newer: [f64; INTEGRATORS + 1],
+    pub newer: [f64; INTEGRATORS_MAX + 1],
     /// Per w_(k-n-1).
-    pub older: [f64; INTEGRATORS + 1],
+    pub older: [f64; INTEGRATORS_MAX + 1],
 }
 
 impl Arrival {
@@ -86,25 +86,25 @@ impl Arrival {
     }
 }
 
-/// phi_0 to phi_(INTEGRATORS + 1) at x > 0, linked by phi_m = 1/m! - x phi_(m+1).
-fn phi(x: f64) -> [f64; INTEGRATORS + 2] {
+/// phi_0 to phi_(INTEGRATORS_MAX + 1) at x > 0, linked by phi_m = 1/m! - x phi_(m+1).
+fn phi(x: f64) -> [f64; INTEGRATORS_MAX + 2] {
     /// Terms of the series; at x = 1 the first one left out is below 1e-20 of the sum.
-    const TERMS: u32 = 18;
-    const LAST: usize = INTEGRATORS + 1;
-    let mut phi = [0.0; INTEGRATORS + 2];
+    const SERIES_TERMS: u32 = 18;
+    const PHI_ORDER_MAX: usize = INTEGRATORS_MAX + 1;
+    let mut phi = [0.0; INTEGRATORS_MAX + 2];
     if x <= 1.0 {
         // The series for the last one, then downwards: each step shrinks the error by x.
-        let mut term = INVERSE_FACTORIAL[LAST];
-        for k in 1..=TERMS {
-            phi[LAST] += term;
-            term *= -x / (f64::from(k) + LAST as f64);
+        let mut term = INVERSE_FACTORIAL[PHI_ORDER_MAX];
+        for k in 1..=SERIES_TERMS {
+            phi[PHI_ORDER_MAX] += term;
+            term *= -x / (f64::from(k) + PHI_ORDER_MAX as f64);
         }
-        for m in (0..LAST).rev() {
+        for m in (0..PHI_ORDER_MAX).rev() {
             phi[m] = INVERSE_FACTORIAL[m] - x * phi[m + 1];
         }
     } else {
         phi[0] = (-x).exp();
-        for m in 0..LAST {
+        for m in 0..PHI_ORDER_MAX {
             phi[m + 1] = (INVERSE_FACTORIAL[m] - phi[m]) / x;
         }
     }

@@ -23,7 +23,7 @@
 
 use super::compensator::Compensator;
 use super::gains::{EstimateGains, LateGains, PositionGains, TorqueGains};
-use super::lag::{Arrival, INTEGRATORS};
+use super::lag::{Arrival, INTEGRATORS_MAX};
 
 /// An axis, with the gains of the laws that act along it.
 #[derive(Debug, Clone, Copy)]
@@ -84,7 +84,7 @@ struct Memory {
     /// Of zeta, such an average.
     average: f64,
     /// omega_d' of the last tick.
-    wanted: f64,
+    desired_acceleration: f64,
     /// Of the torque bias, such an average.
     torque: f64,
     /// The acting part of the command.
@@ -120,7 +120,7 @@ impl Law {
     pub fn integrators(&self) -> usize {
         match self.chain {
             Chain::Attitude(_) | Chain::Vertical(_) => 2,
-            Chain::Lateral(..) => INTEGRATORS,
+            Chain::Lateral(..) => INTEGRATORS_MAX,
         }
     }
 
@@ -128,7 +128,7 @@ impl Law {
     pub fn compensator(&self) -> Compensator {
         let fresh = Memory { commanded: vec![0.0; self.actuator.earlier_commands()], ..Memory::default() };
         let size = self.used(&mut fresh.clone()).len();
-        Compensator::of(size, |states, measured| {
+        Compensator::from_tick(size, |states, measured| {
             let mut memory = fresh.clone();
             for (place, state) in self.used(&mut memory).into_iter().zip(states.iter()) {
                 *place = *state;
@@ -161,7 +161,7 @@ impl Law {
         }
         let projects = late.time() > 0.0;
         if matches!(self.chain, Chain::Lateral(..)) && projects {
-            used.push(&mut memory.wanted);
+            used.push(&mut memory.desired_acceleration);
         }
         if force.is_some() {
             used.push(&mut memory.average);
@@ -179,7 +179,7 @@ impl Law {
     }
 
     /// One tick: the command for `measured`, the memory as it is at the next tick.
-    fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS]) -> f64 {
+    fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS_MAX]) -> f64 {
         let EstimateGains { force, torque: bias, late } = &self.estimates;
         let share = force.map_or(0.0, |force| force.averaging);
         let bias_share = bias.unwrap_or(0.0);
@@ -212,12 +212,12 @@ impl Law {
                 let bias = memory.torque + bias_share * rate;
                 let desired = filters(position, memory, [place, velocity], average);
                 let (angle_error, rate_error) = (tilt - desired.value, rate - desired.rate);
-                let projected = rate_error + self.pending(memory) + late.time() * (bias - memory.wanted);
+                let projected = rate_error + self.pending(memory) + late.time() * (bias - memory.desired_acceleration);
                 let command = desired.acceleration
                     - torque.rate * projected
                     - torque.angle * (angle_error + late.time() * rate_error)
                     - bias;
-                memory.wanted = desired.acceleration;
+                memory.desired_acceleration = desired.acceleration;
                 memory.average = averaged(average, share, velocity * (half_drag - 1.0) - 0.5 * tilt);
                 memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
                 command

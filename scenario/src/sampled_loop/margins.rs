@@ -19,19 +19,19 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
 /// The lowest frequency looked at, rad/s: below the slowest position loop one would fly.
-const LOWEST: f64 = 3e-3;
+const FREQUENCY_MIN_RAD_PER_S: f64 = 3e-3;
 
 /// The same for slow ticks, radians per sample.
-const LOWEST_PER_SAMPLE: f64 = 3e-5;
+const ANGLE_MIN_RAD: f64 = 3e-5;
 
 /// The highest one. At pi itself the response is real, so the sign of its imaginary part there would be rounding's.
-const HIGHEST: f64 = PI * (1.0 - 1e-4);
+const ANGLE_MAX_RAD: f64 = PI * (1.0 - 1e-4);
 
 /// Greatest ratio of neighbouring frequencies less one.
-const SPACING: f64 = 0.1;
+const GRID_SPACING: f64 = 0.1;
 
 /// How near to zero a measure of the response has to turn back to be looked at more closely.
-const NEAR: f64 = 0.5;
+const TURN_BACK_MAX: f64 = 0.5;
 
 /// The margins of a stable loop, in samples and radians per sample.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +40,7 @@ pub(super) struct SampleMargins {
     pub gain_up: f64,
     /// Greatest factor below one at which stability is lost; zero if none.
     pub gain_down: f64,
-    /// Least further delay at which stability is lost. Zero for a loop slower than [`LOWEST`], which is not looked at.
+    /// Least further delay at which stability is lost. Zero for a loop slower than [`FREQUENCY_MIN_RAD_PER_S`], which is not looked at.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one.
     pub crossover: f64,
@@ -48,7 +48,7 @@ pub(super) struct SampleMargins {
 
 /// The margins of `chain`, which is stable with its commands `delay` samples late, at ticks `period` seconds apart.
 pub(super) fn margins(chain: &SampledLoop<'_>, delay: f64, period: f64) -> SampleMargins {
-    let grid = Grid::of(chain, delay, LOWEST_PER_SAMPLE.min(LOWEST * period));
+    let grid = Grid::measure(chain, delay, ANGLE_MIN_RAD.min(FREQUENCY_MIN_RAD_PER_S * period));
     let sweep = Sweep::along(&grid.points, *chain);
     let (gain_down, gain_up) = sweep.critical_gains();
     let unit_gain = sweep.crossings(gain);
@@ -74,9 +74,9 @@ fn phase(response: Complex<f64>) -> f64 {
 /// `unit_gain` and nowhere below.
 fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64) -> f64 {
     /// Brackets are found in a few steps.
-    const STEPS: usize = 40;
+    const DELAY_STEPS_MAX: usize = 40;
     /// Of a sample.
-    const RESOLUTION: f64 = 1e-10;
+    const DELAY_RESOLUTION_SAMPLES: f64 = 1e-10;
     // How a fraction of a sample is held changes the gain at high frequencies only: nothing crosses far below.
     let points = grid.from(0.5 * unit_gain);
 
@@ -93,11 +93,11 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
     let first = left_at(0.0).map(|(phase, angle)| phase.rem_euclid(TAU) / angle).fold(f64::INFINITY, f64::min);
     let nearest = |extra: f64| {
         let left = left_at(extra).map(|(phase, angle)| phase / angle).min_by(|a, b| a.abs().total_cmp(&b.abs()));
-        left.filter(|left| left.abs() > RESOLUTION).unwrap_or(0.0)
+        left.filter(|left| left.abs() > DELAY_RESOLUTION_SAMPLES).unwrap_or(0.0)
     };
     let mut low = (0.0, first);
     let mut high = (first, nearest(first));
-    for _ in 0..STEPS {
+    for _ in 0..DELAY_STEPS_MAX {
         if high.1 <= 0.0 {
             break;
         }
@@ -112,18 +112,19 @@ fn delay_margin(chain: &SampledLoop<'_>, grid: &Grid, delay: f64, unit_gain: f64
 fn borne_out(chain: &SampledLoop<'_>, delay: f64, margin: f64) -> f64 {
     /// Delays are tried at these parts of a sample. Whole samples are among them: there the response at the Nyquist
     /// frequency is farthest along the axis.
-    const PARTS: f64 = 4.0;
+    const TRIES_PER_SAMPLE: f64 = 4.0;
     /// So many of them: from there on a fraction of a sample changes little.
-    const TRIED: u32 = 8;
+    const TRIES_MAX: u32 = 8;
     /// Halvings of such a part.
-    const HALVINGS: usize = 40;
+    const HALVINGS_MAX: usize = 40;
     let is_stable = |delay: &f64| chain.with_delay(*delay).spectral_radius() < 1.0;
-    let below = (PARTS * delay).floor();
-    let mut tried =
-        (1..=TRIED).map(|part| (below + f64::from(part)) / PARTS).take_while(|tried| *tried < delay + margin);
+    let below = (TRIES_PER_SAMPLE * delay).floor();
+    let mut tried = (1..=TRIES_MAX)
+        .map(|part| (below + f64::from(part)) / TRIES_PER_SAMPLE)
+        .take_while(|tried| *tried < delay + margin);
     let Some(unstable) = tried.find(|tried| !is_stable(tried)) else { return margin };
-    let (mut low, mut high) = (delay.max(unstable - 1.0 / PARTS), unstable);
-    for _ in 0..HALVINGS {
+    let (mut low, mut high) = (delay.max(unstable - 1.0 / TRIES_PER_SAMPLE), unstable);
+    for _ in 0..HALVINGS_MAX {
         let middle = 0.5 * (low + high);
         if is_stable(&middle) { low = middle } else { high = middle }
     }
@@ -137,18 +138,19 @@ struct Grid {
 
 impl Grid {
     /// From `lowest` on, fine enough to follow a response that `delay` samples turn.
-    fn of(chain: &SampledLoop<'_>, delay: f64, lowest: f64) -> Self {
+    fn measure(chain: &SampledLoop<'_>, delay: f64, lowest: f64) -> Self {
         let step = PI / (8.0 * (delay + 1.0));
-        let below =
-            core::iter::successors(Some(LOWEST_PER_SAMPLE / (1.0 + SPACING)), |angle| Some(angle / (1.0 + SPACING)));
+        let below = core::iter::successors(Some(ANGLE_MIN_RAD / (1.0 + GRID_SPACING)), |angle| {
+            Some(angle / (1.0 + GRID_SPACING))
+        });
         let mut angles: Vec<f64> = below.take_while(|angle| *angle >= lowest).collect();
         angles.reverse();
-        let mut angle = LOWEST_PER_SAMPLE;
-        while angle < HIGHEST {
+        let mut angle = ANGLE_MIN_RAD;
+        while angle < ANGLE_MAX_RAD {
             angles.push(angle);
-            angle += step.min(SPACING * angle);
+            angle += step.min(GRID_SPACING * angle);
         }
-        angles.push(HIGHEST);
+        angles.push(ANGLE_MAX_RAD);
         Self { points: angles.into_iter().map(|angle| (angle, chain.law_response(angle))).collect() }
     }
 
@@ -184,7 +186,8 @@ impl<'a> Sweep<'a> {
             .collect();
         for three in values.windows(3) {
             let [left, middle, right] = [three[0], three[1], three[2]];
-            let turns = middle.1.abs() <= left.1.abs() && middle.1.abs() < right.1.abs() && middle.1.abs() < NEAR;
+            let turns =
+                middle.1.abs() <= left.1.abs() && middle.1.abs() < right.1.abs() && middle.1.abs() < TURN_BACK_MAX;
             if turns
                 && !changes(left.1, middle.1)
                 && !changes(middle.1, right.1)
@@ -218,9 +221,9 @@ impl<'a> Sweep<'a> {
 /// A point between two of the same sign where `value`, which turns back between them, has the other one.
 fn beyond(value: impl Fn(f64) -> f64, left: (f64, f64), right: (f64, f64)) -> Option<(f64, f64)> {
     /// Each leaves two thirds of the interval.
-    const STEPS: usize = 16;
+    const GOLDEN_STEPS: usize = 16;
     let (mut low, mut high) = (left.0, right.0);
-    for _ in 0..STEPS {
+    for _ in 0..GOLDEN_STEPS {
         let third = (high - low) / 3.0;
         let [near, far] = [low + third, high - third].map(|angle| (angle, value(angle)));
         if let Some(beyond) = [near, far].into_iter().find(|point| (point.1 < 0.0) != (left.1 < 0.0)) {
@@ -234,17 +237,17 @@ fn beyond(value: impl Fn(f64) -> f64, left: (f64, f64), right: (f64, f64)) -> Op
 /// The zero of `value` between two points of opposite sign: regula falsi, Illinois variant.
 fn root(value: impl Fn(f64) -> f64, mut left: (f64, f64), mut right: (f64, f64)) -> f64 {
     /// Some eight are enough; the bound is for values that are noise.
-    const STEPS: usize = 60;
+    const ROOT_STEPS_MAX: usize = 60;
     /// Relative, of two estimates in a row.
-    const RESOLUTION: f64 = 1e-12;
+    const ROOT_RESOLUTION: f64 = 1e-12;
     let (mut last, mut moved_right) = (left.0, None);
-    for _ in 0..STEPS {
+    for _ in 0..ROOT_STEPS_MAX {
         let middle = (left.0 * right.1 - right.0 * left.1) / (right.1 - left.1);
         if !(middle > left.0 && middle < right.0) {
             // Rounding put it onto the end that is the zero, however far the other one is.
             return if left.1.abs() < right.1.abs() { left.0 } else { right.0 };
         }
-        if (middle - last).abs() < RESOLUTION * middle {
+        if (middle - last).abs() < ROOT_RESOLUTION * middle {
             return middle;
         }
         last = middle;

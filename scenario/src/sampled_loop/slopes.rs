@@ -32,7 +32,7 @@ struct Estimates {
 
 impl Slopes {
     /// Of `law` on a body with these moments of inertia, kg m^2.
-    pub fn of(law: &LawParameters, inertia: [f64; 3]) -> Self {
+    pub fn from_law(law: &LawParameters, inertia: [f64; 3]) -> Self {
         match law {
             LawParameters::Paper(law) => Self::paper(&law.gains, inertia),
             LawParameters::Extended(law) => Self::extended(law, inertia),

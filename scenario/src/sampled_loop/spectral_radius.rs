@@ -1,6 +1,6 @@
 //! The spectral radius of a small matrix by repeated squaring.
 //!
-//! Gelfand: rho(A) = lim |A^N|^(1/N), taken at N = 2^[`SQUARINGS`] with the norm divided out after every squaring. It
+//! Gelfand: rho(A) = lim |A^N|^(1/N), taken at N = 2^[`SQUARING_COUNT`] with the norm divided out after every squaring. It
 //! always takes the same number of steps and cannot fail to converge, unlike an iteration for the eigenvalues. What is
 //! left of |A^N| / rho^N, at most 1e100 even for coinciding eigenvalues, goes into rho as its N-th root: below 1e-9.
 //!
@@ -10,7 +10,7 @@
 use nalgebra::DMatrix;
 
 /// N = 2^40, about 1e12.
-const SQUARINGS: u32 = 40;
+const SQUARING_COUNT: u32 = 40;
 
 /// The largest magnitude of an eigenvalue of a square `matrix`.
 pub(crate) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
@@ -18,7 +18,7 @@ pub(crate) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
     let mut square = matrix.clone();
     let mut logarithm = 0.0_f64;
     let mut weight = 1.0;
-    for _ in 0..SQUARINGS {
+    for _ in 0..SQUARING_COUNT {
         let norm = matrix.norm();
         if norm == 0.0 {
             return 0.0;
@@ -37,8 +37,8 @@ pub(crate) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
 /// far below them. (nalgebra's balancing does not end where an entry is infinite.)
 fn balance(matrix: &mut DMatrix<f64>) {
     /// Enough for any file's; each sweep takes time as one column of a square does.
-    const SWEEPS: usize = 20;
-    for _ in 0..SWEEPS {
+    const SWEEPS_MAX: usize = 20;
+    for _ in 0..SWEEPS_MAX {
         let mut scaled = false;
         for state in 0..matrix.nrows() {
             let own = matrix[(state, state)].abs();

@@ -1,6 +1,7 @@
 //! What each reading accepts, and how it names what it refuses.
 
 use super::*;
+use crate::key::Bounds;
 
 fn table(text: &str) -> Table {
     text.parse().unwrap()
@@ -57,11 +58,35 @@ fn lookup_follows_dotted_paths_and_indices() {
     assert_eq!(section.lookup("a.x.d"), None);
 }
 
+const POINTS: Layout =
+    Layout { name: "points", about: "", keys: &[Key::number("t", Bounds::between(0.0, 1.0, "s"), "")] };
+
 #[test]
 fn lists_of_tables_carry_their_index() {
     let table = table("[r]\npoints = [{ t = 0 }, { t = \"x\" }]");
-    let points = Section::root(&table).section("r").unwrap().sections("points").unwrap();
+    let points = Section::root(&table).section("r").unwrap().tables(&POINTS).unwrap();
     assert_eq!(points[1].number("t").unwrap_err().field, "r.points[1].t");
+}
+
+#[test]
+fn numbers_and_vectors_are_held_to_the_bounds_of_their_declaration_or_are_its_default() {
+    const LAYOUT: Layout = Layout {
+        name: "a",
+        about: "",
+        keys: &[
+            Key::number("x", Bounds::between(0.0, 2.0, "m"), ""),
+            Key::number("y", Bounds::positive(""), "").or(7.0),
+            Key::vector("z", Bounds::between(-1.0, 1.0, ""), "").or(0.5),
+        ],
+    };
+    let table = table("[a]\nx = 3\ny = 0\nz = [0, 0, 2]\n[b]");
+    let section = Section::root(&table).open(&LAYOUT).unwrap().unwrap();
+    assert_eq!(section.number("x").unwrap_err().to_string(), "a.x: must be from 0 to 2 m, found 3");
+    assert_eq!(section.number("y").unwrap_err().to_string(), "a.y: must be positive, found 0");
+    assert_eq!(section.vector("z").unwrap_err().to_string(), "a.z[2]: must be from -1 to 1, found 2");
+    let empty = Section::root(&table).section("b").unwrap().with(&LAYOUT).unwrap();
+    assert_eq!((empty.number("y"), empty.vector("z")), (Ok(7.0), Ok(Vector3::repeat(0.5))));
+    assert_eq!(empty.number("x").unwrap_err().to_string(), "b.x: missing, must be a number");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //!
 //! p(t) = sum over k = 0..5 of B_k(u) c_(i+k).
 //!
-//! The coefficients c minimise, by least squares, what the rows' positions deviate by, in units of the distance asked
+//! The coefficients c minimise, by least squares, what the rows' positions deviate by, in units of the distance requested
 //! for; with velocities and accelerations, where rows have them, in units of that distance per h and h^2; and, by next
 //! to nothing, the fifth differences of c, which decide where there are no rows. The normal equations are banded.
 //!
@@ -21,9 +21,9 @@ use controller_core::reference::knot::{Derivatives, Knot, REST};
 use nalgebra::{Vector3, Vector4};
 
 /// The coefficients' number beyond that of the intervals.
-const DEGREE: usize = 5;
+const SPLINE_DEGREE: usize = 5;
 /// The polynomials B_0 to B_5 times 120, lowest power first.
-const BASIS: [[f64; 6]; 6] = [
+const BASIS_TIMES_120: [[f64; 6]; 6] = [
     [1.0, -5.0, 10.0, -10.0, 5.0, -1.0],
     [26.0, -50.0, 20.0, 20.0, -20.0, 5.0],
     [66.0, 0.0, -60.0, 0.0, 30.0, -10.0],
@@ -32,13 +32,13 @@ const BASIS: [[f64; 6]; 6] = [
     [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 ];
 /// The weight of the fifth differences beside that of a row.
-const SMOOTHNESS: f64 = 1e-6;
+const SMOOTHNESS_WEIGHT: f64 = 1e-6;
 /// How near the heading is to be, rad.
-const NEAR_HEADING: f64 = 0.05;
+const HEADING_TOLERANCE_RAD: f64 = 0.05;
 /// The first number of intervals, by how much it grows, and the greatest.
-const FEWEST: usize = 4;
-const GROWTH: f64 = 1.3;
-const MOST: usize = 20_000;
+const INTERVALS_MIN: usize = 4;
+const INTERVALS_GROWTH: f64 = 1.3;
+const INTERVALS_MAX: usize = 20_000;
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +51,7 @@ pub struct Fit {
 
 /// B_0 to B_5, or their derivative of an order, at u.
 fn weights(u: f64, order: usize) -> [f64; 6] {
-    BASIS.map(|polynomial| {
+    BASIS_TIMES_120.map(|polynomial| {
         let falling = |power: usize| (0..order).map(|less| power as f64 - less as f64).product::<f64>();
         let powers = polynomial.iter().enumerate().skip(order).rev();
         powers.fold(0.0, |sum, (power, coefficient)| sum * u + coefficient * falling(power)) / 120.0
@@ -64,22 +64,22 @@ fn weights(u: f64, order: usize) -> [f64; 6] {
 /// The nearest path of those tried, if none is near enough.
 pub fn fit(rows: &[(f64, Row)], near: f64) -> Result<Fit, Fit> {
     let last = rows.last().map_or(0.0, |(time, _)| *time);
-    let mut intervals = FEWEST;
+    let mut intervals = INTERVALS_MIN;
     let mut best: Option<Fit> = None;
     loop {
         // Whole microseconds, so that every joint is one of the clock's instants.
         let interval_us = (last * 1e6 / intervals as f64).ceil().max(1.0) as u64;
         let spline = Spline::near(rows, interval_us, intervals, near);
         let fit = spline.fit(rows, near);
-        if fit.farthest.0 <= near && spline.turned(rows) <= NEAR_HEADING {
+        if fit.farthest.0 <= near && spline.turned(rows) <= HEADING_TOLERANCE_RAD {
             return Ok(fit);
         }
         if best.as_ref().is_none_or(|best| fit.farthest.0 < best.farthest.0) {
             best = Some(fit);
         }
-        let more = (intervals as f64 * GROWTH).ceil() as usize;
+        let more = (intervals as f64 * INTERVALS_GROWTH).ceil() as usize;
         // More coefficients than rows tell nothing new.
-        if more > MOST || intervals > 4 * rows.len() + FEWEST {
+        if more > INTERVALS_MAX || intervals > 4 * rows.len() + INTERVALS_MIN {
             return Err(best.unwrap_or(Fit { knots: Vec::new(), farthest: (f64::INFINITY, 0.0) }));
         }
         intervals = more;
@@ -95,8 +95,8 @@ struct Spline {
 impl Spline {
     fn near(rows: &[(f64, Row)], interval_us: u64, intervals: usize, near: f64) -> Self {
         let interval = interval_us as f64 * 1e-6;
-        let mut normal = Band::new(intervals + DEGREE);
-        let unit = Vector4::new(near, near, near, NEAR_HEADING);
+        let mut normal = Band::new(intervals + SPLINE_DEGREE);
+        let unit = Vector4::new(near, near, near, HEADING_TOLERANCE_RAD);
         for (time, row) in rows {
             let (i, u) = place(*time, interval, intervals);
             let position = row.position.push(row.heading);
@@ -111,7 +111,7 @@ impl Spline {
             }
         }
         // Beside the rows of an interval on average.
-        let share = (SMOOTHNESS * rows.len() as f64 / intervals as f64).sqrt();
+        let share = (SMOOTHNESS_WEIGHT * rows.len() as f64 / intervals as f64).sqrt();
         for i in 0..intervals {
             let differences = [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0];
             normal.add(i, &differences, &Vector4::zeros(), &unit.map(|unit| share / unit));

@@ -15,9 +15,9 @@ use controller_core::reference::knot::{Knot, REST};
 use nalgebra::Vector4;
 
 /// The first duration tried, s, by how much it grows, and how often: to 10 s.
-const SHORTEST: f64 = 0.2;
-const GROWTH: f64 = 1.1;
-const TRIES: i32 = 41;
+const DURATION_MIN_S: f64 = 0.2;
+const DURATION_GROWTH: f64 = 1.1;
+const DURATIONS_TRIED: i32 = 41;
 
 /// Adds a beginning and an end at rest to `knots`, where they do not begin or end so, inside their own bounds and
 /// those `allowed`; how long the beginning is, us.
@@ -42,9 +42,9 @@ pub fn lead(knots: &mut Vec<Knot>, allowed: &ReferenceBounds) -> Result<u64, Par
 
 /// The pair whose way takes no more than `allowed`.
 fn shortest(allowed: &ReferenceBounds, pair: impl Fn(f64) -> [Knot; 2]) -> Result<[Knot; 2], ParameterError> {
-    let mut best = (f64::INFINITY, pair(SHORTEST));
-    for number in 0..TRIES {
-        let tried = pair(SHORTEST * GROWTH.powi(number));
+    let mut best = (f64::INFINITY, pair(DURATION_MIN_S));
+    for number in 0..DURATIONS_TRIED {
+        let tried = pair(DURATION_MIN_S * DURATION_GROWTH.powi(number));
         let more = stretch(&taken(&tried)?, allowed);
         if more < best.0 {
             best = (more, tried);

@@ -5,7 +5,7 @@
 //! on, at last with more places. What it finds is stretched in time until it certifies at every instant.
 //!
 //! A search may end in a local optimum. But a path in a narrower corridor is one in a wider one, and a slower one is
-//! one below a higher speed: so the same is done for all of [`SERIES`] below what is given, and the quickest is kept.
+//! one below a higher speed: so the same is done for all of [`SERIES_PER_DECADE`] below what is given, and the quickest is kept.
 
 mod blocks;
 mod equations;
@@ -29,34 +29,34 @@ use way::Way;
 
 /// Corridors and speeds, times a power of ten, m and m/s. A path keeps to the widest corridor of these that is no wider
 /// than what is given, so that a wider one never takes longer.
-const SERIES: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
+const SERIES_PER_DECADE: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
 /// The narrowest corridor that is tried in place of a wider one, m.
-const NARROWEST: f64 = 0.05;
+const CORRIDOR_MIN_M: f64 = 0.05;
 /// The least power of ten, where what is given is no less.
-const LEAST_POWER: i32 = -3;
+const SERIES_POWER_MIN: i32 = -3;
 /// A search through more of them would take minutes.
-pub const MOST_LEGS: usize = 300;
+pub const LEGS_MAX: usize = 300;
 /// The share of corridor and speed that the search uses, for what happens between the places where it looks; and of the
 /// corridor with one piece for each leg.
-const USED: f64 = 0.99;
-const USED_AT_FIRST: f64 = 0.6;
+const CORRIDOR_AND_SPEED_SHARE: f64 = 0.99;
+const FIRST_CORRIDOR_SHARE: f64 = 0.6;
 /// What the barrier may hold back, as a share of the duration: at first, and at the end of each search.
-const GAPS: [f64; 4] = [0.2, 0.03, 0.01, 0.002];
+const BARRIER_GAP_SHARES: [f64; 4] = [0.2, 0.03, 0.01, 0.002];
 /// The places of a piece at which the first two searches and the last look at rows.
-const PLACES: [usize; 2] = [16, 32];
+const PLACES_PER_PIECE: [usize; 2] = [16, 32];
 /// How much of its duration a path may lose in the second search, and in the last: one that has no hope is left.
-const HOPES: [f64; 2] = [0.8, 0.98];
+const IMPROVABLE_DURATION_SHARES: [f64; 2] = [0.8, 0.98];
 /// Legs that take longer than so many times the mean get three pieces, the others two.
-const LONG: f64 = 1.5;
+const LONG_LEG_RATIO: f64 = 1.5;
 /// By how much a path is stretched at once to be inside the limits, and how often at most.
-const SLOWER: f64 = 1.02;
-const SLOWINGS: u32 = 30;
+const LIMITS_STRETCH: f64 = 1.02;
+const LIMITS_STRETCHES_MAX: u32 = 30;
 /// The share of its speed with which a path begins to be stretched until it certifies, and by how much at once, in how
 /// many parts.
-const QUICKEST: f64 = 0.98;
-const STRETCH: f64 = 1.01;
-const PARTS: i32 = 8;
-const STRETCHES: i32 = 60;
+const FIRST_SPEED_SHARE: f64 = 0.98;
+const CERTIFYING_STRETCH: f64 = 1.01;
+const CERTIFYING_STRETCH_PARTS: i32 = 8;
+const CERTIFYING_STRETCHES_MAX: i32 = 60;
 
 /// A path, and when each point is passed, s.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +70,7 @@ pub struct Paced {
 /// Why there is no path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Problem {
-    /// So many legs, more than [`MOST_LEGS`].
+    /// So many legs, more than [`LEGS_MAX`].
     Legs(usize),
     /// Even at rest the limits are exceeded.
     Rest,
@@ -82,11 +82,12 @@ pub enum Problem {
 /// # Errors
 /// Why there is none.
 pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Result<Paced, Problem> {
-    let mut tries = Tries { points, limits, searches: PLACES.map(|places| Search::new(limits, places)), best: None };
-    let corridors = below(corridor, NARROWEST);
+    let mut tries =
+        Tries { points, limits, searches: PLACES_PER_PIECE.map(|places| Search::new(limits, places)), best: None };
+    let corridors = below(corridor, CORRIDOR_MIN_M);
     let widest = corridors.first().copied().unwrap_or(corridor);
     let (kept, legs) = merged(points, widest);
-    if legs.len() > MOST_LEGS {
+    if legs.len() > LEGS_MAX {
         return Err(Problem::Legs(legs.len()));
     }
     if legs.is_empty() {
@@ -107,10 +108,11 @@ pub fn paced(points: &[Point], corridor: f64, speed: f64, limits: &Limits) -> Re
     Ok(Paced { knots: way.knots(), times: times(&way, points, &kept) })
 }
 
-/// Those of [`SERIES`] from `least` to `most`, greatest first; `most` itself where there is none.
+/// Those of [`SERIES_PER_DECADE`] from `least` to `most`, greatest first; `most` itself where there is none.
 fn below(most: f64, least: f64) -> Vec<f64> {
     let power = most.log10().floor() as i32;
-    let all = (power.min(LEAST_POWER)..=power).flat_map(|power| SERIES.map(|number| number * 10.0_f64.powi(power)));
+    let all = (power.min(SERIES_POWER_MIN)..=power)
+        .flat_map(|power| SERIES_PER_DECADE.map(|number| number * 10.0_f64.powi(power)));
     let mut found: Vec<f64> = all.filter(|number| (0.999 * least..=1.001 * most).contains(number)).collect();
     found.reverse();
     if found.is_empty() { vec![most] } else { found }
@@ -151,18 +153,22 @@ impl Tries<'_> {
 
     /// The quickest along `legs`, from rest at each of their ends; none where there is no hope that it is the best.
     fn searched(&self, legs: &[Leg]) -> Option<Way> {
-        let [begin, one, two, end] = GAPS;
+        let [begin, one, two, end] = BARRIER_GAP_SHARES;
         let [coarse, fine] = &self.searches;
-        let hopeless = HOPES.map(|hope| self.shortest() / hope);
+        let hopeless = IMPROVABLE_DURATION_SHARES.map(|hope| self.shortest() / hope);
         let narrowed = |share: f64| {
-            let narrowed = |leg: &Leg| Leg { corridor: leg.corridor * share, speed: leg.speed * USED, ..*leg };
+            let narrowed =
+                |leg: &Leg| Leg { corridor: leg.corridor * share, speed: leg.speed * CORRIDOR_AND_SPEED_SHARE, ..*leg };
             legs.iter().map(narrowed).collect::<Vec<Leg>>()
         };
         let split = |way: Way| {
-            let long = LONG * way.duration() / legs.len() as f64;
-            Way { legs: narrowed(USED), ..way.split(|duration| if duration > long { 3 } else { 2 }) }
+            let long = LONG_LEG_RATIO * way.duration() / legs.len() as f64;
+            Way {
+                legs: narrowed(CORRIDOR_AND_SPEED_SHARE),
+                ..way.split(|duration| if duration > long { 3 } else { 2 })
+            }
         };
-        let stopping = coarse.stopping(narrowed(USED_AT_FIRST))?;
+        let stopping = coarse.stopping(narrowed(FIRST_CORRIDOR_SHARE))?;
         let way = coarse.descend(stopping.clone(), [begin, one]);
         if way.duration() > hopeless[0] {
             return None;
@@ -180,12 +186,14 @@ impl Tries<'_> {
     /// `way` in the shortest time in which it certifies at every instant; none where it leaves its corridor.
     fn certified(&self, way: &Way) -> Option<Way> {
         let holds = |parts: i32| {
-            let stretch = QUICKEST * STRETCH.powf(f64::from(parts) / f64::from(PARTS));
+            let stretch =
+                FIRST_SPEED_SHARE * CERTIFYING_STRETCH.powf(f64::from(parts) / f64::from(CERTIFYING_STRETCH_PARTS));
             let way = way.clone().stretched(stretch);
             (way.keeps_to_its_legs() && self.limits.allow(&way.knots())).then_some(way)
         };
-        let (mut long, mut found) = (0..STRETCHES).find_map(|i| Some((PARTS * i, holds(PARTS * i)?)))?;
-        let mut short = long - PARTS;
+        let (mut long, mut found) = (0..CERTIFYING_STRETCHES_MAX)
+            .find_map(|i| Some((CERTIFYING_STRETCH_PARTS * i, holds(CERTIFYING_STRETCH_PARTS * i)?)))?;
+        let mut short = long - CERTIFYING_STRETCH_PARTS;
         while long - short > 1 {
             let middle = (short + long) / 2;
             match holds(middle) {
@@ -199,14 +207,16 @@ impl Tries<'_> {
 
 /// `way`, as much more slowly as it takes to be inside; none where no time helps.
 fn within(search: &Search, way: &Way) -> Option<Way> {
-    let slower = |times: u32| way.clone().stretched(SLOWER.powi(times as i32));
-    (0..SLOWINGS).map(slower).find(|way| search.most(way) < 0.999)
+    let slower = |times: u32| way.clone().stretched(LIMITS_STRETCH.powi(times as i32));
+    (0..LIMITS_STRETCHES_MAX).map(slower).find(|way| search.most(way) < 0.999)
 }
 
 /// When each point is passed, s: those between two that are kept, where the path is nearest to them.
 fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
-    const PLACES: usize = 64;
-    let places: Vec<Place> = (0..=PLACES).map(|place| Place::new(place as f64 / PLACES as f64)).collect();
+    const PLACES_CHECKED_PER_PIECE: usize = 64;
+    let places: Vec<Place> = (0..=PLACES_CHECKED_PER_PIECE)
+        .map(|place| Place::new(place as f64 / PLACES_CHECKED_PER_PIECE as f64))
+        .collect();
     let mut times = Vec::with_capacity(points.len());
     let (mut start, mut time) = (0.0, 0.0_f64);
     let mut pieces = way.pieces.iter().enumerate().peekable();
@@ -214,7 +224,7 @@ fn times(way: &Way, points: &[Point], kept: &[usize]) -> Vec<f64> {
         let mut along: Vec<(f64, Vector3<f64>)> = Vec::new();
         while let Some((piece, (_, duration))) = pieces.next_if(|(_, (own, _))| *own == leg) {
             along.extend(places.iter().enumerate().map(|(number, place)| {
-                (start + duration * number as f64 / PLACES as f64, way.motion(piece, place)[0].xyz())
+                (start + duration * number as f64 / PLACES_CHECKED_PER_PIECE as f64, way.motion(piece, place)[0].xyz())
             }));
             start += duration;
         }

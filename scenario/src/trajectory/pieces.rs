@@ -9,11 +9,11 @@ use super::row::Row;
 use nalgebra::Vector3;
 
 /// Coefficients of one axis.
-const COEFFICIENTS: usize = 8;
+const COEFFICIENT_COUNT: usize = 8;
 /// Between two instants at most, s.
-const INTERVAL: f64 = 0.02;
+const INTERVAL_MAX_S: f64 = 0.02;
 /// The longest of all pieces together, s.
-const LONGEST: f64 = 1800.0;
+const DURATION_MAX_S: f64 = 1800.0;
 
 /// Rows along the pieces in `lines`, each with its number in the file.
 ///
@@ -24,15 +24,15 @@ pub fn rows(lines: &[(u64, Vec<f64>)]) -> Result<Vec<Row>, String> {
     let mut start = 0.0;
     for (line, numbers) in lines {
         let (duration, axes) = numbers.split_first().unwrap_or((&0.0, &[]));
-        if ![3, 4].contains(&(axes.len() / COEFFICIENTS)) || axes.len() % COEFFICIENTS != 0 {
+        if ![3, 4].contains(&(axes.len() / COEFFICIENT_COUNT)) || axes.len() % COEFFICIENT_COUNT != 0 {
             let found = numbers.len();
             return Err(format!("line {line}: a piece has 25 numbers, or 33 with yaw, found {found}"));
         }
-        if *duration <= 0.0 || start + duration > LONGEST {
+        if *duration <= 0.0 || start + duration > DURATION_MAX_S {
             let problem = "must be positive, all together at most";
-            return Err(format!("line {line}, duration: {problem} {LONGEST} s, found {duration}"));
+            return Err(format!("line {line}, duration: {problem} {DURATION_MAX_S} s, found {duration}"));
         }
-        let steps = (duration / INTERVAL).ceil();
+        let steps = (duration / INTERVAL_MAX_S).ceil();
         // The end of a piece is the beginning of the next one.
         let first = if rows.is_empty() { 0 } else { 1 };
         for step in first..=steps as u32 {
@@ -45,7 +45,7 @@ pub fn rows(lines: &[(u64, Vec<f64>)]) -> Result<Vec<Row>, String> {
 }
 
 fn row(axes: &[f64], time: f64, since: f64) -> Row {
-    let axis = |index: usize| axes.chunks(COEFFICIENTS).nth(index).map_or([0.0; 3], |axis| evaluated(axis, since));
+    let axis = |index: usize| axes.chunks(COEFFICIENT_COUNT).nth(index).map_or([0.0; 3], |axis| evaluated(axis, since));
     let [x, y, z, yaw] = [0, 1, 2, 3].map(axis);
     let [position, velocity, acceleration] = [0, 1, 2].map(|order| Vector3::new(x[order], y[order], z[order]));
     let (velocity, acceleration) = (Some(velocity), Some(acceleration));

@@ -6,15 +6,15 @@ use super::row::Row;
 use std::f64::consts::TAU;
 
 /// A path that is nowhere as fast is flown by nobody, m/s.
-const SLOWEST_FLOWN_SPEED: f64 = 0.02;
+const FLOWN_SPEED_MIN_M_PER_S: f64 = 0.02;
 /// What is shorter may stand still, m.
-const LEAST_WAY: f64 = 0.1;
+const MOVING_DISTANCE_MIN_M: f64 = 0.1;
 /// The least speed at which such a path makes sense, m/s.
-const LEAST_SPEED: f64 = 0.05;
+const PLAUSIBLE_SPEED_MIN_M_PER_S: f64 = 0.05;
 /// A heading that swings by less may be in degrees, degrees.
-const LEAST_SWING: f64 = 1.5;
+const HEADING_SWING_MIN_DEG: f64 = 1.5;
 /// What rounding may add to a turn, rad.
-const TURN_ROUNDING: f64 = 0.01;
+const HALF_ROTATION_TOLERANCE_RAD: f64 = 0.01;
 
 /// In what times are counted, if they are so great that they count from 1970, and that in s.
 pub fn since_1970(first: f64) -> Option<(&'static str, f64)> {
@@ -33,19 +33,19 @@ pub struct TooSlow {
 
 impl TooSlow {
     /// What is wrong with rows that, `stretch` times as slowly, are slower than that.
-    pub fn of(rows: &[Row], stretch: f64) -> Option<Self> {
+    pub fn find(rows: &[Row], stretch: f64) -> Option<Self> {
         let (mut fastest, mut way) = (0.0_f64, 0.0);
         for pair in rows.windows(2) {
             let distance = (pair[1].position - pair[0].position).norm();
             fastest = fastest.max(distance / (stretch * (pair[1].time? - pair[0].time?)));
             way += distance;
         }
-        if way < LEAST_WAY || fastest >= SLOWEST_FLOWN_SPEED {
+        if way < MOVING_DISTANCE_MIN_M || fastest >= FLOWN_SPEED_MIN_M_PER_S {
             return None;
         }
         let duration = stretch * (rows.last()?.time? - rows.first()?.time?);
         let units = [("ms", 1e3), ("us", 1e6), ("ns", 1e9)];
-        let (unit, _) = units.into_iter().find(|(_, factor)| fastest * factor >= LEAST_SPEED)?;
+        let (unit, _) = units.into_iter().find(|(_, factor)| fastest * factor >= PLAUSIBLE_SPEED_MIN_M_PER_S)?;
         let what = format!("takes {duration:.0} s for {way:.1} m, {:.3} mm/s at most", 1e3 * fastest);
         Some(Self { what, unit })
     }
@@ -54,13 +54,13 @@ impl TooSlow {
 /// The greatest of headings in rad, if it is so great that they are probably degrees.
 pub fn degrees_as_radians(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let most = headings.map(f64::abs).fold(0.0, f64::max);
-    (most > TAU + TURN_ROUNDING).then_some(most)
+    (most > TAU + HALF_ROTATION_TOLERANCE_RAD).then_some(most)
 }
 
 /// What may be wrong with headings that are read as degrees.
 pub fn radians_as_degrees(headings: impl Iterator<Item = f64>) -> Option<String> {
     let range = headings.map(|heading| (heading, heading)).reduce(|(low, high), (h, _)| (low.min(h), high.max(h)));
     let (low, high) = range?;
-    let is_suspect = high - low > LEAST_SWING && high.max(-low) < TAU + TURN_ROUNDING;
+    let is_suspect = high - low > HEADING_SWING_MIN_DEG && high.max(-low) < TAU + HALF_ROTATION_TOLERANCE_RAD;
     is_suspect.then(|| format!("stays between {low} and {high} degrees: name it yaw if these are radians"))
 }

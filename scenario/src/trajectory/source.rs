@@ -6,10 +6,33 @@
 use super::row::Row;
 use super::slips::{self, TooSlow};
 use super::table;
+use crate::key::{Bounds, Key, Layout, Values};
 use crate::resolution;
 use crate::section::{FieldError, Section};
 use nalgebra::Vector3;
 use std::path::Path;
+
+/// The keys of a point.
+pub const POINTS: Layout = Layout {
+    name: "points",
+    about: "The points, in order.",
+    keys: &[
+        Key::number("t", Bounds::any("s"), "When it is passed; left out beside a speed.").optional(),
+        Key::vector("position", Bounds::any("m"), "World."),
+        Key::number("heading_deg", Bounds::any("degrees"), "From world x.").or(0.0),
+        Key::number("speed", Bounds::positive("m/s"), "The greatest up to the next point.").optional(),
+    ],
+};
+
+/// The name of another file.
+pub const FILE: Key =
+    Key::new("file", Values::Text, "Beside this file: rows with t, x, y, z and more, or polynomial pieces.").optional();
+
+/// The text of another file.
+pub const DATA: Key = Key::new("data", Values::Text, "The text of such a file.").optional();
+
+/// Where positions count from.
+pub const ORIGIN: Key = Key::vector("origin", Bounds::any("m"), "Is subtracted from every position.").or(0.0);
 
 /// Where files that a scenario names lie: beside the scenario's own.
 pub type Directory<'a> = Option<&'a Path>;
@@ -47,7 +70,7 @@ impl Source {
     /// Names the field and what is wrong.
     pub fn read(section: &Section, directory: Directory) -> Result<Self, FieldError> {
         let mut source = if section.has("points") { points(section)? } else { file(section, directory)? };
-        let origin = section.vector_or("origin", Vector3::zeros())?;
+        let origin = section.vector("origin")?;
         if origin != Vector3::zeros() {
             source.rows.iter_mut().for_each(|row| row.position -= origin);
             let [x, y, z] = origin.into();
@@ -68,7 +91,7 @@ impl Source {
             let problem = "goes with points without times; leave it out, or the times";
             return Err(FieldError::new(format!("{}[{number}].speed", self.field), problem));
         }
-        match (TooSlow::of(&self.rows, stretch), self.unit) {
+        match (TooSlow::find(&self.rows, stretch), self.unit) {
             (Some(TooSlow { what, unit }), TimeUnit::Unsaid) => {
                 let remedy = format!("name its times t_{unit} if that is what they are, t_s if they are seconds");
                 return Err(FieldError::new(self.name.as_str(), format!("{what}: {remedy}")));
@@ -85,25 +108,24 @@ impl Source {
 /// What to write where `first`, m, is far away.
 fn near(first: &Vector3<f64>) -> String {
     let far =
-        first.map(|value| if value.abs() < resolution::DISTANCE_MAX { 0.0 } else { (value / 100.0).floor() * 100.0 });
+        first.map(|value| if value.abs() < resolution::DISTANCE_MAX_M { 0.0 } else { (value / 100.0).floor() * 100.0 });
     format!("write origin = {}, from which the flight then counts", crate::number::array(far.as_slice()))
 }
 
 /// The points that stand in the scenario itself.
 fn points(section: &Section) -> Result<Source, FieldError> {
     let read = |point: &Section| {
-        point.allow(&["t", "position", "heading_deg", "speed"])?;
         Ok(Row {
-            time: point.has("t").then(|| point.number("t")).transpose()?,
+            time: point.optional_number("t")?,
             position: point.vector("position")?,
-            heading: point.number_or("heading_deg", 0.0)?.to_radians(),
+            heading: point.number("heading_deg")?.to_radians(),
             velocity: None,
             acceleration: None,
-            speed: point.has("speed").then(|| point.positive_or("speed", 0.0)).transpose()?,
+            speed: point.optional_number("speed")?,
         })
     };
     let field = section.path_of("points");
-    let rows: Vec<Row> = section.sections("points")?.iter().map(read).collect::<Result<_, _>>()?;
+    let rows: Vec<Row> = section.tables(&POINTS)?.iter().map(read).collect::<Result<_, _>>()?;
     if rows.is_empty() {
         return Err(FieldError::new(field, "needs at least 1 element"));
     }

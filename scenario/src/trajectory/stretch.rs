@@ -10,12 +10,12 @@ use controller_core::reference::segment::Segment;
 use controller_core::reference::{ReferenceBounds, Trajectory};
 
 /// The order of each bound of [`ReferenceBounds`]: speed, both accelerations, jerk, snap, the heading's two.
-const ORDERS: [i32; ReferenceBounds::COUNT] = [1, 2, 2, 3, 4, 1, 2];
+const BOUND_ORDERS: [i32; ReferenceBounds::COUNT] = [1, 2, 2, 3, 4, 1, 2];
 
 /// The least k >= 0 with which `own` lies within `allowed`; infinite if one of these is zero and is needed.
 #[must_use]
 pub fn stretch(own: &ReferenceBounds, allowed: &ReferenceBounds) -> f64 {
-    let each = own.values().into_iter().zip(allowed.values()).zip(ORDERS).map(|((own, allowed), order)| {
+    let each = own.values().into_iter().zip(allowed.values()).zip(BOUND_ORDERS).map(|((own, allowed), order)| {
         if own <= 0.0 { 0.0 } else { (f64::from(own) / f64::from(allowed)).powf(1.0 / f64::from(order)) }
     });
     each.fold(0.0, f64::max)
@@ -25,7 +25,7 @@ pub fn stretch(own: &ReferenceBounds, allowed: &ReferenceBounds) -> f64 {
 #[must_use]
 pub fn stretched(own: &ReferenceBounds, k: f64) -> ReferenceBounds {
     let mut values = own.values();
-    for (value, order) in values.iter_mut().zip(ORDERS) {
+    for (value, order) in values.iter_mut().zip(BOUND_ORDERS) {
         *value = (f64::from(*value) / k.powi(order)) as f32;
     }
     ReferenceBounds::from_values(values)

@@ -25,19 +25,19 @@ use nalgebra::{Vector3, Vector4};
 use std::collections::BTreeSet;
 
 /// What rows without names hold, by how many cells they have.
-const NAMELESS: [(usize, &str); 4] =
+const NAMELESS_COLUMNS: [(usize, &str); 4] =
     [(3, "x,y,z"), (8, "t,x,y,z,qx,qy,qz,qw"), (1 + 3 * 8, "duration"), (1 + 4 * 8, "duration")];
 /// Two rows at one time that are no farther apart are one, m.
-const SAME_PLACE: f64 = 1e-3;
+const SAME_PLACE_M: f64 = 1e-3;
 /// How far the length of a quaternion may be from 1.
 const UNIT_LENGTH_TOLERANCE: f64 = 0.01;
 /// The horizontal share of the forward axis below which an attitude has no heading.
-const LEAST_FORWARD: f64 = 0.1;
+const FORWARD_SHARE_MIN: f64 = 0.1;
 
 /// Columns that may say whose a row is.
-const VEHICLES: [&str; 7] = ["id", "drone", "drone_id", "uav", "uav_id", "vehicle", "vehicle_id"];
+const VEHICLE_COLUMNS: [&str; 7] = ["id", "drone", "drone_id", "uav", "uav_id", "vehicle", "vehicle_id"];
 /// The most names of columns that a remark lists.
-const MOST_NAMES: usize = 8;
+const NAMES_LISTED_MAX: usize = 8;
 
 /// The rows of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,8 +104,8 @@ fn table(text: &str) -> Result<Table, String> {
         }
     }
     if !unused.is_empty() {
-        let more = if unused.len() > MOST_NAMES { ", …" } else { "" };
-        let listed = unused.iter().take(MOST_NAMES).copied().collect::<Vec<_>>().join(", ");
+        let more = if unused.len() > NAMES_LISTED_MAX { ", …" } else { "" };
+        let listed = unused.iter().take(NAMES_LISTED_MAX).copied().collect::<Vec<_>>().join(", ");
         remarks.push(format!("columns not used: {listed}{more}"));
     }
     columns.retain(|column| column.values.iter().any(Option::is_some));
@@ -127,7 +127,7 @@ fn names(
         names.truncate(names.len() - names.iter().rev().take_while(|name| name.is_empty()).count());
         return Ok((line, names));
     }
-    let (_, names) = NAMELESS.iter().find(|(count, _)| *count == filled(record).count()).ok_or_else(|| {
+    let (_, names) = NAMELESS_COLUMNS.iter().find(|(count, _)| *count == filled(record).count()).ok_or_else(|| {
         format!("line {first}: the names of its columns are missing; write them above, such as t,x,y,z")
     })?;
     remarks.push(format!("rows without a header are read as {names}"));
@@ -137,7 +137,7 @@ fn names(
 /// Whether a column says whose each row is: it has fewer different cells than rows, but more than one.
 fn is_vehicle(name: &str, place: usize, lines: &[Line]) -> bool {
     let whose = lines.iter().map(|(_, row)| row.get(place)).collect::<BTreeSet<_>>();
-    VEHICLES.contains(&name.to_lowercase().as_str()) && (2..lines.len()).contains(&whose.len())
+    VEHICLE_COLUMNS.contains(&name.to_lowercase().as_str()) && (2..lines.len()).contains(&whose.len())
 }
 
 /// The rows, times increasing; two at one time and in one place are one.
@@ -148,7 +148,7 @@ fn rows(columns: &[Column], lines: &[Line]) -> Result<Vec<Row>, String> {
         match rows.last() {
             Some(before) if before.time.is_some() && row.time <= before.time => {
                 let apart = (row.position - before.position).norm();
-                if row.time < before.time || apart > SAME_PLACE {
+                if row.time < before.time || apart > SAME_PLACE_M {
                     let [before, time] = [before.time, row.time].map(Option::unwrap_or_default);
                     return Err(format!("line {line}, column t: must be after {before}, found {time}; leave one out"));
                 }
@@ -306,7 +306,7 @@ fn heading(quaternion: &Vector4<f64>) -> Result<f64, String> {
     }
     let [w, x, y, z] = (*quaternion / length).into();
     let forward = [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)];
-    if forward[0].hypot(forward[1]) < LEAST_FORWARD {
+    if forward[0].hypot(forward[1]) < FORWARD_SHARE_MIN {
         return Err(": its attitude points up or down, and has no heading; give a yaw, or no quaternions".to_owned());
     }
     Ok(forward[1].atan2(forward[0]))

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const HUMMINGBIRD: &str = include_str!("../../../vehicles/hummingbird-paper-law.toml");
 
 fn refusal(text: &str) -> Option<Refusal> {
-    Verdict::of(&Scenario::parse(text, "f").unwrap()).unwrap().refusal()
+    Verdict::judge(&Scenario::parse(text, "f").unwrap()).unwrap().refusal()
 }
 
 /// Every scenario file of the repository.
@@ -25,7 +25,7 @@ fn every_shipped_file_may_fly() {
     let files = shipped();
     assert!(files.len() >= 9, "{files:?}");
     for file in files {
-        let verdict = Verdict::of(&Scenario::load(&file).unwrap()).unwrap();
+        let verdict = Verdict::judge(&Scenario::load(&file).unwrap()).unwrap();
         assert_eq!(verdict.refusal(), None, "{}", file.display());
     }
 }
@@ -33,7 +33,7 @@ fn every_shipped_file_may_fly() {
 #[test]
 fn rotors_that_follow_a_second_late_are_certified_and_refused_for_the_loop() {
     let late = HUMMINGBIRD.replace("lag = 0.005", "lag = 1.0");
-    let verdict = Verdict::of(&Scenario::parse(&late, "f").unwrap()).unwrap();
+    let verdict = Verdict::judge(&Scenario::parse(&late, "f").unwrap()).unwrap();
     assert!(verdict.certificate().holds() && verdict.certified().is_some());
     assert_eq!(verdict.loops().iter().filter(|report| report.margins.is_none()).count(), 5);
     let Some(Refusal::Loop(lack)) = verdict.refusal() else { panic!("{:?}", verdict.refusal()) };
@@ -47,12 +47,12 @@ fn a_loop_that_is_stable_with_too_little_margin_is_refused_too() {
     let rotors = &HUMMINGBIRD[HUMMINGBIRD.find("[rotors]").unwrap()..HUMMINGBIRD.find("[initial]").unwrap()];
     let with_lag = |lag: &str| format!("{PAPER}\n{}", rotors.replace("lag = 0.005", &format!("lag = {lag}")));
     let scenario = Scenario::parse(&with_lag("0.006"), "f").unwrap();
-    let verdict = Verdict::of(&scenario).unwrap();
+    let verdict = Verdict::judge(&scenario).unwrap();
     assert!(verdict.loops().iter().all(|report| report.spectral_radius < 1.0));
     let lack = verdict.lacking().unwrap();
     assert!(matches!(lack.what, Shortfall::Delay { found, .. } if found < 2e-3), "{lack}");
     let scenario = Scenario::parse(&with_lag("0.003"), "f").unwrap();
-    assert_eq!(Verdict::of(&scenario).unwrap().lacking(), None);
+    assert_eq!(Verdict::judge(&scenario).unwrap().lacking(), None);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::truth::{Moment, Truth};
 use controller_core::state::State;
 use estimation::estimator::covariance::Covariance;
 use estimation::estimator::filter::Filter;
-use estimation::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
+use estimation::estimator::{Accepted, Estimator, EstimatorParameters, Rejected, Settings};
 use estimation::imu::{Calibration, Conditioner, ImuParameters};
 use flight::Stamped;
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
@@ -13,11 +13,11 @@ use rand::Rng;
 use std::collections::VecDeque;
 
 /// How late poses come, ms, and how far apart they are.
-const LATE: usize = 20;
-const BETWEEN: usize = 10;
+const POSE_DELAY_MS: usize = 20;
+const POSE_PERIOD_MS: usize = 10;
 
-/// The last part of a flight, without poses, ms.
-const COASTING: usize = 2_000;
+/// The last part of a flight.
+const WITHOUT_POSES_MS: usize = 2_000;
 
 /// Squares of the errors at one tick: m^2, rad^2.
 pub struct TickError {
@@ -39,7 +39,7 @@ pub struct Shown {
     /// Poses taken and refused.
     pub counts: (u32, u32),
     /// What became of the last pose.
-    pub last: Option<Result<Taken, Rejected>>,
+    pub last: Option<Result<Accepted, Rejected>>,
 }
 
 /// Flies `truth`, with poses of moments that `meddle` may have changed.
@@ -49,7 +49,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
     let mut imu = Imu::new(random);
     let mut biases = VecDeque::new();
     let mut shown = Shown { ticks: Vec::new(), nees: Vec::new(), drift: [0.0; 2], counts: (0, 0), last: None };
-    let silent_from = truth.milliseconds() - COASTING;
+    let silent_from = truth.milliseconds() - WITHOUT_POSES_MS;
     for (n, moment) in truth.moments.iter().enumerate() {
         let now = n as u64 * 1_000;
         let (rate, force) = imu.sample(moment, random);
@@ -57,15 +57,18 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
         if let Some(increment) = conditioner.sample(now, &rate, Some(&force)).increment {
             estimator.imu(&increment);
         }
-        if biases.len() > LATE + 1 {
+        if biases.len() > POSE_DELAY_MS + 1 {
             biases.pop_front();
         }
-        if n % BETWEEN != 0 || n < LATE {
+        if n % POSE_PERIOD_MS != 0 || n < POSE_DELAY_MS {
             continue;
         }
-        let then = &truth.moments[n - LATE];
+        let then = &truth.moments[n - POSE_DELAY_MS];
         if n <= silent_from {
-            let stamped = Stamped { value: pose(&meddle(n - LATE, *then), random), time: now - LATE as u64 * 1_000 };
+            let stamped = Stamped {
+                value: pose(&meddle(n - POSE_DELAY_MS, *then), random),
+                time: now - POSE_DELAY_MS as u64 * 1_000,
+            };
             let _ = estimator.pose(&stamped, now);
         }
         if n < truth.counts_from {
@@ -79,7 +82,7 @@ pub fn fly(truth: &Truth, parameters: &EstimatorParameters, meddle: Meddle, rand
             shown.ticks.push(error);
         } else if n == silent_from + 500 {
             shown.drift[0] = error.position.sqrt();
-        } else if n == silent_from + COASTING {
+        } else if n == silent_from + WITHOUT_POSES_MS {
             shown.drift[1] = error.position.sqrt();
         }
     }

@@ -7,11 +7,9 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// What the sensors really are.
-pub const REAL: EstimatorParameters = EstimatorParameters::BMI088;
+pub const REAL_PARAMETERS: EstimatorParameters = EstimatorParameters::BMI088;
 
-/// One over the time between two samples, Hz.
-const RATE: f64 = 1e3;
+const SAMPLE_RATE_HZ: f64 = 1e3;
 
 /// Normal noise on three axes.
 pub fn noise(random: &mut impl Rng, deviation: f64) -> Vector3<f64> {
@@ -27,27 +25,29 @@ pub struct Imu {
 impl Imu {
     pub fn new(random: &mut impl Rng) -> Self {
         Self {
-            gyro_bias: noise(random, f64::from(REAL.gyro_bias)),
-            accelerometer_bias: noise(random, f64::from(REAL.accelerometer_bias)),
+            gyro_bias: noise(random, f64::from(REAL_PARAMETERS.gyro_bias)),
+            accelerometer_bias: noise(random, f64::from(REAL_PARAMETERS.accelerometer_bias)),
         }
     }
 
     /// Rate and force, as the sensor says. A density n sampled at f is noise of deviation n sqrt(f); a walk of density
     /// w moves by w / sqrt(f) between samples.
     pub fn sample(&mut self, moment: &Moment, random: &mut impl Rng) -> (Vector3<f32>, Vector3<f32>) {
-        self.gyro_bias += noise(random, f64::from(REAL.gyro_walk) / RATE.sqrt());
-        self.accelerometer_bias += noise(random, f64::from(REAL.accelerometer_walk) / RATE.sqrt());
-        let rate = moment.rate + self.gyro_bias + noise(random, f64::from(REAL.gyro_noise) * RATE.sqrt());
-        let force =
-            moment.force + self.accelerometer_bias + noise(random, f64::from(REAL.accelerometer_noise) * RATE.sqrt());
+        self.gyro_bias += noise(random, f64::from(REAL_PARAMETERS.gyro_walk) / SAMPLE_RATE_HZ.sqrt());
+        self.accelerometer_bias += noise(random, f64::from(REAL_PARAMETERS.accelerometer_walk) / SAMPLE_RATE_HZ.sqrt());
+        let rate =
+            moment.rate + self.gyro_bias + noise(random, f64::from(REAL_PARAMETERS.gyro_noise) * SAMPLE_RATE_HZ.sqrt());
+        let force = moment.force
+            + self.accelerometer_bias
+            + noise(random, f64::from(REAL_PARAMETERS.accelerometer_noise) * SAMPLE_RATE_HZ.sqrt());
         (rate.map(|x| x as f32), force.map(|x| x as f32))
     }
 }
 
 /// The pose of a moment.
 pub fn pose(moment: &Moment, random: &mut impl Rng) -> PoseMeasurement {
-    let position = moment.position + noise(random, f64::from(REAL.position_noise));
-    let turned = UnitQuaternion::from_scaled_axis(noise(random, f64::from(REAL.attitude_noise)));
+    let position = moment.position + noise(random, f64::from(REAL_PARAMETERS.position_noise));
+    let turned = UnitQuaternion::from_scaled_axis(noise(random, f64::from(REAL_PARAMETERS.attitude_noise)));
     let attitude = (turned * moment.attitude).into_inner();
     let single = Quaternion::from(attitude.coords.map(|x| x as f32));
     let nothing = Velocity::World(Vector3::zeros());

@@ -4,13 +4,13 @@ use controller_core::certificate::certified::Certified;
 use controller_core::law::Law;
 use host_sim::studies::tune::trials::recovery;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
 use std::path::Path;
 
-const GRAVITY: f64 = 9.81;
+const GRAVITY_M_PER_S2: f64 = 9.81;
 
 /// A vehicle at an instant.
 #[derive(Debug, Clone, Copy)]
@@ -50,7 +50,7 @@ impl Truth {
         let acceleration = |t: f64| (path(t + h) - path(t) * 2.0 + path(t - h)) / (h * h);
         let attitude = |t: f64| {
             let heading = 0.5 * t.sin();
-            let up = (acceleration(t) + Vector3::z() * GRAVITY).normalize();
+            let up = (acceleration(t) + Vector3::z() * GRAVITY_M_PER_S2).normalize();
             let left = up.cross(&Vector3::new(heading.cos(), heading.sin(), 0.0)).normalize();
             let axes = Matrix3::from_columns(&[left.cross(&up), left, up]);
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes))
@@ -58,7 +58,7 @@ impl Truth {
         let moment = |n: usize| {
             let t = n as f64 * 1e-3;
             let attitude_now = attitude(t);
-            let force = attitude_now.inverse_transform_vector(&(acceleration(t) + Vector3::z() * GRAVITY));
+            let force = attitude_now.inverse_transform_vector(&(acceleration(t) + Vector3::z() * GRAVITY_M_PER_S2));
             Moment {
                 position: path(t),
                 velocity: (path(t + h) - path(t - h)) / (2.0 * h),
@@ -87,7 +87,7 @@ impl Truth {
             let commanded = wrench.scaled(1.0 / law.thrust_scale());
             let mut clipped = false;
             for _ in 0..10 {
-                clipped |= vehicle.hold(&Asked::Wrench(commanded), 1).unwrap().0;
+                clipped |= vehicle.hold(&ActuatorDemand::Wrench(commanded), 1).unwrap().0;
                 states.push(*vehicle.state());
             }
             if clipped {
@@ -128,6 +128,6 @@ fn moment(states: &[BodyState], n: usize) -> Moment {
     let acceleration = (states[after].velocity - states[before].velocity) / seconds;
     let BodyState { position, velocity, attitude, angular_velocity: rate } = states[n];
     let attitude = UnitQuaternion::new_normalize(attitude);
-    let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * GRAVITY));
+    let force = attitude.inverse_transform_vector(&(acceleration + Vector3::z() * GRAVITY_M_PER_S2));
     Moment { position, velocity, attitude, rate, force }
 }

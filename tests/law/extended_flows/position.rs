@@ -10,16 +10,16 @@ use crate::support::random::{self, ChaCha8Rng};
 use controller_core::certificate::Certificate;
 use controller_core::extended::fallback::{Slowed, slowed};
 use controller_core::extended::parameters::ExtendedParameters;
-use controller_core::extended::position::{Filters, Most, PositionFeedback, PositionLaw};
+use controller_core::extended::position::{FeedbackLimits, Filters, PositionFeedback, PositionLaw};
 use controller_core::heading::Heading;
 use controller_core::reference::{Reference, Trajectory, hover::Hover};
 use controller_core::state::State;
 use nalgebra::{Quaternion, Vector3};
 use rand::RngExt;
 
-/// Gravity, m/s^2, and ticks so short that holding the drive makes no difference, s.
-const GRAVITY: f32 = 9.81;
-const PERIOD: f32 = 1e-7;
+/// Gravity; and ticks so short that holding the drive makes no difference.
+const GRAVITY_M_PER_S2: f32 = 9.81;
+const PERIOD_S: f32 = 1e-7;
 
 /// Position and velocity errors, c, x and y.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +52,7 @@ struct Loop {
     believed: Vector3<f32>,
     /// U, m/s^2.
     greatest: f32,
-    most: Most,
+    most: FeedbackLimits,
 }
 
 impl Loop {
@@ -60,21 +60,21 @@ impl Loop {
         let configuration = random_configuration(rng);
         let formulas = law(&configuration).parameters;
         let p = random_parameters(rng, &formulas, configuration.vehicle());
-        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::of(*p, Most::ALL, rng) }
+        if rng.random_bool(0.2) { Self::slowed(&p, rng) } else { Self::draw(*p, FeedbackLimits::UNLIMITED, rng) }
     }
 
     fn slowed(p: &ExtendedParameters, rng: &mut ChaCha8Rng) -> Self {
-        let level = Slowed::<f64>::of(p, GRAVITY).level as f32;
-        Self::of(slowed(p, GRAVITY), Most::each(level), rng)
+        let level = Slowed::<f64>::new(p, GRAVITY_M_PER_S2).level as f32;
+        Self::draw(slowed(p, GRAVITY_M_PER_S2), FeedbackLimits::each(level), rng)
     }
 
-    fn of(p: ExtendedParameters, most: Most, rng: &mut ChaCha8Rng) -> Self {
+    fn draw(p: ExtendedParameters, most: FeedbackLimits, rng: &mut ChaCha8Rng) -> Self {
         let mut believed = random::vector(rng, 0.7 * p.force_across);
         believed.z = rng.random_range(-p.force_down..=p.force_up);
         // Thrust for the force and for turning against it.
-        let needed = believed.xy().norm().hypot(GRAVITY - believed.z);
+        let needed = believed.xy().norm().hypot(GRAVITY_M_PER_S2 - believed.z);
         let greatest = needed * rng.random_range(1.5..5.0);
-        let law = PositionLaw::new(&p, GRAVITY, PERIOD).unwrap();
+        let law = PositionLaw::new(&p, GRAVITY_M_PER_S2, PERIOD_S).unwrap();
         Self { p, law, force: believed.cast(), believed, greatest, most }
     }
 
@@ -124,7 +124,7 @@ impl Loop {
     /// |rho'| and rho'' without its radial part, for a reference at rest.
     fn turning(&self, x: &Translation) -> [f64; 2] {
         let [k_f, k_s] = [self.p.k_f, self.p.k_s].map(f64::from);
-        let u = x.c + Vector3::z() * f64::from(GRAVITY);
+        let u = x.c + Vector3::z() * f64::from(GRAVITY_M_PER_S2);
         let rate = (x.x - x.c) * k_f;
         let second = ((x.y - x.x) * k_s - rate) * k_f;
         let (n, rho) = (u.norm(), u.normalize());
@@ -152,8 +152,11 @@ impl Loop {
     /// The vertical's level in either direction.
     fn level(&self, upwards: bool) -> f64 {
         let d = self.force.z;
-        let level =
-            if upwards { f64::from(self.greatest) - f64::from(GRAVITY) + d } else { f64::from(self.p.a_down) - d };
+        let level = if upwards {
+            f64::from(self.greatest) - f64::from(GRAVITY_M_PER_S2) + d
+        } else {
+            f64::from(self.p.a_down) - d
+        };
         level.max(0.3).min(self.most())
     }
 
@@ -163,7 +166,7 @@ impl Loop {
 
     /// The level across while the vertical rests.
     fn level_across(&self) -> f64 {
-        let (lift, greatest) = (f64::from(GRAVITY) - self.force.z, f64::from(self.greatest));
+        let (lift, greatest) = (f64::from(GRAVITY_M_PER_S2) - self.force.z, f64::from(self.greatest));
         let tangent = f64::from(self.p.tilt_max).tan();
         let left = (greatest * greatest - lift * lift).sqrt();
         let reach = f64::from(self.p.a_across).min(0.95 * lift * tangent).min(0.95 * left);
@@ -260,7 +263,7 @@ fn v_0_never_rises_along_flows() {
             let [f, s, d] = flying.lags();
             let filtered = x.c.norm() * f.x + x.x.norm() * s.x + x.y.norm() * d.x;
             let steep = 6e-8 * (gain * (x.position.norm() + x.velocity.norm()) + rate * filtered);
-            let forced = level + flying.force.norm() + f64::from(GRAVITY);
+            let forced = level + flying.force.norm() + f64::from(GRAVITY_M_PER_S2);
             let allowed = z_2.norm() * (2e-6 * forced + 4.0 * steep) + 1e-15 * v_0(&x) / step;
             assert!(
                 v_dot <= allowed,
@@ -279,7 +282,7 @@ fn v_0_never_rises_on_flights_under_a_constant_force_and_they_arrive() {
     let mut flown = 0;
     while flown < 20 {
         let configuration = random_configuration(&mut rng);
-        let flying = Loop::of(*law(&configuration).parameters, Most::ALL, &mut rng);
+        let flying = Loop::draw(*law(&configuration).parameters, FeedbackLimits::UNLIMITED, &mut rng);
         // With little more than the force takes, swinging in takes minutes.
         if flying.level_across() < 2.0 {
             continue;

@@ -11,8 +11,7 @@ use controller_core::state::Wrench;
 use nalgebra::Vector3;
 use rand::RngExt;
 
-/// Control period, s.
-const PERIOD: f32 = 0.01;
+const PERIOD_S: f32 = 0.01;
 
 /// When the reference rests, and the flight's end, s.
 const REFERENCE_RESTS_AT: u32 = 150;
@@ -31,7 +30,7 @@ fn fly(name: &str, rng: &mut ChaCha8Rng) -> Shown {
     let configuration = with_ideal_actuators(&vehicle(name).configuration);
     let configuration = with_constants(&configuration, |p| p.drag_across = 0.0);
     let (p, vehicle) = (law(&configuration).parameters, configuration.vehicle());
-    let Flown::Extended(mut controller) = Flown::uncertified(&configuration, PERIOD).unwrap() else {
+    let Flown::Extended(mut controller) = Flown::uncertified(&configuration, PERIOD_S).unwrap() else {
         panic!("another law")
     };
     let scale = rng.random_range(p.scale_least..p.scale_greatest);
@@ -45,7 +44,7 @@ fn fly(name: &str, rng: &mut ChaCha8Rng) -> Shown {
         body
     };
     let (mut body, mut shown, mut nearest) = (anywhere(rng), Shown { times: 0, needed: [0.0; 2] }, f64::INFINITY);
-    let ticks = |seconds: u32| (seconds as f32 / PERIOD).round() as u32;
+    let ticks = |seconds: u32| (seconds as f32 / PERIOD_S).round() as u32;
     for tick in 0..ticks(FLIGHT_ENDS_AT) {
         if tick == ticks(THROWN_AT) {
             assert!(controller.memory().fallback.is_slow(), "{name}: not slowed");
@@ -71,9 +70,9 @@ fn fly(name: &str, rng: &mut ChaCha8Rng) -> Shown {
         }
         let acting = Wrench { thrust: wrench.thrust * scale, torque: wrench.torque * scale }
             .scaled(1.0 / controller.thrust_scale());
-        let kick = force * (0.5 * f64::from(PERIOD));
+        let kick = force * (0.5 * f64::from(PERIOD_S));
         body.velocity += kick;
-        body.advance(vehicle, &acting, PERIOD.into(), 4);
+        body.advance(vehicle, &acting, PERIOD_S.into(), 4);
         body.velocity += kick;
     }
     let fallback = &controller.memory().fallback;

@@ -16,7 +16,7 @@
 //! Across jumps, sigma_omega taken componentwise reaches sqrt(3) M*: a > sqrt(3) b M* alpha_theta / (gamma_theta delta
 //! (2 + delta)), 0.022 b. `Weights::sufficient` takes the greatest of all and 1 % more.
 
-use super::{PERIOD, configuration};
+use super::{PERIOD_S, configuration};
 use crate::support::oracle::rounding::situation;
 use crate::support::oracle::{Evaluation, Law, lifting, skew};
 use crate::support::random::{self, ChaCha8Rng};
@@ -178,7 +178,7 @@ impl Rotating {
     pub fn tick(&self, vehicle: Vehicle, gains: Gains) -> (Vector3<f64>, Vector3<f64>) {
         let q = self.lifted.cast::<f32>();
         let lift = Some(Lift { memory: Quaternion::new(q[0], q[1], q[2], q[3]), sign: 1.0 });
-        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD_S as f32).unwrap();
         controller.restore(Memory { filter: self.filter, lift });
         let (wrench, diagnostics) = controller.step(&self.state, &self.reference).unwrap();
         (wrench.torque.cast(), diagnostics.mrp.cast())

@@ -4,7 +4,7 @@
 
 use super::attitude::{Weights, random_rate_error};
 use super::position::{Translation, random_translation};
-use super::{PERIOD, hover};
+use super::{PERIOD_S, hover};
 use crate::support::body::Body;
 use crate::support::oracle::Law;
 use crate::support::random;
@@ -12,12 +12,12 @@ use controller_core::controller::Controller;
 use nalgebra::Vector3;
 
 /// Below this, in m^2/s^3 or J, single precision rather than the law decides which way a Lyapunov function goes.
-const FLOOR: f64 = 1e-9;
+const ROUNDING_FLOOR: f64 = 1e-9;
 
 #[test]
 fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
     // A minute: 30 m and 30 m/s away, braking at M_p takes half of it.
-    const TICKS: u32 = 6_000;
+    const FLIGHT_TICKS: u32 = 6_000;
     let vehicle = random::paper_vehicle();
     let gains = random::paper_gains(&vehicle);
     let law = Law::new(&vehicle, &gains);
@@ -25,15 +25,15 @@ fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
     let (mut rises, mut samples) = (0_u32, 0_u32);
     for _ in 0..400 {
         let mut x = random_translation(&mut rng, &law, 30.0);
-        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD_S as f32).unwrap();
         let mut before = x.v_1(&law);
-        for _ in 0..TICKS {
-            if before < FLOOR {
+        for _ in 0..FLIGHT_TICKS {
+            if before < ROUNDING_FLOOR {
                 break;
             }
             let feedback = x.tick(&mut controller);
             // Midpoint steps of the error dynamics with the thrust where it should be; 20 of them in a tick.
-            let h = PERIOD / 20.0;
+            let h = PERIOD_S / 20.0;
             for _ in 0..20 {
                 let along = |h: f64, k: [Vector3<f64>; 4]| Translation(std::array::from_fn(|i| x.0[i] + h * k[i]));
                 x = along(h, along(h / 2.0, x.flow(&law, feedback)).flow(&law, feedback));
@@ -50,7 +50,7 @@ fn v_1_seldom_rises_with_inputs_held_at_100_hz() {
 
 #[test]
 fn v_2_seldom_rises_with_inputs_held_at_100_hz() {
-    const TICKS: u32 = 600;
+    const FLIGHT_TICKS: u32 = 600;
     let vehicle = random::paper_vehicle();
     let gains = random::paper_gains(&vehicle);
     let law = Law::new(&vehicle, &gains);
@@ -66,9 +66,9 @@ fn v_2_seldom_rises_with_inputs_held_at_100_hz() {
             body.position = random::vector(&mut rng, 20.0).cast();
             body.velocity = random::vector(&mut rng, 10.0).cast();
         }
-        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap();
+        let mut controller = Controller::uncertified(vehicle, gains, None, PERIOD_S as f32).unwrap();
         let (mut v_1, mut v_2, mut violent) = (f64::INFINITY, f64::INFINITY, true);
-        for _ in 0..TICKS {
+        for _ in 0..FLIGHT_TICKS {
             let (wrench, d) = controller.step(&body.state(), &hover()).unwrap();
             let errors = [d.position_error, d.velocity_error, d.filtered, d.intermediate];
             let now = Translation(errors.map(|v| v.cast())).v_1(&law);
@@ -79,7 +79,7 @@ fn v_2_seldom_rises_with_inputs_held_at_100_hz() {
             *rises_2 += u32::from(violent && now > v_2);
             v_2 = now;
             violent = d.mrp.norm() > 0.05 || d.angular_velocity_error.norm() > 0.5;
-            body.advance(&vehicle, &wrench, PERIOD, 5);
+            body.advance(&vehicle, &wrench, PERIOD_S, 5);
         }
     }
     for (from, [samples, rises_1, rises_2]) in ["rest at the reference", "far and fast"].iter().zip(counts) {

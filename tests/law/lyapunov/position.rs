@@ -1,6 +1,6 @@
 //! V_1, eq. (LyapunovFunctionV), of the position loop.
 
-use super::{PERIOD, configuration, hover};
+use super::{PERIOD_S, configuration, hover};
 use crate::support::oracle::Law;
 use crate::support::random::{self, ChaCha8Rng};
 use controller_core::controller::{Controller, Memory};
@@ -86,7 +86,7 @@ fn v_1_falls_at_any_z_and_filter_states() {
         let exact = x.v_1_dot(&law, -law.saturate(law.k_p * z_1 + law.k_v * z_2));
         assert!(exact < 0.0, "case {number}: dV_1/dt = {exact:e} at z_1 {z_1}, z_2 {z_2}");
         // The same with the core's own feedback, whose rounding moves dV_1/dt by as much as it moves ubar_p.
-        let core = x.tick(&mut Controller::uncertified(vehicle, gains, None, PERIOD as f32).unwrap());
+        let core = x.tick(&mut Controller::uncertified(vehicle, gains, None, PERIOD_S as f32).unwrap());
         let rounding = (core + law.saturate(law.k_p * z_1 + law.k_v * z_2)).norm();
         let moved = x.v_1_dot(&law, core);
         assert!(moved < 0.0, "case {number}: dV_1/dt = {moved:e} with the core's feedback, {rounding:e} m/s^2 off");

@@ -8,7 +8,7 @@ use scenario::sampled_loop::{Axis, LoopModel, Timing};
 use std::sync::LazyLock;
 
 /// 100 Hz, ideal rotors, no delay.
-pub const IDEAL: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
+pub const IDEAL_TIMING: Timing = Timing { period: 0.01, rotor_lag: 0.0, delay_samples: 0.0 };
 
 static PAPER: LazyLock<Scenario> = LazyLock::new(|| Scenario::paper().unwrap());
 

@@ -12,7 +12,7 @@ use controller_core::reference::Trajectory;
 use controller_core::reference::hover::Hover;
 use host_sim::flight;
 use host_sim::vehicle::SimulatedVehicle;
-use host_sim::vehicle::actuators::Asked;
+use host_sim::vehicle::actuators::ActuatorDemand;
 use nalgebra::{Quaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
@@ -20,14 +20,14 @@ use scenario::reality::Reality;
 use scenario::sampled_loop::{Axis, Margins};
 use std::thread;
 
-const FILES: [(&str, &str); 3] = [
+const SCENARIO_FILES: [(&str, &str); 3] = [
     ("Hummingbird", include_str!("../../../vehicles/hummingbird.toml")),
     ("study", include_str!("../../../vehicles/study.toml")),
     ("paper's vehicle", include_str!("../../../scenarios/paper-extended.toml")),
 ];
 
-/// How far from what is predicted a flown margin may be.
-const TOLERANCE: f64 = 0.01;
+/// How far a flown margin may be from the predicted one.
+const MARGIN_TOLERANCE: f64 = 0.01;
 
 /// The file's scenario; with no force across estimated for an attitude loop, which is by itself.
 fn parse(text: &str, axis: Axis) -> Scenario {
@@ -74,10 +74,10 @@ impl Bench {
     /// Whether the motion grows with the command `gain` times as strong and `later` plant steps later than the law
     /// knows.
     fn grows(&self, gain: f64, later: u64) -> bool {
-        /// Ticks of the start, of a stretch after it, and how many of those are flown at most.
-        const START: usize = 100;
-        const STRETCH: usize = 1500;
-        const STRETCHES: usize = 10;
+        /// Of the start, and of a stretch after it; and how many of those are flown at most.
+        const START_TICKS: usize = 100;
+        const STRETCH_TICKS: usize = 1500;
+        const STRETCHES_MAX: usize = 10;
         let mut scenario = self.scenario.clone();
         scenario.delay_steps += later;
         let vehicle = scenario.configuration.vehicle();
@@ -103,21 +103,22 @@ impl Bench {
                 let motion = *component - rest;
                 *component = rest + gain as f32 * motion;
                 // A rotor saturates when the motion has grown a thousand times.
-                let (clipped, _) = body.hold(&Asked::Wrench(commanded), scenario.timing.steps_per_tick).unwrap();
+                let (clipped, _) =
+                    body.hold(&ActuatorDemand::Wrench(commanded), scenario.timing.steps_per_tick).unwrap();
                 if clipped { f32::INFINITY } else { peak.max(motion.abs()) }
             })
         };
-        let start = peak(START);
+        let start = peak(START_TICKS);
         if start.is_infinite() {
             return true;
         }
         let mut last = start;
-        for stretch in 0..STRETCHES {
-            let next = peak(STRETCH);
+        for stretch in 0..STRETCHES_MAX {
+            let next = peak(STRETCH_TICKS);
             if next > 10.0 * start || next < 0.1 * start {
                 return next > start;
             }
-            if stretch + 1 == STRETCHES {
+            if stretch + 1 == STRETCHES_MAX {
                 // What neither grows nor dies is an oscillation that the levels hold.
                 return next > 0.997 * last;
             }
@@ -129,7 +130,7 @@ impl Bench {
 
 /// Where `grows` changes between 1 - w and 1 + w times what is predicted, w being a few tolerances.
 fn flown(predicted: f64, grows_beyond: bool, grows: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (1.0 - 4.0 * TOLERANCE, 1.0 + 4.0 * TOLERANCE);
+    let (mut low, mut high) = (1.0 - 4.0 * MARGIN_TOLERANCE, 1.0 + 4.0 * MARGIN_TOLERANCE);
     assert!(grows(low * predicted) != grows_beyond, "{predicted}: lost already at {low} of it");
     assert!(grows(high * predicted) == grows_beyond, "{predicted}: still there at {high} of it");
     for _ in 0..4 {
@@ -156,7 +157,7 @@ fn predicted(scenario: &Scenario, axis: Axis) -> Margins {
 
 #[test]
 fn margins_are_where_the_flight_begins_to_oscillate() {
-    let flights: Vec<_> = FILES
+    let flights: Vec<_> = SCENARIO_FILES
         .map(|(name, text)| {
             thread::spawn(move || {
                 Axis::ALL.map(|axis| {
@@ -190,7 +191,7 @@ fn margins_are_where_the_flight_begins_to_oscillate() {
     for (name, axis, _, found, flown) in &flights {
         for (predicted, flown) in [found.gain_up, found.gain_down, found.delay].into_iter().zip(flown) {
             assert!(
-                (flown / predicted - 1.0).abs() < TOLERANCE,
+                (flown / predicted - 1.0).abs() < MARGIN_TOLERANCE,
                 "{name} {axis:?}: {flown} flown, {predicted} predicted"
             );
         }
@@ -199,7 +200,7 @@ fn margins_are_where_the_flight_begins_to_oscillate() {
 
 #[test]
 fn in_air_every_margin_is_wider() {
-    for (name, text) in &FILES[..2] {
+    for (name, text) in &SCENARIO_FILES[..2] {
         for axis in Axis::ALL {
             let Margins { gain_up, gain_down, delay, .. } = predicted(&parse(text, axis), axis);
             let bench = Bench::new(text, axis, 2, |reality| reality);

@@ -1,6 +1,6 @@
 //! Margins: exactly there, and not earlier, an eigenvalue of the written-out loop leaves the unit circle.
 
-use super::common::{IDEAL, model, vehicle};
+use super::common::{IDEAL_TIMING, model, vehicle};
 use super::oracle;
 use controller_core::gains::GainParameters;
 use scenario::sampled_loop::{Axis, Timing};
@@ -117,7 +117,7 @@ fn delay_that_makes_commands_alternate_ends_the_margin() {
         ..GainParameters::TABLE_1
     };
     for delay_samples in [0.0, 0.55, 0.6] {
-        let timing = Timing { period: 0.02, delay_samples, ..IDEAL };
+        let timing = Timing { period: 0.02, delay_samples, ..IDEAL_TIMING };
         ends_where_it_says(Axis::LateralY, gains, timing);
     }
 }
@@ -133,7 +133,7 @@ fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
         k_s: 2.743_467_8,
         ..GainParameters::TABLE_1
     };
-    let timing = Timing { period: 0.05, delay_samples: 1.53125, ..IDEAL };
+    let timing = Timing { period: 0.05, delay_samples: 1.53125, ..IDEAL_TIMING };
     assert!(delayed(Axis::Vertical, &gains, timing, 0.06) > 1.0);
     assert!(ends_where_it_says(Axis::Vertical, gains, timing) < 0.06);
 }
@@ -141,7 +141,7 @@ fn a_margin_ends_where_more_delay_makes_a_crossing_of_its_own() {
 #[test]
 fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
     // J s^2 + k_omega s + k_theta / 16: |L| = 1 at w, phase left atan(k_omega w / (k_theta / 16)), half a sample held.
-    let timing = Timing { period: 1e-4, ..IDEAL };
+    let timing = Timing { period: 1e-4, ..IDEAL_TIMING };
     let margins = model(GainParameters::TABLE_1, timing).report(Axis::Roll).margins.unwrap();
     let (inertia, k_omega, spring) = (2.24e-3_f64, 0.1_f64, 6.25_f64);
     let squared =
@@ -158,7 +158,7 @@ fn fast_sampling_gives_the_textbook_margins_of_a_damped_spring() {
 fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
     // An attitude loop that hardly carries the position loop in front of it.
     let gains = GainParameters { k_theta: 1.2, k_omega: 0.02, ..GainParameters::TABLE_1 };
-    let at = |period: f64, axis: Axis| model(gains, Timing { period, ..IDEAL }).report(axis).margins.unwrap();
+    let at = |period: f64, axis: Axis| model(gains, Timing { period, ..IDEAL_TIMING }).report(axis).margins.unwrap();
     for axis in [Axis::LateralX, Axis::LateralY, Axis::Vertical] {
         let (slow, fast) = (at(1e-3, axis), at(1e-5, axis));
         for (slow, fast) in
@@ -172,6 +172,6 @@ fn faster_ticks_do_not_hide_the_margins_of_slow_loops() {
 
 #[test]
 fn an_unstable_loop_has_no_margins() {
-    let report = model(GainParameters::TABLE_1, Timing { delay_samples: 1.0, ..IDEAL }).report(Axis::Roll);
+    let report = model(GainParameters::TABLE_1, Timing { delay_samples: 1.0, ..IDEAL_TIMING }).report(Axis::Roll);
     assert!(report.spectral_radius > 1.0 && report.margins.is_none());
 }

@@ -4,22 +4,22 @@
 //! theta = tan(angle / 4),  tau = -(1 + theta^2) / 4 s(k_theta theta) - s(k_omega rate),  s(x) = M x / sqrt(M^2 + x^2)
 //! ```
 
-use super::common::{IDEAL, body_axis, model, vehicle};
+use super::common::{IDEAL_TIMING, body_axis, model, vehicle};
 use controller_core::gains::GainParameters;
 use scenario::sampled_loop::{Axis, Timing};
 use std::collections::VecDeque;
 
-const ATTITUDE: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
+const ATTITUDE_AXES: [Axis; 3] = [Axis::Roll, Axis::Pitch, Axis::Yaw];
 
 /// Peak |angle| in each window of `window` seconds, from rest at `angle` rad.
 fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize) -> Vec<f64> {
-    /// Steps of the midpoint rule in a period.
-    const SUBSTEPS: usize = 100;
+    /// Of the midpoint rule.
+    const SUBSTEPS_PER_PERIOD: usize = 100;
     let inertia = f64::from(vehicle().inertia[body_axis(axis).unwrap()]);
     let saturated = |x: f64, level: f64| level * x / (level * level + x * x).sqrt();
     let whole = timing.delay_samples as usize;
-    let late = ((timing.delay_samples - whole as f64) * SUBSTEPS as f64).round() as usize;
-    let dt = timing.period / SUBSTEPS as f64;
+    let late = ((timing.delay_samples - whole as f64) * SUBSTEPS_PER_PERIOD as f64).round() as usize;
+    let dt = timing.period / SUBSTEPS_PER_PERIOD as f64;
     let ticks = (window / timing.period).round() as usize;
 
     let (mut rate, mut torque) = (0.0_f64, 0.0_f64);
@@ -38,7 +38,7 @@ fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize
             );
             commands.push_front(-0.25 * (1.0 + mrp * mrp) * attitude - damping);
             commands.pop_back();
-            for substep in 0..SUBSTEPS {
+            for substep in 0..SUBSTEPS_PER_PERIOD {
                 let command = if substep < late { commands[whole + 1] } else { commands[whole] };
                 let towards =
                     |torque: f64| if timing.rotor_lag > 0.0 { (command - torque) / timing.rotor_lag } else { 0.0 };
@@ -58,8 +58,8 @@ fn peaks(axis: Axis, timing: Timing, mut angle: f64, window: f64, windows: usize
 
 #[test]
 fn five_milliseconds_of_lag_settle_from_any_angle() {
-    let timing = Timing { rotor_lag: 0.005, ..IDEAL };
-    for axis in ATTITUDE {
+    let timing = Timing { rotor_lag: 0.005, ..IDEAL_TIMING };
+    for axis in ATTITUDE_AXES {
         assert!(model(GainParameters::TABLE_1, timing).spectral_radius(axis) < 1.0);
         for start in [0.01, 0.5, 3.0] {
             let last = peaks(axis, timing, start, 1.0, 10)[9];
@@ -82,16 +82,16 @@ fn limit_cycle(axis: Axis, timing: Timing) -> f64 {
 
 #[test]
 fn ten_milliseconds_of_lag_and_more_end_in_a_limit_cycle() {
-    for axis in ATTITUDE {
-        let amplitudes = [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, Timing { rotor_lag, ..IDEAL }));
+    for axis in ATTITUDE_AXES {
+        let amplitudes = [0.010, 0.015, 0.030].map(|rotor_lag| limit_cycle(axis, Timing { rotor_lag, ..IDEAL_TIMING }));
         assert!(amplitudes[0] > 1e-3 && amplitudes.is_sorted(), "{axis:?} {amplitudes:?}");
     }
 }
 
 #[test]
 fn one_sample_of_delay_cannot_hold_still() {
-    for axis in ATTITUDE {
-        let amplitude = limit_cycle(axis, Timing { delay_samples: 1.0, ..IDEAL });
+    for axis in ATTITUDE_AXES {
+        let amplitude = limit_cycle(axis, Timing { delay_samples: 1.0, ..IDEAL_TIMING });
         assert!(amplitude > 1e-3, "{axis:?}: {amplitude}");
     }
 }
@@ -100,8 +100,8 @@ fn one_sample_of_delay_cannot_hold_still() {
 fn small_motions_grow_and_shrink_at_the_predicted_rate() {
     for (rotor_lag, delay_samples) in [(0.005, 0.0), (0.008, 0.0), (0.010, 0.0), (0.0, 0.5), (0.0, 1.0), (0.005, 1.25)]
     {
-        let timing = Timing { rotor_lag, delay_samples, ..IDEAL };
-        for axis in ATTITUDE {
+        let timing = Timing { rotor_lag, delay_samples, ..IDEAL_TIMING };
+        for axis in ATTITUDE_AXES {
             // So small that it stays linear however it grows. Peaks of windows show the rate but for half an
             // oscillation (9 samples at most) and for what a peak between two samples hides (4 %).
             let peaks = peaks(axis, timing, 1e-60, 1.0, 5);

@@ -2,7 +2,7 @@
 //!
 //! The law here is checked against the flying one by differences about hover; the analysis is checked against this.
 
-use super::common::{IDEAL, body_axis, model, vehicle};
+use super::common::{IDEAL_TIMING, body_axis, model, vehicle};
 use crate::support::extended::{law as extended, paper_vehicle, without_estimates};
 use controller_core::configuration::ExtendedLaw;
 use controller_core::controller::{Controller, Memory};
@@ -285,7 +285,7 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
     let ExtendedLaw { parameters: p, .. } = extended(&configuration);
     let inertia = vehicle().inertia.z;
     let [tilt, yaw] = [[p.k_tilt / 4.0, p.k_omega_t], [inertia * p.c_1, inertia * p.c_2]];
-    let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL };
+    let timing = Timing { rotor_lag: 0.012, delay_samples: 0.7, ..IDEAL_TIMING };
     let model = LoopModel::new(&vehicle(), configuration.law(), timing).unwrap();
     for axis in Axis::ALL {
         let (across, vertical) = ([p.k_p_across, p.k_v_across], [p.k_p_vertical, p.k_v_vertical]);
@@ -304,7 +304,7 @@ fn the_extended_law_without_estimates_is_the_papers_with_other_slopes_and_its_dr
 
 #[test]
 fn the_oracle_needs_no_lag_to_be_small() {
-    let ideal = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, IDEAL, 1.0);
-    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, Timing { rotor_lag: 1e-5, ..IDEAL }, 1.0);
+    let ideal = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, IDEAL_TIMING, 1.0);
+    let nearly = spectral_radius(Axis::Roll, &GainParameters::TABLE_1, Timing { rotor_lag: 1e-5, ..IDEAL_TIMING }, 1.0);
     assert!((ideal - nearly).abs() < 1e-3);
 }

@@ -2,7 +2,7 @@
 
 use super::case::{Case, Random};
 use super::path::Path;
-use controller_core::governor::{Governor, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, HeadingSetpoint, Motion, Setpoint};
 use controller_core::prelude::{Reference, Vector3};
 use core::f32::consts::{PI, TAU};
 
@@ -86,20 +86,26 @@ impl Adversary {
             },
         };
         let turn = |random: &mut Random| match random.below(3) {
-            0 => Turn::Keep,
-            1 => Turn::Angle { angle: random.between(-10.0, 10.0), rate: random.between(-1.0, 1.0) },
-            _ => Turn::Rate(random.between(-3.0, 3.0)),
+            0 => HeadingSetpoint::Keep,
+            1 => HeadingSetpoint::Angle { angle: random.between(-10.0, 10.0), rate: random.between(-1.0, 1.0) },
+            _ => HeadingSetpoint::Rate(random.between(-3.0, 3.0)),
         };
         let setpoint = match self {
             Self::Jumps if tick.is_multiple_of(often) => Setpoint { motion: anywhere(random), turn: turn(random) },
             Self::Resonance { first, second } => {
                 // The signs that make snap's second difference greatest: windows' blocks alternate.
                 let positive = (tick / second.max(1) + tick / first.max(1)).is_multiple_of(2);
-                Setpoint { motion: Motion::Velocity(sided(positive) * 100.0), turn: Turn::Rate(side(positive) * 9.0) }
+                Setpoint {
+                    motion: Motion::Velocity(sided(positive) * 100.0),
+                    turn: HeadingSetpoint::Rate(side(positive) * 9.0),
+                }
             }
             Self::Reversals { ticks } => {
                 let positive = (tick / ticks).is_multiple_of(2);
-                Setpoint { motion: Motion::Velocity(sided(positive) * 100.0), turn: Turn::Rate(side(positive) * 9.0) }
+                Setpoint {
+                    motion: Motion::Velocity(sided(positive) * 100.0),
+                    turn: HeadingSetpoint::Rate(side(positive) * 9.0),
+                }
             }
             Self::Far if tick.is_multiple_of(often * 10) => {
                 Setpoint { motion: Motion::Position(random.vector(1e6)), turn: turn(random) }
@@ -108,7 +114,7 @@ impl Adversary {
                 let size = random.sized(1e-6, 1e-2);
                 let angle = now.heading.direction().y.atan2(now.heading.direction().x) + random.between(-size, size);
                 let motion = Motion::Position(now.position + random.vector(size));
-                Setpoint { motion, turn: Turn::Angle { angle, rate: 0.0 } }
+                Setpoint { motion, turn: HeadingSetpoint::Angle { angle, rate: 0.0 } }
             }
             Self::Broken if random.below(20) == 0 => {
                 let sent = Setpoint { motion: anywhere(random), turn: turn(random) };
@@ -117,7 +123,8 @@ impl Adversary {
                 }
                 let mut position = random.vector(3.0);
                 position[random.below(3) as usize] = [f32::NAN, f32::INFINITY, 1e30][random.below(3) as usize];
-                let refused = governor.accept(&Setpoint { motion: Motion::Position(position), turn: Turn::Rate(1.0) });
+                let refused =
+                    governor.accept(&Setpoint { motion: Motion::Position(position), turn: HeadingSetpoint::Rate(1.0) });
                 assert!(refused.is_err());
                 return;
             }
@@ -140,7 +147,7 @@ impl Adversary {
                         acceleration: random.vector(20.0),
                     },
                 };
-                Setpoint { motion, turn: Turn::Angle { angle: rate * time, rate } }
+                Setpoint { motion, turn: HeadingSetpoint::Angle { angle: rate * time, rate } }
             }
             Self::Following { path, every, trouble } => {
                 let time = f64::from(tick) * f64::from(period);
@@ -154,13 +161,13 @@ impl Adversary {
                     Trouble::Switches if due => path.motion(time + f64::from(seconds / 11)),
                     _ => return,
                 };
-                Setpoint { motion, turn: Turn::Keep }
+                Setpoint { motion, turn: HeadingSetpoint::Keep }
             }
             Self::Antipodes if tick.is_multiple_of(often) => {
                 let here = now.heading.direction().y.atan2(now.heading.direction().x);
                 let angle = here + PI + random.between(-0.01, 0.01);
                 let rate = [0.0, 100.0, -100.0, 1e6][random.below(4) as usize];
-                Setpoint { motion: anywhere(random), turn: Turn::Angle { angle, rate } }
+                Setpoint { motion: anywhere(random), turn: HeadingSetpoint::Angle { angle, rate } }
             }
             _ => return,
         };

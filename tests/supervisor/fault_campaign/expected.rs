@@ -23,7 +23,7 @@ pub enum Severity {
 
 impl Severity {
     /// What a mode amounts to.
-    pub fn of(mode: Mode) -> Self {
+    pub fn from_mode(mode: Mode) -> Self {
         match mode {
             Mode::MotorTest | Mode::Idling | Mode::TakingOff | Mode::Flying => Self::CarryOn,
             Mode::Holding => Self::Hold,
@@ -56,8 +56,8 @@ pub struct Answer {
     pub forbids_arming: bool,
 }
 
-/// Nothing follows.
-const NOTHING: Answer = Answer {
+/// No reaction follows.
+const NO_ANSWER: Answer = Answer {
     in_flight: &[],
     most: CarryOn,
     idling: None,
@@ -69,11 +69,11 @@ const NOTHING: Answer = Answer {
 
 /// No poses, or poses that lie: a second on the IMU, and half a tick for the last to arrive late; then down.
 const NO_POSES: Answer =
-    Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NOTHING };
+    Answer { in_flight: &[(Descend, 1.1)], most: Descend, idling: Some(1.1), forbids_arming: true, ..NO_ANSWER };
 
 /// Something outside pushes: the vehicle may go where it likes, and without a pose the push is not observable apart
 /// from a lie.
-const PUSHED: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NOTHING };
+const PUSHED_ANSWER: Answer = Answer { most: Land, descent_may_end: true, is_gentle: false, ..NO_ANSWER };
 
 /// Nothing can be flown any more, at once.
 const AT_ONCE: Answer = Answer {
@@ -87,8 +87,8 @@ const AT_ONCE: Answer = Answer {
 };
 
 /// The vehicle may be lost: it must be off in the end, and nothing is too much.
-const LOST: Answer =
-    Answer { in_flight: &[], most: Off, idling: None, descent_may_end: true, is_gentle: false, ..NOTHING };
+const LOST_ANSWER: Answer =
+    Answer { in_flight: &[], most: Off, idling: None, descent_may_end: true, is_gentle: false, ..NO_ANSWER };
 
 /// How long a landing within the fence takes at most, s: 12 s, and twice what 4 m take at 0.5 m/s.
 const CARRIED_FOR: f64 = 28.0;
@@ -100,7 +100,7 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         // On the ground a frame that stays where it has jumped to is followed.
         Failure::PoseJumps | Failure::PoseTurns => Answer { forbids_arming: false, ..NO_POSES },
         // The poses come back, and the vehicle holds.
-        Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NOTHING },
+        Failure::PoseOutage => Answer { in_flight: &[(Hold, 1.1)], most: Descend, idling: Some(1.1), ..NO_ANSWER },
         // It takes a while until a drift is more than noise.
         Failure::PoseDrifts => Answer { in_flight: &[(Descend, 2.0)], idling: Some(2.0), ..NO_POSES },
         // On the ground they may be of a simulated vehicle that stands still. Stopping a take-off then stops the
@@ -111,41 +111,43 @@ pub fn answer(failure: Failure, phase: Phase) -> Answer {
         Failure::PoseFreezes => {
             Answer { in_flight: &[(Descend, 1.3)], idling: None, forbids_arming: false, ..NO_POSES }
         }
-        Failure::FrameMoves => NOTHING,
+        Failure::FrameMoves => NO_ANSWER,
         // What the IMU feels of it without a pose, with the air's drag, may be too much for an IMU that is right.
-        Failure::Thermal => Answer { descent_may_end: true, is_gentle: false, ..NOTHING },
+        Failure::Thermal => Answer { descent_may_end: true, is_gentle: false, ..NO_ANSWER },
         Failure::PoseVague => Answer { in_flight: &[], idling: None, forbids_arming: false, ..NO_POSES },
         Failure::SetpointsLost if phase == Phase::Moving => {
-            Answer { in_flight: &[(Hold, 1.05)], most: Hold, ..NOTHING }
+            Answer { in_flight: &[(Hold, 1.05)], most: Hold, ..NO_ANSWER }
         }
-        Failure::SetpointsLost => NOTHING,
+        Failure::SetpointsLost => NO_ANSWER,
         Failure::StationLost => Answer {
             in_flight: &[(Hold, 2.55), (Land, 5.05)],
             most: Land,
             idling: Some(2.55),
             forbids_arming: true,
-            ..NOTHING
+            ..NO_ANSWER
         },
         Failure::BatteryLow | Failure::BatteryCritical | Failure::BatteryWavers => {
-            Answer { in_flight: &[(Land, 3.05)], most: Land, idling: Some(3.05), forbids_arming: true, ..NOTHING }
+            Answer { in_flight: &[(Land, 3.05)], most: Land, idling: Some(3.05), forbids_arming: true, ..NO_ANSWER }
         }
         // Nothing pushes it away before it has left the ground.
-        Failure::Gust | Failure::Updraft | Failure::Wind if phase == Phase::Spooling => PUSHED,
-        Failure::Gust => Answer { in_flight: &[(Land, 4.0)], ..PUSHED },
-        Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED },
-        Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED },
-        Failure::RotorWeak => LOST,
+        Failure::Gust | Failure::Updraft | Failure::Wind if phase == Phase::Spooling => PUSHED_ANSWER,
+        Failure::Gust => Answer { in_flight: &[(Land, 4.0)], ..PUSHED_ANSWER },
+        Failure::Updraft => Answer { in_flight: &[(Land, 5.0)], ..PUSHED_ANSWER },
+        Failure::Wind => Answer { in_flight: &[(Land, 12.0)], ..PUSHED_ANSWER },
+        Failure::RotorWeak => LOST_ANSWER,
         // Before it has lifted off, nothing tells of it.
-        Failure::RotorLost if phase == Phase::Spooling => Answer { in_flight: &[(Off, 20.0)], ..LOST },
-        Failure::RotorLost => Answer { in_flight: &[(Land, 0.4), (Off, 20.0)], descending: Some(40.0), ..LOST },
+        Failure::RotorLost if phase == Phase::Spooling => Answer { in_flight: &[(Off, 20.0)], ..LOST_ANSWER },
+        Failure::RotorLost => Answer { in_flight: &[(Land, 0.4), (Off, 20.0)], descending: Some(40.0), ..LOST_ANSWER },
         Failure::ImuLost | Failure::ImuFreezes => AT_ONCE,
-        Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST },
-        Failure::Overrun => Answer { in_flight: &[(Land, 0.15)], most: Land, idling: Some(0.15), ..NOTHING },
-        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => Answer { in_flight: &[(Off, 2.5)], ..LOST },
+        Failure::GyroLies | Failure::AccelerometerLies => Answer { forbids_arming: true, ..LOST_ANSWER },
+        Failure::Overrun => Answer { in_flight: &[(Land, 0.15)], most: Land, idling: Some(0.15), ..NO_ANSWER },
+        Failure::Tipped | Failure::Leaned if phase == Phase::Spooling => {
+            Answer { in_flight: &[(Off, 2.5)], ..LOST_ANSWER }
+        }
         // From high enough, or on its legs, it flies on.
-        Failure::Tipped => Answer { idling: Some(1.7), ..LOST },
-        Failure::Leaned => LOST,
-        Failure::HeldDown => Answer { in_flight: &[(Land, 12.0)], most: Land, ..NOTHING },
+        Failure::Tipped => Answer { idling: Some(1.7), ..LOST_ANSWER },
+        Failure::Leaned => LOST_ANSWER,
+        Failure::HeldDown => Answer { in_flight: &[(Land, 12.0)], most: Land, ..NO_ANSWER },
         Failure::Killed => {
             Answer { in_flight: &[(Off, 0.011)], idling: Some(0.011), descending: Some(0.011), ..AT_ONCE }
         }

@@ -98,21 +98,21 @@ impl Failure {
     ];
 }
 
-/// How far poses and frames jump, m.
-const JUMP: Vector3<f32> = Vector3::new(3.0, -2.0, 1.0);
+/// How far poses and frames jump.
+const JUMP_M: Vector3<f32> = Vector3::new(3.0, -2.0, 1.0);
 
-/// How long it takes to turn the vehicle over, s.
-const TIPPING: f64 = 0.5;
+/// The time in which the vehicle is tipped over.
+const TIPPING_S: f64 = 0.5;
 
-/// How long hands take to stop what they take hold of, s.
-const GRASPING: f64 = 0.05;
+/// The time in which hands stop what they take hold of.
+const GRASPING_S: f64 = 0.05;
 
 /// Accelerations of gust, updrafts and wind, m/s^2, and for how long they last, s. The study holds 27.5 m/s^2 across,
 /// beyond which it is carried away, and has 6.2 m/s^2 downwards.
-const GUST: (f64, f64) = (32.0, 2.5);
-const UPDRAFT: (f64, f64) = (7.2, 5.0);
-const THERMAL: (f64, f64) = (2.8, 5.0);
-const WIND: (f64, f64) = (28.0, 12.0);
+const GUST_M_PER_S2_AND_S: (f64, f64) = (32.0, 2.5);
+const UPDRAFT_M_PER_S2_AND_S: (f64, f64) = (7.2, 5.0);
+const THERMAL_M_PER_S2_AND_S: (f64, f64) = (2.8, 5.0);
+const WIND_M_PER_S2_AND_S: (f64, f64) = (28.0, 12.0);
 
 /// What holds a vehicle down, m/s^2: more than its thrust.
 const HELD_DOWN: f64 = 30.0;
@@ -185,21 +185,22 @@ impl Meddler for Failures {
         };
         // What stands is in the lee of the ground.
         let in_the_air = if vehicle.stands() { 0.0 } else { 1.0 };
-        let across = (blows(Failure::Gust, GUST) + blows(Failure::Wind, WIND)) * in_the_air;
-        let upwards = blows(Failure::Updraft, UPDRAFT) + blows(Failure::Thermal, THERMAL);
+        let across =
+            (blows(Failure::Gust, GUST_M_PER_S2_AND_S) + blows(Failure::Wind, WIND_M_PER_S2_AND_S)) * in_the_air;
+        let upwards = blows(Failure::Updraft, UPDRAFT_M_PER_S2_AND_S) + blows(Failure::Thermal, THERMAL_M_PER_S2_AND_S);
         let downwards = if self.has(Failure::HeldDown) { HELD_DOWN } else { 0.0 };
         vehicle.push(Vector3::new(across, 0.0, upwards - downwards) * self.mass);
         for (failure, angle) in [(Failure::Tipped, PI), (Failure::Leaned, FRAC_PI_4)] {
             let (Some(since), Some(held)) = (self.since(failure, now), &self.held) else { continue };
-            if since > TIPPING {
+            if since > TIPPING_S {
                 continue;
             }
-            let rate = if since < TIPPING { angle / TIPPING } else { 0.0 };
-            let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), since / TIPPING * angle);
+            let rate = if since < TIPPING_S { angle / TIPPING_S } else { 0.0 };
+            let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), since / TIPPING_S * angle);
             let attitude = UnitQuaternion::new_normalize(held.attitude) * turned;
-            let grasped = (since / GRASPING).min(1.0);
+            let grasped = (since / GRASPING_S).min(1.0);
             vehicle.place(&BodyState {
-                position: held.position + held.velocity * (GRASPING * grasped * (1.0 - 0.5 * grasped)),
+                position: held.position + held.velocity * (GRASPING_S * grasped * (1.0 - 0.5 * grasped)),
                 velocity: held.velocity * (1.0 - grasped),
                 attitude: attitude.into_inner(),
                 angular_velocity: Vector3::new(rate, 0.0, 0.0),
@@ -231,10 +232,10 @@ impl Meddler for Failures {
         }
         let (mut position, mut attitude) = (pose.position(), pose.attitude());
         if self.has(Failure::PoseJumps) {
-            position += JUMP;
+            position += JUMP_M;
         }
         if self.has(Failure::FrameMoves) {
-            position += JUMP;
+            position += JUMP_M;
         }
         if let Some(since) = self.since(Failure::PoseDrifts, now) {
             position.x += 0.7 * since as f32;

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::phase::Phase;
 use super::run::{Case, Flown, fly};
-use super::{FLIGHT_HEIGHT, SETTINGS, Vehicle, vehicle};
+use super::{FLIGHT_HEIGHT, FLIGHT_SETTINGS, Vehicle, vehicle};
 use flight::{FlightSettings, Reason};
 
 /// Flies a case on the study, and holds it to what must follow.
@@ -28,7 +28,7 @@ fn a_vehicle_that_turns_round_in_an_updraft_has_not_landed() {
 #[test]
 fn a_vehicle_that_sinks_against_the_airs_drag_has_not_landed() {
     // By the IMU alone a drag of 0.8 m/s^2 was taken for the ground: motors stopped 8 m above it.
-    let settings = FlightSettings { fence_height: 50.0, ..SETTINGS };
+    let settings = FlightSettings { fence_height: 50.0, ..FLIGHT_SETTINGS };
     let vehicle = Vehicle { settings, ..vehicle("study") };
     for (first, second) in [(Failure::PoseLost, None), (Failure::PoseLost, Some((Failure::Thermal, 300)))] {
         let flown = fly(&vehicle, Case { phase: Phase::AtPoint, first, second, height: 12.0 });

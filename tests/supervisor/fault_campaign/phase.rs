@@ -1,6 +1,6 @@
 //! Where in a flight it fails, and what an operator says to get there.
 
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Inputs, Mode, MotorTest, Request};
 use nalgebra::Vector3;
 
@@ -65,13 +65,13 @@ pub struct Sight {
     pub now: u64,
 }
 
-/// Ticks between heartbeats, and between setpoints.
-const HEARTBEAT: u64 = 100;
-const SETPOINT: u64 = 20;
+/// Between heartbeats, and between setpoints.
+const HEARTBEAT_TICKS: u64 = 100;
+const SETPOINT_TICKS: u64 = 20;
 
-/// When the operator arms, and asks for more, in ticks since boot.
-const ARM: u64 = 200;
-const GO: u64 = 260;
+/// When the operator arms, and gives the next command, since boot.
+const ARM_TICK: u64 = 200;
+const GO_TICK: u64 = 260;
 
 impl Phase {
     /// Whether it has been reached, and what is to fail now fails.
@@ -99,19 +99,21 @@ impl Phase {
     pub fn given(self, sight: &Sight) -> Inputs<'static> {
         let Sight { tick, mode, lasts, asked, now, .. } = *sight;
         let request = match (self, tick) {
-            (Self::MotorTest, ARM) => Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 })),
+            (Self::MotorTest, ARM_TICK) => {
+                Some(Request::MotorTest(MotorTest { rotor: 1, level: 0.1, duration: 2_000_000 }))
+            }
             (Self::Boot | Self::Locked | Self::Checks | Self::Ready | Self::MotorTest, _) => None,
-            (_, ARM) => Some(Request::Arm),
+            (_, ARM_TICK) => Some(Request::Arm),
             (Self::Idling, _) => None,
-            (Self::AtPoint | Self::Moving, GO) => Some(Request::FlySetpoints),
-            (_, GO) => Some(Request::TakeOff(Some(asked))),
+            (Self::AtPoint | Self::Moving, GO_TICK) => Some(Request::FlySetpoints),
+            (_, GO_TICK) => Some(Request::TakeOff(Some(asked))),
             (Self::Landing, _) if mode == Mode::Holding && lasts == 50 => Some(Request::Land),
             _ => None,
         };
-        let flies = matches!(self, Self::AtPoint | Self::Moving) && tick.is_multiple_of(SETPOINT);
+        let flies = matches!(self, Self::AtPoint | Self::Moving) && tick.is_multiple_of(SETPOINT_TICKS);
         Inputs {
             request,
-            ground_station: Some(now - tick % HEARTBEAT * 10_000),
+            ground_station: Some(now - tick % HEARTBEAT_TICKS * 10_000),
             setpoint: flies.then(|| self.setpoint(sight)),
             killed: self == Self::Stopped && mode == Mode::Holding && lasts == 50,
             ..Inputs::default()
@@ -132,6 +134,6 @@ impl Phase {
         } else {
             Motion::Position(Vector3::new(0.0, 0.0, sight.asked))
         };
-        Setpoint { motion, turn: Turn::Keep }
+        Setpoint { motion, turn: HeadingSetpoint::Keep }
     }
 }

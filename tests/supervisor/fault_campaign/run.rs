@@ -13,16 +13,16 @@ use verification::piloted::{PilotedVehicle, Place};
 /// The hardest touchdown that is gentle, m/s: of a landing, and of going down by the IMU alone: 0.6 m/s, a landing's
 /// 0.5 m/s that frozen poses have taught it to take for nothing, and 0.2 m/s for each second that it goes down after
 /// them.
-const GENTLE: (f64, f64) = (0.6, 1.4);
+const GENTLE_TOUCHDOWN_M_PER_S: (f64, f64) = (0.6, 1.4);
 
-/// Ticks after the last failure after which the operator wants the vehicle down, whatever it does.
-const PATIENCE: u64 = 2_000;
+/// After this time since the last failure the operator lands the vehicle, whatever it does.
+const OPERATOR_TIMEOUT_TICKS: u64 = 2_000;
 
 /// Ticks after that by which it must be.
 const DOWN_BY: u64 = 6_000;
 
-/// Ticks for which it is watched once it is down and its motors stand.
-const AFTER: u64 = 100;
+/// For which it is watched once it is down and its motors stand.
+const WATCHED_TICKS: u64 = 100;
 
 /// Failures and when they strike.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,14 +129,14 @@ impl Flight<'_> {
                 true
             }
             None => false,
-            Some(last) if tick > last + PATIENCE + DOWN_BY => {
+            Some(last) if tick > last + OPERATOR_TIMEOUT_TICKS + DOWN_BY => {
                 self.complain(format!("still {mode:?} at {:?}", self.vehicle.vehicle().state().position));
                 true
             }
             Some(last) => {
                 // What never flew is watched for a while all the same.
-                let watched = tick - last > 3 * AFTER;
-                watched && self.down.is_some_and(|since| tick - since > AFTER)
+                let watched = tick - last > 3 * WATCHED_TICKS;
+                watched && self.down.is_some_and(|since| tick - since > WATCHED_TICKS)
             }
         }
     }
@@ -150,7 +150,7 @@ impl Flight<'_> {
         self.strike();
         let mut given = self.case.phase.given(&Sight { now: self.sight.now + 10_000, ..self.sight });
         if let Some(last) = self.struck.1.or(self.struck.0).filter(|_| self.struck.0.is_some())
-            && self.sight.tick >= last + PATIENCE
+            && self.sight.tick >= last + OPERATOR_TIMEOUT_TICKS
             && self.sight.tick.is_multiple_of(100)
         {
             given = Inputs { request: Some(Request::Land), setpoint: None, ..given };
@@ -249,10 +249,10 @@ impl Flight<'_> {
         let (failed, phase) = (self.failed(), self.case.phase);
         let (least, mut most) = (expected::least(phase, &failed), expected::most(phase, &failed));
         let last = self.struck.1.or(self.struck.0).unwrap_or(0);
-        if self.sight.tick > last + PATIENCE {
+        if self.sight.tick > last + OPERATOR_TIMEOUT_TICKS {
             most = most.max(Severity::Land);
         }
-        let does = Severity::of(self.sight.mode);
+        let does = Severity::from_mode(self.sight.mode);
         if self.flown.taken.last().is_some_and(|last| last.reason == Reason::PoseRegained) && self.sight.lasts == 0 {
             // One transition a tick: what else there is to be done is done in the next.
             return;
@@ -281,7 +281,11 @@ impl Flight<'_> {
         let gentle = failed.iter().all(|(failure, _)| expected::answer(*failure, phase).is_gentle);
         // What has hardly left the ground counts as standing, and drops those 5 cm.
         let drops = phase == Phase::Spooling;
-        let most = if drops || expected::most(phase, &failed) >= Severity::Descend { GENTLE.1 } else { GENTLE.0 };
+        let most = if drops || expected::most(phase, &failed) >= Severity::Descend {
+            GENTLE_TOUCHDOWN_M_PER_S.1
+        } else {
+            GENTLE_TOUCHDOWN_M_PER_S.0
+        };
         self.flown.is_gentle &= gentle && phase != Phase::Stopped;
         if self.flown.is_gentle && touchdown.speed > most {
             self.complain(format!("touched down at {:.3} m/s, {most} m/s are gentle", touchdown.speed));

@@ -7,8 +7,8 @@ use firmware::hardware::MotorCommand;
 use flight::rules::{MOTOR_TEST_LEVEL_MAX, TABLE};
 use flight::{Flown, Mode, Outcome, Output, Transition};
 
-/// Room for the rounding of a wrench's components against a bound, relative.
-const ROUNDING: f64 = 1e-6;
+/// Tolerance for the rounding of a wrench's components against a bound.
+const ROUNDING_SHARE: f64 = 1e-6;
 
 /// What is wrong with a tick's answer by itself, in words. Once a rotor is `lost`, no bound is certified; ranges and
 /// limits hold.
@@ -80,8 +80,8 @@ fn is_explained(before: Mode, outcome: &Outcome) -> bool {
 }
 
 fn is_proven(flown: &Flown, certificate: &Certificate) -> bool {
-    let (wrench, raised) = (&flown.wrench, 1.0 + ROUNDING);
-    let Interval { least, greatest } = certificate.thrust();
+    let (wrench, raised) = (&flown.wrench, 1.0 + ROUNDING_SHARE);
+    let Interval { min: least, max: greatest } = certificate.thrust();
     let torque = wrench.torque.map(|torque| f64::from(torque.abs()));
     (least / raised..=greatest * raised).contains(&f64::from(wrench.thrust))
         && torque.iter().zip(certificate.torque().iter()).all(|(asked, proven)| *asked <= proven * raised)
@@ -98,8 +98,9 @@ fn rotors_are_proven(thrusts: &[f32], certified: &Certified) -> bool {
     let rotors = certified.configuration().rotors().unwrap();
     thrusts.iter().enumerate().all(|(rotor, thrust)| {
         let (thrust, least) = (f64::from(*thrust), f64::from(rotors[rotor].thrust_min));
-        certified.certificate().rotor(rotor).is_some_and(|proven| {
-            thrust <= proven.greatest * (1.0 + ROUNDING) && thrust >= least.min(proven.least) - ROUNDING
-        })
+        certified
+            .certificate()
+            .rotor(rotor)
+            .is_some_and(|proven| thrust <= proven.max * (1.0 + ROUNDING_SHARE) && thrust >= least.min(proven.min) - ROUNDING_SHARE)
     })
 }

@@ -2,7 +2,7 @@
 
 use super::lie::{Liar, Lie};
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{FlightSettings, Inputs, Leg, MissionItem, Mode, Output, Reason, Request};
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -10,12 +10,12 @@ use rand::rngs::ChaCha8Rng;
 use scenario::Scenario;
 use verification::piloted::{PilotedVehicle, Place};
 
-/// The box that it may not leave: a radius and a height, m, about where it was armed.
-pub const BOX: f32 = 3.0;
+/// The box that it may not leave: a radius and a height about where it was armed.
+pub const BOX_M: f32 = 3.0;
 
 /// What an operator has chosen.
-const SETTINGS: FlightSettings =
-    FlightSettings { fence_radius: BOX, fence_height: BOX, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
+const FLIGHT_SETTINGS: FlightSettings =
+    FlightSettings { fence_radius: BOX_M, fence_height: BOX_M, tracking_error_max: 1.5, ..FlightSettings::DEFAULT };
 
 /// When the operator arms, and commands something, in ticks.
 const ARM_TICK: u64 = 250;
@@ -59,7 +59,7 @@ impl Event {
             _ if tick == GO_TICK => Some(Request::TakeOff(Some(height))),
             Self::GoTo | Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS => {
                 let motion = Motion::Position(Vector3::new(1.5, -1.5, 0.5 * height + 0.5));
-                Some(Request::GoTo(Setpoint { motion, turn: Turn::Keep }))
+                Some(Request::GoTo(Setpoint { motion, turn: HeadingSetpoint::Keep }))
             }
             Self::Hold if mode == Mode::Holding && lasts == HOLD_TICKS + GOING_TICKS => Some(Request::Hold),
             Self::Land if mode == Mode::Holding && lasts == HOLD_TICKS => Some(Request::Land),
@@ -86,7 +86,7 @@ fn mission_item(number: u8, height: f32) -> Option<MissionItem> {
         2 => (Leg::Land, Vector3::new(-0.5, 0.0, 0.0)),
         _ => return None,
     };
-    Some(MissionItem { leg, position, turn: Turn::Keep, radius: 0.3, hold: 0 })
+    Some(MissionItem { leg, position, turn: HeadingSetpoint::Keep, radius: 0.3, hold: 0 })
 }
 
 /// Where in a flight the source begins to lie.
@@ -148,7 +148,7 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
     let mut scenario = scenario.clone();
     let sensors = scenario.reality.estimator.get_or_insert_default();
     sensors.seed = case.seed;
-    let mut vehicle = PilotedVehicle::new(&scenario, Ok(certified), &SETTINGS, &mut place, 0).unwrap();
+    let mut vehicle = PilotedVehicle::new(&scenario, Ok(certified), &FLIGHT_SETTINGS, &mut place, 0).unwrap();
     let mut liar = Liar::new(&case.lies, ChaCha8Rng::seed_from_u64(case.seed));
     let mut flown = Flown {
         case: case.clone(),
@@ -206,7 +206,7 @@ pub fn fly(scenario: &Scenario, certified: &Certified, case: &Case) -> Flown {
         let goes_down = matches!(mode, Mode::Landing | Mode::Descending);
         if !goes_down && mode.flies() {
             down = None;
-            let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX);
+            let out = f64::max(state.position.xy().norm(), state.position.z) - f64::from(BOX_M);
             flown.out = flown.out.max(out);
             if mode == Mode::Holding && lasts >= 50 {
                 flown.off = flown.off.max((state.position - Vector3::z() * f64::from(case.height)).norm());
@@ -242,5 +242,5 @@ fn setpoint(mode: Mode, lasts: u64, height: f32) -> Setpoint {
     } else {
         Motion::Position(Vector3::new(0.0, 0.0, height))
     };
-    Setpoint { motion, turn: Turn::Keep }
+    Setpoint { motion, turn: HeadingSetpoint::Keep }
 }

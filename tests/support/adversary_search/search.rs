@@ -1,6 +1,6 @@
 //! The search itself: random restarts, each climbed by a pattern search with shrinking steps.
 
-use super::{COORDINATES, Code, Domain, Situation};
+use super::{COORDINATE_COUNT, Code, Domain, Situation};
 use crate::support::random::ChaCha8Rng;
 use controller_core::certificate::sharp::feedforward_torque;
 use controller_core::configuration::Configuration;
@@ -23,7 +23,7 @@ pub enum Objective {
 impl Objective {
     /// The coordinates that matter to it: the attitude and rate errors do for the commanded torque only.
     fn coordinates(self) -> usize {
-        if matches!(self, Self::Torque(_)) { COORDINATES } else { 24 }
+        if matches!(self, Self::Torque(_)) { COORDINATE_COUNT } else { 24 }
     }
 
     /// Its value in a situation.
@@ -68,9 +68,9 @@ pub fn worst(
     rng: &mut ChaCha8Rng,
 ) -> Worst {
     let value = |code: &Code| objective.value(configuration, &Situation::decode(configuration, domain, code));
-    let mut best = (f64::NEG_INFINITY, [0.0; COORDINATES]);
+    let mut best = (f64::NEG_INFINITY, [0.0; COORDINATE_COUNT]);
     for _ in 0..restarts {
-        let start = [(); COORDINATES].map(|()| (1.6 * rng.random_range(-1.0..1.0_f64)).clamp(-1.0, 1.0));
+        let start = [(); COORDINATE_COUNT].map(|()| (1.6 * rng.random_range(-1.0..1.0_f64)).clamp(-1.0, 1.0));
         let found = climb(&value, objective.coordinates(), start, rng);
         if found.0 > best.0 {
             best = found;

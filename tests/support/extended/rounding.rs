@@ -6,8 +6,8 @@
 
 use super::oracle::Law;
 use super::oracle::estimates::Averages;
-use super::oracle::tick::{Answer, Last, Nudge, PARTS, Tick};
-use crate::support::oracle::rounding::{ROUNDINGS, ULP};
+use super::oracle::tick::{Answer, Last, Nudge, PART_COUNT, Tick};
+use crate::support::oracle::rounding::{ROUNDINGS_MAX, ULP};
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3, Vector4};
 
 /// What is compared.
@@ -137,12 +137,12 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
         moved.push(Tick { pending, ..*t });
     }
     moved.push(Tick { averages: Averages { scale: averages.scale * (1.0 + ULP), ..averages }, ..*t });
-    for part in 0..PARTS {
-        let mut rooms = [0.0; PARTS];
+    for part in 0..PART_COUNT {
+        let mut rooms = [0.0; PART_COUNT];
         rooms[part] = ULP;
         moved.push(Tick { nudge: Nudge { rooms, ..t.nudge }, ..*t });
         for axis in 0..2 {
-            let mut parts = [Vector2::zeros(); PARTS];
+            let mut parts = [Vector2::zeros(); PART_COUNT];
             parts[part][axis] = ULP * answer.sizes[part];
             moved.push(Tick { nudge: Nudge { parts, ..t.nudge }, ..*t });
         }
@@ -153,7 +153,7 @@ fn one_rounding_each(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> V
         Nudge { greatest: ULP, ..t.nudge },
         Nudge { lift: ULP * (level + d), ..t.nudge },
         Nudge { thrust, ..t.nudge },
-        Nudge { yaw: [ULP * answer.sizes[PARTS], 0.0], ..t.nudge },
+        Nudge { yaw: [ULP * answer.sizes[PART_COUNT], 0.0], ..t.nudge },
         Nudge { yaw: [0.0, thrust * per_yaw], ..t.nudge },
     ] {
         moved.push(Tick { nudge, ..*t });
@@ -167,7 +167,7 @@ fn per_torque(law: &Law) -> (f64, f64) {
     (most(|beta| beta.norm()), most(|beta| 1.0 / beta.z.abs()))
 }
 
-/// What `ROUNDINGS` roundings everywhere can do to the answer.
+/// What `ROUNDINGS_MAX` roundings everywhere can do to the answer.
 pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64; NAMES.len()] {
     // The results' own last roundings.
     let rate = answer.omega_d.norm();
@@ -201,5 +201,5 @@ pub fn tolerances(law: &Law, t: &Tick, answer: &Answer, scales: &Scales) -> [f64
             *sum += distance;
         }
     }
-    sums.map(|sum| ROUNDINGS * sum)
+    sums.map(|sum| ROUNDINGS_MAX * sum)
 }

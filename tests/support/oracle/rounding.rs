@@ -5,7 +5,7 @@
 //! own answer moves when each quantity the law reads or forms (each axis of p~, v~, u, u', u'', psi
 //! with its derivatives, R, omega) moves by one rounding, 2^-24 of the magnitudes that were added up to form it, one at
 //! a time. The sum of these movements is what one rounding everywhere can do. A quantity of the law is formed by about
-//! ten operations, whose roundings add up like a random walk: sqrt(10) to [`ROUNDINGS`]. The worst found is 2.1.
+//! ten operations, whose roundings add up like a random walk: sqrt(10) to [`ROUNDINGS_MAX`]. The worst found is 2.1.
 
 use super::{Evaluation, Law, Situation, lifting};
 use controller_core::controller::Diagnostics;
@@ -18,10 +18,10 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, Vector3, Vector4};
 pub const ULP: f64 = 1.0 / 16_777_216.0;
 
 /// How many roundings a quantity may collect.
-pub const ROUNDINGS: f64 = 4.0;
+pub const ROUNDINGS_MAX: f64 = 4.0;
 
 /// Worst absolute error of the core's tanh, in roundings (its module states 2.0e-7).
-pub const TANH: f64 = 3.4;
+pub const TANH_ROUNDINGS: f64 = 3.4;
 
 pub fn vector4(q: &Quaternion<f32>) -> Vector4<f64> {
     Vector4::new(q.w.into(), q.i.into(), q.j.into(), q.k.into())
@@ -103,7 +103,7 @@ pub fn one_rounding_each(law: &Law, state: &State, reference: &Reference, s: &Si
     let u_ddot = s.snap.abs()
         + law.k_f * law.k_f * (u_f + u_s)
         + law.k_f * law.k_s * u_s
-        + Vector3::repeat(from_feedback * (1.0 + TANH / ROUNDINGS));
+        + Vector3::repeat(from_feedback * (1.0 + TANH_ROUNDINGS / ROUNDINGS_MAX));
     let rate = Vector3::repeat(s.angular_velocity.norm());
     let mut moved = Vec::new();
     for axis in 0..3 {
@@ -122,7 +122,7 @@ pub fn one_rounding_each(law: &Law, state: &State, reference: &Reference, s: &Si
     moved
 }
 
-/// What `ROUNDINGS` roundings everywhere can do to the answer.
+/// What `ROUNDINGS_MAX` roundings everywhere can do to the answer.
 pub fn tolerances(law: &Law, moved: &[Situation], e: &Evaluation, lifted: &Vector4<f64>) -> [f64; 4] {
     let nominal = Answer::of_oracle(law, e, lifted);
     // The results' own last roundings.
@@ -136,7 +136,7 @@ pub fn tolerances(law: &Law, moved: &[Situation], e: &Evaluation, lifted: &Vecto
             *sum += distance;
         }
     }
-    sums.map(|sum| ROUNDINGS * sum)
+    sums.map(|sum| ROUNDINGS_MAX * sum)
 }
 
 /// What the same roundings can do to the lifted quaternion and to theta~.
@@ -147,5 +147,5 @@ pub fn lift_tolerances(law: &Law, moved: &[Situation], lifted: &Vector4<f64>) ->
         sums[0] += (other - lifted).norm();
         sums[1] += (lifting::mrp(&other) - lifting::mrp(lifted)).norm();
     }
-    sums.map(|sum| ROUNDINGS * sum)
+    sums.map(|sum| ROUNDINGS_MAX * sum)
 }

@@ -1,9 +1,7 @@
 //! One flight: the firmware's tasks, the vehicle and the people, all on one simulated clock.
 
-use super::clock::SimClock;
-use super::line::Line;
+use super::simulated_hardware::{Dark, SimBattery, SimImu, SimMotors, SimWatchdog, SimulatedHardware};
 use super::station::Station;
-use super::world::{Dark, SimBattery, SimImu, SimMotors, SimWatchdog, World};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use firmware::configuration::Pilot;
 use firmware::control::Control;
@@ -15,6 +13,8 @@ use firmware::{boot, configuration, imu, link, status};
 use flight::Mode;
 use futures::executor::LocalPool;
 use futures::task::LocalSpawnExt;
+use host_sim::sessions::sitl::clock::SimClock;
+use host_sim::sessions::sitl::memory_line::MemoryLine;
 use mavlink::dialects::common::MavResult;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -26,7 +26,7 @@ const POSE_PERIOD: u64 = 10_000;
 pub struct Flight {
     pool: LocalPool,
     clock: SimClock,
-    pub world: World,
+    pub hardware: SimulatedHardware,
     pub station: Station,
     pub shared: &'static Shared<CriticalSectionRawMutex>,
     poses: Rc<Cell<bool>>,
@@ -53,19 +53,19 @@ impl Flight {
         let clock = SimClock::default();
         // As long as the program: what tasks share is static on a board as well.
         let shared: &'static Shared<CriticalSectionRawMutex> = Box::leak(Box::new(Shared::new()));
-        let world = World::new(&clock, &configuration::embedded().unwrap());
-        let (up, down) = (Line::default(), Line::default());
+        let hardware = SimulatedHardware::new(&clock, &configuration::embedded().unwrap());
+        let (up, down) = (MemoryLine::default(), MemoryLine::default());
         let station = Station::new(&clock, up.clone(), down.clone());
 
         let (pilot, outputs) = boot(shared);
         let period = pilot.period();
-        let (vehicle, time) = (world.clone(), clock.clone());
+        let (vehicle, time) = (hardware.clone(), clock.clone());
         let control = async move {
             let mut control = Control::new(shared.for_control(), pilot, outputs);
             control.run(&time, &mut SimMotors(vehicle.clone()), &mut SimWatchdog(vehicle)).await;
         };
         spawner.spawn_local(control).unwrap();
-        let (vehicle, time) = (world.clone(), clock.clone());
+        let (vehicle, time) = (hardware.clone(), clock.clone());
         spawner
             .spawn_local(async move { imu::run(shared.for_imu(), &time, &mut SimImu(vehicle), period).await })
             .unwrap();
@@ -74,16 +74,16 @@ impl Flight {
         let time = clock.clone();
         spawner.spawn_local(async move { link::transmit::transmit(down, &time, shared.for_transmit()).await }).unwrap();
 
-        let (vehicle, time) = (world.clone(), clock.clone());
+        let (vehicle, time) = (hardware.clone(), clock.clone());
         spawner
             .spawn_local(async move { status::run(Dark, SimBattery(vehicle), &time, shared.for_status()).await })
             .unwrap();
 
         let poses = Rc::new(Cell::new(true));
-        spawner.spawn_local(world.clone().run()).unwrap();
+        spawner.spawn_local(hardware.clone().run()).unwrap();
         spawner.spawn_local(station.clone().run()).unwrap();
-        spawner.spawn_local(send_poses(clock.clone(), world.clone(), station.clone(), Rc::clone(&poses))).unwrap();
-        Self { pool, clock, world, station, shared, poses }
+        spawner.spawn_local(send_poses(clock.clone(), hardware.clone(), station.clone(), Rc::clone(&poses))).unwrap();
+        Self { pool, clock, hardware, station, shared, poses }
     }
 
     /// Lets time pass, s.
@@ -156,14 +156,14 @@ impl Flight {
 
     /// How far the vehicle is from a point, m.
     pub fn distance(&self, point: [f32; 3]) -> f32 {
-        (self.world.pose().position - nalgebra::Vector3::from(point)).norm()
+        (self.hardware.pose().position - nalgebra::Vector3::from(point)).norm()
     }
 }
 
-async fn send_poses(clock: SimClock, world: World, station: Station, on: Rc<Cell<bool>>) {
+async fn send_poses(clock: SimClock, hardware: SimulatedHardware, station: Station, on: Rc<Cell<bool>>) {
     loop {
         if on.get() {
-            station.send(&Station::odometry(&world.pose()));
+            station.send(&Station::odometry(&hardware.pose()));
         }
         clock.until(clock.now() + POSE_PERIOD).await;
     }

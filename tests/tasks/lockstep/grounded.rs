@@ -50,7 +50,7 @@ fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
     assert_eq!(texts, ["Locked: not certified to fly"]);
     // Telemetry, watchdog, timing: all as ever.
     assert!(flight.report().state.is_some());
-    assert!(flight.now() - flight.world.fed() <= 10_000);
+    assert!(flight.now() - flight.hardware.fed() <= 10_000);
     for _ in 0..3 {
         let (result, texts) = flight.ask_to_arm();
         assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED));
@@ -59,7 +59,7 @@ fn it_boots_answers_and_refuses_to_arm_naming_the_inequality() {
         flight.station.go_to([0.0, 0.0, 1.0]);
         // The same text is said once a second.
         flight.pass(1.0);
-        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Locked, MotorCommand::Stop));
+        assert_eq!((flight.report().mode, flight.hardware.command()), (Mode::Locked, MotorCommand::Stop));
     }
     assert_eq!(flight.report().timing.missed, 0);
 }
@@ -70,7 +70,7 @@ fn its_motors_can_be_tested_all_the_same() {
     flight.pass(1.5);
     flight.station.test_motor(4, 10.0, 0.5);
     flight.pass(0.1);
-    assert_eq!(flight.world.command(), MotorCommand::One { motor: 3, level: 0.1 });
+    assert_eq!(flight.hardware.command(), MotorCommand::One { motor: 3, level: 0.1 });
     flight.pass(0.5);
-    assert_eq!(flight.world.command(), MotorCommand::Stop);
+    assert_eq!(flight.hardware.command(), MotorCommand::Stop);
 }

@@ -12,7 +12,7 @@ use rand::{Rng, RngExt, SeedableRng};
 
 /// The vehicle's pose as a message.
 fn pose(flight: &Flight) -> MavMessage {
-    Station::odometry(&flight.world.pose())
+    Station::odometry(&flight.hardware.pose())
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn noise_between_the_frames_does_not_keep_it_from_flying() {
         flight.pass(0.01);
     }
     assert_eq!(flight.report().mode, Mode::Flying);
-    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.world.pose().position);
+    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.hardware.pose().position);
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn frames_with_flipped_bits_are_not_flown() {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..2_000 {
         // A pose ten metres off, with one bit wrong: if it counted, the vehicle would leave.
-        let mut wrong = flight.world.pose();
+        let mut wrong = flight.hardware.pose();
         wrong.position.x += 10.0;
         let mut bytes = flight.station.frame(&Station::odometry(&wrong));
         let bit = random.random_range(0..bytes.len() * 8);
@@ -44,7 +44,7 @@ fn frames_with_flipped_bits_are_not_flown() {
         flight.pass(0.01);
     }
     assert_eq!(flight.report().mode, Mode::Flying);
-    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.1, "{}", flight.world.pose().position);
+    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.1, "{}", flight.hardware.pose().position);
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn truncated_and_duplicated_frames_change_nothing() {
         flight.pass(0.01);
     }
     assert_eq!(flight.report().mode, Mode::Flying);
-    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.world.pose().position);
+    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.hardware.pose().position);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_frame_that_arrives_in_two_halves_long_apart_is_no_fresh_pose() {
 #[expect(deprecated, reason = "clients still send PING")]
 fn messages(flight: &Flight) -> Vec<MavMessage> {
     let MavMessage::ODOMETRY(odometry) = pose(flight) else { unreachable!() };
-    let here = flight.world.pose().position;
+    let here = flight.hardware.pose().position;
     vec![
         MavMessage::ATT_POS_MOCAP(ATT_POS_MOCAP_DATA {
             q: odometry.q,
@@ -172,7 +172,7 @@ fn no_number_in_any_field_of_any_message_makes_it_panic_or_leave() {
         }
         flight.pass(0.2);
         assert!(flight.shared.report.get().unwrap().value.state.is_some());
-        let MotorCommand::Run(commands) = flight.world.command() else { panic!("stopped by message {kind}") };
+        let MotorCommand::Run(commands) = flight.hardware.command() else { panic!("stopped by message {kind}") };
         assert!(commands.iter().all(|command| (0.0..=1.0).contains(command)));
     }
     assert!(sent > 1_000, "{sent}");
@@ -182,7 +182,7 @@ fn no_number_in_any_field_of_any_message_makes_it_panic_or_leave() {
     flight.station.fly_setpoints();
     flight.pass(12.0);
     assert_eq!(flight.report().mode, Mode::Flying);
-    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.world.pose().position);
+    assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{}", flight.hardware.pose().position);
     assert_eq!(flight.report().timing.missed, 0);
 }
 
@@ -219,7 +219,7 @@ fn whatever_comes_in_no_stale_pose_is_flown() {
         if !report.mode.is_armed() {
             // It has come down: set upright, it flies again once its poses have been believed for a while.
             flights += 1;
-            flight.world.set_down(0.0, 0.0, 0.0);
+            flight.hardware.set_down(0.0, 0.0, 0.0);
             flight.poses(true);
             flight.station.arm(false);
             flight.pass(3.0);
@@ -238,7 +238,7 @@ fn a_disarm_command_wins_within_a_tick_over_a_flood_of_requests() {
     }
     flight.station.disarm_by_force();
     flight.pass(0.01);
-    assert_eq!(flight.world.command(), MotorCommand::Stop);
+    assert_eq!(flight.hardware.command(), MotorCommand::Stop);
     flight.pass(1.0);
-    assert_eq!(flight.world.command(), MotorCommand::Stop);
+    assert_eq!(flight.hardware.command(), MotorCommand::Stop);
 }

@@ -1,7 +1,7 @@
 //! The pose is lost in the middle of a fast way, not at a hover.
 
-use super::down::check_landed;
 use super::flight::Flight;
+use super::landing::check_landed;
 use firmware::hardware::MotorCommand;
 use flight::Mode;
 
@@ -9,7 +9,7 @@ use flight::Mode;
 fn lost_on_the_way() -> Flight {
     let mut flight = Flight::in_the_air();
     flight.station.go_to([20.0, 0.0, 1.0]);
-    while flight.world.pose().velocity.x < 2.0 {
+    while flight.hardware.pose().velocity.x < 2.0 {
         flight.pass(0.01);
         assert!(flight.now() < 30_000_000, "it does not get fast");
     }
@@ -21,9 +21,9 @@ fn lost_on_the_way() -> Flight {
 fn worst_tilt(flight: &mut Flight, seconds: f64) -> f32 {
     let mut worst = 0.0_f32;
     let end = flight.now() + (seconds * 1e6) as u64;
-    while flight.now() < end && flight.world.command() != MotorCommand::Stop {
+    while flight.now() < end && flight.hardware.command() != MotorCommand::Stop {
         flight.pass(0.01);
-        worst = worst.max(flight.world.tilt());
+        worst = worst.max(flight.hardware.tilt());
     }
     worst
 }
@@ -31,7 +31,7 @@ fn worst_tilt(flight: &mut Flight, seconds: f64) -> f32 {
 #[test]
 fn a_pose_lost_at_speed_is_levelled_and_then_goes_down() {
     let mut flight = lost_on_the_way();
-    let leaning = flight.world.tilt();
+    let leaning = flight.hardware.tilt();
     assert!(leaning > 0.2, "{leaning}: nothing to level");
     // By IMU alone it goes on as before.
     let coasting = worst_tilt(&mut flight, 0.9);
@@ -43,7 +43,7 @@ fn a_pose_lost_at_speed_is_levelled_and_then_goes_down() {
     assert!(early < leaning + 0.02, "{leaning} {early} rad");
     assert!(late < 0.6 * leaning, "{leaning} {late} rad");
     // Levelling has kept its height, and nothing has braked it.
-    let pose = flight.world.pose();
+    let pose = flight.hardware.pose();
     assert!((2.0..5.5).contains(&pose.velocity.x), "{}", pose.velocity);
     assert!((pose.position.z - 1.0).abs() < 0.2, "{}", pose.position);
     // It comes down as fast as it drifts, and still lands.
@@ -57,13 +57,13 @@ fn a_pose_regained_at_speed_is_braked_from_without_a_lurch() {
         let before = worst_tilt(&mut flight, seconds);
         assert_eq!(flight.report().mode, Mode::Descending);
         flight.poses(true);
-        let regained = flight.world.pose().position;
+        let regained = flight.hardware.pose().position;
         let after = worst_tilt(&mut flight, 20.0);
         assert_eq!(flight.report().mode, Mode::Holding);
         assert!(flight.station.received("Pose regained").is_some());
         assert!(before.max(after) < 0.4, "{before} {after} rad");
         // The old way is forgotten: it stands where braking took it.
-        let pose = flight.world.pose();
+        let pose = flight.hardware.pose();
         assert!(pose.velocity.norm() < 0.05, "{}", pose.velocity);
         assert!((0.0..16.0).contains(&(pose.position.x - regained.x)), "{regained} {}", pose.position);
         assert!((pose.position.z - 1.0).abs() < 0.5, "{}", pose.position);
@@ -91,7 +91,7 @@ fn what_the_law_was_correcting_when_the_pose_was_lost_is_forgotten() {
     // Levelling sets in from hover thrust; it only brakes the climb.
     let first = thrust(&flight);
     assert!(first < weight && first > 0.9 * weight, "{first} N, hover is {weight} N");
-    while flight.world.pose().velocity.z > 0.1 {
+    while flight.hardware.pose().velocity.z > 0.1 {
         assert_eq!(flight.report().mode, Mode::Descending);
         assert!(thrust(&flight) < 1.003 * weight, "{} N, hover is {weight} N", thrust(&flight));
         assert!(flight.now() - begin < 15_000_000, "the climb does not end");

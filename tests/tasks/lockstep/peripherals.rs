@@ -1,13 +1,12 @@
 //! Peripherals that fail: motor outputs that fault or hang, an IMU that falls silent.
 
 use super::flight::Flight;
-use super::world::Health;
+use super::simulated_hardware::Health;
 use firmware::hardware::MotorCommand;
 use flight::Mode;
 use mavlink::dialects::common::MavResult;
 
-/// A tick, us.
-const TICK: u64 = 10_000;
+const TICK_US: u64 = 10_000;
 
 /// How old a sample may be, us.
 const IMU_AGE_MAX: u64 = 22_000;
@@ -16,19 +15,19 @@ const IMU_AGE_MAX: u64 = 22_000;
 fn motors_that_do_not_take_their_frames_starve_the_watchdog_and_are_reported_once() {
     for health in [Health::Faults, Health::Hangs] {
         for mut flight in [grounded_flight(), Flight::in_the_air()] {
-            let fed = flight.world.fed();
-            assert!(flight.now() - fed < TICK);
-            flight.world.outputs(health);
+            let fed = flight.hardware.fed();
+            assert!(flight.now() - fed < TICK_US);
+            flight.hardware.outputs(health);
             let since = flight.now();
             flight.pass(0.3);
-            assert_eq!(flight.world.fed(), fed, "fed by ticks that wrote nothing");
+            assert_eq!(flight.hardware.fed(), fed, "fed by ticks that wrote nothing");
             assert_eq!(count(&flight, "motors: a frame did not go out"), 1);
-            assert!(flight.station.received("motors: a frame").unwrap() - since < 3 * TICK);
+            assert!(flight.station.received("motors: a frame").unwrap() - since < 3 * TICK_US);
             // Ticks go on meanwhile: motors that come back get the command that holds then.
             assert_eq!(flight.report().timing.missed, 0);
-            flight.world.outputs(Health::Works);
+            flight.hardware.outputs(Health::Works);
             flight.pass(0.1);
-            assert!(flight.now() - flight.world.fed() <= TICK);
+            assert!(flight.now() - flight.hardware.fed() <= TICK_US);
             assert_eq!(count(&flight, "motors: frames go out again"), 1);
         }
     }
@@ -47,14 +46,14 @@ fn count(flight: &Flight, text: &str) -> usize {
 #[test]
 fn a_disarm_command_reaches_motors_that_come_back() {
     let mut flight = Flight::in_the_air();
-    flight.world.outputs(Health::Hangs);
+    flight.hardware.outputs(Health::Hangs);
     flight.pass(0.05);
     flight.station.disarm_by_force();
     flight.pass(0.05);
-    assert!(matches!(flight.world.command(), MotorCommand::Run(_)), "they cannot have received it");
-    flight.world.outputs(Health::Works);
+    assert!(matches!(flight.hardware.command(), MotorCommand::Run(_)), "they cannot have received it");
+    flight.hardware.outputs(Health::Works);
     flight.pass(0.011);
-    assert_eq!(flight.world.command(), MotorCommand::Stop);
+    assert_eq!(flight.hardware.command(), MotorCommand::Stop);
 }
 
 #[test]
@@ -62,10 +61,10 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
     for health in [Health::Faults, Health::Hangs] {
         let mut flight = Flight::in_the_air();
         flight.pass(0.0053);
-        flight.world.sensor(health);
+        flight.hardware.sensor(health);
         let last = flight.now();
-        while flight.world.command() != MotorCommand::Stop {
-            assert!(flight.now() - last <= IMU_AGE_MAX + TICK, "still turning after {} us", flight.now() - last);
+        while flight.hardware.command() != MotorCommand::Stop {
+            assert!(flight.now() - last <= IMU_AGE_MAX + TICK_US, "still turning after {} us", flight.now() - last);
             flight.pass(0.001);
         }
         assert!(flight.now() - last > IMU_AGE_MAX - 1_000, "stopped by a sample {} us old", flight.now() - last);
@@ -80,11 +79,11 @@ fn an_imu_that_falls_silent_in_flight_stops_the_motors_in_its_time() {
             flight.pass(0.1);
         }
         // Back again, it stays stopped until it is armed.
-        flight.world.sensor(Health::Works);
+        flight.hardware.sensor(Health::Works);
         flight.pass(0.5);
         assert_eq!(count(&flight, "IMU answers again"), 1);
         assert_eq!((flight.report().timing.gaps, flight.shared.lost_increments.get()), (1, 0));
-        assert_eq!((flight.report().mode, flight.world.command()), (Mode::Checks, MotorCommand::Stop));
+        assert_eq!((flight.report().mode, flight.hardware.command()), (Mode::Checks, MotorCommand::Stop));
         // The estimate begins anew, and must have been good for a second.
         flight.pass(2.0);
         assert_eq!(flight.ask_to_arm().0, Some(MavResult::MAV_RESULT_ACCEPTED));

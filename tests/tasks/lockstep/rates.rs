@@ -1,7 +1,7 @@
 //! The same flights with control at other rates than 100 Hz: the rate is the file's, poses come as they come.
 
-use super::down::check_landed;
 use super::flight::Flight;
+use super::landing::check_landed;
 use firmware::boot;
 use firmware::configuration::LOOPS;
 use firmware::parameters::tuned::Built;
@@ -31,20 +31,20 @@ fn it_goes_up_steps_hovers_and_lands_at_50_to_1000_hz() {
         let mut flight = boot_at(rate);
         flight.pass(2.0);
         flight.go_up();
-        assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{rate} Hz: {}", flight.world.pose().position);
+        assert!(flight.distance([0.0, 0.0, 1.0]) < 0.05, "{rate} Hz: {}", flight.hardware.pose().position);
         flight.station.go_to([1.0, 0.0, 1.0]);
         // On the way there the estimate is put to the test.
         let (mut slip, mut turn) = (0.0_f32, 0.0_f32);
         for _ in 0..300 {
             flight.pass(0.02);
-            let (truth, estimated) = (flight.world.pose(), flight.report().state.unwrap());
+            let (truth, estimated) = (flight.hardware.pose(), flight.report().state.unwrap());
             let [there, here] = [truth, estimated].map(|state| UnitQuaternion::new_unchecked(state.attitude));
             slip = slip.max((estimated.velocity - truth.velocity).norm());
             turn = turn.max(there.angle_to(&here));
         }
         println!("{rate} Hz: velocity within {slip:.4} m/s, attitude within {turn:.5} rad of the truth");
         assert!(slip < 0.02 && turn < 0.002, "{rate} Hz: {slip} m/s, {turn} rad");
-        assert!(flight.distance([1.0, 0.0, 1.0]) < 0.01, "{rate} Hz: {}", flight.world.pose().position);
+        assert!(flight.distance([1.0, 0.0, 1.0]) < 0.01, "{rate} Hz: {}", flight.hardware.pose().position);
         flight.station.land();
         check_landed(&mut flight, 10.0);
         let timing = flight.report().timing;

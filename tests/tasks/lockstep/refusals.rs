@@ -17,7 +17,7 @@ fn is_refused(flight: &mut Flight, words: &str) {
     assert_eq!(result, Some(MavResult::MAV_RESULT_DENIED), "{words}");
     assert_eq!(texts, [words]);
     flight.pass(0.1);
-    assert_eq!(flight.world.command(), MotorCommand::Stop, "{words}");
+    assert_eq!(flight.hardware.command(), MotorCommand::Stop, "{words}");
 }
 
 fn is_granted(flight: &mut Flight) {
@@ -25,7 +25,7 @@ fn is_granted(flight: &mut Flight) {
     assert_eq!(result, Some(MavResult::MAV_RESULT_ACCEPTED));
     // The lock-step's poses have no clock that answers.
     assert_eq!(texts, ["Armed: idling", "Poses: delay unknown; use TIMESYNC or POSE_DELAY"]);
-    assert!(matches!(flight.world.command(), MotorCommand::Run(_)));
+    assert!(matches!(flight.hardware.command(), MotorCommand::Run(_)));
 }
 
 #[test]
@@ -54,13 +54,13 @@ fn on_a_slope_of_more_than_thirty_degrees_whichever_way() {
     for yaw in [0.0, 2.0] {
         for (roll, pitch) in [(31.0, 0.0), (-31.0, 0.0), (0.0, 31.0), (0.0, -31.0), (23.0, 23.0)] {
             let mut flight = ready();
-            flight.world.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
+            flight.hardware.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
             flight.pass(3.0);
             is_refused(&mut flight, "Refused: tilted by 30 degrees or more");
         }
         for (roll, pitch) in [(29.0, 0.0), (0.0, -29.0), (20.0, 20.0)] {
             let mut flight = ready();
-            flight.world.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
+            flight.hardware.set_down(f64::to_radians(roll), f64::to_radians(pitch), yaw);
             flight.pass(3.0);
             is_granted(&mut flight);
         }
@@ -71,7 +71,7 @@ fn on_a_slope_of_more_than_thirty_degrees_whichever_way() {
 fn upside_down() {
     for (roll, pitch) in [(PI, 0.0), (0.0, PI), (PI - 0.3, 0.2)] {
         let mut flight = ready();
-        flight.world.set_down(roll, pitch, 0.5);
+        flight.hardware.set_down(roll, pitch, 0.5);
         flight.pass(3.0);
         is_refused(&mut flight, "Refused: tilted by 30 degrees or more");
     }

@@ -1,10 +1,10 @@
 //! The ground station and the pose source: MAVLink written and read by the public crate, not by the firmware's own
 //! code.
 
-use super::clock::SimClock;
-use super::line::Line;
 use controller_core::state::State;
 use firmware::hardware::Clock;
+use host_sim::sessions::sitl::clock::SimClock;
+use host_sim::sessions::sitl::memory_line::MemoryLine;
 use mavlink::dialects::common::*;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 use std::cell::{Cell, RefCell};
@@ -16,8 +16,8 @@ pub struct Station(Rc<Inner>);
 
 struct Inner {
     clock: SimClock,
-    up: Line,
-    down: Line,
+    up: MemoryLine,
+    down: MemoryLine,
     received: RefCell<Vec<(u64, MavMessage)>>,
     sequence: Cell<u8>,
     heartbeats: Cell<bool>,
@@ -25,7 +25,7 @@ struct Inner {
 
 impl Station {
     /// A station at the ends of two lines: `up` to the vehicle, `down` from it.
-    pub fn new(clock: &SimClock, up: Line, down: Line) -> Self {
+    pub fn new(clock: &SimClock, up: MemoryLine, down: MemoryLine) -> Self {
         Self(Rc::new(Inner {
             clock: clock.clone(),
             up,
@@ -216,8 +216,8 @@ impl Station {
         let q = nalgebra::Quaternion::new(0.0, half, half, 0.0)
             * pose.attitude
             * nalgebra::Quaternion::new(0.0, 1.0, 0.0, 0.0);
-        let world = nalgebra::UnitQuaternion::new_unchecked(pose.attitude);
-        let v = world.inverse_transform_vector(&pose.velocity);
+        let hardware = nalgebra::UnitQuaternion::new_unchecked(pose.attitude);
+        let v = hardware.inverse_transform_vector(&pose.velocity);
         MavMessage::ODOMETRY(ODOMETRY_DATA {
             x: pose.position.y,
             y: pose.position.x,

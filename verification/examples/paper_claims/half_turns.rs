@@ -15,11 +15,11 @@ use host_sim::rivals::rival::Rival;
 use nalgebra::Quaternion;
 use scenario::Scenario;
 use std::error::Error;
-use verification::half_turn::{Course, LIKE_TABLE_1, Trial};
+use verification::half_turn::{Course, GAINS_LIKE_TABLE_1, Trial};
 
 /// Unwinding and chattering.
 pub fn claim(claims: &mut Claims, paper: &Scenario) -> Result<([Course; 2], [Course; 2]), Box<dyn Error>> {
-    let feedback = || QuaternionFeedback::new(model(paper), LIKE_TABLE_1);
+    let feedback = || QuaternionFeedback::new(model(paper), GAINS_LIKE_TABLE_1);
     let rival = |rival: Box<dyn Rival>| Controller::Rival(Box::new(RivalPilot::new(paper, rival)));
     let memoryless = || rival(Box::new(Memoryless(feedback())));
     let ours = || law(paper).map(Controller::Ours);
@@ -44,7 +44,7 @@ pub fn claim(claims: &mut Claims, paper: &Scenario) -> Result<([Course; 2], [Cou
     }
     let quick = Scenario::parse(&scenario::PAPER.replace("rate = 100.0", "rate = 1000.0"), "the paper's at 1 kHz")?;
     let trial = Trial::held(0.5_f64.to_radians());
-    let other = Memoryless(QuaternionFeedback::new(model(&quick), LIKE_TABLE_1));
+    let other = Memoryless(QuaternionFeedback::new(model(&quick), GAINS_LIKE_TABLE_1));
     let other = Controller::Rival(Box::new(RivalPilot::new(&quick, Box::new(other))));
     let [ours_quick, other] = [Controller::Ours(law(&quick)?), other].map(|controller| trial.fly(&quick, controller));
     let lost = "a half turn was not flown to its end";

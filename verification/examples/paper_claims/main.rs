@@ -17,19 +17,19 @@ use host_sim::flight::course::Course;
 use host_sim::studies::campaign::draw::circumstances;
 use scenario::Scenario;
 use scenario::campaign::{NoiseRanges, Ranges, Task};
-use section_six::{MATCHED, SectionSix, nested};
+use section_six::{MATCHED_GAINS, SectionSix, nested};
 use std::error::Error;
 use std::path::PathBuf;
 
 /// Random starts of the paper's law.
-const STARTS: u64 = 200;
+const START_COUNT: u64 = 200;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("flights/paper-claims"), PathBuf::from);
     let paper = Scenario::paper()?;
     let quickest = section_six::searched(&paper)?;
-    let flights = [Flight::new(&paper)?, nested(&paper, MATCHED)?, nested(&paper, quickest)?];
-    let [filtered, matched, quick] = flights.map(|flight| SectionSix::of(&paper, flight));
+    let flights = [Flight::new(&paper)?, nested(&paper, MATCHED_GAINS)?, nested(&paper, quickest)?];
+    let [filtered, matched, quick] = flights.map(|flight| SectionSix::simulate(&paper, flight));
     let (filtered, matched, quick) = (filtered?, matched?, quick?);
     let mut claims = Claims::default();
     section_six::claim(&mut claims, &filtered, [&matched, &quick]);
@@ -56,15 +56,15 @@ fn global(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>> {
         let own = paper.campaign.ranges;
         let ranges = Ranges { reference: Task::File, duration: 120.0, wind: 0.0, noise, ..own };
         let (mut settled, mut slowest) = (0, 0.0_f64);
-        for number in 0..STARTS {
+        for number in 0..START_COUNT {
             let thrown = circumstances(paper, &ranges, 0, number);
-            let course = Course::over(&thrown, Flight::new(&thrown)?, 0.2)?;
+            let course = Course::fly(&thrown, Flight::new(&thrown)?, 0.2)?;
             settled += u64::from(course.settled.is_some());
             slowest = course.settled.map_or(slowest, |settled| slowest.max(settled));
         }
-        let ours = format!("{settled} of {STARTS} in 120 s, the slowest after {slowest:.1} s");
+        let ours = format!("{settled} of {START_COUNT} in 120 s, the slowest after {slowest:.1} s");
         let figure = format!("random starts at {rate}, within 0.2 m for good");
-        claims.add("tracks from any state", &figure, ours, String::new(), &[settled == STARTS]);
+        claims.add("tracks from any state", &figure, ours, String::new(), &[settled == START_COUNT]);
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use host_sim::reports::report::track::Track;
 use verification::half_turn::Course;
 
 /// Width and height of a plot, pixels.
-const SIZE: (f64, f64) = (620.0, 430.0);
+const PLOT_SIZE_PIXELS: (f64, f64) = (620.0, 430.0);
 
 type Points = Vec<(f64, f64)>;
 
@@ -26,7 +26,7 @@ fn decades((plot, track): (Plot, Track)) -> (Plot, Track) {
 }
 
 fn drawn(panels: &[(Plot, Track); 4], about: &str) -> String {
-    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), SIZE, about)
+    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), PLOT_SIZE_PIXELS, about)
 }
 
 pub fn section_six(ours: &SectionSix, other: &SectionSix) -> String {

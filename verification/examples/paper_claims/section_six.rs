@@ -12,9 +12,9 @@ use std::error::Error;
 
 /// Table I in the names of [`host_sim::rivals::nested`]; the integral is as good as none, since the paper's law has
 /// none.
-pub const MATCHED: [f64; 10] = [6.0, 9.0, 1e-6, 2.0, 0.499, 1e-3, 100.0, 0.206, 0.1, 0.045];
+pub const MATCHED_GAINS: [f64; 10] = [6.0, 9.0, 1e-6, 2.0, 0.499, 1e-3, 100.0, 0.206, 0.1, 0.045];
 /// The duration of the actuators' picture, s.
-const FIRST: f64 = 4.0;
+const ACTUATOR_PLOT_S: f64 = 4.0;
 
 /// A flight of nested saturations with these gains.
 pub fn nested(scenario: &Scenario, gains: [f64; 10]) -> Result<Flight, Box<dyn Error>> {
@@ -24,12 +24,12 @@ pub fn nested(scenario: &Scenario, gains: [f64; 10]) -> Result<Flight, Box<dyn E
 
 /// Among 64 pairs of k_v and k_p at the same level, those that are first within 0.2 m in Section VI.
 pub fn searched(paper: &Scenario) -> Result<[f64; 10], Box<dyn Error>> {
-    let mut best = (f64::INFINITY, MATCHED);
+    let mut best = (f64::INFINITY, MATCHED_GAINS);
     for k_v in [0.2, 0.3, 0.45, 0.7, 1.0, 1.5, 2.2, 3.3] {
         for part in [2.0, 2.5, 3.0, 4.0, 6.0, 9.0, 14.0, 20.0] {
-            let mut gains = MATCHED;
+            let mut gains = MATCHED_GAINS;
             (gains[0], gains[1]) = (k_v, k_v * k_v / part);
-            let settled = SectionSix::of(paper, nested(paper, gains)?)?.settled;
+            let settled = SectionSix::simulate(paper, nested(paper, gains)?)?.settled;
             if settled < best.0 {
                 best = (settled, gains);
             }
@@ -58,7 +58,7 @@ pub struct SectionSix {
 
 impl SectionSix {
     /// Flies it.
-    pub fn of(paper: &Scenario, mut flight: Flight) -> Result<Self, Box<dyn Error>> {
+    pub fn simulate(paper: &Scenario, mut flight: Flight) -> Result<Self, Box<dyn Error>> {
         let mut shown = Self {
             thrust: (f64::INFINITY, 0.0),
             torque: Vector3::zeros(),
@@ -90,7 +90,7 @@ impl SectionSix {
             if time > duration - 10.0 {
                 shown.steady = (shown.steady.0.max(error), shown.steady.1.max(yaw));
             }
-            if time < FIRST {
+            if time < ACTUATOR_PLOT_S {
                 shown.thrusts.push((time, thrust));
                 shown.torques.push((time, torque.norm()));
             }
@@ -138,7 +138,10 @@ pub fn heading(claims: &mut Claims, gains: [f64; 10]) -> Result<(), Box<dyn Erro
     // Both begin on it.
     let first = circle.trajectory.at(0);
     (circle.initial.position, circle.initial.velocity) = (first.position.map(f64::from), first.velocity.map(f64::from));
-    let flown = [SectionSix::of(&circle, Flight::new(&circle)?)?, SectionSix::of(&circle, nested(&circle, gains)?)?];
+    let flown = [
+        SectionSix::simulate(&circle, Flight::new(&circle)?)?,
+        SectionSix::simulate(&circle, nested(&circle, gains)?)?,
+    ];
     let [ours, other] = flown.map(|shown| shown.steady.1.to_degrees());
     claims.less(
         "exact heading, tilted too",
@@ -151,7 +154,7 @@ pub fn heading(claims: &mut Claims, gains: [f64; 10]) -> Result<(), Box<dyn Erro
 
 /// How fast the position feedback can change, one axis, at the same level and the same small motions.
 pub fn rates(claims: &mut Claims, paper: &Scenario) {
-    let [k_v, k_p, k_i, m_v, p_share, i_share, ..] = MATCHED;
+    let [k_v, k_p, k_i, m_v, p_share, i_share, ..] = MATCHED_GAINS;
     let outer = Outer::new(k_v, k_p, k_i, m_v, p_share, i_share);
     let vehicle = model(paper);
     let free = vehicle.thrust_max / vehicle.mass + vehicle.gravity;
@@ -216,7 +219,7 @@ pub fn noise(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>
         }
         Ok::<f64, Box<dyn Error>>(1e3 * (squares / (noisy.timing.ticks - 1) as f64).sqrt())
     };
-    let (ours, other) = (restless(Flight::new(&noisy)?)?, restless(nested(&noisy, MATCHED)?)?);
+    let (ours, other) = (restless(Flight::new(&noisy)?)?, restless(nested(&noisy, MATCHED_GAINS)?)?);
     claims.less(
         "simpler derivatives of the position law",
         "hover in noise: torque's change a tick, RMS, mN m",

@@ -1,29 +1,28 @@
 //! What happens in one mission, and when.
 
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use flight::{Battery, FlightSettings, Inputs, Mode, Reason, Request};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 
 /// Ticks of a mission: ten minutes.
-pub const MISSION: u64 = 60_000;
+pub const MISSION_TICKS: u64 = 60_000;
 
 /// How high it takes off, m, and how fast it lands, m/s: each mission's choice, made on the ground before it.
-pub const HEIGHTS: [f32; 3] = [1.5, 2.0, 3.0];
-pub const SPEEDS: [f32; 3] = [0.4, 0.5, 0.7];
+pub const TAKE_OFF_HEIGHTS_M: [f32; 3] = [1.5, 2.0, 3.0];
+pub const LANDING_SPEEDS_M_PER_S: [f32; 3] = [0.4, 0.5, 0.7];
 
 /// Ticks between heartbeats, and between setpoints.
-const HEARTBEAT: u64 = 100;
-const SETPOINT: u64 = 20;
+const HEARTBEAT_TICKS: u64 = 100;
+const SETPOINT_TICKS: u64 = 20;
 
-/// Ticks after which who was refused asks again.
-const AGAIN: u64 = 100;
+/// Ticks after which a refused request is repeated.
+const RETRY_TICKS: u64 = 100;
 
-/// How long each silence lasts, ticks: of the ground station; of poses, three times; of a battery that is low, until it
-/// is changed.
-const SILENCE: u64 = 400;
-const DARK: [u64; 3] = [70, 150, 200];
-const LOW: u64 = 3_000;
+/// How long each fault lasts: the ground station lost; poses lost, three times; a low battery, until it is changed.
+const STATION_OUTAGE_TICKS: u64 = 400;
+const POSE_OUTAGE_TICKS: [u64; 3] = [70, 150, 200];
+const BATTERY_LOW_TICKS: u64 = 3_000;
 
 /// The times of one mission, ticks since it began.
 #[derive(Debug, Clone)]
@@ -32,7 +31,7 @@ pub struct Script {
     take_off: u64,
     setpoints: u64,
     circle: u64,
-    silence: u64,
+    station_lost: u64,
     again: u64,
     cease: u64,
     dark: [u64; 3],
@@ -52,15 +51,15 @@ impl Script {
         let mut about = |time: u64| time + random.random_range(0..200);
         // It takes a second to find out that setpoints have ceased, two and a half for the station: its last heartbeat
         // counts.
-        let silence = about(22_000) / HEARTBEAT * HEARTBEAT;
+        let station_lost = about(22_000) / HEARTBEAT_TICKS * HEARTBEAT_TICKS;
         Self {
             arm: about(300),
             take_off: about(900),
             setpoints: about(8_000),
             circle: about(19_000),
-            silence,
-            again: silence + SILENCE + about(200),
-            cease: about(26_000) / SETPOINT * SETPOINT,
+            station_lost,
+            again: station_lost + STATION_OUTAGE_TICKS + about(200),
+            cease: about(26_000) / SETPOINT_TICKS * SETPOINT_TICKS,
             dark: [about(28_000), about(30_000), about(55_000)],
             frame: [about(32_000), about(50_000)],
             go: about(34_000),
@@ -79,12 +78,16 @@ impl Script {
     /// The flight settings of this mission.
     pub fn settings(&self) -> FlightSettings {
         let (height, speed) = self.choice;
-        FlightSettings { take_off_height: HEIGHTS[height], landing_speed: SPEEDS[speed], ..FlightSettings::DEFAULT }
+        FlightSettings {
+            take_off_height: TAKE_OFF_HEIGHTS_M[height],
+            landing_speed: LANDING_SPEEDS_M_PER_S[speed],
+            ..FlightSettings::DEFAULT
+        }
     }
 
     /// Whether no pose comes.
     pub fn is_dark(&self, tick: u64) -> bool {
-        self.dark.iter().zip(DARK).any(|(since, lasts)| (*since..since + lasts).contains(&tick))
+        self.dark.iter().zip(POSE_OUTAGE_TICKS).any(|(since, lasts)| (*since..since + lasts).contains(&tick))
     }
 
     /// Whether the frame of the poses moves now.
@@ -95,8 +98,8 @@ impl Script {
     /// The operator's inputs in this tick, in `mode`, which will be at `now` and a period, us; `heartbeat` is when the
     /// station's last heartbeat came. A refused request is repeated a second later.
     pub fn given(&self, tick: u64, mode: Mode, now: u64, heartbeat: &mut Option<u64>) -> Inputs<'static> {
-        let silent = (self.silence..self.silence + SILENCE).contains(&tick);
-        if tick.is_multiple_of(HEARTBEAT) && !silent {
+        let silent = (self.station_lost..self.station_lost + STATION_OUTAGE_TICKS).contains(&tick);
+        if tick.is_multiple_of(HEARTBEAT_TICKS) && !silent {
             *heartbeat = Some(now);
         }
         let request = match tick {
@@ -107,8 +110,9 @@ impl Script {
             tick if tick == self.land && !self.runs_down => Some(Request::Land),
             _ => None,
         };
-        let streams = (self.setpoints - SETPOINT..self.cease).contains(&tick) && tick.is_multiple_of(SETPOINT);
-        let is_low = self.runs_down && (self.land..self.land + LOW).contains(&tick);
+        let streams =
+            (self.setpoints - SETPOINT_TICKS..self.cease).contains(&tick) && tick.is_multiple_of(SETPOINT_TICKS);
+        let is_low = self.runs_down && (self.land..self.land + BATTERY_LOW_TICKS).contains(&tick);
         Inputs {
             request,
             ground_station: *heartbeat,
@@ -127,21 +131,21 @@ impl Script {
                 Motion::Velocity(Vector3::new(-sine, cosine, 0.0) * 0.5)
             }
         };
-        Setpoint { motion, turn: Turn::Keep }
+        Setpoint { motion, turn: HeadingSetpoint::Keep }
     }
 
     /// When what led to this began, ticks.
     pub fn cause(&self, reason: Reason) -> u64 {
         match reason {
-            Reason::GroundStationLost => self.silence - HEARTBEAT,
-            Reason::SetpointsLost => self.cease - SETPOINT,
+            Reason::GroundStationLost => self.station_lost - HEARTBEAT_TICKS,
+            Reason::SetpointsLost => self.cease - SETPOINT_TICKS,
             Reason::PoseLost => self.dark[1],
             _ => self.land,
         }
     }
 
     /// The transitions that the mission must take.
-    pub fn wanted(&self) -> Vec<Reason> {
+    pub fn expected_reasons(&self) -> Vec<Reason> {
         vec![
             Reason::Armed,
             Reason::TakeOffCommanded,
@@ -160,7 +164,7 @@ impl Script {
 
 /// Whether it is time for the request of `since`, or for one of its three repetitions.
 fn asks(since: u64, tick: u64) -> bool {
-    (since..since + 400).contains(&tick) && (tick - since).is_multiple_of(AGAIN)
+    (since..since + 400).contains(&tick) && (tick - since).is_multiple_of(RETRY_TICKS)
 }
 
 /// Somewhere near, in the air whichever way the frame has moved.

@@ -27,7 +27,7 @@ fn nothing_is_no_command_and_full_thrust_is_a_full_one() {
 fn thrusts_out_of_reach_give_the_nearest_command_and_a_nan_stops_the_rotor() {
     let curve = ThrustCurve::new(3.0, 0.4).unwrap();
     assert_eq!(curve.command(-1.0, 1.0), 0.0);
-    assert_eq!(curve.command(f32::INFINITY, RATIO_MAX), 1.0);
+    assert_eq!(curve.command(f32::INFINITY, VOLTAGE_RATIO_MAX), 1.0);
     assert_eq!(curve.command(f32::NAN, 1.0), 0.0);
 }
 
@@ -47,8 +47,8 @@ fn a_sagging_battery_does_not_change_the_thrust() {
 #[test]
 fn compensation_stays_within_its_range() {
     let battery = Battery::new(16.0).unwrap();
-    assert_eq!(battery.ratio(9.0, 0), RATIO_MAX);
-    assert_eq!(battery.ratio(31.0, 0), RATIO_MIN);
+    assert_eq!(battery.ratio(9.0, 0), VOLTAGE_RATIO_MAX);
+    assert_eq!(battery.ratio(31.0, 0), VOLTAGE_RATIO_MIN);
 }
 
 #[test]
@@ -57,8 +57,8 @@ fn without_a_believable_reading_there_is_no_compensation() {
     for voltage in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -12.0, 7.9, 33.0] {
         assert_eq!(battery.ratio(voltage, 0), 1.0);
     }
-    assert_eq!(battery.ratio(12.8, STALE_AFTER), 1.0);
-    assert_eq!(battery.ratio(12.8, STALE_AFTER - 1), 1.25);
+    assert_eq!(battery.ratio(12.8, VOLTAGE_STALE_AFTER_US), 1.0);
+    assert_eq!(battery.ratio(12.8, VOLTAGE_STALE_AFTER_US - 1), 1.25);
 }
 
 #[test]

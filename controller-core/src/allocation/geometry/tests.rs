@@ -99,10 +99,10 @@ fn a_rotor_too_far_away_on_either_side_is_refused_by_its_number() {
 #[test]
 fn rotors_hover_a_weight_between_their_least_and_greatest_thrust() {
     let rotors = Rotors::quad_x(QuadX { speed_min: 300.0, ..hummingbird() }).unwrap();
-    let (least, greatest) = rotors.thrust_together();
-    assert!((least - 2.0052).abs() < 1e-4 && (greatest - 50.13).abs() < 1e-3, "{least} {greatest}");
+    let (min, max) = rotors.thrust_together();
+    assert!((min - 2.0052).abs() < 1e-4 && (max - 50.13).abs() < 1e-3, "{min} {max}");
     let refused = |weight| rotors.check_hover(weight).unwrap_err();
-    assert!(rotors.check_hover(0.5 * greatest).is_ok());
-    assert_eq!(refused(greatest), ParameterError { field: "rotors.speed", reason: Reason::NotAbove(greatest) });
-    assert_eq!(refused(least), ParameterError { field: "rotors.speed", reason: Reason::NotBelow(least) });
+    assert!(rotors.check_hover(0.5 * max).is_ok());
+    assert_eq!(refused(max), ParameterError { field: "rotors.speed", reason: Reason::NotAbove(max) });
+    assert_eq!(refused(min), ParameterError { field: "rotors.speed", reason: Reason::NotBelow(min) });
 }

@@ -29,7 +29,7 @@ fn loose() -> Limits {
 }
 
 fn without(rotor: usize, left: f32) -> RemainingRotors {
-    RemainingRotors::new(&quad(), &loose(), &Lost { rotor, left }, 1.0, WEIGHT)
+    RemainingRotors::new(&quad(), &loose(), &LostRotor { rotor, left }, 1.0, WEIGHT)
 }
 
 fn asked(random: &mut Random) -> Wrench {
@@ -45,7 +45,7 @@ fn cost(rotors: &RemainingRotors, wanted: &Wrench, thrusts: &[f32]) -> f64 {
     let yaw = wanted.w.clamp(-rotors.share, rotors.share);
     let wanted = Vector4::new(wanted.x, wanted.y, wanted.z, yaw).map(f64::from);
     let rest = rotors.rotors.iter().zip(thrusts).fold(wanted, |sum, (rotor, thrust)| missing(sum, rotor, *thrust));
-    let ways = COMPLIANCE.map(f64::from);
+    let ways = WRENCH_COMPLIANCE.map(f64::from);
     let beside = rotors.rotors.iter().zip(thrusts).map(|(rotor, thrust)| f64::from(thrust - rotor.preferred).powi(2));
     beside.sum::<f64>() + rest.component_mul(&rest).component_div(&ways).sum()
 }
@@ -59,10 +59,10 @@ fn every_thrust_and_command_is_within_its_range_whatever_is_asked() {
         let thrusts = rotors.allocate(&asked(&mut random));
         for (index, (thrust, command)) in thrusts.iter().zip(&rotors.commands(&thrusts)).enumerate() {
             let rotor = quad()[index];
-            let [least, most] = [rotor.thrust_min, rotor.thrust_max];
+            let [min, max] = [rotor.thrust_min, rotor.thrust_max];
             let (share, is_lost) = (if index == number % 4 { left } else { 1.0 }, index == number % 4);
-            assert!((share * least..=share * most).contains(thrust), "{thrust}");
-            assert!((least..=most).contains(command) || is_lost && left == 0.0 && *command == 0.0, "{command}");
+            assert!((share * min..=share * max).contains(thrust), "{thrust}");
+            assert!((min..=max).contains(command) || is_lost && left == 0.0 && *command == 0.0, "{command}");
         }
     }
 }
@@ -74,14 +74,14 @@ fn no_thrusts_within_the_ranges_cost_less() {
         let rotors = without(number % 4, if number % 3 == 0 { random.between(0.1, 0.9) } else { 0.0 });
         let wanted = asked(&mut random);
         let found = rotors.allocate(&wanted);
-        let least = cost(&rotors, &wanted, &found);
+        let min = cost(&rotors, &wanted, &found);
         for _ in 0..40 {
             // Any others, near and far.
             let size = *[0.01, 0.3, 12.0].get(random.below(3)).unwrap();
             let other = |(rotor, thrust): (&Remaining, &f32)| rotor.within(thrust + random.between(-size, size));
             let others: Vec<f32, ROTORS_MAX> = collected(rotors.rotors.iter().zip(&found).map(other));
             let more = cost(&rotors, &wanted, &others);
-            assert!(more >= least - 1e-3 * least.max(1.0), "{wanted:?}: {found:?} {least}, {others:?} {more}");
+            assert!(more >= min - 1e-3 * min.max(1.0), "{wanted:?}: {found:?} {min}, {others:?} {more}");
         }
     }
 }
@@ -110,10 +110,10 @@ fn roll_and_pitch_give_way_last_and_yaw_first() {
 fn limits_of_thrust_and_torque_hold_for_what_is_delivered_and_for_what_would_be_of_whole_rotors() {
     let mut random = Random(3);
     let limits = limits(8.0, [0.2, 0.3, 0.05]);
-    let whole = RemainingRotors::new(&quad(), &limits, &Lost { rotor: 0, left: 1.0 }, 1.0, WEIGHT);
+    let whole = RemainingRotors::new(&quad(), &limits, &LostRotor { rotor: 0, left: 1.0 }, 1.0, WEIGHT);
     let mut bound = 0;
     for number in 0..5_000 {
-        let lost = Lost { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
+        let lost = LostRotor { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
         let rotors = RemainingRotors::new(&quad(), &limits, &lost, 0.9, WEIGHT);
         let thrusts = rotors.allocate(&asked(&mut random));
         for wrench in [rotors.wrench(&thrusts), whole.wrench(&rotors.commands(&thrusts)).scaled(0.9)] {

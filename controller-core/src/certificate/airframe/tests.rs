@@ -8,7 +8,7 @@ fn every_plausible_vehicle_is_certified_from_its_numbers_with_references_to_fly(
     let mut random = Random(31);
     for _ in 0..100 {
         let craft = Craft::random(&mut random);
-        let certified = Certified::new(Configuration::of_airframe(&craft.airframe()).unwrap()).unwrap();
+        let certified = Certified::new(Configuration::from_airframe(&craft.airframe()).unwrap()).unwrap();
         let bounds = certified.configuration().bounds();
         assert!(bounds.values().iter().all(|&bound| bound > 0.0), "{craft:?}: {bounds:?}");
     }
@@ -21,8 +21,8 @@ fn the_widest_references_are_a_share_of_the_formulas() {
         let craft = Craft::random(&mut random);
         let airframe = craft.airframe();
         let parameters = craft.constants(&NOTHING_GIVEN);
-        let most = defaults::reference_bounds(&airframe, &parameters);
+        let max = defaults::reference_bounds(&airframe, &parameters);
         let widest = flyable(&airframe, craft.law(&parameters));
-        assert!(widest.values().iter().zip(most.values()).all(|(bound, most)| *bound <= most), "{widest:?}");
+        assert!(widest.values().iter().zip(max.values()).all(|(bound, max)| *bound <= max), "{widest:?}");
     }
 }

@@ -13,11 +13,15 @@ fn certificate(craft: &Craft, parameters: &ExtendedParameters, bounds: Reference
 }
 
 /// The rows that fail on the example's vehicle with these constants and references.
-fn failing(parameters: &ExtendedParameters, bounds: ReferenceBounds) -> Vec<&'static str, MOST> {
+fn failing(parameters: &ExtendedParameters, bounds: ReferenceBounds) -> Vec<&'static str, INEQUALITIES_MAX> {
     failing_on(&Craft::example(), parameters, bounds)
 }
 
-fn failing_on(craft: &Craft, parameters: &ExtendedParameters, bounds: ReferenceBounds) -> Vec<&'static str, MOST> {
+fn failing_on(
+    craft: &Craft,
+    parameters: &ExtendedParameters,
+    bounds: ReferenceBounds,
+) -> Vec<&'static str, INEQUALITIES_MAX> {
     let inequalities = certificate(craft, parameters, bounds).inequalities;
     collected(inequalities.iter().filter(|row| !row.holds()).map(|row| row.name))
 }
@@ -25,7 +29,7 @@ fn failing_on(craft: &Craft, parameters: &ExtendedParameters, bounds: ReferenceB
 #[test]
 fn the_example_is_certified_with_every_row_of_the_table() {
     let certificate = certificate(&Craft::example(), &example::parameters(), example::REFERENCES);
-    assert_eq!(certificate.inequalities.len(), MOST);
+    assert_eq!(certificate.inequalities.len(), INEQUALITIES_MAX);
     assert!(certificate.inequalities.iter().all(Inequality::holds), "{:?}", certificate.inequalities);
     assert_eq!(certificate.bounds.rotors.len(), 4);
 }
@@ -33,8 +37,8 @@ fn the_example_is_certified_with_every_row_of_the_table() {
 #[test]
 fn a_reference_that_falls_as_fast_as_the_law_may_fails_t1() {
     let p = example::parameters();
-    let least = example::vehicle().gravity - p.a_down;
-    let rows = feasible_rows(&p, ReferenceBounds { vertical_acceleration: least.next_down(), ..example::REFERENCES });
+    let min = example::vehicle().gravity - p.a_down;
+    let rows = feasible_rows(&p, ReferenceBounds { vertical_acceleration: min.next_down(), ..example::REFERENCES });
     let [fall, ..] = rows;
     assert!(fall.available - fall.required < 1e-5 && fall.holds());
 }
@@ -50,9 +54,9 @@ fn feasible_rows(parameters: &ExtendedParameters, bounds: ReferenceBounds) -> [I
 fn a_reference_that_thrust_does_not_hold_fails_its_row() {
     let p = example::parameters();
     let [_, thrust, ..] = feasible_rows(&p, example::REFERENCES);
-    let most = ((thrust.available / 0.5).powi(2) - 9.9855_f64.powi(2)).sqrt() as f32 - 0.47 * 3.0;
+    let max = ((thrust.available / 0.5).powi(2) - 9.9855_f64.powi(2)).sqrt() as f32 - 0.47 * 3.0;
     let with = |share: f32| {
-        let bounds = ReferenceBounds { horizontal_acceleration: share * most, ..example::REFERENCES };
+        let bounds = ReferenceBounds { horizontal_acceleration: share * max, ..example::REFERENCES };
         failing(&p, bounds).contains(&"A1 thrust for the reference")
     };
     assert!(!with(0.99) && with(1.01));
@@ -65,14 +69,14 @@ fn references_that_turn_the_thrust_too_fast_or_too_suddenly_fail_their_rows() {
     assert!(failing(&p, jerky).contains(&"A1 turning rate for the reference"));
     let [_, _, rate, acceleration, _] = feasible_rows(&p, example::REFERENCES);
     // All there is of |u'|: the reference's with its drag, and the slowed law's across and along the vertical.
-    let slow = Slowed::<f64>::of(&p, 9.81);
+    let slow = Slowed::<f64>::new(&p, 9.81);
     let (level, [k_f, k_s]) = (2.0_f64.sqrt() * slow.level, [p.k_f, p.k_s].map(|k| slow.factor * f64::from(k)));
-    let least = 9.81 - 0.1755 - f64::from(p.force_up) - slow.level;
-    let expected = (3.876 + 0.47 * 2.4675 + 2.0 * k_f * level) / least;
+    let min = 9.81 - 0.1755 - f64::from(p.force_up) - slow.level;
+    let expected = (3.876 + 0.47 * 2.4675 + 2.0 * k_f * level) / min;
     assert!((rate.required / expected - 1.0).abs() < 1e-4 && rate.available == f64::from(p.turn_rate), "{rate}");
     // Beside it 2 p r / n, p and r / n together as long as |u'| / n.
     let snap = 6.089 + 0.47 * 3.876 + 2.0 * k_f * (k_s + k_f) * level;
-    let expected = snap / least + expected * expected;
+    let expected = snap / min + expected * expected;
     // The allowance for arithmetic, three times.
     assert!((acceleration.required / expected - 1.0).abs() < 3e-4, "{acceleration} {expected}");
     assert!(acceleration.available == f64::from(p.turn_reserve));
@@ -133,8 +137,8 @@ fn torques_beyond_the_limits_or_the_rotors_fail_their_rows() {
     let weak = QuadX { speed_max: 850.0, ..example::QUAD };
     let craft = Craft { rotors: Rotors::quad_x(weak).unwrap(), ..Craft::example() };
     assert!(failing_on(&craft, &p, example::REFERENCES).contains(&"R rotors' range"));
-    let most = ExtendedParameters { torque_tilt: 2.0 * p.m_tilt, ..p };
-    assert_eq!(failing(&most, example::REFERENCES)[..], ["D greatest torque bias"]);
+    let max = ExtendedParameters { torque_tilt: 2.0 * p.m_tilt, ..p };
+    assert_eq!(failing(&max, example::REFERENCES)[..], ["D greatest torque bias"]);
     // More of the reserve, more of the feedback: each takes its part of the row.
     let left = |p: &ExtendedParameters| {
         let inequalities = certificate(&Craft::example(), p, example::REFERENCES).inequalities;
@@ -165,20 +169,20 @@ fn the_bounds_of_torques_are_the_rows_own() {
         let p = craft.constants(&crate::extended::defaults::NOTHING_GIVEN);
         let found = certificate(&craft, &p, ReferenceBounds::REST).bounds.torque;
         let budget = TorqueBudget::<f64>::new(p.floor_margin, &craft.limits, Some(&craft.rotors));
-        let mut greatest = [0.0_f64; 2];
+        let mut max = [0.0_f64; 2];
         for scale in [p.scale_least, p.scale_greatest].map(f64::from) {
             for degrees in 0..3_600 {
                 let (sin, cos) = (f64::from(degrees) * 0.1).to_radians().sin_cos();
                 let along = budget
                     .rows
                     .iter()
-                    .map(|row| row.room(scale) / (row.direction[0] * cos + row.direction[1] * sin).abs());
+                    .map(|row| row.capacity(scale) / (row.direction[0] * cos + row.direction[1] * sin).abs());
                 let most = along.fold(f64::INFINITY, f64::min);
-                greatest = [greatest[0].max(most * cos), greatest[1].max(most * sin)];
+                max = [max[0].max(most * cos), max[1].max(most * sin)];
             }
         }
-        for (bound, greatest) in [found.x, found.y].into_iter().zip(greatest) {
-            assert!(greatest <= bound && bound < 1.01 * greatest, "{bound} {greatest}");
+        for (bound, max) in [found.x, found.y].into_iter().zip(max) {
+            assert!(max <= bound && bound < 1.01 * max, "{bound} {max}");
         }
     }
 }
@@ -225,9 +229,9 @@ fn a_thrust_limit_below_what_torques_raise_the_floor_to_fails_its_row() {
     // Newton for newton, by the part of it that a torque takes from one rotor.
     let row = row_at(40.0);
     let reach = (row.available - row_at(39.0).available).recip();
-    let least = 40.0 - ((row.available - row.required) * reach) as f32;
-    assert!(row.holds() && least > 6.0 && reach > 1.0, "{row}");
-    assert!(row_at(least + 0.01).holds() && !row_at(least - 0.01).holds());
+    let min = 40.0 - ((row.available - row.required) * reach) as f32;
+    assert!(row.holds() && min > 6.0 && reach > 1.0, "{row}");
+    assert!(row_at(min + 0.01).holds() && !row_at(min - 0.01).holds());
     // Idling rotors take their least from it, as commanded where they deliver the most.
     let quad = QuadX { speed_min: 200.0, ..example::QUAD };
     let idling = Craft { rotors: Rotors::quad_x(quad).unwrap(), ..Craft::example() };

@@ -8,41 +8,40 @@
 //!
 //! and psi' moves by at most h times the bound of psi''. [`PathJudge::shares_within`] bounds all motions so near to the
 //! one at t. A cell whose bound is above what was found at instants is halved, until the bound exceeds that by no more
-//! than [`TIGHTNESS`].
+//! than [`BOUND_TOLERANCE`].
 
-use super::{Motion, PathJudge, Row, Shares, Spread};
+use super::{PathJudge, PathMotion, PathRow, RowShares, Spread};
 use crate::math::real::Real;
 use crate::reference::Trajectory;
 
 /// How far, relative, the bound may be above a share that is taken.
-pub const TIGHTNESS: f64 = 2e-3;
+pub const BOUND_TOLERANCE: f64 = 2e-3;
 
 /// The first cells, us, and how often one is halved at most: to 8 us.
-const CELL: u64 = 1 << 17;
-const HALVINGS: u32 = 14;
+const FIRST_CELL_US: u64 = 1 << 17;
+const HALVINGS_MAX: u32 = 14;
 
 /// What a trajectory takes of what is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Taken {
+pub struct MaxShare {
     /// No instant takes a greater share: below one, nothing is limited.
     pub share: f64,
     /// Of which row most is taken.
-    pub row: Row,
-    /// When, us: within [`TIGHTNESS`] of the greatest share.
+    pub row: PathRow,
+    /// When, us: within [`BOUND_TOLERANCE`] of the greatest share.
     pub at_us: u64,
 }
 
-impl Taken {
+impl MaxShare {
     /// The most from the start to `end_us`, microseconds.
-    #[must_use]
     pub fn along<R: Real>(judge: &PathJudge<R>, trajectory: &dyn Trajectory, end_us: u64) -> Self {
-        let mut search = Search { judge, trajectory, attained: Attained::NOTHING, bound: 0.0 };
+        let mut search = Search { judge, trajectory, attained: SampledShare::NOTHING, bound: 0.0 };
         let mut from = 0;
         loop {
-            let to = end_us.min(from + CELL);
-            search.refine(from, to, HALVINGS);
+            let to = end_us.min(from + FIRST_CELL_US);
+            search.refine(from, to, HALVINGS_MAX);
             if to == end_us {
-                let Attained { row, at_us, .. } = search.attained;
+                let SampledShare { row, at_us, .. } = search.attained;
                 return Self { share: search.bound, row, at_us };
             }
             from = to;
@@ -52,34 +51,34 @@ impl Taken {
 
 /// The greatest share at the instants looked at.
 #[derive(Clone, Copy)]
-struct Attained {
+struct SampledShare {
     share: f64,
-    row: Row,
+    row: PathRow,
     at_us: u64,
 }
 
-impl Attained {
-    const NOTHING: Self = Self { share: 0.0, row: Row::Fall, at_us: 0 };
+impl SampledShare {
+    const NOTHING: Self = Self { share: 0.0, row: PathRow::Fall, at_us: 0 };
 }
 
 /// A search in the making.
 struct Search<'a, R> {
     judge: &'a PathJudge<R>,
     trajectory: &'a dyn Trajectory,
-    attained: Attained,
+    attained: SampledShare,
     bound: f64,
 }
 
 impl<R: Real> Search<'_, R> {
     fn refine(&mut self, from: u64, to: u64, halvings: u32) {
         let middle = from + (to - from) / 2;
-        let motion = Motion::from(&self.trajectory.at(middle));
-        let here: Shares<R> = self.judge.shares(&motion);
+        let motion = PathMotion::from(&self.trajectory.at(middle));
+        let here: RowShares<R> = self.judge.shares(&motion);
         if here.worst() > self.attained.share {
-            self.attained = Attained { share: here.worst(), row: here.row(), at_us: middle };
+            self.attained = SampledShare { share: here.worst(), row: here.row(), at_us: middle };
         }
         let bound = self.judge.shares_within(&motion, &self.spread(&motion, from, to)).worst();
-        if halvings == 0 || to - from < 2 || bound <= self.attained.share * (1.0 + TIGHTNESS) {
+        if halvings == 0 || to - from < 2 || bound <= self.attained.share * (1.0 + BOUND_TOLERANCE) {
             self.bound = self.bound.max(bound);
         } else {
             self.refine(from, middle, halvings - 1);
@@ -88,7 +87,7 @@ impl<R: Real> Search<'_, R> {
     }
 
     /// How far the motions of a cell are from that in its middle.
-    fn spread(&self, motion: &Motion<R>, from: u64, to: u64) -> Spread<R> {
+    fn spread(&self, motion: &PathMotion<R>, from: u64, to: u64) -> Spread<R> {
         // Half of the cell, and what the middle was rounded by.
         let half = R::from((to - from + 1) as f64 * 0.5e-6);
         let fifth = R::from(self.trajectory.fifth_derivative(from, to));

@@ -8,8 +8,8 @@
 //!
 //! near the target: d the force that is kept free, in any direction, and e the feedback of [`Slowed`]. So u is in a
 //! ball about w and its derivatives are in balls about w', w''; where the motion is known to within a [`Spread`] only,
-//! the balls are as much larger. With n, p, q, r as in [`crate::extended::turning`], at their worst in these balls, and
-//! tau = J_max |q| + the gyroscopic torque + a share of rho(s) that is kept for torque bias and feedback:
+//! the balls are as much larger. With n, p, q, r as in [`crate::extended::direction_limiter`], at their worst in these
+//! balls, and tau = J_max |q| + the gyroscopic torque + a share of rho(s) that is kept for torque bias and feedback:
 //!
 //! | row | taken < left |
 //! |---|---|
@@ -26,13 +26,13 @@
 //! turns about u faster than yaw follows, the body is taken to turn no faster than the frame: y is what yaw then
 //! [brakes](crate::extended::heading) with before thrust.
 
-use super::{Motion, Row, Shares, Spread, TORQUE_KEPT};
+use super::{PathMotion, PathRow, RowShares, Spread, TORQUE_KEPT_SHARE};
 use crate::certificate::form::ARITHMETIC_ALLOWANCE;
 use crate::configuration::{Configuration, ExtendedLaw};
-use crate::extended::budget::{THRUST_LEFT, TorqueBudget};
+use crate::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
+use crate::extended::direction_limiter::{self, END_SOFTNESS_PER_S};
+use crate::extended::estimates::HELD_SHARE;
 use crate::extended::fallback::Slowed;
-use crate::extended::force::HELD_SHARE;
-use crate::extended::turning::{self, SOFTNESS};
 use crate::math;
 use crate::math::real::Real;
 
@@ -72,12 +72,11 @@ pub struct PathJudge<R = f64> {
     /// s_hi max f_min / b_T + margin, N.
     floor: R,
     /// U beside the torque that is kept, m/s^2.
-    greatest: R,
+    max: R,
 }
 
 impl<R: Real> PathJudge<R> {
     /// For `law`, the one of `configuration`, with a force of `force_kept` kept free, m/s^2.
-    #[must_use]
     pub fn new(configuration: &Configuration, law: &ExtendedLaw, force_kept: f32) -> Self {
         let (vehicle, limits, p) = (configuration.vehicle(), configuration.limits(), &law.parameters);
         let budget = TorqueBudget::<R>::new(p.floor_margin, limits, configuration.rotors());
@@ -86,14 +85,14 @@ impl<R: Real> PathJudge<R> {
         let ([tilt_reach, yaw_reach], [bottom, top]) = (budget.reach, budget.ends);
         let (one, mass) = (R::from(1.0), R::from(vehicle.mass));
 
-        let slowed = Slowed::<R>::of(p, vehicle.gravity);
+        let slowed = Slowed::<R>::new(p, vehicle.gravity);
         let [jerk, snap] = slowed.derivatives(p);
         let level = slowed.level * R::from(2.0).sqrt();
-        let softness = R::from(SOFTNESS);
+        let softness = R::from(END_SOFTNESS_PER_S);
         // (1 + s / k) behind a filter overshoots where the filter is quicker.
         let overshoot = |bandwidth: f32| (R::from(bandwidth) * slowed.factor * 2.0 / softness - one).greater(one);
         let radius = budget.radius(scale_least).lesser(budget.radius(scale_greatest));
-        let kept = radius * TORQUE_KEPT;
+        let kept = radius * TORQUE_KEPT_SHARE;
         let most = scale_least * top - budget.margin;
         let thrust_max = R::from(limits.thrust_max);
         Self {
@@ -106,7 +105,7 @@ impl<R: Real> PathJudge<R> {
             swelling: level * overshoot(p.k_f) * overshoot(p.k_d),
             softness,
             turn_rate: R::from(p.turn_rate),
-            closing: turning::closing(budget.radius(one) / j_1.greater(j_2)),
+            closing: direction_limiter::closing(budget.radius(one) / j_1.greater(j_2)),
             cosine: R::from(1.0 / math::hypot(1.0, math::tan(f64::from(p.tilt_max)))),
             inertia: [j_1.greater(j_2), j_3 + (j_1 - j_2).abs()],
             torque: [kept, radius],
@@ -114,19 +113,17 @@ impl<R: Real> PathJudge<R> {
             spin: [yaw_reach * j_3 * R::from(p.yaw_acceleration), R::from(p.yaw_rate)],
             ceiling: [most, thrust_max],
             floor: scale_greatest * bottom + budget.margin,
-            greatest: (most - tilt_reach * kept).lesser(thrust_max) / mass,
+            max: (most - tilt_reach * kept).lesser(thrust_max) / mass,
         }
     }
 
     /// What a motion takes at an instant.
-    #[must_use]
-    pub fn shares(&self, motion: &Motion<R>) -> Shares<R> {
+    pub fn shares(&self, motion: &PathMotion<R>) -> RowShares<R> {
         self.shares_within(motion, &Spread::none())
     }
 
     /// What motions take that are no farther than `spread` from `motion`, each at most.
-    #[must_use]
-    pub fn shares_within(&self, motion: &Motion<R>, spread: &Spread<R>) -> Shares<R> {
+    pub fn shares_within(&self, motion: &PathMotion<R>, spread: &Spread<R>) -> RowShares<R> {
         let one = R::from(1.0);
         // w, w', w'', and how far u and its derivatives are from them.
         let mut w = self.with_drag(&motion.acceleration, &motion.velocity);
@@ -143,9 +140,9 @@ impl<R: Real> PathJudge<R> {
         let (around, around_1, around_2) = (forced + level, moved[1] + e_1, moved[2] + e_2);
 
         let length = norm(&w);
-        let (least, most) = (length - around, length + around);
-        if least.lower() <= 0.0 {
-            return Shares { each: [R::from(f64::INFINITY); Row::ALL.len()] };
+        let (min, max) = (length - around, length + around);
+        if min.lower() <= 0.0 {
+            return RowShares { each: [R::from(f64::INFINITY); PathRow::ALL.len()] };
         }
         let direction = w.map(|x| x / length);
         // Of the greatest angle between w and u.
@@ -157,8 +154,8 @@ impl<R: Real> PathJudge<R> {
         let u_1 = across(parts_1) + around_1;
         let u_2 = across(parts_2) + around_2;
         let r = parts_1[0].abs() + parts_1[1] * sine + around_1;
-        let rate = u_1 / least;
-        let acceleration = (u_2 + r * rate * 2.0) / least;
+        let rate = u_1 / min;
+        let acceleration = (u_2 + r * rate * 2.0) / min;
 
         let leaning = (one - direction[2] * direction[2]).sqrt_of_rounded();
         let up = direction[2] * cosine - leaning * sine;
@@ -171,17 +168,17 @@ impl<R: Real> PathJudge<R> {
         let k = self.softness;
         let [swell, swell_across] = parts(&sum(&w_2, &w_1.map(|x| x * k * 2.0)), &direction);
         let swell = swell.greater(swell * cosine) + swell_across * sine + moved[2] + moved[1] * k * 2.0;
-        let swollen = length + forced + self.swelling + (swell + u_1 * u_1 / least) / (k * k);
+        let swollen = length + forced + self.swelling + (swell + u_1 * u_1 / min) / (k * k);
 
         // The body turns one way while the frame turns the other.
         let [braking, fastest] = self.spin;
         let braking = braking * (turning * 2.0 / fastest - 1.0).greater(R::from(0.0)).lesser(one);
         let [ceiling, thrust_max] = self.ceiling;
         let thrust = [
-            share(self.mass * most + self.reach * torque + braking, ceiling),
-            share(self.mass * most, thrust_max),
-            share(swollen, self.greatest),
-            share(length + forced, self.greatest * f64::from(HELD_SHARE)),
+            share(self.mass * max + self.reach * torque + braking, ceiling),
+            share(self.mass * max, thrust_max),
+            share(swollen, self.max),
+            share(length + forced, self.max * f64::from(HELD_SHARE)),
         ];
         // -n rho_z' = (rho . u') rho_z - u_z'.
         let highest = (direction[2] + leaning * sine).lesser(one);
@@ -192,10 +189,10 @@ impl<R: Real> PathJudge<R> {
             thrust.into_iter().fold(R::from(0.0), R::greater),
             share(rate, self.turn_rate),
             share(torque, radius),
-            share(self.floor + self.reach * torque, self.mass * least * (1.0 - THRUST_LEFT)),
-            share(self.cosine * self.closing + sinking / least, up * self.closing),
+            share(self.floor + self.reach * torque, self.mass * min * (1.0 - TORQUE_THRUST_SHARE)),
+            share(self.cosine * self.closing + sinking / min, up * self.closing),
         ];
-        Shares { each: each.map(|share| share * (1.0 + ARITHMETIC_ALLOWANCE)) }
+        RowShares { each: each.map(|share| share * (1.0 + ARITHMETIC_ALLOWANCE)) }
     }
 
     /// A derivative of the reference with the drag of the one below.

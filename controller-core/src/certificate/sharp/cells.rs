@@ -13,7 +13,7 @@ pub const ANGLE_CELLS: usize = 24;
 const CELL_COS: f64 = 0.997_858_923_238_603_5;
 const CELL_SIN: f64 = 0.065_403_129_230_143_07;
 /// More than 24 turns by one cell are off by.
-pub const OUTWARDS: f64 = 1e-14;
+pub const CELL_ROUNDING: f64 = 1e-14;
 /// Cells of p between zero and its greatest value, for the split of u'.
 pub const SPLIT_CELLS: usize = 24;
 /// Cells of |psi'|.
@@ -83,8 +83,8 @@ pub struct Tilt<R> {
     pub tan: R,
     pub sin: R,
     /// Least sine and greatest cosine, at the upright end.
-    pub sin_least: R,
-    pub cos_greatest: R,
+    pub sin_min: R,
+    pub cos_max: R,
     /// Greatest 1 / cos, at the tilted end.
     pub secant: R,
     /// Least n.
@@ -98,8 +98,8 @@ impl<R: Real> Tilt<R> {
         Self {
             tan: tilted_end,
             sin: tilted_end / secant,
-            sin_least: upright_end / secant_least,
-            cos_greatest: one / secant_least,
+            sin_min: upright_end / secant_least,
+            cos_max: one / secant_least,
             secant,
             magnitude: vertical_least * secant_least,
         }
@@ -111,11 +111,11 @@ impl<R: Real> Tilt<R> {
     /// With a its angle to the slope, |v|^2 = (cos gamma h cos a + sin gamma z)^2 + (h sin a)^2, here multiplied out.
     pub fn tangential(&self, horizontal: R, vertical: R, direction: &Direction<R>) -> Tangential<R> {
         let climbing = self.sin * vertical;
-        let flattened = self.sin_least * horizontal * direction.cos_least;
+        let flattened = self.sin_min * horizontal * direction.cos_min;
         let square = horizontal * horizontal + climbing * climbing - flattened * flattened
-            + self.cos_greatest * 2.0 * horizontal * direction.cos_greatest * climbing;
+            + self.cos_max * 2.0 * horizontal * direction.cos_max * climbing;
         let length = square.sqrt_of_rounded() / self.magnitude;
-        Tangential { length, mixed: (length + horizontal * direction.sin_greatest / self.magnitude) * 0.5 }
+        Tangential { length, mixed: (length + horizontal * direction.sin_max / self.magnitude) * 0.5 }
     }
 
     /// L u'' for a direction of u''.
@@ -132,14 +132,14 @@ impl<R: Real> Tilt<R> {
 
     /// The shares of u' in the cell `split`, for p at most `longest`.
     pub fn shares(&self, reach: &Reachable<R>, longest: R, split: usize) -> Shares<R> {
-        let [least, most] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
+        let [min, max] = [split, split + 1].map(|end| longest * end as f64 / SPLIT_CELLS as f64);
         let total = reach.jerk * reach.jerk;
-        let length = most / self.magnitude;
+        let length = max / self.magnitude;
         Shares {
-            stretch: (total - least * least).sqrt_of_rounded() / self.magnitude,
+            stretch: (total - min * min).sqrt_of_rounded() / self.magnitude,
             length,
-            product: greatest_product(total, least * least, most * most) / (self.magnitude * self.magnitude),
-            mixed: (length + most.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
+            product: max_product(total, min * min, max * max) / (self.magnitude * self.magnitude),
+            mixed: (length + max.lesser(reach.horizontal_jerk) / self.magnitude) * 0.5,
         }
     }
 
@@ -159,30 +159,34 @@ impl<R: Real> Tilt<R> {
     }
 }
 
-/// The greatest sqrt(x (total - x)) for x between `least` and `most`: p r, where p^2 + r^2 = `total`.
-fn greatest_product<R: Real>(total: R, least: R, most: R) -> R {
-    let x = (total * 0.5).greater(least).lesser(most);
+/// The greatest sqrt(x (total - x)) for x between `min` and `most`: p r, where p^2 + r^2 = `total`.
+fn max_product<R: Real>(total: R, min: R, max: R) -> R {
+    let x = (total * 0.5).greater(min).lesser(max);
     (x * (total - x)).sqrt_of_rounded()
 }
 
 /// One cell of a horizontal vector's angle to the slope.
 #[derive(Clone, Copy)]
 pub struct Direction<R> {
-    pub cos_greatest: R,
-    pub cos_least: R,
-    pub sin_greatest: R,
+    pub cos_max: R,
+    pub cos_min: R,
+    pub sin_max: R,
 }
 
 impl<R: Real> Direction<R> {
     /// The cells of [0, pi/2]; the other quadrants mirror it. From end to end the angle is turned on by one cell; what
-    /// rounding does to that is far below [`OUTWARDS`], by which every value is moved to its safe side.
+    /// rounding does to that is far below [`CELL_ROUNDING`], by which every value is moved to its safe side.
     pub fn quarter_turn() -> [Self; ANGLE_CELLS] {
         let (mut cos, mut sin) = (R::from(1.0), R::from(0.0));
         core::array::from_fn(|_| {
-            let cos_greatest = cos + OUTWARDS;
+            let cos_greatest = cos + CELL_ROUNDING;
             (cos, sin) = (cos * CELL_COS - sin * CELL_SIN, sin * CELL_COS + cos * CELL_SIN);
             // A cosine below zero must not come out: it is squared.
-            Self { cos_greatest, cos_least: (cos - OUTWARDS).greater(R::from(0.0)), sin_greatest: sin + OUTWARDS }
+            Self {
+                cos_max: cos_greatest,
+                cos_min: (cos - CELL_ROUNDING).greater(R::from(0.0)),
+                sin_max: sin + CELL_ROUNDING,
+            }
         })
     }
 }

@@ -21,11 +21,11 @@ fn every_cell_of_the_quarter_turn_holds_its_cosines_and_sines_by_a_hair() {
     for (i, direction) in Direction::<f64>::quarter_turn().iter().enumerate() {
         let (near, far) = (cell * i as f64, cell * (i + 1) as f64);
         let outwards = [
-            direction.cos_greatest - libm::cos(near),
-            libm::cos(far) - direction.cos_least,
-            direction.sin_greatest - libm::sin(far),
+            direction.cos_max - libm::cos(near),
+            libm::cos(far) - direction.cos_min,
+            direction.sin_max - libm::sin(far),
         ];
-        assert!(outwards.iter().all(|by| (0.0..2.0 * cells::OUTWARDS).contains(by)), "{i}: {outwards:?}");
+        assert!(outwards.iter().all(|by| (0.0..2.0 * cells::CELL_ROUNDING).contains(by)), "{i}: {outwards:?}");
     }
 }
 
@@ -34,7 +34,7 @@ fn a_bound_that_is_undefined_stays_undefined() {
     let bounds = ReferenceBounds { vertical_acceleration: 1.0, ..ReferenceBounds::REST };
     let [k_f, k_s, m_p, gravity] = [5.0, 10.0, 8.81_f32, 9.81].map(Enclosure::from);
     let reach = Reachable::new(k_f, k_s, m_p, gravity, &bounds);
-    assert!(reach.vertical_least.lower() < 0.0 && reach.vertical_least.upper() > 0.0, "{reach:?}");
+    assert!(reach.vertical_min.lower() < 0.0 && reach.vertical_min.upper() > 0.0, "{reach:?}");
     let rates = desired_rates(&reach, &bounds, &Vector3::repeat(Enclosure::from(1.0)));
     assert!(rates.angular_velocity.upper().is_nan() && rates.feedforward_torque.x.upper().is_nan(), "{rates:?}");
     assert!(turning_rates(&reach, &bounds)[1].upper().is_nan());

@@ -8,16 +8,16 @@ use crate::error::ParameterError;
 use crate::extended::actuators::ActuatorModel;
 use crate::extended::attitude::AttitudeLaw;
 use crate::extended::budget::{TickBudget, TorqueBudget};
+use crate::extended::direction_limiter::DirectionLimiter;
+use crate::extended::estimates::Learning;
 use crate::extended::fallback::{Slowed, slowed};
 use crate::extended::heading::{self, HeadingLaw};
-use crate::extended::learning::Learning;
 use crate::extended::measured::Measured;
 use crate::extended::memory::{Averages, Memory};
 use crate::extended::parameters::Extended;
-use crate::extended::position::{Most, PositionLaw};
+use crate::extended::position::{FeedbackLimits, PositionLaw};
 use crate::extended::rotor_loss::detector::Detector;
 use crate::extended::thrust_range::ThrustRange;
-use crate::extended::turning::TurningLimit;
 use crate::math;
 use crate::path_lifting;
 use crate::vehicle::{Limits, Vehicle};
@@ -40,9 +40,9 @@ impl Controller {
         Self::check_period(parameters, period)?;
         let budget = TorqueBudget::new(parameters.floor_margin, limits, rotors);
         let p = parameters;
-        let inertia = math::greater(vehicle.inertia.x, vehicle.inertia.y);
+        let inertia = math::max(vehicle.inertia.x, vehicle.inertia.y);
         let acceleration = (budget.radius(1.0) / f64::from(inertia)) as f32;
-        let slow = Slowed::<f64>::of(parameters, vehicle.gravity);
+        let slow = Slowed::<f64>::new(parameters, vehicle.gravity);
         Ok(Self {
             vehicle: *vehicle,
             limits: *limits,
@@ -55,12 +55,12 @@ impl Controller {
             late: actuators.lag + actuators.delay,
             position,
             slowed: PositionLaw::new(&slowed(parameters, vehicle.gravity), vehicle.gravity, period)?,
-            slow: Most::each(slow.level as f32),
+            slow: FeedbackLimits::each(slow.level as f32),
             attitude: AttitudeLaw::new(parameters, &vehicle.inertia),
             heading: HeadingLaw::new(parameters, &vehicle.inertia),
             budget: TickBudget::new(&budget, [p.scale_least, p.scale_greatest]),
             reserve: inertia * p.turn_reserve,
-            turning: TurningLimit::new(parameters, acceleration, period),
+            turning: DirectionLimiter::new(parameters, acceleration, period),
             learning: Learning::new(parameters, vehicle, limits, period),
             changed: None,
             range: ThrustRange::new(rotors, p.floor_margin, limits.thrust_max, limits.torque_max.z),

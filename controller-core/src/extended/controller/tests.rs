@@ -10,7 +10,7 @@ use crate::allocation::MinimumNorm;
 use crate::certificate::extended::ExtendedCertificate;
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::defaults::NOTHING_GIVEN;
-use crate::extended::fallback::{Slowed, WINDOW};
+use crate::extended::fallback::{PROGRESS_WINDOW_S, Slowed};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::{self, Craft};
@@ -20,7 +20,7 @@ use crate::reference::{ReferenceBounds, Trajectory};
 use crate::vehicle::LimitParameters;
 use nalgebra::Vector2;
 
-fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
+fn build(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
     let (law, rotors) = (craft.law(parameters), Some(&craft.rotors));
     Controller::build(&craft.vehicle, &craft.limits, &law, rotors, craft.period).unwrap()
 }
@@ -28,7 +28,7 @@ fn of(craft: &Craft, parameters: &ExtendedParameters) -> Controller {
 /// The Hummingbird on rotors that follow at once.
 fn controller(parameters: &ExtendedParameters) -> Controller {
     let actuators = ActuatorParameters { lag: 0.0, delay: 0.0 };
-    of(&Craft { actuators, ..Craft::example() }, parameters)
+    build(&Craft { actuators, ..Craft::example() }, parameters)
 }
 
 fn hover() -> Reference {
@@ -42,7 +42,7 @@ fn resting(position: Vector3<f32>) -> State {
 
 #[test]
 fn hovering_commands_the_weight_and_no_torque() {
-    let mut controller = of(&Craft::example(), &example::parameters());
+    let mut controller = build(&Craft::example(), &example::parameters());
     let hover = Hover::new(Vector3::new(1.0, 2.0, 3.0), Heading::FORWARD).unwrap();
     for _ in 0..500 {
         let (wrench, _) = controller.step(&resting(Vector3::new(1.0, 2.0, 3.0)), &hover.at(0)).unwrap();
@@ -53,7 +53,7 @@ fn hovering_commands_the_weight_and_no_torque() {
 
 #[test]
 fn rotors_that_deliver_more_than_commanded_show_no_force_once_their_scale_is_known() {
-    let mut controller = of(&Craft::example(), &example::parameters());
+    let mut controller = build(&Craft::example(), &example::parameters());
     controller.memory.averages.scale.scale = 1.1;
     controller.restart();
     for _ in 0..300 {
@@ -110,7 +110,7 @@ fn a_restart_keeps_what_thrust_lacks_and_forgets_the_force_across() {
     let far = Vector3::new(0.0, 0.0, -1e3);
     controller.memory.averages.force = far;
     controller.restart();
-    assert_eq!(controller.memory.averages.force, controller.learning.force.believed(&far));
+    assert_eq!(controller.memory.averages.force, controller.learning.force.estimate(&far));
 }
 
 fn anywhere(random: &mut Random) -> State {
@@ -124,7 +124,7 @@ fn anywhere(random: &mut Random) -> State {
 
 #[test]
 fn a_refused_input_leaves_no_trace_and_a_reset_none_of_what_was_flown() {
-    let mut controller = of(&Craft::example(), &example::parameters());
+    let mut controller = build(&Craft::example(), &example::parameters());
     let fresh = controller.clone();
     let mut random = Random(7);
     let mut state = anywhere(&mut random);
@@ -235,7 +235,7 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: b
         return false;
     }
     let bounds = certificate.bounds;
-    let mut controller = of(craft, &p);
+    let mut controller = build(craft, &p);
     let rotors = MinimumNorm::new(&craft.rotors);
     let mut state = anywhere(random);
     for tick in 0..ticks {
@@ -251,7 +251,7 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: b
         }
         let (wrench, diagnostics) = match demands.then(|| random.below(3)) {
             None | Some(0) => controller.step(&state, &hover()),
-            Some(1) => controller.step_within(&state, &hover(), &Most::each(random.between(0.3, 20.0))),
+            Some(1) => controller.step_within(&state, &hover(), &FeedbackLimits::each(random.between(0.3, 20.0))),
             Some(_) => controller.step_on_demand(&state, &hover(), &demand::any(random)),
         }
         .unwrap();
@@ -264,15 +264,15 @@ fn kept_to_its_limits(craft: &Craft, ticks: u32, random: &mut Random, demands: b
             assert!(thrust <= limits.thrust_max && within.min() >= 0.0, "{craft:?} {tick}: {wrench:?}");
             for (index, (command, rotor)) in law.commands().iter().zip(craft.rotors.iter()).enumerate() {
                 let is_gone = index == law.lost().rotor && law.lost().left == 0.0;
-                let least = if is_gone { 0.0 } else { rotor.thrust_min };
-                assert!((least..=rotor.thrust_max).contains(command), "{craft:?} {tick}: {command}");
+                let min = if is_gone { 0.0 } else { rotor.thrust_min };
+                assert!((min..=rotor.thrust_max).contains(command), "{craft:?} {tick}: {command}");
             }
             if random.below(20) == 0 {
                 controller.reset();
             }
             continue;
         }
-        assert!(f64::from(thrust) >= bounds.thrust.least && f64::from(thrust) <= bounds.thrust.greatest);
+        assert!(f64::from(thrust) >= bounds.thrust.min && f64::from(thrust) <= bounds.thrust.max);
         let excess = torque.abs().map(f64::from) - bounds.torque;
         assert!(excess.max() <= 0.0, "{craft:?} {tick}: {torque} of {}", bounds.torque);
         let asked = Wrench { thrust: thrust / scale, torque: torque / scale };
@@ -339,7 +339,7 @@ fn a_heading_that_is_off_never_moves_the_thrust() {
 fn a_flight_without_progress_goes_on_slowed_and_on_its_own_once_it_is_near_for_a_while() {
     let craft = Craft::example();
     let p = example::parameters();
-    let mut controller = of(&craft, &p);
+    let mut controller = build(&craft, &p);
     // Held 10 m away.
     let away = resting(Vector3::new(0.0, 10.0, 0.0));
     let mut ticks = 0;
@@ -349,9 +349,9 @@ fn a_flight_without_progress_goes_on_slowed_and_on_its_own_once_it_is_near_for_a
         ticks += 1;
         assert!(ticks < 100_000);
     }
-    assert!((ticks as f32 * craft.period - 2.0 * WINDOW).abs() < 0.1, "{ticks}");
+    assert!((ticks as f32 * craft.period - 2.0 * PROGRESS_WINDOW_S).abs() < 0.1, "{ticks}");
     // The filters started afresh, and away from the target c stays within M_s.
-    let level = Slowed::<f64>::of(&p, craft.vehicle.gravity).level as f32;
+    let level = Slowed::<f64>::new(&p, craft.vehicle.gravity).level as f32;
     let mut random = Random(82);
     for _ in 0..500 {
         controller.hold_estimates();

@@ -3,9 +3,9 @@
 use super::Controller;
 use crate::controller::Diagnostics;
 use crate::extended::measured::Measured;
-use crate::extended::memory::{Last, Memory};
+use crate::extended::memory::{LastTick, Memory};
 use crate::extended::rotor_loss::detector::Interval;
-use crate::extended::rotor_loss::spinning::{Spinning, SpinningLaw};
+use crate::extended::rotor_loss::spinning::{RotorLossLaw, RotorLossStep};
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
 use core::hint::cold_path;
@@ -13,7 +13,7 @@ use nalgebra::{Quaternion, Vector3, Vector4};
 
 impl Controller {
     /// Whether a rotor is lost, now or before. `acted` is the mean wrench since the last tick, as commanded.
-    #[inline(always)] // see position.rs
+    #[inline(always)] // into the law's step
     pub(super) fn has_lost(
         &mut self,
         state: &State,
@@ -23,8 +23,8 @@ impl Controller {
     ) -> bool {
         let memory = &self.memory;
         let last = memory.last.as_ref().filter(|_| memory.held == 0);
-        let known = last.map(|last| self.learning.force.differed([&last.velocity, &state.velocity]));
-        let known = known.filter(|_| memory.blind == 0);
+        let known = last.map(|last| self.learning.force.mean_acceleration([&last.velocity, &state.velocity]));
+        let known = known.filter(|_| memory.without_velocity == 0);
         let (Some(last), Some(acceleration)) = (last, measured.usable_acceleration().copied().or(known)) else {
             self.memory.suspicion.forget();
             return self.spinning.is_some();
@@ -39,14 +39,14 @@ impl Controller {
         if let Some(law) = &mut self.spinning {
             // What acted is what was to be delivered.
             let [thrust, missing] = self.detector.missing(law.lost().rotor, &interval);
-            law.refine(thrust, missing, self.period);
+            law.refine_loss(thrust, missing, self.period);
             return true;
         }
         interval.acted *= self.memory.averages.scale.scale;
         let Some(lost) = self.detector.observe(&mut self.memory.suspicion, &interval) else { return false };
         cold_path();
         let (estimates, times) = (self.estimates(), [self.late, self.period]);
-        let law = |rotors| SpinningLaw::new(&self.vehicle, &self.limits, rotors, &lost, times, &estimates);
+        let law = |rotors| RotorLossLaw::new(&self.vehicle, &self.limits, rotors, &lost, times, &estimates);
         self.spinning = self.rotors.as_ref().map(law);
         self.spinning.is_some()
     }
@@ -64,7 +64,7 @@ impl Controller {
         let (Some(law), Some(rotors)) = (&mut self.spinning, &self.rotors) else {
             return (Wrench { thrust: 0.0, torque: Vector3::zeros() }, Diagnostics::NONE);
         };
-        let Spinning { command, mrp } = law.step(state, reference, pending, self.period);
+        let RotorLossStep { command, mrp } = law.step(state, reference, pending, self.period);
         let Wrench { thrust, torque } = *law.delivered();
         let asked: Vector4<f32> =
             rotors.effectiveness().iter().zip(law.commands()).map(|(column, f)| column.map(|x| x as f32) * *f).sum();
@@ -72,7 +72,7 @@ impl Controller {
         let Memory { actuators, acted, last, .. } = &mut self.memory;
         actuators.command(Vector4::new(thrust, torque.x, torque.y, torque.z));
         *acted = self.actuators.advance(actuators);
-        *last = Some(Last {
+        *last = Some(LastTick {
             velocity: state.velocity,
             thrust_axis: *axis,
             angular_velocity: state.angular_velocity,

@@ -6,31 +6,31 @@
 //! | here | equation |
 //! |---|---|
 //! | residual e | (m b . (v' + g e3) - T, (J omega' + omega x J omega - tau) / l) |
-//! | slow part e_s | e, averaged over `SLOW_TIME`: wind, drag, a wrong mass or centre of mass, a battery that sags |
-//! | quick part r | e - e_s, averaged over `QUICK_TIME` |
+//! | slow part e_s | e, averaged over `SLOW_TIME_CONSTANT_S`: wind, drag, a wrong mass or centre of mass, a battery that sags |
+//! | quick part r | e - e_s, averaged over `QUICK_TIME_CONSTANT_S` |
 //! | rotor i that lost a share lambda of its thrust f_i | r = -lambda f_i b_i, b_i its column of B in newtons |
 //! | alignment | -r . b_i / (\|r\| \|b_i\|) |
 //! | share | lambda = -r . b_i / (f_i \|b_i\|^2) |
-//! | large enough | \|r\| >= `RESIDUAL_LEAST` F + `RESIDUAL_OF_COMMANDS` A + `RESIDUAL_OF_TURNING` F \|omega_12\|, F a rotor's share of the weight |
-//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING_TIME` |
-//! | evidence | grows by h (lambda / `SHARE_GONE`)^3 in a tick that tells, falls by h in one that contradicts |
+//! | large enough | \|r\| >= `RESIDUAL_SHARE_MIN` F + `RESIDUAL_OF_COMMANDS` A + `RESIDUAL_OF_TURNING` F \|omega_12\|, F a rotor's share of the weight |
+//! | commands A | the greatest \|w - w_s\| of late, w_s averaged as e_s; it fades within `FADING_TIME_CONSTANT_S` |
+//! | evidence | grows by h (lambda / `GONE_SHARE`)^3 in a tick that tells, falls by h in one that contradicts |
 //!
 //! A failed rotor takes thrust and torque in one ratio and of one sign, and goes on doing so. So the rotor of the
-//! greatest alignment is suspected while r is large enough, the alignment at least `ALIGNMENT_LEAST` and lambda within
-//! `SHARE_RANGE`. It is found once the evidence has grown to `EVIDENCE_TIME` and to the rotors' lag: a dead one at once, one that has
-//! lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the ground pushes otherwise,
-//! or not for so long. A rotor of which nothing is commanded tells nothing either way.
+//! greatest alignment is suspected while r is large enough, the alignment at least `ALIGNMENT_MIN` and lambda within
+//! `LOST_SHARE_RANGE`. It is found once the evidence has grown to `EVIDENCE_MIN_S` and to the rotors' lag: a dead one
+//! at once, one that has lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the
+//! ground pushes otherwise, or not for so long. A rotor of which nothing is commanded tells nothing either way.
 //!
 //! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should
 //! be with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
 //! middle of a flip is found a little later.
 //!
 //! While one is suspected the slow part waits. After a jump of the state, on the ground, or after a command that was
-//! not carried out there is nothing to compare. At first the model is believed as if it had been right for `BELIEVED_TIME`;
-//! no rotor is suspected before `AGE_LEAST`.
+//! not carried out there is nothing to compare. At first the model is believed as if it had been right for
+//! `INITIAL_AGE_S`; no rotor is suspected before `AGE_MIN_S`.
 
 use crate::allocation::geometry::ROTORS_MAX;
-use crate::allocation::remaining::Lost;
+use crate::allocation::remaining::LostRotor;
 use crate::allocation::{Rotors, collected};
 use crate::math;
 use crate::vehicle::Vehicle;
@@ -39,35 +39,35 @@ use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
 
 /// Time constants of the slow and the quick part, and of the greatest command of late, s.
-const SLOW_TIME: f64 = 1.0;
-const QUICK_TIME: f64 = 0.01;
-const FADING_TIME: f64 = 0.3;
+const SLOW_TIME_CONSTANT_S: f64 = 1.0;
+const QUICK_TIME_CONSTANT_S: f64 = 0.01;
+const FADING_TIME_CONSTANT_S: f64 = 0.3;
 
 /// The parts of the least |r| that tells anything.
-const RESIDUAL_LEAST: f32 = 0.3;
+const RESIDUAL_SHARE_MIN: f32 = 0.3;
 const RESIDUAL_OF_COMMANDS: f32 = 0.45;
 const RESIDUAL_OF_TURNING: f32 = 0.06;
 
 /// The least alignment.
-const ALIGNMENT_LEAST: f32 = 0.96;
+const ALIGNMENT_MIN: f32 = 0.96;
 
 /// The shares that a rotor may have lost. More than all of it is something else.
-const SHARE_RANGE: (f32, f32) = (0.25, 1.4);
+const LOST_SHARE_RANGE: (f32, f32) = (0.25, 1.4);
 
 /// The share that counts as a rotor that is gone, and the one beyond which it is taken to have nothing left.
-const SHARE_GONE: f32 = 0.8;
-const SHARE_OF_ALL: f32 = 0.87;
+const GONE_SHARE: f32 = 0.8;
+const NOTHING_LEFT_SHARE: f32 = 0.87;
 
 /// How long a rotor is suspected that is gone, beside the rotors' lag, s.
-const EVIDENCE_TIME: f32 = 0.02;
+const EVIDENCE_MIN_S: f32 = 0.02;
 
 /// The least thrust that tells what a rotor has lost, in its share of the weight.
-const TELLING_THRUST: f32 = 0.3;
+const TELLING_THRUST_SHARE_MIN: f32 = 0.3;
 
 /// For how long the model is taken to have been right before the first interval, s, and until when that counts for more
 /// than what has been seen.
-const BELIEVED_TIME: f32 = 0.3;
-const AGE_LEAST: f32 = 0.45;
+const INITIAL_AGE_S: f32 = 0.3;
+const AGE_MIN_S: f32 = 0.45;
 
 /// A rotor as the detector sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,7 +105,7 @@ pub struct Detector {
 pub struct Suspicion {
     /// e_s and w_s, N; none before the first interval.
     lasting: Option<[Vector4<f32>; 2]>,
-    /// For how long they have been averaged, s, up to `SLOW_TIME`.
+    /// For how long they have been averaged, s, up to `SLOW_TIME_CONSTANT_S`.
     age: f32,
     /// r, N.
     residual: Vector4<f32>,
@@ -120,7 +120,7 @@ impl Suspicion {
     /// Of nobody.
     pub const NONE: Self = Self {
         lasting: None,
-        age: BELIEVED_TIME,
+        age: INITIAL_AGE_S,
         residual: Vector4::new(0.0, 0.0, 0.0, 0.0),
         commands_squared: 0.0,
         rotor: 0,
@@ -149,10 +149,9 @@ pub struct Interval<'a> {
 
 impl Detector {
     /// For ticks `period` seconds apart and rotors of so much `lag`, s. Without rotors it finds nothing.
-    #[must_use]
     pub fn new(vehicle: &Vehicle, rotors: Option<&Rotors>, lag: f32, period: f32) -> Self {
         let columns = || rotors.into_iter().flat_map(Rotors::effectiveness).map(|column| column.map(|x| x as f32));
-        let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.longest_arm());
+        let per_arm = rotors.map_or(0.0, |rotors| 1.0 / rotors.max_arm());
         let scale = Vector4::new(1.0, per_arm, per_arm, per_arm);
         let rows = rotors.into_iter().flat_map(Rotors::pseudo_inverse).map(|row| row.map(|x| x as f32));
         let signatures = columns().zip(rows).map(|(column, row)| {
@@ -169,18 +168,18 @@ impl Detector {
             gravity: vehicle.gravity,
             per_arm,
             share: vehicle.mass * vehicle.gravity / count as f32,
-            slow: averaging(SLOW_TIME),
-            quick: averaging(QUICK_TIME),
-            faded_squared: math::exp(-2.0 * f64::from(period) / FADING_TIME) as f32,
+            slow: averaging(SLOW_TIME_CONSTANT_S),
+            quick: averaging(QUICK_TIME_CONSTANT_S),
+            faded_squared: math::exp(-2.0 * f64::from(period) / FADING_TIME_CONSTANT_S) as f32,
             // Half a period: sums of periods are rounded.
-            enough: EVIDENCE_TIME + lag - 0.5 * period,
+            enough: EVIDENCE_MIN_S + lag - 0.5 * period,
             period,
         }
     }
 
     /// Takes an interval in; the rotor that is found.
     #[inline(never)] // a step behind a shield calls the same
-    pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<Lost> {
+    pub fn observe(&self, suspicion: &mut Suspicion, interval: &Interval) -> Option<LostRotor> {
         let (residual, acted) = (self.residual(interval), self.newtons(&interval.acted));
         // Inputs in range can overflow together.
         if !(residual.norm_squared() + acted.norm_squared()).is_finite() {
@@ -190,18 +189,18 @@ impl Detector {
         let [lasting, steady] = suspicion.lasting.unwrap_or([Vector4::zeros(), acted]);
         suspicion.residual += (residual - lasting - suspicion.residual) * self.quick;
         let faded = suspicion.commands_squared * self.faded_squared;
-        suspicion.commands_squared = math::greater(faded, (acted - steady).norm_squared());
+        suspicion.commands_squared = math::max(faded, (acted - steady).norm_squared());
 
         let Some((rotor, lost)) = self.suspected(suspicion, interval) else {
             let mut averaging = self.slow;
-            if suspicion.age < SLOW_TIME as f32 {
+            if suspicion.age < SLOW_TIME_CONSTANT_S as f32 {
                 cold_path();
                 // An average of all that there was, at first.
-                averaging = math::greater(averaging, self.period / (suspicion.age + self.period));
+                averaging = math::max(averaging, self.period / (suspicion.age + self.period));
                 suspicion.age += self.period;
             }
-            if suspicion.evidence > 0.0 && self.would_tell(suspicion.rotor, interval) {
-                suspicion.evidence = math::greater(suspicion.evidence - self.period, 0.0);
+            if suspicion.evidence > 0.0 && self.is_observable(suspicion.rotor, interval) {
+                suspicion.evidence = math::max(suspicion.evidence - self.period, 0.0);
             }
             let average = [lasting + (residual - lasting) * averaging, steady + (acted - steady) * averaging];
             suspicion.lasting = Some(average);
@@ -210,11 +209,11 @@ impl Detector {
         cold_path();
         suspicion.lasting = Some([lasting, steady]);
         let before = if rotor == suspicion.rotor { suspicion.evidence } else { 0.0 };
-        let share = math::lesser(lost / SHARE_GONE, 1.0);
+        let share = math::min(lost / GONE_SHARE, 1.0);
         suspicion.evidence = before + self.period * share * share * share;
         suspicion.rotor = rotor;
-        let left = if lost > SHARE_OF_ALL { 0.0 } else { 1.0 - lost };
-        (suspicion.evidence > self.enough).then_some(Lost { rotor, left })
+        let left = if lost > NOTHING_LEFT_SHARE { 0.0 } else { 1.0 - lost };
+        (suspicion.evidence > self.enough).then_some(LostRotor { rotor, left })
     }
 
     /// A wrench in newtons.
@@ -225,11 +224,10 @@ impl Detector {
 
     /// The thrust that a rotor is taken to deliver in an interval, N, and what is missing of it by the torque about the
     /// tilt's axes.
-    #[must_use]
     pub fn missing(&self, rotor: usize, interval: &Interval) -> [f32; 2] {
         let Some(Signature { column, row, .. }) = self.rotors.get(rotor) else { return [0.0; 2] };
         let along = self.residual(interval).yz().dot(&column.yz());
-        [row.dot(&interval.acted), -along / math::greater(column.yz().norm_squared(), f32::MIN_POSITIVE)]
+        [row.dot(&interval.acted), -along / math::max(column.yz().norm_squared(), f32::MIN_POSITIVE)]
     }
 
     /// e, N.
@@ -243,38 +241,40 @@ impl Detector {
     }
 
     /// Whether a rotor is commanded so much thrust that a loss would show.
-    fn would_tell(&self, rotor: usize, interval: &Interval) -> bool {
-        self.rotors.get(rotor).is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST * self.share)
+    fn is_observable(&self, rotor: usize, interval: &Interval) -> bool {
+        self.rotors
+            .get(rotor)
+            .is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST_SHARE_MIN * self.share)
     }
 
     /// The rotor that r is most aligned with, and the share that it has lost.
     fn suspected(&self, suspicion: &Suspicion, interval: &Interval) -> Option<(usize, f32)> {
         let residual = &suspicion.residual;
-        let (square, large) = (residual.norm_squared(), RESIDUAL_LEAST * self.share);
-        if square <= large * large || suspicion.age <= AGE_LEAST {
+        let (square, large) = (residual.norm_squared(), RESIDUAL_SHARE_MIN * self.share);
+        if square <= large * large || suspicion.age <= AGE_MIN_S {
             return None;
         }
         cold_path();
         let [_, end] = interval.angular_velocities;
         let turning = RESIDUAL_OF_TURNING * self.share * math::sqrt(end.xy().norm_squared());
-        let least = large + turning + RESIDUAL_OF_COMMANDS * math::sqrt(suspicion.commands_squared);
-        if square <= least * least {
+        let min = large + turning + RESIDUAL_OF_COMMANDS * math::sqrt(suspicion.commands_squared);
+        if square <= min * min {
             return None;
         }
-        let (mut greatest, mut which) = (0.0, None);
+        let (mut max, mut which) = (0.0, None);
         for (index, rotor) in self.rotors.iter().enumerate() {
             let along = -residual.dot(&rotor.column) * rotor.per_length;
-            if along > greatest {
-                (greatest, which) = (along, Some((index, rotor)));
+            if along > max {
+                (max, which) = (along, Some((index, rotor)));
             }
         }
         let (index, rotor) = which?;
         let thrust = rotor.row.dot(&interval.acted);
-        let lost = greatest * rotor.per_length / math::greater(thrust, TELLING_THRUST * self.share);
-        let aligned = greatest * greatest >= ALIGNMENT_LEAST * ALIGNMENT_LEAST * square;
-        let (least, most) = SHARE_RANGE;
-        let tells = self.would_tell(index, interval);
-        (aligned && tells && lost >= least && lost <= most).then_some((index, lost))
+        let lost = max * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share);
+        let aligned = max * max >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
+        let (min, most) = LOST_SHARE_RANGE;
+        let tells = self.is_observable(index, interval);
+        (aligned && tells && lost >= min && lost <= most).then_some((index, lost))
     }
 }
 

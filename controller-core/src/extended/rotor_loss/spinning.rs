@@ -35,7 +35,7 @@ use super::super::approach::Approach;
 use super::super::memory::Estimates;
 use crate::allocation::Rotors;
 use crate::allocation::minimum_norm::Thrusts;
-use crate::allocation::remaining::{Lost, RemainingRotors};
+use crate::allocation::remaining::{LostRotor, RemainingRotors};
 use crate::attitude::rotate_back;
 use crate::math;
 use crate::reference::Reference;
@@ -47,14 +47,14 @@ use nalgebra::{Quaternion, Vector3, Vector4};
 const AXIS_COSINE_SINE: (f32, f32) = (0.968_912_4, 0.247_403_96);
 
 /// The least J_3 over the mean of J_1 and J_2 for which n is not z.
-const FLATNESS_LEAST: f32 = 1.15;
+const FLATNESS_MIN: f32 = 1.15;
 
 /// How much of a torque that raises the failed side has to be had for n to be z.
-const RAISING_SHARE: f32 = 0.8;
+const RAISING_TORQUE_SHARE_MIN: f32 = 0.8;
 
 /// The greatest bandwidth of the attitude, 1/s; it times lag, delay and period; its damping.
-const BANDWIDTH_MAX: f32 = 20.0;
-const BANDWIDTH_LATE: f32 = 0.7;
+const BANDWIDTH_MAX_PER_S: f32 = 20.0;
+const BANDWIDTH_DELAY_MAX: f32 = 0.7;
 const DAMPING_RATIO: f32 = 0.8;
 
 /// k_p, 1/s^2, and k_v, 1/s, across and along the vertical.
@@ -62,45 +62,45 @@ const GAINS_ACROSS: (f32, f32) = (2.4, 2.0);
 const GAINS_VERTICAL: (f32, f32) = (5.4, 3.0);
 
 /// The acceleration that an approach counts on to brake, m/s^2, and its greatest speed, m/s.
-const BRAKING_ACCELERATION: f32 = 4.0;
-const APPROACH_SPEED: f32 = 4.0;
+const BRAKING_ACCELERATION_M_PER_S2: f32 = 4.0;
+const APPROACH_SPEED_MAX_M_PER_S: f32 = 4.0;
 
 /// u's vertical component, in g, and the tangent of its tilt.
-const LIFT_RANGE: (f32, f32) = (0.4, 2.0);
-const TILT_TANGENT: f32 = 0.7;
+const LIFT_RANGE_G: (f32, f32) = (0.4, 2.0);
+const TILT_TANGENT_MAX: f32 = 0.7;
 
 /// Bandwidth of d, 1/s, and its greatest size along each axis, m/s^2.
-const FORCE_BANDWIDTH: f64 = 1.5;
-const FORCE_MAX: f32 = 6.0;
+const FORCE_BANDWIDTH_PER_S: f64 = 1.5;
+const FORCE_MAX_M_PER_S2: f32 = 6.0;
 
 /// k_y, 1/s; the rate towards the heading, rad/s, for one rad and at most; and up to which rate it is looked for.
-const YAW_BANDWIDTH: f32 = 5.0;
+const YAW_BANDWIDTH_PER_S: f32 = 5.0;
 const HEADING_GAIN_AND_RATE: (f32, f32) = (2.0, 1.0);
-const HEADING_RATE_MAX: f32 = 2.0;
+const HEADING_RATE_MAX_RAD_PER_S: f32 = 2.0;
 
 /// The thrust while it begins to turn, in weights, for how long at most, s, up to which rate it does, rad/s, the least
 /// part of a rotor's share of the weight that is lacking for the tilt then, and the least cosine of the axis' tilt.
-const BEGINNING_THRUST: f32 = 2.0;
-const BEGINNING_TIME: f32 = 0.6;
-const BEGUN_RATE: f32 = 6.0;
-const LACKING_TORQUE: f32 = 0.1;
-const UPWARD_COSINE: f32 = 0.5;
+const SPIN_UP_THRUST_WEIGHTS: f32 = 2.0;
+const SPIN_UP_MAX_S: f32 = 0.6;
+const SPIN_UP_RATE_RAD_PER_S: f32 = 6.0;
+const SPIN_UP_MISSING_TORQUE_SHARE_MIN: f32 = 0.1;
+const SPIN_UP_COSINE_MIN: f32 = 0.5;
 
 /// How long what the failed rotor has left is watched, s; the least mean thrust of it that tells, in a share of the
 /// weight; the least share of that which has to be missing; and the least that a rotor has left that is not gone.
-const REFINING_TIME: f32 = 0.05;
-const TELLING_THRUST: f32 = 0.15;
-const MISSING_SHARE: f32 = 0.25;
-const LEFT_LEAST: f32 = 0.1;
+const REFINING_S: f32 = 0.05;
+const TELLING_THRUST_SHARE_MIN: f32 = 0.15;
+const MISSING_SHARE_MIN: f32 = 0.25;
+const LEFT_SHARE_MIN: f32 = 0.1;
 
 /// Steps of the motion that is looked ahead.
 const STEPS_AHEAD: usize = 3;
 
 /// The law for a vehicle with a certain rotor lost, and its memory.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SpinningLaw {
+pub struct RotorLossLaw {
     /// What is lost.
-    lost: Lost,
+    lost: LostRotor,
     rotors: RemainingRotors,
     /// a and n.
     away: Vector3<f32>,
@@ -133,28 +133,27 @@ struct Memory {
     taken: f32,
     missed: f32,
     watched: f32,
-    /// How long it has taken to begin to turn, s, so far; at least `BEGINNING_TIME` once it has.
+    /// How long it has taken to begin to turn, s, so far; at least `SPIN_UP_MAX_S` once it has.
     beginning: f32,
 }
 
 /// A tick's outcome, beside the commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spinning {
+pub struct RotorLossStep {
     /// u, m/s^2.
     pub command: Vector3<f32>,
     /// The tilt's error as modified Rodrigues parameters, body frame.
     pub mrp: Vector3<f32>,
 }
 
-impl SpinningLaw {
+impl RotorLossLaw {
     /// For a vehicle whose `rotors` have `lost` one, in ticks `period` seconds apart with commands that are `late`, s,
     /// and with the `estimates` that there were of it.
-    #[must_use]
     pub fn new(
         vehicle: &Vehicle,
         limits: &Limits,
         rotors: &Rotors,
-        lost: &Lost,
+        lost: &LostRotor,
         [late, period]: [f32; 2],
         estimates: &Estimates,
     ) -> Self {
@@ -162,11 +161,11 @@ impl SpinningLaw {
         let weight = vehicle.mass * vehicle.gravity;
         let remaining = RemainingRotors::new(rotors, limits, lost, *scale, weight);
         let place = rotors.get(lost.rotor).map_or_else(Vector3::zeros, |rotor| rotor.position);
-        let arm = math::greater(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
+        let arm = math::max(math::sqrt(place.xy().norm_squared()), f32::MIN_POSITIVE);
         let away = Vector3::new(-place.x, -place.y, 0.0) / arm;
         let unit = arm * weight / rotors.len() as f32;
         let axis = axis(vehicle, &remaining, &away, unit);
-        let bandwidth = math::lesser(BANDWIDTH_MAX, BANDWIDTH_LATE / (late + period));
+        let bandwidth = math::min(BANDWIDTH_MAX_PER_S, BANDWIDTH_DELAY_MAX / (late + period));
         Self {
             lost: *lost,
             rotors: remaining,
@@ -175,11 +174,12 @@ impl SpinningLaw {
             vehicle: *vehicle,
             stiffness: bandwidth * bandwidth,
             damping: 2.0 * DAMPING_RATIO * bandwidth,
-            approaches: [GAINS_ACROSS, GAINS_VERTICAL].map(|(k_p, k_v)| Approach::new(k_p, k_v, APPROACH_SPEED)),
+            approaches: [GAINS_ACROSS, GAINS_VERTICAL]
+                .map(|(k_p, k_v)| Approach::new(k_p, k_v, APPROACH_SPEED_MAX_M_PER_S)),
             late: late + 0.5 * period,
             unit,
             memory: Memory {
-                force: force.map(|x| math::within(x, FORCE_MAX)),
+                force: force.map(|x| math::saturate(x, FORCE_MAX_M_PER_S2)),
                 last: None,
                 lacking: 0.0,
                 taken: 0.0,
@@ -194,50 +194,45 @@ impl SpinningLaw {
 
     /// Learns what the failed rotor has left, from the thrust that it was taken to deliver in an interval of `period`,
     /// s, and what was `missing` of it, N. A flip, in which it was found to fail, tells too little of that.
-    pub fn refine(&mut self, thrust: f32, missing: f32, period: f32) {
+    pub fn refine_loss(&mut self, thrust: f32, missing: f32, period: f32) {
         let Memory { taken, missed, watched, .. } = &mut self.memory;
         (*taken, *missed, *watched) = (*taken + thrust * period, *missed + missing * period, *watched + period);
-        if *watched < REFINING_TIME {
+        if *watched < REFINING_S {
             return;
         }
-        let tells = *taken > REFINING_TIME * TELLING_THRUST * self.rotors.share();
-        let share = math::between(*missed / math::greater(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
+        let tells = *taken > REFINING_S * TELLING_THRUST_SHARE_MIN * self.rotors.share();
+        let share = math::clamp(*missed / math::max(*taken, f32::MIN_POSITIVE), -1.0, 1.0);
         (*taken, *missed, *watched) = (0.0, 0.0, 0.0);
-        if tells && share.abs() > MISSING_SHARE {
-            let left = math::lesser(self.lost.left * (1.0 - share), 1.0);
-            self.lost.left = if left > LEFT_LEAST { left } else { 0.0 };
+        if tells && share.abs() > MISSING_SHARE_MIN {
+            let left = math::min(self.lost.left * (1.0 - share), 1.0);
+            self.lost.left = if left > LEFT_SHARE_MIN { left } else { 0.0 };
             self.rotors.set_left(&self.lost);
             self.axis = axis(&self.vehicle, &self.rotors, &self.away, self.unit);
         }
     }
 
     /// What is lost.
-    #[must_use]
-    pub fn lost(&self) -> &Lost {
+    pub fn lost(&self) -> &LostRotor {
         &self.lost
     }
 
     /// What to command of each rotor, N; nothing before the first tick.
-    #[must_use]
     pub fn commands(&self) -> &Thrusts {
         &self.commands
     }
 
     /// What they deliver.
-    #[must_use]
     pub fn delivered(&self) -> &Wrench {
         &self.delivered
     }
 
     /// d, m/s^2, world frame.
-    #[must_use]
     pub fn force(&self) -> Vector3<f32> {
         self.memory.force
     }
 
     /// One tick: `pending` is the impulse that past commands will still deliver, N s and N m s.
-    #[must_use]
-    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> Spinning {
+    pub fn step(&mut self, state: &State, reference: &Reference, pending: &Vector4<f32>, period: f32) -> RotorLossStep {
         self.learn(&state.velocity, period);
         let command = self.command(state, reference);
         let (attitude, velocity) = self.ahead(state, pending);
@@ -248,17 +243,17 @@ impl SpinningLaw {
         let inertia = &self.vehicle.inertia;
         let turning = error * self.stiffness - delta * self.damping + delta.cross(&spin);
         let mut torque = inertia.component_mul(&turning) + velocity.cross(&inertia.component_mul(&velocity));
-        torque.z = inertia.z * YAW_BANDWIDTH * (towards(state, reference) - velocity.z);
+        torque.z = inertia.z * YAW_BANDWIDTH_PER_S * (towards(state, reference) - velocity.z);
 
         // cos theta = 2 cos(theta / 2)^2 - 1.
         let along = self.vehicle.mass * length * (2.0 * half * half - 1.0) / self.axis.z;
         let upwards = 1.0 - 2.0 * (attitude.i * attitude.i + attitude.j * attitude.j) / length_squared(&attitude);
-        let turns = velocity.z.abs() > BEGUN_RATE;
-        self.memory.beginning += if turns { BEGINNING_TIME } else { period };
-        let is_short = self.memory.beginning < BEGINNING_TIME;
-        let begins = is_short && self.memory.lacking > LACKING_TORQUE && upwards > UPWARD_COSINE;
-        let least = if begins { BEGINNING_THRUST * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
-        let wanted = Wrench { thrust: math::greater(along, least), torque };
+        let turns = velocity.z.abs() > SPIN_UP_RATE_RAD_PER_S;
+        self.memory.beginning += if turns { SPIN_UP_MAX_S } else { period };
+        let is_short = self.memory.beginning < SPIN_UP_MAX_S;
+        let begins = is_short && self.memory.lacking > SPIN_UP_MISSING_TORQUE_SHARE_MIN && upwards > SPIN_UP_COSINE_MIN;
+        let min = if begins { SPIN_UP_THRUST_WEIGHTS * self.vehicle.mass * self.vehicle.gravity } else { 0.0 };
+        let wanted = Wrench { thrust: math::max(along, min), torque };
 
         let thrusts = self.rotors.allocate(&wanted);
         let delivered = self.rotors.wrench(&thrusts);
@@ -269,16 +264,16 @@ impl SpinningLaw {
         self.memory.last = Some((state.velocity, falling));
         self.commands = self.rotors.commands(&thrusts);
         self.delivered = delivered;
-        Spinning { command, mrp: error * (-0.5 / (1.0 + half)) }
+        RotorLossStep { command, mrp: error * (-0.5 / (1.0 + half)) }
     }
 
     /// d.
     fn learn(&mut self, velocity: &Vector3<f32>, period: f32) {
         let Some((before, falling)) = self.memory.last else { return };
-        let averaging = -math::exp_m1(-FORCE_BANDWIDTH * f64::from(period)) as f32;
+        let averaging = -math::exp_m1(-FORCE_BANDWIDTH_PER_S * f64::from(period)) as f32;
         let beside = (velocity - before) / period - falling;
         let force = &mut self.memory.force;
-        *force += (beside.map(|x| math::within(x, FORCE_MAX)) - *force) * averaging;
+        *force += (beside.map(|x| math::saturate(x, FORCE_MAX_M_PER_S2)) - *force) * averaging;
     }
 
     /// u.
@@ -286,15 +281,16 @@ impl SpinningLaw {
         let [around, turned] = self.circle(state);
         let (p, v) = (state.position - around - reference.position, state.velocity - turned - reference.velocity);
         let [across, vertical] = &self.approaches;
-        let closing = across.factor(p.xy().norm_squared(), BRAKING_ACCELERATION);
+        let closing = across.factor(p.xy().norm_squared(), BRAKING_ACCELERATION_M_PER_S2);
         let ((_, k_v), (_, k_v_vertical)) = (GAINS_ACROSS, GAINS_VERTICAL);
         let gravity = self.vehicle.gravity;
         let rest = reference.acceleration - self.memory.force;
         let wanted = rest.xy() - (v.xy() + p.xy() * closing) * k_v;
-        let lift = rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION)) * k_v_vertical;
-        let (least, most) = LIFT_RANGE;
-        let lift = math::between(lift, least * gravity, most * gravity);
-        let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT);
+        let lift =
+            rest.z + gravity - (v.z + p.z * vertical.factor(p.z * p.z, BRAKING_ACCELERATION_M_PER_S2)) * k_v_vertical;
+        let (min, max) = LIFT_RANGE_G;
+        let lift = math::clamp(lift, min * gravity, max * gravity);
+        let (length, reach) = (math::sqrt(wanted.norm_squared()), lift * TILT_TANGENT_MAX);
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, lift)
     }
@@ -302,7 +298,7 @@ impl SpinningLaw {
     /// c and c', of a vehicle that turns.
     fn circle(&self, state: &State) -> [Vector3<f32>; 2] {
         let rate = state.angular_velocity.z / self.axis.z;
-        if rate.abs() < BEGUN_RATE {
+        if rate.abs() < SPIN_UP_RATE_RAD_PER_S {
             return [Vector3::zeros(); 2];
         }
         let [thrust, turning] = [Vector3::z(), self.axis].map(|axis| rotate_back(&state.attitude.conjugate(), &axis));
@@ -328,8 +324,8 @@ impl SpinningLaw {
 
     /// e, and cos(theta / 2), for eta. Exactly half a turn away there is no nearest way, and no error.
     fn error(&self, eta: &Vector3<f32>) -> (Vector3<f32>, f32) {
-        let half = math::sqrt(math::greater(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
-        (self.axis.cross(eta) / math::greater(half, 1e-3), half)
+        let half = math::sqrt(math::max(0.5 * (1.0 + self.axis.dot(eta)), 0.0));
+        (self.axis.cross(eta) / math::max(half, 1e-3), half)
     }
 }
 
@@ -339,24 +335,24 @@ fn axis(vehicle: &Vehicle, rotors: &RemainingRotors, away: &Vector3<f32>, unit: 
     let raising = Vector3::new(-away.y, away.x, 0.0) * (0.5 * unit);
     let thrust = vehicle.mass * vehicle.gravity;
     let had = rotors.wrench(&rotors.allocate(&Wrench { thrust, torque: raising }));
-    let holds = had.torque.dot(&raising) >= RAISING_SHARE * raising.norm_squared();
+    let holds = had.torque.dot(&raising) >= RAISING_TORQUE_SHARE_MIN * raising.norm_squared();
     let inertia = &vehicle.inertia;
-    let is_flat = inertia.z > FLATNESS_LEAST * 0.5 * (inertia.x + inertia.y);
+    let is_flat = inertia.z > FLATNESS_MIN * 0.5 * (inertia.x + inertia.y);
     let (cosine, sine) = AXIS_COSINE_SINE;
     if holds || !is_flat { Vector3::z() } else { Vector3::z() * cosine + away * sine }
 }
 
 /// r: the rate towards the reference's heading, rad/s; none of a vehicle that spins.
 fn towards(state: &State, reference: &Reference) -> f32 {
-    if state.angular_velocity.z.abs() > HEADING_RATE_MAX {
+    if state.angular_velocity.z.abs() > HEADING_RATE_MAX_RAD_PER_S {
         return 0.0;
     }
-    let forward = crate::heading::Heading::of_attitude(&state.attitude).direction();
+    let forward = crate::heading::Heading::from_attitude(&state.attitude).direction();
     let heading = reference.heading.direction();
     let sine = forward.x * heading.y - forward.y * heading.x;
     let behind = forward.dot(&heading) < 0.0;
-    let (of_one, most) = HEADING_GAIN_AND_RATE;
-    let turn = if behind { if sine < 0.0 { -most } else { most } } else { math::within(of_one * sine, most) };
+    let (of_one, max) = HEADING_GAIN_AND_RATE;
+    let turn = if behind { if sine < 0.0 { -max } else { max } } else { math::saturate(of_one * sine, max) };
     turn + reference.heading.rate()
 }
 

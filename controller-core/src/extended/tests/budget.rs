@@ -3,7 +3,7 @@
 use super::Random;
 use super::std;
 use crate::allocation::{MinimumNorm, Rotors};
-use crate::extended::budget::{Bound, THRUST_LEFT, TickBudget, TorqueBudget};
+use crate::extended::budget::{RowSource, TORQUE_THRUST_SHARE, TickBudget, TorqueBudget};
 use crate::extended::tests::example::Craft;
 use crate::extended::thrust_range::ThrustRange;
 use crate::state::Wrench;
@@ -30,7 +30,7 @@ fn limited(random: &mut Random) -> Craft {
 fn longest(budget: &TorqueBudget, direction: &Vector2<f64>, scale: f64) -> f64 {
     let along = budget.rows.iter().map(|row| {
         let [x, y] = row.direction;
-        row.room(scale) / (x * direction.x + y * direction.y).abs()
+        row.capacity(scale) / (x * direction.x + y * direction.y).abs()
     });
     along.fold(f64::INFINITY, f64::min)
 }
@@ -42,7 +42,7 @@ fn unit(random: &mut Random) -> Vector2<f32> {
 
 /// Whether a rotor would leave its range with the wrench that [`ThrustRange`] admits.
 fn clips(rotors: &Rotors, range: &ThrustRange, asked: [f32; 3], tilt: &Vector2<f32>, scale: f32) -> bool {
-    let (Wrench { thrust, torque }, _) = range.admitted(asked[0], tilt, [asked[1], asked[2]], scale);
+    let (Wrench { thrust, torque }, _) = range.limited(asked[0], tilt, [asked[1], asked[2]], scale);
     assert_eq!(torque.xy(), *tilt);
     MinimumNorm::new(rotors).allocate(&Wrench { thrust: thrust / scale, torque: torque / scale }).unwrap().clipped
 }
@@ -56,8 +56,8 @@ fn every_torque_that_is_spent_leaves_each_rotor_in_its_range_with_any_thrust_and
         let margin = 1e-3 * craft.vehicle.mass * craft.vehicle.gravity;
         let budget = rows(&craft, margin);
         let tick = TickBudget::new(&budget, scales);
-        let (limits, most) = (craft.limits, craft.limits.torque_max);
-        let range = ThrustRange::new(Some(&craft.rotors), margin, limits.thrust_max, most.z);
+        let (limits, max) = (craft.limits, craft.limits.torque_max);
+        let range = ThrustRange::new(Some(&craft.rotors), margin, limits.thrust_max, max.z);
         for _ in 0..300 {
             let scale = random.between(scales[0], scales[1]);
             if tick.radius(scale) <= 0.0 {
@@ -65,14 +65,14 @@ fn every_torque_that_is_spent_leaves_each_rotor_in_its_range_with_any_thrust_and
             }
             let mut spending = tick.spending(scale);
             for _ in 0..3 {
-                let wanted = unit(&mut random) * (2.0 * most.xy().norm() * random.between(0.0, 1.0));
+                let wanted = unit(&mut random) * (2.0 * max.xy().norm() * random.between(0.0, 1.0));
                 spending.spend(&wanted, 0.0);
             }
             let tilt = spending.spent;
             let along = Vector3::new(tilt.x, tilt.y, 0.0);
-            assert!(tilt.x.abs() <= most.x && tilt.y.abs() <= most.y, "{craft:?} {tilt}");
-            assert!(range.least(&along, scale) <= range.greatest(&along, scale), "{craft:?} {tilt}");
-            let yaw = 3.0 * most.z * random.signed();
+            assert!(tilt.x.abs() <= max.x && tilt.y.abs() <= max.y, "{craft:?} {tilt}");
+            assert!(range.min_thrust(&along, scale) <= range.max_thrust(&along, scale), "{craft:?} {tilt}");
+            let yaw = 3.0 * max.z * random.signed();
             let braking = if random.below(2) == 0 { 0.0 } else { random.between(0.0, 1.0) * yaw };
             let asked = [2.0 * limits.thrust_max * random.signed(), yaw, braking];
             assert!(!clips(&craft.rotors, &range, asked, &tilt, scale), "{craft:?} {tilt} {scale}");
@@ -87,9 +87,9 @@ fn no_row_of_rotors_is_narrower_than_they_need() {
         let craft = Craft::random(&mut random);
         let budget = rows(&craft, 0.0);
         let range = ThrustRange::new(Some(&craft.rotors), 0.0, f32::MAX, f32::MAX);
-        for row in budget.rows.iter().filter(|row| row.bound == Bound::Rotors) {
-            let [x, y] = row.direction.map(|part| (1.01 * row.room(1.0) * part) as f32);
-            let fails = |torque: Vector3<f32>| range.least(&torque, 1.0) > range.greatest(&torque, 1.0);
+        for row in budget.rows.iter().filter(|row| row.bound == RowSource::Rotors) {
+            let [x, y] = row.direction.map(|part| (1.01 * row.capacity(1.0) * part) as f32);
+            let fails = |torque: Vector3<f32>| range.min_thrust(&torque, 1.0) > range.max_thrust(&torque, 1.0);
             assert!(fails(Vector3::new(x, y, 0.0)) || fails(Vector3::new(-x, -y, 0.0)), "{craft:?} {row:?}");
         }
     }
@@ -141,20 +141,20 @@ fn each_part_is_spent_up_to_what_it_has_to_keep_and_the_next_one_beside_it() {
             let holds = |torque: Vector2<f32>| {
                 budget.rows.iter().all(|row| {
                     let along = row.direction[0] * f64::from(torque.x) + row.direction[1] * f64::from(torque.y);
-                    along.abs() <= row.room(f64::from(scale)) - f64::from(kept)
+                    along.abs() <= row.capacity(f64::from(scale)) - f64::from(kept)
                 })
             };
             assert!(holds(spending.spent), "{before} {wanted} {kept}");
-            let greatest = budget.rows.iter().map(|row| {
+            let max = budget.rows.iter().map(|row| {
                 let along = |torque: Vector2<f32>| {
                     row.direction[0] * f64::from(torque.x) + row.direction[1] * f64::from(torque.y)
                 };
                 let (spent, more) = (along(before), along(wanted));
-                let room = row.room(f64::from(scale)) * 0.999 - f64::from(kept) - spent * more.signum();
+                let room = row.capacity(f64::from(scale)) * 0.999 - f64::from(kept) - spent * more.signum();
                 room.max(0.0) / more.abs()
             });
-            let greatest = greatest.fold(1.0, f64::min);
-            assert!((f64::from(share) - greatest).abs() < 1e-4, "{before} {wanted} {kept}: {share} of {greatest}");
+            let max = max.fold(1.0, f64::min);
+            assert!((f64::from(share) - max).abs() < 1e-4, "{before} {wanted} {kept}: {share} of {max}");
             if share < 1.0 { part += 1 } else { whole += 1 }
         }
     }
@@ -191,13 +191,13 @@ fn the_acceleration_that_is_held_is_the_ticks_own_less_what_a_bias_takes() {
         let budget = rows(&craft, 1e-3);
         let ceiling = budget.ceiling(&craft.vehicle, &craft.limits);
         let scale = random.between(0.8, 1.2);
-        let held = budget.held(&craft.vehicle, &craft.limits, f64::from(scale));
+        let held = budget.held_acceleration(&craft.vehicle, &craft.limits, f64::from(scale));
         let found = ceiling.at(scale, &Vector3::zeros());
-        assert!((f64::from(found) * (1.0 - THRUST_LEFT) / held - 1.0).abs() < 1e-5, "{found} {held}");
+        assert!((f64::from(found) * (1.0 - TORQUE_THRUST_SHARE) / held - 1.0).abs() < 1e-5, "{found} {held}");
         // With a bias every rotor still has that thrust in its range.
         let bias = random.vector(1.0).component_mul(&(craft.limits.torque_max * 0.2));
         let thrust = ceiling.at(scale, &bias) * craft.vehicle.mass;
         let range = ThrustRange::new(Some(&craft.rotors), 1e-3, craft.limits.thrust_max, f32::MAX);
-        assert!(thrust <= range.greatest(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
+        assert!(thrust <= range.max_thrust(&bias, scale) * (1.0 + 1e-6), "{thrust} {bias}");
     }
 }

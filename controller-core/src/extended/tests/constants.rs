@@ -22,10 +22,10 @@ fn refused(key: &str, value: f32) -> ParameterError {
 fn every_constant_is_refused_by_its_name_on_either_side_of_its_range() {
     for constant in ExtendedParameters::TABLE {
         let beyond = |reason| ParameterError { field: constant.path, reason };
-        let (least, greatest) = (constant.range.least, constant.range.greatest);
-        let below = if least > 0.0 { Reason::Below(least) } else { Reason::Negative };
-        assert_eq!(refused(constant.key, least.next_down()), beyond(below));
-        assert_eq!(refused(constant.key, greatest.next_up()), beyond(Reason::Above(greatest)));
+        let (min, max) = (constant.range.min, constant.range.max);
+        let below = if min > 0.0 { Reason::Below(min) } else { Reason::Negative };
+        assert_eq!(refused(constant.key, min.next_down()), beyond(below));
+        assert_eq!(refused(constant.key, max.next_up()), beyond(Reason::Above(max)));
         assert_eq!(refused(constant.key, f32::NAN), beyond(Reason::NotFinite));
     }
 }
@@ -46,10 +46,10 @@ fn a_margin_that_rounding_could_use_up_is_refused_with_the_rotors() {
         let law = craft.law(&ExtendedParameters { floor_margin, ..example::parameters() });
         law.parameters.check_rotors(&craft.rotors)
     };
-    let greatest = craft.rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>();
-    let least = Extended::FLOOR_MARGIN_LEAST * example::parameters().scale_greatest * greatest;
-    assert_eq!(with(1.001 * least), Ok(()));
-    let ParameterError { field, reason } = with(0.999 * least).unwrap_err();
+    let max = craft.rotors.iter().map(|rotor| rotor.thrust_max).sum::<f32>();
+    let min = Extended::FLOOR_MARGIN_SHARE_MIN * example::parameters().scale_greatest * max;
+    assert_eq!(with(1.001 * min), Ok(()));
+    let ParameterError { field, reason } = with(0.999 * min).unwrap_err();
     assert!(field == "gains.floor_margin" && matches!(reason, Reason::Below(_)), "{reason:?}");
 }
 

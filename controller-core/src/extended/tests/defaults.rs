@@ -15,17 +15,17 @@ use nalgebra::Vector3;
 /// How much of the bounds that the formulas allow are certified, in steps of a tenth; what fails where not even a
 /// hundredth is.
 fn certified(craft: &Craft, parameters: &ExtendedParameters) -> Result<f32, String> {
-    let most = defaults::reference_bounds(&craft.airframe(), parameters);
+    let max = defaults::reference_bounds(&craft.airframe(), parameters);
     let mut share = 1.0;
     loop {
         let bounds = ReferenceBounds {
-            horizontal_speed: most.horizontal_speed * share,
-            horizontal_acceleration: most.horizontal_acceleration * share,
-            vertical_acceleration: most.vertical_acceleration * share,
-            jerk: most.jerk * share,
-            snap: most.snap * share,
-            heading_rate: most.heading_rate * share,
-            heading_second_derivative: most.heading_second_derivative * share,
+            horizontal_speed: max.horizontal_speed * share,
+            horizontal_acceleration: max.horizontal_acceleration * share,
+            vertical_acceleration: max.vertical_acceleration * share,
+            jerk: max.jerk * share,
+            snap: max.snap * share,
+            heading_rate: max.heading_rate * share,
+            heading_second_derivative: max.heading_second_derivative * share,
         };
         let certificate = Certificate::new(&craft.configuration(parameters, bounds)).unwrap();
         if certificate.holds() {
@@ -71,7 +71,7 @@ fn what_is_given_is_kept_to_the_bit_and_the_rest_follows() {
     let craft = Craft::example();
     let built = craft.constants(&NOTHING_GIVEN).values();
     for (at, (constant, value)) in ExtendedParameters::TABLE.iter().zip(built).enumerate() {
-        let chosen = (0.9 * value).clamp(constant.range.least, constant.range.greatest);
+        let chosen = (0.9 * value).clamp(constant.range.min, constant.range.max);
         let parameters = craft.constants(&given(constant.key, chosen));
         assert_eq!(parameters.values()[at].to_bits(), chosen.to_bits(), "{}", constant.path);
     }

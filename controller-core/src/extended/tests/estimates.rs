@@ -1,11 +1,10 @@
 //! What is estimated: force, torque bias, thrust scale.
 
 use super::Random;
-use crate::extended::force::ForceObserver;
+use crate::extended::estimates::{ForceObserver, ThrustScale, TorqueBias};
+use crate::extended::memory::ScaleEstimate;
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::example;
-use crate::extended::thrust_scale::{ScaleEstimate, ThrustScale};
-use crate::extended::torque_bias::TorqueBias;
 use nalgebra::Vector3;
 
 #[test]
@@ -16,8 +15,8 @@ fn a_force_is_believed_up_to_its_levels_and_arrives_at_what_stays() {
     let (mut average, mut nearest) = (Vector3::zeros(), [0.0_f32; 3]);
     for _ in 0..100_000 {
         let size = 10.0_f32.powf(random.signed() * 1.5 + 1.5);
-        average = observer.averaged(&average, &random.vector(size));
-        let believed = observer.believed(&average);
+        average = observer.filtered(&average, &random.vector(size));
+        let believed = observer.estimate(&average);
         let shares = [believed.xy().norm() / p.force_across, believed.z / p.force_up, -believed.z / p.force_down];
         assert!(shares.iter().all(|share| *share <= 1.0 + 1e-6), "{believed}");
         assert!(average.xy().dot(&believed.xy()) >= average.xy().norm() * believed.xy().norm() * (1.0 - 1e-5));
@@ -26,9 +25,9 @@ fn a_force_is_believed_up_to_its_levels_and_arrives_at_what_stays() {
     assert!(nearest.iter().all(|share| *share > 0.999), "{nearest:?}");
     let steady = Vector3::new(1.0, -0.7, 0.3);
     for _ in 0..1_000 {
-        average = observer.averaged(&average, &steady);
+        average = observer.filtered(&average, &steady);
     }
-    assert!((observer.believed(&average) - steady).norm() < 1e-5, "{average}");
+    assert!((observer.estimate(&average) - steady).norm() < 1e-5, "{average}");
 }
 
 #[test]
@@ -40,7 +39,10 @@ fn a_vehicle_that_does_as_commanded_shows_no_force() {
     let drag = p.drag_across * Vector3::new(start.x, start.y, 0.0);
     let end = start + (thrust - Vector3::new(0.0, 0.0, 9.81) - drag) * 0.01;
     // The drag of the mean velocity is not that at the start: 0.47 / s of half of 9 m/s^2 in a tick.
-    assert!((observer.made(observer.differed([&start, &end]), [&start, &end]) - thrust).norm() < 0.03);
+    assert!(
+        (observer.driven_acceleration(observer.mean_acceleration([&start, &end]), [&start, &end]) - thrust).norm()
+            < 0.03
+    );
 }
 
 #[test]
@@ -50,7 +52,7 @@ fn a_bias_is_believed_up_to_its_level() {
     let mut average = Vector3::zeros();
     let torque = Vector3::new(0.5 * p.torque_tilt, -9.0, 2.0 * p.torque_yaw);
     for _ in 0..2_000 {
-        average = bias.averaged(&average, &torque);
+        average = bias.filtered(&average, &torque);
     }
     let expected = Vector3::new(torque.x, -p.torque_tilt, p.torque_yaw);
     assert!((bias.estimate(&average) - expected).norm() < 1e-6);
@@ -61,12 +63,12 @@ fn a_bias_is_believed_up_to_its_level() {
 fn learnt(truth: f32, force: Vector3<f32>, ticks: u32, mut commanded: impl FnMut(u32) -> Vector3<f32>) -> [f32; 3] {
     let p = ExtendedParameters { scale_least: 0.5, scale_greatest: 2.0, ..example::parameters() };
     let scale = ThrustScale::new(&p, 0.01);
-    let mut estimate = ScaleEstimate::at(1.0);
+    let mut estimate = ScaleEstimate { slow: None, scale: 1.0 };
     let (first, mut worse) = ((1.0 - truth).abs(), 0.0_f32);
     for tick in 0..ticks {
         let f = commanded(tick);
         let before = (estimate.scale - truth).abs();
-        estimate = scale.learnt(&estimate, &(f * truth + force), &f);
+        estimate = scale.updated(&estimate, &(f * truth + force), &f);
         worse = worse.max((estimate.scale - truth).abs() - before);
     }
     [first, (estimate.scale - truth).abs(), worse]
@@ -99,10 +101,10 @@ fn the_thrust_scale_stays_within_its_limits() {
     let scale = ThrustScale::new(&p, 0.01);
     let mut random = Random(10);
     for truth in [0.1, 5.0] {
-        let mut estimate = ScaleEstimate::at(1.0);
+        let mut estimate = ScaleEstimate { slow: None, scale: 1.0 };
         for _ in 0..5_000 {
             let f = random.vector(20.0);
-            estimate = scale.learnt(&estimate, &(f * truth), &f);
+            estimate = scale.updated(&estimate, &(f * truth), &f);
             assert!(estimate.scale >= p.scale_least && estimate.scale <= p.scale_greatest);
         }
         assert_eq!(estimate.scale, truth.clamp(p.scale_least, p.scale_greatest));

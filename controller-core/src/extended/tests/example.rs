@@ -1,7 +1,7 @@
 //! Vehicles and constants to test with: the Hummingbird, and any plausible one.
 
 use super::Random;
-use crate::allocation::{Rotor, Rotors, Spin, greatest_torques};
+use crate::allocation::{Rotor, Rotors, Spin, max_torques};
 use crate::configuration::{Configuration, ExtendedLaw};
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::budget::TorqueBudget;
@@ -68,7 +68,7 @@ impl Craft {
         };
         let all: [Rotor; 8] = core::array::from_fn(rotor);
         let rotors = Rotors::new(&all[..count]).unwrap();
-        let limits = LimitParameters { thrust_max: count as f32 * thrust_max, torque_max: greatest_torques(&rotors) };
+        let limits = LimitParameters { thrust_max: count as f32 * thrust_max, torque_max: max_torques(&rotors) };
         let period = [0.001, 0.002, 0.004, 0.01][random.below(4)];
         Self {
             vehicle,
@@ -126,5 +126,6 @@ pub(crate) fn place(key: &str) -> usize {
 /// U where the rotors deliver the least thrust scale, and the most, m/s^2.
 pub(crate) fn greatest_accelerations(craft: &Craft, p: &ExtendedParameters) -> [f32; 2] {
     let budget = TorqueBudget::<f64>::new(p.floor_margin, &craft.limits, Some(&craft.rotors));
-    [p.scale_least, p.scale_greatest].map(|scale| budget.held(&craft.vehicle, &craft.limits, f64::from(scale)) as f32)
+    [p.scale_least, p.scale_greatest]
+        .map(|scale| budget.held_acceleration(&craft.vehicle, &craft.limits, f64::from(scale)) as f32)
 }

@@ -3,7 +3,7 @@
 use super::Random;
 use crate::error::ParameterError;
 use crate::extended::controller::Controller;
-use crate::extended::heading::{self, HeadingLaw, Seen};
+use crate::extended::heading::{self, HeadingLaw};
 use crate::extended::parameters::ExtendedParameters;
 use crate::extended::tests::example::{self, Craft};
 use nalgebra::Vector3;
@@ -41,9 +41,9 @@ fn a_turn_of_any_angle_is_braked_with_the_torque_at_hand_and_ends_at_the_heading
             assert!(rate <= p.yaw_rate * 1.001, "from {start}: {rate} rad/s");
             assert!(beyond < 0.03 * start.abs().max(1.0), "from {start} with {room}: {beyond} rad beyond");
             // From rest to rest with that torque alone, and the linear end of the approach.
-            let least = 2.0 * (start.abs() * j / room).sqrt();
+            let min = 2.0 * (start.abs() * j / room).sqrt();
             let tail = 6.0 * p.c_2 / p.c_1;
-            assert!(time < 1.6 * least.max(start.abs() / p.yaw_rate) + tail, "from {start} with {room}: {time} s");
+            assert!(time < 1.6 * min.max(start.abs() / p.yaw_rate) + tail, "from {start} with {room}: {time} s");
         }
     }
 }
@@ -60,7 +60,7 @@ fn small_errors_meet_the_gains_and_a_heading_that_turns_is_fed_forward() {
     let mut random = Random(44);
     for _ in 0..100 {
         let (rate, velocity, acceleration) = (random.vector(4.0), random.vector(9.0), random.signed());
-        let forward = law.forward(&Seen { rate, acceleration }, &velocity);
+        let forward = law.forward(&rate, acceleration, &velocity);
         assert!((forward - (acceleration - velocity.cross(&rate).z)).abs() < 1e-4);
         let torque = law.torque(0.0, 0.0, forward, &velocity, 1.0);
         let gyroscopic = velocity.cross(&j.component_mul(&velocity)).z;
@@ -72,13 +72,13 @@ fn small_errors_meet_the_gains_and_a_heading_that_turns_is_fed_forward() {
 fn a_spin_is_braked_before_thrust_and_a_heading_that_lags_is_not() {
     let (p, j) = (example::parameters(), example::vehicle().inertia);
     let law = HeadingLaw::new(&p, &j);
-    let most = j.z * p.yaw_acceleration;
-    let braked = |rate: f32| law.braking(-9.0 * most, rate * p.yaw_rate) / -most;
+    let max = j.z * p.yaw_acceleration;
+    let braked = |rate: f32| law.braking(-9.0 * max, rate * p.yaw_rate) / -max;
     for (rate, share) in [(0.5, 0.0), (1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (9.0, 1.0), (-9.0, 0.0)] {
         assert!((braked(rate) - share).abs() < 1e-5, "{rate}: {}", braked(rate));
     }
     // No more than what is asked for.
-    assert!((law.braking(-0.1 * most, 9.0 * p.yaw_rate) / most + 0.1).abs() < 1e-5);
+    assert!((law.braking(-0.1 * max, 9.0 * p.yaw_rate) / max + 0.1).abs() < 1e-5);
 }
 
 #[test]
@@ -98,8 +98,8 @@ fn ticks_too_long_for_the_gains_are_refused_by_name() {
             assert_eq!(refused(c_1, c_2), Ok(()));
             let (half, product) = (f64::from(1.0 - 0.005 * c_2), f64::from(1.0 - 0.01 * c_2 + 1e-4 * c_1));
             let square = half * half - product;
-            let greatest = if square > 0.0 { half.abs() + square.sqrt() } else { product.sqrt() };
-            assert!(greatest < 1.0, "{c_1} {c_2}: {greatest}");
+            let max = if square > 0.0 { half.abs() + square.sqrt() } else { product.sqrt() };
+            assert!(max < 1.0, "{c_1} {c_2}: {max}");
         }
     }
     let craft = Craft::example();

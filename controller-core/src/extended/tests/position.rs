@@ -3,7 +3,7 @@
 use super::Random;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::parameters::ExtendedParameters;
-use crate::extended::position::{Filters, Most, PositionFeedback, PositionLaw};
+use crate::extended::position::{FeedbackLimits, Filters, PositionFeedback, PositionLaw};
 use crate::extended::tests::example::{self, Craft, greatest_accelerations};
 use crate::heading::Heading;
 use crate::reference::hover::Hover;
@@ -29,8 +29,8 @@ pub(super) fn force(random: &mut Random, p: &ExtendedParameters) -> Vector3<f32>
 
 #[test]
 fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
-    // What is left to the feedback where a force takes all of the envelope, m/s^2: the law's LEVEL_LEAST.
-    let least = 0.3;
+    // What is left to the feedback where a force takes all of the envelope, m/s^2: the law's LEVEL_MIN_M_PER_S2.
+    let min = 0.3;
     let mut random = Random(61);
     for _ in 0..200 {
         let craft = Craft::random(&mut random);
@@ -44,15 +44,15 @@ fn the_feedback_stays_in_its_envelope_whatever_the_errors_and_the_force() {
             let [command, intermediate, smoothed] = [5.0; 3].map(|size| random.vector(size));
             let filter = Filters { command, intermediate, smoothed };
             let d = force(&mut random, &p);
-            let greatest = random.between(weakest, strongest);
-            let ubar = law.feedback(&state, &origin(), &filter, &d, greatest, &Most::ALL).feedback;
-            let allowance = 1e-5 * greatest;
-            let (lift, across, wind) = (gravity + ubar.z, ubar.xy().norm(), d.xy().norm() + least);
+            let max = random.between(weakest, strongest);
+            let ubar = law.feedback(&state, &origin(), &filter, &d, max, &FeedbackLimits::UNLIMITED).feedback;
+            let allowance = 1e-5 * max;
+            let (lift, across, wind) = (gravity + ubar.z, ubar.xy().norm(), d.xy().norm() + min);
             assert!(ubar.z >= -p.a_down - allowance, "{ubar}");
-            assert!(lift <= greatest.max(gravity - d.z + least) + allowance, "{ubar} {d} {greatest}");
+            assert!(lift <= max.max(gravity - d.z + min) + allowance, "{ubar} {d} {max}");
             assert!(across <= p.a_across.max(wind) + allowance, "{ubar} {d}");
             // Across has what the vertical leaves of thrust and tilt, or what the force takes.
-            let left = (greatest * greatest - lift * lift).max(0.0).sqrt();
+            let left = (max * max - lift * lift).max(0.0).sqrt();
             assert!(across <= (0.95 * left).min(0.95 * lift * p.tilt_max.tan()).max(wind) + 1e-3, "{ubar} {d}");
         }
     }
@@ -118,11 +118,11 @@ fn flown(start: State, force: Vector3<f32>, ticks: u32, mut see: impl FnMut(&Pos
     let p = example::parameters();
     let (gravity, h) = (9.81, 0.002);
     let law = PositionLaw::new(&p, gravity, h).unwrap();
-    let [greatest, _] = greatest_accelerations(&Craft::example(), &p);
+    let [max, _] = greatest_accelerations(&Craft::example(), &p);
     let mut state = start;
     let mut filter = Filters::at(-force);
     for _ in 0..ticks {
-        let feedback = law.feedback(&state, &origin(), &filter, &force, greatest, &Most::ALL);
+        let feedback = law.feedback(&state, &origin(), &filter, &force, max, &FeedbackLimits::UNLIMITED);
         see(&feedback);
         let next = law.advance(&filter, &feedback.smoothed, &feedback.drive, f32::MAX);
         // c moves nearly straight within a tick. Along the vertical y acts at once.
@@ -178,7 +178,7 @@ fn potential(z: f64, [k_p, k_v, speed, braking, level]: [f64; 5]) -> f64 {
 #[test]
 fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
     let p = example::parameters();
-    let [greatest, _] = greatest_accelerations(&Craft::example(), &p);
+    let [max, _] = greatest_accelerations(&Craft::example(), &p);
     for d in FORCES.map(Vector3::from) {
         // The vertical: its level and its approach depend on the side.
         for (height, climb) in [(5.0, 0.0), (-5.0, 2.0), (0.3, -4.0), (-30.0, -10.0)] {
@@ -186,7 +186,7 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
             flown(at(Vector3::new(0.0, 0.0, height), Vector3::new(0.0, 0.0, climb)), d, 10_000, |now| {
                 let (z_1, z_2) = (f64::from(now.errors.z_1.z), f64::from(now.errors.z_2.z));
                 let down = z_1 > 0.0;
-                let (push, pull) = (greatest - 9.81 + d.z, p.a_down - d.z);
+                let (push, pull) = (max - 9.81 + d.z, p.a_down - d.z);
                 let (level, brakes) = if down { (pull, push) } else { (push, pull) };
                 let speed = if down { p.v_down } else { p.v_up };
                 let constants = [p.k_p_vertical, p.k_v_vertical, speed, p.braking_vertical * brakes, level];
@@ -201,7 +201,7 @@ fn v_0_falls_along_the_vertical_and_across_while_nothing_is_limited() {
         for (position, velocity) in [([6.0, 0.0, 0.0], [0.0, 3.0, 0.0]), ([-20.0, 9.0, 0.0], [5.0, -5.0, 0.0])] {
             let mut before = f64::INFINITY;
             let lift = 9.81 - d.z;
-            let left = 0.95 * (greatest * greatest - lift * lift).sqrt();
+            let left = 0.95 * (max * max - lift * lift).sqrt();
             let level = p.a_across.min(0.95 * lift * p.tilt_max.tan()).min(left) - d.xy().norm();
             flown(at(Vector3::from(position), Vector3::from(velocity)), d, 10_000, |now| {
                 let (z_1, z_2) = (f64::from(now.errors.z_1.xy().norm()), f64::from(now.errors.z_2.xy().norm()));

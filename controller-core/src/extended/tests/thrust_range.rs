@@ -12,8 +12,8 @@ fn rooms(rotors: &Rotors, thrust: f32, torque: &Vector3<f32>, scale: f32) -> [f6
     for (rotor, row) in rotors.iter().zip(rotors.pseudo_inverse()) {
         let row: &Vector4<f64> = row;
         let found = row.dot(&Vector4::new(thrust, torque.x, torque.y, torque.z).map(f64::from));
-        let [least, greatest] = [rotor.thrust_min, rotor.thrust_max].map(|end| f64::from(scale * end));
-        rooms = [rooms[0].min(found - least), rooms[1].min(greatest - found)];
+        let [min, max] = [rotor.thrust_min, rotor.thrust_max].map(|end| f64::from(scale * end));
+        rooms = [rooms[0].min(found - min), rooms[1].min(max - found)];
     }
     rooms
 }
@@ -30,8 +30,8 @@ fn at_either_end_one_rotor_is_at_its_own_and_none_beyond() {
     for _ in 0..10_000 {
         let torque = random.vector(0.5);
         let scale = random.between(0.8, 1.3);
-        let [above, _] = rooms(&rotors, range.least(&torque, scale), &torque, scale);
-        let [_, below] = rooms(&rotors, range.greatest(&torque, scale), &torque, scale);
+        let [above, _] = rooms(&rotors, range.min_thrust(&torque, scale), &torque, scale);
+        let [_, below] = rooms(&rotors, range.max_thrust(&torque, scale), &torque, scale);
         // A rotor's 16 N and the sum of four in single precision.
         assert!(above.abs() < 2e-6 && below.abs() < 6e-6, "{torque}: {above} {below}");
     }
@@ -47,14 +47,14 @@ fn thrust_is_the_nearest_that_tilting_leaves_and_yaw_the_nearest_that_both_leave
         let (tilt, scale) = (random.vector(0.4).xy(), random.between(0.8, 1.3));
         let [asked, yaw] = [60.0 * random.signed(), random.signed()];
         let braking = if random.below(2) == 0 { 0.0 } else { 0.1 * yaw };
-        let (wrench, room) = range.admitted(asked, &tilt, [yaw, braking], scale);
+        let (wrench, room) = range.limited(asked, &tilt, [yaw, braking], scale);
         let alone = Vector3::new(tilt.x, tilt.y, 0.0);
-        let most = range.greatest(&alone, scale).min(range.greatest(&Vector3::new(tilt.x, tilt.y, braking), scale));
-        let expected = asked.min(most).max(range.least(&alone, scale));
+        let max = range.max_thrust(&alone, scale).min(range.max_thrust(&Vector3::new(tilt.x, tilt.y, braking), scale));
+        let expected = asked.min(max).max(range.min_thrust(&alone, scale));
         assert!((wrench.thrust - expected).abs() < 1e-5, "yaw moved the thrust: {} {expected}", wrench.thrust);
         // Where thrust is cut, what brakes is there, unless it would take a rotor below its least.
         let braked = Vector3::new(tilt.x, tilt.y, braking);
-        let cut_from_above = wrench.thrust < asked && range.least(&braked, scale) < wrench.thrust;
+        let cut_from_above = wrench.thrust < asked && range.min_thrust(&braked, scale) < wrench.thrust;
         let brakes = braking == 0.0 || wrench.torque.z * braking.signum() >= braking.abs() - 1e-5;
         assert!(brakes || !cut_from_above, "{wrench:?} {braking}");
         let got = wrench.torque.z;
@@ -86,13 +86,13 @@ fn a_turning_torque_gets_the_share_with_which_the_floor_stays_below_a_thrust_or_
         let (thrust, scale) = (random.between(0.0, 12.0), random.between(0.8, 1.3));
         let floor = |share: f32| {
             let torque = spent + wanted * share;
-            range.least(&Vector3::new(torque.x, torque.y, 0.0), scale)
+            range.min_thrust(&Vector3::new(torque.x, torque.y, 0.0), scale)
         };
         let share = range.share(&spent, &wanted, thrust, scale);
-        let most = thrust.max(floor(0.0));
-        assert!((0.0..=1.0).contains(&share) && floor(share) <= most + 1e-5, "{spent} {wanted} {thrust}: {share}");
+        let max = thrust.max(floor(0.0));
+        assert!((0.0..=1.0).contains(&share) && floor(share) <= max + 1e-5, "{spent} {wanted} {thrust}: {share}");
         if share < 1.0 {
-            assert!(floor(share + 1e-2) > most, "{spent} {wanted} {thrust}: {share}");
+            assert!(floor(share + 1e-2) > max, "{spent} {wanted} {thrust}: {share}");
             cut += 1;
         }
     }
@@ -104,7 +104,7 @@ fn a_vehicle_without_rotors_has_a_constant_range() {
     let range = ThrustRange::new(None, 0.05, 40.0, 0.2);
     let torque = Vector2::new(0.3, -0.2);
     for (thrust, expected) in [(-1.0, 0.05), (9.0, 9.0), (50.0, 40.0)] {
-        let (wrench, room) = range.admitted(thrust, &torque, [-0.3, 0.0], 1.1);
+        let (wrench, room) = range.limited(thrust, &torque, [-0.3, 0.0], 1.1);
         assert_eq!((wrench.thrust, wrench.torque.z, room), (expected, -0.2, 0.2));
     }
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::governor::envelope::{Bounds, Cylinder};
 
-const REST: Moving = Moving {
+const REST: HeadMotion = HeadMotion {
     velocity: Vector3::new(0.0, 0.0, 0.0),
     acceleration: Vector3::new(0.0, 0.0, 0.0),
     difference: Vector3::new(0.0, 0.0, 0.0),
@@ -22,12 +22,12 @@ fn the_step_is_smooth_and_no_steeper_than_is_counted_on() {
         let (before, here, after) = (step(tick - 1), step(tick), step(tick + 1));
         for order in 0..4 {
             let slope = (after[order] - before[order]) * ticks as f32 / (2.0 * duration);
-            let size = STEEPEST[order] / duration.powi(order as i32 + 1);
+            let size = STEP_DERIVATIVES_MAX[order] / duration.powi(order as i32 + 1);
             assert!((slope - here[order + 1]).abs() < 1e-3 * size, "{tick}: derivative {}", order + 1);
             steepest[order] = steepest[order].max(here[order + 1].abs() / size);
         }
     }
-    assert!(steepest.iter().all(|most| (0.999..1.001).contains(most)), "{steepest:?}");
+    assert!(steepest.iter().all(|max| (0.999..1.001).contains(max)), "{steepest:?}");
 }
 
 #[test]
@@ -41,9 +41,9 @@ fn a_blend_begins_on_the_averages_and_ends_on_the_stream() {
         snap: all(0.0),
         rate: 0.7,
     };
-    let sought = Sought { point: Point { snap: all(2.0), ..error }, error };
+    let sought = StreamTarget { point: Point { snap: all(2.0), ..error }, error };
     let snap = all(1e-4);
-    let Sought { point, error } = at(0.0, 5.0).target(&REST, &sought, &snap, 0.01);
+    let StreamTarget { point, error } = at(0.0, 5.0).target(&REST, &sought, &snap, 0.01);
     assert_eq!([error.position, error.velocity, error.acceleration, error.jerk], [Vector3::zeros(); 4]);
     assert!((point.snap - all(1.0)).norm() < 1e-6 && point.rate == 0.0);
     let target = at(5.0, 5.0).target(&REST, &sought, &snap, 0.01);

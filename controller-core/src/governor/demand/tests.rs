@@ -1,7 +1,7 @@
 use super::*;
 
 /// The squares of the shares of a motion `f` times too fast by one of its derivatives, a tick of 0.01 s.
-fn asked(demand: &Demand, derivative: i32, f: f32) -> Demand {
+fn asked(demand: &StreamDemand, derivative: i32, f: f32) -> StreamDemand {
     let mut squares = [0.01; 4];
     squares[derivative as usize - 1] = f.powi(2 * derivative);
     let [speed, acceleration, jerk, snap] = squares;
@@ -12,18 +12,18 @@ fn asked(demand: &Demand, derivative: i32, f: f32) -> Demand {
 fn the_factor_is_that_of_the_derivative_that_asks_most() {
     for derivative in 1..=4 {
         for f in [0.8, 1.0, 1.4, 3.0, 15.0] {
-            let found = asked(&Demand::NONE, derivative, f).following().unwrap().slower();
+            let found = asked(&StreamDemand::NONE, derivative, f).following().unwrap().slower();
             assert!((found / f - 1.0).abs() < 1e-5, "derivative {derivative}: {found} for {f}");
         }
-        let most = asked(&Demand::NONE, derivative, 1e4).following().unwrap().slower();
-        assert!((most / 16.0 - 1.0).abs() < 1e-5, "{most}");
+        let max = asked(&StreamDemand::NONE, derivative, 1e4).following().unwrap().slower();
+        assert!((max / 16.0 - 1.0).abs() < 1e-5, "{max}");
     }
-    assert_eq!(Demand::NONE.following(), None);
+    assert_eq!(StreamDemand::NONE.following(), None);
 }
 
 #[test]
 fn what_was_asked_counts_for_ten_seconds_and_for_no_more_than_twenty() {
-    let mut demand = asked(&Demand::NONE, 2, 2.0);
+    let mut demand = asked(&StreamDemand::NONE, 2, 2.0);
     let mut slower = || {
         demand = asked(&demand, 2, 1.1);
         demand.following().unwrap().slower()

@@ -10,16 +10,16 @@ const BOUNDS: Bounds = Bounds {
     snap: 10.0,
 };
 
-const REST: Moving = Moving {
+const REST: HeadMotion = HeadMotion {
     velocity: Vector3::new(0.0, 0.0, 0.0),
     acceleration: Vector3::new(0.0, 0.0, 0.0),
     difference: Vector3::new(0.0, 0.0, 0.0),
 };
 
 /// Looks at the bounds, and moves on.
-fn moved(head: &Moving, snap: &Vector3<f32>) -> Moving {
+fn moved(head: &HeadMotion, snap: &Vector3<f32>) -> HeadMotion {
     let next = head.after(snap, PERIOD);
-    let Moving { velocity: v, acceleration: a, difference: d } = &next;
+    let HeadMotion { velocity: v, acceleration: a, difference: d } = &next;
     assert!(snap.norm() <= BOUNDS.snap * PERIOD * PERIOD && d.norm() <= BOUNDS.jerk * PERIOD, "{next:?}");
     for (y, cylinder) in [(a, BOUNDS.acceleration), (v, BOUNDS.speed)] {
         assert!(y.xy().norm() <= cylinder.horizontal && y.z.abs() <= cylinder.vertical, "{next:?}");
@@ -33,7 +33,7 @@ fn whatever_is_wanted_the_bounds_hold_and_the_way_out_ends_at_rest_from_accelera
     let mut random = Random::new(21);
     let mut turns = 0;
     for _ in 0..300 {
-        let (mut head, mut out) = (REST, envelope.way_out(&REST).unwrap());
+        let (mut head, mut out) = (REST, envelope.retreat(&REST).unwrap());
         let mut wanted = Vector3::zeros();
         for tick in 0..(2_000.0 * random.unit()) as u32 {
             // Held for a while, up to three times what is allowed; across the acceleration at times, which turns it.
@@ -43,7 +43,7 @@ fn whatever_is_wanted_the_bounds_hold_and_the_way_out_ends_at_rest_from_accelera
             let across = Vector3::new(-head.acceleration.y, head.acceleration.x, 0.0) * (5.0 * PERIOD * PERIOD);
             let (snap, way) = envelope.step(&head, &(wanted + across), &out);
             (head, out) = (moved(&head, &snap), way);
-            turns += u32::from(out != WayOut::STRAIGHT);
+            turns += u32::from(out != Retreat::STRAIGHT);
         }
         for _ in 0..300 {
             let (snap, way) = envelope.follow(&head, &out);
@@ -59,15 +59,15 @@ fn whatever_is_wanted_the_bounds_hold_and_the_way_out_ends_at_rest_from_accelera
 fn a_circle_near_the_bounds_leaves_a_way_out_that_turns() {
     let envelope = Envelope::new(&BOUNDS, 0.0, PERIOD);
     let rate = 0.5 * core::f32::consts::PI;
-    let on = |acceleration: f32| Moving {
+    let on = |acceleration: f32| HeadMotion {
         velocity: Vector3::new(0.0, acceleration / rate, 0.0),
         acceleration: Vector3::new(-acceleration, 0.0, 0.0),
         difference: Vector3::new(0.0, -acceleration * rate * PERIOD, 0.0),
     };
-    assert!(envelope.way_out(&on(rate * rate)).unwrap() != WayOut::STRAIGHT);
-    assert!(envelope.way_out(&on(1.5)) == Some(WayOut::STRAIGHT));
-    assert!(envelope.way_out(&on(2.51)).is_none());
+    assert!(envelope.retreat(&on(rate * rate)).unwrap() != Retreat::STRAIGHT);
+    assert!(envelope.retreat(&on(1.5)) == Some(Retreat::STRAIGHT));
+    assert!(envelope.retreat(&on(2.51)).is_none());
     // The same at a speed from which it cannot be slowed down in time.
-    let fast = Moving { velocity: Vector3::new(-4.5, 0.0, 0.0), ..on(rate * rate) };
-    assert!(envelope.way_out(&fast).is_none());
+    let fast = HeadMotion { velocity: Vector3::new(-4.5, 0.0, 0.0), ..on(rate * rate) };
+    assert!(envelope.retreat(&fast).is_none());
 }

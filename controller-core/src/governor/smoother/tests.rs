@@ -101,7 +101,7 @@ fn a_steady_acceleration_goes_on_from_what_was_summed_up_of_it() {
     let steady = summed.smoother.steady(&windows);
     started.start(&steady, &windows);
     assert_eq!(started.averages.commanded(), summed.averages.commanded());
-    for _ in 0..super::super::limits::HISTORY {
+    for _ in 0..super::super::limits::HISTORY_TICKS {
         assert_eq!(started.smoother.knot(), summed.smoother.knot());
         assert_eq!(started.smoother.axes.map(|axis| axis.difference), summed.smoother.axes.map(|axis| axis.difference));
         summed.push(&acceleration);
@@ -123,7 +123,7 @@ fn a_million_ticks_of_noise_leave_no_trace() {
     for step in 0..steps {
         filter.push(&Vector3::new(-(whole + i64::from(step == 0) * rest) as i32, 0, 0));
     }
-    for _ in 0..super::super::limits::HISTORY {
+    for _ in 0..super::super::limits::HISTORY_TICKS {
         filter.push(&Vector3::zeros());
     }
     assert!(filter.at_rest());

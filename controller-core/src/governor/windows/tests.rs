@@ -14,7 +14,7 @@ fn the_windows_satisfy_both_bounds_with_less_than_two_ticks_to_spare() {
 #[test]
 fn windows_too_long_for_the_memory_cost_authority_instead() {
     let windows = Windows::design(&TYPICAL, &GovernorLimits::default(), 0.002).unwrap();
-    assert!(windows.lengths.iter().sum::<usize>() < HISTORY);
+    assert!(windows.lengths.iter().sum::<usize>() < HISTORY_TICKS);
     let authority = windows.horizontal / windows.per_metre / 0.002 / 0.002;
     assert!(authority < 0.9 * TYPICAL.horizontal_acceleration && authority > 0.1);
 }

@@ -101,13 +101,10 @@ fn the_greatest_root_of_a_cubic_lies_between_its_ends() {
         let slack = |terms: [f64; 3]| terms.iter().map(|t| t.abs()).sum::<f64>() * 1e-15;
         let p = p + Enclosure { lower: -slack(pp), upper: slack(pp) };
         let q = q + Enclosure { lower: -slack(qq), upper: slack(qq) };
-        let root = Enclosure::greatest_cubic_root(p, q);
-        let greatest = a.max(b).max(c);
-        assert!(holds(root, greatest), "{a} {b} {c}: {root:?}");
+        let root = Enclosure::max_cubic_root(p, q);
+        let max = a.max(b).max(c);
+        assert!(holds(root, max), "{a} {b} {c}: {root:?}");
         let apart = if trial % 10 == 0 { 1e-2 } else { 1e-5 };
-        assert!(
-            root.upper - root.lower <= apart * greatest.abs() + 1e-100 || (a - b).abs() < 1e-3 * a.abs(),
-            "{root:?}"
-        );
+        assert!(root.upper - root.lower <= apart * max.abs() + 1e-100 || (a - b).abs() < 1e-3 * a.abs(), "{root:?}");
     }
 }

@@ -28,13 +28,13 @@ fn numbers(random: &mut Random, count: usize) -> Vec<f32> {
 #[test]
 fn a_network_is_its_sums_and_tanhs() {
     let mut random = Random(92);
-    let sizes = [INPUTS, 7, 64, OUTPUTS];
+    let sizes = [INPUT_COUNT, 7, 64, OUTPUT_COUNT];
     let made: Vec<_> =
         sizes.windows(2).map(|pair| (numbers(&mut random, pair[0] * pair[1]), numbers(&mut random, pair[1]))).collect();
     let layers: Vec<_> = made.iter().map(|(weights, biases)| Layer { weights, biases }).collect();
     let network = Network::new(&layers, [1.0, 2.0, 3.0, 4.0]).unwrap();
     for _ in 0..100 {
-        let inputs: [f32; INPUTS] = numbers(&mut random, INPUTS).try_into().unwrap();
+        let inputs: [f32; INPUT_COUNT] = numbers(&mut random, INPUT_COUNT).try_into().unwrap();
         let mut values: Vec<f64> = inputs.iter().map(|input| f64::from(*input)).collect();
         for (weights, biases) in &made {
             let each = weights.chunks(values.len()).zip(biases);
@@ -54,7 +54,7 @@ fn a_network_is_its_sums_and_tanhs() {
 #[test]
 fn inputs_are_seen_from_the_heading_and_demands_are_turned_back() {
     let mut random = Random(93);
-    let (zero, biases) = ([0.0; INPUTS * OUTPUTS], [0.3, -0.4, 0.5, 0.1]);
+    let (zero, biases) = ([0.0; INPUT_COUNT * OUTPUT_COUNT], [0.3, -0.4, 0.5, 0.1]);
     let layers = [Layer { weights: &zero, biases: &biases }];
     let network = Network::new(&layers, [2.0, 2.0, 3.0, 0.5]).unwrap();
     for _ in 0..100 {
@@ -88,9 +88,9 @@ fn inputs_are_seen_from_the_heading_and_demands_are_turned_back() {
 
 #[test]
 fn what_is_not_finite_goes_through_once_and_is_forgotten() {
-    let weights = [1.0; INPUTS * OUTPUTS];
-    let layers = [Layer { weights: &weights, biases: &[0.0; OUTPUTS] }];
-    let mut policy = NetworkPolicy::new(Network::new(&layers, [1.0; OUTPUTS]).unwrap());
+    let weights = [1.0; INPUT_COUNT * OUTPUT_COUNT];
+    let layers = [Layer { weights: &weights, biases: &[0.0; OUTPUT_COUNT] }];
+    let mut policy = NetworkPolicy::new(Network::new(&layers, [1.0; OUTPUT_COUNT]).unwrap());
     let fine = observation(&mut Random(94));
     let broken = Observation { goal: Vector3::repeat(f32::NAN), ..fine };
     assert!(policy.act(&broken).unwrap().check().is_err());
@@ -99,22 +99,22 @@ fn what_is_not_finite_goes_through_once_and_is_forgotten() {
 
 #[test]
 fn a_network_that_does_not_fit_is_refused_by_name() {
-    let (weights, biases) = ([0.5; INPUTS * WIDTH_MAX * 2], [0.5; WIDTH_MAX + 1]);
+    let (weights, biases) = ([0.5; INPUT_COUNT * WIDTH_MAX * 2], [0.5; WIDTH_MAX + 1]);
     let layer = |inputs: usize, outputs: usize| Layer {
         weights: weights.get(..inputs * outputs).unwrap(),
         biases: biases.get(..outputs).unwrap(),
     };
-    let good = layer(INPUTS, OUTPUTS);
-    let nan = [f32::NAN; OUTPUTS];
+    let good = layer(INPUT_COUNT, OUTPUT_COUNT);
+    let nan = [f32::NAN; OUTPUT_COUNT];
     for (layers, scale, field) in [
         (&[] as &[Layer], [1.0; 4], "network.layers"),
         (&[good, layer(4, 4), layer(4, 4), layer(4, 4), layer(4, 4)], [1.0; 4], "network.layers"),
-        (&[layer(INPUTS + 1, OUTPUTS)], [1.0; 4], "network.layers.weights"),
-        (&[layer(INPUTS - 1, OUTPUTS)], [1.0; 4], "network.layers.weights"),
-        (&[layer(INPUTS, 3)], [1.0; 4], "network.layers.biases"),
-        (&[layer(INPUTS, 5)], [1.0; 4], "network.layers.biases"),
-        (&[layer(INPUTS, 0)], [1.0; 4], "network.layers.biases"),
-        (&[layer(INPUTS, WIDTH_MAX + 1), layer(WIDTH_MAX + 1, 4)], [1.0; 4], "network.layers.biases"),
+        (&[layer(INPUT_COUNT + 1, OUTPUT_COUNT)], [1.0; 4], "network.layers.weights"),
+        (&[layer(INPUT_COUNT - 1, OUTPUT_COUNT)], [1.0; 4], "network.layers.weights"),
+        (&[layer(INPUT_COUNT, 3)], [1.0; 4], "network.layers.biases"),
+        (&[layer(INPUT_COUNT, 5)], [1.0; 4], "network.layers.biases"),
+        (&[layer(INPUT_COUNT, 0)], [1.0; 4], "network.layers.biases"),
+        (&[layer(INPUT_COUNT, WIDTH_MAX + 1), layer(WIDTH_MAX + 1, 4)], [1.0; 4], "network.layers.biases"),
         (&[Layer { biases: &nan, ..good }], [1.0; 4], "network.layers.biases"),
         (&[good], [1.0, 1.0, 2e4, 1.0], "network.scale"),
     ] {

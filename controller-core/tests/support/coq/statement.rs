@@ -48,7 +48,7 @@ fn is_relation(word: &str) -> bool {
 }
 
 impl Statement {
-    pub fn of(file: &str, words: &[String]) -> Self {
+    pub fn parse(file: &str, words: &[String]) -> Self {
         let mut statement = Self { file: file.to_owned(), relations: Vec::new(), lets: BTreeMap::new() };
         statement.collect(words);
         statement

@@ -154,7 +154,7 @@ fn a_measurement_leaves_what_the_textbook_says() {
         let noise = Matrix3::new(4e-4, 1e-4, 0.0, 1e-4, 3e-4, 5e-5, 0.0, 5e-5, 2e-4_f32);
         let residual = Vector3::new(0.01_f32, -0.02, 0.03);
         let mut covariance = Covariance::from_full(&before);
-        let weight = inverse(&(covariance.of(part) + noise)).unwrap();
+        let weight = inverse(&(covariance.block(part) + noise)).unwrap();
         let correction = covariance.fuse(part, &residual, &noise, &weight);
         // P - P H' S^-1 H P, in double precision.
         let columns = before.fixed_columns::<3>(at).into_owned();
@@ -177,7 +177,7 @@ fn it_stays_symmetric_and_positive_through_an_hour_of_poses() {
     let mut covariance = Covariance::diagonal([10.0, 10.0, 1.0, 0.05, 0.5]);
     let mut nominal = somewhere();
     let noise = |deviation: f32| Matrix3::from_diagonal_element(deviation * deviation);
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for n in 0..360_000_u64 {
         let rate = Vector3::new(1.0, -2.0, 3.0) * ((n / 500) % 3) as f32;
         let increment = Increment::steady(0, 10_000, &rate, &Vector3::new(0.5, -0.2, 9.5));
@@ -185,7 +185,7 @@ fn it_stays_symmetric_and_positive_through_an_hour_of_poses() {
         covariance.advance(&motion, &EstimatorParameters::BMI088);
         for (part, deviation) in [(Part::Position, 1e-4), (Part::Attitude, 5e-4)] {
             let noise = noise(deviation);
-            let weight = inverse(&(covariance.of(part) + noise)).unwrap();
+            let weight = inverse(&(covariance.block(part) + noise)).unwrap();
             covariance.fuse(part, &Vector3::zeros(), &noise, &weight);
         }
         if n % 1_000 == 0 || n < 100 {
@@ -194,11 +194,11 @@ fn it_stays_symmetric_and_positive_through_an_hour_of_poses() {
             // Scaled to unit diagonal, so that units do not matter.
             let scale = full.diagonal().map(|x| 1.0 / x.sqrt());
             let scaled = Full::from_fn(|i, j| full[(i, j)] * scale[i] * scale[j]);
-            least = least.min(scaled.symmetric_eigenvalues().min());
+            min = min.min(scaled.symmetric_eigenvalues().min());
             assert!(covariance.is_positive(), "{n}");
         }
     }
-    assert!(least > 1e-4, "least eigenvalue of the correlations {least}");
+    assert!(min > 1e-4, "least eigenvalue of the correlations {min}");
 }
 
 #[test]

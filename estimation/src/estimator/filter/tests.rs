@@ -14,7 +14,7 @@ fn however_uncertain_an_attitude_half_a_radian_is_no_error_of_estimation() {
     let settings = Settings::new(&EstimatorParameters::BMI088).unwrap();
     let mut filter = Filter::start(0, &pose(0.0, 0.0), &Biases::unknown(&settings), &settings);
     filter.covariance.tt = Matrix3::from_diagonal_element(1.0);
-    let gate = |turn: f32| filter.test(&pose(turn, 0.0), &settings).and_then(|tested| tested.gate());
+    let gate = |turn: f32| filter.weigh(&pose(turn, 0.0), &settings).and_then(|tested| tested.gate());
     assert_eq!(gate(0.51), Ok(()));
     assert_eq!(gate(0.53), Err(Rejected::Attitude));
     assert_eq!(gate(-0.53), Err(Rejected::Attitude));
@@ -23,7 +23,8 @@ fn however_uncertain_an_attitude_half_a_radian_is_no_error_of_estimation() {
 #[test]
 fn a_filter_begins_with_a_velocity_where_velocities_are_believed() {
     let believing = EstimatorParameters { velocity_noise: 0.2, ..EstimatorParameters::BMI088 };
-    for (parameters, speed, deviation) in [(believing, 3.0, 0.2), (EstimatorParameters::BMI088, 0.0, VELOCITY_UNKNOWN)]
+    for (parameters, speed, deviation) in
+        [(believing, 3.0, 0.2), (EstimatorParameters::BMI088, 0.0, UNKNOWN_VELOCITY_M_PER_S)]
     {
         let settings = Settings::new(&parameters).unwrap();
         let filter = Filter::start(0, &pose(0.0, 3.0), &Biases::unknown(&settings), &settings);

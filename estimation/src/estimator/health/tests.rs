@@ -13,7 +13,7 @@ fn faults(change: impl FnOnce(&mut Filter, &mut Statistics)) -> Option<Fault> {
     filter.covariance.vv = Matrix3::from_diagonal_element(1e-4);
     let mut statistics = Statistics { fused_at: 1, ..Statistics::NONE };
     change(&mut filter, &mut statistics);
-    let health = Health::new(Some(&filter), &statistics, &settings, 0, COASTING_AFTER + 1);
+    let health = Health::new(Some(&filter), &statistics, &settings, 0, COASTING_AFTER_US + 1);
     assert_eq!(health.is_good(), health.faults.worst().is_none());
     health.faults.worst()
 }
@@ -23,12 +23,12 @@ fn an_estimate_is_uncertain_by_its_position_its_velocity_or_its_attitude_alone()
     assert_eq!(faults(|_, _| ()), None);
     let block = |deviation: f32| Matrix3::from_diagonal_element(deviation * deviation / 3.0);
     for (share, fault) in [(0.99, None), (1.01, Some(Fault::Uncertain)), (f32::NAN, Some(Fault::Uncertain))] {
-        assert_eq!(faults(|filter, _| filter.covariance.pp = block(share * UNCERTAIN.0)), fault, "position");
-        assert_eq!(faults(|filter, _| filter.covariance.vv = block(share * UNCERTAIN.1)), fault, "velocity");
-        assert_eq!(faults(|filter, _| filter.covariance.tt = block(share * UNCERTAIN.2)), fault, "attitude");
+        assert_eq!(faults(|filter, _| filter.covariance.pp = block(share * DEVIATIONS_MAX.0)), fault, "position");
+        assert_eq!(faults(|filter, _| filter.covariance.vv = block(share * DEVIATIONS_MAX.1)), fault, "velocity");
+        assert_eq!(faults(|filter, _| filter.covariance.tt = block(share * DEVIATIONS_MAX.2)), fault, "attitude");
         // Just now it was certain.
         let shocked = faults(|filter, statistics| {
-            filter.covariance.vv = block(share * UNCERTAIN.1);
+            filter.covariance.vv = block(share * DEVIATIONS_MAX.1);
             statistics.certain_at = 1;
         });
         assert_eq!(shocked, None);

@@ -76,10 +76,10 @@ fn the_oldest_leave_first_and_200_ms_remain() {
     let history = filled(1_000);
     let (start, end) = history.span().unwrap();
     assert_eq!(end, 5_000_000);
-    assert_eq!(end - start, CAPACITY as u64 * 5_000);
+    assert_eq!(end - start, INCREMENTS_MAX as u64 * 5_000);
     assert!(end - start >= 200_000);
     assert_eq!(history.leaving().unwrap().start, start);
-    assert_eq!(filled(CAPACITY as u64 - 1).leaving(), None);
+    assert_eq!(filled(INCREMENTS_MAX as u64 - 1).leaving(), None);
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn shaken(frequency: f32) -> (f32, f32) {
     let (mut left, mut force) = (0.0_f32, 0.0_f32);
     for start in (0..1_000_000).step_by(1_000) {
         let (before, last) = (along(start), along(start + H));
-        let present = Present::of(&last, Some(&before), &Vector3::zeros());
+        let present = PresentMotion::from_increments(&last, Some(&before), &Vector3::zeros());
         left = left.max((speed(last.end) - present.vibration.x).abs());
         force = force.max(present.force.x.abs() / (TAU * frequency));
     }
@@ -42,13 +42,13 @@ fn a_vibrating_body_is_attenuated_as_the_table_states() {
 fn the_slow_force_keeps_less_than_a_twentieth_of_a_vibration() {
     for frequency in [70.0, 100.0, 130.0] {
         let speed = |time: u64| (TAU * frequency * time as f32 * 1e-6 + 0.5).sin();
-        let (mut slow, mut most) = (None, 0.0_f32);
+        let (mut slow, mut max) = (None, 0.0_f32);
         for start in (0..2_000_000).step_by(H as usize) {
             let push = Vector3::x() * (speed(start + H) - speed(start));
             slow = Some(slow_force(slow.as_ref(), &increment(start, push, Vector3::zeros())));
-            most = if start > 1_000_000 { most.max(slow.unwrap().x.abs()) } else { 0.0 };
+            max = if start > 1_000_000 { max.max(slow.unwrap().x.abs()) } else { 0.0 };
         }
-        assert!(most < TAU * frequency / 20.0, "{frequency} Hz: {most}");
+        assert!(max < TAU * frequency / 20.0, "{frequency} Hz: {max}");
     }
 }
 
@@ -58,7 +58,10 @@ fn a_steady_acceleration_passes_the_low_pass_in_full() {
     let (before, last) = (increment(0, push, still), increment(H, push, still));
     let slow = slow_force(Some(&slow_force(None, &before)), &last);
     assert!((slow - push / 5e-3).norm() < 1e-5);
-    for present in [Present::of(&last, Some(&before), &slow), Present::of(&last, None, &slow)] {
+    for present in [
+        PresentMotion::from_increments(&last, Some(&before), &slow),
+        PresentMotion::from_increments(&last, None, &slow),
+    ] {
         assert!((present.force - push / 5e-3).norm() < 1e-5 && present.vibration.norm() < 1e-7, "{present:?}");
     }
 }
@@ -84,7 +87,10 @@ fn a_force_of_the_world_stays_one_while_the_body_turns() {
         let last = increment(n * H, push, turn);
         slow = Some(slow_force(slow.as_ref(), &last));
         attitude *= whole;
-        let (wanted, found) = (attitude.inverse() * world, Present::of(&last, before.as_ref(), slow.as_ref().unwrap()));
+        let (wanted, found) = (
+            attitude.inverse() * world,
+            PresentMotion::from_increments(&last, before.as_ref(), slow.as_ref().unwrap()),
+        );
         assert!((found.force - wanted).norm() < 0.01 * wanted.norm(), "{} {wanted}", found.force);
         assert!(found.vibration.norm() < 0.1 * wanted.norm() * 5e-3, "{}", found.vibration);
         before = Some(last);

@@ -26,5 +26,5 @@ fn no_pose_is_believed_to_be_exact() {
     assert_eq!((position, attitude), (1e-3, 5.2e-3));
     assert_eq!(settings.deviations(Some((0.02, 1e9))), (0.02, 10.0));
     let exact = EstimatorParameters { position_noise: 1e-6, attitude_noise: 1e-6, ..EstimatorParameters::BMI088 };
-    assert_eq!(Settings::new(&exact).unwrap().deviations(None), (DEVIATION_LEAST, DEVIATION_LEAST));
+    assert_eq!(Settings::new(&exact).unwrap().deviations(None), (DEVIATION_MIN, DEVIATION_MIN));
 }

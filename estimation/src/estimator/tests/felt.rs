@@ -18,7 +18,7 @@ fn what_is_felt_between_ticks_is_the_motions_whatever_poses_say() {
         });
         let now = rig.now + 2_000;
         let under_way = increment(tumble, rig.now, rig.now + 1_000, &rig.biases);
-        let felt = rig.estimator.felt(now, Some(&under_way));
+        let felt = rig.estimator.mean_acceleration(now, Some(&under_way));
         let state = rig.state_at(now).unwrap().state;
         if let (Some((last, velocity)), Some(felt)) = (before.replace((now, state.velocity)), felt) {
             let truly = (rig.truth(now).velocity - rig.truth(last).velocity) / 0.01;
@@ -34,11 +34,11 @@ fn what_is_felt_between_ticks_is_the_motions_whatever_poses_say() {
 fn nothing_is_felt_at_the_first_tick_and_after_a_gap() {
     let mut rig = Rig::new(tumble);
     rig.fly(1_000_000, 20_000);
-    assert_eq!(rig.estimator.felt(rig.now, None), None);
+    assert_eq!(rig.estimator.mean_acceleration(rig.now, None), None);
     rig.fly(10_000, 20_000);
-    assert!(rig.estimator.felt(rig.now, None).is_some());
+    assert!(rig.estimator.mean_acceleration(rig.now, None).is_some());
     // Beyond what is extrapolated there is no state, either.
-    assert_eq!(rig.estimator.felt(rig.now + 30_000, None), None);
+    assert_eq!(rig.estimator.mean_acceleration(rig.now + 30_000, None), None);
     rig.fly(10_000, 20_000);
-    assert_eq!(rig.estimator.felt(rig.now, None), None);
+    assert_eq!(rig.estimator.mean_acceleration(rig.now, None), None);
 }

@@ -1,7 +1,7 @@
 //! Poses that lie: none of them moves the state, each is rejected by name, and the truth is found again.
 
 use super::motion::{self, Rig, rest, tumble};
-use crate::estimator::{Fault, PoseMeasurement, Rejected, Taken};
+use crate::estimator::{Accepted, Fault, PoseMeasurement, Rejected};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -32,7 +32,7 @@ fn permanent_jumps_are_reported_and_not_followed() {
             // Back, it is believed at once.
             let pose =
                 Stamped { value: motion::pose(&rig.truth(rig.now), &Vector3::zeros(), &STRAIGHT), time: rig.now };
-            assert_eq!(rig.estimator.pose(&pose, rig.now), Ok(Taken::Fused));
+            assert_eq!(rig.estimator.pose(&pose, rig.now), Ok(Accepted::Fused));
         }
     }
 }
@@ -50,7 +50,7 @@ fn those_who_know_better_follow_a_jump() {
     assert!((position - rig.truth(rig.now).position - offset).norm() < 2e-3);
     assert_eq!(rig.estimator.health(rig.now).jumps, 1);
     let made = |rig: &Rig, time| motion::pose(&rig.truth(time), &offset, &STRAIGHT);
-    assert_eq!(rig.fly_with(100_000, 20_000, made), Some(Ok(Taken::Fused)));
+    assert_eq!(rig.fly_with(100_000, 20_000, made), Some(Ok(Accepted::Fused)));
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn poses_that_stand_still_are_frozen_in_the_air_and_true_once_the_vehicle_may_st
     rig.biases.1 = Vector3::new(0.0, 0.0, 0.1);
     assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Err(Rejected::Frozen)));
     rig.estimator.may_stand(true);
-    assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Ok(Taken::Fused)));
+    assert_eq!(rig.fly_with(100_000, 20_000, still), Some(Ok(Accepted::Fused)));
     // Carried about, it moves beyond any noise; then it does not matter that it is put down.
     rig.biases.1.z = 1.0;
     assert_eq!(rig.fly_with(50_000, 20_000, still), Some(Err(Rejected::Frozen)));
@@ -132,7 +132,7 @@ fn a_resent_frame_is_as_good_as_silence() {
     let mut rig = Rig::new(tumble);
     rig.fly(3_000_000, 20_000);
     let frame = Stamped { value: motion::pose(&rig.truth(rig.now), &Vector3::zeros(), &STRAIGHT), time: rig.now };
-    assert_eq!(rig.estimator.pose(&frame, rig.now), Ok(Taken::Fused));
+    assert_eq!(rig.estimator.pose(&frame, rig.now), Ok(Accepted::Fused));
     for n in 0..1_000_u64 {
         rig.step();
         assert_eq!(rig.estimator.pose(&frame, rig.now), Err(Rejected::Repeated));
@@ -180,7 +180,7 @@ fn a_body_lost_and_found_where_coasting_led_is_followed_and_one_elsewhere_is_not
         let mut refound = 0;
         for _ in 0..100 {
             let made = |rig: &Rig, time| motion::pose(&rig.truth(time), &away, &STRAIGHT);
-            refound += u32::from(rig.fly_with(10_000, 20_000, made) == Some(Ok(Taken::Refound)));
+            refound += u32::from(rig.fly_with(10_000, 20_000, made) == Some(Ok(Accepted::Refound)));
         }
         assert_eq!((refound == 1, rig.estimator.health(rig.now).is_good()), (found, found), "{offset} m");
         let position = rig.state().unwrap().state.position.cast::<f64>();

@@ -2,7 +2,7 @@
 
 extern crate std;
 use crate::estimator::{
-    Clipped, EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
+    Accepted, Clipped, EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings,
 };
 use crate::measurement::{Pose, Stamped, Velocity};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -113,7 +113,7 @@ impl Rig {
         duration: u64,
         late: u64,
         mut make: impl FnMut(&Self, u64) -> PoseMeasurement,
-    ) -> Option<Result<Taken, Rejected>> {
+    ) -> Option<Result<Accepted, Rejected>> {
         let mut last = None;
         for n in 1..=duration / 5_000 {
             self.step();

@@ -1,7 +1,7 @@
 //! Poses that are right, but late, seldom, out of order, or from a frame that moved.
 
 use super::motion::{self, Rig, rest, tumble};
-use crate::estimator::{Estimator, EstimatorParameters, Rejected, Settings, Taken};
+use crate::estimator::{Accepted, Estimator, EstimatorParameters, Rejected, Settings};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -42,7 +42,7 @@ fn poses_out_of_order_leave_the_same_bits_as_in_order() {
             (0..12).for_each(|_| rig.step());
             for place in order {
                 let pose = exact(&rig, rig.now - 60_000 + place * 7_300);
-                assert_eq!(rig.estimator.pose(&pose, rig.now), Ok(Taken::Fused), "{place}");
+                assert_eq!(rig.estimator.pose(&pose, rig.now), Ok(Accepted::Fused), "{place}");
             }
         }
         (*rig.estimator.filter().unwrap(), rig.state(), rig)
@@ -73,7 +73,7 @@ fn a_late_pose_is_judged_by_itself_and_not_by_those_after_it() {
     rig.fly(2_000_000, 20_000);
     (0..12).for_each(|_| rig.step());
     let later = exact(&rig, rig.now - 10_000);
-    assert_eq!(rig.estimator.pose(&later, rig.now), Ok(Taken::Fused));
+    assert_eq!(rig.estimator.pose(&later, rig.now), Ok(Accepted::Fused));
     let time = rig.now - 30_000;
     let away = motion::pose(&rig.truth(time), &(Vector3::x() * 5.0), &UnitQuaternion::identity());
     let lie = Stamped { value: away, time };
@@ -95,7 +95,7 @@ fn a_frame_move_that_is_reported_is_followed_in_one_step() {
     };
     let moved = Stamped { value: made(&rig, rig.now - 5_000), time: rig.now - 5_000 };
     let believed = rig.now - rig.estimator.health(rig.now).pose_age.unwrap();
-    assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
+    assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Accepted::Rebased));
     // It has yet to be agreed with.
     assert_eq!(rig.estimator.health(rig.now).pose_age, Some(rig.now - believed));
     let (state, truth) = (rig.state().unwrap(), rig.truth(rig.now));
@@ -103,7 +103,7 @@ fn a_frame_move_that_is_reported_is_followed_in_one_step() {
     assert!((state.state.position.cast::<f64>() - position).norm() < 2e-3);
     assert!((state.state.velocity.cast::<f64>() - turn * truth.velocity).norm() < 2e-2);
     assert_eq!(state.jumps, 1);
-    assert_eq!(rig.fly_with(1_000_000, 5_000, made), Some(Ok(Taken::Fused)));
+    assert_eq!(rig.fly_with(1_000_000, 5_000, made), Some(Ok(Accepted::Fused)));
     assert_eq!(rig.estimator.health(rig.now).counts.1, 0);
     assert_eq!(rig.state().unwrap().jumps, 1);
 }
@@ -115,7 +115,7 @@ fn a_pose_from_before_the_frame_moved_is_too_late() {
     let away = Vector3::new(30.0, -5.0, 1.0);
     let moved = motion::pose(&rig.truth(rig.now - 5_000), &away, &UnitQuaternion::identity()).reset_counter(1);
     let moved = Stamped { value: moved, time: rig.now - 5_000 };
-    assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Taken::Rebased));
+    assert_eq!(rig.estimator.pose(&moved, rig.now), Ok(Accepted::Rebased));
     let state = rig.state();
     // Between two that were fused before.
     let late = exact(&rig, rig.now - 25_000);
@@ -140,7 +140,7 @@ fn velocities_are_believed_where_the_settings_give_them_a_deviation() {
     let (without, fused) = flown(0.0);
     let (with, refused) = flown(2e-3);
     assert!(with < 0.5 * without, "{with} and {without} m/s");
-    assert_eq!((fused, refused), (Ok(Taken::Fused), Err(Rejected::Velocity)));
+    assert_eq!((fused, refused), (Ok(Accepted::Fused), Err(Rejected::Velocity)));
 }
 
 #[test]

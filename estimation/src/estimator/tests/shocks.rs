@@ -2,7 +2,7 @@
 //! while.
 
 use super::motion::{self, Path, Rig, increment, rest, tumble};
-use crate::estimator::{Clipped, Increment, Rejected, Taken};
+use crate::estimator::{Accepted, Clipped, Increment, Rejected};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -21,8 +21,8 @@ fn refused_after(path: Path, clipped: Clipped, push: &Vector3<f32>, turn: &Vecto
         (0..2).for_each(|_| rig.step());
         let time = rig.now - 20_000;
         let pose = motion::pose(&rig.truth(time), &Vector3::zeros(), &UnitQuaternion::identity());
-        let taken: Result<Taken, Rejected> = rig.estimator.pose(&Stamped { value: pose, time }, rig.now);
-        refused += usize::from(taken != Ok(Taken::Fused));
+        let taken: Result<Accepted, Rejected> = rig.estimator.pose(&Stamped { value: pose, time }, rig.now);
+        refused += usize::from(taken != Ok(Accepted::Fused));
     }
     let (p, v, q) = rig.errors();
     assert!(refused > 0 || p < 3e-3 && v < 0.01 && q < 3e-3, "{p} m, {v} m/s, {q} rad");

@@ -2,7 +2,7 @@
 
 use super::motion::{self, Rig, rest, spin, tumble};
 use crate::estimator::candidate::POSES_MIN;
-use crate::estimator::{COASTING_AFTER, Fault, Rejected, Taken};
+use crate::estimator::{Accepted, COASTING_AFTER_US, Fault, Rejected};
 use crate::measurement::Stamped;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -13,11 +13,11 @@ fn it_begins_at_rest_and_in_a_tumble_from_poses_alone() {
         rig.fly(400_000, 20_000);
         assert_eq!(rig.state(), None);
         assert_eq!(rig.estimator.health(rig.now).faults.worst(), Some(Fault::NotStarted));
-        assert_eq!(rig.estimator.health(rig.now).last, Some(Ok(Taken::Aligning)));
+        assert_eq!(rig.estimator.health(rig.now).last, Some(Ok(Accepted::Aligning)));
         rig.fly(1_600_000, 20_000);
         rig.check("after 2 s");
         let health = rig.estimator.health(rig.now);
-        assert!(health.is_good() && health.last == Some(Ok(Taken::Fused)), "{health:?}");
+        assert!(health.is_good() && health.last == Some(Ok(Accepted::Fused)), "{health:?}");
         assert_eq!(health.counts.1, 0);
     }
 }
@@ -117,7 +117,7 @@ fn without_poses_it_coasts_and_reports_it() {
     let health = rig.estimator.health(rig.now);
     assert!(health.faults.contain(Fault::NoPose));
     assert_eq!(health.pose_age, Some(rig.now - began + 20_000));
-    assert!(!rig.estimator.health(began + COASTING_AFTER - 20_000).faults.contain(Fault::NoPose));
+    assert!(!rig.estimator.health(began + COASTING_AFTER_US - 20_000).faults.contain(Fault::NoPose));
     rig.fly(500_000, 20_000);
     rig.check("found again");
     assert!(rig.estimator.health(rig.now).is_good());

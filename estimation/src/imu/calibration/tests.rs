@@ -1,8 +1,8 @@
 use super::*;
 use nalgebra::UnitQuaternion;
 
-fn rest(force: Vector3<f32>) -> Rest {
-    Rest { angular_velocity: Vector3::new(0.01, -0.005, 0.002), specific_force: force }
+fn rest(force: Vector3<f32>) -> StandstillMeans {
+    StandstillMeans { angular_velocity: Vector3::new(0.01, -0.005, 0.002), specific_force: force }
 }
 
 #[test]

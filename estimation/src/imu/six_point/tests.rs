@@ -4,12 +4,12 @@ use nalgebra::UnitQuaternion;
 const OFFSET: Vector3<f64> = Vector3::new(0.25, -0.4, 0.6);
 const SCALE: Vector3<f64> = Vector3::new(1.012, 0.991, 1.03);
 
-fn rest(force: &Vector3<f64>) -> Rest {
-    Rest { angular_velocity: Vector3::zeros(), specific_force: force.map(|x| x as f32) }
+fn rest(force: &Vector3<f64>) -> StandstillMeans {
+    StandstillMeans { angular_velocity: Vector3::zeros(), specific_force: force.map(|x| x as f32) }
 }
 
 /// The means of an accelerometer with these errors at rest, where `up` is up.
-fn rest_at(up: &Vector3<f64>, offset: &Vector3<f64>, scale: &Vector3<f64>) -> Rest {
+fn rest_at(up: &Vector3<f64>, offset: &Vector3<f64>, scale: &Vector3<f64>) -> StandstillMeans {
     rest(&((up * 9.81).component_div(scale) + offset))
 }
 

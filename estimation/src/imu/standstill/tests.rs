@@ -5,15 +5,15 @@ use xorshift::Random;
 mod xorshift;
 
 /// A standstill of noisy samples around what is given for each.
-fn stand(mut at: impl FnMut(f32) -> (Vector3<f32>, Vector3<f32>)) -> Result<Rest, Moved> {
+fn stand(mut at: impl FnMut(f32) -> (Vector3<f32>, Vector3<f32>)) -> Result<StandstillMeans, Moved> {
     let (mut standstill, mut random) = (Standstill::default(), Random::new(7));
     // The sum of four even numbers is nearly normal, with a deviation of 1.15.
     let mut noise =
         |deviation: f32| Vector3::from_fn(|_, _| (0..4).map(|_| random.signed()).sum::<f32>() * (deviation / 1.155));
-    for n in 0..SAMPLES {
+    for n in 0..STANDSTILL_SAMPLES {
         let (rate, force) = at(f32::from(n) * 1e-3);
         let rest = standstill.take(&(rate + noise(3.3e-3)), &(force + noise(0.025)));
-        assert_eq!(rest.is_some(), n + 1 == SAMPLES);
+        assert_eq!(rest.is_some(), n + 1 == STANDSTILL_SAMPLES);
         if let Some(rest) = rest {
             assert_eq!(standstill, Standstill::default());
             return rest;

@@ -5,7 +5,7 @@ use crate::counter::Counter;
 use controller_core::math;
 use core::hint::black_box;
 use estimation::estimator::{
-    EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings, Taken,
+    Accepted, EstimatedState, Estimator, EstimatorParameters, Increment, PoseMeasurement, Rejected, Settings,
 };
 use estimation::imu::{Calibration, Conditioned, Conditioner, ImuParameters};
 use flight::{Pose, Stamped, Velocity};
@@ -24,7 +24,7 @@ const RATE_RAD_PER_S: f32 = 0.5;
 
 type Sample = fn(&mut Conditioner, u64, &Vector3<f32>, Option<&Vector3<f32>>) -> Conditioned;
 type Take = fn(&mut Estimator, &Increment);
-type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Taken, Rejected>;
+type Fuse = fn(&mut Estimator, &Stamped<PoseMeasurement>, u64) -> Result<Accepted, Rejected>;
 type StateOf = fn(&Estimator, u64, &Vector3<f32>, Option<&Increment>) -> Option<EstimatedState>;
 
 /// Every figure, as lines of the table; whether all could be measured.
@@ -78,7 +78,7 @@ impl Flight<'_> {
             let Some(pose) = pose(now - stream.late * 1_000) else { return false };
             let (cost, verdict) = self.counter.short(|| fuse(self.estimator, &pose, now));
             match verdict {
-                Ok(Taken::Fused) => poses.add(cost),
+                Ok(Accepted::Fused) => poses.add(cost),
                 Ok(_) => {}
                 Err(_) => return false,
             }

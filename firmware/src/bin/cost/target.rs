@@ -11,7 +11,7 @@ use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::configuration::Configuration;
 use controller_core::error::InputError;
 use controller_core::extended::controller::Controller;
-use controller_core::governor::{Governor, GovernorLimits, Memory, Motion, Setpoint, Turn};
+use controller_core::governor::{Governor, GovernorLimits, HeadingSetpoint, Memory, Motion, Setpoint};
 use controller_core::heading::Heading;
 use controller_core::law::Command;
 use controller_core::law::Law;
@@ -19,8 +19,8 @@ use controller_core::math;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
-use controller_core::shield::network::{INPUTS, Network, OUTPUTS, inputs as inputs_of};
-use controller_core::shield::{Demand, Flown, Observation, Settings, Shield};
+use controller_core::shield::network::{INPUT_COUNT, Network, OUTPUT_COUNT, inputs as inputs_of};
+use controller_core::shield::{Demand, Observation, Settings, Shield, ShieldStep};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
 use cortex_m_semihosting::hprintln;
@@ -37,7 +37,7 @@ const PERIOD_S: f32 = 0.01;
 /// The measured call, the one that flies: state and reference in, wrench and the errors to report out.
 type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
 
-type Shielded = fn(&mut Shield, &mut Controller, &State, Option<&Demand>) -> Result<Flown, InputError>;
+type Shielded = fn(&mut Shield, &mut Controller, &State, Option<&Demand>) -> Result<ShieldStep, InputError>;
 
 type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
@@ -173,10 +173,10 @@ fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
     let (Ok(mut law), Ok(mut shield)) = (Law::new(certified, PERIOD_S), shield) else { return false };
     let (Some(law), Some(network)) = (law.extended(), network()) else { return false };
     let step: Shielded = black_box(Shield::step);
-    let outputs: fn(&Network<'static>, &[f32; INPUTS]) -> [f32; OUTPUTS] = black_box(Network::outputs);
+    let outputs: fn(&Network<'static>, &[f32; INPUT_COUNT]) -> [f32; OUTPUT_COUNT] = black_box(Network::outputs);
     let (mut cost, mut thinking, mut state) = (Cost::default(), Cost::default(), *from);
     let observation = Observation { state, goal: zero, heading: Heading::FORWARD };
-    let inputs = inputs_of(&observation, &[0.0; OUTPUTS]);
+    let inputs = inputs_of(&observation, &[0.0; OUTPUT_COUNT]);
     for _ in 0..FLIGHT_STEPS {
         let acceleration = -state.velocity - (state.position - from.position);
         let demand = Demand::Acceleration { acceleration, yaw_rate: 0.0 };
@@ -249,7 +249,7 @@ fn follow(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
                 velocity,
                 acceleration: -out * (TURN_RATE_RAD_PER_S * TURN_RATE_RAD_PER_S),
             };
-            if governor.accept(&Setpoint { motion, turn: Turn::Keep }).is_err() {
+            if governor.accept(&Setpoint { motion, turn: HeadingSetpoint::Keep }).is_err() {
                 return false;
             }
         }
@@ -275,7 +275,7 @@ fn govern(counter: &Counter, configuration: &Configuration, cost: &mut Cost) -> 
         if number % 1000 == 0 {
             let away = if number % 2000 == 0 { 3.0 } else { 0.0 };
             let motion = Motion::Position(Vector3::new(away, -away, 0.5 * away));
-            let setpoint = Setpoint { motion, turn: Turn::Angle { angle: away, rate: 0.0 } };
+            let setpoint = Setpoint { motion, turn: HeadingSetpoint::Angle { angle: away, rate: 0.0 } };
             if governor.accept(&setpoint).is_err() {
                 return false;
             }

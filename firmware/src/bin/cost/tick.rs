@@ -8,7 +8,7 @@ use crate::body;
 use crate::count::{CLOCKS_MHZ, Cost};
 use crate::counter::Counter;
 use controller_core::certificate::certified::Certified;
-use controller_core::governor::{GovernorLimits, Motion, Setpoint, Turn};
+use controller_core::governor::{GovernorLimits, HeadingSetpoint, Motion, Setpoint};
 use controller_core::math;
 use controller_core::reference::Trajectory;
 use controller_core::state::{State, Wrench};
@@ -170,7 +170,7 @@ fn setpoint(circle: &impl Trajectory, circling: Option<u64>) -> Setpoint {
             acceleration: reference.acceleration,
         },
     };
-    Setpoint { motion, turn: Turn::Keep }
+    Setpoint { motion, turn: HeadingSetpoint::Keep }
 }
 
 /// The vehicle, and where it was lately.

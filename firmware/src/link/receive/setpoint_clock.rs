@@ -8,12 +8,12 @@
 //! with a the arrival and s the sender's time, ms. The least delay stays part of o, so a setpoint is never later than
 //! the line's quickest. A stream of moving points needs the time between two of them to know how acceleration changes
 //! ([`controller_core::governor::Governor::accept_late`]). A sender without times, whose time does not go on, or that
-//! would be more than [`LATEST`](controller_core::governor::LATEST) late, has its setpoints counted as true when
-//! they come; from there on a clock is learnt anew. It refuses nothing, and takes a tenth of the memory of
-//! [`sender_clock`](crate::link::sender_clock), which keeps old and forged poses out.
+//! would be more than [`SETPOINT_AGE_MAX_S`](controller_core::governor::SETPOINT_AGE_MAX_S) late, has its setpoints
+//! counted as true when they come; from there on a clock is learnt anew. It refuses nothing, and takes a tenth of the
+//! memory of [`sender_clock`](crate::link::sender_clock), which keeps old and forged poses out.
 
 use crate::link::sender_clock::INVERSE_DRIFT;
-use controller_core::governor::LATEST;
+use controller_core::governor::SETPOINT_AGE_MAX_S;
 
 /// A sender's clock.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,7 +32,7 @@ impl SetpointClock {
         let found = arrived as i64 - i64::from(time) * 1_000;
         let drifted = self.offset + arrived.saturating_sub(self.arrived) as i64 / INVERSE_DRIFT as i64;
         let goes_on = self.last > 0 && time > self.last;
-        let is_late = (found - drifted) as f32 * 1e-6 > LATEST;
+        let is_late = (found - drifted) as f32 * 1e-6 > SETPOINT_AGE_MAX_S;
         let offset = if goes_on && !is_late { found.min(drifted) } else { found };
         *self = Self { offset, last: time, arrived };
         arrived - (found - offset) as u64

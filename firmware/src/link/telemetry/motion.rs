@@ -6,7 +6,7 @@ use crate::shared::Report;
 use crate::status::euler;
 use controller_core::math;
 use estimation::estimator::health::NIS_MEAN_MAX;
-use estimation::estimator::{COASTING_AFTER, Fault, Health};
+use estimation::estimator::{COASTING_AFTER_US, Fault, Health};
 use flight::Mode;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, GLOBAL_POSITION_INT_DATA,
@@ -189,7 +189,7 @@ pub fn estimator_status(time: u64, report: &Report) -> ESTIMATOR_STATUS_DATA {
     let mut flags = Flags::empty();
     flags.set(Flags::ESTIMATOR_ATTITUDE, certain);
     flags.set(Flags::ESTIMATOR_VELOCITY_HORIZ | Flags::ESTIMATOR_VELOCITY_VERT, certain);
-    let known = certain && pose_age.is_some_and(|age| age <= COASTING_AFTER);
+    let known = certain && pose_age.is_some_and(|age| age <= COASTING_AFTER_US);
     flags.set(Flags::ESTIMATOR_POS_HORIZ_REL | Flags::ESTIMATOR_POS_HORIZ_ABS, known);
     flags.set(Flags::ESTIMATOR_POS_VERT_ABS | Flags::ESTIMATOR_PRED_POS_HORIZ_REL, known);
     flags.set(Flags::ESTIMATOR_PRED_POS_HORIZ_ABS, known);

@@ -3,7 +3,7 @@
 use crate::configuration;
 use crate::parameters::table::{Name, PARAMETERS};
 use crate::shared::{Event, Report, Severity, Text, Timing, Traffic};
-use estimation::estimator::{COASTING_AFTER, Fault, Health};
+use estimation::estimator::{COASTING_AFTER_US, Fault, Health};
 use estimation::imu::ImuFault;
 use flight::{Aboard, Mode};
 use mavlink::dialects::common::{
@@ -181,7 +181,7 @@ pub fn status(
             .map(|is_of| !has(Fault::ImuStale) && !report.imu_fault.is_some_and(is_of));
         health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_GYRO, gyro && !has(Fault::GyroBias));
         health.set(Sensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL, accelerometer && !has(Fault::AccelerometerBias));
-        health.set(poses, pose_age.is_some_and(|age| age <= COASTING_AFTER) && !has(Fault::Inconsistent));
+        health.set(poses, pose_age.is_some_and(|age| age <= COASTING_AFTER_US) && !has(Fault::Inconsistent));
         health.set(Sensor::MAV_SYS_STATUS_AHRS, report.state.is_some() && !has(Fault::Uncertain));
         health.set(control, report.mode != Mode::Locked);
         health.set(Sensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS, report.mode != Mode::Locked && !report.motors_fail);

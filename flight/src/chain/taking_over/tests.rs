@@ -1,7 +1,7 @@
 extern crate std;
 use super::super::tests::{at_rest, chain};
 use super::*;
-use controller_core::governor::{Motion, Setpoint, Turn};
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
 use controller_core::reference::Reference;
 use std::vec::Vec;
 
@@ -63,7 +63,7 @@ fn a_reference_that_brakes_stays_within_the_bounds_also_while_the_governor_sets_
     let mut chain = flying();
     chain.regain(&state, 0.0).unwrap();
     let back = Motion::Position(Vector3::new(-20.0, 0.0, 3.0));
-    chain.accept(&Setpoint { motion: back, turn: Turn::Keep }, 0.0).unwrap();
+    chain.accept(&Setpoint { motion: back, turn: HeadingSetpoint::Keep }, 0.0).unwrap();
     let flown: Vec<_> = (0..300).map(|_| chain.fly(&state).unwrap().reference).collect();
     for Reference { acceleration, jerk, snap, .. } in &flown {
         assert!(

@@ -1,7 +1,7 @@
 //! The limits of a vehicle under the extended law, in plain words: the meaning of each inequality and each loop, and
 //! which number to change.
 
-use controller_core::certificate::path::Row;
+use controller_core::certificate::path::PathRow;
 use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
@@ -67,25 +67,25 @@ pub fn of_inequality(name: &str) -> &'static str {
 
 /// The meaning of a row of the judge of paths, and what to change besides the pace.
 #[must_use]
-pub fn of_path(row: Row) -> &'static str {
+pub fn of_path(row: PathRow) -> &'static str {
     match row {
-        Row::Fall => {
+        PathRow::Fall => {
             "how fast the reference falls. gains.a_down must leave some of gravity to push against. Lower \
              gains.a_down, or fly a flatter path."
         }
-        Row::Thrust => {
+        PathRow::Thrust => {
             "thrust, along the reference. Rotors that deliver only estimates.scale_least must hold it beside the force \
              that is kept free. Lower reference.force_kept, or raise estimates.scale_least; or fly lighter."
         }
-        Row::TurningRate => "how fast the vehicle tilts along the reference. Raise gains.turn_rate.",
-        Row::Torque => {
+        PathRow::TurningRate => "how fast the vehicle tilts along the reference. Raise gains.turn_rate.",
+        PathRow::Torque => {
             "torque about roll and pitch, along the reference. Raise limits.torque_max if the rotors can deliver it."
         }
-        Row::Floor => {
+        PathRow::Floor => {
             "how low the thrust is along the reference: turning needs some. Lower reference.force_kept, or let the rotors \
              idle slower."
         }
-        Row::Cone => {
+        PathRow::Cone => {
             "how far the vehicle tilts along the reference, and how fast it gets there. Raise gains.tilt_max, or lower \
              reference.force_kept."
         }

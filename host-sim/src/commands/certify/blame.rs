@@ -26,17 +26,17 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
     };
     let margin = |i: usize| {
         let demand = &certificate.rotors[i].demand;
-        (demand.available_max - demand.greatest).min(demand.least - demand.available_min)
+        (demand.available_max - demand.max).min(demand.min - demand.available_min)
     };
     let Some(worst) = (0..certificate.rotors.len()).min_by(|a, b| margin(*a).total_cmp(&margin(*b))) else {
         return Ok(String::new());
     };
     let demand = &certificate.rotors[worst].demand;
-    let maximum = demand.available_max - demand.greatest <= demand.least - demand.available_min;
+    let maximum = demand.available_max - demand.max <= demand.min - demand.available_min;
     let (end, available, commanded) = if maximum {
-        ("greatest", demand.available_max, demand.greatest)
+        ("greatest", demand.available_max, demand.max)
     } else {
-        ("least", demand.available_min, demand.least)
+        ("least", demand.available_min, demand.min)
     };
     let row = mounted.pseudo_inverse()[worst];
     let towards = if maximum { row } else { -row };
@@ -54,12 +54,12 @@ pub fn sentence(configuration: &Configuration, certificate: &PaperCertificate) -
 
 /// The term that displaces a rotor most in the direction `towards` (its row of B+, or less it), and by how much, N.
 fn cause(form: &Form, terms: &[TorqueTerm], towards: &Vector4<f64>, available: f64) -> (&'static str, f64) {
-    let share = 0.5 * towards.x * (form.thrust.least + form.thrust.greatest);
+    let share = 0.5 * towards.x * (form.thrust.min + form.thrust.max);
     let beyond = share - available * towards.x.signum();
     if beyond > 0.0 {
         return ("thrust", beyond);
     }
-    let spread = 0.5 * (towards.x * (form.thrust.greatest - form.thrust.least)).abs();
+    let spread = 0.5 * (towards.x * (form.thrust.max - form.thrust.min)).abs();
     let parts = terms.iter().map(|term| (term.name(), term.support(&torque_part(towards))));
     parts.fold(("thrust", spread), |worst, part| if part.1 > worst.1 { part } else { worst })
 }

@@ -12,7 +12,7 @@ pub fn terms(configuration: &Configuration, law: &ExtendedLaw) -> String {
     let [mass, gravity] = [configuration.vehicle().mass, configuration.vehicle().gravity].map(f64::from);
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let budget = TorqueBudget::<f64>::new(p.floor_margin, limits, configuration.rotors());
-    let upwards = budget.held(vehicle, limits, 1.0) - gravity;
+    let upwards = budget.held_acceleration(vehicle, limits, 1.0) - gravity;
     let row = |name: &str, values: [f64; 3]| [vec![name.to_owned()], values.map(short).to_vec()].concat();
     let forces = [p.force_across, p.force_up, p.force_down].map(f64::from);
     let rows = [

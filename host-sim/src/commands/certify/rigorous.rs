@@ -7,7 +7,7 @@
 use crate::output::table::{aligned, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::inequality::Inequality;
-use controller_core::certificate::path::along::Taken;
+use controller_core::certificate::path::along::MaxShare;
 use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::math::enclosure::Enclosure;
@@ -21,7 +21,7 @@ use scenario::judge::judge;
 #[must_use]
 pub fn along(scenario: &Scenario) -> Option<(String, bool)> {
     let judge = judge::<Enclosure>(&scenario.configuration, scenario.force_kept)?;
-    let share = Taken::along(&judge, &*scenario.trajectory, end_us(scenario)).share;
+    let share = MaxShare::along(&judge, &*scenario.trajectory, end_us(scenario)).share;
     let verdict = if share < 1.0 { "holds" } else { "FAILS" };
     Some((
         format!("reference, rounded outwards: takes {:.1} % of what is left, {verdict}\n", 100.0 * share),

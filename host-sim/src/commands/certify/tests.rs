@@ -24,7 +24,7 @@ fn table_one_is_certified_sharply_and_refused_as_printed_beside_the_published_fi
     for (torque, lemma_1) in printed.split(", ").zip([0.379, 0.446, 0.664]) {
         assert!((torque.parse::<f64>().unwrap() - lemma_1).abs() < 1e-3, "{printed}");
     }
-    assert_eq!(line(&text, "published"), PUBLISHED);
+    assert_eq!(line(&text, "published"), PUBLISHED_BOUNDS);
     let yaw: Vec<&str> = line(&text, "T2 yaw torque").split_whitespace().collect();
     assert!(yaw.contains(&"FAILS") && yaw.last() == Some(&"holds"), "{yaw:?}");
     assert!(!text.contains("rotor 1"));
@@ -85,7 +85,7 @@ fn a_thrust_floor_is_stated() {
     assert!(text.contains("thrust projection on, floor 1 N\n"), "{text}");
 }
 
-const EXTENDED: [&str; 3] = [
+const EXTENDED_FILES: [&str; 3] = [
     include_str!("../../../../vehicles/hummingbird.toml"),
     include_str!("../../../../vehicles/study.toml"),
     include_str!("../../../../scenarios/paper-extended.toml"),
@@ -93,7 +93,7 @@ const EXTENDED: [&str; 3] = [
 
 #[test]
 fn every_inequality_of_the_extended_law_is_explained() {
-    for text in EXTENDED {
+    for text in EXTENDED_FILES {
         let scenario = Scenario::parse(text, "f").unwrap();
         let certificate = Certificate::new(&scenario.configuration).unwrap();
         for inequality in certificate.inequalities() {
@@ -113,7 +113,7 @@ fn every_inequality_of_the_extended_law_is_explained() {
 
 #[test]
 fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused_one_fails_in_is_all_of_them() {
-    for text in EXTENDED {
+    for text in EXTENDED_FILES {
         let (report, certified) = report(text);
         let tightest =
             line(&report, "tightest: ").split_once("tightest: ").unwrap().1.split_once(", margin").unwrap().0;
@@ -125,16 +125,16 @@ fn what_limits_a_certified_vehicle_is_its_tightest_inequality_and_what_a_refused
         assert!(!certified && line(&text, start).contains(what), "{text}");
         text
     };
-    let slow = EXTENDED[0].replace("yaw_acceleration = 6.0 ", "yaw_acceleration = 3.0 ");
+    let slow = EXTENDED_FILES[0].replace("yaw_acceleration = 6.0 ", "yaw_acceleration = 3.0 ");
     let text = refused(&slow, "What it fails in: ", "how quickly the heading begins to turn");
     assert_eq!(text.matches("What ").count(), 1, "{text}");
-    let too_quick_for_its_lag = EXTENDED[0].replace("[gains] ", "[gains]\nk_omega_t = 1.5\n# ");
+    let too_quick_for_its_lag = EXTENDED_FILES[0].replace("[gains] ", "[gains]\nk_omega_t = 1.5\n# ");
     refused(&too_quick_for_its_lag, "What it fails in: the sampled loop roll", "lower gains.k_omega_t");
 }
 
 #[test]
 fn pull_and_turning_take_what_the_torque_rows_require() {
-    for (text, row) in EXTENDED[..2].iter().zip(["T2 roll and pitch torque", "R rotors' range"]) {
+    for (text, row) in EXTENDED_FILES[..2].iter().zip(["T2 roll and pitch torque", "R rotors' range"]) {
         let (report, _) = report(text);
         let shares = line(&report, "of ");
         let whole: f64 = shares.split_whitespace().nth(1).unwrap().parse().unwrap();
@@ -147,13 +147,13 @@ fn pull_and_turning_take_what_the_torque_rows_require() {
 
 #[test]
 fn shown_constants_stand_for_what_the_file_says_and_leaves_out() {
-    for text in EXTENDED.into_iter().chain([PAPER, STUDY]) {
+    for text in EXTENDED_FILES.into_iter().chain([PAPER, STUDY]) {
         let scenario = Scenario::parse(text, "f").unwrap();
         let mut document: toml_edit::DocumentMut = text.parse().unwrap();
         for section in ["gains", "estimates", "reference_bounds"] {
             document.remove(section);
         }
-        let pasted = format!("{document}\n{}", shown::constants(&scenario));
+        let pasted = format!("{document}\n{}", constants::constants(&scenario));
         let read = Scenario::parse(&pasted, "f").unwrap_or_else(|error| panic!("{error}\n{pasted}"));
         assert!(read.flies_like(&scenario), "{pasted}");
     }

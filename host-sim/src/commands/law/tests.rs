@@ -141,11 +141,11 @@ fn filters_advance_by_each_lines_own_dt() {
 #[test]
 fn every_number_of_a_line_has_a_name_of_its_own() {
     let name = |bad| {
-        let words: Vec<&str> = (0..NUMBERS).map(|place| if place == bad { "x" } else { "0" }).collect();
+        let words: Vec<&str> = (0..INPUT_NUMBERS).map(|place| if place == bad { "x" } else { "0" }).collect();
         parse(&words.join(" ")).unwrap_err().split(": ").next().unwrap().to_owned()
     };
-    let names: std::collections::BTreeSet<String> = (0..NUMBERS).map(name).collect();
-    assert_eq!(names.len(), NUMBERS, "{names:?}");
+    let names: std::collections::BTreeSet<String> = (0..INPUT_NUMBERS).map(name).collect();
+    assert_eq!(names.len(), INPUT_NUMBERS, "{names:?}");
     for name in ["t", "dt", "x[0]", "q.w", "omega[2]", "reference s[2]", "yaw", "yaw_rate", "yaw_acceleration"] {
         assert!(names.contains(name), "{name}");
     }

@@ -3,18 +3,18 @@
 use super::*;
 use crate::flight::Flight;
 
-fn judged(scenario: &Scenario, flown: &Flown) -> Vec<Claim> {
-    claims(scenario, &Verdict::of(scenario).unwrap(), flown)
+fn judged(scenario: &Scenario, flown: &FlightExtremes) -> Vec<Claim> {
+    claims(scenario, &Verdict::judge(scenario).unwrap(), flown)
 }
 
-fn flown(scenario: &Scenario) -> Flown {
-    Flown::over(scenario, Flight::new(scenario).unwrap()).unwrap()
+fn flown(scenario: &Scenario) -> FlightExtremes {
+    FlightExtremes::gather(scenario, Flight::new(scenario).unwrap()).unwrap()
 }
 
 #[test]
 fn theorem_1_gives_the_papers_published_interval() {
     let thrust = Certificate::new(&Scenario::paper().unwrap().configuration).unwrap().paper().unwrap().printed.thrust;
-    assert!((thrust.least - 3.51).abs() < 0.005 && (thrust.greatest - 6.19).abs() < 0.005, "{thrust:?}");
+    assert!((thrust.min - 3.51).abs() < 0.005 && (thrust.max - 6.19).abs() < 0.005, "{thrust:?}");
 }
 
 #[test]
@@ -24,7 +24,7 @@ fn only_the_papers_scenario_carries_the_published_figures() {
     let mut other = paper.clone();
     other.initial.position.x += 1.0;
     let count = |scenario: &Scenario| {
-        let claims = judged(scenario, &Flown::new(scenario));
+        let claims = judged(scenario, &FlightExtremes::new(scenario));
         claims.iter().filter(|claim| claim.claim.contains("published")).count()
     };
     assert_eq!((count(&paper), count(&renamed), count(&other)), (4, 4, 0));
@@ -35,7 +35,7 @@ fn each_claim_can_fail() {
     let paper = Scenario::paper().unwrap();
     let good = flown(&paper);
     assert!(all_hold(&judged(&paper, &good)), "{}", table(&judged(&paper, &good)));
-    let broken: [fn(&mut Flown); 10] = [
+    let broken: [fn(&mut FlightExtremes); 10] = [
         |flown| flown.strayed = Some((0.51, 20.0)),
         |flown| flown.steady_position_error = 1.1e-3,
         |flown| flown.steady_mrp_error = 1.1e-4,

@@ -15,7 +15,7 @@ fn scenario(seconds: f64, initial: &str, sections: &str) -> Scenario {
 
 fn course(seconds: f64, initial: &str, sections: &str, near: f64) -> Course {
     let scenario = scenario(seconds, initial, sections);
-    Course::over(&scenario, Flight::new(&scenario).unwrap(), near).unwrap()
+    Course::fly(&scenario, Flight::new(&scenario).unwrap(), near).unwrap()
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn rise_is_above_start_and_reference() {
 #[test]
 fn the_last_half_is_judged_by_its_root_mean_squares() {
     let scenario = scenario(1.0, "velocity = [0.3, 0.0, 0.0]", "[sensors]\ngyro_noise = 0.01");
-    let course = Course::over(&scenario, Flight::new(&scenario).unwrap(), 0.1).unwrap();
+    let course = Course::fly(&scenario, Flight::new(&scenario).unwrap(), 0.1).unwrap();
     let mut flight = Flight::new(&scenario).unwrap();
     let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
     let half = &ticks[50..];
@@ -76,6 +76,6 @@ fn what_stands_on_the_ground_has_not_arrived() {
     assert_eq!((stands.settled, stands.end_error), (None, 0.0));
     let scenario = scenario(4.0, "position = [0.0, 0.0, 0.0]", heavy);
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
-    let outcome = Outcome::of(&scenario, Flight::new(&scenario).unwrap(), certified.certificate());
+    let outcome = Outcome::judge(&scenario, Flight::new(&scenario).unwrap(), certified.certificate());
     assert!(outcome.settled.is_none() && !outcome.tracks() && outcome.final_error == 0.0, "{outcome:?}");
 }

@@ -3,16 +3,16 @@ use nalgebra::{Quaternion, Vector3};
 
 #[test]
 fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
-    const ACCELERATION: f64 = 1.0;
+    const ACCELERATION_M_PER_S2: f64 = 1.0;
     let text = format!("{}\n[estimator]\nimu_noise = 0.0\n", scenario::STUDY);
     let mut scenario = Scenario::parse(&text, "a test").unwrap();
     let turning = |seconds: f64| {
-        let (sin, cos) = (0.25 * ACCELERATION * seconds * seconds).sin_cos();
+        let (sin, cos) = (0.25 * ACCELERATION_M_PER_S2 * seconds * seconds).sin_cos();
         BodyState {
             position: Vector3::zeros(),
             velocity: Vector3::zeros(),
             attitude: Quaternion::new(cos, 0.0, 0.0, sin),
-            angular_velocity: Vector3::z() * (ACCELERATION * seconds),
+            angular_velocity: Vector3::z() * (ACCELERATION_M_PER_S2 * seconds),
         }
     };
     scenario.initial = turning(0.0);
@@ -23,7 +23,7 @@ fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
         estimation.sample(&turning(seconds));
         if millisecond % 10 == 0 && millisecond > 500 {
             let (estimated, _) = estimation.state().unwrap();
-            late += seconds - f64::from(estimated.angular_velocity.z) / ACCELERATION;
+            late += seconds - f64::from(estimated.angular_velocity.z) / ACCELERATION_M_PER_S2;
             count += 1.0;
         }
     }

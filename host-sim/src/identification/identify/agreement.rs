@@ -6,20 +6,20 @@
 //! uncertainty: a number was mistyped, or another vehicle weighed, and least squares would share the error out among
 //! all numbers, with tight intervals around the wrong values.
 
-use super::student;
+use super::student_t;
 use crate::output::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
 /// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by a
-/// normal distribution. By Student's t it is more ([`student`]): the flight's uncertainty is known from a few parts of
+/// normal distribution. By Student's t it is more ([`student_t`]): the flight's uncertainty is known from a few parts of
 /// it.
-const NORMAL: f64 = 3.291;
+const NORMAL_QUANTILE: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
-const ONE_SIDED: f64 = 3.090;
+const ONE_SIDED_QUANTILE: f64 = 3.090;
 
 /// Entries that deviate by nearly as much as the most, by this part of it, may be the wrong one as well: where only two
 /// say something of the same, it does not show which of them errs.
-const ALIKE: f64 = 0.9;
+const NEAR_TIE_SHARE: f64 = 0.9;
 
 /// ln of m, c, J_x, J_y, J_z over the file's, and their covariance.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ pub fn contradiction(entries: &[Entry], known: &Known, flight: f64, freedom: usi
         })
         .collect();
     let worst = apart.iter().map(|(_, _, times)| *times).fold(0.0, f64::max);
-    let suspects = apart.iter().filter(|(_, _, times)| *times >= ALIKE * worst);
+    let suspects = apart.iter().filter(|(_, _, times)| *times >= NEAR_TIE_SHARE * worst);
     let suspects = suspects.map(|(entry, distance, times)| {
         format!("{} by {} ({} standard uncertainties)", entry.name, percent(distance.exp_m1()), short(*times))
     });
@@ -86,7 +86,9 @@ fn spread(covariance: &SMatrix<f64, 5, 5>, row: &SVector<f64, 5>) -> f64 {
 /// many has it.
 fn greatest(freedom: usize, parts: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
-    freedom as f64 * (1.0 - part + ONE_SIDED * part.sqrt()).powi(3) * (student::consistent(parts) / NORMAL).powi(2)
+    freedom as f64
+        * (1.0 - part + ONE_SIDED_QUANTILE * part.sqrt()).powi(3)
+        * (student_t::consistent(parts) / NORMAL_QUANTILE).powi(2)
 }
 
 #[cfg(test)]
@@ -97,7 +99,7 @@ mod tests {
     fn quantiles_are_those_of_tables() {
         // Chi-square at 99.9 %: within 4 %, on the safe side.
         for (freedom, table) in [(1, 10.828), (2, 13.816), (4, 18.467), (10, 29.588)] {
-            let ratio = greatest(freedom, 16) / (4.073_f64 / NORMAL).powi(2) / table;
+            let ratio = greatest(freedom, 16) / (4.073_f64 / NORMAL_QUANTILE).powi(2) / table;
             assert!((0.99..1.04).contains(&ratio), "{freedom}: {ratio}");
         }
     }

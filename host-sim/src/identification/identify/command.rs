@@ -6,7 +6,7 @@ use super::output::{Values, rewritten};
 use super::quantities::{Quantities, Quantity};
 use super::{foreign, identify, margins, observability, ulog};
 use crate::identification::ulog::MAGIC;
-use crate::identification::ulog::command::LONGEST_LOG;
+use crate::identification::ulog::command::LOG_MAX_BYTES;
 use crate::output::table::{aligned, short};
 use crate::output::whole_file::WholeFile;
 use controller_core::allocation::Rotors;
@@ -81,8 +81,8 @@ pub fn run(task: &Task) -> Result<String, Refused> {
         "NOT every margin is left: measure better what is widest, or tune again with the file written\n"
     };
     if let Some((name, path, mut file)) = out {
-        let text =
-            rewritten(&task.original, &name, &Values::of(&identified), scenario.timing.step()).map_err(of_file)?;
+        let text = rewritten(&task.original, &name, &Values::estimates(&identified), scenario.timing.step())
+            .map_err(of_file)?;
         let written = file.write_all(text.as_bytes()).and_then(|()| file.finish());
         written.map_err(|error| in_file(path, &format!("cannot be written: {error}")))?;
         report += &format!("written to {}\n", path.display());
@@ -102,8 +102,8 @@ fn destination<'a>(path: &'a Path, usual: &str) -> Result<(String, &'a Path, Who
 
 /// A log of either kind; a ULog is known by its first bytes.
 fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, Refused> {
-    let bytes =
-        scenario::text::bytes(path, LONGEST_LOG).map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
+    let bytes = scenario::text::bytes(path, LOG_MAX_BYTES)
+        .map_err(|error| in_file(path, &format!("cannot be read: {error}")))?;
     let log = if bytes.starts_with(&MAGIC) {
         ulog::read(&bytes, rotors, curve)
     } else if let Some(what) = foreign::recognised(&bytes) {
@@ -111,7 +111,7 @@ fn read(path: &Path, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, R
     } else {
         match String::from_utf8(bytes) {
             Ok(text) => FlightLog::from_csv(&text),
-            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::COLUMNS)),
+            Err(_) => Err(format!("neither a log.csv nor a ULog: {}", foreign::READABLE_LOGS)),
         }
     };
     log.map_err(|what| in_file(path, &what))

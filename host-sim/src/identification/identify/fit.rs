@@ -11,50 +11,53 @@
 //! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
-//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `BLOCK`
+//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `JACKKNIFE_BLOCK_S`
 //! long, is left out, (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full
 //! what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block
 //! pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it to lack
-//! ([`UNDERSTATED`]).
+//! ([`UNCERTAINTY_FACTORS`]).
 //!
 //! Of the body rates the fit uses the innovation at each tick ([`super::low_passes`]). Of the velocities it uses ten
 //! samples a second only: thrust over mass, drag and wind change slowly, and an estimator's prediction between its own
 //! updates leaves artefacts from tick to tick.
 
-use super::model::{CHANNELS, Channels, DRAG, Model, SQUARED_LAG, STRENGTH, UNKNOWNS, Unknowns, WHOLE_DELAY, prior};
+use super::model::{
+    CHANNEL_COUNT, Channels, DRAG_INDEX, IdentifiedModel, SQUARED_LAG_INDEX, STRENGTH_INDEX, UNKNOWN_COUNT, Unknowns,
+    WHOLE_DELAY_INDEX, prior,
+};
 use super::noise::{Noise, Whitening};
-use super::student::PARTS;
+use super::student_t::PART_COUNT_RANGE;
 use nalgebra::SMatrix;
 use std::array::from_fn;
 
-/// Parts of the log that the jackknife leaves out in turn, s of each: longer than the memory of the residuals once they
-/// are whitened. Turbulence is not quite of first order, nor does an estimator's error in its gyro's bias come and go
-/// as the model has it.
-const BLOCK: f64 = 5.0;
-/// Between two samples of the velocities, s.
-const LOOK: f64 = 0.1;
+/// The parts of the log that the jackknife leaves out in order: longer than the memory of the residuals once they are
+/// whitened. Turbulence is not quite of first order, nor is the gyro bias of an estimator.
+const JACKKNIFE_BLOCK_S: f64 = 5.0;
+/// Between two samples of the velocities.
+const VELOCITY_PERIOD_S: f64 = 0.1;
 /// Gauss-Newton steps at most; in how many of the first the noise is fitted anew, and in how many as long as steps are
 /// longer than a standard uncertainty.
-const STEPS: usize = 40;
+const STEPS_MAX: usize = 40;
 const NOISE_STEPS: usize = 8;
 const MORE_NOISE_STEPS: usize = 20;
 /// The least part of a step that is taken.
 const SHORTEST_SHARE: f64 = 0.125;
-/// The longest step for an unknown, in what it may be off at the start: longer ones, from a start that is far off, end
-/// where no vehicle is.
-const LONGEST: f64 = 0.5;
-/// A step that ends the search, in standard uncertainties.
-const SETTLED: f64 = 0.1;
+/// The longest step of an unknown, as a share of its uncertainty at the start: after longer steps, from a start far
+/// off, the search ends at numbers that no vehicle has.
+const STEP_MAX_SHARE: f64 = 0.5;
+/// A shorter step ends the search, in standard uncertainties.
+const CONVERGED_STEP_SIGMAS: f64 = 0.1;
 
 /// Which uncertainties come out too small even so, and by what factor: errors over uncertainties of 300 trials of each
 /// of two vehicles (the example `identify_coverage`), root mean square.
-pub const UNDERSTATED: [(usize, f64); 3] = [(WHOLE_DELAY, 1.4), (SQUARED_LAG, 1.2), (DRAG, 1.3)];
+pub const UNCERTAINTY_FACTORS: [(usize, f64); 3] =
+    [(WHOLE_DELAY_INDEX, 1.4), (SQUARED_LAG_INDEX, 1.2), (DRAG_INDEX, 1.3)];
 
 /// Whitened series, a channel each.
 type White = Vec<Vec<f64>>;
 
 /// A covariance of all unknowns.
-pub type Covariance = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+pub type Covariance = SMatrix<f64, UNKNOWN_COUNT, UNKNOWN_COUNT>;
 
 /// The result of a fit.
 #[derive(Debug, Clone)]
@@ -71,16 +74,16 @@ pub struct Fit {
 ///
 /// # Errors
 /// If the search does not settle: the log is of another vehicle, or has too little information.
-pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String> {
+pub fn fit(model: &IdentifiedModel, reference: &IdentifiedModel, period: f64) -> Result<Fit, String> {
     let (mut unknowns, wide) = prior();
-    let [least, most] = PARTS;
-    let count = ((model.seconds() / BLOCK).round() as usize).clamp(least, most);
-    unknowns[STRENGTH] = model.balance();
-    let (start, mut noise) = (unknowns, [Noise::START; CHANNELS]);
-    let mut felt = Vec::new();
+    let [least, most] = PART_COUNT_RANGE;
+    let count = ((model.seconds() / JACKKNIFE_BLOCK_S).round() as usize).clamp(least, most);
+    unknowns[STRENGTH_INDEX] = model.balance();
+    let (start, mut noise) = (unknowns, [Noise::START; CHANNEL_COUNT]);
+    let mut sensed_motions = Vec::new();
     let (mut share, mut last, mut is_near) = (1.0, Unknowns::zeros(), false);
-    let look = (LOOK / period).round().max(1.0) as usize;
-    let every: [usize; CHANNELS] = from_fn(|channel| if channel < 3 { look } else { 1 });
+    let look = (VELOCITY_PERIOD_S / period).round().max(1.0) as usize;
+    let every: [usize; CHANNEL_COUNT] = from_fn(|channel| if channel < 3 { look } else { 1 });
     let periods = every.map(|every| every as f64 * period);
     let seen = |channels: Channels| -> Channels {
         from_fn(|channel| match model.low_passes() {
@@ -88,28 +91,29 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
             _ => channels[channel].iter().step_by(every[channel]).copied().collect(),
         })
     };
-    for step in 0..STEPS {
+    for step in 0..STEPS_MAX {
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.left(&unknowns, &impulses, &felt));
+        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
         if step < NOISE_STEPS || (step < MORE_NOISE_STEPS && !is_near) {
             noise = from_fn(|channel| Noise::START.fitted(&left[channel], periods[channel]));
         }
-        let filters: [Whitening; CHANNELS] =
+        let filters: [Whitening; CHANNEL_COUNT] =
             from_fn(|channel| noise[channel].whitening(left[channel].len(), periods[channel]));
         let white = |channels: &Channels| -> White {
             channels.iter().zip(&filters).map(|(series, filter)| filter.whiten(series)).collect()
         };
         let errors = white(&left);
-        let slopes: Vec<(White, White)> = (0..UNKNOWNS)
+        let slopes: Vec<(White, White)> = (0..UNKNOWN_COUNT)
             .map(|unknown| {
                 let width = 1e-3 * wide[unknown];
                 let hovering = reference.hovering(&unknowns);
                 let moved = |by: f64| {
                     let mut moved = unknowns;
                     moved[unknown] += by;
-                    let late = [WHOLE_DELAY, SQUARED_LAG].contains(&unknown).then(|| model.impulses(&moved));
-                    let flown = seen(model.left(&moved, late.as_ref().unwrap_or(&impulses), &felt));
-                    (flown, seen(reference.left(&moved, &hovering, &[])))
+                    let late =
+                        [WHOLE_DELAY_INDEX, SQUARED_LAG_INDEX].contains(&unknown).then(|| model.impulses(&moved));
+                    let flown = seen(model.residuals(&moved, late.as_ref().unwrap_or(&impulses), &sensed_motions));
+                    (flown, seen(reference.residuals(&moved, &hovering, &[])))
                 };
                 let (ahead, behind) = (moved(width), moved(-width));
                 let slope = |ahead: &Channels, behind: &Channels| {
@@ -124,7 +128,7 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
         let (mut spread, blocks) = equations(&errors, &slopes, count);
         let mut information = blocks.iter().map(|block| block.information).sum::<Covariance>();
         let mut pull = blocks.iter().map(|block| block.pull).sum::<Unknowns>();
-        for unknown in 0..UNKNOWNS {
+        for unknown in 0..UNKNOWN_COUNT {
             let weight = 1.0 / (wide[unknown] * wide[unknown]);
             information[(unknown, unknown)] += weight;
             spread[(unknown, unknown)] += weight;
@@ -133,24 +137,24 @@ pub fn fit(model: &Model, reference: &Model, period: f64) -> Result<Fit, String>
         let inverse = scaled_inverse(&information).ok_or("says nothing that a model could be fitted to")?;
         let covariance = inverse * spread * inverse.transpose();
         let moved = inverse * pull;
-        let within = |part: f64| (0..UNKNOWNS).all(|i| moved[i].abs() < part * covariance[(i, i)].sqrt());
-        if step >= NOISE_STEPS && is_near && within(SETTLED) {
+        let within = |part: f64| (0..UNKNOWN_COUNT).all(|i| moved[i].abs() < part * covariance[(i, i)].sqrt());
+        if step >= NOISE_STEPS && is_near && within(CONVERGED_STEP_SIGMAS) {
             return Ok(Fit { unknowns, covariance: robust(&covariance, &information, &blocks)?, blocks: blocks.len() });
         }
         // Wind and drag come as a product, so whole steps may leap to and fro across what is sought: then shorter ones
         // are taken.
-        let turned = (0..UNKNOWNS).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
+        let turned = (0..UNKNOWN_COUNT).map(|i| moved[i] * last[i] / covariance[(i, i)]).sum::<f64>() < 0.0;
         share = if turned { f64::max(0.5 * share, SHORTEST_SHARE) } else { f64::min(1.5 * share, 1.0) };
         (last, is_near) = (moved, within(1.0));
         let widest = moved.component_div(&wide).amax();
-        unknowns += moved * f64::min(share, LONGEST / widest);
+        unknowns += moved * f64::min(share, STEP_MAX_SHARE / widest);
         let impulses = model.impulses(&unknowns);
-        let left = seen(model.left(&unknowns, &impulses, &felt));
+        let left = seen(model.residuals(&unknowns, &impulses, &sensed_motions));
         let gusts = from_fn(|axis| {
             let wander = filters[axis].wander(&left[axis]);
             wander.into_iter().flat_map(|b| std::iter::repeat_n(b, look)).collect()
         });
-        felt = model.felt(&unknowns, &impulses, &gusts);
+        sensed_motions = model.sensed_motions(&unknowns, &impulses, &gusts);
     }
     Err("is of no vehicle like the scenario's: the search for its numbers does not settle".to_owned())
 }
@@ -205,7 +209,7 @@ fn robust(usual: &Covariance, information: &Covariance, blocks: &[Block]) -> Res
         spread.ger(share, &moved, &moved, 1.0);
     }
     let mut grow = Unknowns::from_fn(|i, _| (spread[(i, i)] / usual[(i, i)]).max(1.0).sqrt());
-    for (unknown, factor) in UNDERSTATED {
+    for (unknown, factor) in UNCERTAINTY_FACTORS {
         grow[unknown] *= factor;
     }
     Ok(Covariance::from_fn(|i, j| usual[(i, j)] * grow[i] * grow[j]))

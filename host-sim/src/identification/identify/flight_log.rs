@@ -5,7 +5,7 @@
 //!
 //! World frame z up, body frame x forward, y left, z up, SI units.
 
-use super::foreign::COLUMNS;
+use super::foreign::READABLE_LOGS;
 use crate::identification::ulog::reader::Damage;
 use controller_core::state::Wrench;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -53,8 +53,8 @@ pub struct FlightLog {
     pub damage: Damage,
 }
 
-/// By how much the time between two ticks may differ from the usual one, as a part of it.
-const JITTER: f64 = 0.1;
+/// The greatest deviation of the time between two ticks from the usual one, as a share of it.
+const JITTER_MAX_SHARE: f64 = 0.1;
 
 impl FlightLog {
     /// Keeps the longest run of `moments` without a gap; none marks a tick without a state or not in the air.
@@ -74,7 +74,7 @@ impl FlightLog {
         let (mut longest, mut current): (Vec<Moment>, Vec<Moment>) = (Vec::new(), Vec::new());
         for moment in moments {
             let follows = match (current.last(), moment) {
-                (Some(last), Some(next)) => (next.time - last.time - period).abs() < JITTER * period,
+                (Some(last), Some(next)) => (next.time - last.time - period).abs() < JITTER_MAX_SHARE * period,
                 (None, Some(_)) => true,
                 (_, None) => false,
             };
@@ -108,7 +108,7 @@ impl FlightLog {
         };
         let column = |name: &str| {
             let place = header.iter().position(|found| *found == name);
-            place.ok_or_else(|| format!("line 1: has no column {name}: no log.csv; {COLUMNS}"))
+            place.ok_or_else(|| format!("line 1: has no column {name}: no log.csv; {READABLE_LOGS}"))
         };
         let measured = ["vx", "vy", "vz", "qw", "qx", "qy", "qz", "wx", "wy", "wz"];
         let mut columns = vec![column("t")?];

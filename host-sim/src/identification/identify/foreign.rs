@@ -1,12 +1,12 @@
 //! Logs of other flight controllers: recognised by their first bytes, and answered with what to do.
 
 /// What a file must have that is written from another log.
-pub const COLUMNS: &str = "identify reads ULog, of this firmware or of PX4, and a CSV with the columns t, est_vx to \
+pub const READABLE_LOGS: &str = "identify reads ULog, of this firmware or of PX4, and a CSV with the columns t, est_vx to \
 est_vz, est_qw to est_qz, est_wx to est_wz, thrust, tau_x to tau_z, pdx to pdz in the frames and units of docs/log.md; \
 write that from your log";
 
 /// How the log begins that some program writes, at which byte, and what is to be said of it.
-const KNOWN: [(usize, &[u8], &str); 9] = [
+const OTHER_LOGS: [(usize, &[u8], &str); 9] = [
     (
         0,
         b"H Product:Blackbox",
@@ -30,9 +30,9 @@ const KNOWN: [(usize, &[u8], &str); 9] = [
 #[must_use]
 pub fn recognised(bytes: &[u8]) -> Option<String> {
     let begins = |(at, magic): (usize, &[u8])| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
-    let (_, _, what) = KNOWN.into_iter().find(|(at, magic, _)| {
+    let (_, _, what) = OTHER_LOGS.into_iter().find(|(at, magic, _)| {
         // Text of eight letters before such a byte is no telemetry: times of day begin with zeros.
         begins((*at, magic)) && (*at == 0 || bytes.first() == Some(&0))
     })?;
-    Some(format!("{what}; {COLUMNS}"))
+    Some(format!("{what}; {READABLE_LOGS}"))
 }

@@ -24,8 +24,8 @@ use super::impulses::Impulse;
 use controller_core::allocation::Rotors;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-/// Rotors that carry less hardly turn, m/s^2: nothing is learnt of them.
-const IDLE: f64 = 1.0;
+/// Rotors that carry less hardly spin: the flight says nothing about them.
+const IDLE_THRUST_M_PER_S2: f64 = 1.0;
 
 /// Where the hubs are.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +39,7 @@ pub struct Layout {
 impl Layout {
     /// Of a vehicle's rotors.
     #[must_use]
-    pub fn of(rotors: &Rotors) -> Self {
+    pub fn of_rotors(rotors: &Rotors) -> Self {
         let lever = |position: &Vector3<f32>| Vector2::new(-f64::from(position.y), f64::from(position.x));
         let levers = rotors.iter().map(|rotor| lever(&rotor.position)).map(|lever| lever * lever.transpose());
         Self { count: rotors.len() as f64, levers: levers.sum() }
@@ -66,7 +66,7 @@ impl Hubs {
 
     /// lambda's part of a c/m, N m/kg, at an airspeed in m/s and a rate about z in rad/s.
     #[must_use]
-    pub fn turned(&self, layout: &Layout, airspeed: &Vector3<f64>, yaw_rate: f64) -> Vector3<f64> {
+    pub fn torque(&self, layout: &Layout, airspeed: &Vector3<f64>, yaw_rate: f64) -> Vector3<f64> {
         let across = layout.levers * airspeed.xy() * (-2.0 * self.lift * yaw_rate);
         Vector3::new(across.x, across.y, 0.0)
     }
@@ -75,7 +75,7 @@ impl Hubs {
     /// the air makes `air`, m/s^2.
     #[must_use]
     pub fn unlike(&self, impulse: &Impulse, carried: f64, air: &Vector3<f64>) -> Vector3<f64> {
-        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE));
+        let tilting = Vector3::new(impulse.torque.x, impulse.torque.y, 0.0) / (2.0 * carried.max(IDLE_THRUST_M_PER_S2));
         tilting * (self.along * air.z) - Vector3::z() * (self.across * tilting.dot(air))
     }
 }

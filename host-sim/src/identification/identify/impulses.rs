@@ -21,8 +21,8 @@ use super::low_passes::LowPasses;
 use controller_core::allocation::{Mixer, Rotors};
 use nalgebra::{Vector3, Vector4};
 
-/// The shortest lag that is not taken for zero, s.
-const SHORTEST: f64 = 1e-6;
+/// A shorter lag counts as zero.
+const LAG_MIN_S: f64 = 1e-6;
 
 /// Speeds commanded at each tick, rad/s, and what a squared speed gives.
 #[derive(Debug, Clone)]
@@ -76,7 +76,7 @@ impl Commands {
             speeds: speeds.collect::<Result<_, String>>()?,
             columns: columns.map(|(rotor, column)| column * f64::from(rotor.thrust_coefficient)).collect(),
             period: log.period,
-            low_passes: LowPasses::of(log),
+            low_passes: LowPasses::of_log(log),
         })
     }
 
@@ -95,7 +95,7 @@ impl Commands {
     }
 
     fn lagging(&self, whole: f64, lag: f64) -> Vec<Impulse> {
-        let lag = lag.max(SHORTEST);
+        let lag = lag.max(LAG_MIN_S);
         let ticks = ((whole - lag) / self.period).floor();
         let spans = self.spans(whole - lag - ticks * self.period, lag);
         let mut low_passes = self.low_passes.clone();

@@ -21,9 +21,9 @@ use estimation::imu::low_pass::LowPass;
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// From how many samples the next is predicted.
-const PREDICTORS: usize = 3;
-/// Samples of the IMU after an impulse; nothing is left of it then.
-const LONGEST: usize = 1000;
+const PREDICTOR_SAMPLES: usize = 3;
+/// Samples of the IMU after an impulse, which has died away by then.
+const RESPONSE_SAMPLES_MAX: usize = 1000;
 
 /// The two low-passes, in the order they are passed.
 #[derive(Debug, Clone)]
@@ -31,13 +31,13 @@ pub struct LowPasses {
     passes: [LowPass; 2],
     samples: usize,
     /// a.
-    prediction: SVector<f64, PREDICTORS>,
+    prediction: SVector<f64, PREDICTOR_SAMPLES>,
 }
 
 impl LowPasses {
     /// Those of a log, if its body rates came from an IMU.
     #[must_use]
-    pub fn of(log: &FlightLog) -> Option<Self> {
+    pub fn of_log(log: &FlightLog) -> Option<Self> {
         let imu = ImuParameters::BMI088;
         let samples = (log.period * f64::from(imu.rate)).round().max(1.0) as usize;
         let period = (log.period * 1e6).round() as u64;
@@ -47,12 +47,12 @@ impl LowPasses {
     fn new(passes: [LowPass; 2], samples: usize) -> Self {
         let mut new = Self { passes, samples, prediction: SVector::zeros() };
         let mut at_rest = new.clone();
-        let impulse = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, LONGEST));
+        let impulse = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, RESPONSE_SAMPLES_MAX));
         let response: Vec<f64> = impulse.map(|sample| at_rest.take(&Vector3::repeat(sample)).x).collect();
         let together =
             |ticks: usize| response.iter().zip(response.iter().skip(ticks * samples)).map(|(a, b)| a * b).sum::<f64>();
-        let rho = SMatrix::<f64, PREDICTORS, PREDICTORS>::from_fn(|i, j| together(i.abs_diff(j)));
-        let next = SVector::<f64, PREDICTORS>::from_fn(|i, _| together(i + 1));
+        let rho = SMatrix::<f64, PREDICTOR_SAMPLES, PREDICTOR_SAMPLES>::from_fn(|i, j| together(i.abs_diff(j)));
+        let next = SVector::<f64, PREDICTOR_SAMPLES>::from_fn(|i, _| together(i + 1));
         new.prediction = rho.cholesky().map_or_else(SVector::zeros, |rho| rho.solve(&next));
         new
     }

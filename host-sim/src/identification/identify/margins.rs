@@ -34,8 +34,8 @@ impl Kind {
     fn least(self) -> f64 {
         match self {
             Self::Inequality => 0.0,
-            Self::Gain => LoopMargin::LEAST.gain,
-            Self::Delay => LoopMargin::LEAST.delay,
+            Self::Gain => LoopMargin::FLYABLE_MIN.gain,
+            Self::Delay => LoopMargin::FLYABLE_MIN.delay,
         }
     }
 
@@ -59,7 +59,7 @@ pub fn report(original: &str, name: &str, quantities: &Quantities) -> Result<(St
         let text = rewritten(original, "identified", values, step)?;
         margins(&Scenario::parse(&text, "identified").map_err(|error| error.to_string())?)
     };
-    let (file, values) = (margins(&model)?, Values::of(quantities));
+    let (file, values) = (margins(&model)?, Values::estimates(quantities));
     let identified = of(&values)?;
     let mut worst: Vec<f64> = identified.iter().map(|margin| margin.value).collect();
     for (quantity, set) in ends(quantities) {
@@ -96,7 +96,7 @@ pub fn report(original: &str, name: &str, quantities: &Quantities) -> Result<(St
 
 /// All margins of a scenario, always in the same order.
 fn margins(scenario: &Scenario) -> Result<Vec<Margin>, String> {
-    let verdict = Verdict::of(scenario).map_err(|error| error.to_string())?;
+    let verdict = Verdict::judge(scenario).map_err(|error| error.to_string())?;
     let inequalities = verdict.certificate().inequalities().map(|inequality| Margin {
         name: inequality.name.to_owned(),
         kind: Kind::Inequality,

@@ -28,43 +28,42 @@ use super::low_passes::LowPasses;
 use controller_core::configuration::Configuration;
 use nalgebra::{SVector, Vector3};
 
-/// How many unknowns there are.
-pub const UNKNOWNS: usize = 20;
+pub(crate) const UNKNOWN_COUNT: usize = 20;
 
 /// Where they stand: ln (c m_0 / m); ln (c J_0i / J_i); S, s; u, s^2; r_c, m; D/m, 1/s; w, m/s; beta, 1/s; e_z,
 /// rad/s^2; kappa_z, kappa_d; lambda, 1/m.
-pub const STRENGTH: usize = 0;
+pub const STRENGTH_INDEX: usize = 0;
 /// About x; y and z follow.
-pub const TURNING: usize = 1;
+pub const INERTIA_STRENGTH_INDEX: usize = 1;
 /// The whole delay, with that of the measured rates.
-pub const WHOLE_DELAY: usize = 4;
+pub const WHOLE_DELAY_INDEX: usize = 4;
 /// The squared lag.
-pub const SQUARED_LAG: usize = 5;
+pub const SQUARED_LAG_INDEX: usize = 5;
 /// Along x; y follows.
-pub const CENTRE: usize = 6;
+pub const CENTRE_INDEX: usize = 6;
 /// Along x; y and z follow.
-pub const DRAG: usize = 8;
-const WIND: usize = 11;
-const DAMPING: usize = 13;
-const YAWING: usize = 16;
+pub const DRAG_INDEX: usize = 8;
+const WIND_INDEX: usize = 11;
+const DAMPING_INDEX: usize = 13;
+const YAW_TORQUE_INDEX: usize = 16;
 /// kappa_z; kappa_d and lambda follow.
-const HUBS: usize = 17;
+const HUB_FORCE_INDEX: usize = 17;
 
 /// All unknowns.
-pub type Unknowns = SVector<f64, UNKNOWNS>;
+pub type Unknowns = SVector<f64, UNKNOWN_COUNT>;
 
 /// Velocity along the world's axes, body rates.
-pub const CHANNELS: usize = 6;
+pub const CHANNEL_COUNT: usize = 6;
 
 /// Six series.
-pub type Channels = [Vec<f64>; CHANNELS];
+pub type Channels = [Vec<f64>; CHANNEL_COUNT];
 
-/// At the start of a log the rotors' speeds are unknown, s.
-const UNKNOWN_START: f64 = 0.5;
+/// At the start of a log the rotors' speeds are unknown.
+const UNKNOWN_START_S: f64 = 0.5;
 
 /// A log and the model that is fitted to it.
 #[derive(Debug, Clone)]
-pub struct Model<'a> {
+pub struct IdentifiedModel<'a> {
     log: &'a FlightLog,
     commands: Commands,
     /// m_0, kg; J_0, kg m^2; g, m/s^2.
@@ -86,7 +85,7 @@ pub fn prior() -> (Unknowns, Unknowns) {
     (start.into(), wide.into())
 }
 
-impl<'a> Model<'a> {
+impl<'a> IdentifiedModel<'a> {
     /// # Errors
     /// If the file has no rotors, or its allocation refuses a wrench of the log.
     pub fn new(log: &'a FlightLog, configuration: &Configuration) -> Result<Self, String> {
@@ -99,8 +98,8 @@ impl<'a> Model<'a> {
             mass: vehicle.mass.into(),
             inertia: vehicle.inertia.map(f64::from),
             gravity: vehicle.gravity.into(),
-            layout: Layout::of(rotors),
-            first: (UNKNOWN_START / log.period).round() as usize,
+            layout: Layout::of_rotors(rotors),
+            first: (UNKNOWN_START_S / log.period).round() as usize,
         })
     }
 
@@ -113,7 +112,7 @@ impl<'a> Model<'a> {
     /// The rotors' impulses for these unknowns.
     #[must_use]
     pub fn impulses(&self, unknowns: &Unknowns) -> Vec<Impulse> {
-        self.commands.impulses(unknowns[WHOLE_DELAY], unknowns[SQUARED_LAG])
+        self.commands.impulses(unknowns[WHOLE_DELAY_INDEX], unknowns[SQUARED_LAG_INDEX])
     }
 
     /// The low-passes of the log's body rates.
@@ -122,12 +121,12 @@ impl<'a> Model<'a> {
         self.commands.low_passes.as_ref()
     }
 
-    /// The residuals of each channel: measured less integrated. `felt` is as [`Self::felt`] has it.
+    /// The residuals of each channel: measured less integrated. `sensed_motions` is as [`Self::sensed_motions`] has it.
     #[must_use]
-    pub fn left(&self, unknowns: &Unknowns, impulses: &[Impulse], felt: &[Felt]) -> Channels {
+    pub fn residuals(&self, unknowns: &Unknowns, impulses: &[Impulse], sensed_motions: &[SensedMotion]) -> Channels {
         let Numbers { strength, turning, drag, centre, wind, hubs } = self.numbers(unknowns);
-        let damping = three(unknowns, DAMPING);
-        let yawing = Vector3::new(0.0, 0.0, unknowns[YAWING]);
+        let damping = three(unknowns, DAMPING_INDEX);
+        let yawing = Vector3::new(0.0, 0.0, unknowns[YAW_TORQUE_INDEX]);
         let of_one = turning.map(|turning| 1.0 / turning);
         let coupling = Vector3::new(of_one.y - of_one.z, of_one.z - of_one.x, of_one.x - of_one.y);
         let period = self.log.period;
@@ -148,11 +147,12 @@ impl<'a> Model<'a> {
             let carried = strength * impulse.thrust;
             velocity += up * (carried + hubs.lifted(&self.layout, &airspeed) * period)
                 + (dragged - Vector3::z() * self.gravity) * period;
-            let felt = felt.get(sample).copied().unwrap_or_else(|| Felt::hover(self.gravity * period));
+            let sensed =
+                sensed_motions.get(sample).copied().unwrap_or_else(|| SensedMotion::hover(self.gravity * period));
             let omega = (now.angular_velocity + next.angular_velocity) * 0.5;
-            let at_hubs = hubs.turned(&self.layout, &airspeed, omega.z) * (period / strength)
-                + hubs.unlike(impulse, carried / period, &(felt.air / period));
-            let torque = impulse.torque + at_hubs - centre.cross(&(felt.whole / strength));
+            let at_hubs = hubs.torque(&self.layout, &airspeed, omega.z) * (period / strength)
+                + hubs.unlike(impulse, carried / period, &(sensed.air / period));
+            let torque = impulse.torque + at_hubs - centre.cross(&(sensed.whole / strength));
             let across = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
             rates += turning.component_mul(&(torque + coupling.component_mul(&across) * period));
             rates += (yawing - damping.component_mul(&omega)) * period;
@@ -163,7 +163,12 @@ impl<'a> Model<'a> {
     /// What an accelerometer at the centre of mass feels over each sample, m/s, body; `gusts` is b along the world's
     /// axes.
     #[must_use]
-    pub fn felt(&self, unknowns: &Unknowns, impulses: &[Impulse], gusts: &[Vec<f64>; 3]) -> Vec<Felt> {
+    pub fn sensed_motions(
+        &self,
+        unknowns: &Unknowns,
+        impulses: &[Impulse],
+        gusts: &[Vec<f64>; 3],
+    ) -> Vec<SensedMotion> {
         let Numbers { strength, drag, wind, hubs, .. } = self.numbers(unknowns);
         let feel = |(sample, (pair, impulse)): (usize, (&[Moment], &Impulse))| {
             let gust = Vector3::from_fn(|axis, _| gusts[axis].get(sample).copied().unwrap_or(0.0));
@@ -171,7 +176,7 @@ impl<'a> Model<'a> {
             let airspeed = airspeed(pair, &wind);
             let air = (gust - drag.component_mul(&airspeed)) * self.log.period;
             let carried = strength * impulse.thrust + hubs.lifted(&self.layout, &airspeed) * self.log.period;
-            Felt { whole: Vector3::z() * carried + air, air }
+            SensedMotion { whole: Vector3::z() * carried + air, air }
         };
         self.steps(impulses).enumerate().map(feel).collect()
     }
@@ -204,12 +209,16 @@ impl<'a> Model<'a> {
 
     fn numbers(&self, unknowns: &Unknowns) -> Numbers {
         Numbers {
-            strength: unknowns[STRENGTH].exp() / self.mass,
-            turning: three(unknowns, TURNING).map(f64::exp).component_div(&self.inertia),
-            drag: three(unknowns, DRAG),
-            centre: Vector3::new(unknowns[CENTRE], unknowns[CENTRE + 1], 0.0),
-            wind: Vector3::new(unknowns[WIND], unknowns[WIND + 1], 0.0),
-            hubs: Hubs { along: unknowns[HUBS], across: unknowns[HUBS + 1], lift: unknowns[HUBS + 2] },
+            strength: unknowns[STRENGTH_INDEX].exp() / self.mass,
+            turning: three(unknowns, INERTIA_STRENGTH_INDEX).map(f64::exp).component_div(&self.inertia),
+            drag: three(unknowns, DRAG_INDEX),
+            centre: Vector3::new(unknowns[CENTRE_INDEX], unknowns[CENTRE_INDEX + 1], 0.0),
+            wind: Vector3::new(unknowns[WIND_INDEX], unknowns[WIND_INDEX + 1], 0.0),
+            hubs: Hubs {
+                along: unknowns[HUB_FORCE_INDEX],
+                across: unknowns[HUB_FORCE_INDEX + 1],
+                lift: unknowns[HUB_FORCE_INDEX + 2],
+            },
         }
     }
 }
@@ -236,14 +245,14 @@ fn airspeed(pair: &[Moment], wind: &Vector3<f64>) -> Vector3<f64> {
 
 /// The specific force at the centre of mass over a sample, m/s, body.
 #[derive(Debug, Clone, Copy)]
-pub struct Felt {
+pub struct SensedMotion {
     /// R' (v_c' + g e3).
     whole: Vector3<f64>,
     /// A, of it what the air does.
     air: Vector3<f64>,
 }
 
-impl Felt {
+impl SensedMotion {
     /// A hover in still air.
     fn hover(weight: f64) -> Self {
         Self { whole: Vector3::z() * weight, air: Vector3::zeros() }

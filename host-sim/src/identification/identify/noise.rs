@@ -35,8 +35,8 @@ pub struct Whitening {
     gains: Vec<([f64; 2], f64)>,
 }
 
-/// The steps by which levels are searched, factors.
-const STEPS: [f64; 4] = [16.0, 4.0, 2.0, 1.4];
+/// The factors by which levels are searched.
+const LEVEL_SEARCH_FACTORS: [f64; 4] = [16.0, 4.0, 2.0, 1.4];
 
 impl Noise {
     /// Where the search begins.
@@ -46,7 +46,7 @@ impl Noise {
     #[must_use]
     pub fn fitted(self, residuals: &[f64], period: f64) -> Self {
         let mut best = (self.cost(residuals, period), self);
-        for step in STEPS {
+        for step in LEVEL_SEARCH_FACTORS {
             for _ in 0..4 {
                 let before = best.0;
                 for factor in [step, 1.0 / step] {
@@ -82,7 +82,7 @@ impl Noise {
         let whitening = self.whitening(residuals.len(), period);
         let white = whitening.whiten(residuals);
         let count = white.len() as f64;
-        let spread: f64 = (0..residuals.len()).skip(SETTLING).map(|k| 2.0 * whitening.at(k).1.ln()).sum();
+        let spread: f64 = (0..residuals.len()).skip(SETTLING_INNOVATIONS).map(|k| 2.0 * whitening.at(k).1.ln()).sum();
         count * (white.iter().map(|e| e * e).sum::<f64>() / count).ln() + spread
     }
 
@@ -114,7 +114,7 @@ impl Noise {
 }
 
 /// The innovations that say only where r begins.
-const SETTLING: usize = 3;
+const SETTLING_INNOVATIONS: usize = 3;
 
 impl Whitening {
     fn at(&self, sample: usize) -> ([f64; 2], f64) {
@@ -126,7 +126,7 @@ impl Whitening {
     pub fn whiten(&self, residuals: &[f64]) -> Vec<f64> {
         let mut white = Vec::with_capacity(residuals.len());
         self.run(residuals, |innovation, _| white.push(innovation));
-        white.drain(..SETTLING.min(white.len()));
+        white.drain(..SETTLING_INNOVATIONS.min(white.len()));
         white
     }
 

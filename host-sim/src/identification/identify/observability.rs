@@ -9,23 +9,23 @@ use super::flight_log::FlightLog;
 use super::quantities::{Quantities, Quantity};
 use crate::output::table::short;
 
-/// The shortest flight, s: three of the parts that uncertainties are known from, as a board's recorder holds.
-const SHORTEST: f64 = 15.0;
-/// Least body rates, root mean square, rad/s: twice those that noise alone causes in hover.
-const TURNING: f64 = 0.025;
-/// Least reference speeds along body x, y, z, root mean square about their mean, m/s: drag shows from there on.
-const MOVING: [f64; 3] = [0.25, 0.25, 0.08];
+/// Three of the parts that uncertainties are known from, as a board's recorder holds.
+const FLIGHT_MIN_S: f64 = 15.0;
+/// Root mean square: twice the rates that noise alone causes in hover.
+const BODY_RATE_MIN_RAD_PER_S: f64 = 0.025;
+/// Reference speeds along body x, y, z, root mean square about their mean: drag shows from there on.
+const SPEED_MIN_M_PER_S: [f64; 3] = [0.25, 0.25, 0.08];
 
 /// Plausible thrust scales: beyond them the rotors are others, or the log's thrust is not the commanded one.
-const SCALES: [f64; 2] = [0.3, 3.0];
+const THRUST_SCALE_RANGE: [f64; 2] = [0.3, 3.0];
 
 /// The missing excitation of a flight, a line each; empty if every quantity is excited.
 #[must_use]
 pub fn unexcited(log: &FlightLog) -> Vec<String> {
     let seconds = log.seconds();
-    if seconds < SHORTEST {
+    if seconds < FLIGHT_MIN_S {
         return vec![format!(
-            "the flight: {} s without a gap, at least {SHORTEST} are needed: fly longer, and lose no pose or record",
+            "the flight: {} s without a gap, at least {FLIGHT_MIN_S} are needed: fly longer, and lose no pose or record",
             short(seconds)
         )];
     }
@@ -42,15 +42,15 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
     ];
     for (axis, (what, fly)) in turns.into_iter().enumerate() {
         let found = deviation(&|at| log.moments[at].angular_velocity[axis]);
-        if found < TURNING {
+        if found < BODY_RATE_MIN_RAD_PER_S {
             missing.push(format!(
-                "{what}: body rates of {} rad/s (root mean square), at least {TURNING} are needed: fly quick \
+                "{what}: body rates of {} rad/s (root mean square), at least {BODY_RATE_MIN_RAD_PER_S} are needed: fly quick \
                  steps {fly}",
                 short(found)
             ));
         }
     }
-    for (axis, (name, least)) in ["x", "y", "z"].into_iter().zip(MOVING).enumerate() {
+    for (axis, (name, least)) in ["x", "y", "z"].into_iter().zip(SPEED_MIN_M_PER_S).enumerate() {
         let along = |at: usize| {
             let moment = &log.moments[at];
             moment.attitude.inverse_transform_vector(&moment.reference_velocity)[axis]
@@ -100,7 +100,7 @@ fn reach(identified: &Quantities, (_, quantity, _, unit, _): &Asked<'_>) -> f64 
 /// tells is contradictory or implausible.
 #[must_use]
 pub fn known(identified: &Quantities) -> Vec<String> {
-    let plausible = (SCALES[0]..=SCALES[1]).contains(&identified.thrust_scale.value);
+    let plausible = (THRUST_SCALE_RANGE[0]..=THRUST_SCALE_RANGE[1]).contains(&identified.thrust_scale.value);
     if identified.contradiction.is_some() || !plausible || identified.lag.interval[1] <= 0.0 {
         return vec![];
     }
@@ -120,7 +120,7 @@ pub fn unobservable(identified: &Quantities) -> Vec<String> {
     if let Some(contradiction) = &identified.contradiction {
         return vec![contradiction.clone()];
     }
-    let [least, greatest] = SCALES;
+    let [least, greatest] = THRUST_SCALE_RANGE;
     let scale = identified.thrust_scale.value;
     if !(least..=greatest).contains(&scale) {
         return vec![format!(

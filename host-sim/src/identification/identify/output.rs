@@ -29,7 +29,7 @@ pub struct Values {
 impl Values {
     /// The estimates.
     #[must_use]
-    pub fn of(identified: &Quantities) -> Self {
+    pub fn estimates(identified: &Quantities) -> Self {
         let value = |quantity: &Quantity| quantity.value;
         Self {
             mass: identified.mass.value,

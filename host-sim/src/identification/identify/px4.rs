@@ -7,7 +7,7 @@
 //! ```
 //!
 //! North, east, down and forward, right, down become z up and forward, left, up: y and z change their signs, of vectors
-//! and of quaternions. The clock is one of `PERIOD`; where a topic has a gap, or the vehicle stands, there is no
+//! and of quaternions. The clock is one of `CLOCK_PERIOD_S`; where a topic has a gap, or the vehicle stands, there is no
 //! flight.
 //!
 //! Supposed: a full output is a rotor's greatest thrust, and thrust goes with the square of the output, or as the
@@ -22,8 +22,7 @@ use controller_core::allocation::{Rotors, Spin};
 use nalgebra::{Vector2, Vector4};
 use std::f64::consts::{PI, SQRT_2};
 
-/// The topics that are read.
-pub const TOPICS: [&str; 9] = [
+pub(crate) const TOPICS_READ: [&str; 9] = [
     "actuator_motors",
     "actuator_outputs",
     "sensor_combined",
@@ -35,23 +34,22 @@ pub const TOPICS: [&str; 9] = [
     "vehicle_land_detected",
 ];
 
-/// Of the clock, s.
-const PERIOD: f64 = 0.01;
+const CLOCK_PERIOD_S: f64 = 0.01;
 
 /// What to set for a log that is quick enough.
-const PROFILE: &str = "set SDLOG_PROFILE to 25 (default, system identification, high rate) and fly again";
+const PROFILE_ADVICE: &str = "set SDLOG_PROFILE to 25 (default, system identification, high rate) and fly again";
 
-/// A gap in a topic: so many times its usual step.
-const GAP: f64 = 5.0;
+/// A gap in a topic: this many times its usual step.
+const GAP_STEPS: f64 = 5.0;
 
-/// PX4's IMU_GYRO_CUTOFF where it is not logged, Hz.
-const CUTOFF: f64 = 40.0;
+/// PX4's IMU_GYRO_CUTOFF where it is not logged.
+const GYRO_CUTOFF_HZ: f64 = 40.0;
 
 /// Where motors stand without `CA_ROTOR…` parameters, forward and left.
-const QUADROTOR: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0]];
+const QUADROTOR_PLACES: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0]];
 
-/// PX4's pulses: of no command and of a full one, us, where PWM_MIN and PWM_MAX are not logged.
-const PULSES: [f64; 2] = [1000.0, 2000.0];
+/// PX4's pulses of no command and of a full one where PWM_MIN and PWM_MAX are not logged.
+const PULSE_RANGE_US: [f64; 2] = [1000.0, 2000.0];
 
 /// Whether a log is PX4's.
 #[must_use]
@@ -67,17 +65,18 @@ pub fn read(log: &Ulog, rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog
     let places = places(log, rotors)?;
     let motors = motors(log, rotors.len())?;
     let rates = rates(log)?;
-    let attitude = turned(Track::of(log, "vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"], 0.1)?);
-    let velocity = turned(Track::of(log, "vehicle_local_position", &["vx", "vy", "vz"], 0.2)?);
+    let attitude = to_our_axes(Track::read_topic(log, "vehicle_attitude", &["q[0]", "q[1]", "q[2]", "q[3]"], 0.1)?);
+    let velocity = to_our_axes(Track::read_topic(log, "vehicle_local_position", &["vx", "vy", "vz"], 0.2)?);
     let reference = reference(log)?;
-    let landed = Track::of(log, "vehicle_land_detected", &["landed"], f64::INFINITY).ok();
+    let landed = Track::read_topic(log, "vehicle_land_detected", &["landed"], f64::INFINITY).ok();
     let (start, end) = (motors.times[0], motors.times[motors.times.len() - 1]);
     let linear = curve.unwrap_or(0.0);
-    let moments: Vec<Option<Moment>> = (0..((end - start) / PERIOD) as usize)
+    let moments: Vec<Option<Moment>> = (0..((end - start) / CLOCK_PERIOD_S) as usize)
         .map(|tick| {
-            let time = start + tick as f64 * PERIOD;
-            let levels = motors.mean(time, time + PERIOD)?;
-            let flies = landed.as_ref().is_none_or(|landed| landed.held(time).is_some_and(|landed| landed[0] == 0.0));
+            let time = start + tick as f64 * CLOCK_PERIOD_S;
+            let levels = motors.mean(time, time + CLOCK_PERIOD_S)?;
+            let flies =
+                landed.as_ref().is_none_or(|landed| landed.held_at(time).is_some_and(|landed| landed[0] == 0.0));
             if !flies || levels.iter().any(|level| !level.is_finite() || *level <= 0.0) {
                 return None;
             }
@@ -100,7 +99,7 @@ fn places(log: &Ulog, rotors: &Rotors) -> Result<Vec<usize>, String> {
     let stands = |index: usize| -> Option<Vector2<f64>> {
         let place = match (known(index, "PX"), known(index, "PY")) {
             (Some(forward), Some(right)) => Vector2::new(forward, -right),
-            _ => QUADROTOR.get(index).copied()?.into(),
+            _ => QUADROTOR_PLACES.get(index).copied()?.into(),
         };
         place.try_normalize(0.0)
     };
@@ -128,14 +127,14 @@ fn motors(log: &Ulog, count: usize) -> Result<Track, String> {
     let names = |of: &str| -> Vec<String> { (0..count).map(|index| format!("{of}[{index}]")).collect() };
     let track = |topic: &str, names: &[String]| {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Track::of(log, topic, &names, 1.25 * PERIOD)
+        Track::read_topic(log, topic, &names, 1.25 * CLOCK_PERIOD_S)
     };
     if log.topic("actuator_motors").is_some() {
         return track("actuator_motors", &names("control"));
     }
     let mut pulses = track("actuator_outputs", &names("output"))?;
     let known = |name: &str, usual: f64| log.parameters.get(name).copied().unwrap_or(usual);
-    let (least, most) = (known("PWM_MIN", PULSES[0]), known("PWM_MAX", PULSES[1]));
+    let (least, most) = (known("PWM_MIN", PULSE_RANGE_US[0]), known("PWM_MAX", PULSE_RANGE_US[1]));
     pulses.rows.iter_mut().flatten().for_each(|pulse| *pulse = (*pulse - least) / (most - least));
     Ok(pulses)
 }
@@ -143,27 +142,28 @@ fn motors(log: &Ulog, count: usize) -> Result<Track, String> {
 /// Body rates, rad/s, at the times at which they were true.
 fn rates(log: &Ulog) -> Result<Track, String> {
     let gyro = ["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]", "gyro_integral_dt"];
-    if let Ok(mut raw) = Track::of(log, "sensor_combined", &gyro, 1.25 * PERIOD) {
+    if let Ok(mut raw) = Track::read_topic(log, "sensor_combined", &gyro, 1.25 * CLOCK_PERIOD_S) {
         for (time, row) in raw.times.iter_mut().zip(&mut raw.rows) {
             *time -= 0.5e-6 * row.pop().unwrap_or(0.0);
         }
-        return Ok(turned(raw));
+        return Ok(to_our_axes(raw));
     }
-    let mut filtered = Track::of(log, "vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"], 1.25 * PERIOD)
-        .map_err(|what| format!("sensor_combined, or {what}"))?;
-    let cutoff = log.parameters.get("IMU_GYRO_CUTOFF").copied().unwrap_or(CUTOFF);
+    let mut filtered =
+        Track::read_topic(log, "vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"], 1.25 * CLOCK_PERIOD_S)
+            .map_err(|what| format!("sensor_combined, or {what}"))?;
+    let cutoff = log.parameters.get("IMU_GYRO_CUTOFF").copied().unwrap_or(GYRO_CUTOFF_HZ);
     // Of a low-pass of second order, at low frequencies.
     let late = if cutoff > 0.0 { SQRT_2 / (2.0 * PI * cutoff) } else { 0.0 };
     filtered.times.iter_mut().for_each(|time| *time -= late);
-    Ok(turned(filtered))
+    Ok(to_our_axes(filtered))
 }
 
 /// The velocity that was asked for before any feedback, m/s; where only positions were, from one to the next.
 fn reference(log: &Ulog) -> Result<Track, String> {
     let asked = |topic: &str, position: [&str; 3], velocity: [&str; 3]| -> Result<Track, String> {
         // Five a second are logged as a rule.
-        let positions = Track::of(log, topic, &position, 0.3)?;
-        let mut velocities = Track::of(log, topic, &velocity, 0.3)?;
+        let positions = Track::read_topic(log, topic, &position, 0.3)?;
+        let mut velocities = Track::read_topic(log, topic, &velocity, 0.3)?;
         let finite = |row: &[f64]| row.iter().all(|number| number.is_finite());
         for index in 0..velocities.rows.len() {
             if finite(&velocities.rows[index]) {
@@ -174,7 +174,7 @@ fn reference(log: &Ulog) -> Result<Track, String> {
             let pairs = positions.rows[after].iter().zip(&positions.rows[before]);
             velocities.rows[index] = pairs.map(|(after, before)| (after - before) / step).collect();
         }
-        Ok(turned(velocities))
+        Ok(to_our_axes(velocities))
     };
     let named = |name: &str| [0, 1, 2].map(|axis| format!("{name}[{axis}]"));
     let (position, velocity) = (named("position"), named("velocity"));
@@ -184,7 +184,7 @@ fn reference(log: &Ulog) -> Result<Track, String> {
 }
 
 /// The last two of the numbers with their signs changed.
-fn turned(mut track: Track) -> Track {
+fn to_our_axes(mut track: Track) -> Track {
     for row in &mut track.rows {
         row.iter_mut().rev().take(2).for_each(|number| *number = -*number);
     }
@@ -201,13 +201,13 @@ struct Track {
 
 impl Track {
     /// Columns of a topic whose usual step is `slowest` or less, s.
-    fn of(log: &Ulog, topic: &str, names: &[&str], slowest: f64) -> Result<Self, String> {
-        let series = log.topic(topic).ok_or(format!("{topic}: is missing: {PROFILE}"))?;
+    fn read_topic(log: &Ulog, topic: &str, names: &[&str], slowest: f64) -> Result<Self, String> {
+        let series = log.topic(topic).ok_or(format!("{topic}: is missing: {PROFILE_ADVICE}"))?;
         let missing = || format!("{topic}: has no {}: the log is of another PX4", names.join(", "));
         let rows = series.columns(names).ok_or_else(missing)?;
         let times: Vec<f64> = times(series).ok_or_else(missing)?;
         if times.len() < 2 {
-            return Err(format!("{topic}: a single record: {PROFILE}"));
+            return Err(format!("{topic}: a single record: {PROFILE_ADVICE}"));
         }
         if times.windows(2).any(|pair| pair[1] < pair[0]) {
             return Err(format!("{topic}: timestamp: must not decrease"));
@@ -217,10 +217,10 @@ impl Track {
         let usual = steps[steps.len() / 2];
         if usual > slowest {
             return Err(format!(
-                "{topic}: a record every {usual:.3} s, at least one every {slowest} s is needed: {PROFILE}"
+                "{topic}: a record every {usual:.3} s, at least one every {slowest} s is needed: {PROFILE_ADVICE}"
             ));
         }
-        Ok(Self { times, rows, gap: GAP * usual })
+        Ok(Self { times, rows, gap: GAP_STEPS * usual })
     }
 
     /// The number of the last record up to `time`.
@@ -244,7 +244,7 @@ impl Track {
     }
 
     /// The last record's numbers.
-    fn held(&self, time: f64) -> Option<&[f64]> {
+    fn held_at(&self, time: f64) -> Option<&[f64]> {
         Some(&self.rows[self.before(time)?])
     }
 

@@ -4,7 +4,7 @@
 //! all of these are linear, so they are combined by weighted least squares, unless they contradict each other
 //! ([`super::agreement`]). Without a scale or a stand, m and c are not observable apart: then the file's mass is used.
 //!
-//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student`]). The report states
+//! Each *interval* is the estimate and so many standard uncertainties to either side ([`student_t`]). The report states
 //! sixteen quantities at once, and all true values together are to be in their intervals in 95 of 100 flights.
 //! Bonferroni's inequality asks of each of them 1 - 0.05 / 16, whatever their correlation. An uncertainty from a few
 //! parts of a flight is itself uncertain: errors over uncertainties follow Student's t with one degree of freedom less
@@ -14,13 +14,13 @@
 use super::agreement::{Entry, Known, contradiction};
 use super::bench::Bench;
 use super::fit::Fit;
-use super::model::{CENTRE, DRAG, SQUARED_LAG, STRENGTH, WHOLE_DELAY};
-use super::student;
+use super::model::{CENTRE_INDEX, DRAG_INDEX, SQUARED_LAG_INDEX, STRENGTH_INDEX, WHOLE_DELAY_INDEX};
+use super::student_t;
 use controller_core::vehicle::Vehicle;
 use nalgebra::{SMatrix, SVector};
 
-/// Relative uncertainty of the file's mass where no bench gives it: as good as exact.
-const TAKEN: f64 = 1e-6;
+/// Of the file's mass where no bench gives it: as good as exact.
+const FILE_MASS_UNCERTAINTY_SHARE: f64 = 1e-6;
 
 /// One number of a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +91,7 @@ impl Quantities {
     /// If the two cannot be combined; finite numbers can.
     pub fn combined(fit: &Fit, bench: &Bench, vehicle: &Vehicle, late: f64) -> Result<Self, String> {
         let (unknowns, covariance) = (&fit.unknowns, &fit.covariance);
-        let coverage = student::coverage(fit.blocks);
+        let coverage = student_t::coverage(fit.blocks);
         let direct = |index: usize| Quantity::new(unknowns[index], covariance[(index, index)].sqrt(), coverage);
         let (Known { values, covariance: spread }, contradiction) =
             logarithms(fit, bench, vehicle).ok_or("flight and bench cannot be combined")?;
@@ -103,12 +103,12 @@ impl Quantities {
             let known = direct(1 + axis);
             Quantity::exponential(-known.value, known.uncertainty, f64::from(vehicle.inertia[axis]), coverage)
         };
-        let strength = direct(STRENGTH);
-        let whole = direct(WHOLE_DELAY);
+        let strength = direct(STRENGTH_INDEX);
+        let whole = direct(WHOLE_DELAY_INDEX);
         let whole_delay = Quantity::new(whole.value - late, whole.uncertainty, coverage);
-        let lag = lag(&direct(SQUARED_LAG), &whole, coverage);
+        let lag = lag(&direct(SQUARED_LAG_INDEX), &whole, coverage);
         let drag = |axis: usize| {
-            let of_mass = direct(DRAG + axis);
+            let of_mass = direct(DRAG_INDEX + axis);
             let relative = mass.uncertainty / mass.value * of_mass.value;
             Quantity::new(mass.value * of_mass.value, mass.value * of_mass.uncertainty.hypot(relative), coverage)
         };
@@ -121,7 +121,7 @@ impl Quantities {
             whole_delay,
             lag,
             delay: delay(&lag, &whole_delay, coverage),
-            centre_of_mass: [direct(CENTRE), direct(CENTRE + 1)],
+            centre_of_mass: [direct(CENTRE_INDEX), direct(CENTRE_INDEX + 1)],
             drag: [0, 1, 2].map(drag),
             mass_is_measured: bench.mass.is_some() || bench.thrust_scale.is_some(),
             coverage,
@@ -136,29 +136,29 @@ impl Quantities {
 fn lag(squared: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let root = |value: f64| value.max(0.0).sqrt().min(whole.interval[1].max(0.0));
     let interval = squared.interval.map(root);
-    spanned(root(squared.value).min(whole.value).max(interval[0]), interval, coverage)
+    from_interval(root(squared.value).min(whole.value).max(interval[0]), interval, coverage)
 }
 
 /// The rest of the whole.
 fn delay(lag: &Quantity, whole: &Quantity, coverage: f64) -> Quantity {
     let [least, greatest] = [whole.interval[0] - lag.interval[1], whole.interval[1] - lag.interval[0]];
-    spanned((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)], coverage)
+    from_interval((whole.value - lag.value).max(0.0), [least.max(0.0), greatest.max(0.0)], coverage)
 }
 
-fn spanned(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
+fn from_interval(value: f64, interval: [f64; 2], coverage: f64) -> Quantity {
     Quantity { value, uncertainty: (interval[1] - interval[0]) / (2.0 * coverage), interval }
 }
 
 /// Flight and bench combined, and in words how they contradict each other, if they do.
 fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Option<String>)> {
-    const SHARES: [[f64; 5]; 4] = [
+    const LOGARITHM_SHARES: [[f64; 5]; 4] = [
         [-1.0, 1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, -1.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, -1.0, 0.0],
         [0.0, 1.0, 0.0, 0.0, -1.0],
     ];
     let flown = SMatrix::<f64, 4, 4>::from_fn(|i, j| fit.covariance[(i, j)]).try_inverse()?;
-    let shares = SMatrix::<f64, 4, 5>::from_fn(|i, j| SHARES[i][j]);
+    let shares = SMatrix::<f64, 4, 5>::from_fn(|i, j| LOGARITHM_SHARES[i][j]);
     let values = SVector::<f64, 4>::from_fn(|i, _| fit.unknowns[i]);
     let mut information = shares.transpose() * flown * shares;
     let mut pull = shares.transpose() * flown * values;
@@ -171,7 +171,7 @@ fn logarithms(fit: &Fit, bench: &Bench, vehicle: &Vehicle) -> Option<(Known, Opt
     let covariance = information.try_inverse()?;
     let known = Known { values: covariance * pull, covariance };
     let left = values - shares * known.values;
-    let freedom = (SHARES.len() + entries.len()).saturating_sub(known.values.len());
+    let freedom = (LOGARITHM_SHARES.len() + entries.len()).saturating_sub(known.values.len());
     let contradiction = contradiction(&entries, &known, left.dot(&(flown * left)), freedom, fit.blocks);
     Some((known, contradiction))
 }
@@ -189,7 +189,7 @@ fn entries(bench: &Bench, vehicle: &Vehicle) -> Vec<Entry> {
     let mut entries = Vec::new();
     match (bench.mass, bench.thrust_scale) {
         (Some(weighed), _) => entries.push(entry("weighing", of_mass, (weighed.value / mass).ln(), weighed.relative())),
-        (None, None) => entries.push(entry("the file's vehicle.mass", of_mass, 0.0, TAKEN)),
+        (None, None) => entries.push(entry("the file's vehicle.mass", of_mass, 0.0, FILE_MASS_UNCERTAINTY_SHARE)),
         (None, Some(_)) => {}
     }
     if let Some(scale) = bench.thrust_scale {

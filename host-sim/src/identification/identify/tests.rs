@@ -18,18 +18,18 @@ fn parse(text: &str) -> Scenario {
 
 #[test]
 fn what_is_left_is_made_white_by_the_noise_that_is_fitted_to_it() {
-    const PARTS: usize = 20;
+    const PART_COUNT: usize = 20;
     let truth = Noise { wander: 200.0, time: 2.0, walk: 0.5 };
     let (period, mut random) = (0.01, Xoshiro256PlusPlus::seed_from_u64(3));
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-    let decay = (-period / PARTS as f64 / truth.time).exp();
+    let decay = (-period / PART_COUNT as f64 / truth.time).exp();
     let (mut r, mut b) = (0.0, 0.0);
     let series: Vec<f64> = (0..8000)
         .map(|_| {
             let measured = r + normal();
             r += truth.walk * normal();
-            for _ in 0..PARTS {
-                r += period / PARTS as f64 * b;
+            for _ in 0..PART_COUNT {
+                r += period / PART_COUNT as f64 * b;
                 b = decay * b + truth.wander * (1.0 - decay * decay).sqrt() * normal();
             }
             0.003 * measured

@@ -6,7 +6,7 @@
 use super::flight_log::{FlightLog, Moment, Source, moment};
 use super::px4;
 use crate::identification::ulog::reader::{Series, Ulog};
-use crate::identification::ulog::topics::TICK;
+use crate::identification::ulog::topics::TICK_TOPIC;
 use controller_core::allocation::Rotors;
 
 /// Reads the flight of a recording; what is to be known of PX4's is `rotors` and the `curve` of their thrust.
@@ -14,8 +14,8 @@ use controller_core::allocation::Rotors;
 /// # Errors
 /// The file's error, or what it lacks.
 pub fn read(bytes: &[u8], rotors: &Rotors, curve: Option<f64>) -> Result<FlightLog, String> {
-    let log = Ulog::read(bytes, &[&[TICK], &px4::TOPICS[..]].concat())?;
-    let flight = match log.topic(TICK) {
+    let log = Ulog::read(bytes, &[&[TICK_TOPIC], &px4::TOPICS_READ[..]].concat())?;
+    let flight = match log.topic(TICK_TOPIC) {
         Some(ticks) => own(ticks),
         None if px4::is_one(&log) => px4::read(&log, rotors, curve),
         None => Err("holds no record of a tick, nor PX4's actuator_motors or actuator_outputs".to_owned()),

@@ -6,7 +6,7 @@ use toml_edit::{DocumentMut, Item};
 /// The most changes that an error lists.
 const LISTED_MAX: usize = 6;
 /// The longest value that an error shows, characters.
-const SHOWN_MAX: usize = 60;
+const VALUE_LETTERS_MAX: usize = 60;
 
 /// Why `new` must not take the place of `existing` unasked: the numbers that would change; none if both are the same.
 #[must_use]
@@ -25,9 +25,11 @@ pub fn objection(existing: &str, new: &str) -> Option<String> {
     let mut changes: Vec<String> = Vec::new();
     for path in existing.keys().chain(new.keys().filter(|path| !existing.contains_key(*path))) {
         let become_what = match (existing.get(path), new.get(path)) {
-            (Some(old), Some(new)) if old != new => format!("{path} = {} would become {}", shown(old), shown(new)),
-            (Some(old), None) => format!("{path} = {} would go", shown(old)),
-            (None, Some(new)) => format!("{path} = {} would come", shown(new)),
+            (Some(old), Some(new)) if old != new => {
+                format!("{path} = {} would become {}", quoted_value(old), quoted_value(new))
+            }
+            (Some(old), None) => format!("{path} = {} would go", quoted_value(old)),
+            (None, Some(new)) => format!("{path} = {} would come", quoted_value(new)),
             _ => continue,
         };
         changes.push(become_what);
@@ -55,11 +57,11 @@ fn flatten(path: &str, item: &Item, values: &mut BTreeMap<String, String>) {
     }
 }
 
-fn shown(value: &str) -> String {
-    if value.chars().count() <= SHOWN_MAX {
+fn quoted_value(value: &str) -> String {
+    if value.chars().count() <= VALUE_LETTERS_MAX {
         return value.to_owned();
     }
-    value.chars().take(SHOWN_MAX).chain("…".chars()).collect()
+    value.chars().take(VALUE_LETTERS_MAX).chain("…".chars()).collect()
 }
 
 #[cfg(test)]

@@ -7,10 +7,9 @@ use super::value::Value;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// How deep brackets may lie in each other.
-const DEEPEST: usize = 64;
+const BRACKET_DEPTH_MAX: usize = 64;
 /// How many values names may stand for, all together: lists of lists by name would grow without end.
-const MOST_REPEATED: usize = 10_000;
+const REPEATED_VALUES_MAX: usize = 10_000;
 
 /// What a file assigns at its outermost level, in its order: each name with its value, or with what of it cannot be
 /// worked out.
@@ -169,8 +168,8 @@ impl<'a> Reader<'a> {
 
     /// What `read` reads, unless it lies too deep.
     fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, String>) -> Result<T, String> {
-        if self.depth >= DEEPEST {
-            return self.refused(&format!("lies in more than {DEEPEST} brackets"));
+        if self.depth >= BRACKET_DEPTH_MAX {
+            return self.refused(&format!("lies in more than {BRACKET_DEPTH_MAX} brackets"));
         }
         self.depth += 1;
         let read = read(self);
@@ -224,9 +223,9 @@ impl<'a> Reader<'a> {
         }
         if let Some(value) = self.names.get(name) {
             self.repeated += value.size();
-            return match self.repeated <= MOST_REPEATED {
+            return match self.repeated <= REPEATED_VALUES_MAX {
                 true => Ok(value.clone()),
-                false => self.refused(&format!("names stand for more than {MOST_REPEATED} values")),
+                false => self.refused(&format!("names stand for more than {REPEATED_VALUES_MAX} values")),
             };
         }
         let function = name.rsplit('.').next().unwrap_or_default();

@@ -19,7 +19,7 @@ use roxmltree::Node;
 use std::collections::HashMap;
 
 /// What actuators can be that push or turn at a site.
-const ACTUATORS: [&str; 2] = ["motor", "general"];
+const ACTUATOR_ELEMENTS: [&str; 2] = ["motor", "general"];
 
 /// Reads the document of `mujoco`.
 ///
@@ -40,7 +40,7 @@ pub fn read(mujoco: &Node) -> Result<VehicleNumbers, String> {
     let whole = Part::together(&body.parts).filter(|_| body.unknown.is_none());
     let mut actuators = Vec::new();
     for node in children(mujoco, "actuator").flat_map(|list| list.children()) {
-        if ACTUATORS.contains(&node.tag_name().name()) {
+        if ACTUATOR_ELEMENTS.contains(&node.tag_name().name()) {
             actuators.extend(Actuator::read(&node, &body, &settings)?);
         }
     }

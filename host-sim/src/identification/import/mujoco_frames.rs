@@ -7,8 +7,8 @@ use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vec
 use roxmltree::Node;
 use std::f64::consts::PI;
 
-/// MuJoCo's density of a geom that states neither mass nor density, kg/m^3.
-const DENSITY: f64 = 1000.0;
+/// MuJoCo's density of a geom that states neither mass nor density.
+const DENSITY_KG_PER_M3: f64 = 1000.0;
 /// Ways to write an orientation that are not read.
 const NOT_READ: [&str; 2] = ["xyaxes", "zaxis"];
 
@@ -132,7 +132,7 @@ fn stated(inertial: &Node, settings: &Settings) -> Result<Part, String> {
 fn of_geom(geom: &Node, settings: &Settings) -> Result<Option<Part>, Result<String, String>> {
     let get = |name: &str| settings.attribute(geom, name);
     let given = |name: &str| get(name).map(|text| number(geom, name, text)).transpose().map_err(Err);
-    let (kg, density) = (given("mass")?, given("density")?.unwrap_or(DENSITY));
+    let (kg, density) = (given("mass")?, given("density")?.unwrap_or(DENSITY_KG_PER_M3));
     let kind = get("type").unwrap_or(if geom.has_attribute("mesh") { "mesh" } else { "sphere" });
     if kg == Some(0.0) || kg.is_none() && density == 0.0 || matches!(kind, "plane" | "hfield") {
         return Ok(None);

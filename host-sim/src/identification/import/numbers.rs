@@ -95,9 +95,9 @@ impl VehicleNumbers {
 /// # Errors
 /// If they differ: the rotors of a scenario are alike.
 pub fn alike(what: &str, values: &[(String, f64)]) -> Result<Option<f64>, String> {
-    const ROUNDING: f64 = 1e-6;
+    const ALIKE_TOLERANCE_SHARE: f64 = 1e-6;
     let Some(((first_place, first), rest)) = values.split_first() else { return Ok(None) };
-    match rest.iter().find(|(_, value)| (value - first).abs() > ROUNDING * first.abs().max(value.abs())) {
+    match rest.iter().find(|(_, value)| (value - first).abs() > ALIKE_TOLERANCE_SHARE * first.abs().max(value.abs())) {
         None => Ok(Some(*first)),
         Some((place, other)) => Err(format!(
             "{place}: {what} must be the same for all rotors, found {other}, and {first} at {first_place}; write the \

@@ -11,12 +11,11 @@ use controller_core::allocation::Spin;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// PX4's parameters of which these are.
-const PREFIX: &str = "CA_ROTOR";
+const ROTOR_PARAMETER_PREFIX: &str = "CA_ROTOR";
 /// PX4's `CA_ROTORi_KM` where it is left out.
 const DEFAULT_KM: f64 = 0.05;
-/// The most rotors that PX4 knows.
-const MOST: f64 = 12.0;
+/// As PX4 has it.
+const ROTORS_MAX: f64 = 12.0;
 
 /// Reads an airframe script or a parameter file.
 ///
@@ -26,25 +25,28 @@ pub fn read(text: &str) -> Result<VehicleNumbers, String> {
     let parameters = parameters(text)?;
     let known = |name: &str| parameters.get(name).copied();
     let count = match known("CA_ROTOR_COUNT") {
-        Some(count) if count.fract() == 0.0 && (1.0..=MOST).contains(&count) => count as usize,
-        Some(count) => return Err(format!("CA_ROTOR_COUNT: must be a whole number from 1 to {MOST}, found {count}")),
+        Some(count) if count.fract() == 0.0 && (1.0..=ROTORS_MAX).contains(&count) => count as usize,
+        Some(count) => {
+            return Err(format!("CA_ROTOR_COUNT: must be a whole number from 1 to {ROTORS_MAX}, found {count}"));
+        }
         None => return Err("CA_ROTOR_COUNT: missing: without it PX4 has no rotors; add how many there are".to_owned()),
     };
     let mut position = Vec::new();
     let mut spin = Vec::new();
     for index in 0..count {
-        let of = |what: &str, otherwise: f64| known(&format!("{PREFIX}{index}_{what}")).unwrap_or(otherwise);
+        let of =
+            |what: &str, otherwise: f64| known(&format!("{ROTOR_PARAMETER_PREFIX}{index}_{what}")).unwrap_or(otherwise);
         let axis = Vector3::new(of("AX", 0.0), of("AY", 0.0), of("AZ", -1.0));
         if !(axis.z < 0.0 && axis.xy().norm() <= 1e-3 * axis.norm()) {
             return Err(format!(
-                "{PREFIX}{index}_AX, _AY, _AZ: must point up, (0, 0, -1), found ({}, {}, {}): rotors push along body \
+                "{ROTOR_PARAMETER_PREFIX}{index}_AX, _AY, _AZ: must point up, (0, 0, -1), found ({}, {}, {}): rotors push along body \
                  z, and a tilted one cannot be described",
                 axis.x, axis.y, axis.z
             ));
         }
         if of("PX", 0.0) == 0.0 && of("PY", 0.0) == 0.0 {
             return Err(format!(
-                "{PREFIX}{index}_PX, _PY: missing: CA_ROTOR_COUNT says {count} rotors, and rotor {index} has no place: \
+                "{ROTOR_PARAMETER_PREFIX}{index}_PX, _PY: missing: CA_ROTOR_COUNT says {count} rotors, and rotor {index} has no place: \
                  add it, or set CA_ROTOR_COUNT to the rotors that are there"
             ));
         }
@@ -52,7 +54,11 @@ pub fn read(text: &str) -> Result<VehicleNumbers, String> {
         spin.push(match of("KM", DEFAULT_KM) {
             km if km > 0.0 => Spin::CounterClockwise,
             km if km < 0.0 => Spin::Clockwise,
-            _ => return Err(format!("{PREFIX}{index}_KM: must not be zero: its sign says which way the rotor turns")),
+            _ => {
+                return Err(format!(
+                    "{ROTOR_PARAMETER_PREFIX}{index}_KM: must not be zero: its sign says which way the rotor turns"
+                ));
+            }
         });
     }
     let thrust = Thrust::Greatest { thrust_min: 0.0, thrust_max: None, torque_per_thrust: None };
@@ -73,8 +79,9 @@ fn parameters(text: &str) -> Result<HashMap<&str, f64>, String> {
     let mut owner: Option<[&str; 2]> = None;
     for (index, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default();
-        let mut words = line.split_whitespace().skip_while(|word| !word.starts_with(PREFIX));
-        let before: Vec<&str> = line.split_whitespace().take_while(|word| !word.starts_with(PREFIX)).collect();
+        let mut words = line.split_whitespace().skip_while(|word| !word.starts_with(ROTOR_PARAMETER_PREFIX));
+        let before: Vec<&str> =
+            line.split_whitespace().take_while(|word| !word.starts_with(ROTOR_PARAMETER_PREFIX)).collect();
         let Some(name) = words.next() else { continue };
         let value = words.next().unwrap_or_default();
         let number = value.parse().ok().filter(|number: &f64| number.is_finite());

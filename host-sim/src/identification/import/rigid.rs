@@ -55,10 +55,10 @@ pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
 /// # Errors
 /// If it does not push along body z; `place` says whose pose that is.
 pub fn upright(place: &str, pose: &Isometry3<f64>) -> Result<Vector3<f64>, String> {
-    const LEVEL: f64 = 1e-3;
+    const TILT_MAX: f64 = 1e-3;
     let axis = pose.rotation * Vector3::z();
     let tilt = (axis - Vector3::z()).norm();
-    if tilt <= LEVEL {
+    if tilt <= TILT_MAX {
         return Ok(pose.translation.vector);
     }
     Err(format!(

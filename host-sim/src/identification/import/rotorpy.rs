@@ -11,7 +11,7 @@ use controller_core::allocation::Spin;
 use nalgebra::Vector3;
 
 /// A key that every such dictionary has.
-const MARK: &str = "rotor_pos";
+const MARK_KEY: &str = "rotor_pos";
 /// What RotorPy calls its dictionaries.
 const USUAL_NAME: &str = "quad_params";
 
@@ -21,7 +21,7 @@ const USUAL_NAME: &str = "quad_params";
 /// Names the line, or the key of the dictionary.
 pub fn read(text: &str) -> Result<VehicleNumbers, String> {
     let assigned = assignments(text);
-    let is_vehicle = |value: &Result<Value, String>| value.as_ref().is_ok_and(|value| value.get(MARK).is_some());
+    let is_vehicle = |value: &Result<Value, String>| value.as_ref().is_ok_and(|value| value.get(MARK_KEY).is_some());
     let vehicles: Vec<_> = assigned.iter().filter(|(_, value)| is_vehicle(value)).collect();
     let usual = vehicles.iter().find(|(name, _)| name == USUAL_NAME);
     match (usual, vehicles.as_slice()) {
@@ -29,7 +29,7 @@ pub fn read(text: &str) -> Result<VehicleNumbers, String> {
         (None, []) => {
             // Whatever could not be worked out is why.
             let refused = assigned.into_iter().find_map(|(name, value)| Some(format!("{name}: {}", value.err()?)));
-            Err(refused.unwrap_or_else(|| format!("no dictionary with {MARK:?} is assigned in it")))
+            Err(refused.unwrap_or_else(|| format!("no dictionary with {MARK_KEY:?} is assigned in it")))
         }
         (_, several) => {
             let names: Vec<&str> = several.iter().map(|(name, _)| name.as_str()).collect();
@@ -58,10 +58,11 @@ pub fn of_dictionary(dictionary: &Value, name: &str) -> Result<VehicleNumbers, S
     let [xx, yy, zz] = ["Ixx", "Iyy", "Izz"].map(number);
     let products = [or_zero("Ixy")?, or_zero("Ixz")?, or_zero("Iyz")?];
     let moments = xx?.zip(yy?).zip(zz?);
-    let position = dictionary.get(MARK).map(positions).transpose()?;
+    let position = dictionary.get(MARK_KEY).map(positions).transpose()?;
     let spin = dictionary.get("rotor_directions").map(spins).transpose()?;
     let count = number("num_rotors")?;
-    for (key, found) in [(MARK, position.as_ref().map(Vec::len)), ("rotor_directions", spin.as_ref().map(Vec::len))] {
+    for (key, found) in [(MARK_KEY, position.as_ref().map(Vec::len)), ("rotor_directions", spin.as_ref().map(Vec::len))]
+    {
         if let (Some(count), Some(found)) = (count, found)
             && count != found as f64
         {
@@ -98,10 +99,10 @@ fn positions(value: &Value) -> Result<Vec<Vector3<f64>>, String> {
     let each: Vec<&Value> = match value {
         Value::Dictionary(entries) => entries.iter().map(|(_, position)| position).collect(),
         Value::List(positions) => positions.iter().collect(),
-        _ => return Err(format!("{MARK}: must be a dictionary of positions [x, y, z]")),
+        _ => return Err(format!("{MARK_KEY}: must be a dictionary of positions [x, y, z]")),
     };
     let position = |(index, value): (usize, &Value)| {
-        let place = format!("{MARK}, position {}", index + 1);
+        let place = format!("{MARK_KEY}, position {}", index + 1);
         match value {
             Value::List(list) if list.len() == 3 => {
                 let [x, y, z] = [0, 1, 2].map(|axis| finite(&place, &list[axis]));
@@ -114,12 +115,12 @@ fn positions(value: &Value) -> Result<Vec<Vector3<f64>>, String> {
 }
 
 fn spins(value: &Value) -> Result<Vec<Spin>, String> {
-    const WANTED: &str = "rotor_directions: must be a list of 1 (clockwise) and -1 (counter-clockwise)";
-    let Value::List(directions) = value else { return Err(WANTED.to_owned()) };
+    const DIRECTIONS_REFUSAL: &str = "rotor_directions: must be a list of 1 (clockwise) and -1 (counter-clockwise)";
+    let Value::List(directions) = value else { return Err(DIRECTIONS_REFUSAL.to_owned()) };
     let spin = |value: &Value| match value {
         Value::Number(1.0) => Ok(Spin::Clockwise),
         Value::Number(-1.0) => Ok(Spin::CounterClockwise),
-        _ => Err(WANTED.to_owned()),
+        _ => Err(DIRECTIONS_REFUSAL.to_owned()),
     };
     directions.iter().map(spin).collect()
 }

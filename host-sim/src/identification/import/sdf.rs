@@ -10,7 +10,7 @@
 use super::numbers::{Actuation, RotorNumbers, Thrust, VehicleNumbers, alike};
 use super::rigid::{Part, upright};
 use super::sdf_model::Model;
-use super::sdf_motor::NUMBERS;
+use super::sdf_motor::MOTOR_NUMBERS;
 use roxmltree::Node;
 use std::path::Path;
 
@@ -40,8 +40,8 @@ pub fn read(sdf: &Node, file: &Path) -> Result<VehicleNumbers, String> {
         let stands = stands.map_err(|what| format!("{}: linkName: {what}", motor.place))?;
         position.push(upright(&motor.place, &stands)? - centre);
     }
-    let mut of_all = [None; NUMBERS.len()];
-    for (index, (number, name)) in of_all.iter_mut().zip(NUMBERS).enumerate() {
+    let mut of_all = [None; MOTOR_NUMBERS.len()];
+    for (index, (number, name)) in of_all.iter_mut().zip(MOTOR_NUMBERS).enumerate() {
         let stated: Vec<_> =
             motors.iter().filter_map(|motor| Some((motor.place.clone(), motor.numbers[index]?))).collect();
         if !stated.is_empty() && stated.len() < motors.len() {

@@ -9,7 +9,7 @@ use nalgebra::Isometry3;
 use std::collections::BTreeMap;
 
 /// Between the names of models.
-const SCOPE: &str = "::";
+const SCOPE_SEPARATOR: &str = "::";
 /// The most frames of a vehicle.
 const FRAMES_MAX: usize = 2000;
 /// The longest chain of frames that are relative to each other.
@@ -37,7 +37,7 @@ impl Frames {
     /// The whole name of what is called `name` in `model`.
     #[must_use]
     pub fn whole_name(model: &str, name: &str) -> String {
-        if model.is_empty() { name.to_owned() } else { format!("{model}{SCOPE}{name}") }
+        if model.is_empty() { name.to_owned() } else { format!("{model}{SCOPE_SEPARATOR}{name}") }
     }
 
     /// Adds a frame by its whole name.
@@ -72,12 +72,12 @@ impl Frames {
         // LINK from outside its model, or MODEL::LINK from within.
         let mut rest = Some(name);
         while let Some(ending) = rest {
-            let within = format!("{SCOPE}{ending}");
+            let within = format!("{SCOPE_SEPARATOR}{ending}");
             let mut candidates = self.0.keys().filter(|whole| *whole == ending || whole.ends_with(&within));
             match (candidates.next(), candidates.next()) {
                 (Some(one), None) => return Ok(one),
                 (Some(one), Some(other)) => return Err(format!("{name:?} may be {one} or {other}: write which")),
-                (None, _) => rest = ending.split_once(SCOPE).map(|(_, rest)| rest),
+                (None, _) => rest = ending.split_once(SCOPE_SEPARATOR).map(|(_, rest)| rest),
             }
         }
         Err(format!("there is no {kind} {name:?} in the model, nor in what it includes"))

@@ -5,14 +5,14 @@ use controller_core::allocation::Spin;
 use roxmltree::Node;
 
 /// What the plugin has in the name of its file.
-const FILES: [&str; 2] = ["multicopter-motor-model", "gazebo_motor_model"];
+const PLUGIN_FILES: [&str; 2] = ["multicopter-motor-model", "gazebo_motor_model"];
 /// How the plugin's own name ends where its file is called otherwise, in `gz::sim::systems` as in `ignition::gazebo`.
-const CLASS: &str = "::MulticopterMotorModel";
+const PLUGIN_CLASS: &str = "::MulticopterMotorModel";
 /// The motor's number: the newer name and the older one.
 const MOTOR_NUMBER: [&str; 2] = ["actuator_number", "motorNumber"];
 
 /// What a motor model may state.
-pub const NUMBERS: [&str; 6] =
+pub const MOTOR_NUMBERS: [&str; 6] =
     ["motorConstant", "momentConstant", "maxRotVelocity", "timeConstantUp", "timeConstantDown", "rotorDragCoefficient"];
 
 /// One motor.
@@ -27,15 +27,16 @@ pub struct Motor {
     pub number: f64,
     /// Seen from above.
     pub spin: Spin,
-    /// In the order of [`NUMBERS`].
-    pub numbers: [Option<f64>; NUMBERS.len()],
+    /// In the order of [`MOTOR_NUMBERS`].
+    pub numbers: [Option<f64>; MOTOR_NUMBERS.len()],
 }
 
 /// Whether an element is a motor model.
 #[must_use]
 pub fn is_motor(node: &Node) -> bool {
     let [file, name] = ["filename", "name"].map(|of| node.attribute(of).unwrap_or_default());
-    node.has_tag_name("plugin") && (FILES.iter().any(|known| file.contains(known)) || name.ends_with(CLASS))
+    node.has_tag_name("plugin")
+        && (PLUGIN_FILES.iter().any(|known| file.contains(known)) || name.ends_with(PLUGIN_CLASS))
 }
 
 /// Reads the motor of `plugin` in `model`.
@@ -55,8 +56,8 @@ pub fn motor(plugin: &Node, model: &str) -> Result<Motor, String> {
         "ccw" => Spin::CounterClockwise,
         other => return Err(format!("{place}: turningDirection: must be cw or ccw, found {other:?}")),
     };
-    let mut stated = [None; NUMBERS.len()];
-    for (value, name) in stated.iter_mut().zip(NUMBERS) {
+    let mut stated = [None; MOTOR_NUMBERS.len()];
+    for (value, name) in stated.iter_mut().zip(MOTOR_NUMBERS) {
         *value = child_number(plugin, name)?;
         if let Some(value) = value.filter(|value| *value < 0.0) {
             return Err(format!("{place}: {name}: must not be negative, found {value}"));

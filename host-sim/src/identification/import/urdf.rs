@@ -17,12 +17,11 @@ use std::f64::consts::TAU;
 
 /// rad/s of a revolution a minute.
 const PER_MINUTE: f64 = TAU / 60.0;
-/// What `thrust2weight` counts a weight with, m/s^2.
-const GRAVITY: f64 = 9.81;
-/// The most links of a vehicle.
-const MOST: usize = 200;
+/// `thrust2weight` counts a weight with it.
+const WEIGHT_GRAVITY_M_PER_S2: f64 = 9.81;
+const LINKS_MAX: usize = 200;
 /// The robot whose rotors turn the other way.
-const RACER: &str = "racer";
+const RACER_ROBOT: &str = "racer";
 
 /// Reads the document of `robot`.
 ///
@@ -55,7 +54,7 @@ pub fn read(robot: &Node) -> Result<VehicleNumbers, String> {
     rotors.sort_by_key(|(index, _)| *index);
     let centre = whole.map(|whole| whole.centre).unwrap_or_default();
     let position: Vec<_> = rotors.iter().map(|(_, position)| position - centre).collect();
-    let is_racer = robot.attribute("name") == Some(RACER);
+    let is_racer = robot.attribute("name") == Some(RACER_ROBOT);
     let properties = child(robot, "properties");
     let spin = position.iter().enumerate().map(|(index, _)| match (index % 2 == 0) ^ is_racer {
         true => Spin::CounterClockwise,
@@ -85,8 +84,8 @@ pub fn read(robot: &Node) -> Result<VehicleNumbers, String> {
 
 /// Every link, and where it stands in the frame of the root.
 fn links<'a, 'input>(robot: &Node<'a, 'input>) -> Result<Vec<(Node<'a, 'input>, Isometry3<f64>)>, String> {
-    if let Some(link) = children(robot, "link").nth(MOST) {
-        return Err(format!("{}: more than {MOST} links", place(&link)));
+    if let Some(link) = children(robot, "link").nth(LINKS_MAX) {
+        return Err(format!("{}: more than {LINKS_MAX} links", place(&link)));
     }
     let mut joints = HashMap::new();
     for joint in children(robot, "joint") {
@@ -139,7 +138,7 @@ fn thrust(properties: Option<&Node>, mass: Option<f64>, rotors: usize) -> Result
     };
     let (kf, km, lift) = (positive("kf")?, positive("km")?, positive("thrust2weight")?);
     let greatest = kf.zip(mass).zip(lift).filter(|_| rotors > 0).map(|((kf, mass), lift)| {
-        let each = lift * mass * GRAVITY / rotors as f64;
+        let each = lift * mass * WEIGHT_GRAVITY_M_PER_S2 / rotors as f64;
         (each / kf).sqrt() * PER_MINUTE
     });
     Ok(Thrust::BySpeed {

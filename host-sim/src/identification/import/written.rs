@@ -9,14 +9,13 @@ use scenario::section::MISSING;
 use toml_edit::Value;
 
 /// Products of inertia, relative to the greatest moment, that a scenario takes for zero.
-const ROUNDING: f64 = 1e-6;
+const INERTIA_PRODUCT_SHARE: f64 = 1e-6;
 /// The page about measuring.
-const PAGE: &str = "docs/identify.md";
-/// Longest line of a comment.
-const WIDTH: usize = 118;
+const MEASURING_PAGE: &str = "docs/identify.md";
+const COMMENT_COLUMNS_MAX: usize = 118;
 
 /// Each key that may be missing, its unit, and how to find it.
-const MEASURES: [(&str, &str, &str); 10] = [
+const HOW_TO_MEASURE: [(&str, &str, &str); 10] = [
     ("vehicle.mass", "kg", "weigh the vehicle as it flies, battery in (section 1)"),
     ("vehicle.inertia", "kg m^2, [x, y, z]", "hang it on two strings and time its swings about each axis (section 2)"),
     (
@@ -119,12 +118,13 @@ pub fn written(vehicle: &VehicleNumbers, name: &str, from: &str, wishes: &Wishes
 
 /// The mark of a missing number, with how to find it.
 fn measure(path: &str, key: &str) -> String {
-    let (unit, how) = MEASURES.iter().find(|(known, ..)| *known == path).map_or(("", ""), |(_, unit, how)| (unit, how));
-    comment(&format!("MISSING: {key}, {unit}: {how}: {PAGE}")) + &format!("{key} = \"{MISSING}\"\n")
+    let (unit, how) =
+        HOW_TO_MEASURE.iter().find(|(known, ..)| *known == path).map_or(("", ""), |(_, unit, how)| (unit, how));
+    comment(&format!("MISSING: {key}, {unit}: {how}: {MEASURING_PAGE}")) + &format!("{key} = \"{MISSING}\"\n")
 }
 
 fn comment(text: &str) -> String {
-    let options = textwrap::Options::new(WIDTH).initial_indent("# ").subsequent_indent("#   ");
+    let options = textwrap::Options::new(COMMENT_COLUMNS_MAX).initial_indent("# ").subsequent_indent("#   ");
     let shown: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     textwrap::fill(&shown, options) + "\n"
 }
@@ -222,7 +222,7 @@ fn vector(vector: &Vector3<f64>) -> String {
 }
 
 fn is_diagonal(matrix: &Matrix3<f64>) -> bool {
-    (matrix - Matrix3::from_diagonal(&matrix.diagonal())).amax() <= ROUNDING * matrix.diagonal().amax()
+    (matrix - Matrix3::from_diagonal(&matrix.diagonal())).amax() <= INERTIA_PRODUCT_SHARE * matrix.diagonal().amax()
 }
 
 /// The moments of a diagonal matrix, or all of it.

@@ -3,8 +3,8 @@
 
 use roxmltree::{Document, Node};
 
-/// How deep elements may lie in each other: no vehicle takes more, and readers recurse.
-const DEEPEST: usize = 64;
+/// No vehicle nests deeper, and readers recurse.
+const ELEMENT_DEPTH_MAX: usize = 64;
 
 /// Reads a document.
 ///
@@ -22,9 +22,9 @@ pub fn document(text: &str) -> Result<Document<'_>, String> {
         ),
         error => format!("not XML: {error}"),
     })?;
-    let too_deep = document.descendants().find(|node| node.ancestors().nth(DEEPEST).is_some());
+    let too_deep = document.descendants().find(|node| node.ancestors().nth(ELEMENT_DEPTH_MAX).is_some());
     match too_deep.map(|node| place(&node)) {
-        Some(place) => Err(format!("{place}: lies in more than {DEEPEST} elements")),
+        Some(place) => Err(format!("{place}: lies in more than {ELEMENT_DEPTH_MAX} elements")),
         None => Ok(document),
     }
 }

@@ -5,11 +5,10 @@
 
 use std::collections::BTreeMap;
 
-/// The longest message, bytes.
-const LONGEST: usize = u16::MAX as usize;
+const MESSAGE_MAX_BYTES: usize = u16::MAX as usize;
 
-/// How deep messages may lie in one another: a format that holds itself has no end.
-const DEEPEST: usize = 8;
+/// A format that holds itself has no end.
+const NESTING_DEPTH_MAX: usize = 8;
 
 /// A number of a message.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +36,7 @@ pub enum Number {
 impl Number {
     /// The number of this name; none for a message of another format.
     #[must_use]
-    pub fn of(kind: &str) -> Option<Self> {
+    pub fn from_name(kind: &str) -> Option<Self> {
         Some(match kind {
             "uint64_t" => Self::Unsigned(8),
             "uint32_t" => Self::Unsigned(4),
@@ -130,7 +129,7 @@ impl Formats {
         fields: &mut Vec<Field>,
     ) -> Result<usize, String> {
         let text = self.0.get(name).ok_or(format!("there is no format {name:?}"))?;
-        if depth > DEEPEST {
+        if depth > NESTING_DEPTH_MAX {
             return Err(format!("the format {name:?} holds itself"));
         }
         for field in text.split_terminator(';') {
@@ -145,7 +144,7 @@ impl Formats {
             for index in 0..count.unwrap_or(1) {
                 let place = count.map_or_else(String::new, |_| format!("[{index}]"));
                 let whole = format!("{prefix}{called}{place}");
-                match Number::of(kind) {
+                match Number::from_name(kind) {
                     Some(number) => {
                         if !called.starts_with("_padding") {
                             fields.push(Field { name: whole, at, number });
@@ -158,8 +157,8 @@ impl Formats {
                         at = if end > at { end } else { return Err(format!("the format {kind:?} is empty")) };
                     }
                 }
-                if at > LONGEST || fields.len() > LONGEST {
-                    return Err(format!("{name}: is longer than {LONGEST} bytes"));
+                if at > MESSAGE_MAX_BYTES || fields.len() > MESSAGE_MAX_BYTES {
+                    return Err(format!("{name}: is longer than {MESSAGE_MAX_BYTES} bytes"));
                 }
             }
         }

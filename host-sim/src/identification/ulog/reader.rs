@@ -10,14 +10,14 @@
 //! its length is wrong unless it is its topic's, and reading goes on where messages are found to follow one another.
 
 use super::formats::{Field, Formats, Number};
-use super::{HEAD, MAGIC};
+use super::{HEAD_BYTES, MAGIC};
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// Message B: whether something is appended, which nothing here is interested in, and what no reader of this version
 /// understands.
-const FLAGS: [usize; 2] = [8, 16];
-const APPENDED: u8 = 1;
+const FLAG_WORDS: [usize; 2] = [8, 16];
+const APPENDED_FLAG: u8 = 1;
 
 /// The kinds of messages of the format's version 1, with those that mean nothing here; and Z, with which the firmware
 /// fills the sectors of a card.
@@ -137,13 +137,13 @@ impl Ulog {
     /// # Errors
     /// If it is no ULog, or one that needs a newer reader.
     pub fn read(bytes: &[u8], wanted: &[&str]) -> Result<Self, String> {
-        if !bytes.starts_with(&MAGIC) || bytes.len() < HEAD {
+        if !bytes.starts_with(&MAGIC) || bytes.len() < HEAD_BYTES {
             return Err("is no ULog".to_owned());
         }
         let mut reading = Reading { wanted, log: Self::default(), formats: Formats::default(), open: BTreeMap::new() };
         reading.log.start =
-            bytes.get(HEAD - 8..HEAD).and_then(|eight| eight.try_into().ok()).map_or(0, u64::from_le_bytes);
-        let (mut at, mut messages) = (HEAD, bytes);
+            bytes.get(HEAD_BYTES - 8..HEAD_BYTES).and_then(|eight| eight.try_into().ok()).map_or(0, u64::from_le_bytes);
+        let (mut at, mut messages) = (HEAD_BYTES, bytes);
         while let Some((kind, end)) = header(messages, at) {
             let body = messages.get(at + 3..end);
             let is_followed = body.is_some() && goes_on(messages, end);
@@ -182,14 +182,14 @@ impl Ulog {
 
 /// Where something else is appended, if it is.
 fn appended(flags: &[u8]) -> Result<Option<usize>, String> {
-    let [begin, end] = FLAGS;
+    let [begin, end] = FLAG_WORDS;
     let incompatible = flags.get(begin..end).ok_or("flags are cut short")?;
     let [first, rest @ ..] = incompatible else { return Ok(None) };
-    if first & !APPENDED != 0 || rest.iter().any(|byte| *byte != 0) {
+    if first & !APPENDED_FLAG != 0 || rest.iter().any(|byte| *byte != 0) {
         return Err("is of a ULog that needs a newer reader".to_owned());
     }
     let offset = flags.get(end..end + 8).and_then(|eight| eight.try_into().ok()).map_or(0, u64::from_le_bytes);
-    Ok((first & APPENDED != 0 && offset > 0).then(|| usize::try_from(offset).unwrap_or(usize::MAX)))
+    Ok((first & APPENDED_FLAG != 0 && offset > 0).then(|| usize::try_from(offset).unwrap_or(usize::MAX)))
 }
 
 /// The kind of the message that begins at `at`, and where it ends.
@@ -267,7 +267,7 @@ impl Reading<'_> {
 
     fn parameter(&mut self, body: &[u8]) -> Result<(), String> {
         let (kind, key, value) = keyed(body)?;
-        let number = Number::of(kind).and_then(|number| number.read(value));
+        let number = Number::from_name(kind).and_then(|number| number.read(value));
         let number = number.ok_or(format!("the parameter {key} is no number"))?;
         self.log.parameters.entry(key.to_owned()).or_insert(number);
         Ok(())

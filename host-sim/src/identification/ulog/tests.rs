@@ -1,8 +1,8 @@
 use super::formats::Formats;
 use super::reader::Ulog;
-use super::topics::{TICK, written};
+use super::topics::{TICK_TOPIC, written};
 use super::writer::{Topic, Writer};
-use super::{HEAD, MAGIC};
+use super::{HEAD_BYTES, MAGIC};
 use firmware::card::sector;
 use firmware::hardware::MotorCommand;
 use firmware::recorder::ring::{Ring, SLOT_BYTES};
@@ -107,14 +107,14 @@ fn a_message_that_does_not_fit_is_skipped_with_its_byte_and_none_panics() {
     // Every prefix of a file, and every byte of it changed, is read or refused.
     let whole = recording();
     for end in 0..whole.len() {
-        let _ = Ulog::read(&whole[..end], &[TICK]);
+        let _ = Ulog::read(&whole[..end], &[TICK_TOPIC]);
         let mut changed = whole.clone();
         changed[end] ^= 0xFF;
-        let _ = Ulog::read(&changed, &[TICK]).map(|log| written(&log));
+        let _ = Ulog::read(&changed, &[TICK_TOPIC]).map(|log| written(&log));
     }
-    assert!(Ulog::read(&whole[..HEAD - 1], &[TICK]).is_err());
-    let cut = Ulog::read(&whole[..whole.len() - 1], &[TICK]).unwrap();
-    assert_eq!((cut.topic(TICK).unwrap().len(), cut.damage.to_string()), (1, String::new()));
+    assert!(Ulog::read(&whole[..HEAD_BYTES - 1], &[TICK_TOPIC]).is_err());
+    let cut = Ulog::read(&whole[..whole.len() - 1], &[TICK_TOPIC]).unwrap();
+    assert_eq!((cut.topic(TICK_TOPIC).unwrap().len(), cut.damage.to_string()), (1, String::new()));
     assert!(Formats::default().fields("t").is_err());
 }
 
@@ -142,7 +142,7 @@ fn damaged(damage: impl FnOnce(&mut Vec<u8>, usize)) -> Ulog {
 fn one_damaged_message_costs_itself_alone_whatever_byte_of_it_is_damaged() {
     // Length, 2 bytes; kind; topic, 2 bytes; time, 8 bytes. What follows are numbers, any of which may be right, and so
     // may a time that is still between its neighbours'.
-    const RECORD: usize = 21;
+    const RECORD_BYTES: usize = 21;
     for byte in (0..5).chain(7..13) {
         for bit in 0..8 {
             let log = damaged(|bytes, at| bytes[at + byte] ^= 1 << bit);
@@ -159,12 +159,12 @@ fn one_damaged_message_costs_itself_alone_whatever_byte_of_it_is_damaged() {
         ("a sector of ones", 25, damaged(|bytes, at| bytes[at + 2..at + 514].fill(0xFF))),
     ] {
         assert_eq!(log.topic("t").unwrap().len(), 100 - lost, "{what}: {:?}", log.damage);
-        assert!(log.damage.places > 0 && log.damage.bytes <= 25 * RECORD, "{what}: {:?}", log.damage);
+        assert!(log.damage.places > 0 && log.damage.bytes <= 25 * RECORD_BYTES, "{what}: {:?}", log.damage);
     }
     let said = damaged(|bytes, at| bytes[at] = 0xFF).damage.to_string();
     assert_eq!(
         said,
-        format!("; 1 damaged place of {RECORD} bytes skipped: byte 1162: a message that ends where none begins")
+        format!("; 1 damaged place of {RECORD_BYTES} bytes skipped: byte 1162: a message that ends where none begins")
     );
 }
 
@@ -178,9 +178,9 @@ fn a_card_whose_sectors_end_with_filler_is_read_whole() {
     let head = ulog::head(sector::FILLER_KIND, filler.len() - sector::MESSAGE_HEAD_BYTES);
     filler[..sector::MESSAGE_HEAD_BYTES].copy_from_slice(&head);
     let card = [recording, sector.repeat(40), sector::BLANK_SECTOR.repeat(20)].concat();
-    let read = Ulog::read(&card, &[TICK]).unwrap();
+    let read = Ulog::read(&card, &[TICK_TOPIC]).unwrap();
     assert_eq!(read.damage.to_string(), "");
-    assert_eq!(read.topic(TICK).unwrap().len(), 2 + 40);
+    assert_eq!(read.topic(TICK_TOPIC).unwrap().len(), 2 + 40);
 }
 
 #[test]
@@ -197,7 +197,7 @@ fn what_was_written_is_read() {
 
 #[test]
 fn ticks_become_px4s_topics_in_px4s_frames() {
-    let log = Ulog::read(&recording(), &[TICK]).unwrap();
+    let log = Ulog::read(&recording(), &[TICK_TOPIC]).unwrap();
     let file = written(&log).unwrap();
     let asked = [
         "vehicle_attitude",
@@ -219,6 +219,6 @@ fn ticks_become_px4s_topics_in_px4s_frames() {
     assert_eq!(first("vehicle_status", &["nav_state", "arming_state"]), [4.0, 2.0]);
     assert_eq!(first("vehicle_land_detected", &["landed"]), [0.0]);
     assert_eq!(px4.information, log.information);
-    let foreign = Ulog::read(&file, &[TICK]).unwrap();
+    let foreign = Ulog::read(&file, &[TICK_TOPIC]).unwrap();
     assert!(written(&foreign).unwrap_err().contains("holds no record of a tick"));
 }

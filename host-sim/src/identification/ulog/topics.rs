@@ -10,10 +10,10 @@ use super::writer::{Topic, Writer};
 use flight::Mode;
 
 /// The firmware's topic.
-pub const TICK: &str = "tick";
+pub const TICK_TOPIC: &str = "tick";
 
 /// What is read of it, field by field.
-const FIELDS: [(&str, usize); 11] = [
+const TICK_FIELDS: [(&str, usize); 11] = [
     ("timestamp", 1),
     ("position", 3),
     ("velocity", 3),
@@ -28,7 +28,7 @@ const FIELDS: [(&str, usize); 11] = [
 ];
 
 /// What is written, with PX4's names.
-const TOPICS: [Topic; 9] = [
+const TOPICS_WRITTEN: [Topic; 9] = [
     Topic { name: "vehicle_attitude", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[4] q;" },
     Topic { name: "vehicle_angular_velocity", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;" },
     Topic {
@@ -48,8 +48,8 @@ const TOPICS: [Topic; 9] = [
 ];
 
 /// PX4's `arming_state`.
-const ARMED: u8 = 2;
-const DISARMED: u8 = 1;
+const ARMED_STATE: u8 = 2;
+const DISARMED_STATE: u8 = 1;
 
 /// PX4's number of the mode that comes nearest, `nav_state`.
 fn nav_state(mode: Mode) -> u8 {
@@ -66,8 +66,8 @@ fn nav_state(mode: Mode) -> u8 {
 /// # Errors
 /// If it has no ticks, or they lack a field.
 pub fn written(log: &Ulog) -> Result<Vec<u8>, String> {
-    let ticks = log.topic(TICK).ok_or("holds no record of a tick: --ulog converts the firmware's own logs")?;
-    let names: Vec<String> = FIELDS
+    let ticks = log.topic(TICK_TOPIC).ok_or("holds no record of a tick: --ulog converts the firmware's own logs")?;
+    let names: Vec<String> = TICK_FIELDS
         .iter()
         .flat_map(|(name, count)| {
             (0..*count).map(move |index| if *count == 1 { (*name).to_owned() } else { format!("{name}[{index}]") })
@@ -78,7 +78,7 @@ pub fn written(log: &Ulog) -> Result<Vec<u8>, String> {
     let information: Vec<(&str, &str)> =
         log.information.iter().map(|(key, text)| (key.as_str(), text.as_str())).collect();
     let parameters: Vec<(&str, f64)> = log.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    let mut writer = Writer::new(log.start, &TOPICS, &information, &parameters);
+    let mut writer = Writer::new(log.start, &TOPICS_WRITTEN, &information, &parameters);
     let mut texts = log.texts.iter().peekable();
     for row in &rows {
         let tick = Record(row);
@@ -91,7 +91,7 @@ pub fn written(log: &Ulog) -> Result<Vec<u8>, String> {
     Ok(writer.finish())
 }
 
-/// A tick's numbers in the order of [`FIELDS`].
+/// A tick's numbers in the order of [`TICK_FIELDS`].
 struct Record<'r>(&'r [f64]);
 
 impl Record<'_> {
@@ -100,9 +100,9 @@ impl Record<'_> {
     }
 
     /// The numbers of a field.
-    fn of(&self, name: &str) -> &[f64] {
+    fn field(&self, name: &str) -> &[f64] {
         let (mut at, mut length) = (0, 0);
-        for (field, count) in FIELDS {
+        for (field, count) in TICK_FIELDS {
             if field == name {
                 length = count;
                 break;
@@ -113,24 +113,24 @@ impl Record<'_> {
     }
 
     /// A vector in PX4's axes, or a quaternion between them.
-    fn turned(&self, name: &str) -> Vec<f64> {
-        let numbers = self.of(name);
+    fn in_px4_axes(&self, name: &str) -> Vec<f64> {
+        let numbers = self.field(name);
         let kept = numbers.len() - 2;
         numbers.iter().enumerate().map(|(at, number)| if at < kept { *number } else { -number }).collect()
     }
 
-    /// In the order of [`TOPICS`].
+    /// In the order of [`TOPICS_WRITTEN`].
     fn write(&self, writer: &mut Writer) {
         let time = self.time();
         let sampled = time.to_le_bytes();
         let [position, velocity, attitude, rates] =
-            ["position", "velocity", "attitude", "angular_velocity"].map(|name| self.turned(name));
-        let [to, at] = ["reference_position", "reference_velocity"].map(|name| self.turned(name));
-        let mut motors = self.of("motors").to_vec();
+            ["position", "velocity", "attitude", "angular_velocity"].map(|name| self.in_px4_axes(name));
+        let [to, at] = ["reference_position", "reference_velocity"].map(|name| self.in_px4_axes(name));
+        let mut motors = self.field("motors").to_vec();
         motors.resize(12, f64::NAN);
         let known = [&position, &velocity].map(|vector| u8::from(vector.iter().all(|number| number.is_finite())));
-        let mode = Mode::ALL.get(self.of("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
-        let airborne = self.of("airborne")[0] != 0.0;
+        let mode = Mode::ALL.get(self.field("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
+        let airborne = self.field("airborne")[0] != 0.0;
         let setpoint = floats(&[&to[..], &at].concat());
         let bodies = [
             [&sampled[..], &floats(&attitude)].concat(),
@@ -140,8 +140,8 @@ impl Record<'_> {
             setpoint.clone(),
             setpoint,
             [&sampled[..], &floats(&motors)].concat(),
-            floats(&[self.of("voltage")[0], -1.0, -1.0]),
-            vec![nav_state(mode), if mode.is_armed() { ARMED } else { DISARMED }],
+            floats(&[self.field("voltage")[0], -1.0, -1.0]),
+            vec![nav_state(mode), if mode.is_armed() { ARMED_STATE } else { DISARMED_STATE }],
             vec![u8::from(!airborne)],
         ];
         (0..).zip(&bodies).for_each(|(number, body)| writer.record(number, time, body));

@@ -2,11 +2,11 @@
 
 use super::MAGIC;
 
-/// The version of the format that is written.
-const VERSION: u8 = 1;
+/// Of the format that is written.
+const FORMAT_VERSION: u8 = 1;
 
 /// Flags of a file without anything that a reader must know about.
-const FLAGS: [u8; 40] = [0; 40];
+const FLAG_BYTES: [u8; 40] = [0; 40];
 
 /// A topic to be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,8 +25,8 @@ impl Writer {
     /// Begins a file of these topics, whose numbers are their places; the first record is of `time`, us.
     #[must_use]
     pub fn new(time: u64, topics: &[Topic], information: &[(&str, &str)], parameters: &[(&str, f64)]) -> Self {
-        let mut writer = Self([&MAGIC[..], &[VERSION], &time.to_le_bytes()].concat());
-        writer.message(b'B', &[&FLAGS]);
+        let mut writer = Self([&MAGIC[..], &[FORMAT_VERSION], &time.to_le_bytes()].concat());
+        writer.message(b'B', &[&FLAG_BYTES]);
         for Topic { name, fields } in topics {
             writer.message(b'F', &[format!("{name}:{fields}").as_bytes()]);
         }

@@ -2,13 +2,13 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use host_sim::rivals::choice::{LawChoice, OURS};
+use host_sim::rivals::choice::{LawChoice, OUR_LAW};
 use host_sim::rivals::gains;
-use host_sim::rivals::kind::Kind;
-use host_sim::studies::campaign::fly::{Orders, Source};
+use host_sim::rivals::kind::RivalKind;
+use host_sim::studies::campaign::fly::{CampaignSource, Orders};
 use host_sim::studies::campaign::step;
 use scenario::Scenario;
-use scenario::campaign::MOST_FLIGHTS;
+use scenario::campaign::FLIGHTS_MAX;
 use std::path::{Path, PathBuf};
 
 /// The arguments of `campaign`.
@@ -35,7 +35,7 @@ pub struct CampaignArguments {
     #[arg(long, requires = "replay")]
     pub large_log: bool,
     /// Which law flies: ours, or another one to compare it with
-    #[arg(long, value_name = "NAME", default_value = OURS, value_parser = law_names())]
+    #[arg(long, value_name = "NAME", default_value = OUR_LAW, value_parser = law_names())]
     law: String,
     /// File with that law's gains, as `compare` writes it [default: those built in for the vehicles of docs/rivals.md]
     #[arg(long, value_name = "FILE")]
@@ -85,7 +85,7 @@ another law: its status is 1 if a flight does not track.";
 
 /// The values of --law.
 fn law_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(std::iter::once(OURS).chain(Kind::ALL.map(Kind::name)))
+    PossibleValuesParser::new(std::iter::once(OUR_LAW).chain(RivalKind::ALL.map(RivalKind::name)))
 }
 
 /// `I/N`.
@@ -100,9 +100,9 @@ impl CampaignArguments {
     ///
     /// # Errors
     /// Names the file or the argument that is refused.
-    pub fn source(&self) -> Result<Source, String> {
+    pub fn source(&self) -> Result<CampaignSource, String> {
         let read = |file: &Path| {
-            scenario::whole::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
+            scenario::self_contained::read(file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
         };
         let (mut text, mut name) = (read(&self.file)?, self.file.display().to_string());
         if let Some(draws) = &self.draws {
@@ -120,10 +120,10 @@ impl CampaignArguments {
         }
         let scenario = Scenario::parse(&text, &name).map_err(|error| error.to_string())?;
         let stepped = match self.plant_step {
-            None => step::longest(&scenario),
-            Some(wanted) => step::of(&scenario, wanted).map_err(|problem| format!("--plant-step: {problem}"))?,
+            None => step::with_longest_step(&scenario),
+            Some(wanted) => step::with_step(&scenario, wanted).map_err(|problem| format!("--plant-step: {problem}"))?,
         };
-        Source::new(stepped, text, name).map_err(|error| error.to_string())
+        CampaignSource::new(stepped, text, name).map_err(|error| error.to_string())
     }
 
     /// How many flights, and which.
@@ -132,8 +132,8 @@ impl CampaignArguments {
     /// Names the argument that is refused.
     pub fn orders(&self, scenario: &Scenario) -> Result<Orders, String> {
         let flights = self.flights.unwrap_or(scenario.campaign.flights);
-        if !(1.0..=MOST_FLIGHTS).contains(&(flights as f64)) {
-            return Err(format!("--flights: must be from 1 to {MOST_FLIGHTS}, found {flights}"));
+        if !(1.0..=FLIGHTS_MAX).contains(&(flights as f64)) {
+            return Err(format!("--flights: must be from 1 to {FLIGHTS_MAX}, found {flights}"));
         }
         let seed = self.seed.unwrap_or(scenario.campaign.seed);
         Ok(Orders { flights, seed, shard: self.shard.unwrap_or((1, 1)) })

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use host_sim::rivals::kind::Kind;
+use host_sim::rivals::kind::RivalKind;
 use host_sim::studies::tune::effort::Effort;
 use std::path::{Path, PathBuf};
 
@@ -48,13 +48,13 @@ pub struct CompareArguments {
 
 /// The values of --only.
 fn rivals_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(Kind::ALL.map(Kind::name))
+    PossibleValuesParser::new(RivalKind::ALL.map(RivalKind::name))
 }
 
 /// The most random flights that are held in memory.
 const FLIGHTS_MAX: u64 = 100_000;
 /// Candidates of each generation of a search that --tune asks for.
-const TUNE_POPULATION: usize = 32;
+const TUNE_POPULATION_SIZE: usize = 32;
 
 /// Which gains of the rivals fly.
 pub enum GainsWanted {
@@ -91,7 +91,7 @@ impl CompareArguments {
         };
         Ok(match (&self.gains, self.tune) {
             (Some(file), _) => GainsWanted::Of(file.clone()),
-            (None, Some(generations)) => GainsWanted::Searched(effort(generations, TUNE_POPULATION)),
+            (None, Some(generations)) => GainsWanted::Searched(effort(generations, TUNE_POPULATION_SIZE)),
             (None, None) => {
                 GainsWanted::BuiltInOr(effort(self.generations.unwrap_or(usual.generations), usual.population))
             }
@@ -99,9 +99,9 @@ impl CompareArguments {
     }
 
     /// The other laws that are to fly, in the order of the table.
-    pub fn kinds(&self) -> Vec<Kind> {
-        let is_wanted = |kind: &Kind| self.only.is_empty() || self.only.iter().any(|name| name == kind.name());
-        Kind::ALL.into_iter().filter(is_wanted).collect()
+    pub fn kinds(&self) -> Vec<RivalKind> {
+        let is_wanted = |kind: &RivalKind| self.only.is_empty() || self.only.iter().any(|name| name == kind.name());
+        RivalKind::ALL.into_iter().filter(is_wanted).collect()
     }
 
     /// How to find the same gains again.

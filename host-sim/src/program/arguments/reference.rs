@@ -1,7 +1,7 @@
 //! The arguments of `reference`, in clap's terms.
 
 use clap::Args;
-use host_sim::reports::reference_rows::{GREATEST_RATE, SLOWER};
+use host_sim::reports::reference_rows::{FOLLOWED_WITHIN_2_CM_FACTOR, ROW_RATE_MAX_HZ};
 use std::path::PathBuf;
 
 /// The end of `reference --help`.
@@ -29,17 +29,17 @@ pub struct ReferenceArguments {
     #[arg(long, default_value_t = 50.0, value_name = "HZ")]
     rate: f64,
     /// How many times slower than the reference the rows are, 1 to 100
-    #[arg(long, default_value_t = SLOWER, value_name = "FACTOR")]
+    #[arg(long, default_value_t = FOLLOWED_WITHIN_2_CM_FACTOR, value_name = "FACTOR")]
     slower: f64,
 }
 
 impl ReferenceArguments {
     /// Rows a second.
     pub fn rate(&self) -> Result<f64, String> {
-        if (1.0..=GREATEST_RATE).contains(&self.rate) {
+        if (1.0..=ROW_RATE_MAX_HZ).contains(&self.rate) {
             Ok(self.rate)
         } else {
-            Err(format!("--rate: must be from 1 to {GREATEST_RATE} Hz, found {}", self.rate))
+            Err(format!("--rate: must be from 1 to {ROW_RATE_MAX_HZ} Hz, found {}", self.rate))
         }
     }
 

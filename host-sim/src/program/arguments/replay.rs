@@ -13,8 +13,8 @@ flight as report.html, which can be turned and stopped.
 Exit status 0: the picture is written, whether or not the flight's claims hold;
 1: the flight could not go on.";
 
-/// The longest moving picture, s.
-const LONGEST: f64 = 60.0;
+/// The longest moving picture.
+const PICTURE_MAX_S: f64 = 60.0;
 
 /// A flight as a moving picture.
 #[derive(Args)]
@@ -48,9 +48,9 @@ impl ReplayArguments {
             ));
         }
         let long = (to - from) / speed;
-        if long > LONGEST {
+        if long > PICTURE_MAX_S {
             return Err(format!(
-                "--gif: the picture would take {long:.0} s, at most {LONGEST} s are allowed: take a higher --speed or a shorter stretch"
+                "--gif: the picture would take {long:.0} s, at most {PICTURE_MAX_S} s are allowed: take a higher --speed or a shorter stretch"
             ));
         }
         Ok(Stretch { from, to, speed })

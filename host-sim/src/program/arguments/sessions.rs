@@ -1,12 +1,12 @@
 //! The arguments of sessions with another program, `sitl` and `hil`, in clap's terms, and their checks.
 
 use clap::{ArgGroup, Args, ValueEnum};
-use host_sim::sessions::hil::Session;
+use host_sim::sessions::hil::HilSession;
 use host_sim::sessions::hil::port::Address;
 use host_sim::sessions::ports::Ports;
 use host_sim::sessions::sitl;
 use host_sim::sessions::sitl::faults::Fault;
-use host_sim::sessions::sitl::world::PoseSource;
+use host_sim::sessions::sitl::simulated_hardware::PoseSource;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -142,12 +142,12 @@ impl SitlArguments {
     ///
     /// # Errors
     /// Names the argument that is invalid.
-    pub fn session(&self, text: String, file: String) -> Result<sitl::Session, String> {
+    pub fn session(&self, text: String, file: String) -> Result<sitl::SitlSession, String> {
         let speed = speed(self.speed)?;
         if let Some(duration) = self.duration.filter(|duration| !(*duration >= 0.0 && duration.is_finite())) {
             return Err(format!("--duration: must not be negative, found {duration}"));
         }
-        Ok(sitl::Session {
+        Ok(sitl::SitlSession {
             file,
             ports: self.ports.ports()?,
             speed,
@@ -191,14 +191,18 @@ impl HilArguments {
     ///
     /// # Errors
     /// Names the argument that is no valid time.
-    pub fn session(&self) -> Result<Session, String> {
+    pub fn session(&self) -> Result<HilSession, String> {
         let times = [("--duration", self.duration), ("--pose-until", self.pose_until)];
         for (name, time) in times {
             if let Some(time) = time.filter(|time| !(*time >= 0.0 && time.is_finite())) {
                 return Err(format!("{name}: must not be negative, found {time}"));
             }
         }
-        Ok(Session { duration: self.duration, pose_until: self.pose_until, speed: self.speed.map(speed).transpose()? })
+        Ok(HilSession {
+            duration: self.duration,
+            pose_until: self.pose_until,
+            speed: self.speed.map(speed).transpose()?,
+        })
     }
 
     /// The line for ground stations, and the clients it is handed to.

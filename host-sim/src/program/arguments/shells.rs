@@ -1,4 +1,4 @@
-//! What shells and `man` need to know of the command line, from its own description.
+//! What shells and `man` need to know of the command line, from its own description; and editors, of scenario files.
 
 use clap::{Args, Command};
 use clap_complete::Shell;
@@ -16,6 +16,13 @@ bash, for you alone, from the next shell on:
 
 zsh, in a folder of fpath; fish, in ~/.config/fish/completions/host-sim.fish;
 PowerShell and elvish, in the profile.";
+
+/// The end of `schema --help`.
+pub const SCHEMA_HELP: &str = "\
+  host-sim schema > scenario.schema.json
+and, as the first line of a scenario beside it, for taplo and Even Better TOML:
+  #:schema ./scenario.schema.json
+It names every section and key, with type, unit, bounds, default and meaning.";
 
 /// A shell.
 #[derive(Args)]

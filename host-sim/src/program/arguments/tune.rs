@@ -2,7 +2,7 @@
 
 use clap::Args;
 use host_sim::studies::tune::effort::Effort;
-use host_sim::studies::tune::requirements::{GREATEST_RECOVERY, LEAST_RECOVERY, Requirements};
+use host_sim::studies::tune::requirements::{RECOVERY_MAX_S, RECOVERY_MIN_S, Requirements};
 use scenario::stability::LoopMargin;
 use std::path::PathBuf;
 
@@ -89,13 +89,13 @@ impl TuneArguments {
     /// # Errors
     /// Names the argument that asks for something impossible, or for less than what may fly.
     pub fn requirements(&self) -> Result<Requirements, String> {
-        let least = LoopMargin::LEAST;
+        let least = LoopMargin::FLYABLE_MIN;
         let positive = [("--position-error", self.position_error), ("--mrp-error", self.mrp_error)];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             return Err(format!("{name}: must be greater than zero and finite, found {value}"));
         }
-        if !(LEAST_RECOVERY..=GREATEST_RECOVERY).contains(&self.recovery) {
-            let allowed = format!("must be from {LEAST_RECOVERY} to {GREATEST_RECOVERY} s");
+        if !(RECOVERY_MIN_S..=RECOVERY_MAX_S).contains(&self.recovery) {
+            let allowed = format!("must be from {RECOVERY_MIN_S} to {RECOVERY_MAX_S} s");
             return Err(format!("--recovery: {allowed}, found {}", self.recovery));
         }
         if !(0.0..1.0).contains(&self.margin) {

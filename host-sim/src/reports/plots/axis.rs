@@ -19,7 +19,7 @@ impl Axis {
     #[must_use]
     pub fn vertical(plot: &Plot, values: impl Iterator<Item = f64>) -> Self {
         let logarithmic = plot.logarithmic;
-        let seen = values.filter(|value| value.is_finite() && (!logarithmic || *value > LEAST_ON_LOG));
+        let seen = values.filter(|value| value.is_finite() && (!logarithmic || *value > LOGARITHMIC_AXIS_MIN));
         let reached = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), value| (l.min(value), g.max(value)));
         let reached = if reached.0 <= reached.1 { reached } else { (1.0, 1.0) };
         let most = 8.0 * (reached.1 - reached.0).max(1e-12);
@@ -32,7 +32,7 @@ impl Axis {
         }
         if logarithmic {
             // A decade that single precision misses by a hair is reached.
-            let low = (least.max(LEAST_ON_LOG).log10() + 1e-6).floor();
+            let low = (least.max(LOGARITHMIC_AXIS_MIN).log10() + 1e-6).floor();
             return Self {
                 least: 10f64.powf(low),
                 greatest: 10f64.powf((greatest.log10() - 1e-6).ceil().max(low + 1.0)),
@@ -89,7 +89,7 @@ impl Axis {
 }
 
 /// Below this an error on a logarithmic axis is single precision's noise, and drawn at the low end.
-const LEAST_ON_LOG: f64 = 1e-7;
+const LOGARITHMIC_AXIS_MIN: f64 = 1e-7;
 
 /// An exponent as it is written above the line.
 fn raised(power: i32) -> String {

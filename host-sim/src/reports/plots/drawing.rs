@@ -1,6 +1,6 @@
 //! What every figure is drawn on: lines and words on a ground. It is written as SVG, or as pixels, without the words.
 
-use crate::reports::report::plot::{Color, Line};
+use crate::reports::report::plot::{Color, LinePattern};
 use crate::reports::report::text::escaped;
 use std::fmt::Write;
 use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
@@ -31,7 +31,7 @@ pub enum Shape {
         /// Pixels.
         width: f64,
         /// How it is drawn.
-        line: Line,
+        line: LinePattern,
     },
     /// A line of text, on a rim of the ground's colour that keeps it legible on lines.
     Words {
@@ -86,7 +86,7 @@ impl Drawing {
 
     /// Draws a line without gaps.
     pub fn stroke(&mut self, points: Vec<Point>, color: Color, width: f64) {
-        self.shapes.push(Shape::Stroke { points, color, width, line: Line::Solid });
+        self.shapes.push(Shape::Stroke { points, color, width, line: LinePattern::Solid });
     }
 
     /// Writes plain words.
@@ -181,11 +181,11 @@ fn paint(color: Color) -> tiny_skia::Color {
 }
 
 /// Lengths of a dash and of the gap behind it.
-fn pattern(line: Line, width: f64) -> Option<[f64; 2]> {
+fn pattern(line: LinePattern, width: f64) -> Option<[f64; 2]> {
     match line {
-        Line::Solid => None,
-        Line::Dashed => Some([4.0 + width, 4.0]),
-        Line::Dotted => Some([1.0 + width, 3.0]),
+        LinePattern::Solid => None,
+        LinePattern::Dashed => Some([4.0 + width, 4.0]),
+        LinePattern::Dotted => Some([1.0 + width, 3.0]),
     }
 }
 

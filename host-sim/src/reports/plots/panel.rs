@@ -5,7 +5,7 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, Inks, Point, Shape, Side};
-use crate::reports::report::plot::{Bound, Color, Curve, Line, Plot};
+use crate::reports::report::plot::{Bound, Color, Curve, LinePattern, Plot};
 use crate::reports::report::track::Track;
 
 /// Where in a drawing a panel stands.
@@ -21,8 +21,8 @@ pub struct Area {
     pub titled: bool,
 }
 
-/// How wide a letter is, near enough, for its height.
-const LETTER: f64 = 0.56;
+/// Of a letter's height, near enough.
+const LETTER_WIDTH_SHARE: f64 = 0.56;
 
 /// The plot alone, for a page that has its title.
 #[must_use]
@@ -62,7 +62,7 @@ pub fn draw(drawing: &mut Drawing, area: Area, plot: &Plot, tracks: &[Track]) {
     chart.draw_axes(drawing, &plot.unit);
     for bound in plot.bounds.iter().filter(|bound| chart.shows(bound)) {
         let (points, color) = (chart.across(chart.y(bound.value)), bound.color);
-        drawing.shapes.push(Shape::Stroke { points, color, width: 1.0, line: Line::Dashed });
+        drawing.shapes.push(Shape::Stroke { points, color, width: 1.0, line: LinePattern::Dashed });
     }
     for curve in &plot.curves {
         if let Some(track) = of(curve) {
@@ -76,7 +76,7 @@ pub fn draw(drawing: &mut Drawing, area: Area, plot: &Plot, tracks: &[Track]) {
 const fn width(curve: &Curve) -> f64 {
     match (curve.broad, curve.line) {
         (true, _) => 4.0,
-        (false, Line::Solid) => 1.8,
+        (false, LinePattern::Solid) => 1.8,
         (false, _) => 1.4,
     }
 }
@@ -85,7 +85,7 @@ const fn width(curve: &Curve) -> f64 {
 fn draw_legend(drawing: &mut Drawing, plot: &Plot, (left, top): Point, right: f64, em: f64) -> f64 {
     let (mut x, mut y) = (left, top + 1.3 * em);
     for curve in &plot.curves {
-        let needed = 2.4 * em + LETTER * em * curve.label.chars().count() as f64;
+        let needed = 2.4 * em + LETTER_WIDTH_SHARE * em * curve.label.chars().count() as f64;
         if x > left && x + needed > right {
             (x, y) = (left, y + 1.4 * em);
         }
@@ -170,7 +170,7 @@ impl Chart {
             }
             let sign = if mirrored { "±" } else { "" };
             let text = format!("{}: {sign}{}", bound.label, plot.measure(bound.value));
-            let (y, width) = (self.y(bound.value), LETTER * size * text.chars().count() as f64);
+            let (y, width) = (self.y(bound.value), LETTER_WIDTH_SHARE * size * text.chars().count() as f64);
             let crossed = |[_, top, _, bottom]: [f64; 4]| {
                 shown.iter().map(|other| self.y(other.value)).any(|line| top < line && line < bottom)
             };

@@ -8,16 +8,15 @@ use crate::reports::report::plot::Color;
 use crate::reports::report::track::Track;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Width and height, pixels.
-const SIZE: (u32, u32) = (700, 560);
-/// Height of the type, pixels.
-const EM: f64 = 14.0;
-/// Margins around the projected path, pixels: left, top, right, bottom.
-const MARGINS: [f64; 4] = [24.0, 50.0, 24.0, 24.0];
-/// Direction of sight: degrees from world x, and above the horizon.
-const SIGHT: (f64, f64) = (150.0, 24.0);
+/// Width and height.
+const SIZE_PIXELS: (u32, u32) = (700, 560);
+const TYPE_HEIGHT_PIXELS: f64 = 14.0;
+/// Around the projected path: left, top, right, bottom.
+const MARGINS_PIXELS: [f64; 4] = [24.0, 50.0, 24.0, 24.0];
+/// From world x, and above the horizon.
+const VIEW_DIRECTION_DEG: (f64, f64) = (150.0, 24.0);
 /// Half the drawn vehicle's diagonal, as a share of the path's extent.
-const STILL_ARM: f64 = 0.032;
+const STILL_ARM_SHARE: f64 = 0.032;
 
 /// Where the vehicle is at one row of its track.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,8 +66,8 @@ pub struct View {
 #[must_use]
 pub fn picture(track: &Track) -> Drawing {
     let poses = poses(track);
-    let view = View::new(&poses, SIZE, STILL_ARM);
-    let mut drawing = Drawing::new(SIZE);
+    let view = View::new(&poses, SIZE_PIXELS, STILL_ARM_SHARE);
+    let mut drawing = Drawing::new(SIZE_PIXELS);
     view.draw_floor(&mut drawing);
     view.draw_axes(&mut drawing);
     view.draw_paths(&mut drawing, &poses, &poses);
@@ -78,7 +77,13 @@ pub fn picture(track: &Track) -> Drawing {
     if let Some(first) = poses.first() {
         let (x, y) = view.pixel(&first.position);
         let beside = 1.2 * view.arm * view.scale + 4.0;
-        drawing.words("start", (x + beside, y + 0.35 * EM), Side::Start, EM, Color::Ink);
+        drawing.words(
+            "start",
+            (x + beside, y + 0.35 * TYPE_HEIGHT_PIXELS),
+            Side::Start,
+            TYPE_HEIGHT_PIXELS,
+            Color::Ink,
+        );
     }
     view.draw_legend(&mut drawing, track.end());
     drawing
@@ -87,12 +92,12 @@ pub fn picture(track: &Track) -> Drawing {
 /// The poses at which the vehicle is drawn: the first, and then whenever it has moved by `distance` metres, up to the
 /// number a picture can hold.
 fn apart(all: &[Pose], distance: f64) -> Vec<&Pose> {
-    const MOST: usize = 28;
+    const POSES_MAX: usize = 28;
     let mut poses: Vec<&Pose> = Vec::new();
     for pose in all {
         // Where the flight returns to a place already drawn, another vehicle would only cover the first.
         let apart = poses.iter().all(|other| (other.position - pose.position).norm() >= distance);
-        if apart && poses.len() < MOST {
+        if apart && poses.len() < POSES_MAX {
             poses.push(pose);
         }
     }
@@ -103,7 +108,7 @@ impl View {
     /// A view of `size` pixels that holds all of `poses`, the vehicle's half diagonal that share of their extent.
     #[must_use]
     pub fn new(poses: &[Pose], size: (u32, u32), arm: f64) -> Self {
-        let (azimuth, elevation) = (SIGHT.0.to_radians(), SIGHT.1.to_radians());
+        let (azimuth, elevation) = (VIEW_DIRECTION_DEG.0.to_radians(), VIEW_DIRECTION_DEG.1.to_radians());
         let right = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);
         let up = Vector3::new(-elevation.sin() * azimuth.cos(), -elevation.sin() * azimuth.sin(), elevation.cos());
         let (mut least, mut greatest) = (Vector3::repeat(f64::MAX), Vector3::repeat(f64::MIN));
@@ -136,7 +141,7 @@ impl View {
             least = (least.0.min(h - self.arm), least.1.min(v - self.arm));
             greatest = (greatest.0.max(h + self.arm), greatest.1.max(v + self.arm));
         }
-        let [left, above, right, below] = MARGINS;
+        let [left, above, right, below] = MARGINS_PIXELS;
         let (width, height) = (f64::from(self.size.0) - left - right, f64::from(self.size.1) - above - below);
         self.scale = (width / (greatest.0 - least.0)).min(height / (greatest.1 - least.1));
         let center = (0.5 * (least.0 + greatest.0), 0.5 * (least.1 + greatest.1));
@@ -180,7 +185,7 @@ impl View {
             let to = from + direction * self.square;
             self.stroke(drawing, [from, to], (Color::Ink, 1.5));
             let (x, y) = self.pixel(&(to + (to - from) * 0.25));
-            drawing.words(name, (x, y + 0.3 * EM), Side::Middle, EM, Color::Ink);
+            drawing.words(name, (x, y + 0.3 * TYPE_HEIGHT_PIXELS), Side::Middle, TYPE_HEIGHT_PIXELS, Color::Ink);
         }
     }
 
@@ -220,12 +225,18 @@ impl View {
             ("thrust axis".to_owned(), Color::Vermilion, 2.2),
             (format!("shadow; squares of {} m", self.square), Color::Shadow, 1.5),
         ];
-        let mut x = MARGINS[0];
+        let mut x = MARGINS_PIXELS[0];
         for (text, color, width) in entries {
-            drawing.stroke(vec![(x, 26.0), (x + 1.6 * EM, 26.0)], color, width);
+            drawing.stroke(vec![(x, 26.0), (x + 1.6 * TYPE_HEIGHT_PIXELS, 26.0)], color, width);
             let letters = text.chars().count() as f64;
-            drawing.words(text, (x + 2.1 * EM, 26.0 + 0.35 * EM), Side::Start, EM, Color::Ink);
-            x += (2.1 + 0.56 * letters + 1.4) * EM;
+            drawing.words(
+                text,
+                (x + 2.1 * TYPE_HEIGHT_PIXELS, 26.0 + 0.35 * TYPE_HEIGHT_PIXELS),
+                Side::Start,
+                TYPE_HEIGHT_PIXELS,
+                Color::Ink,
+            );
+            x += (2.1 + 0.56 * letters + 1.4) * TYPE_HEIGHT_PIXELS;
         }
     }
 }

@@ -12,22 +12,20 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Width and height, pixels.
-const SIZE: (u32, u32) = (480, 420);
-/// Pictures a second, and hundredths of a second that each stands.
-const RATE: f64 = 20.0;
-const DELAY: u16 = 5;
-/// How long the last one stands, hundredths of a second.
-const REST: u16 = 150;
+/// Width and height.
+const SIZE_PIXELS: (u32, u32) = (480, 420);
+const PICTURE_RATE_HZ: f64 = 20.0;
+/// Each picture stands for this time.
+const PICTURE_CENTISECONDS: u16 = 5;
+const LAST_PICTURE_CENTISECONDS: u16 = 150;
 /// Half the drawn vehicle's diagonal, as a share of the path's extent.
-const ARM: f64 = 0.055;
-/// What is drawn.
-const COLORS: [Color; 7] =
+const DRAWN_ARM_SHARE: f64 = 0.055;
+const DRAWN_COLORS: [Color; 7] =
     [Color::Ink, Color::Blue, Color::Vermilion, Color::Orange, Color::Shadow, Color::Grid, Color::Axis];
 /// Steps from the ground to each colour.
-const STEPS: usize = 36;
+const COLOR_STEPS: usize = 36;
 /// The place in the table of a pixel that has not changed.
-const SAME: u8 = 255;
+const UNCHANGED_ENTRY: u8 = 255;
 
 /// What of a flight is shown, and how fast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,16 +49,16 @@ pub fn gif(track: &Track, things: &[Vec<Vector3<f64>>], stretch: Stretch) -> Res
     let view = view(shown, things);
     let mut bytes = Vec::new();
     let mut table = Table::new();
-    let mut encoder = Encoder::new(&mut bytes, SIZE.0 as u16, SIZE.1 as u16, &table.colors())?;
+    let mut encoder = Encoder::new(&mut bytes, SIZE_PIXELS.0 as u16, SIZE_PIXELS.1 as u16, &table.colors())?;
     encoder.set_repeat(Repeat::Infinite)?;
-    let pictures = (((stretch.to - stretch.from) / stretch.speed * RATE).ceil() as usize).max(1);
+    let pictures = (((stretch.to - stretch.from) / stretch.speed * PICTURE_RATE_HZ).ceil() as usize).max(1);
     let mut before: Option<Vec<u8>> = None;
     for number in 0..=pictures {
         let time = stretch.from + (stretch.to - stretch.from) * number as f64 / pictures as f64;
         let flown = row(time).saturating_sub(row(stretch.from)).min(shown.len().saturating_sub(1));
         let pixels = table.places(&picture(&view, things, shown, flown, number as f64 / pictures as f64));
         let mut frame = changed(&pixels, before.as_deref());
-        frame.delay = if number == pictures { REST } else { DELAY };
+        frame.delay = if number == pictures { LAST_PICTURE_CENTISECONDS } else { PICTURE_CENTISECONDS };
         encoder.write_frame(&frame)?;
         before = Some(pixels);
     }
@@ -72,7 +70,7 @@ pub fn gif(track: &Track, things: &[Vec<Vector3<f64>>], stretch: Stretch) -> Res
 #[must_use]
 pub fn still(flown: &[Pose], things: &[Vec<Vector3<f64>>], around: &[Vector3<f64>]) -> Drawing {
     let held = [things.concat(), around.to_vec()];
-    let mut drawing = Drawing::new(SIZE);
+    let mut drawing = Drawing::new(SIZE_PIXELS);
     draw(&mut drawing, &view(flown, &held), things, flown, flown.len().saturating_sub(1));
     drawing
 }
@@ -85,7 +83,7 @@ fn view(poses: &[Pose], things: &[Vec<Vector3<f64>>]) -> View {
         attitude: UnitQuaternion::identity(),
     });
     let held: Vec<Pose> = poses.iter().copied().chain(points).collect();
-    View::new(&held, SIZE, ARM)
+    View::new(&held, SIZE_PIXELS, DRAWN_ARM_SHARE)
 }
 
 /// `things` and the flight up to one of the rows shown.
@@ -100,9 +98,9 @@ fn draw(drawing: &mut Drawing, view: &View, things: &[Vec<Vector3<f64>>], shown:
 
 /// The flight up to one of the rows shown, and below it the share of the flight that is over.
 fn picture(view: &View, things: &[Vec<Vector3<f64>>], shown: &[Pose], row: usize, over: f64) -> Drawing {
-    let mut drawing = Drawing::new(SIZE);
+    let mut drawing = Drawing::new(SIZE_PIXELS);
     draw(&mut drawing, view, things, shown, row);
-    let (left, right, y) = (20.0, f64::from(SIZE.0) - 20.0, f64::from(SIZE.1) - 12.0);
+    let (left, right, y) = (20.0, f64::from(SIZE_PIXELS.0) - 20.0, f64::from(SIZE_PIXELS.1) - 12.0);
     drawing.stroke(vec![(left, y), (right, y)], Color::Grid, 3.0);
     drawing.stroke(vec![(left, y), (left + over * (right - left), y)], Color::Axis, 3.0);
     drawing
@@ -110,7 +108,7 @@ fn picture(view: &View, things: &[Vec<Vector3<f64>>], shown: &[Pose], row: usize
 
 /// The smallest rectangle that holds what changed; within it what did not is left as it was.
 fn changed(pixels: &[u8], before: Option<&[u8]>) -> Frame<'static> {
-    let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
+    let (width, height) = (SIZE_PIXELS.0 as usize, SIZE_PIXELS.1 as usize);
     let same = |place: usize| before.is_some_and(|before| before.get(place) == pixels.get(place));
     let different = |x: usize, y: usize| !same(y * width + x);
     let rows: Vec<usize> = (0..height).filter(|y| (0..width).any(|x| different(x, *y))).collect();
@@ -119,14 +117,14 @@ fn changed(pixels: &[u8], before: Option<&[u8]>) -> Frame<'static> {
     let (left, right) = (columns.first().copied().unwrap_or(0), columns.last().copied().unwrap_or(0));
     let (top, bottom) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
     let places = (top..=bottom).flat_map(|y| (left..=right).map(move |x| y * width + x));
-    let buffer: Vec<u8> = places.map(|place| if same(place) { SAME } else { pixels[place] }).collect();
+    let buffer: Vec<u8> = places.map(|place| if same(place) { UNCHANGED_ENTRY } else { pixels[place] }).collect();
     Frame {
         left: left as u16,
         top: top as u16,
         width: (right - left + 1) as u16,
         height: (bottom - top + 1) as u16,
         dispose: DisposalMethod::Keep,
-        transparent: Some(SAME),
+        transparent: Some(UNCHANGED_ENTRY),
         buffer: Cow::Owned(buffer),
         ..Frame::default()
     }
@@ -145,10 +143,10 @@ impl Table {
             let channels = channels(color);
             [0, 1, 2].map(|c| {
                 let (from, to) = (usize::from(ground[c]), usize::from(channels[c]));
-                ((from * (STEPS - step) + to * step) / STEPS) as u8
+                ((from * (COLOR_STEPS - step) + to * step) / COLOR_STEPS) as u8
             })
         };
-        let colors = COLORS.into_iter().flat_map(|color| (1..=STEPS).map(move |step| mixed(color, step)));
+        let colors = DRAWN_COLORS.into_iter().flat_map(|color| (1..=COLOR_STEPS).map(move |step| mixed(color, step)));
         Self { colors: std::iter::once(ground).chain(colors).collect(), places: HashMap::new() }
     }
 

@@ -1,14 +1,14 @@
 //! The messages of one tick of a simulated flight.
 
 use super::drawing::{pose, vector};
-use super::schemas::ESTIMATES;
+use super::schemas::ESTIMATES_SCHEMA;
 use super::{Recording, Topic};
 use crate::flight::Tick;
 use serde_json::json;
 use std::io::{self, Write};
 
 /// The topics of a flight besides the common ones.
-pub const TOPICS: &[Topic] = &[("/estimates", ESTIMATES)];
+pub const FLIGHT_TOPICS: &[Topic] = &[("/estimates", ESTIMATES_SCHEMA)];
 
 impl<W: Write> Recording<W> {
     /// Adds a tick.

@@ -67,7 +67,7 @@ pub const SCENE_UPDATE: Schema = Schema {
 };
 
 /// The law's commands: N, N m; and its errors: m, modified Rodrigues parameters.
-pub const LAW: Schema = Schema {
+pub const LAW_SCHEMA: Schema = Schema {
     name: "host_sim.Law",
     text: concat!(
         r#"{"type":"object","properties":{"thrust":{"type":"number"},"torque":"#,
@@ -79,13 +79,13 @@ pub const LAW: Schema = Schema {
 };
 
 /// Each rotor's thrust, N.
-pub const ROTORS: Schema = Schema {
+pub const ROTORS_SCHEMA: Schema = Schema {
     name: "host_sim.Rotors",
     text: r#"{"type":"object","properties":{"thrust":{"type":"array","items":{"type":"number"}}}}"#,
 };
 
 /// The law's estimates: m/s^2, N m, and a factor.
-pub const ESTIMATES: Schema = Schema {
+pub const ESTIMATES_SCHEMA: Schema = Schema {
     name: "host_sim.Estimates",
     text: concat!(
         r#"{"type":"object","properties":{"force":"#,
@@ -97,13 +97,13 @@ pub const ESTIMATES: Schema = Schema {
 };
 
 /// The firmware's state: mode in words, V, s, a factor, a count; an unknown value is null.
-pub const STATE: Schema = Schema {
+pub const STATE_SCHEMA: Schema = Schema {
     name: "host_sim.State",
     text: r#"{"type":"object","properties":{"mode":{"type":"string"},"ready":{"type":"boolean"},"airborne":{"type":"boolean"},"battery":{"type":["number","null"]},"pose_age":{"type":["number","null"]},"thrust_scale":{"type":["number","null"]},"missed_ticks":{"type":"integer"}}}"#,
 };
 
 /// A text with its time.
-pub const LOG: Schema = Schema {
+pub const LOG_SCHEMA: Schema = Schema {
     name: "foxglove.Log",
     text: concat!(
         r#"{"type":"object","properties":{"timestamp":"#,

@@ -1,7 +1,7 @@
 //! The messages of a session with the firmware: the true vehicle, its estimate, and its texts.
 
 use super::drawing::{pose, stamp, vector};
-use super::schemas::{LOG, STATE};
+use super::schemas::{LOG_SCHEMA, STATE_SCHEMA};
 use super::{Recording, Topic};
 use firmware::shared::Report;
 use scenario::body::{BodyState, attitude_from_euler};
@@ -9,14 +9,14 @@ use serde_json::json;
 use std::io::{self, Write};
 
 /// The topics of a session besides the common ones.
-pub const TOPICS: &[Topic] = &[("/state", STATE), ("/log", LOG)];
+pub const SESSION_TOPICS: &[Topic] = &[("/state", STATE_SCHEMA), ("/log", LOG_SCHEMA)];
 
-/// Foxglove's level of information.
-const INFORMATION: u8 = 2;
+/// Foxglove's.
+const INFORMATION_LEVEL: u8 = 2;
 
 /// One moment of a session.
 #[derive(Debug, Clone)]
-pub struct Moment {
+pub struct SessionMoment {
     /// The vehicle's time, us.
     pub now: u64,
     /// Where it really is.
@@ -34,8 +34,8 @@ impl<W: Write> Recording<W> {
     ///
     /// # Errors
     /// As the writer's.
-    pub fn moment(&mut self, moment: &Moment) -> io::Result<()> {
-        let Moment { now, truth, rotors, report, voltage } = moment;
+    pub fn moment(&mut self, moment: &SessionMoment) -> io::Result<()> {
+        let SessionMoment { now, truth, rotors, report, voltage } = moment;
         let now = *now;
         self.truth(now, truth)?;
         self.message("/rotors", now, &json!({ "thrust": rotors }))?;
@@ -72,10 +72,10 @@ impl<W: Write> Recording<W> {
     ///
     /// # Errors
     /// As the writer's.
-    pub fn said(&mut self, time: u64, text: &str) -> io::Result<()> {
+    pub fn write_text(&mut self, time: u64, text: &str) -> io::Result<()> {
         let log = json!({
             "timestamp": stamp(time),
-            "level": INFORMATION,
+            "level": INFORMATION_LEVEL,
             "message": text,
             "name": "vehicle",
             "file": "",

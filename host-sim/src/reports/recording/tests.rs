@@ -8,7 +8,7 @@ fn recorded() -> (Vec<u8>, Vec<Tick>) {
     let text = include_str!("../../../../vehicles/hummingbird.toml");
     let scenario = Scenario::parse(text, "hummingbird.toml").unwrap();
     let mut flight = Flight::uncertified(&scenario).unwrap();
-    let mut recording = Recording::begin(Vec::new(), &scenario, text, flight::TOPICS).unwrap();
+    let mut recording = Recording::begin(Vec::new(), &scenario, text, flight::FLIGHT_TOPICS).unwrap();
     let ticks: Vec<Tick> = (0..100).map(|_| flight.tick().unwrap()).collect();
     ticks.iter().for_each(|tick| recording.take(tick).unwrap());
     (recording.finish().unwrap(), ticks)

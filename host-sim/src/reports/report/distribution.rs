@@ -1,19 +1,18 @@
 //! How a quantity is spread over many flights: a histogram, the share of flights up to each value, a table of
 //! quantiles.
 //!
-//! A page holds no flight's value by itself but [`BINS`] counts and [`QUANTILES`] + 1 evenly spaced quantiles for each
+//! A page holds no flight's value by itself but `HISTOGRAM_BARS` counts and [`QUANTILE_STEPS`] + 1 evenly spaced quantiles for each
 //! group, the least and the greatest among them, whether a hundred flights were flown or a million.
 
-use super::plot::{Color, Line};
+use super::plot::{Color, LinePattern};
 use super::prose::{Cell, Table};
 use super::track::encoded;
 use crate::output::table::{percent, short};
 use serde_json::{Value, json};
 
-/// Bars of a histogram.
-pub const BINS: usize = 60;
+pub(crate) const HISTOGRAM_BARS: usize = 60;
 /// Steps of the distribution function.
-pub const QUANTILES: usize = 400;
+pub const QUANTILE_STEPS: usize = 400;
 
 /// A quantity over many flights, in one or several groups.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +28,8 @@ pub struct Distribution {
     /// A name and each flight's value: one group, or one for each law or vehicle. A value that is not finite is a
     /// flight that never came so far; it is counted and not drawn.
     pub groups: Vec<(String, Vec<f64>)>,
-    /// The colour of each group, and how its line is drawn; beyond the last come the colours of [`Color::CYCLE`].
-    pub looks: Vec<(Color, Line)>,
+    /// The colour of each group, and how its line is drawn; beyond the last come the colours of [`Color::COLOR_CYCLE`].
+    pub looks: Vec<(Color, LinePattern)>,
 }
 
 impl Distribution {
@@ -40,8 +39,8 @@ impl Distribution {
         let sorted: Vec<Vec<f64>> = self.groups.iter().map(|(_, values)| finite(values)).collect();
         let axis = self.axis(&sorted);
         let groups = self.groups.iter().zip(&sorted).enumerate().map(|(place, ((label, values), sorted))| {
-            let quantiles: Vec<f32> = (0..=QUANTILES).map(|step| quantile(sorted, step) as f32).collect();
-            let (color, line) = self.looks.get(place).copied().unwrap_or((Color::of(place), Line::Solid));
+            let quantiles: Vec<f32> = (0..=QUANTILE_STEPS).map(|step| quantile(sorted, step) as f32).collect();
+            let (color, line) = self.looks.get(place).copied().unwrap_or((Color::at_place(place), LinePattern::Solid));
             json!({ "label": label, "color": color.name(), "line": line.name(), "count": values.len(), "finite": sorted.len(),
                 "quantiles": if sorted.is_empty() { String::new() } else { encoded(&quantiles) },
                 "bins": self.counts(sorted, axis) })
@@ -92,12 +91,12 @@ impl Distribution {
 
     /// How many values fall into each bar.
     fn counts(&self, sorted: &[f64], (least, greatest): (f64, f64)) -> Vec<u64> {
-        let mut bins = vec![0; BINS];
+        let mut bins = vec![0; HISTOGRAM_BARS];
         let scaled = |value: f64| if self.logarithmic { value.max(least).ln() } else { value };
-        let width = (scaled(greatest) - scaled(least)) / BINS as f64;
+        let width = (scaled(greatest) - scaled(least)) / HISTOGRAM_BARS as f64;
         for value in sorted {
             let bin = ((scaled(*value) - scaled(least)) / width) as usize;
-            bins[bin.min(BINS - 1)] += 1;
+            bins[bin.min(HISTOGRAM_BARS - 1)] += 1;
         }
         bins
     }
@@ -116,7 +115,7 @@ fn rank(count: usize, share: f64) -> usize {
 }
 
 fn quantile(sorted: &[f64], step: usize) -> f64 {
-    sorted.get(rank(sorted.len(), step as f64 / QUANTILES as f64)).copied().unwrap_or(f64::NAN)
+    sorted.get(rank(sorted.len(), step as f64 / QUANTILE_STEPS as f64)).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]
@@ -133,7 +132,7 @@ mod tests {
             logarithmic: false,
             bound: Some(0.9),
             groups,
-            looks: vec![(Color::Sky, Line::Dotted)],
+            looks: vec![(Color::Sky, LinePattern::Dotted)],
         }
     }
 
@@ -151,7 +150,7 @@ mod tests {
         let bytes = STANDARD.decode(group["quantiles"].as_str().unwrap()).unwrap();
         let quantiles: Vec<f32> = bytes.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
         assert_eq!(
-            (quantiles.len(), quantiles[0], quantiles[QUANTILES / 2], quantiles[QUANTILES]),
+            (quantiles.len(), quantiles[0], quantiles[QUANTILE_STEPS / 2], quantiles[QUANTILE_STEPS]),
             (401, 0.001, 0.5, 1.0)
         );
         let row: Vec<Cell> = spread.table().rows.remove(0);

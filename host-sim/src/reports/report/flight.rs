@@ -7,10 +7,10 @@ use super::document;
 use super::page::{Block, Page, Section};
 use super::plot::Color;
 use super::prose::{Cell, Fact, Table};
-use super::recorder::Recorder;
+use super::recorder::ReportRecorder;
 use super::replay::{Body, Replay};
 use crate::flight::claims::{self, Claim};
-use crate::flight::flown::Flown;
+use crate::flight::extremes::FlightExtremes;
 use crate::output::table::{percent, short};
 use crate::reports::plots::drawing::Inks;
 use crate::reports::plots::{FIGURE_1, FIGURE_2, figure, first_seconds, path};
@@ -19,8 +19,7 @@ use scenario::Scenario;
 use scenario::stability::LoopMargin;
 use scenario::verdict::Verdict;
 
-/// The meaning of "certified".
-const CERTIFIED: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
+const CERTIFIED_MEANING: &str = " Certified means: for every reference within this one's bounds the commands are proven to \
                          stay within the limits, and small motions are stable with margin.";
 
 /// A flight that is over.
@@ -38,19 +37,19 @@ pub struct Flight<'a> {
     /// The claims.
     pub claims: &'a [Claim],
     /// The flight's figures.
-    pub flown: &'a Flown,
+    pub flown: &'a FlightExtremes,
 }
 
 /// A recorder of everything that the page shows of a flight of `scenario`.
 #[must_use]
-pub fn recorder(scenario: &Scenario) -> Recorder {
+pub fn recorder(scenario: &Scenario) -> ReportRecorder {
     let timing = &scenario.timing;
-    Recorder::new(timing.ticks, timing.period(), columns::columns(scenario))
+    ReportRecorder::new(timing.ticks, timing.period(), columns::columns(scenario))
 }
 
 /// The page of a flight, and beside it the figures by the names of their files.
 #[must_use]
-pub fn page(flight: &Flight, recorder: Recorder) -> (Page, [(&'static str, String); 4]) {
+pub fn page(flight: &Flight, recorder: ReportRecorder) -> (Page, [(&'static str, String); 4]) {
     let Flight { scenario, law, verdict, claims, flown, .. } = flight;
     let ticks_per_row = recorder.ticks_per_row();
     let track = recorder.finish(&scenario.name);
@@ -69,7 +68,7 @@ pub fn page(flight: &Flight, recorder: Recorder) -> (Page, [(&'static str, Strin
         (
             "Certificate",
             vec![
-                Block::Text(format!("Configuration {}.{CERTIFIED}", flight.certification)),
+                Block::Text(format!("Configuration {}.{CERTIFIED_MEANING}", flight.certification)),
                 Block::Table(inequalities(verdict)),
                 Block::Table(loops(verdict)),
             ],
@@ -116,7 +115,7 @@ fn lead(scenario: &Scenario, law: &LawChoice) -> String {
     )
 }
 
-fn highlights(scenario: &Scenario, law: &LawChoice, verdict: &Verdict, flown: &Flown) -> Vec<Fact> {
+fn highlights(scenario: &Scenario, law: &LawChoice, verdict: &Verdict, flown: &FlightExtremes) -> Vec<Fact> {
     let since = |since: Option<f64>| since.map_or_else(|| "never".to_owned(), |since| format!("{} s", short(since)));
     let ours = *law == LawChoice::Ours;
     let margin = verdict.certificate().tightest().map_or("none".to_owned(), |tightest| percent(tightest.margin()));
@@ -178,7 +177,7 @@ fn loops(verdict: &Verdict) -> Table {
         let margins = report.margins.map_or(["", "", ""].map(str::to_owned), |margins| {
             [short(margins.gain_down), short(margins.gain_up), format!("{} ms", short(1e3 * margins.delay))]
         });
-        let holds = LoopMargin::LEAST.lacking(report).is_none();
+        let holds = LoopMargin::FLYABLE_MIN.lacking(report).is_none();
         let mut row = vec![Cell::text(report.axis.name()), Cell::number(format!("{:.4}", report.spectral_radius))];
         row.extend(margins.map(Cell::Number));
         row.push(Cell::Verdict(Some(holds)));

@@ -1,7 +1,7 @@
 //! A page: a head with its verdict, sections of blocks, the data of all figures, and the program that draws them.
 
 use super::distribution::Distribution;
-use super::plot::{Plot, STYLE};
+use super::plot::{Plot, STYLE_SHEET};
 use super::prose::{Fact, Table, facts, listing, verdict_words};
 use super::replay::Replay;
 use super::text::{anchor, escaped, json};
@@ -15,7 +15,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
 /// The program's parts, in the order in which they need each other; together they are one function.
-const PROGRAM: [&str; 8] = [
+const SCRIPTS: [&str; 8] = [
     include_str!("../../../report/data.js"),
     include_str!("../../../report/legend.js"),
     include_str!("../../../report/chart.js"),
@@ -99,11 +99,11 @@ impl Page {
         let data = json(&json!({ "tracks": tracks, "plots": figures.plots, "replays": figures.replays,
             "distributions": figures.distributions }));
         let (title, kind) = (escaped(&self.title), escaped(&self.kind));
-        let program = format!("\"use strict\";\n(() => {{\n{}}})();\n", PROGRAM.concat());
+        let program = format!("\"use strict\";\n(() => {{\n{}}})();\n", SCRIPTS.concat());
         let policy = format!(
             "default-src 'none'; script-src '{}'; style-src '{}'; base-uri 'none'; form-action 'none'",
             digest(&program),
-            digest(STYLE)
+            digest(STYLE_SHEET)
         );
         let version = env!("CARGO_PKG_VERSION");
         format!(
@@ -111,7 +111,7 @@ impl Page {
              <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n\
-             <title>{title}: {kind}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
+             <title>{title}: {kind}</title>\n<style>{STYLE_SHEET}</style>\n</head>\n<body>\n\
              <a class=\"skip\" href=\"#content\">Skip to the content</a>\n{}{}<main id=\"content\">\n{body}</main>\n\
              <footer>Written by host-sim {version}. This file needs no network and asks for none.</footer>\n\
              <noscript><p class=\"lead\">Without JavaScript plots and paths are still pictures, and distributions are tables.</p></noscript>\n\

@@ -8,7 +8,7 @@ use crate::output::table::short;
 use serde_json::{Value, json};
 
 /// The style sheet, which has the colours' values.
-pub const STYLE: &str = include_str!("../../../report/page.css");
+pub const STYLE_SHEET: &str = include_str!("../../../report/page.css");
 
 /// Colours of Okabe and Ito, which stay apart under the common colour-vision deficiencies, and those of axes and
 /// grounds.
@@ -44,12 +44,13 @@ pub enum Color {
 
 impl Color {
     /// For curves side by side: x (roll), y (pitch), z (yaw) are the first three.
-    pub const CYCLE: [Self; 6] = [Self::Blue, Self::Vermilion, Self::Green, Self::Orange, Self::Purple, Self::Sky];
+    pub const COLOR_CYCLE: [Self; 6] =
+        [Self::Blue, Self::Vermilion, Self::Green, Self::Orange, Self::Purple, Self::Sky];
 
     /// The colour of the curve at this place.
     #[must_use]
-    pub fn of(place: usize) -> Self {
-        Self::CYCLE[place % Self::CYCLE.len()]
+    pub fn at_place(place: usize) -> Self {
+        Self::COLOR_CYCLE[place % Self::COLOR_CYCLE.len()]
     }
 
     /// What the style sheet calls it.
@@ -75,14 +76,14 @@ impl Color {
     /// Its value in the light scheme: `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> &'static str {
-        let value = STYLE.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
+        let value = STYLE_SHEET.split_once(&format!("--{}: ", self.name())).and_then(|(_, value)| value.get(..7));
         value.unwrap_or("#000000")
     }
 }
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum LinePattern {
     /// Without gaps.
     Solid,
     /// In dashes: something asked for rather than flown; or one of many laws, so that not colour alone tells them
@@ -92,7 +93,7 @@ pub enum Line {
     Dotted,
 }
 
-impl Line {
+impl LinePattern {
     /// What the style sheet calls it.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -116,7 +117,7 @@ pub struct Curve {
     /// Its colour.
     pub color: Color,
     /// How it is drawn.
-    pub line: Line,
+    pub line: LinePattern,
     /// Whether it is drawn so broad that its rim shows beneath a curve that covers it.
     pub broad: bool,
 }
@@ -125,13 +126,13 @@ impl Curve {
     /// A full line from the page's first track.
     #[must_use]
     pub fn new(column: impl Into<String>, label: impl Into<String>, color: Color) -> Self {
-        Self { track: 0, column: column.into(), label: label.into(), color, line: Line::Solid, broad: false }
+        Self { track: 0, column: column.into(), label: label.into(), color, line: LinePattern::Solid, broad: false }
     }
 
     /// The same, dashed.
     #[must_use]
     pub fn dashed(self) -> Self {
-        Self { line: Line::Dashed, ..self }
+        Self { line: LinePattern::Dashed, ..self }
     }
 
     /// The same, broad.

@@ -1,6 +1,6 @@
 //! A track gathered tick by tick, of any length.
 //!
-//! Up to [`MOST_ROWS`] ticks each row is a tick. Of a longer flight two rows stand for a stretch of ticks: a column of
+//! Up to [`ROWS_MAX`] ticks each row is a tick. Of a longer flight two rows stand for a stretch of ticks: a column of
 //! *extremes* keeps the least and the greatest value of the stretch, in order of time, so that no peak is lost; a
 //! column of *samples* keeps the values at the stretch's start and at its middle, which belong together across columns:
 //! a pose.
@@ -10,7 +10,7 @@ use crate::flight::Tick;
 use std::f64::consts::TAU;
 
 /// Rows a track may have: the paper's 40 s at 100 Hz, whole.
-pub const MOST_ROWS: u64 = 4000;
+pub const ROWS_MAX: u64 = 4000;
 
 /// The source of a column.
 pub struct Instant<'a> {
@@ -44,7 +44,7 @@ struct Column {
 }
 
 /// A track that grows.
-pub struct Recorder {
+pub struct ReportRecorder {
     columns: Vec<Column>,
     /// Ticks that two rows stand for; one tick is one row if this is 1.
     stretch: u64,
@@ -53,11 +53,11 @@ pub struct Recorder {
     yaw: (f64, f64),
 }
 
-impl Recorder {
+impl ReportRecorder {
     /// For a flight of so many ticks, `period` s apart.
     #[must_use]
     pub fn new(ticks: u64, period: f64, columns: Vec<(String, Kept, Read)>) -> Self {
-        let stretch = if ticks <= MOST_ROWS { 1 } else { 2 * ticks.div_ceil(MOST_ROWS) };
+        let stretch = if ticks <= ROWS_MAX { 1 } else { 2 * ticks.div_ceil(ROWS_MAX) };
         let column = |(name, kept, read)| Column { name, kept, read, held: None, values: Vec::new() };
         Self { columns: columns.into_iter().map(column).collect(), stretch, seen: 0, period, yaw: (0.0, 0.0) }
     }

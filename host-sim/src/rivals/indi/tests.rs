@@ -1,10 +1,10 @@
-//! The turn that is wanted, and what measured force and torque are for: what the model does not know leaves no offset.
+//! The rotation to the desired attitude, and what measured force and torque are for: what the model does not know leaves no offset.
 
 use super::*;
 use crate::flight::Flight;
 use crate::flight::course::Course;
 use crate::rivals::gains::{BUILT_IN, Set};
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 use crate::studies::tune::trials::hover;
 use scenario::Scenario;
 use scenario::reality::truth::Truth;
@@ -13,13 +13,13 @@ const HUMMINGBIRD: &str = include_str!("../../../../vehicles/hummingbird.toml");
 
 #[test]
 fn the_thrust_axis_goes_the_shortest_way_whatever_the_heading() {
-    let seen = UnitQuaternion::from_euler_angles(0.4, -0.3, 2.0);
+    let state = UnitQuaternion::from_euler_angles(0.4, -0.3, 2.0);
     for (tilt, heading) in [(0.5, 0.0), (2.9, 1.0), (3.1, -3.0), (0.0, 2.0), (1.0, 3.1)] {
         let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.6, -0.8, 0.0) * tilt);
-        let desired = seen * tilted * UnitQuaternion::from_scaled_axis(Vector3::z() * heading);
-        let turn = turn(&seen, &desired);
+        let desired = state * tilted * UnitQuaternion::from_scaled_axis(Vector3::z() * heading);
+        let turn = turn(&state, &desired);
         assert!((turn - Vector3::new(0.6 * tilt, -0.8 * tilt, heading)).norm() < 1e-9, "{tilt} {heading}: {turn}");
-        let axis = (seen * Vector3::z()).angle(&(desired * Vector3::z()));
+        let axis = (state * Vector3::z()).angle(&(desired * Vector3::z()));
         assert!((turn.xy().norm() - axis).abs() < 1e-7, "{tilt} {heading}");
     }
 }
@@ -27,8 +27,8 @@ fn the_thrust_axis_goes_the_shortest_way_whatever_the_heading() {
 #[test]
 fn a_wrong_mass_weak_rotors_and_an_off_centre_mass_leave_no_offset() {
     let file = Scenario::parse(HUMMINGBIRD, "hummingbird.toml").unwrap();
-    let (_, gains, _) = Set::of(&file, BUILT_IN, "gains.toml", &[Kind::Indi]).unwrap().rivals.remove(0);
-    let model = Truth::of_model(file.configuration.vehicle());
+    let (_, gains, _) = Set::parse(&file, BUILT_IN, "gains.toml", &[RivalKind::Indi]).unwrap().rivals.remove(0);
+    let model = Truth::model(file.configuration.vehicle());
     for truth in [
         Truth { mass: 0.7, ..model.clone() },
         Truth { thrust_scale: 0.7, ..model.clone() },
@@ -37,7 +37,7 @@ fn a_wrong_mass_weak_rotors_and_an_off_centre_mass_leave_no_offset() {
         let mut hovering = hover(&file, Vector3::new(0.2, 0.0, 0.1), 12.0).unwrap();
         hovering.reality.truth = Some(truth.clone());
         let course =
-            Course::over(&hovering, Flight::of_rival(&hovering, Kind::Indi.build(&file, &gains).unwrap()), 0.1)
+            Course::fly(&hovering, Flight::of_rival(&hovering, RivalKind::Indi.build(&file, &gains).unwrap()), 0.1)
                 .unwrap();
         assert!(course.end_error < 1e-3, "{truth:?}: {course:?}");
     }

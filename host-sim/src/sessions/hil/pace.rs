@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Counts commands and the times between them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pace {
+pub struct HilPace {
     period: u64,
     ticks: u64,
     last: Option<u64>,
@@ -13,7 +13,7 @@ pub struct Pace {
     missed: u64,
 }
 
-impl Pace {
+impl HilPace {
     /// Commands that should come every `period` microseconds.
     #[must_use]
     pub fn new(period: u64) -> Self {
@@ -40,7 +40,7 @@ impl Pace {
     }
 }
 
-impl fmt::Display for Pace {
+impl fmt::Display for HilPace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (least, greatest) = self.range.unwrap_or_default();
         let Self { ticks, missed, .. } = self;
@@ -54,14 +54,14 @@ mod tests {
 
     #[test]
     fn a_steady_pace_has_no_jitter() {
-        let mut pace = Pace::new(10_000);
+        let mut pace = HilPace::new(10_000);
         (0..5).for_each(|k| pace.take(123 + k * 10_000));
         assert_eq!((pace.ticks(), pace.missed, pace.range), (5, 0, Some((10_000, 10_000))));
     }
 
     #[test]
     fn a_command_left_out_is_missed_and_a_late_one_is_not() {
-        let mut pace = Pace::new(10_000);
+        let mut pace = HilPace::new(10_000);
         [0, 10_400, 20_000, 40_000].into_iter().for_each(|time| pace.take(time));
         assert_eq!((pace.ticks(), pace.missed, pace.range), (4, 1, Some((9_600, 20_000))));
     }

@@ -9,12 +9,11 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
-/// Pause between attempts to connect or accept, and between checks for a signal.
-const PAUSE: Duration = Duration::from_millis(20);
+/// Between attempts to connect or accept, and between checks for a signal.
+const POLL_PERIOD: Duration = Duration::from_millis(20);
 
-/// The longest attempt to connect: the system itself would try for minutes where no answer comes at all. Long enough
-/// for any line.
-const ATTEMPT: Duration = Duration::from_millis(500);
+/// The system itself would try for minutes where no answer comes at all. Long enough for any line.
+const CONNECT_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Where the other side is to be found.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,7 +58,7 @@ impl fmt::Display for PortError {
 }
 
 /// A connected flight controller.
-pub struct Port {
+pub struct SimulatorPort {
     reader: BufReader<TcpStream>,
     parser: Parser,
     writer: TcpStream,
@@ -69,20 +68,20 @@ pub struct Port {
     bytes: Vec<u8>,
 }
 
-impl Port {
+impl SimulatorPort {
     /// Finds the other side; `patience` bounds this and every later wait.
     ///
     /// # Errors
     /// [`PortError`] if the other side does not come in time or the address cannot be used.
     pub fn open(address: &Address, patience: Duration, interrupt: &Interrupt) -> Result<Self, PortError> {
         let stream = connected(address, patience, interrupt)?;
-        Self::over(stream, patience, interrupt.clone()).map_err(PortError::Broken)
+        Self::new(stream, patience, interrupt.clone()).map_err(PortError::Broken)
     }
 
-    fn over(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
+    fn new(stream: TcpStream, patience: Duration, interrupt: Interrupt) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
-        stream.set_read_timeout(Some(PAUSE.min(patience)))?;
+        stream.set_read_timeout(Some(POLL_PERIOD.min(patience)))?;
         stream.set_write_timeout(Some(patience))?;
         let writer = stream.try_clone()?;
         let reader = BufReader::new(stream);
@@ -163,8 +162,8 @@ fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrup
         };
         for candidate in candidates {
             interrupted(interrupt)?;
-            let left = patience.saturating_sub(started.elapsed()).max(PAUSE);
-            match TcpStream::connect_timeout(&candidate, left.min(ATTEMPT)) {
+            let left = patience.saturating_sub(started.elapsed()).max(POLL_PERIOD);
+            match TcpStream::connect_timeout(&candidate, left.min(CONNECT_TIMEOUT)) {
                 Ok(stream) => return Ok(stream),
                 Err(error) if error.kind() == ErrorKind::InvalidInput => {
                     return Err(PortError::Address(to.into(), error));
@@ -176,7 +175,7 @@ fn connect(to: &str, address: &Address, patience: Duration, interrupt: &Interrup
         if started.elapsed() >= patience {
             return Err(PortError::NoConnection(address.clone(), patience, failed));
         }
-        std::thread::sleep(PAUSE);
+        std::thread::sleep(POLL_PERIOD);
     }
 }
 
@@ -193,7 +192,7 @@ fn listen(on: &str, address: &Address, patience: Duration, interrupt: &Interrupt
             Err(_) if started.elapsed() >= patience => {
                 return Err(PortError::NoConnection(address.clone(), patience, None));
             }
-            Err(_) => std::thread::sleep(PAUSE),
+            Err(_) => std::thread::sleep(POLL_PERIOD),
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use super::port::{Address, PortError, connected};
 use crate::output::interrupt::Interrupt;
-use crate::sessions::ports::{Port, Ports};
+use crate::sessions::ports::{ClientPort, Ports};
 use firmware::link::frame::{Frame, Parser};
 use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavState, STATUSTEXT_DATA};
@@ -22,11 +22,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// Pause between looks at who has sent something.
-const PAUSE: Duration = Duration::from_millis(1);
+/// Between looks at who has sent something.
+const POLL_PERIOD: Duration = Duration::from_millis(1);
 
-/// The longest that the flight controller may take no byte of what clients send; it is lost after that, as on any line.
-const FULL: Duration = Duration::from_millis(100);
+/// For bytes that the flight controller does not take: they are lost then, as on any line.
+const WRITE_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// The line cannot be served.
 #[derive(Debug)]
@@ -66,13 +66,13 @@ impl Relay {
     /// # Errors
     /// [`RelayError`].
     pub fn open(address: &str, ports: &Ports, patience: Duration, interrupt: &Interrupt) -> Result<Self, RelayError> {
-        let clients = Port::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
+        let clients = ClientPort::open(ports).map_err(|error| RelayError::Clients(error.to_string()))?;
         let address = Address::Connect(address.to_owned());
         let line = connected(&address, patience, interrupt).map_err(RelayError::Line)?;
         let ready = || {
             line.set_nodelay(true)?;
-            line.set_read_timeout(Some(PAUSE))?;
-            line.set_write_timeout(Some(FULL))
+            line.set_read_timeout(Some(POLL_PERIOD))?;
+            line.set_write_timeout(Some(WRITE_TIMEOUT))
         };
         ready().map_err(|error| RelayError::Line(PortError::Broken(error)))?;
         let (received, over) = (Arc::<Mutex<Received>>::default(), Arc::<AtomicBool>::default());
@@ -115,7 +115,7 @@ fn locked(received: &Mutex<Received>) -> MutexGuard<'_, Received> {
 }
 
 /// Hands on what comes, either way, until it is over or the line has ended.
-fn serve(mut line: TcpStream, mut clients: Port, received: &Mutex<Received>, over: &AtomicBool) {
+fn serve(mut line: TcpStream, mut clients: ClientPort, received: &Mutex<Received>, over: &AtomicBool) {
     let mut parser = Parser::new();
     let mut chunk = [0; 4096];
     while !over.load(Ordering::Relaxed) {
@@ -161,7 +161,7 @@ mod tests {
     use std::net::{Ipv4Addr, TcpListener, UdpSocket};
     use std::time::Instant;
 
-    const LONG: Duration = Duration::from_secs(10);
+    const HANG_TIMEOUT: Duration = Duration::from_secs(10);
 
     fn frame(sequence: u8, message: &impl MessageData) -> Vec<u8> {
         let mut frame = mavlink::MAVLinkV2MessageRaw::new();
@@ -171,7 +171,7 @@ mod tests {
 
     fn client() -> (UdpSocket, u16) {
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        socket.set_read_timeout(Some(LONG)).unwrap();
+        socket.set_read_timeout(Some(HANG_TIMEOUT)).unwrap();
         let port = socket.local_addr().unwrap().port();
         (socket, port)
     }
@@ -183,9 +183,9 @@ mod tests {
         let ((offboard, first), (ground, second)) = (client(), client());
         let local = client().1;
         let ports = Ports { offboard: first, ground: second, local };
-        let relay = Relay::open(&address, &ports, LONG, &Interrupt::default()).unwrap();
+        let relay = Relay::open(&address, &ports, HANG_TIMEOUT, &Interrupt::default()).unwrap();
         let mut board = listener.accept().unwrap().0;
-        board.set_read_timeout(Some(LONG)).unwrap();
+        board.set_read_timeout(Some(HANG_TIMEOUT)).unwrap();
 
         let state = HEARTBEAT_DATA { system_status: MavState::MAV_STATE_STANDBY, ..Default::default() };
         let said = STATUSTEXT_DATA { text: "Armed: idling".into(), ..Default::default() };
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(bytes, state, "a fragment before it is left out");
         let started = Instant::now();
         drop(relay);
-        assert!(started.elapsed() < LONG);
+        assert!(started.elapsed() < HANG_TIMEOUT);
         assert_eq!(board.read(&mut bytes).unwrap(), 0);
     }
 }

@@ -9,7 +9,7 @@
 
 use super::vehicle::Moved;
 use crate::sessions::answer::{Answer, MeasuredPose};
-use crate::vehicle::instruments::{Instruments, SAMPLE};
+use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use flight::{ImuSample, Stamped};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
@@ -41,7 +41,7 @@ impl Senses {
     /// on every millisecond: its file is refused otherwise.
     #[must_use]
     pub fn instants(&self) -> u64 {
-        if self.instruments.is_some() { self.period / SAMPLE } else { 1 }
+        if self.instruments.is_some() { self.period / SAMPLE_PERIOD_US } else { 1 }
     }
 
     /// The measurements of a motion that a command of time `command`, us, began.
@@ -50,7 +50,7 @@ impl Senses {
             return exact(command + self.period, moved);
         };
         let mut answer = Answer { poses: Vec::new(), samples: Vec::new() };
-        for (state, time) in moved.path.iter().zip((command + SAMPLE..).step_by(SAMPLE as usize)) {
+        for (state, time) in moved.path.iter().zip((command + SAMPLE_PERIOD_US..).step_by(SAMPLE_PERIOD_US as usize)) {
             answer.samples.push(Stamped { value: instruments.sample(state, time), time });
             while let Some(Stamped { value: pose, time }) = instruments.arrived() {
                 let (position, attitude) = (pose.position(), pose.attitude());

@@ -4,7 +4,7 @@
 //! rotor means u^2 of its greatest thrust, as the firmware's thrust curve has it; less of that from when it fails.
 //! The air is left out.
 
-use crate::sessions::messages::{Controls, MOTORS};
+use crate::sessions::messages::{Controls, MOTOR_COUNT};
 use crate::vehicle::actuators::rotors::SpinningRotors;
 use crate::vehicle::ground::{Ground, Touchdown};
 use crate::vehicle::plant::Plant;
@@ -16,8 +16,7 @@ use scenario::body::BodyState;
 use scenario::reality::failure::Failure;
 use std::collections::VecDeque;
 
-/// Height of the ground, m.
-const GROUND: f64 = 0.0;
+const GROUND_HEIGHT_M: f64 = 0.0;
 
 /// The motion under a command.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,12 +61,12 @@ impl HilVehicle {
     /// In words, if the scenario has not as many rotors as there are motor commands.
     pub fn new(scenario: &Scenario) -> Result<Self, String> {
         let configuration = &scenario.configuration;
-        let Some(rotors) = configuration.rotors().filter(|rotors| rotors.len() == MOTORS) else {
+        let Some(rotors) = configuration.rotors().filter(|rotors| rotors.len() == MOTOR_COUNT) else {
             let found = configuration.rotors().map_or(0, |rotors| rotors.len());
-            return Err(format!("rotors: a flight controller commands {MOTORS}, found {found}"));
+            return Err(format!("rotors: a flight controller commands {MOTOR_COUNT}, found {found}"));
         };
         let step = scenario.timing.step();
-        let (ground, state) = Ground::under(configuration.vehicle(), GROUND, &scenario.initial, step);
+        let (ground, state) = Ground::under(configuration.vehicle(), GROUND_HEIGHT_M, &scenario.initial, step);
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
         let curves = rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
         Ok(Self {

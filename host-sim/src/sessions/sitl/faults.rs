@@ -11,7 +11,7 @@ use std::str::FromStr;
 
 /// Something that fails.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Part {
+pub enum FaultyPart {
     /// No pose arrives.
     Pose,
     /// The IMU does not answer.
@@ -31,7 +31,7 @@ pub enum Part {
 /// A fault and its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
-    part: Part,
+    part: FaultyPart,
     /// s.
     time: Range<f64>,
 }
@@ -67,7 +67,7 @@ impl FromStr for Fault {
     }
 }
 
-impl FromStr for Part {
+impl FromStr for FaultyPart {
     type Err = NoFault;
 
     fn from_str(text: &str) -> Result<Self, NoFault> {
@@ -84,17 +84,17 @@ impl FromStr for Part {
     }
 }
 
-fn battery(text: &str) -> Option<Part> {
+fn battery(text: &str) -> Option<FaultyPart> {
     let volts = text.strip_prefix("battery=")?.parse().ok()?;
-    (0.0..=100.0).contains(&volts).then_some(Part::Battery(volts))
+    (0.0..=100.0).contains(&volts).then_some(FaultyPart::Battery(volts))
 }
 
 /// A rotor, which is numbered from 1.
-fn rotor(text: &str) -> Option<Part> {
+fn rotor(text: &str) -> Option<FaultyPart> {
     let text = text.strip_prefix("rotor")?;
     let (number, left) = text.split_once('=').unwrap_or((text, "0"));
     let (number, left) = (number.parse::<usize>().ok()?, left.parse().ok()?);
-    (0.0..1.0).contains(&left).then_some(Part::Rotor(number.checked_sub(1)?, left))
+    (0.0..1.0).contains(&left).then_some(FaultyPart::Rotor(number.checked_sub(1)?, left))
 }
 
 /// A time, s, that is not negative.
@@ -110,21 +110,21 @@ pub struct Faults(pub Vec<Fault>);
 impl Faults {
     /// Whether a part has failed at `now`, us.
     #[must_use]
-    pub fn has(&self, part: Part, now: u64) -> bool {
+    pub fn has(&self, part: FaultyPart, now: u64) -> bool {
         self.active(now).any(|failed| failed == part)
     }
 
     /// The battery's voltage at `now`, us, if a fault sets it.
     #[must_use]
     pub fn voltage(&self, now: u64) -> Option<f32> {
-        self.active(now).find_map(|part| if let Part::Battery(volts) = part { Some(volts) } else { None })
+        self.active(now).find_map(|part| if let FaultyPart::Battery(volts) = part { Some(volts) } else { None })
     }
 
     /// The share of its commanded thrust that a rotor, counted from 0, delivers at `now`, us.
     #[must_use]
     pub fn thrust_left(&self, rotor: usize, now: u64) -> f64 {
         let left = self.active(now).filter_map(|part| match part {
-            Part::Rotor(failed, left) if failed == rotor => Some(left),
+            FaultyPart::Rotor(failed, left) if failed == rotor => Some(left),
             _ => None,
         });
         left.fold(1.0, f64::min)
@@ -136,7 +136,7 @@ impl Faults {
     /// Names the rotor.
     pub fn check(&self, rotors: usize) -> Result<(), String> {
         let missing = self.0.iter().find_map(|fault| match fault.part {
-            Part::Rotor(rotor, _) if rotor >= rotors => Some(rotor + 1),
+            FaultyPart::Rotor(rotor, _) if rotor >= rotors => Some(rotor + 1),
             _ => None,
         });
         missing.map_or(Ok(()), |number| {
@@ -144,7 +144,7 @@ impl Faults {
         })
     }
 
-    fn active(&self, now: u64) -> impl Iterator<Item = Part> {
+    fn active(&self, now: u64) -> impl Iterator<Item = FaultyPart> {
         let now = now as f64 * 1e-6;
         self.0.iter().filter(move |fault| fault.time.contains(&now)).map(|fault| fault.part)
     }
@@ -159,10 +159,10 @@ mod tests {
         let faults = ["pose@12..15", "gyro@20", "battery=9.8@30..", "ground-station@0.5..1"];
         let faults = Faults(faults.map(|text| text.parse().unwrap()).to_vec());
         for (time, pose) in [(11.9, false), (12.0, true), (14.9, true), (15.0, false)] {
-            assert_eq!(faults.has(Part::Pose, (time * 1e6) as u64), pose, "{time}");
+            assert_eq!(faults.has(FaultyPart::Pose, (time * 1e6) as u64), pose, "{time}");
         }
-        assert!(faults.has(Part::GroundStation, 700_000) && !faults.has(Part::GroundStation, 1_000_000));
-        assert!(!faults.has(Part::Gyro, 19_000_000) && faults.has(Part::Gyro, u64::MAX));
+        assert!(faults.has(FaultyPart::GroundStation, 700_000) && !faults.has(FaultyPart::GroundStation, 1_000_000));
+        assert!(!faults.has(FaultyPart::Gyro, 19_000_000) && faults.has(FaultyPart::Gyro, u64::MAX));
         assert_eq!((faults.voltage(29_000_000), faults.voltage(30_000_000)), (None, Some(9.8)));
     }
 

@@ -9,11 +9,9 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// Records in a sector.
-const RECORDS: usize = 16;
-/// Bytes of a record.
-const BYTES: usize = size_of::<Record>();
-const BLANK: Record = [u32::MAX; _];
+const SECTOR_RECORDS: usize = 16;
+const RECORD_BYTES: usize = size_of::<Record>();
+const BLANK_RECORD: Record = [u32::MAX; _];
 
 /// Two sectors; clones are the same flash, which outlasts a restart.
 #[derive(Debug, Clone)]
@@ -39,9 +37,9 @@ impl DeskFlash {
         let unwritable = |path: &PathBuf, error| format!("--parameters {}: cannot be written: {error}", path.display());
         let alone = |path: &PathBuf| WholeFile::alone(path).map_err(|error| unwritable(path, error));
         let _alone = file.as_ref().map(alone).transpose()?.map(Rc::new);
-        let flash = Self { records: Rc::new(RefCell::new(vec![BLANK; 2 * RECORDS])), file, _alone };
+        let flash = Self { records: Rc::new(RefCell::new(vec![BLANK_RECORD; 2 * SECTOR_RECORDS])), file, _alone };
         let Some(path) = &flash.file else { return Ok(flash) };
-        let wanted = 2 * RECORDS * BYTES;
+        let wanted = 2 * SECTOR_RECORDS * RECORD_BYTES;
         let image = match scenario::text::bytes(path, wanted as u64) {
             Ok(image) => image,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(flash),
@@ -53,7 +51,7 @@ impl DeskFlash {
                 path.display()
             ));
         }
-        for (record, bytes) in flash.records.borrow_mut().iter_mut().zip(image.chunks_exact(BYTES)) {
+        for (record, bytes) in flash.records.borrow_mut().iter_mut().zip(image.chunks_exact(RECORD_BYTES)) {
             for (word, bytes) in record.iter_mut().zip(bytes.as_chunks().0) {
                 *word = u32::from_le_bytes(*bytes);
             }
@@ -75,7 +73,7 @@ impl DeskFlash {
 }
 
 impl Flash for DeskFlash {
-    const RECORDS_PER_SECTOR: usize = RECORDS;
+    const RECORDS_PER_SECTOR: usize = SECTOR_RECORDS;
 
     fn read(&mut self, place: usize) -> Result<Record, Fault> {
         self.records.borrow().get(place).copied().ok_or(Fault)
@@ -87,7 +85,7 @@ impl Flash for DeskFlash {
     }
 
     fn erase(&mut self, sector: usize) -> Result<(), Fault> {
-        self.records.borrow_mut().chunks_mut(RECORDS).nth(sector).ok_or(Fault)?.fill(BLANK);
+        self.records.borrow_mut().chunks_mut(SECTOR_RECORDS).nth(sector).ok_or(Fault)?.fill(BLANK_RECORD);
         self.store()
     }
 }

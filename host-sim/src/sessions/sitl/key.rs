@@ -5,17 +5,17 @@ use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// 2015 began so long after 1970.
-const EPOCH: Duration = Duration::from_secs(1_420_070_400);
+const EPOCH_2015: Duration = Duration::from_secs(1_420_070_400);
 
-/// The longest file, bytes: a key with some white space.
-const LONGEST: u64 = 4_096;
+/// A key with some white space.
+const KEY_FILE_MAX_BYTES: u64 = 4_096;
 
 /// The key in a file.
 ///
 /// # Errors
 /// In words, if the file cannot be read or holds no key. What it holds is not shown.
 pub fn read(path: &Path) -> Result<Key, String> {
-    let text = scenario::text::bytes(path, LONGEST)
+    let text = scenario::text::bytes(path, KEY_FILE_MAX_BYTES)
         .map_err(|error| format!("--signing-key {}: cannot be read: {error}", path.display()))?;
     parsed(text.trim_ascii()).ok_or_else(|| {
         let digits = 2 * KEY_BYTES;
@@ -37,7 +37,7 @@ fn parsed(digits: &[u8]) -> Option<Key> {
 /// The desk's time as stamps count it.
 #[must_use]
 pub fn now() -> Stamp {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH + EPOCH).unwrap_or_default();
+    let since = SystemTime::now().duration_since(UNIX_EPOCH + EPOCH_2015).unwrap_or_default();
     since.as_micros() as Stamp / 10
 }
 

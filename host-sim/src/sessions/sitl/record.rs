@@ -2,12 +2,12 @@
 
 use crate::output::whole_file::WholeFile;
 use crate::reports::recording::Recording;
-use crate::reports::recording::session::{Moment, TOPICS};
+use crate::reports::recording::session::{SESSION_TOPICS, SessionMoment};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 /// A recording under way.
-pub struct Record {
+pub struct SessionRecord {
     recording: Recording<WholeFile>,
     path: PathBuf,
     period: u64,
@@ -15,13 +15,13 @@ pub struct Record {
     due: u64,
 }
 
-impl Record {
+impl SessionRecord {
     /// Begins one of `scenario`, whose file has this `text`, at `path`, where it shows up when it is finished.
     ///
     /// # Errors
     /// In words, if it cannot be written.
     pub fn create(path: &Path, scenario: &Scenario, text: &str) -> Result<Self, String> {
-        let begin = || Recording::begin(WholeFile::alone(path)?, scenario, text, TOPICS);
+        let begin = || Recording::begin(WholeFile::alone(path)?, scenario, text, SESSION_TOPICS);
         let recording = begin().map_err(failed(path))?;
         let period = scenario.timing.period_us;
         Ok(Self { recording, path: path.to_owned(), period, due: period / 2 })
@@ -37,7 +37,7 @@ impl Record {
     ///
     /// # Errors
     /// In words, if it cannot be written.
-    pub fn look(&mut self, moment: &Moment) -> Result<(), String> {
+    pub fn observe(&mut self, moment: &SessionMoment) -> Result<(), String> {
         if moment.now < self.due {
             return Ok(());
         }
@@ -49,8 +49,8 @@ impl Record {
     ///
     /// # Errors
     /// In words, if it cannot be written.
-    pub fn said(&mut self, time: u64, text: &str) -> Result<(), String> {
-        self.recording.said(time, text).map_err(failed(&self.path))
+    pub fn observe_text(&mut self, time: u64, text: &str) -> Result<(), String> {
+        self.recording.write_text(time, text).map_err(failed(&self.path))
     }
 
     /// Gives it its name.

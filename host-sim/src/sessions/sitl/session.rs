@@ -1,7 +1,7 @@
 //! A session of `sitl`: what it is told, and how it ended.
 
 use super::faults::Fault;
-use super::world::PoseSource;
+use super::simulated_hardware::PoseSource;
 use crate::sessions::ports::Ports;
 use firmware::link::signing::Key;
 use flight::Mode;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// How a session is run.
 #[derive(Debug, Clone)]
-pub struct Session {
+pub struct SitlSession {
     /// The scenario's name in errors: its file.
     pub file: String,
     /// Where the clients are.
@@ -53,7 +53,7 @@ impl fmt::Display for SitlError {
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary {
+pub struct SitlSummary {
     /// Vehicle time, s.
     pub time: f64,
     /// The vehicle's mode; none before its first tick.
@@ -66,7 +66,7 @@ pub struct Summary {
     pub signal: Option<u8>,
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for SitlSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.position;
         let why = if self.signal.is_some() { "interrupted" } else { "the duration was over" };

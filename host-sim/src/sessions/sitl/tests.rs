@@ -41,7 +41,7 @@ impl Flown {
         let ports = Ports { offboard: port(&client), ground: port(&ground), local: port(&free) };
         drop(free);
         let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-        let session = Session {
+        let session = SitlSession {
             file: "a file".to_owned(),
             ports,
             speed: 1.0,
@@ -96,7 +96,7 @@ impl Flown {
     /// Lets vehicle time pass, s, and sends a pose of where the vehicle really is every 10 ms.
     fn pass_with_poses(&mut self, seconds: f64) {
         for _ in 0..(seconds * 100.0) as u32 {
-            let BodyState { position, attitude, .. } = self.sitl.world.state();
+            let BodyState { position, attitude, .. } = self.sitl.hardware.state();
             let q = firmware::frames::attitude(&attitude.cast()).coords;
             let at = firmware::frames::world(&position.cast());
             let time_usec = 7_000_000 + self.sitl.clock.now();
@@ -129,7 +129,7 @@ impl Flown {
 #[test]
 fn a_client_arms_takes_off_and_lands_with_late_and_noisy_poses() {
     let mut flown = Flown::in_the_air(STUDY, &[]);
-    let up = flown.sitl.world.state().position;
+    let up = flown.sitl.hardware.state().position;
     assert!((up.z - 1.5).abs() < 0.05 && (up.x - 1.0).abs() < 0.05, "{up}");
     // The camera answered TIMESYNC: the estimate is of where the vehicle is, not of where a pose was 20 ms ago.
     let health = flown.sitl.shared.report.get().unwrap().value.health;
@@ -138,7 +138,7 @@ fn a_client_arms_takes_off_and_lands_with_late_and_noisy_poses() {
     flown.pass(12.0);
     assert!(matches!(flown.mode(), Mode::Checks | Mode::Ready), "{:?}", flown.sitl.texts);
     // A touchdown ends where the vehicle was after the plant's step.
-    let height = flown.sitl.world.state().position.z;
+    let height = flown.sitl.hardware.state().position.z;
     assert!((-1e-3..=0.0).contains(&height), "{height}");
     assert_eq!(flown.sitl.summary(None).missed, 0);
 }
@@ -191,7 +191,7 @@ fn motors_stop_within_a_second_of_touchdown_wherever_poses_are_lost() {
         while stopped.is_none() && flown.sitl.clock.now() < 60_000_000 {
             flown.pass(0.02);
             let now = flown.sitl.clock.now();
-            if flown.sitl.world.state().position.z < 1e-3 {
+            if flown.sitl.hardware.state().position.z < 1e-3 {
                 touched = touched.or(Some(now));
             }
             stopped = (!flown.mode().is_armed()).then_some(now);
@@ -218,7 +218,7 @@ fn faults_come_at_their_times_and_do_what_the_flight_rules_say() {
 
 #[test]
 fn a_rotor_falls_short_of_its_thrust_while_its_fault_lasts() {
-    let thrust = |flown: &Flown| flown.sitl.world.thrusts()[0];
+    let thrust = |flown: &Flown| flown.sitl.hardware.thrusts()[0];
     let mut flown = Flown::in_the_air(STUDY, &["rotor1=0.4@21..21.02", "rotor1@25"]);
     flown.pass(1.0);
     let hovering = thrust(&flown);
@@ -230,7 +230,7 @@ fn a_rotor_falls_short_of_its_thrust_while_its_fault_lasts() {
     let share = thrust(&flown) / hovering;
     assert!((0.95..1.05).contains(&share) && flown.mode() == Mode::Holding, "{share}, {:?}", flown.sitl.texts);
     flown.pass(1.68);
-    let (share, all) = (thrust(&flown) / hovering, flown.sitl.world.thrusts().iter().sum::<f64>());
+    let (share, all) = (thrust(&flown) / hovering, flown.sitl.hardware.thrusts().iter().sum::<f64>());
     assert!(share < 0.01 && all > hovering, "{share}, {all} N");
 }
 
@@ -253,7 +253,7 @@ fn wind_blows_in_it() {
     still.pass(3.0);
     windy.pass(3.0);
     let lean = |flown: &Flown| {
-        let up = nalgebra::UnitQuaternion::new_normalize(flown.sitl.world.state().attitude) * nalgebra::Vector3::z();
+        let up = nalgebra::UnitQuaternion::new_normalize(flown.sitl.hardware.state().attitude) * nalgebra::Vector3::z();
         up.x
     };
     assert!(lean(&still).abs() < 0.01 && lean(&windy) < -0.02, "{} {}", lean(&still), lean(&windy));
@@ -274,7 +274,7 @@ fn set_down_at_a_lean_it_keeps_its_pose() {
         ..SET_POSITION_TARGET_LOCAL_NED_DATA::DEFAULT
     };
     let tilt = |flown: &Flown| {
-        let attitude = nalgebra::UnitQuaternion::new_normalize(flown.sitl.world.state().attitude);
+        let attitude = nalgebra::UnitQuaternion::new_normalize(flown.sitl.hardware.state().attitude);
         (attitude * nalgebra::Vector3::z()).z.clamp(-1.0, 1.0).acos().to_degrees()
     };
     let mut lean = 0.0;
@@ -283,7 +283,7 @@ fn set_down_at_a_lean_it_keeps_its_pose() {
         if sent == 10 {
             flown.ask(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0]);
         }
-        if flown.sitl.world.state().position.z > 0.05 {
+        if flown.sitl.hardware.state().position.z > 0.05 {
             lean = tilt(&flown);
         }
         flown.pass(0.05);
@@ -300,7 +300,7 @@ fn set_down_at_a_lean_it_keeps_its_pose() {
 
 #[test]
 fn what_no_board_could_fly_is_refused_by_name() {
-    let session = Session {
+    let session = SitlSession {
         file: "a file".to_owned(),
         ports: Ports { local: 0, ..Ports::default() },
         speed: 1.0,
@@ -319,7 +319,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
     assert!(refused(&slow).contains("unstable"), "{}", refused(&slow));
     let coarse = STUDY.replace("step = 0.001", "step = 0.002");
     assert!(refused(&coarse).contains("plant.step"), "{}", refused(&coarse));
-    let session = Session { faults: vec!["rotor5@20".parse().unwrap()], ..session };
+    let session = SitlSession { faults: vec!["rotor5@20".parse().unwrap()], ..session };
     let refused = Sitl::boot(&Scenario::parse(STUDY, "a test").unwrap(), &session, quiet).err().unwrap();
     assert_eq!(refused, "--fault: rotor5 is not there: the vehicle's are rotor1 to rotor4");
 }
@@ -328,15 +328,15 @@ fn what_no_board_could_fly_is_refused_by_name() {
 fn a_recording_has_the_flight_tick_by_tick_and_every_word() {
     let path = std::env::temp_dir().join(format!("host-sim-session-{}.mcap", std::process::id()));
     let mut flown = Flown::boot(STUDY, &[], None);
-    let mut record = Record::create(&path, &Scenario::parse(STUDY, "a test").unwrap(), STUDY).unwrap();
+    let mut record = SessionRecord::create(&path, &Scenario::parse(STUDY, "a test").unwrap(), STUDY).unwrap();
     assert!(!path.exists(), "it shows up when it is finished");
     let (mut ticks, mut words) = (0, 0);
     let mut watch = |flown: &mut Flown, seconds: u32| {
         for _ in 0..seconds * 100 {
             flown.pass(0.01);
-            record.look(&flown.sitl.moment()).unwrap();
+            record.observe(&flown.sitl.moment()).unwrap();
             let said = flown.sitl.texts.take();
-            said.iter().for_each(|(time, text)| record.said(*time, text).unwrap());
+            said.iter().for_each(|(time, text)| record.observe_text(*time, text).unwrap());
             (ticks, words) = (ticks + 1, words + said.len());
         }
     };
@@ -344,7 +344,7 @@ fn a_recording_has_the_flight_tick_by_tick_and_every_word() {
     flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
     flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
     watch(&mut flown, 12);
-    let height = flown.sitl.world.state().position.z;
+    let height = flown.sitl.hardware.state().position.z;
     record.finish().unwrap();
     let bytes = std::fs::read(&path).unwrap();
     std::fs::remove_file(&path).unwrap();

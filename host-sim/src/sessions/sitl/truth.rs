@@ -10,8 +10,7 @@
 use scenario::body::BodyState;
 use std::net::{Ipv4Addr, UdpSocket};
 
-/// Time between two lines, us.
-const PERIOD: u64 = 10_000;
+const LINE_PERIOD_US: u64 = 10_000;
 
 /// The socket, and when the next is due, us.
 pub struct Truth {
@@ -40,11 +39,11 @@ impl Truth {
     }
 
     /// Sends a line of the vehicle at `now`, us, if one is due; by the desk's clock that is `desk_time`, s.
-    pub fn look(&mut self, now: u64, desk_time: f64, state: &BodyState) {
+    pub fn write_when_due(&mut self, now: u64, desk_time: f64, state: &BodyState) {
         if now < self.due {
             return;
         }
-        self.due = now - now % PERIOD + PERIOD;
+        self.due = now - now % LINE_PERIOD_US + LINE_PERIOD_US;
         let [x, y, z] = <[f64; 3]>::from(state.position);
         let q = state.attitude;
         let line = format!(

@@ -16,9 +16,9 @@ use std::path::Path;
 use std::sync::Once;
 
 /// The last bytes of an Arrow file.
-const MAGIC: &[u8] = b"ARROW1";
-/// Bytes of a SHA-256.
-const DIGEST: usize = 32;
+const ARROW_END: &[u8] = b"ARROW1";
+/// Of a SHA-256.
+const DIGEST_BYTES: usize = 32;
 
 /// Writes a result; returns its SHA-256, hexadecimal.
 ///
@@ -57,10 +57,10 @@ pub fn read(path: &Path, expected: Option<&str>) -> Option<Vec<RecordBatch>> {
 #[must_use]
 pub fn read_sealed(path: &Path) -> Option<Vec<RecordBatch>> {
     let bytes = whole(path).ok()?;
-    if bytes.ends_with(MAGIC) {
+    if bytes.ends_with(ARROW_END) {
         return decoded(&bytes);
     }
-    let (bytes, seal) = bytes.split_at_checked(bytes.len().checked_sub(DIGEST)?)?;
+    let (bytes, seal) = bytes.split_at_checked(bytes.len().checked_sub(DIGEST_BYTES)?)?;
     (Sha256::digest(bytes).as_slice() == seal).then(|| decoded(bytes)).flatten()
 }
 

@@ -38,18 +38,17 @@ use scenario::reference::ReferenceKind;
 use scenario::timing::Timing;
 use std::sync::Arc;
 
-/// The drag over mass of a vehicle without `[drag]`, 1/s.
-pub const DRAG_PER_MASS: f64 = 0.5;
-/// Turbulence is that of this height, m.
-const ALTITUDE: f64 = 10.0;
-/// The least airspeed that turbulence drifts past with, m/s.
-const LEAST_AIRSPEED: f64 = 1.0;
+/// The drag over mass of a vehicle without `[drag]`.
+pub const DRAG_PER_MASS_PER_S: f64 = 0.5;
+const TURBULENCE_ALTITUDE_M: f64 = 10.0;
+/// The least airspeed that turbulence drifts past with.
+const AIRSPEED_MIN_M_PER_S: f64 = 1.0;
 /// How velocity is made of noisy poses: bandwidth, rad/s, and the accelerometer's noise, m/s^2, as for the trials of a
 /// search.
-const VELOCITY: VelocitySource =
+const VELOCITY_SOURCE: VelocitySource =
     VelocitySource::Observer { bandwidth: 8.0, noise: 0.05, bias: Vector3::new(0.0, 0.0, 0.0) };
 /// Durations are decimal fractions: how far their quotient by the period may be below a whole number, relative.
-const WHOLE: f64 = 1e-9;
+const WHOLE_TOLERANCE: f64 = 1e-9;
 
 /// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it
 /// is: what is certified for the scenario is certified for all of its flights.
@@ -88,7 +87,7 @@ pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u6
 #[must_use]
 pub fn timing(scenario: &Scenario, ranges: &Ranges) -> Timing {
     let period = scenario.timing.period();
-    Timing { ticks: (ranges.duration / period * (1.0 + WHOLE)) as u64, ..scenario.timing }
+    Timing { ticks: (ranges.duration / period * (1.0 + WHOLE_TOLERANCE)) as u64, ..scenario.timing }
 }
 
 /// How the air moves, with this steady wind before it is laid level, m/s.
@@ -100,12 +99,16 @@ fn blow(scenario: &mut Scenario, ranges: &Ranges, steady: Vector3<f64>, drawn: &
         return;
     }
     let mass = f64::from(scenario.configuration.vehicle().mass);
-    let drag = Drag { linear: Vector3::repeat(DRAG_PER_MASS * mass), ..Drag::default() };
+    let drag = Drag { linear: Vector3::repeat(DRAG_PER_MASS_PER_S * mass), ..Drag::default() };
     scenario.reality.drag.get_or_insert(drag);
     let level = |wind: Vector3<f64>| Vector3::new(wind.x, wind.y, 0.0);
     let steady = level(steady);
-    let turbulence =
-        Turbulence { wind_at_20_feet: strength, altitude: ALTITUDE, airspeed: steady.norm().max(LEAST_AIRSPEED), seed };
+    let turbulence = Turbulence {
+        wind_at_20_feet: strength,
+        altitude: TURBULENCE_ALTITUDE_M,
+        airspeed: steady.norm().max(AIRSPEED_MIN_M_PER_S),
+        seed,
+    };
     scenario.reality.wind = Some(Wind {
         steady,
         gust: (ranges.gust > 0.0).then(|| Gust { shape: Shape::Step, start, velocity: level(gust) }),
@@ -131,7 +134,7 @@ fn measure(scenario: &mut Scenario, ranges: &NoiseRanges, drawn: &mut Drawn) {
                 gyro_bias: Vector3::zeros(),
                 position_noise: position * ranges.position,
                 attitude_noise: attitude * ranges.attitude,
-                velocity: VELOCITY,
+                velocity: VELOCITY_SOURCE,
                 pose_every: 1,
                 dropout: 0.0,
                 delay_ticks: (delay * ranges.delay / scenario.timing.period()).round() as u64,
@@ -154,7 +157,7 @@ fn err(scenario: &mut Scenario, ranges: &ModelRanges, drawn: &mut Drawn) {
         return;
     }
     let truth = scenario.reality.truth.clone();
-    let truth = truth.unwrap_or_else(|| Truth::of_model(scenario.configuration.vehicle()));
+    let truth = truth.unwrap_or_else(|| Truth::model(scenario.configuration.vehicle()));
     let rotors = scenario.configuration.rotors().map_or(0, |rotors| rotors.len());
     let own = |rotor: usize| truth.rotor_scales.get(rotor).copied().unwrap_or(1.0);
     let rotor_scales = scales.iter().take(rotors).enumerate().map(|(rotor, scale)| own(rotor) * scale).collect();

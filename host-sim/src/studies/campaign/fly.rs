@@ -4,13 +4,13 @@
 //! nothing. Chunks that are already there are not flown again.
 
 use super::CampaignError;
-use super::manifest::{CHUNK, Manifest};
+use super::manifest::{CHUNK_FLIGHTS, Manifest};
+use super::random_flight::fly;
 use super::report;
-use super::rows::{Row, batch};
-use super::store::{REPORT, SUMMARY, Store};
+use super::rows::{FlightRow, batch};
+use super::store::{REPORT_FILE, SUMMARY_FILE, Store};
 use super::summary::Summary;
-use super::throw::throw;
-use crate::flight::flier::Flier;
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::output::interrupt::Interrupt;
 use crate::output::progress::Progress;
 use crate::rivals::choice::LawChoice;
@@ -36,13 +36,13 @@ pub struct Orders {
 }
 
 /// A scenario that a campaign can fly, with the plant step that is flown, and where it is from.
-pub struct Source {
+pub struct CampaignSource {
     scenario: Scenario,
     text: String,
     file: String,
 }
 
-impl Source {
+impl CampaignSource {
     /// `scenario`, read from `text`, which errors call `file`.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl Source {
     }
 
     fn verdict(&self) -> Result<Verdict, CampaignError> {
-        Verdict::of(&self.scenario).map_err(|error| self.error(error))
+        Verdict::judge(&self.scenario).map_err(|error| self.error(error))
     }
 }
 
@@ -87,26 +87,26 @@ impl Source {
 /// # Errors
 /// [`CampaignError`]; chunks that were finished stay.
 pub fn campaign(
-    source: &Source,
+    source: &CampaignSource,
     law: &LawChoice,
     orders: &Orders,
     directory: &Path,
     interrupt: &Interrupt,
 ) -> Result<Summary, CampaignError> {
-    let Source { scenario, text, .. } = source;
+    let CampaignSource { scenario, text, .. } = source;
     let Orders { flights, seed, shard } = *orders;
     if let Some(problem) = idle(orders) {
         return Err(CampaignError::Input(problem));
     }
     let verdict = source.verdict()?;
-    let flier = Flier::new(law, scenario, verdict.certified())
+    let on_vehicle = LawOnVehicle::new(law, scenario, verdict.certified())
         .ok_or_else(|| source.error(format_args!("the law {} is undefined for its gains", law.name())))?;
     let manifest = Manifest::new(scenario, text, flights, seed, shard).under(law.clone());
     let store = Store::open(directory, &manifest, text)?;
     let flown = match store.result() {
         Some(flown) => flown,
         None => {
-            let chunks = Chunks::new(source, &flier, verdict.certificate(), &store, interrupt);
+            let chunks = Chunks::new(source, &on_vehicle, verdict.certificate(), &store, interrupt);
             chunks.fly()?
         }
     };
@@ -122,12 +122,12 @@ pub fn grounded(scenario: &Scenario) -> Option<&'static str> {
 
 /// What is wrong where shards are left without flights: of those nothing could be said.
 fn idle(orders: &Orders) -> Option<String> {
-    let (chunks, parts) = (orders.flights.div_ceil(CHUNK), orders.shard.1);
+    let (chunks, parts) = (orders.flights.div_ceil(CHUNK_FLIGHTS), orders.shard.1);
     let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     (parts > chunks).then(|| {
         let (flights, found) = (many(orders.flights, "flight"), many(chunks, "chunk"));
         format!(
-            "shard: {flights} in chunks of {CHUNK} are {found}, so there can be at most {}, found {parts}",
+            "shard: {flights} in chunks of {CHUNK_FLIGHTS} are {found}, so there can be at most {}, found {parts}",
             many(chunks, "shard")
         )
     })
@@ -162,7 +162,7 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
     stores.iter().try_for_each(|(store, _)| store.scenario().map(drop))?;
     let file = file.display().to_string();
     let scenario = Scenario::parse(&text, &file).map_err(|error| CampaignError::Input(error.to_string()))?;
-    let source = Source::new(scenario, text, file)?;
+    let source = CampaignSource::new(scenario, text, file)?;
     let verdict = source.verdict()?;
     let whole = Manifest { shard: (1, 1), result: None, ..manifest };
     let mut numbered: Vec<(u64, RecordBatch)> = stores
@@ -176,19 +176,24 @@ pub fn merge(shards: &[impl AsRef<Path>], directory: &Path) -> Result<Summary, C
 }
 
 /// Writes what was flown and what it showed.
-fn finish(source: &Source, verdict: &Verdict, store: &Store, flown: &[RecordBatch]) -> Result<Summary, CampaignError> {
-    let Source { scenario, text, .. } = source;
-    let summary = Summary::of(scenario, verdict, store.manifest(), flown);
+fn finish(
+    source: &CampaignSource,
+    verdict: &Verdict,
+    store: &Store,
+    flown: &[RecordBatch],
+) -> Result<Summary, CampaignError> {
+    let CampaignSource { scenario, text, .. } = source;
+    let summary = Summary::summarize(scenario, verdict, store.manifest(), flown);
     store.finish(flown)?;
-    store.write(SUMMARY, &summary.to_string())?;
-    store.write(REPORT, &report::page(&summary, text, store.manifest(), flown).html())?;
+    store.write(SUMMARY_FILE, &summary.to_string())?;
+    store.write(REPORT_FILE, &report::page(&summary, text, store.manifest(), flown).html())?;
     Ok(summary)
 }
 
 /// Chunks to fly.
 struct Chunks<'a> {
-    source: &'a Source,
-    flier: &'a Flier,
+    source: &'a CampaignSource,
+    law: &'a LawOnVehicle,
     certificate: &'a Certificate,
     store: &'a Store,
     interrupt: &'a Interrupt,
@@ -198,15 +203,15 @@ struct Chunks<'a> {
 
 impl<'a> Chunks<'a> {
     fn new(
-        source: &'a Source,
-        flier: &'a Flier,
+        source: &'a CampaignSource,
+        law: &'a LawOnVehicle,
         certificate: &'a Certificate,
         store: &'a Store,
         interrupt: &'a Interrupt,
     ) -> Self {
         Self {
             source,
-            flier,
+            law,
             certificate,
             store,
             interrupt,
@@ -228,17 +233,17 @@ impl<'a> Chunks<'a> {
             self.show(numbers.end - numbers.start);
             return Ok(flown);
         }
-        let rows = numbers.map(|number| self.fly_one(number)).collect::<Result<Vec<Row>, _>>()?;
+        let rows = numbers.map(|number| self.fly_one(number)).collect::<Result<Vec<FlightRow>, _>>()?;
         let flown = batch(&rows, self.store.manifest()).map_err(CampaignError::Rows)?;
         self.store.keep(chunk, &flown)?;
         Ok(flown)
     }
 
-    fn fly_one(&self, number: u64) -> Result<Row, CampaignError> {
+    fn fly_one(&self, number: u64) -> Result<FlightRow, CampaignError> {
         if let Some(signal) = self.interrupt.signal() {
             return Err(CampaignError::Interrupted(signal));
         }
-        let flown = throw(self.flier, &self.source.scenario, self.certificate, self.store.manifest().seed, number);
+        let flown = fly(self.law, &self.source.scenario, self.certificate, self.store.manifest().seed, number);
         self.show(1);
         flown.map_err(|error| self.source.error(error))
     }

@@ -4,7 +4,7 @@ use super::columns::{counts, floats, whole_numbers};
 use super::quantile;
 use crate::output::table::short;
 use arrow_array::RecordBatch;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use std::fmt;
 
 /// How many false alarms are listed.
@@ -19,7 +19,7 @@ pub struct Losses {
     pub found: u64,
     /// Of these, those in which it found none.
     pub missed: u64,
-    /// Of these, those that end within [`PLACE_HELD`] of their reference.
+    /// Of these, those that end within [`PLACE_HELD_DISTANCE_M`] of their reference.
     pub held: u64,
     /// Flights in which the law found a rotor that had not failed, each with that rotor, from 1.
     pub false_alarms: Vec<(u64, u64)>,
@@ -30,7 +30,7 @@ pub struct Losses {
 impl Losses {
     /// Counts the failing rotors of all flights in `flown`.
     #[must_use]
-    pub fn of(flown: &[RecordBatch]) -> Self {
+    pub fn count(flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let [failed, found] = ["failed_rotor", "found_rotor"].map(|column| whole_numbers(flown, column));
         let [failures, findings, depths, distances, ends] =
@@ -57,7 +57,7 @@ impl Losses {
                 (_, Some(rotor)) => losses.false_alarms.push((numbers[flight], rotor)),
             }
             if failed[flight].is_some() {
-                losses.held += u64::from(ends[flight] <= PLACE_HELD);
+                losses.held += u64::from(ends[flight] <= PLACE_HELD_DISTANCE_M);
                 lost.push(depths[flight]);
                 away.push(distances[flight]);
             }
@@ -75,12 +75,13 @@ impl Losses {
 impl fmt::Display for Losses {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { failed, found, missed, held, false_alarms, figures: [delays, depths, distances] } = self;
-        let parts = |values: &[f64]| [0.5, 0.99, 1.0].map(|part| quantile(values, part).map_or(String::new(), seen));
+        let parts =
+            |values: &[f64]| [0.5, 0.99, 1.0].map(|part| quantile(values, part).map_or(String::new(), written_figure));
         if *failed > 0 {
             let wrong = failed - found - missed;
             writeln!(
                 f,
-                "a rotor failed in {failed} flights, {held} of which end within {PLACE_HELD} m of their reference; the \
+                "a rotor failed in {failed} flights, {held} of which end within {PLACE_HELD_DISTANCE_M} m of their reference; the \
                  law found it in {found}, another one or too early in {wrong}, none in {missed}"
             )?;
             let figures =
@@ -99,7 +100,7 @@ impl fmt::Display for Losses {
 }
 
 /// A figure; infinite of a flight that could not be flown to its end.
-fn seen(value: f64) -> String {
+fn written_figure(value: f64) -> String {
     if value.is_finite() { short(value) } else { "infinite".to_owned() }
 }
 

@@ -3,17 +3,17 @@
 
 use super::CampaignError;
 use super::batches::sha256;
-use crate::rivals::choice::{LawChoice, OURS};
-use crate::rivals::kind::Kind;
+use crate::rivals::choice::{LawChoice, OUR_LAW};
+use crate::rivals::kind::RivalKind;
 use scenario::Scenario;
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::Path;
 
-/// Flights of a chunk: what is flown, kept and lost together.
-pub const CHUNK: u64 = 50;
+/// A chunk is flown, kept and lost together.
+pub const CHUNK_FLIGHTS: u64 = 50;
 /// Its name in a directory.
-pub const MANIFEST: &str = "campaign.json";
+pub const MANIFEST_FILE: &str = "campaign.json";
 /// Its key of the hash of the flights' file.
 const RESULT_HASH: &str = "result_sha256";
 
@@ -77,13 +77,13 @@ impl Manifest {
     #[must_use]
     pub fn chunks(&self) -> Vec<u64> {
         let (part, parts) = self.shard;
-        (0..self.flights.div_ceil(CHUNK)).filter(|chunk| chunk % parts == part - 1).collect()
+        (0..self.flights.div_ceil(CHUNK_FLIGHTS)).filter(|chunk| chunk % parts == part - 1).collect()
     }
 
     /// The numbers of the flights of a chunk.
     #[must_use]
     pub fn flights_of(&self, chunk: u64) -> Range<u64> {
-        chunk * CHUNK..((chunk + 1) * CHUNK).min(self.flights)
+        chunk * CHUNK_FLIGHTS..((chunk + 1) * CHUNK_FLIGHTS).min(self.flights)
     }
 
     /// How many flights its chunks have together.
@@ -116,7 +116,7 @@ impl Manifest {
             ("plant_step", "plant step", json!(self.plant_step)),
             ("rotors", "number of rotors", json!(self.rotors)),
             ("shard", "shard", json!([self.shard.0, self.shard.1])),
-            ("chunk", "flights of a chunk", json!(CHUNK)),
+            ("chunk", "flights of a chunk", json!(CHUNK_FLIGHTS)),
             ("law", "law", json!(self.law.name())),
             ("gains", "gains of that law", Value::Object(gains)),
         ]
@@ -126,8 +126,8 @@ impl Manifest {
     ///
     /// # Errors
     /// If its manifest cannot be read or is malformed.
-    pub fn of(directory: &Path) -> Result<Option<Self>, CampaignError> {
-        let path = directory.join(MANIFEST);
+    pub fn read_in(directory: &Path) -> Result<Option<Self>, CampaignError> {
+        let path = directory.join(MANIFEST_FILE);
         let text = match scenario::text::read(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -145,7 +145,7 @@ impl Manifest {
         let shard = (shard.first()?.as_u64()?, shard.get(1)?.as_u64()?);
         let (flights, chunk) = (number("flights")?, number("chunk")?);
         let plant_step = value.get("plant_step")?.as_f64()?;
-        let is_one = chunk == CHUNK && (1..=shard.1).contains(&shard.0);
+        let is_one = chunk == CHUNK_FLIGHTS && (1..=shard.1).contains(&shard.0);
         is_one.then_some(())?;
         Some(Self {
             name: text("name")?,
@@ -180,10 +180,10 @@ impl Manifest {
 fn law(manifest: &Value) -> Option<LawChoice> {
     let Some(name) = manifest.get("law") else { return Some(LawChoice::Ours) };
     let name = name.as_str()?;
-    if name == OURS {
+    if name == OUR_LAW {
         return Some(LawChoice::Ours);
     }
-    let (kind, gains) = (Kind::named(name)?, manifest.get("gains")?);
+    let (kind, gains) = (RivalKind::named(name)?, manifest.get("gains")?);
     let values = kind.gains().iter().map(|gain| gains.get(gain)?.as_f64()).collect::<Option<Vec<f64>>>()?;
     Some(LawChoice::Rival(kind, values))
 }

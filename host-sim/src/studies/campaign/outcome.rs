@@ -4,10 +4,10 @@
 //! |---|---|
 //! | height lost | start minus lowest height |
 //! | rise | greatest height above the start and above the reference |
-//! | settled | since when it has been within [`NEAR`] of its reference, off the ground, for good |
-//! | attitude | since when its attitude, heading included, has been within [`NEAR_MRP`] of the desired one for good ([`claimed_error`]) |
-//! | heading | since when its heading has been within [`NEAR_HEADING`] of the reference's for good |
-//! | in time | whether all three were within the first [`REACHED_BY`] of the flight, as a flight by itself claims |
+//! | settled | since when it has been within [`SETTLED_DISTANCE_M`] of its reference, off the ground, for good |
+//! | attitude | since when its attitude, heading included, has been within [`MRP_TOLERANCE`] of the desired one for good ([`claimed_error`]) |
+//! | heading | since when its heading has been within [`HEADING_TOLERANCE_RAD`] of the reference's for good |
+//! | in time | whether all three were within the first [`REACHED_BY_SHARE`] of the flight, as a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
@@ -17,20 +17,20 @@
 //! command counts as beyond if it leaves that, and shares are not counted. Flights in which a rotor fails:
 //! [`super::rotor_loss`].
 
-use super::rotor_loss::{ROUNDING, RotorLoss, is_within_ranges};
-use crate::flight::claims::REACHED_BY;
-use crate::flight::flown::{NEAR_MRP, claimed_error, heading_is_followed};
+use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
+use crate::flight::claims::REACHED_BY_SHARE;
+use crate::flight::extremes::{MRP_TOLERANCE, claimed_error, heading_is_followed};
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
 use controller_core::reference::ReferenceBounds;
 use scenario::Scenario;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 
-/// How near its reference a vehicle must stay to have settled, m.
-pub const NEAR: f64 = 0.2;
-/// How near its heading, rad.
-pub const NEAR_HEADING: f64 = 0.2;
+/// A vehicle that stays nearer to its reference has settled.
+pub const SETTLED_DISTANCE_M: f64 = 0.2;
+/// How near to its heading a vehicle must stay.
+pub const HEADING_TOLERANCE_RAD: f64 = 0.2;
 
 /// The figures of one flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ impl Outcome {
     /// Flies a whole `flight` of `scenario`, whose commands `certificate` bounds. Of a flight that cannot be flown to
     /// its end, the height lost and the final error are infinite.
     #[must_use]
-    pub fn of(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
+    pub fn judge(scenario: &Scenario, mut flight: Flight, certificate: &Certificate) -> Self {
         let start = scenario.initial.position.z;
         let mut outcome = Self {
             height_lost: 0.0,
@@ -100,7 +100,7 @@ impl Outcome {
             beyond: 0,
             shares: Shares::default(),
             fallback: 0,
-            rotor: RotorLoss::of(scenario),
+            rotor: RotorLoss::before_flight(scenario),
             ticks: 0,
         };
         let rotors = scenario.configuration.rotors();
@@ -138,23 +138,23 @@ impl Outcome {
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
         let next = Some((tick.time_us + period_us) as f64 / 1e6);
-        if self.final_error > NEAR || tick.standing {
+        if self.final_error > SETTLED_DISTANCE_M || tick.standing {
             self.settled = next;
         }
-        if claimed_error(&tick.mrp, &tick.reference, bounds) > NEAR_MRP {
+        if claimed_error(&tick.mrp, &tick.reference, bounds) > MRP_TOLERANCE {
             self.attitude = next;
         }
         let followed = heading_is_followed(&tick.reference, bounds);
-        if followed && tick.state.heading_error(&tick.reference.heading) > NEAR_HEADING {
+        if followed && tick.state.heading_error(&tick.reference.heading) > HEADING_TOLERANCE_RAD {
             self.heading = next;
         }
     }
 
     /// Whether it recovered and tracks: it was flown to its end, and was near its reference, attitude and heading in
-    /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD`] of its reference.
+    /// time and for good; or, where a rotor failed, it ends within [`PLACE_HELD_DISTANCE_M`] of its reference.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD } else { self.in_time }
+        if self.rotor.failure.is_some() { self.final_error <= PLACE_HELD_DISTANCE_M } else { self.in_time }
     }
 
     /// Whether it tracks, and no command went beyond its bound.
@@ -167,16 +167,16 @@ impl Outcome {
 /// Whether a flight of `duration`, s, has settled in time.
 #[must_use]
 pub fn in_time(settled: Option<f64>, duration: f64) -> bool {
-    settled.is_some_and(|since| since <= REACHED_BY * duration)
+    settled.is_some_and(|since| since <= REACHED_BY_SHARE * duration)
 }
 
 impl Shares {
     /// Takes a tick's commands into account; returns whether they are within their bounds.
     fn take(&mut self, tick: &Brief, certificate: &Certificate) -> bool {
         let (thrust, proven) = (f64::from(tick.wrench.thrust), certificate.thrust());
-        let raised = 1.0 + ROUNDING;
-        let mut within = (proven.least / raised..=proven.greatest * raised).contains(&thrust);
-        self.thrust = self.thrust.max(thrust / proven.greatest);
+        let raised = 1.0 + BOUND_TOLERANCE;
+        let mut within = (proven.min / raised..=proven.max * raised).contains(&thrust);
+        self.thrust = self.thrust.max(thrust / proven.max);
         let bounds = certificate.torque();
         for (greatest, (torque, proven)) in self.torque.iter_mut().zip(tick.wrench.torque.iter().zip(bounds.iter())) {
             let torque = f64::from(torque.abs());
@@ -189,8 +189,8 @@ impl Shares {
                 within = false;
                 continue;
             };
-            *greatest = greatest.max(commanded / proven.greatest);
-            within &= (proven.least - ROUNDING..=proven.greatest * raised).contains(&commanded);
+            *greatest = greatest.max(commanded / proven.max);
+            within &= (proven.min - BOUND_TOLERANCE..=proven.max * raised).contains(&commanded);
         }
         within
     }

@@ -2,7 +2,7 @@
 
 use super::columns::{counts, floats};
 use super::manifest::Manifest;
-use super::rows::{HOLDS, share_of_rotor};
+use super::rows::{HOLDS_COLUMN, share_of_rotor};
 use super::summary::{Summary, verdicts};
 use crate::output::table::{percent, short};
 use crate::reports::report::distribution::Distribution;
@@ -11,8 +11,7 @@ use crate::reports::report::page::{Block, Page, Section};
 use crate::reports::report::prose::{Cell, Fact, Table};
 use arrow_array::RecordBatch;
 
-/// How many of the worst a list holds.
-const LISTED: usize = 20;
+const WORST_LISTED: usize = 20;
 
 /// A figure of every flight.
 struct Figure {
@@ -59,7 +58,7 @@ pub fn page(summary: &Summary, text: &str, manifest: &Manifest, flown: &[RecordB
     let spread: Vec<Distribution> = figures.iter().chain([&greatest]).chain(&shares).map(distribution).collect();
     let sections = [
         ("Distributions", vec![Block::Distributions(spread)]),
-        ("Worst flights", std::iter::once(Block::Text(REPLAY.to_owned())).chain(worst).collect()),
+        ("Worst flights", std::iter::once(Block::Text(REPLAY_HINT.to_owned())).chain(worst).collect()),
         (
             "Scenario",
             [
@@ -120,7 +119,7 @@ fn gains(manifest: &Manifest) -> Option<Block> {
     Some(Block::Facts(std::iter::once(law).chain(gains).collect()))
 }
 
-const REPLAY: &str =
+const REPLAY_HINT: &str =
     "Any flight is flown again, with its own log and report, by the campaign's command and --replay NUMBER.";
 
 fn share(part: u64, whole: u64) -> String {
@@ -145,10 +144,10 @@ fn worst(figure: &Figure, numbers: &[u64], verdicts: &[&str]) -> Table {
     let mut table = Table::new(format!("{}: the greatest", figure.title), &["flight", "value", "verdict"]);
     let mut places: Vec<usize> = (0..numbers.len().min(figure.values.len()).min(verdicts.len())).collect();
     places.sort_by(|&a, &b| figure.values[b].total_cmp(&figure.values[a]).then(numbers[a].cmp(&numbers[b])));
-    for place in places.into_iter().take(LISTED) {
+    for place in places.into_iter().take(WORST_LISTED) {
         let value = figure.values[place];
         let value = if value.is_finite() { format!("{} {}", short(value), figure.unit) } else { "never".to_owned() };
-        let verdict = Cell::Verdict(Some(verdicts[place] == HOLDS));
+        let verdict = Cell::Verdict(Some(verdicts[place] == HOLDS_COLUMN));
         table.rows.push(vec![Cell::text(numbers[place].to_string()), Cell::number(value.trim_end()), verdict]);
     }
     table
@@ -162,7 +161,7 @@ mod tests {
     fn the_worst_flights_stand_first_and_those_that_never_came_before_all_others() {
         let values = vec![1.0, f64::INFINITY, 3.0, 3.0];
         let figure = Figure { title: "t".into(), unit: "s", bound: None, values };
-        let table = worst(&figure, &[10, 11, 13, 12], &[HOLDS, "away", HOLDS, HOLDS]);
+        let table = worst(&figure, &[10, 11, 13, 12], &[HOLDS_COLUMN, "away", HOLDS_COLUMN, HOLDS_COLUMN]);
         let row = |number: &str, value: &str, holds| {
             vec![Cell::text(number), Cell::number(value), Cell::Verdict(Some(holds))]
         };

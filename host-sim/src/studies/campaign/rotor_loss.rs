@@ -8,17 +8,17 @@
 //! | distance | greatest distance from the reference, from then on |
 //!
 //! A vehicle that turns has no heading to hold. So a flight in which a rotor failed is held to its place alone: it
-//! *tracks* if it ends within [`PLACE_HELD`](scenario::rotor_loss::PLACE_HELD) of its reference.
+//! *tracks* if it ends within [`PLACE_HELD_DISTANCE_M`](scenario::rotor_loss::PLACE_HELD_DISTANCE_M) of its reference.
 
 use crate::flight::Brief;
-use controller_core::allocation::remaining::Lost;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::allocation::{Rotor, Rotors};
 use scenario::Scenario;
 use scenario::reality::failure::Failure;
 
-/// Room for the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
+/// For the rounding of a wrench's components or a rotor's command against a bound, relative; for a rotor that may
 /// stand still, N.
-pub(super) const ROUNDING: f64 = 1e-6;
+pub(super) const BOUND_TOLERANCE: f64 = 1e-6;
 
 /// A flight's failing rotor, and the one that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct RotorLoss {
 impl RotorLoss {
     /// Of a flight of `scenario`, before its first tick.
     #[must_use]
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn before_flight(scenario: &Scenario) -> Self {
         let end = scenario.timing.duration();
         let failure = scenario.reality.failure.filter(|failure| failure.time < end);
         Self { failure, found: None, height_lost: 0.0, distance: 0.0, height: f64::INFINITY }
@@ -52,7 +52,7 @@ impl RotorLoss {
     }
 
     /// Takes a tick in, after which the law has found a rotor to be `lost`.
-    pub fn observe(&mut self, tick: &Brief, lost: Option<Lost>) {
+    pub fn observe(&mut self, tick: &Brief, lost: Option<LostRotor>) {
         let time = tick.time_us as f64 * 1e-6;
         self.found = self.found.or_else(|| lost.map(|lost| (lost.rotor, time)));
         if self.failure.is_none_or(|failure| time < failure.time) {
@@ -79,7 +79,7 @@ impl RotorLoss {
 #[must_use]
 pub fn is_within_ranges(tick: &Brief, rotors: Option<&Rotors>, lost: usize) -> bool {
     let mut ranges = rotors.into_iter().flat_map(|rotors| rotors.iter());
-    let raised = 1.0 + ROUNDING as f32;
+    let raised = 1.0 + BOUND_TOLERANCE as f32;
     tick.rotor_thrusts.iter().enumerate().all(|(number, thrust)| {
         let within = |rotor: &Rotor| (rotor.thrust_min / raised..=rotor.thrust_max * raised).contains(thrust);
         ranges.next().is_some_and(|rotor| within(rotor) || number == lost && *thrust == 0.0)

@@ -39,7 +39,7 @@ use std::sync::Arc;
 
 /// One flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct FlightRow {
     /// Its number.
     pub number: u64,
     /// Whether it was to hover at the origin.
@@ -53,9 +53,9 @@ pub struct Row {
 }
 
 /// The law's key in the metadata.
-const LAW: &str = "law";
+const LAW_KEY: &str = "law";
 
-impl Row {
+impl FlightRow {
     /// Flight `number`, in the circumstances of `thrown`.
     #[must_use]
     pub fn new(number: u64, thrown: &Scenario, outcome: Outcome) -> Self {
@@ -78,33 +78,34 @@ impl Outcome {
         // A flight without a rotor is held to its place at the end, so it cannot be late.
         let there = if self.rotor.failure.is_some() { self.tracks() } else { reached };
         match (proven && self.beyond > 0, there) {
-            (true, _) => BEYOND,
-            (false, false) => AWAY,
-            (false, true) if self.tracks() => HOLDS,
-            (false, true) => LATE,
+            (true, _) => BEYOND_COLUMN,
+            (false, false) => AWAY_COLUMN,
+            (false, true) if self.tracks() => HOLDS_COLUMN,
+            (false, true) => LATE_COLUMN,
         }
     }
 }
 
 /// Recovered, tracked, and commanded nothing beyond a bound.
-pub const HOLDS: &str = "holds";
+pub const HOLDS_COLUMN: &str = "holds";
 /// Was not near its reference, attitude or heading at the end.
-pub const AWAY: &str = "away";
+pub const AWAY_COLUMN: &str = "away";
 /// Came near them for good, but too late to have recovered ([`Outcome::in_time`]).
-pub const LATE: &str = "late";
+pub const LATE_COLUMN: &str = "late";
 /// Commanded more than is proven.
-pub const BEYOND: &str = "beyond";
+pub const BEYOND_COLUMN: &str = "beyond";
 
-const START: [&str; 13] = [
+const START_COLUMNS: [&str; 13] = [
     "start_px", "start_py", "start_pz", "start_vx", "start_vy", "start_vz", "start_qw", "start_qx", "start_qy",
     "start_qz", "start_wx", "start_wy", "start_wz",
 ];
-const WIND: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
-const FIGURES: [&str; 3] = ["height_lost", "rise", "final_error"];
-const REACHED: [&str; 3] = ["settled", "attitude", "heading"];
-const ROTORS: [&str; 2] = ["failed_rotor", "found_rotor"];
-const LOSS: [&str; 5] = ["failure_time", "thrust_left", "found_time", "failure_height_lost", "failure_distance"];
-const SHARES: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
+const WIND_COLUMNS: [&str; 4] = ["wind_x", "wind_y", "gust_x", "gust_y"];
+const FIGURE_COLUMNS: [&str; 3] = ["height_lost", "rise", "final_error"];
+const REACHED_COLUMNS: [&str; 3] = ["settled", "attitude", "heading"];
+const ROTOR_COLUMNS: [&str; 2] = ["failed_rotor", "found_rotor"];
+const LOSS_COLUMNS: [&str; 5] =
+    ["failure_time", "thrust_left", "found_time", "failure_height_lost", "failure_distance"];
+const SHARE_COLUMNS: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
 /// The columns of what `manifest` describes.
 #[must_use]
@@ -112,17 +113,17 @@ pub fn schema(manifest: &Manifest) -> Schema {
     let number = |name: &str| Field::new(name, DataType::Float64, false);
     let count = |name: &str| Field::new(name, DataType::UInt64, false);
     let mut fields = vec![count("number"), Field::new("hover", DataType::Boolean, false)];
-    fields.extend(START.iter().chain(&WIND).chain(&FIGURES).map(|name| number(name)));
-    fields.extend(REACHED.iter().map(|name| Field::new(*name, DataType::Float64, true)));
-    fields.extend(SHARES.iter().map(|name| number(name)));
+    fields.extend(START_COLUMNS.iter().chain(&WIND_COLUMNS).chain(&FIGURE_COLUMNS).map(|name| number(name)));
+    fields.extend(REACHED_COLUMNS.iter().map(|name| Field::new(*name, DataType::Float64, true)));
+    fields.extend(SHARE_COLUMNS.iter().map(|name| number(name)));
     fields.extend((1..=manifest.rotors as usize).map(|rotor| number(&share_of_rotor(rotor))));
     fields.extend(["clipped", "beyond", "fallback", "ticks"].map(count));
     fields.push(Field::new("verdict", DataType::Utf8, false));
-    fields.extend(ROTORS.iter().map(|name| Field::new(*name, DataType::UInt64, true)));
-    fields.extend(LOSS.iter().map(|name| Field::new(*name, DataType::Float64, true)));
+    fields.extend(ROTOR_COLUMNS.iter().map(|name| Field::new(*name, DataType::UInt64, true)));
+    fields.extend(LOSS_COLUMNS.iter().map(|name| Field::new(*name, DataType::Float64, true)));
     let schema = Schema::new(fields);
     match manifest.rival() {
-        Some(law) => schema.with_metadata([(LAW.to_owned(), law.to_owned())]),
+        Some(law) => schema.with_metadata([(LAW_KEY.to_owned(), law.to_owned())]),
         None => schema,
     }
 }
@@ -137,15 +138,16 @@ pub fn share_of_rotor(rotor: usize) -> String {
 ///
 /// # Errors
 /// As Arrow's: none for rows of that vehicle.
-pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowError> {
-    let numbers =
-        |value: &dyn Fn(&Row) -> f64| -> ArrayRef { Arc::new(Float64Array::from_iter_values(rows.iter().map(value))) };
+pub fn batch(rows: &[FlightRow], manifest: &Manifest) -> Result<RecordBatch, ArrowError> {
+    let numbers = |value: &dyn Fn(&FlightRow) -> f64| -> ArrayRef {
+        Arc::new(Float64Array::from_iter_values(rows.iter().map(value)))
+    };
     let counts =
-        |value: fn(&Row) -> u64| -> ArrayRef { Arc::new(UInt64Array::from_iter_values(rows.iter().map(value))) };
+        |value: fn(&FlightRow) -> u64| -> ArrayRef { Arc::new(UInt64Array::from_iter_values(rows.iter().map(value))) };
     let mut columns = vec![counts(|row| row.number)];
     columns.push(Arc::new(BooleanArray::from_iter(rows.iter().map(|row| Some(row.hover)))));
-    columns.extend((0..START.len()).map(|index| numbers(&|row| start(&row.start)[index])));
-    columns.extend((0..WIND.len()).map(|index| numbers(&|row| row.wind[index / 2][index % 2])));
+    columns.extend((0..START_COLUMNS.len()).map(|index| numbers(&|row| start(&row.start)[index])));
+    columns.extend((0..WIND_COLUMNS.len()).map(|index| numbers(&|row| row.wind[index / 2][index % 2])));
     columns.push(numbers(&|row| row.outcome.height_lost));
     columns.push(numbers(&|row| row.outcome.rise));
     columns.push(numbers(&|row| row.outcome.final_error));
@@ -169,14 +171,14 @@ pub fn batch(rows: &[Row], manifest: &Manifest) -> Result<RecordBatch, ArrowErro
     RecordBatch::try_new(Arc::new(schema(manifest)), columns)
 }
 
-/// [`REACHED`], of an outcome.
+/// [`REACHED_COLUMNS`], of an outcome.
 const REACHED_OF: [fn(&Outcome) -> Option<f64>; 3] =
     [|outcome| outcome.settled, |outcome| outcome.attitude, |outcome| outcome.heading];
 
-/// [`ROTORS`], of a flight.
+/// [`ROTOR_COLUMNS`], of a flight.
 const ROTORS_OF: [fn(&RotorLoss) -> Option<usize>; 2] = [|loss| Some(loss.failure?.rotor), |loss| Some(loss.found?.0)];
 
-/// [`LOSS`], of a flight.
+/// [`LOSS_COLUMNS`], of a flight.
 const LOSS_OF: [fn(&RotorLoss) -> Option<f64>; 5] = [
     |loss| Some(loss.failure?.time),
     |loss| Some(loss.failure?.thrust_left),
@@ -185,7 +187,7 @@ const LOSS_OF: [fn(&RotorLoss) -> Option<f64>; 5] = [
     |loss| loss.failure.map(|_| loss.distance),
 ];
 
-fn optional(rows: &[Row], value: impl Fn(&Row) -> Option<f64>) -> ArrayRef {
+fn optional(rows: &[FlightRow], value: impl Fn(&FlightRow) -> Option<f64>) -> ArrayRef {
     let mut column = Float64Builder::with_capacity(rows.len());
     for row in rows {
         column.append_option(value(row));

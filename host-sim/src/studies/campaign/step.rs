@@ -1,29 +1,29 @@
 //! The plant step of a campaign's flights: no shorter than accuracy needs.
 //!
 //! A scenario's step is chosen for a single flight, whose log is read tick by tick. A campaign asks each of its flights
-//! for a verdict and for metres and seconds; it takes the longest step of at most [`LONGEST`] that still fits. The
+//! for a verdict and for metres and seconds; it takes the longest step of at most [`STEP_MAX_S`] that still fits. The
 //! error of the method of fourth order is then 5^4 times that of 1 ms; of the paper's flight it is 0.33 um. Rotors that
 //! lag, filters and wind are advanced exactly at any step. `cargo run --release -p verification --example halved_steps`
 //! shows that no verdict changes with half of it.
 
 use scenario::Scenario;
-use scenario::body::GREATEST_TURN_PER_STEP;
+use scenario::body::ROTATION_PER_STEP_MAX_RAD;
 
-/// The longest step, s.
-pub const LONGEST: f64 = 5e-3;
+/// The longest step.
+pub const STEP_MAX_S: f64 = 5e-3;
 /// A quotient this near a whole number is one.
-const WHOLE: f64 = 1e-6;
+const WHOLE_TOLERANCE: f64 = 1e-6;
 
 /// `scenario` with the longest plant step that fits: the control period, the delay of commands and, with an estimator,
 /// the IMU's millisecond are whole numbers of it. A file's own step stays where it is longer.
 #[must_use]
-pub fn longest(scenario: &Scenario) -> Scenario {
+pub fn with_longest_step(scenario: &Scenario) -> Scenario {
     let own = scenario.timing.steps_per_tick;
     let fitting = (1..own).find_map(|steps| {
         let changed = divided(scenario, steps)?;
         let (ranges, step) = (&scenario.campaign.ranges, changed.timing.step());
         let turns = step * ranges.rate.max(ranges.yaw_rate).max(scenario.initial.angular_velocity.norm());
-        (step <= LONGEST * (1.0 + WHOLE) && turns <= GREATEST_TURN_PER_STEP).then_some(changed)
+        (step <= STEP_MAX_S * (1.0 + WHOLE_TOLERANCE) && turns <= ROTATION_PER_STEP_MAX_RAD).then_some(changed)
     });
     fitting.unwrap_or_else(|| scenario.clone())
 }
@@ -32,11 +32,11 @@ pub fn longest(scenario: &Scenario) -> Scenario {
 ///
 /// # Errors
 /// Says what does not fit.
-pub fn of(scenario: &Scenario, step: f64) -> Result<Scenario, String> {
+pub fn with_step(scenario: &Scenario, step: f64) -> Result<Scenario, String> {
     let period = scenario.timing.period();
     let steps = period / step;
     let whole = steps.round();
-    if !((1.0..=1e5).contains(&whole) && (steps - whole).abs() < WHOLE * whole) {
+    if !((1.0..=1e5).contains(&whole) && (steps - whole).abs() < WHOLE_TOLERANCE * whole) {
         return Err(format!("must be the control period, {period} s, over a whole number up to 1e5, found {step} s"));
     }
     divided(scenario, whole as u32).ok_or_else(|| {
@@ -51,7 +51,7 @@ fn divided(scenario: &Scenario, steps: u32) -> Option<Scenario> {
     let step = changed.timing.step();
     let whole = |time: f64| {
         let ratio = time / step;
-        ((ratio - ratio.round()).abs() < WHOLE).then_some(ratio.round() as u64)
+        ((ratio - ratio.round()).abs() < WHOLE_TOLERANCE).then_some(ratio.round() as u64)
     };
     changed.delay_steps = whole(scenario.delay())?;
     if scenario.reality.estimator.is_some() {

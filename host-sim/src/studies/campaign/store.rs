@@ -17,7 +17,7 @@
 
 use super::CampaignError;
 use super::batches;
-use super::manifest::{MANIFEST, Manifest};
+use super::manifest::{MANIFEST_FILE, Manifest};
 use super::rows::schema;
 use crate::output::directory_lock::DirectoryLock;
 use crate::output::whole_file::{WholeFile, is_unfinished};
@@ -30,16 +30,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The flights' name in a directory.
-pub const RESULT: &str = "campaign.arrow";
+pub const RESULT_FILE: &str = "campaign.arrow";
 /// The scenario's.
-pub const SCENARIO: &str = "scenario.toml";
+pub const SCENARIO_FILE: &str = "scenario.toml";
 /// The summary.
-pub const SUMMARY: &str = "summary.txt";
+pub const SUMMARY_FILE: &str = "summary.txt";
 /// The same as a page.
-pub const REPORT: &str = "report.html";
-const PARTS: &str = "parts";
+pub const REPORT_FILE: &str = "report.html";
+const PARTS_DIRECTORY: &str = "parts";
 /// Files that a campaign overwrites or removes, besides its manifest.
-const OWN: [&str; 5] = [SCENARIO, PARTS, RESULT, SUMMARY, REPORT];
+const OWN_FILES: [&str; 5] = [SCENARIO_FILE, PARTS_DIRECTORY, RESULT_FILE, SUMMARY_FILE, REPORT_FILE];
 
 /// A directory and what it is to hold.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl Store {
     /// be written.
     pub fn open(directory: &Path, manifest: &Manifest, text: &str) -> Result<Self, CampaignError> {
         let lock = DirectoryLock::take(directory).map_err(unwritable(directory))?;
-        let found = Manifest::of(directory)?;
+        let found = Manifest::read_in(directory)?;
         if let Some(difference) = found.as_ref().and_then(|found| found.difference(manifest)) {
             return Err(CampaignError::Input(format!(
                 "{}: holds another campaign: not the same {difference}; choose another --out, or remove that directory",
@@ -66,20 +66,20 @@ impl Store {
             )));
         }
         let is_there = |name: &&str| fs::symlink_metadata(directory.join(name)).is_ok();
-        if let (None, Some(name)) = (&found, OWN.iter().find(|name| is_there(name))) {
+        if let (None, Some(name)) = (&found, OWN_FILES.iter().find(|name| is_there(name))) {
             return Err(CampaignError::Input(format!(
-                "{}: holds {name} but no {MANIFEST}, so it is no campaign's of this program; choose another --out",
+                "{}: holds {name} but no {MANIFEST_FILE}, so it is no campaign's of this program; choose another --out",
                 directory.display()
             )));
         }
         let result = found.and_then(|found| found.result);
         let manifest = Manifest { result, ..manifest.clone() };
         let store = Self { directory: directory.to_owned(), manifest, _lock: Some(lock) };
-        store.write(MANIFEST, &store.manifest.written())?;
-        store.write(SCENARIO, text)?;
-        let parts = directory.join(PARTS);
+        store.write(MANIFEST_FILE, &store.manifest.written())?;
+        store.write(SCENARIO_FILE, text)?;
+        let parts = directory.join(PARTS_DIRECTORY);
         fs::create_dir_all(&parts).map_err(unwritable(&parts))?;
-        for path in [RESULT, SUMMARY, REPORT].map(|name| directory.join(name)) {
+        for path in [RESULT_FILE, SUMMARY_FILE, REPORT_FILE].map(|name| directory.join(name)) {
             WholeFile::try_name(&path).map_err(unwritable(&path))?;
         }
         Ok(store)
@@ -90,13 +90,13 @@ impl Store {
     /// # Errors
     /// If the campaign is missing or incomplete.
     pub fn complete(directory: &Path) -> Result<(Self, Vec<RecordBatch>), CampaignError> {
-        let manifest = Manifest::of(directory)?.ok_or_else(|| {
-            CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST}", directory.display()))
+        let manifest = Manifest::read_in(directory)?.ok_or_else(|| {
+            CampaignError::Input(format!("{}: holds no campaign: there is no {MANIFEST_FILE}", directory.display()))
         })?;
         let store = Self { directory: directory.to_owned(), manifest, _lock: None };
         let flown = store.result().ok_or_else(|| {
             CampaignError::Input(format!(
-                "{}: is not complete: {RESULT} is missing or damaged; run its campaign command again",
+                "{}: is not complete: {RESULT_FILE} is missing or damaged; run its campaign command again",
                 directory.display()
             ))
         })?;
@@ -118,7 +118,7 @@ impl Store {
     /// Where the scenario's text is.
     #[must_use]
     pub fn scenario_file(&self) -> PathBuf {
-        self.directory.join(SCENARIO)
+        self.directory.join(SCENARIO_FILE)
     }
 
     /// The scenario's text.
@@ -133,7 +133,7 @@ impl Store {
             return Ok(text);
         }
         Err(CampaignError::Input(format!(
-            "{}: was changed after its flights were flown: its SHA-256 is not the scenario_sha256 of {MANIFEST}; put the text back that \
+            "{}: was changed after its flights were flown: its SHA-256 is not the scenario_sha256 of {MANIFEST_FILE}; put the text back that \
              was flown, or fly it anew into another --out",
             path.display()
         )))
@@ -142,7 +142,7 @@ impl Store {
     /// All flights, a batch a chunk, if they are there.
     #[must_use]
     pub fn result(&self) -> Option<Vec<RecordBatch>> {
-        let batches = batches::read(&self.directory.join(RESULT), self.manifest.result.as_deref())?;
+        let batches = batches::read(&self.directory.join(RESULT_FILE), self.manifest.result.as_deref())?;
         let chunks = self.manifest.chunks();
         let is_whole = batches.len() == chunks.len()
             && batches.iter().zip(chunks).all(|(batch, chunk)| is_chunk(batch, &self.manifest, chunk));
@@ -171,10 +171,10 @@ impl Store {
     /// # Errors
     /// If they cannot be written.
     pub fn finish(&self, flights: &[RecordBatch]) -> Result<(), CampaignError> {
-        let path = self.directory.join(RESULT);
+        let path = self.directory.join(RESULT_FILE);
         let hash = batches::write(&path, &schema(&self.manifest), flights).map_err(unwritable(&path))?;
-        self.write(MANIFEST, &Manifest { result: Some(hash), ..self.manifest.clone() }.written())?;
-        let parts = self.directory.join(PARTS);
+        self.write(MANIFEST_FILE, &Manifest { result: Some(hash), ..self.manifest.clone() }.written())?;
+        let parts = self.directory.join(PARTS_DIRECTORY);
         self.remove_parts(&parts).map_err(unwritable(&parts))
     }
 
@@ -210,7 +210,7 @@ impl Store {
     }
 
     fn path_of(&self, chunk: u64) -> PathBuf {
-        self.directory.join(PARTS).join(format!("{chunk:06}.arrow"))
+        self.directory.join(PARTS_DIRECTORY).join(format!("{chunk:06}.arrow"))
     }
 }
 

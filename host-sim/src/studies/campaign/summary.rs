@@ -4,20 +4,19 @@ use super::columns::{counts, floats, whole_numbers};
 use super::draw::timing;
 use super::losses::Losses;
 use super::manifest::Manifest;
-use super::outcome::{NEAR, NEAR_HEADING, in_time};
+use super::outcome::{HEADING_TOLERANCE_RAD, SETTLED_DISTANCE_M, in_time};
 use super::quantile;
-use super::rows::{HOLDS, share_of_rotor};
-use crate::flight::flown::NEAR_MRP;
+use super::rows::{HOLDS_COLUMN, share_of_rotor};
+use crate::flight::extremes::MRP_TOLERANCE;
 use crate::output::table::{aligned, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use scenario::Scenario;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use scenario::verdict::Verdict;
 use std::fmt;
 
-/// How many of the worst are listed.
-const LISTED: usize = 5;
+const WORST_LISTED: usize = 5;
 
 /// A campaign's summary.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +58,7 @@ struct Figure {
 impl Summary {
     /// Of what was `flown` of `scenario`, whose verdict is `verdict`.
     #[must_use]
-    pub fn of(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
+    pub fn summarize(scenario: &Scenario, verdict: &Verdict, manifest: &Manifest, flown: &[RecordBatch]) -> Self {
         let numbers = counts(flown, "number");
         let verdicts = verdicts(flown);
         let figure =
@@ -67,7 +66,7 @@ impl Summary {
         let mut figures = vec![
             figure("height lost", "m", "height_lost"),
             figure("rise above start and reference", "m", "rise"),
-            figure(&format!("within {NEAR} m for good after"), "s", "settled"),
+            figure(&format!("within {SETTLED_DISTANCE_M} m for good after"), "s", "settled"),
             figure("attitude", "s", "attitude"),
             figure("heading", "s", "heading"),
             figure("error at the end", "m", "final_error"),
@@ -87,10 +86,10 @@ impl Summary {
         let slowest: Vec<f64> = (0..numbers.len())
             .map(|flight| reached.iter().filter_map(|times| times.get(flight)).copied().fold(0.0, f64::max))
             .collect();
-        let (losses, ends) = (Losses::of(flown), floats(flown, "final_error"));
+        let (losses, ends) = (Losses::count(flown), floats(flown, "final_error"));
         let failed = whole_numbers(flown, "failed_rotor");
         let tracks = |flight: &usize| match failed[*flight] {
-            Some(_) => ends[*flight] <= PLACE_HELD,
+            Some(_) => ends[*flight] <= PLACE_HELD_DISTANCE_M,
             None => in_time(Some(slowest[*flight]), duration),
         };
         let tracking = (0..numbers.len()).filter(tracks).count();
@@ -102,9 +101,9 @@ impl Summary {
         let failing: Vec<String> = numbers
             .iter()
             .zip(&verdicts)
-            .filter(|(_, verdict)| **verdict != HOLDS)
+            .filter(|(_, verdict)| **verdict != HOLDS_COLUMN)
             .map(|(number, verdict)| format!("{number} ({verdict})"))
-            .take(4 * LISTED)
+            .take(4 * WORST_LISTED)
             .collect();
         let mut worst = vec![
             listed("slowest", &slowest, "s"),
@@ -144,7 +143,7 @@ impl Summary {
             losses,
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
-                && verdicts.iter().all(|verdict| *verdict == HOLDS),
+                && verdicts.iter().all(|verdict| *verdict == HOLDS_COLUMN),
             refusal,
             quantiles: table(&numbers, &figures),
             worst,
@@ -175,7 +174,8 @@ impl fmt::Display for Summary {
             writeln!(f, "{}\n", self.losses)?;
         }
         writeln!(f, "{}", self.quantiles)?;
-        let [attitude, heading] = [4.0 * NEAR_MRP.atan(), NEAR_HEADING].map(|angle| angle.to_degrees().round());
+        let [attitude, heading] =
+            [4.0 * MRP_TOLERANCE.atan(), HEADING_TOLERANCE_RAD].map(|angle| angle.to_degrees().round());
         writeln!(
             f,
             "attitude: within {attitude} degrees of the desired one for good after; heading: {heading} degrees\n"
@@ -195,7 +195,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
         let greatest = parts[3].and_then(|greatest| values.iter().position(|value| *value == greatest));
         let flight = greatest.and_then(|place| numbers.get(place)).map_or(String::new(), u64::to_string);
         let mut cells = vec![what.clone(), (*unit).to_owned()];
-        cells.extend(parts.map(|value| value.map_or(String::new(), seen)));
+        cells.extend(parts.map(|value| value.map_or(String::new(), written_figure)));
         cells.push(flight);
         cells
     };
@@ -203,7 +203,7 @@ fn table(numbers: &[u64], figures: &[Figure]) -> String {
 }
 
 /// A figure, or "none".
-fn seen(value: f64) -> String {
+fn written_figure(value: f64) -> String {
     if value.is_finite() { short(value) } else { "never".to_owned() }
 }
 
@@ -214,7 +214,7 @@ fn worst(numbers: &[u64], values: &[f64], unit: &str) -> String {
     let space = if unit.is_empty() { "" } else { " " };
     let listed: Vec<String> = places
         .iter()
-        .take(LISTED)
+        .take(WORST_LISTED)
         .map(|(number, value)| match value.is_finite() {
             true => format!("{number} ({}{space}{unit})", short(*value)),
             false => format!("{number} (never)"),

@@ -37,18 +37,17 @@ use scenario::Scenario;
 use std::f64::consts::PI;
 
 /// The figure of a scene whose task is to come to its reference.
-pub const ARRIVED: &str = "within 0.1 m for good after";
+pub const ARRIVAL_FIGURE: &str = "within 0.1 m for good after";
 
-/// Within this distance, r, a vehicle has arrived, m: as in the scenes.
-const NEAR: f64 = 0.1;
-/// Integration step, s.
-const STEP: f64 = 1e-4;
+/// r: as in the scenes.
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
+const INTEGRATION_STEP_S: f64 = 1e-4;
 /// Halvings of the time at which the torque changes.
-const HALVINGS: u32 = 40;
-/// No turn takes longer, s.
-const LONGEST: f64 = 10.0;
+const HALVINGS_MAX: u32 = 40;
+/// No rotation takes longer.
+const ROTATION_MAX_S: f64 = 10.0;
 /// Tilts that are tried.
-const TILTS: u32 = 20;
+const TILT_COUNT: u32 = 20;
 
 /// A rotor in a turn.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +66,7 @@ struct Turning {
     inertia: f64,
     /// Greatest torque, N m.
     limit: f64,
-    /// The share of a speed error that remains after [`STEP`].
+    /// The share of a speed error that remains after [`INTEGRATION_STEP_S`].
     left: f64,
 }
 
@@ -85,7 +84,7 @@ impl Turning {
         let configuration = &scenario.configuration;
         let (vehicle, limit) = (configuration.vehicle(), f64::from(configuration.limits().torque_max[axis]));
         let hover = f64::from(vehicle.mass * vehicle.gravity);
-        let lagging = |lag: f64| if lag > 0.0 { (-STEP / lag).exp() } else { 0.0 };
+        let lagging = |lag: f64| if lag > 0.0 { (-INTEGRATION_STEP_S / lag).exp() } else { 0.0 };
         let (sides, left) = match configuration.rotors() {
             None => {
                 let side = |lever| Side { lever, roots: [0.0, 0.0, limit.sqrt()] };
@@ -108,7 +107,7 @@ impl Turning {
     fn until_still(&self, change: f64) -> (f64, Turned) {
         let mut roots: Vec<f64> = self.sides.iter().map(|side| side.roots[1]).collect();
         let (mut angle, mut rate, mut time) = (0.0, 0.0, 0.0);
-        while (rate > 0.0 || time <= change) && time < LONGEST {
+        while (rate > 0.0 || time <= change) && time < ROTATION_MAX_S {
             let forward = time < change;
             let mut torque = 0.0;
             for (root, side) in roots.iter_mut().zip(&self.sides) {
@@ -116,17 +115,17 @@ impl Turning {
                 *root = wanted + (*root - wanted) * self.left;
                 torque += side.lever * *root * *root;
             }
-            rate += torque.clamp(-self.limit, self.limit) / self.inertia * STEP;
-            angle += rate * STEP;
-            time += STEP;
+            rate += torque.clamp(-self.limit, self.limit) / self.inertia * INTEGRATION_STEP_S;
+            angle += rate * INTEGRATION_STEP_S;
+            time += INTEGRATION_STEP_S;
         }
         (angle, Turned { time, roots })
     }
 
     /// The quickest turn by `angle`, rad, from rest to rest.
     fn by(&self, angle: f64) -> Turned {
-        let (mut early, mut late) = (0.0, LONGEST);
-        for _ in 0..HALVINGS {
+        let (mut early, mut late) = (0.0, ROTATION_MAX_S);
+        for _ in 0..HALVINGS_MAX {
             let middle = 0.5 * (early + late);
             if self.until_still(middle).0 < angle { early = middle } else { late = middle }
         }
@@ -145,8 +144,8 @@ pub struct Limit {
     pub steps: [f64; 2],
 }
 
-/// A step's way, and the level part of the far step's, m: as in the scenes.
-const WAYS: [f64; 2] = [1.0, 8.485];
+/// Of the step, and of the far step's level part: as in the scenes.
+const STEP_DISTANCES_M: [f64; 2] = [1.0, 8.485];
 
 impl Limit {
     /// Of the vehicle of `scenario`.
@@ -166,36 +165,36 @@ impl Limit {
         let (turning, mut turned) = quicker(PI);
         let (mut height, mut speed, mut time) =
             (-0.5 * gravity * turned.time * turned.time, -gravity * turned.time, turned.time);
-        while speed < 0.0 && time < LONGEST {
+        while speed < 0.0 && time < ROTATION_MAX_S {
             let mut lift = 0.0;
             for (root, side) in turned.roots.iter_mut().zip(&turning.sides) {
                 *root = side.roots[2] + (*root - side.roots[2]) * turning.left;
                 lift += *root * *root;
             }
             let lift = if configuration.rotors().is_some() { lift.min(thrust_max) } else { thrust };
-            speed += (lift / mass - gravity) * STEP;
-            height += speed * STEP;
-            time += STEP;
+            speed += (lift / mass - gravity) * INTEGRATION_STEP_S;
+            height += speed * INTEGRATION_STEP_S;
+            time += INTEGRATION_STEP_S;
         }
         let height_lost = -height;
-        let recovered = time + climb(height_lost - NEAR, thrust / mass - gravity, gravity);
+        let recovered = time + climb(height_lost - ARRIVAL_DISTANCE_M, thrust / mass - gravity, gravity);
 
         let steepest = (mass * gravity / thrust).acos();
-        let tilts = (1..=TILTS).map(|part| steepest * f64::from(part) / f64::from(TILTS));
+        let tilts = (1..=TILT_COUNT).map(|part| steepest * f64::from(part) / f64::from(TILT_COUNT));
         let turns: Vec<[f64; 3]> =
             tilts.map(|tilt| [gravity * tilt.tan(), quicker(tilt).1.time, quicker(2.0 * tilt).1.time]).collect();
-        let step = |way: f64| turns.iter().map(|turns| stepped(way, turns)).fold(f64::INFINITY, f64::min);
-        Self { height_lost, recovered, steps: WAYS.map(step) }
+        let step = |way: f64| turns.iter().map(|turns| step_time(way, turns)).fold(f64::INFINITY, f64::min);
+        Self { height_lost, recovered, steps: STEP_DISTANCES_M.map(step) }
     }
 
     /// In the row of `figure` of `scene`; none where nothing is worked out.
     #[must_use]
-    pub fn of(&self, scene: &str, figure: &str) -> Option<f64> {
+    pub fn in_row(&self, scene: &str, figure: &str) -> Option<f64> {
         match (scene, figure) {
             ("upside down", "height lost") => Some(self.height_lost),
-            ("upside down", ARRIVED) => Some(self.recovered),
-            ("step", ARRIVED) => Some(self.steps[0]),
-            ("far step", ARRIVED) => Some(self.steps[1]),
+            ("upside down", ARRIVAL_FIGURE) => Some(self.recovered),
+            ("step", ARRIVAL_FIGURE) => Some(self.steps[0]),
+            ("far step", ARRIVAL_FIGURE) => Some(self.steps[1]),
             _ => None,
         }
     }
@@ -204,7 +203,7 @@ impl Limit {
 /// The time in which a vehicle at rest climbs by `way`, m, accelerated at `up` and braked by `gravity`, m/s^2, so late
 /// that it stops 2 r above, s.
 fn climb(way: f64, up: f64, gravity: f64) -> f64 {
-    let end_squared = 4.0 * gravity * NEAR;
+    let end_squared = 4.0 * gravity * ARRIVAL_DISTANCE_M;
     if 2.0 * up * way <= end_squared {
         return (2.0 * way.max(0.0) / up).sqrt();
     }
@@ -213,18 +212,18 @@ fn climb(way: f64, up: f64, gravity: f64) -> f64 {
 }
 
 /// The time of a step by `way`, m, s, with the acceleration a, m/s^2, and the times of the two turns, s.
-fn stepped(way: f64, [acceleration, first, second]: &[f64; 3]) -> f64 {
+fn step_time(way: f64, [acceleration, first, second]: &[f64; 3]) -> f64 {
     // v^2 / a + v t = d + r.
     let half = 0.5 * second * acceleration;
-    let speed = (half * half + acceleration * (way + NEAR)).sqrt() - half;
-    let (to_go, pushed) = (way - NEAR, 0.5 * speed * speed / acceleration);
+    let speed = (half * half + acceleration * (way + ARRIVAL_DISTANCE_M)).sqrt() - half;
+    let (to_go, pushed) = (way - ARRIVAL_DISTANCE_M, 0.5 * speed * speed / acceleration);
     first
         + if to_go <= pushed {
             (2.0 * to_go / acceleration).sqrt()
         } else if to_go <= pushed + speed * second {
             speed / acceleration + (to_go - pushed) / speed
         } else {
-            speed / acceleration + second + (speed - (4.0 * acceleration * NEAR).sqrt()) / acceleration
+            speed / acceleration + second + (speed - (4.0 * acceleration * ARRIVAL_DISTANCE_M).sqrt()) / acceleration
         }
 }
 

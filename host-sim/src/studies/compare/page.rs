@@ -1,36 +1,36 @@
 //! The page of a comparison: every law's figures, row by row, with a star where ours loses; the scenes' courses over
 //! time; the spread of the random flights; and the gains.
 
-use super::rows::{LIMIT, Row, cell};
+use super::rows::{FigureRow, LIMIT_COLUMN, cell};
+use super::scene_figures::{PICTURE_PERIOD_US, RandomFlights, SceneFigures};
 use super::scenes::Scene;
-use super::shown::{Shown, THINNED, Thrown};
 use crate::output::table::short;
 use crate::reports::report::distribution::Distribution;
 use crate::reports::report::document;
 use crate::reports::report::page::{Block, Page, Section};
-use crate::reports::report::plot::{Color, Curve, Line, Plot};
+use crate::reports::report::plot::{Color, Curve, LinePattern, Plot};
 use crate::reports::report::prose::{Cell, Fact, Table};
 use crate::reports::report::track::Track;
-use crate::rivals::choice::OURS;
+use crate::rivals::choice::OUR_LAW;
 use crate::rivals::gains::Set;
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 use crate::studies::campaign::outcome::Outcome;
 use scenario::Scenario;
 
 /// Ours, then the rivals in their order. Curves whose colours look alike to people who confuse red and green are drawn
 /// with different patterns: green, purple and grey; vermilion and orange; blue and sky.
-pub const LOOKS: [(Color, Line); 8] = [
-    (Color::Ink, Line::Solid),
-    (Color::Blue, Line::Solid),
-    (Color::Vermilion, Line::Dashed),
-    (Color::Green, Line::Solid),
-    (Color::Orange, Line::Solid),
-    (Color::Purple, Line::Dotted),
-    (Color::Sky, Line::Dashed),
-    (Color::Grey, Line::Dashed),
+pub const CURVE_LOOKS: [(Color, LinePattern); 8] = [
+    (Color::Ink, LinePattern::Solid),
+    (Color::Blue, LinePattern::Solid),
+    (Color::Vermilion, LinePattern::Dashed),
+    (Color::Green, LinePattern::Solid),
+    (Color::Orange, LinePattern::Solid),
+    (Color::Purple, LinePattern::Dotted),
+    (Color::Sky, LinePattern::Dashed),
+    (Color::Grey, LinePattern::Dashed),
 ];
-/// Scenes that begin upside down: how far each law falls is shown, too.
-const FALLS: [&str; 2] = ["upside down", "heavy"];
+/// How far each law falls is shown, too.
+const UPSIDE_DOWN_SCENES: [&str; 2] = ["upside down", "heavy"];
 
 /// A finished comparison.
 pub struct Compared<'a> {
@@ -43,13 +43,13 @@ pub struct Compared<'a> {
     /// The laws' names, ours first.
     pub names: &'a [&'static str],
     /// The table.
-    pub rows: &'a [Row],
+    pub rows: &'a [FigureRow],
     /// The scenes.
     pub scenes: &'a [Scene],
     /// Each law's figures in each scene; `None` if the flight ended early.
-    pub shown: &'a [(&'static str, Vec<Option<Shown>>)],
+    pub figures: &'a [(&'static str, Vec<Option<SceneFigures>>)],
     /// Each law's figures in the random flights.
-    pub thrown: &'a [Option<Thrown>],
+    pub thrown: &'a [Option<RandomFlights>],
     /// Random flights of each law.
     pub flights: u64,
     /// Whether our claim holds.
@@ -64,8 +64,11 @@ pub fn page(compared: &Compared) -> Page {
         compared.scenes.iter().map(|scene| (scene.name, scene.task)).chain([("random", "the random flights below")]);
     let tables = named.map(|(scene, task)| table(compared, scene, task));
     let sections = [
-        ("Table", std::iter::once(Block::Text(STARS.into())).chain(tables.map(Block::Table)).collect()),
-        ("Scenes", vec![Block::Table(scenes(compared)), Block::Text(CURVES.into()), Block::Plots(plots(compared))]),
+        ("Table", std::iter::once(Block::Text(STARS_NOTE.into())).chain(tables.map(Block::Table)).collect()),
+        (
+            "Scenes",
+            vec![Block::Table(scenes(compared)), Block::Text(CURVES_NOTE.into()), Block::Plots(plots(compared))],
+        ),
         ("Random flights", vec![Block::Text(random(compared)), Block::Distributions(distributions(compared))]),
         (
             "Laws",
@@ -117,11 +120,12 @@ pub fn page(compared: &Compared) -> Page {
     }
 }
 
-const STARS: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
+const STARS_NOTE: &str = "Less is better in every row. ★ marks the rows where another law does clearly better than ours. “Never” is a flight that does not \
                      come to its reference for good, or that could not be flown to its end. The limit is an estimate of what \
                      rotors and inertia leave possible, whatever the law.";
-const CURVES: &str = "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
-const LAWS: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
+const CURVES_NOTE: &str =
+    "Distances are on a logarithmic scale. Each name in a legend hides its curve or shows it again.";
+const LAWS_NOTE: &str = "The rivals' gains were found by the trials and the cost that ours are tuned by; the cost of each \
                     stands above its gains, less is better. Continuous and memoryless differ in their choice of \
                      quaternion alone.";
 
@@ -138,7 +142,7 @@ fn scenes(compared: &Compared) -> Table {
 /// The rows of one scene.
 fn table(compared: &Compared, scene: &str, task: &str) -> Table {
     let laws = compared.names.iter().copied();
-    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(laws).chain([LIMIT]).collect();
+    let head: Vec<&str> = ["figure", "ours loses"].into_iter().chain(laws).chain([LIMIT_COLUMN]).collect();
     let mut table = Table::new(format!("{}: {task}", titled(scene)), &head);
     table.rows.extend(compared.rows.iter().filter(|row| row.scene == scene).map(|row| {
         let head = [format!("{}, {}", row.figure, row.unit), if row.lost() { "★" } else { "" }.to_owned()];
@@ -152,38 +156,38 @@ fn table(compared: &Compared, scene: &str, task: &str) -> Table {
 /// One track a scene: each law's distance from the reference, and its height above the start.
 fn tracks(compared: &Compared) -> Vec<Track> {
     let single = |points: &[(f64, f64)]| points.iter().map(|(_, value)| *value as f32).collect::<Vec<f32>>();
-    let of_scene = |(name, shown): &(&'static str, Vec<Option<Shown>>)| {
-        let laws = compared.names.iter().zip(shown).filter_map(|(law, shown)| Some((law, shown.as_ref()?)));
-        let columns = laws.flat_map(|(law, shown)| {
-            let height = FALLS.contains(name).then(|| (format!("{law}_height"), single(&shown.height)));
-            std::iter::once((format!("{law}_error"), single(&shown.error))).chain(height)
+    let of_scene = |(name, figures): &(&'static str, Vec<Option<SceneFigures>>)| {
+        let laws = compared.names.iter().zip(figures).filter_map(|(law, figures)| Some((law, figures.as_ref()?)));
+        let columns = laws.flat_map(|(law, figures)| {
+            let height = UPSIDE_DOWN_SCENES.contains(name).then(|| (format!("{law}_height"), single(&figures.height)));
+            std::iter::once((format!("{law}_error"), single(&figures.error))).chain(height)
         });
-        let step = THINNED as f64 * 1e-6;
+        let step = PICTURE_PERIOD_US as f64 * 1e-6;
         Track { name: (*name).to_owned(), start: 0.0, step, columns: columns.collect() }
     };
-    compared.shown.iter().map(of_scene).collect()
+    compared.figures.iter().map(of_scene).collect()
 }
 
 /// The curve of the law at this place, its column named after it. Ours is broad.
 pub fn curve(place: usize, law: &str) -> Curve {
-    let (color, line) = LOOKS[place % LOOKS.len()];
+    let (color, line) = CURVE_LOOKS[place % CURVE_LOOKS.len()];
     Curve { line, broad: place == 0, ..Curve::new(law, law, color) }
 }
 
 /// The courses of all laws in each scene.
 fn plots(compared: &Compared) -> Vec<Plot> {
     let mut plots = Vec::new();
-    for (track, (scene, shown)) in compared.shown.iter().enumerate() {
+    for (track, (scene, figures)) in compared.figures.iter().enumerate() {
         let curves = |quantity: &str| {
             let drawn = |(place, law): (usize, &&'static str)| {
-                shown.get(place)?.as_ref()?;
+                figures.get(place)?.as_ref()?;
                 Some(Curve { track, column: format!("{law}_{quantity}"), ..curve(place, law) })
             };
             compared.names.iter().enumerate().filter_map(drawn).collect()
         };
         let title = titled(scene);
         plots.push(Plot::new(&format!("{title}: error"), "m", curves("error")).logarithmic());
-        if FALLS.contains(scene) {
+        if UPSIDE_DOWN_SCENES.contains(scene) {
             plots.push(Plot::new(&format!("{title}: height"), "m", curves("height")));
         }
     }
@@ -206,12 +210,12 @@ type Get = fn(&Outcome) -> f64;
 
 fn distributions(compared: &Compared) -> Vec<Distribution> {
     let spread = |title: &str, unit: &str, logarithmic: bool, bound: Option<f64>, get: Get| {
-        let group = |(law, thrown): (&&'static str, &Option<Thrown>)| {
+        let group = |(law, thrown): (&&'static str, &Option<RandomFlights>)| {
             let outcomes = thrown.iter().flat_map(|thrown| &thrown.outcomes);
             ((*law).to_owned(), outcomes.map(get).collect())
         };
         let groups: Vec<(String, Vec<f64>)> = compared.names.iter().zip(compared.thrown).map(group).collect();
-        let looks = LOOKS.iter().copied().cycle().take(groups.len()).collect();
+        let looks = CURVE_LOOKS.iter().copied().cycle().take(groups.len()).collect();
         Distribution { title: title.to_owned(), unit: unit.to_owned(), logarithmic, bound, groups, looks }
     };
     vec![
@@ -230,18 +234,21 @@ fn laws(compared: &Compared) -> Table {
         None => "the extended law, certified",
     };
     let rivals = compared.set.rivals.iter().map(|(kind, ..)| (kind.name(), kind.about()));
-    let rows = std::iter::once((OURS, own)).chain(rivals);
+    let rows = std::iter::once((OUR_LAW, own)).chain(rivals);
     table.rows.extend(rows.map(|(law, about)| vec![Cell::text(law), Cell::text(about)]));
     table
 }
 
 fn about_laws(compared: &Compared) -> String {
-    compared.set.left_out().map_or_else(|| LAWS.to_owned(), |left_out| format!("{LAWS} {}.", titled(&left_out)))
+    compared
+        .set
+        .left_out()
+        .map_or_else(|| LAWS_NOTE.to_owned(), |left_out| format!("{LAWS_NOTE} {}.", titled(&left_out)))
 }
 
 /// A table for each rival.
 fn gains(compared: &Compared) -> Vec<Table> {
-    let of_rival = |(kind, gains, cost): &(Kind, Vec<f64>, f64)| {
+    let of_rival = |(kind, gains, cost): &(RivalKind, Vec<f64>, f64)| {
         let mut table = Table::new(format!("{}: cost {}", kind.name(), short(*cost)), &["gain", "value"]);
         let rows =
             kind.gains().iter().zip(gains).map(|(name, value)| vec![Cell::text(*name), Cell::number(short(*value))]);

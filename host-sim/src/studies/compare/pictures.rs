@@ -1,26 +1,26 @@
 //! The pictures of a comparison: curves of all laws over each other, ours on top.
 //!
-//! Colours and patterns are those of the page's [`super::page::LOOKS`]; ours is black and broad.
+//! Colours and patterns are those of the page's [`super::page::CURVE_LOOKS`]; ours is black and broad.
 
 use super::page::curve;
-use super::shown::{Shown, Thrown};
+use super::scene_figures::{RandomFlights, SceneFigures};
 use crate::reports::plots::four;
 use crate::reports::report::plot::Plot;
 use crate::reports::report::track::Track;
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 
-/// Width and height of a plot, pixels.
-const SIZE: (f64, f64) = (700.0, 450.0);
+/// Width and height.
+const PLOT_SIZE_PIXELS: (f64, f64) = (700.0, 450.0);
 
 /// One of the quantities shown, over time.
-type Get = fn(&Shown) -> &Vec<(f64, f64)>;
+type Get = fn(&SceneFigures) -> &Vec<(f64, f64)>;
 /// The scenes by name, with each law's figures.
-type Scenes<'a> = &'a [(&'static str, Vec<Option<Shown>>)];
+type Scenes<'a> = &'a [(&'static str, Vec<Option<SceneFigures>>)];
 
 /// One curve of each law that has `points`.
 fn panel(title: &str, unit: &str, names: &[&str], points: impl Fn(usize) -> Option<Vec<(f64, f64)>>) -> (Plot, Track) {
     // Ours last: on top. One of the two laws that differ about half a turn only is enough.
-    let laws = names.iter().enumerate().rev().filter(|(_, law)| **law != Kind::Continuous.name());
+    let laws = names.iter().enumerate().rev().filter(|(_, law)| **law != RivalKind::Continuous.name());
     let drawn = laws.filter_map(|(place, law)| Some((curve(place, law), ((*law).to_owned(), points(place)?))));
     let (curves, columns) = drawn.unzip();
     (Plot::new(title, unit, curves), Track::of_points(columns))
@@ -33,16 +33,16 @@ fn scene(
     (all, name, get): (Scenes, &str, Get),
     (end, least, most): (f64, f64, f64),
 ) -> (Plot, Track) {
-    let shown = all.iter().find(|(scene, _)| *scene == name).map_or(&[][..], |(_, shown)| shown);
+    let figures = all.iter().find(|(scene, _)| *scene == name).map_or(&[][..], |(_, figures)| figures);
     panel(title, "m", names, |law| {
-        let seen = get(shown.get(law)?.as_ref()?).iter().take_while(|(time, _)| *time <= end);
+        let seen = get(figures.get(law)?.as_ref()?).iter().take_while(|(time, _)| *time <= end);
         Some(seen.map(|(time, value)| (*time, value.clamp(least, most))).collect())
     })
 }
 
 /// The same over decades.
 fn decades(title: &str, names: &[&str], (all, name): (Scenes, &str), cut: (f64, f64, f64)) -> (Plot, Track) {
-    let (plot, track) = scene(title, names, (all, name, |shown| &shown.error), cut);
+    let (plot, track) = scene(title, names, (all, name, |figures| &figures.error), cut);
     (plot.logarithmic(), track)
 }
 
@@ -54,10 +54,10 @@ pub fn scenes(names: &[&str], all: Scenes) -> String {
             scene(
                 "From upside down: height",
                 names,
-                (all, "upside down", |shown| &shown.height),
+                (all, "upside down", |figures| &figures.height),
                 (12.0, -25.0, f64::MAX),
             ),
-            scene("5 m/s of wind: error", names, (all, "gust", |shown| &shown.error), (8.0, 0.0, 1.5)),
+            scene("5 m/s of wind: error", names, (all, "gust", |figures| &figures.error), (8.0, 0.0, 1.5)),
             decades("10 m away: error", names, (all, "far step"), (20.0, 1e-4, 100.0)),
             decades("12 m/s of wind: error", names, (all, "storm"), (20.0, 1e-3, 1000.0)),
         ],
@@ -67,7 +67,7 @@ pub fn scenes(names: &[&str], all: Scenes) -> String {
 
 /// The random flights: how many have settled by when; and the file's own flight, noise and weak rotors.
 #[must_use]
-pub fn random(names: &[&str], thrown: &[Option<Thrown>], all: Scenes) -> String {
+pub fn random(names: &[&str], thrown: &[Option<RandomFlights>], all: Scenes) -> String {
     let settled = |law: usize| {
         let thrown = thrown.get(law)?.as_ref()?;
         let share = |time: f64| 100.0 * thrown.share(|one| one.settled.is_some_and(|settled| settled <= time));
@@ -85,5 +85,5 @@ pub fn random(names: &[&str], thrown: &[Option<Thrown>], all: Scenes) -> String 
 }
 
 fn drawn(panels: &[(Plot, Track); 4], about: &str) -> String {
-    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), SIZE, about)
+    four(panels.iter().map(|(plot, track)| (plot, std::slice::from_ref(track))), PLOT_SIZE_PIXELS, about)
 }

@@ -15,12 +15,12 @@
 //! | deadband | commands within 2 % of a rotor's speed that change nothing |
 //! | mild | 10 ms, 1.2 times the mass, 0.9 of the voltage, half of wind, deadband and further drag, flywheels |
 //!
-//! A flight is lost if it ends early or more than `LOST` from its reference.
+//! A flight is lost if it ends early or more than `LOST_DISTANCE_M` from its reference.
 
-use super::rows::Row;
-use super::scenes::{DRAG, Scene};
-use super::shown::{Shown, course};
-use crate::flight::flier::Flier;
+use super::rows::FigureRow;
+use super::scene_figures::{SceneFigures, fly_scene_within};
+use super::scenes::{DEFAULT_DRAG_PER_S, Scene};
+use crate::flight::law_on_vehicle::LawOnVehicle;
 use crate::studies::tune::trials::{hover, recovery};
 use controller_core::error::ParameterError;
 use nalgebra::Vector3;
@@ -31,21 +31,19 @@ use scenario::reality::ground::Ground;
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Turbulence, Wind};
 
-/// Each flight, s.
-const DURATION: f64 = 20.0;
-/// How near counts as arrived, m: turbulence moves a vehicle by more than 0.1 m.
-const NEAR: f64 = 0.5;
-/// How far away at the end counts as lost, m.
-const LOST: f64 = 5.0;
-/// Wind at 20 feet for a turbulence of 1 m/s along the wind, m/s: MIL-F-8785C at 10 m.
-const STRENGTH: f64 = 5.3;
-/// Where turbulence is that of, m.
-const ALTITUDE: f64 = 10.0;
-/// Of how far above where it stands a vehicle hovers over the ground, and of how much higher it starts, m.
-const ABOVE_GROUND: f64 = 0.05;
-const HIGHER: f64 = 1.0;
-/// A rotor's radius, as a part of the least distance between two of them.
-const RADIUS: f64 = 0.45;
+const FLIGHT_S: f64 = 20.0;
+/// Turbulence moves a vehicle by more than 0.1 m.
+const ARRIVAL_DISTANCE_M: f64 = 0.5;
+/// A vehicle that is farther away at the end is lost.
+const LOST_DISTANCE_M: f64 = 5.0;
+/// For a turbulence of 1 m/s along the wind: MIL-F-8785C at 10 m.
+const WIND_AT_20_FEET_M_PER_S: f64 = 5.3;
+const TURBULENCE_ALTITUDE_M: f64 = 10.0;
+/// Of how far above where it stands a vehicle hovers over the ground, and of how much higher it starts.
+const HOVER_HEIGHT_M: f64 = 0.05;
+const STARTS_HIGHER_M: f64 = 1.0;
+/// Of the least distance between two rotors.
+const ROTOR_RADIUS_SHARE: f64 = 0.45;
 
 /// What is different, each as a part of its whole measure.
 #[derive(Debug, Clone, Copy, Default)]
@@ -66,7 +64,7 @@ struct Different {
 /// None for a scenario that was read from a file.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let nothing = Different::default();
-    let recovered = |different: Different| recovery(&really(file, &different), DURATION);
+    let recovered = |different: Different| recovery(&really(file, &different), FLIGHT_S);
     let mild = Different {
         delay: 0.01,
         mass: 0.2,
@@ -98,21 +96,21 @@ fn really(file: &Scenario, different: &Different) -> Scenario {
     let mass = f64::from(vehicle.mass);
     let reality = &mut real.reality;
     (reality.disturbance, reality.failure, reality.sensors, reality.estimator) = (None, None, None, None);
-    let model = Truth::of_model(vehicle);
+    let model = Truth::model(vehicle);
     reality.truth = Some(Truth {
         mass: mass * (1.0 + different.mass),
         rotor_inertia: different.flywheels * flywheel(file),
         deadband: different.deadband,
         ..model
     });
-    let own = reality.drag.unwrap_or(Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() });
+    let own = reality.drag.unwrap_or(Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() });
     reality.drag = Some(more(&own, different.drag, file));
     reality.wind = (different.wind > 0.0).then(|| Wind {
         steady: Vector3::x() * different.wind,
         gust: None,
         turbulence: Some(Turbulence {
-            wind_at_20_feet: STRENGTH * different.turbulence,
-            altitude: ALTITUDE,
+            wind_at_20_feet: WIND_AT_20_FEET_M_PER_S * different.turbulence,
+            altitude: TURBULENCE_ALTITUDE_M,
             airspeed: different.wind,
             seed: 1,
         }),
@@ -135,14 +133,14 @@ fn really(file: &Scenario, different: &Different) -> Scenario {
 
 /// Of the vehicle of `file`, from 1 m above.
 fn over_ground(file: &Scenario) -> Result<Scenario, ParameterError> {
-    let mut real = hover(&really(file, &Different::default()), Vector3::z() * HIGHER, DURATION)?;
+    let mut real = hover(&really(file, &Different::default()), Vector3::z() * STARTS_HIGHER_M, FLIGHT_S)?;
     let rotors = file.configuration.rotors().map_or(&[][..], |rotors| rotors);
     let places = rotors.iter().map(|rotor| rotor.position.xy().map(f64::from));
     let apart = places.clone().flat_map(|one| places.clone().map(move |other| (one - other).norm()));
     let least = apart.filter(|apart| *apart > 0.0).fold(f64::INFINITY, f64::min);
-    real.reality.ground = Some(Ground { height: -ABOVE_GROUND });
+    real.reality.ground = Some(Ground { height: -HOVER_HEIGHT_M });
     if let Some(truth) = real.reality.truth.as_mut().filter(|_| least.is_finite()) {
-        truth.rotor_radius = RADIUS * least;
+        truth.rotor_radius = ROTOR_RADIUS_SHARE * least;
     }
     Ok(real)
 }
@@ -177,36 +175,39 @@ fn more(own: &Drag, part: f64, file: &Scenario) -> Drag {
     }
 }
 
-/// The rows of each law's figures in each of the `scenes`, in the fliers' order.
+/// The rows of each law's figures in each of the `scenes`, in the laws' order.
 #[must_use]
-pub fn rows(scenes: &[(&'static str, Vec<Option<Shown>>)]) -> Vec<Row> {
-    type Get = fn(Option<&Shown>) -> f64;
-    const FIGURES: [(&str, &str, f64, Get); 4] = [
-        ("lost", "flights", 0.0, |shown| f64::from(u8::from(!shown.is_some_and(is_held)))),
-        ("height lost", "m", 0.01, |shown| shown.map_or(f64::INFINITY, |shown| shown.height_lost)),
-        ("within 0.5 m for good after", "s", 0.02, |shown| {
-            shown.and_then(|shown| shown.settled).unwrap_or(f64::INFINITY)
+pub fn rows(scenes: &[(&'static str, Vec<Option<SceneFigures>>)]) -> Vec<FigureRow> {
+    type Get = fn(Option<&SceneFigures>) -> f64;
+    const REALISM_FIGURES: [(&str, &str, f64, Get); 4] = [
+        ("lost", "flights", 0.0, |figures| f64::from(u8::from(!figures.is_some_and(is_held)))),
+        ("height lost", "m", 0.01, |figures| figures.map_or(f64::INFINITY, |figures| figures.height_lost)),
+        ("within 0.5 m for good after", "s", 0.02, |figures| {
+            figures.and_then(|figures| figures.settled).unwrap_or(f64::INFINITY)
         }),
-        ("position error, last half, RMS", "mm", 0.1, |shown| shown.map_or(f64::INFINITY, |shown| 1e3 * shown.rms)),
+        ("position error, last half, RMS", "mm", 0.1, |figures| {
+            figures.map_or(f64::INFINITY, |figures| 1e3 * figures.rms)
+        }),
     ];
-    let of_scene = |(scene, shown): &(&'static str, Vec<Option<Shown>>)| {
-        let values = |get: Get| shown.iter().map(|shown| get(shown.as_ref())).collect();
-        let row = |(figure, unit, grain, get)| Row { scene, figure, unit, values: values(get), grain, limit: None };
-        FIGURES.map(row)
+    let of_scene = |(scene, figures): &(&'static str, Vec<Option<SceneFigures>>)| {
+        let values = |get: Get| figures.iter().map(|figures| get(figures.as_ref())).collect();
+        let row =
+            |(figure, unit, grain, get)| FigureRow { scene, figure, unit, values: values(get), grain, limit: None };
+        REALISM_FIGURES.map(row)
     };
     scenes.iter().flat_map(of_scene).collect()
 }
 
 /// Whether a flight that did not end early is not lost.
 #[must_use]
-pub fn is_held(shown: &Shown) -> bool {
-    shown.end_error <= LOST
+pub fn is_held(figures: &SceneFigures) -> bool {
+    figures.end_error <= LOST_DISTANCE_M
 }
 
 /// Flies `scene`; none if it cannot be flown to its end.
 #[must_use]
-pub fn show(flier: &Flier, scene: &Scene) -> Option<Shown> {
-    course(flier, scene, NEAR)
+pub fn fly_realism_scene(law: &LawOnVehicle, scene: &Scene) -> Option<SceneFigures> {
+    fly_scene_within(law, scene, ARRIVAL_DISTANCE_M)
 }
 
 #[cfg(test)]

@@ -1,26 +1,26 @@
 //! The rows of a comparison: one figure of every law each, and where ours is not the best.
 
-use super::limit::{ARRIVED, Limit};
-use super::shown::{Shown, Thrown};
+use super::limit::{ARRIVAL_FIGURE, Limit};
+use super::scene_figures::{RandomFlights, SceneFigures};
 use crate::output::table::{aligned, short};
 use std::fmt::Write;
 
 /// The name of the column of the vehicle's own limit.
-pub const LIMIT: &str = "limit";
+pub const LIMIT_COLUMN: &str = "limit";
 
 /// The share by which another law must be better for ours to lose a row.
-const CLOSE: f64 = 0.01;
+const CLEARLY_BETTER_SHARE: f64 = 0.01;
 
 /// One figure of every law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct FigureRow {
     /// The scene.
     pub scene: &'static str,
     /// The figure's name.
     pub figure: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// The value of each law, in the fliers' order; less is better; infinite means never, or that the flight ended
+    /// The value of each law, in the laws' order; less is better; infinite means never, or that the flight ended
     /// early.
     pub values: Vec<f64>,
     /// The least difference that matters, in the unit.
@@ -29,30 +29,30 @@ pub struct Row {
     pub limit: Option<f64>,
 }
 
-impl Row {
+impl FigureRow {
     /// Whether another law shows clearly less than ours, the first.
     #[must_use]
     pub fn lost(&self) -> bool {
         let Some((ours, rivals)) = self.values.split_first() else { return false };
         let best = rivals.iter().copied().fold(f64::INFINITY, f64::min);
-        best < ours * (1.0 - CLOSE) && ours - best > self.grain
+        best < ours * (1.0 - CLEARLY_BETTER_SHARE) && ours - best > self.grain
     }
 }
 
 /// A figure of one law in one scene.
-type Get = fn(&Shown) -> f64;
+type Get = fn(&SceneFigures) -> f64;
 
 /// Figures of scenes: scene, figure, unit, its function, and the least difference that matters.
-const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
+const SCENE_FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("own", "position error, last half, RMS", "mm", |s| 1e3 * s.rms, 0.1),
     ("own", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("step", ARRIVED, "s", settled, 0.02),
+    ("step", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("step", "ticks clipped", "%", clipped, 0.0),
-    ("far step", ARRIVED, "s", settled, 0.02),
+    ("far step", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("far step", "height lost", "m", |s| s.height_lost, 0.01),
     ("far step", "ticks clipped", "%", clipped, 0.0),
     ("upside down", "height lost", "m", |s| s.height_lost, 0.01),
-    ("upside down", ARRIVED, "s", settled, 0.02),
+    ("upside down", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("upside down", "ticks clipped", "%", clipped, 0.0),
     ("gust", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("gust", "offset left", "m", |s| s.end_error, 0.001),
@@ -62,18 +62,18 @@ const FIGURES: [(&str, &str, &str, Get, f64); 22] = [
     ("storm", "ticks clipped", "%", clipped, 0.0),
     ("noise", "position error, RMS", "mm", |s| 1e3 * s.rms, 0.1),
     ("noise", "rotor command's change in 10 ms, RMS", "mN", |s| 1e3 * s.activity, 0.1),
-    ("weak rotors", ARRIVED, "s", settled, 0.02),
+    ("weak rotors", ARRIVAL_FIGURE, "s", settled, 0.02),
     ("weak rotors", "deepest excursion", "m", |s| s.excursion, 0.001),
     ("heavy", "height lost", "m", |s| s.height_lost, 0.01),
-    ("heavy", ARRIVED, "s", settled, 0.02),
+    ("heavy", ARRIVAL_FIGURE, "s", settled, 0.02),
 ];
 
-fn settled(shown: &Shown) -> f64 {
-    shown.settled.unwrap_or(f64::INFINITY)
+fn settled(figures: &SceneFigures) -> f64 {
+    figures.settled.unwrap_or(f64::INFINITY)
 }
 
-fn clipped(shown: &Shown) -> f64 {
-    100.0 * shown.clipped
+fn clipped(figures: &SceneFigures) -> f64 {
+    100.0 * figures.clipped
 }
 
 /// The beginning of a rotor figure's name: a vehicle without rotors has no such figures.
@@ -83,21 +83,21 @@ const OF_ROTORS: &str = "rotor";
 /// of the random flights.
 #[must_use]
 pub fn all(
-    scenes: &[(&'static str, Vec<Option<Shown>>)],
-    thrown: &[Option<Thrown>],
+    scenes: &[(&'static str, Vec<Option<SceneFigures>>)],
+    thrown: &[Option<RandomFlights>],
     limit: &Limit,
     rotors: bool,
-) -> Vec<Row> {
+) -> Vec<FigureRow> {
     let of_scene = |&(name, figure, unit, get, grain): &(&'static str, &'static str, &'static str, Get, f64)| {
-        let (_, shown) = scenes.iter().find(|(scene, _)| *scene == name)?;
-        let values = shown.iter().map(|shown| shown.as_ref().map_or(f64::INFINITY, get)).collect();
-        Some(Row { scene: name, figure, unit, values, grain, limit: limit.of(name, figure) })
+        let (_, figures) = scenes.iter().find(|(scene, _)| *scene == name)?;
+        let values = figures.iter().map(|figures| figures.as_ref().map_or(f64::INFINITY, get)).collect();
+        Some(FigureRow { scene: name, figure, unit, values, grain, limit: limit.in_row(name, figure) })
     };
-    let figures = FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
-    let mut rows: Vec<Row> = figures.filter_map(of_scene).collect();
-    let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&Thrown) -> f64| {
+    let figures = SCENE_FIGURES.iter().filter(|(_, figure, ..)| rotors || !figure.starts_with(OF_ROTORS));
+    let mut rows: Vec<FigureRow> = figures.filter_map(of_scene).collect();
+    let mut random = |figure: &'static str, unit: &'static str, grain: f64, get: &dyn Fn(&RandomFlights) -> f64| {
         let values = thrown.iter().map(|thrown| thrown.as_ref().map_or(f64::INFINITY, get)).collect();
-        rows.push(Row { scene: "random", figure, unit, values, grain, limit: None });
+        rows.push(FigureRow { scene: "random", figure, unit, values, grain, limit: None });
     };
     random("flights that never settle", "%", 0.0, &|all| 100.0 * all.share(|one| one.settled.is_none()));
     random("flights that end in no number", "%", 0.0, &|all| 100.0 * all.share(|one| one.height_lost.is_infinite()));
@@ -124,8 +124,8 @@ fn significant(value: f64) -> f64 {
 
 /// A table for a terminal; rows that ours loses begin with a star.
 #[must_use]
-pub fn table(names: &[&str], rows: &[Row]) -> String {
-    let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT);
+pub fn table(names: &[&str], rows: &[FigureRow]) -> String {
+    let limit = rows.iter().any(|row| row.limit.is_some()).then_some(&LIMIT_COLUMN);
     let head = ["", "scene", "figure", "unit"].iter().chain(names).chain(limit);
     let mut cells = vec![head.map(|&name| name.to_owned()).collect()];
     let mut before = "";
@@ -142,8 +142,8 @@ pub fn table(names: &[&str], rows: &[Row]) -> String {
 
 /// The same as CSV, in full; `inf` means never.
 #[must_use]
-pub fn csv(names: &[&str], rows: &[Row]) -> String {
-    let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT}\n", names.join(","));
+pub fn csv(names: &[&str], rows: &[FigureRow]) -> String {
+    let mut text = format!("scene,figure,unit,{},ours_loses,{LIMIT_COLUMN}\n", names.join(","));
     for row in rows {
         let _ = write!(text, "{},\"{}\",{}", row.scene, row.figure, row.unit);
         for value in &row.values {
@@ -159,8 +159,8 @@ pub fn csv(names: &[&str], rows: &[Row]) -> String {
 mod tests {
     use super::*;
 
-    fn row(values: &[f64]) -> Row {
-        Row { scene: "s", figure: "f", unit: "m", values: values.to_vec(), grain: 0.01, limit: None }
+    fn row(values: &[f64]) -> FigureRow {
+        FigureRow { scene: "s", figure: "f", unit: "m", values: values.to_vec(), grain: 0.01, limit: None }
     }
 
     #[test]

@@ -22,10 +22,10 @@ use scenario::reality::drag::Drag;
 use scenario::reality::truth::Truth;
 use scenario::reality::wind::{Gust, Shape, Wind};
 
-/// Drag of a vehicle whose file gives none, 1/s.
-pub const DRAG: f64 = 0.5;
-/// When a wind begins, s.
-const WIND_AT: f64 = 1.0;
+/// Of a vehicle whose file gives none.
+pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
+/// When a wind begins.
+const WIND_START_S: f64 = 1.0;
 
 /// A scene.
 #[derive(Clone)]
@@ -46,7 +46,7 @@ pub fn in_still_air(file: &Scenario) -> Scenario {
     let reality = &mut still_air.reality;
     (reality.wind, reality.disturbance, reality.failure, reality.sensors, reality.estimator) =
         (None, None, None, None, None);
-    reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DRAG * mass), ..Drag::default() });
+    reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() });
     still_air
 }
 
@@ -59,12 +59,12 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);
     let windy = |speed: f64, duration: f64| {
         let mut windy = at([0.0; 3], duration)?;
-        let gust = Gust { shape: Shape::Step, start: WIND_AT, velocity: Vector3::new(speed, 0.0, 0.0) };
+        let gust = Gust { shape: Shape::Step, start: WIND_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
         windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
         Ok::<_, ParameterError>(windy)
     };
     let really = |mut scenario: Scenario, mass: f64, thrust: f64| {
-        let truth = Truth::of_model(file.configuration.vehicle());
+        let truth = Truth::model(file.configuration.vehicle());
         scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale: thrust, ..truth });
         scenario
     };

@@ -11,10 +11,10 @@
 
 use super::requirements::Requirements;
 use super::space::{Point, Space};
-use super::trials::{FIGURES, MODELS, Shown, show};
+use super::trials::{COST_MODELS, MODEL_FIGURES, TrialFigures, fly_trials};
 use crate::flight::Flight;
 use crate::flight::claims::reached;
-use crate::flight::flown::Flown;
+use crate::flight::extremes::FlightExtremes;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::certificate::inequality::Inequality;
 use scenario::Scenario;
@@ -23,9 +23,9 @@ use scenario::sampled_loop::Axis;
 use scenario::stability::{Lack, Shortfall};
 
 /// The share of its time in which a recovery must end.
-const RECOVERED_BY: f64 = 0.75;
-/// The greatest offset after a gust under a law that estimates, m.
-const OFFSET: f64 = 0.01;
+const RECOVERED_BY_SHARE: f64 = 0.75;
+/// After a gust, under a law that estimates.
+const OFFSET_MAX_M: f64 = 0.01;
 
 /// The verdict on a candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,10 +36,10 @@ pub struct Verdict {
     /// Which test failed, in words.
     pub failed: Option<String>,
     /// The trials' figures on the file's own model.
-    pub shown: Shown,
-    /// The mean of [`Shown::values`] over all models.
-    pub mean: [f64; FIGURES.len()],
-    /// The mean of [`Shown::cost`] over all models.
+    pub figures: TrialFigures,
+    /// The mean of [`TrialFigures::values`] over all models.
+    pub mean: [f64; MODEL_FIGURES.len()],
+    /// The mean of [`TrialFigures::cost`] over all models.
     pub cost: f64,
     /// The inequality with the least margin.
     pub tightest: Option<Inequality>,
@@ -65,19 +65,19 @@ impl Verdict {
         Self {
             violation: f64::INFINITY,
             failed,
-            shown: NOTHING,
-            mean: NOTHING.values(),
+            figures: NO_TRIALS,
+            mean: NO_TRIALS.values(),
             cost: f64::INFINITY,
             tightest: None,
         }
     }
 
     /// Takes the models' figures, the file's own first.
-    pub fn take(&mut self, shown: &[Shown]) {
-        let mean = |of: &dyn Fn(&Shown) -> f64| shown.iter().map(of).sum::<f64>() / shown.len() as f64;
-        self.shown = shown[0];
-        self.mean = std::array::from_fn(|place| mean(&|shown| shown.values()[place]));
-        self.cost = mean(&Shown::cost);
+    pub fn take(&mut self, figures: &[TrialFigures]) {
+        let mean = |of: &dyn Fn(&TrialFigures) -> f64| figures.iter().map(of).sum::<f64>() / figures.len() as f64;
+        self.figures = figures[0];
+        self.mean = std::array::from_fn(|place| mean(&|figures| figures.values()[place]));
+        self.cost = mean(&TrialFigures::cost);
     }
 
     /// Whether every requirement is met.
@@ -97,7 +97,7 @@ pub trait Judging: Sync {
 }
 
 /// The figures without any trial.
-const NOTHING: Shown = Shown {
+const NO_TRIALS: TrialFigures = TrialFigures {
     height_lost: f64::INFINITY,
     recovered: f64::INFINITY,
     turned: f64::INFINITY,
@@ -201,20 +201,21 @@ impl Judge {
         verdict: &mut Verdict,
     ) -> Result<(), (u8, f64, String)> {
         let recovery = self.requirements.recovery;
-        let mut shown = Vec::new();
-        for model in &MODELS {
+        let mut figures = Vec::new();
+        for model in &COST_MODELS {
             let lost = (1, 1e3, format!("a trial was not flown to its end: {model}"));
             let start = |real: &Scenario| Flight::certified(real, certified).ok();
-            shown.push(show(scenario, start, model, recovery).ok_or(lost)?);
+            figures.push(fly_trials(scenario, start, model, recovery).ok_or(lost)?);
         }
-        verdict.take(&shown);
-        let restless = (verdict.shown.recovered / (RECOVERED_BY * recovery) - 1.0).max(verdict.shown.clipped as f64);
+        verdict.take(&figures);
+        let restless =
+            (verdict.figures.recovered / (RECOVERED_BY_SHARE * recovery) - 1.0).max(verdict.figures.clipped as f64);
         if restless > 0.0 {
             return Err((1, restless, "recovery: not near in time, or a clipped command".to_owned()));
         }
         let estimates = scenario.configuration.paper().is_none();
-        if estimates && verdict.shown.offset > OFFSET {
-            return Err((1, verdict.shown.offset / OFFSET - 1.0, "gust: an offset is left".to_owned()));
+        if estimates && verdict.figures.offset > OFFSET_MAX_M {
+            return Err((1, verdict.figures.offset / OFFSET_MAX_M - 1.0, "gust: an offset is left".to_owned()));
         }
         Ok(())
     }
@@ -234,6 +235,6 @@ impl Judging for Judge {
 }
 
 /// Flies the certified law as `scenario` says; `None` if the flight ends early.
-fn fly(scenario: &Scenario, certified: &Certified) -> Option<Flown> {
-    Flown::over(scenario, Flight::certified(scenario, certified).ok()?).ok()
+fn fly(scenario: &Scenario, certified: &Certified) -> Option<FlightExtremes> {
+    FlightExtremes::gather(scenario, Flight::certified(scenario, certified).ok()?).ok()
 }

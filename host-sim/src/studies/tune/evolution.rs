@@ -1,7 +1,7 @@
 //! Differential evolution with feasibility first.
 //!
 //! For each member x of the population a trial is made from three others, x_a + F (x_b - x_c), coordinates taken over
-//! with probability `CROSSOVER` (DE/rand/1/bin; half of the time x_a is the best member, which is faster and still
+//! with probability `CROSSOVER_PROBABILITY` (DE/rand/1/bin; half of the time x_a is the best member, which is faster and still
 //! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not
 //! the one nearer to acceptance wins, of two that are the one of less cost.
 
@@ -13,10 +13,10 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-/// Probability with which a coordinate comes from the mutant.
-const CROSSOVER: f64 = 0.8;
+/// A coordinate comes from the mutant with it.
+const CROSSOVER_PROBABILITY: f64 = 0.8;
 /// Spread of the first population around the file's gains, in natural logarithms.
-const SPREAD: f64 = 0.6;
+const START_SPREAD: f64 = 0.6;
 
 /// Whether `a` is better than `b`.
 fn better(a: &Verdict, b: &Verdict) -> bool {
@@ -39,7 +39,7 @@ impl Evolution {
         let start = judge.start();
         let own = judge.judge(&start);
         let scattered = (1..effort.population.max(4))
-            .map(|_| start.iter().map(|x| x + SPREAD * (random.random::<f64>() - 0.5)).collect());
+            .map(|_| start.iter().map(|x| x + START_SPREAD * (random.random::<f64>() - 0.5)).collect());
         let (others, judged) = judge_all(judge, scattered.collect(), interrupt);
         let members = [(start, own.clone())].into_iter().chain(others).collect();
         Self { members, start: own, random, judged: 1 + judged }
@@ -96,7 +96,7 @@ impl Evolution {
         let mut trial = self.members[parent].0.clone();
         let forced = self.random.random_range(0..trial.len());
         for (index, coordinate) in trial.iter_mut().enumerate() {
-            if index == forced || self.random.random::<f64>() < CROSSOVER {
+            if index == forced || self.random.random::<f64>() < CROSSOVER_PROBABILITY {
                 let difference = self.members[b].0[index] - self.members[c].0[index];
                 *coordinate = self.members[base].0[index] + scale * difference;
             }

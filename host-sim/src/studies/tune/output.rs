@@ -11,7 +11,7 @@ use scenario::constants::written;
 use toml_edit::{DocumentMut, Item, Table, TomlError, value};
 
 /// The beginning of the line with the tuned figures.
-const HEAD: &str = "# Tuned:";
+const TUNED_LINE: &str = "# Tuned:";
 
 /// `original` with the tuned constants, headed by what they achieve.
 ///
@@ -34,13 +34,13 @@ pub fn rewritten(original: &str, tuned: &Tuned) -> Result<String, TomlError> {
     }
     let said = |text: &str| {
         let head = format!(
-            "{HEAD} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
-            short(tuned.verdict.shown.height_lost),
-            short(tuned.verdict.shown.gust),
+            "{TUNED_LINE} height lost from upside down {} m, {} m of excursion in a gust; every margin at least {:.1} %.\n",
+            short(tuned.verdict.figures.height_lost),
+            short(tuned.verdict.figures.gust),
             100.0 * tuned.verdict.tightest.map_or(0.0, |tightest| tightest.margin())
         );
         // A file that was tuned before loses its older line.
-        let before = text.strip_prefix(HEAD).and_then(|said| said.split_once('\n'));
+        let before = text.strip_prefix(TUNED_LINE).and_then(|said| said.split_once('\n'));
         head + before.map_or(text, |(_, rest)| rest)
     };
     let text = said(&document.to_string());

@@ -2,18 +2,18 @@
 
 use scenario::stability::LoopMargin;
 
-/// Longest recovery that a search may fly thousands of times, s.
-pub const GREATEST_RECOVERY: f64 = 3600.0;
-/// Shortest recovery, s: in less time a vehicle that is upside down has hardly begun to fall, and no law could
+/// Longest recovery that a search may fly thousands of times.
+pub const RECOVERY_MAX_S: f64 = 3600.0;
+/// Shortest recovery: in less time a vehicle that is upside down has hardly begun to fall, and no law could
 /// have brought it back.
-pub const LEAST_RECOVERY: f64 = 2.0;
+pub const RECOVERY_MIN_S: f64 = 2.0;
 
 /// The requirements on every accepted candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirements {
     /// Least relative margin of every inequality.
     pub margin: f64,
-    /// Least margin of every sampled loop; not below [`LoopMargin::LEAST`].
+    /// Least margin of every sampled loop; not below [`LoopMargin::FLYABLE_MIN`].
     pub loops: LoopMargin,
     /// Greatest position error of the file's own flight in its last quarter, m.
     pub position_error: f64,

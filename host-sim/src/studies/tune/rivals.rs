@@ -10,40 +10,47 @@ use crate::flight::Flight;
 use crate::output::interrupt::Interrupt;
 use crate::output::progress::Progress;
 use crate::rivals::gains::Set;
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 use crate::rivals::start::Speed;
 use crate::studies::tune::candidate::{Judging, Verdict};
 use crate::studies::tune::effort::Effort;
 use crate::studies::tune::evolution::Evolution;
 use crate::studies::tune::space::Point;
-use crate::studies::tune::trials::{MODELS, show};
+use crate::studies::tune::trials::{COST_MODELS, fly_trials};
 use rayon::prelude::*;
 use scenario::Scenario;
 use std::time::{Duration, Instant};
 
 /// The rivals that have a search of their own.
-const SEARCHED: [Kind; 6] = [Kind::Lee, Kind::Cascade, Kind::Mellinger, Kind::Indi, Kind::Nested, Kind::Memoryless];
+const SEARCHED_RIVALS: [RivalKind; 6] = [
+    RivalKind::Lee,
+    RivalKind::Cascade,
+    RivalKind::Mellinger,
+    RivalKind::Indi,
+    RivalKind::Nested,
+    RivalKind::Memoryless,
+];
 
-/// How long a recovery may take, s: as in `host-sim tune`.
-const RECOVERY: f64 = 20.0;
+/// As in `host-sim tune`.
+const RECOVERY_MAX_S: f64 = 20.0;
 
 /// Judges gains of one rival on one vehicle.
 pub struct RivalJudge<'a> {
     scenario: &'a Scenario,
-    kind: Kind,
+    kind: RivalKind,
     start: Vec<f64>,
 }
 
 impl<'a> RivalJudge<'a> {
     /// Of `kind` on the vehicle of `scenario`; the search begins at `start`.
     #[must_use]
-    pub fn new(scenario: &'a Scenario, kind: Kind, start: &[f64]) -> Self {
+    pub fn new(scenario: &'a Scenario, kind: RivalKind, start: &[f64]) -> Self {
         Self { scenario, kind, start: start.to_vec() }
     }
 
-    /// Likewise; the search begins at START, made as fast as flies best on this vehicle: [`super::start`].
+    /// Likewise; the search begins at START, made as fast as flies best on this vehicle: [`crate::rivals::start`].
     #[must_use]
-    pub fn at_best_start(scenario: &'a Scenario, kind: Kind, interrupt: &Interrupt) -> Self {
+    pub fn at_best_start(scenario: &'a Scenario, kind: RivalKind, interrupt: &Interrupt) -> Self {
         let start = kind.start(scenario);
         let judged = |speed: Speed| {
             let judge = Self::new(scenario, kind, &start.at(speed));
@@ -53,7 +60,7 @@ impl<'a> RivalJudge<'a> {
         let best = |speeds: Vec<Speed>| {
             let all: Vec<_> = speeds.into_par_iter().map(judged).collect();
             let better = |a: (Speed, [f64; 2]), b: (Speed, [f64; 2])| if b.1 < a.1 { b } else { a };
-            all.into_iter().reduce(better).map_or(Speed::OWN, |(speed, _)| speed)
+            all.into_iter().reduce(better).map_or(Speed::UNSCALED, |(speed, _)| speed)
         };
         let speed = best(best(start.attitudes()).positions());
         Self { scenario, kind, start: start.at(speed) }
@@ -67,13 +74,13 @@ impl<'a> RivalJudge<'a> {
 
     fn run(&self, point: &Point, verdict: &mut Verdict) -> Result<(), (u8, f64, String)> {
         let gains = Self::gains(point);
-        let mut shown = Vec::new();
-        for (flown, model) in MODELS.iter().enumerate() {
+        let mut figures = Vec::new();
+        for (flown, model) in COST_MODELS.iter().enumerate() {
             let start = |real: &Scenario| Some(Flight::of_rival(real, self.kind.build(self.scenario, &gains)?));
-            let lost = ((MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model}"));
-            shown.push(show(self.scenario, start, model, RECOVERY).ok_or(lost)?);
+            let lost = ((COST_MODELS.len() - flown) as u8, 1.0, format!("a trial was not flown to its end: {model}"));
+            figures.push(fly_trials(self.scenario, start, model, RECOVERY_MAX_S).ok_or(lost)?);
         }
-        verdict.take(&shown);
+        verdict.take(&figures);
         Ok(())
     }
 }
@@ -96,17 +103,17 @@ impl Judging for RivalJudge<'_> {
 ///
 /// # Errors
 /// Names the signal that came.
-pub fn tune(scenario: &Scenario, kinds: &[Kind], effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
+pub fn tune(scenario: &Scenario, kinds: &[RivalKind], effort: Effort, interrupt: &Interrupt) -> Result<Set, String> {
     let searched = searched(kinds);
     let mut progress = Progress::new("searching gains", searched.len() as u64 * rounds(&effort));
     let mut done = 0;
-    let mut next = |kind: Kind| {
+    let mut next = |kind: RivalKind| {
         progress.about(kind.name());
         progress.show(done);
         done += 1;
         interrupt.signal().map_or(Ok(()), |signal| Err(format!("interrupted by signal {signal}; nothing is written")))
     };
-    let mut search = |kind: Kind| {
+    let mut search = |kind: RivalKind| {
         next(kind)?;
         let judge = RivalJudge::at_best_start(scenario, kind, interrupt);
         next(kind)?;
@@ -118,47 +125,49 @@ pub fn tune(scenario: &Scenario, kinds: &[Kind], effort: Effort, interrupt: &Int
         Ok::<_, String>(evolution.best().map(|(point, verdict)| (RivalJudge::gains(&point), verdict.cost)))
     };
     let mut set = Set::default();
-    let mut keep = |kind: Kind, found: Option<(Vec<f64>, f64)>| match found {
+    let mut keep = |kind: RivalKind, found: Option<(Vec<f64>, f64)>| match found {
         _ if !kinds.contains(&kind) => {}
         Some((gains, cost)) => set.rivals.push((kind, gains, cost)),
         None => set.lost.push(kind),
     };
     for kind in searched {
         let found = search(kind)?;
-        if kind == Kind::Memoryless {
+        if kind == RivalKind::Memoryless {
             let of_continuous = |(gains, _): &(Vec<f64>, f64)| {
-                let judge = RivalJudge::new(scenario, Kind::Continuous, gains);
+                let judge = RivalJudge::new(scenario, RivalKind::Continuous, gains);
                 let verdict = judge.judge(&judge.start());
                 verdict.accepted().then(|| (gains.clone(), verdict.cost))
             };
-            keep(Kind::Continuous, found.as_ref().and_then(of_continuous));
+            keep(RivalKind::Continuous, found.as_ref().and_then(of_continuous));
         }
         keep(kind, found);
     }
     // An interrupt in the last generation leaves it half judged.
-    next(Kind::Memoryless)?;
+    next(RivalKind::Memoryless)?;
     Ok(set)
 }
 
 /// About how long [`tune`] takes here, from how long one candidate of the first rival does.
 #[must_use]
-pub fn expected(scenario: &Scenario, kinds: &[Kind], effort: &Effort) -> Duration {
+pub fn expected(scenario: &Scenario, kinds: &[RivalKind], effort: &Effort) -> Duration {
     let (began, threads) = (Instant::now(), rayon::current_num_threads());
     let searched = searched(kinds);
     let Some(&kind) = searched.first() else { return Duration::ZERO };
     let start = kind.start(scenario);
-    let judge = RivalJudge::new(scenario, kind, &start.at(Speed::OWN));
+    let judge = RivalJudge::new(scenario, kind, &start.at(Speed::UNSCALED));
     judge.judge(&judge.start());
     let one = began.elapsed();
-    let starts = start.attitudes().len() + Speed::OWN.positions().len();
+    let starts = start.attitudes().len() + Speed::UNSCALED.positions().len();
     let of_each = starts + (1 + effort.generations as usize) * effort.population;
     one.mul_f64((searched.len() * of_each) as f64 / threads as f64)
 }
 
 /// Those of `kinds` that have a search of their own, and the one whose gains the continuous law takes.
-fn searched(kinds: &[Kind]) -> Vec<Kind> {
-    let wanted = |kind: &Kind| kinds.contains(kind) || *kind == Kind::Memoryless && kinds.contains(&Kind::Continuous);
-    SEARCHED.into_iter().filter(wanted).collect()
+fn searched(kinds: &[RivalKind]) -> Vec<RivalKind> {
+    let wanted = |kind: &RivalKind| {
+        kinds.contains(kind) || *kind == RivalKind::Memoryless && kinds.contains(&RivalKind::Continuous)
+    };
+    SEARCHED_RIVALS.into_iter().filter(wanted).collect()
 }
 
 /// The steps of each rival's search: starts, the first population, and the generations.

@@ -4,7 +4,7 @@
 //! greatest admissible value; delta and alpha stay as the file has them: they are about noise.
 //!
 //! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`]
-//! marks; those of `ALONG` move with them, and all others follow by the formulas, unless the file chose them. So a
+//! marks; those of `TIED_CONSTANTS` move with them, and all others follow by the formulas, unless the file chose them. So a
 //! candidate uses no more torque and thrust than the rotors have. A factor of one leaves a constant to the formulas as
 //! well: the start is the file's law to the bit.
 
@@ -20,7 +20,7 @@ pub type Point = Vec<f64>;
 
 /// Constants that move with a searched one, each with the power of its factor. r_0 is where the tilt begins to brake
 /// along a parabola: it goes with M_theta^2 / k_theta.
-const ALONG: [(&str, &str, f64); 4] = [
+const TIED_CONSTANTS: [(&str, &str, f64); 4] = [
     ("k_v_vertical", "k_p_vertical", 2.0),
     ("k_tilt", "r_0", -1.0),
     ("m_tilt", "r_0", 2.0),
@@ -55,7 +55,7 @@ impl Space {
         let configuration = &self.scenario.configuration;
         match configuration.law() {
             LawParameters::Paper(PaperLaw { gains, thrust_floor }) => {
-                let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.least_thrust());
+                let floor = thrust_floor.map_or(0.5, |floor| floor / configuration.min_thrust());
                 let searched = gains.entries().filter(|(gain, _)| gain.searched).map(|(_, value)| value);
                 searched.chain([floor]).map(|value| f64::from(value).ln()).collect()
             }
@@ -80,7 +80,7 @@ impl Space {
             searched().map(|place| ExtendedParameters::TABLE[place].key).zip(point.iter().copied()).collect();
         for (place, constant) in ExtendedParameters::TABLE.iter().enumerate() {
             let power = |with: &str| {
-                let along = ALONG.iter().find(|(other, key, _)| *other == with && *key == constant.key);
+                let along = TIED_CONSTANTS.iter().find(|(other, key, _)| *other == with && *key == constant.key);
                 along.map_or(f64::from(u8::from(with == constant.key)), |(.., power)| *power)
             };
             let logarithm: f64 = moved.iter().map(|(with, x)| power(with) * x).sum();
@@ -112,7 +112,7 @@ impl Space {
         match self.floor {
             None => Some(configuration),
             Some(greatest) => {
-                let floor = floor.min(greatest) * configuration.least_thrust();
+                let floor = floor.min(greatest) * configuration.min_thrust();
                 configuration.with_thrust_floor(floor).ok()
             }
         }

@@ -12,16 +12,16 @@ use rand::{RngExt, SeedableRng};
 use scenario::PAPER;
 use scenario::stability::LoopMargin;
 
-const EASY: Requirements = Requirements {
+const EASY_REQUIREMENTS: Requirements = Requirements {
     margin: 0.0,
-    loops: LoopMargin::LEAST,
+    loops: LoopMargin::FLYABLE_MIN,
     position_error: 0.01,
     mrp_error: 1e-3,
     recovery: 40.0,
     projection: false,
 };
 
-const SMALL: Effort = Effort { generations: 2, population: 6, seed: 3 };
+const SMALL_EFFORT: Effort = Effort { generations: 2, population: 6, seed: 3 };
 
 fn paper() -> Scenario {
     Scenario::parse(PAPER, "f").unwrap()
@@ -35,18 +35,18 @@ fn verdict(scenario: &Scenario, requirements: Requirements) -> Verdict {
 
 #[test]
 fn table_one_meets_easy_requirements_and_loses_23_metres() {
-    let verdict = verdict(&paper(), EASY);
+    let verdict = verdict(&paper(), EASY_REQUIREMENTS);
     assert!(verdict.accepted(), "{verdict:?}");
-    assert!((verdict.shown.height_lost - 23.3).abs() < 0.1, "{:?}", verdict.shown);
+    assert!((verdict.figures.height_lost - 23.3).abs() < 0.1, "{:?}", verdict.figures);
     // 2.5 m/s^2 of wind are more than M_p: it is carried away.
-    assert!(verdict.shown.gust > 5.0 && verdict.shown.gust == verdict.shown.offset, "{:?}", verdict.shown);
+    assert!(verdict.figures.gust > 5.0 && verdict.figures.gust == verdict.figures.offset, "{:?}", verdict.figures);
 }
 
 #[test]
 fn a_search_starts_from_the_files_gains_and_thrust_floor() {
     let floor = PAPER.replace("rate = 100.0", "rate = 100.0\nthrust_floor = 1.0");
     let scenario = Scenario::parse(&floor, "f").unwrap();
-    let judge = Judge::new(&scenario, Requirements { projection: true, ..EASY });
+    let judge = Judge::new(&scenario, Requirements { projection: true, ..EASY_REQUIREMENTS });
     let start = judge.scenario(&judge.start()).unwrap().configuration;
     let near = |a: f32, b: f32| (a / b - 1.0).abs() < 1e-5;
     assert!(near(start.thrust_floor().unwrap(), 1.0), "{start:?}");
@@ -56,18 +56,18 @@ fn a_search_starts_from_the_files_gains_and_thrust_floor() {
 #[test]
 fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
     let refusals = [
-        (Requirements { margin: 0.5, ..EASY }, "certificate: "),
+        (Requirements { margin: 0.5, ..EASY_REQUIREMENTS }, "certificate: "),
         (
-            Requirements { loops: LoopMargin { gain: 20.0, ..LoopMargin::LEAST }, ..EASY },
+            Requirements { loops: LoopMargin { gain: 20.0, ..LoopMargin::FLYABLE_MIN }, ..EASY_REQUIREMENTS },
             "sampled loop roll: unstable at 4.48",
         ),
         (
-            Requirements { loops: LoopMargin { delay: 0.1, ..LoopMargin::LEAST }, ..EASY },
+            Requirements { loops: LoopMargin { delay: 0.1, ..LoopMargin::FLYABLE_MIN }, ..EASY_REQUIREMENTS },
             "sampled loop roll: unstable with 7.5 ms",
         ),
-        (Requirements { recovery: 3.0, ..EASY }, "recovery: "),
-        (Requirements { position_error: 1e-9, ..EASY }, "the file's flight: "),
-        (Requirements { mrp_error: 1e-12, ..EASY }, "the file's flight: "),
+        (Requirements { recovery: 3.0, ..EASY_REQUIREMENTS }, "recovery: "),
+        (Requirements { position_error: 1e-9, ..EASY_REQUIREMENTS }, "the file's flight: "),
+        (Requirements { mrp_error: 1e-12, ..EASY_REQUIREMENTS }, "the file's flight: "),
     ];
     let mut last = f64::INFINITY;
     for (requirements, what) in refusals {
@@ -79,7 +79,9 @@ fn each_requirement_can_refuse_and_later_tests_count_as_nearer() {
     }
     let unstable = Scenario::parse(&format!("{PAPER}\n[sampling]\ndelay = 0.01\n"), "f").unwrap();
     assert!(
-        verdict(&unstable, EASY).failed.is_some_and(|failed| failed.starts_with("sampled loop roll: unstable, spec"))
+        verdict(&unstable, EASY_REQUIREMENTS)
+            .failed
+            .is_some_and(|failed| failed.starts_with("sampled loop roll: unstable, spec"))
     );
 }
 
@@ -89,8 +91,8 @@ fn the_position_feedback_needs_the_gain_margin_too() {
     let steep = PAPER.replace("k_p = 9.0", "k_p = 900.0").replace("k_v = 6.0", "k_v = 120.0");
     let steep = Scenario::parse(&steep, "f").unwrap();
     let failed = |gain| {
-        let loops = LoopMargin { gain, ..LoopMargin::LEAST };
-        verdict(&steep, Requirements { loops, ..EASY }).failed.unwrap_or_default()
+        let loops = LoopMargin { gain, ..LoopMargin::FLYABLE_MIN };
+        verdict(&steep, Requirements { loops, ..EASY_REQUIREMENTS }).failed.unwrap_or_default()
     };
     assert!(!failed(1.5).contains("k_p and k_v"), "{}", failed(1.5));
     assert!(failed(2.5).ends_with(": unstable with 2.5 times k_p and k_v"), "{}", failed(2.5));
@@ -98,21 +100,23 @@ fn the_position_feedback_needs_the_gain_margin_too() {
 
 #[test]
 fn a_small_search_finds_something_at_least_as_good_as_its_start() {
-    let tuned = tune(&paper(), EASY, SMALL, &Interrupt::default()).unwrap_or_else(|closest| panic!("{closest:?}"));
+    let tuned = tune(&paper(), EASY_REQUIREMENTS, SMALL_EFFORT, &Interrupt::default())
+        .unwrap_or_else(|closest| panic!("{closest:?}"));
     assert!(tuned.verdict.accepted());
     assert_eq!(tuned.judged, 6 * 3);
-    let own = verdict(&paper(), EASY);
+    let own = verdict(&paper(), EASY_REQUIREMENTS);
     assert!(tuned.verdict.cost <= own.cost);
     assert_eq!(tuned.before, own);
     // The scenario it hands out is the one it judged.
-    assert_eq!(verdict(&tuned.scenario, EASY), tuned.verdict);
+    assert_eq!(verdict(&tuned.scenario, EASY_REQUIREMENTS), tuned.verdict);
 }
 
 #[test]
 fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
     let gains = |seed| {
         let effort = Effort { seed, population: 6, generations: 1 };
-        let tuned = tune(&paper(), EASY, effort, &Interrupt::default()).unwrap_or_else(|closest| panic!("{closest:?}"));
+        let tuned = tune(&paper(), EASY_REQUIREMENTS, effort, &Interrupt::default())
+            .unwrap_or_else(|closest| panic!("{closest:?}"));
         *tuned.scenario.configuration.gains().unwrap()
     };
     assert_eq!(gains(3), gains(3));
@@ -121,17 +125,20 @@ fn the_same_seed_gives_the_same_gains_and_another_seed_others() {
 
 #[test]
 fn requirements_that_nothing_meets_give_the_closest_verdict() {
-    let closest = tune(&paper(), Requirements { margin: 0.97, ..EASY }, SMALL, &Interrupt::default()).err().unwrap();
+    let closest =
+        tune(&paper(), Requirements { margin: 0.97, ..EASY_REQUIREMENTS }, SMALL_EFFORT, &Interrupt::default())
+            .err()
+            .unwrap();
     assert!(closest.failed.is_some_and(|failed| failed.starts_with("certificate: ")));
 }
 
 #[test]
 fn the_projection_lowers_the_floor_below_its_greatest_value_by_the_margin() {
-    let judge = Judge::new(&paper(), Requirements { projection: true, margin: 0.05, ..EASY });
+    let judge = Judge::new(&paper(), Requirements { projection: true, margin: 0.05, ..EASY_REQUIREMENTS });
     let mut point = judge.start();
     point[9] = 0.0;
     let configuration = judge.scenario(&point).unwrap().configuration;
-    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.least_thrust());
+    let (floor, greatest) = (configuration.thrust_floor().unwrap(), configuration.min_thrust());
     assert!((floor / greatest - 0.95).abs() < 1e-6, "{floor} of {greatest}");
 }
 
@@ -147,7 +154,7 @@ fn a_rewritten_file_keeps_its_comments_and_flies_the_tuned_gains() {
             scenario.configuration = scenario.configuration.with_thrust_floor(floor).unwrap();
         }
         scenario.name = "mine".to_owned();
-        let verdict = verdict(&scenario, EASY);
+        let verdict = verdict(&scenario, EASY_REQUIREMENTS);
         Tuned { before: verdict.clone(), verdict, scenario, judged: 0 }
     };
     let (plain, floored) = (tuned(None), tuned(Some(0.4)));
@@ -182,14 +189,14 @@ fn the_widest_bounds_leave_the_margin_and_no_more() {
 }
 
 /// The files of the extended law that this project ships, beside the siblings on the paper's trajectory.
-const EXTENDED: [&str; 3] = [
+const EXTENDED_FILES: [&str; 3] = [
     include_str!("../../../../vehicles/hummingbird.toml"),
     include_str!("../../../../vehicles/study.toml"),
     include_str!("../../../../scenarios/paper-extended.toml"),
 ];
 
 fn extended() -> [Scenario; 3] {
-    EXTENDED.map(|text| Scenario::parse(text, "f").unwrap())
+    EXTENDED_FILES.map(|text| Scenario::parse(text, "f").unwrap())
 }
 
 fn parameters(scenario: &Scenario) -> ExtendedParameters {
@@ -255,7 +262,7 @@ fn the_files_of_the_extended_law_meet_the_usual_requirements_as_they_are() {
 
 #[test]
 fn a_tuned_file_of_the_extended_law_is_short_and_reads_back_to_the_same_law() {
-    for (text, scenario) in EXTENDED.into_iter().zip(extended()) {
+    for (text, scenario) in EXTENDED_FILES.into_iter().zip(extended()) {
         let tuned = found(&scenario, 0.05);
         let written = output::rewritten(text, &tuned).unwrap();
         let read = Scenario::parse(&written, "f").unwrap_or_else(|error| panic!("{error}\n{written}"));
@@ -273,8 +280,8 @@ fn a_tuned_file_of_the_extended_law_is_short_and_reads_back_to_the_same_law() {
 #[test]
 fn a_file_with_every_constant_loses_those_that_follow_from_the_vehicle() {
     let [scenario, ..] = extended();
-    let (before, _) = EXTENDED[0].split_once("[gains]").unwrap();
-    let (_, after) = EXTENDED[0].split_once("[control]").unwrap();
+    let (before, _) = EXTENDED_FILES[0].split_once("[gains]").unwrap();
+    let (_, after) = EXTENDED_FILES[0].split_once("[control]").unwrap();
     let all = scenario::constants::written(parameters(&scenario).entries());
     let text = format!("{before}{all}\n[control]{after}");
     assert!(Scenario::parse(&text, "f").unwrap().flies_like(&scenario));
@@ -289,7 +296,7 @@ fn a_file_with_every_constant_loses_those_that_follow_from_the_vehicle() {
 
 #[test]
 fn a_vehicle_without_a_law_in_its_file_is_tuned_under_the_extended_one() {
-    let bare = EXTENDED[2].replace("law = \"extended\"\n", "");
+    let bare = EXTENDED_FILES[2].replace("law = \"extended\"\n", "");
     let scenario = Scenario::parse(&bare, "f").unwrap();
     let tuned = found(&scenario, 0.05);
     let written = output::rewritten(&bare, &tuned).unwrap();
@@ -302,7 +309,7 @@ fn the_table_says_what_each_figure_was_and_is() {
     let [scenario, ..] = extended();
     let before = verdict(&scenario, Requirements::default());
     let mut after = before.clone();
-    (after.shown.height_lost, after.mean[0], after.cost) = (0.5, 0.6, 3.0);
+    (after.figures.height_lost, after.mean[0], after.cost) = (0.5, 0.6, 3.0);
     let text = Tuned { before, verdict: after, scenario, judged: 2 }.table();
     let line =
         |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{name}: {text}"));

@@ -11,7 +11,7 @@
 //! | weak rotors | 1 m step with rotors that deliver 60 % | time until within 0.1 m for good, s |
 //! | heavy | the recovery with 1.6 times the mass | height lost, m; time until within 0.1 m for good, s |
 //!
-//! The cost is their weighted sum, [`Shown::cost`], averaged over the models of [`MODELS`]: the vehicle as the file
+//! The cost is their weighted sum, [`TrialFigures::cost`], averaged over the models of [`COST_MODELS`]: the vehicle as the file
 //! says, and as it may really be. The last four go beyond a law's promise; they are flown on the file's own model
 //! only.
 
@@ -31,37 +31,35 @@ use scenario::timing::Timing;
 use std::fmt;
 use std::sync::Arc;
 
-/// The distance that counts as arrived, m.
-const NEAR: f64 = 0.1;
-/// The time at which the gust begins, s.
-const GUST_AT: f64 = 1.0;
-/// Wind of the gust, m/s, and the drag of a vehicle whose file gives none, 1/s.
-const GUST: f64 = 5.0;
-const GUST_DRAG: f64 = 0.5;
-/// Wind of the storm, m/s.
-const STORM: f64 = 12.0;
-/// The greatest duration of each trial, s.
-const GUST_TIME: f64 = 6.0;
-const STORM_TIME: f64 = 8.0;
-const STEP_TIME: f64 = 12.0;
-const NOISE_TIME: f64 = 4.0;
-/// A flight in still air ends once position and yaw have been settled for this time, s.
-const REST: f64 = 2.0;
-/// Between two poses, s, and from the moment that one shows to its arrival.
-const BETWEEN_POSES: f64 = 0.01;
-const POSE_DELAY: f64 = 0.02;
-/// How late a gyro, an accelerometer and rotor speeds are by their filters, s: a BMI088's own of 116 Hz makes 1.9 ms
+const ARRIVAL_DISTANCE_M: f64 = 0.1;
+/// The time at which the gust begins.
+const GUST_START_S: f64 = 1.0;
+/// Wind of the gust; and the drag of a vehicle whose file gives none, 1/s.
+const GUST_M_PER_S: f64 = 5.0;
+const DEFAULT_DRAG_PER_S: f64 = 0.5;
+const STORM_M_PER_S: f64 = 12.0;
+/// The greatest duration of each trial.
+const GUST_FLIGHT_S: f64 = 6.0;
+const STORM_FLIGHT_S: f64 = 8.0;
+const STEP_FLIGHT_S: f64 = 12.0;
+const NOISE_FLIGHT_S: f64 = 4.0;
+/// A flight in still air ends once position and yaw have been settled for this time.
+const SETTLED_FOR_S: f64 = 2.0;
+/// Between two poses, and from the moment that one shows to its arrival.
+const POSE_PERIOD_S: f64 = 0.01;
+const POSE_DELAY_S: f64 = 0.02;
+/// How late a gyro, an accelerometer and rotor speeds are by their filters: a BMI088's own of 116 Hz makes 1.9 ms
 /// (second order: sqrt(2) / (2 pi f)), and a low-pass of 200 Hz against vibration another 1.1 ms.
-const IMU_DELAY: f64 = 0.003;
-/// Noise of an accelerometer's mean over [`BETWEEN_POSES`], m/s^2; white, so that of a shorter time is larger.
-const ACCELEROMETER_NOISE: f64 = 0.05;
+const IMU_DELAY_S: f64 = 0.003;
+/// Noise of an accelerometer's mean over [`POSE_PERIOD_S`]; white, so that of a shorter time is larger.
+const ACCELEROMETER_NOISE_M_PER_S2: f64 = 0.05;
 /// The thrust scale of weak rotors, and the mass factor of a heavy vehicle.
-const WEAK: f64 = 0.6;
-const HEAVY: f64 = 1.6;
+const WEAK_THRUST_SCALE: f64 = 0.6;
+const HEAVY_MASS_FACTOR: f64 = 1.6;
 
 /// How far off the centre of mass may be, as a share of the longest arm: 5 mm are little on the Hummingbird, and turn
 /// over a vehicle of a hand's size.
-const OFF_CENTRE_MAX: f64 = 0.03;
+const CENTRE_OFFSET_MAX_SHARE: f64 = 0.03;
 
 /// A vehicle as it may really be, relative to the file's model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +68,7 @@ pub struct Model {
     pub mass: f64,
     /// The thrust scale.
     pub thrust: f64,
-    /// Centre of mass, m, body; on small vehicles nearer, by `OFF_CENTRE_MAX`.
+    /// Centre of mass, m, body; on small vehicles nearer, by `CENTRE_OFFSET_MAX_SHARE`.
     pub centre_of_mass: [f64; 2],
     /// Factor on the rotors' lag.
     pub lag: f64,
@@ -88,7 +86,7 @@ impl fmt::Display for Model {
 
 /// The models a cost is averaged over: as the file says; and mass and thrust 10 % off, the centre of mass 5 mm, half as
 /// much lag again, 5 ms of delay, in combinations.
-pub const MODELS: [Model; 4] = [
+pub const COST_MODELS: [Model; 4] = [
     Model { mass: 1.0, thrust: 1.0, centre_of_mass: [0.0, 0.0], lag: 1.0, delay: 0.0 },
     Model { mass: 1.1, thrust: 0.9, centre_of_mass: [0.004, 0.003], lag: 1.5, delay: 0.0 },
     Model { mass: 0.9, thrust: 1.1, centre_of_mass: [-0.003, 0.004], lag: 1.0, delay: 0.005 },
@@ -97,7 +95,7 @@ pub const MODELS: [Model; 4] = [
 
 /// The trials' figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct TrialFigures {
     /// Height lost in the recovery, m.
     pub height_lost: f64,
     /// Until the recovery is within 0.1 m for good, s.
@@ -116,14 +114,14 @@ pub struct Shown {
     /// Position under noise, m, rms.
     pub noise: f64,
     /// The figures beyond a law's promise, on the file's own model; `None` for another model.
-    pub beyond: Option<Beyond>,
+    pub beyond: Option<HarderTrialFigures>,
     /// Commands that a limit cut, in all trials.
     pub clipped: u64,
 }
 
 /// The figures of the trials beyond a law's promise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beyond {
+pub struct HarderTrialFigures {
     /// Deepest excursion in the storm, m.
     pub storm: f64,
     /// Until the far step is within 0.1 m for good, s.
@@ -139,8 +137,8 @@ pub struct Beyond {
 /// A figure: its name, its unit, the value with which a pilot begins to be content, and its weight.
 pub type Figure = (&'static str, &'static str, f64, f64);
 
-/// The figures that every model shows, as [`Shown::values`].
-pub const FIGURES: [Figure; 7] = [
+/// The figures that every model shows, as [`TrialFigures::values`].
+pub const MODEL_FIGURES: [Figure; 7] = [
     ("upside down: height lost", "m", 3.0, 1.0),
     ("upside down: back for good after", "s", 5.0, 1.0),
     ("upside down: yaw back after", "s", 8.0, 1.0),
@@ -150,8 +148,8 @@ pub const FIGURES: [Figure; 7] = [
     ("noise: rotor command's change in 10 ms", "of hovering", 0.05, 0.5),
 ];
 
-/// The figures of the file's own model alone, as [`Beyond::values`].
-pub const BEYOND: [Figure; 5] = [
+/// The figures of the file's own model alone, as [`HarderTrialFigures::values`].
+pub const OWN_MODEL_FIGURES: [Figure; 5] = [
     ("storm of 12 m/s: excursion", "m", 2.0, 0.5),
     ("step of 10 m: there after", "s", 5.0, 1.0),
     ("step with weak rotors: there after", "s", 4.0, 0.5),
@@ -161,84 +159,85 @@ pub const BEYOND: [Figure; 5] = [
 
 /// No figure counts more than this many times its content value, so that the other figures judge a vehicle that cannot
 /// fly one of the trials.
-const MOST: f64 = 10.0;
+const FIGURE_COST_MAX: f64 = 10.0;
 
 /// The weighted sum of `values`.
 fn weighted(figures: &[Figure], values: &[f64]) -> f64 {
     let parts = figures.iter().zip(values);
-    parts.map(|((_, _, content, weight), value)| weight * (value / content).min(MOST)).sum()
+    parts.map(|((_, _, content, weight), value)| weight * (value / content).min(FIGURE_COST_MAX)).sum()
 }
 
-impl Beyond {
-    /// The values of [`BEYOND`].
+impl HarderTrialFigures {
+    /// The values of [`OWN_MODEL_FIGURES`].
     #[must_use]
     pub fn values(&self) -> [f64; 5] {
         [self.storm, self.far, self.weak, self.heavy_lost, self.heavy]
     }
 }
 
-impl Shown {
-    /// The values of [`FIGURES`].
+impl TrialFigures {
+    /// The values of [`MODEL_FIGURES`].
     #[must_use]
     pub const fn values(&self) -> [f64; 7] {
         [self.height_lost, self.recovered, self.turned, self.gust, self.step, self.noise, self.activity]
     }
 
-    /// The weighted sum that a search minimises. A figure of only one of the [`MODELS`] counts as if all had it.
+    /// The weighted sum that a search minimises. A figure of only one of the [`COST_MODELS`] counts as if all had it.
     #[must_use]
     pub fn cost(&self) -> f64 {
-        let beyond = self.beyond.map_or(0.0, |beyond| weighted(&BEYOND, &beyond.values()));
-        weighted(&FIGURES, &self.values()) + MODELS.len() as f64 * beyond
+        let beyond = self.beyond.map_or(0.0, |beyond| weighted(&OWN_MODEL_FIGURES, &beyond.values()));
+        weighted(&MODEL_FIGURES, &self.values()) + COST_MODELS.len() as f64 * beyond
     }
 }
 
 /// All trials in the circumstances of `scenario`, on `model`, with `recovery` s for the recovery; `start` begins a
 /// flight of the judged law in given circumstances. `None` if one of the flights ends early.
 #[must_use]
-pub fn show(
+pub fn fly_trials(
     scenario: &Scenario,
     start: impl Fn(&Scenario) -> Option<Flight>,
     model: &Model,
     recovery: f64,
-) -> Option<Shown> {
-    let course = |scenario: &Scenario| Course::over(scenario, start(scenario)?, NEAR).ok();
-    let settled = |scenario: &Scenario| Course::until_settled(scenario, start(scenario)?, NEAR, REST).ok();
+) -> Option<TrialFigures> {
+    let course = |scenario: &Scenario| Course::fly(scenario, start(scenario)?, ARRIVAL_DISTANCE_M).ok();
+    let settled =
+        |scenario: &Scenario| Course::until_settled(scenario, start(scenario)?, ARRIVAL_DISTANCE_M, SETTLED_FOR_S).ok();
     let real = really(scenario, model);
     let hovering = |position, duration| hover(&real, position, duration).ok();
     let windy = |speed: f64, duration: f64| {
         let mut windy = hovering(Vector3::zeros(), duration)?;
         let mass = f64::from(scenario.configuration.vehicle().mass);
-        let unknown = Drag { linear: Vector3::repeat(GUST_DRAG * mass), ..Drag::default() };
+        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
         windy.reality.drag = scenario.reality.drag.or(Some(unknown));
-        let gust = Gust { shape: Shape::Step, start: GUST_AT, velocity: Vector3::new(speed, 0.0, 0.0) };
+        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
         windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
         course(&windy)
     };
-    let stepped = |position| settled(&hovering(position, STEP_TIME)?);
+    let stepped = |position| settled(&hovering(position, STEP_FLIGHT_S)?);
     let near = Vector3::new(-1.0, 0.0, 0.0);
 
     let recovered = settled(&turned_over(&hovering(Vector3::zeros(), recovery)?))?;
-    let (gusty, step) = (windy(GUST, GUST_TIME)?, stepped(near)?);
-    let mut noisy = hovering(Vector3::zeros(), NOISE_TIME)?;
+    let (gusty, step) = (windy(GUST_M_PER_S, GUST_FLIGHT_S)?, stepped(near)?);
+    let mut noisy = hovering(Vector3::zeros(), NOISE_FLIGHT_S)?;
     noisy.reality.sensors = Some(noise(scenario.timing.period()));
     let noisy = course(&noisy)?;
     let mut clipped = recovered.clipped + gusty.clipped + step.clipped + noisy.clipped;
 
-    let beyond = if *model == MODELS[0] {
-        let storm = windy(STORM, STORM_TIME)?;
+    let beyond = if *model == COST_MODELS[0] {
+        let storm = windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
         let far = stepped(Vector3::new(-6.0, -6.0, -5.3))?;
-        let truth = Truth::of_model(scenario.configuration.vehicle());
+        let truth = Truth::model(scenario.configuration.vehicle());
         let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
             scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
             settled(&scenario)
         };
-        let weak = other(hovering(near, STEP_TIME)?, 1.0, WEAK)?;
-        let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY, 1.0)?;
+        let weak = other(hovering(near, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
+        let heavy = other(turned_over(&hovering(Vector3::zeros(), recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
         clipped += [&storm, &far, &weak, &heavy].map(|course| course.clipped).iter().sum::<u64>();
-        Some(Beyond {
+        Some(HarderTrialFigures {
             storm: storm.excursion,
-            far: far.settled.unwrap_or(STEP_TIME),
-            weak: weak.settled.unwrap_or(STEP_TIME),
+            far: far.settled.unwrap_or(STEP_FLIGHT_S),
+            weak: weak.settled.unwrap_or(STEP_FLIGHT_S),
             heavy_lost: heavy.height_lost,
             heavy: heavy.settled.unwrap_or(recovery),
         })
@@ -246,13 +245,13 @@ pub fn show(
         None
     };
 
-    Some(Shown {
+    Some(TrialFigures {
         height_lost: recovered.height_lost,
         recovered: recovered.settled.unwrap_or(recovery),
         turned: recovered.turned.unwrap_or(recovery),
         gust: gusty.excursion,
         offset: gusty.end_error,
-        step: step.settled.unwrap_or(STEP_TIME),
+        step: step.settled.unwrap_or(STEP_FLIGHT_S),
         activity: noisy.activity / hovering_thrust(scenario),
         noise: noisy.rms,
         beyond,
@@ -299,8 +298,8 @@ pub fn hover(scenario: &Scenario, position: Vector3<f64>, duration: f64) -> Resu
 fn really(scenario: &Scenario, model: &Model) -> Scenario {
     let mut real = scenario.clone();
     let vehicle = scenario.configuration.vehicle();
-    if *model != MODELS[0] {
-        let own = Truth::of_model(vehicle);
+    if *model != COST_MODELS[0] {
+        let own = Truth::model(vehicle);
         real.reality.truth = Some(Truth {
             mass: own.mass * model.mass,
             centre_of_mass: off_centre(scenario, model),
@@ -323,25 +322,25 @@ fn off_centre(scenario: &Scenario, model: &Model) -> Vector3<f64> {
     let off = Vector3::new(x, y, 0.0);
     let Some(rotors) = scenario.configuration.rotors() else { return off };
     let arm = rotors.iter().map(|rotor| f64::from(rotor.position.xy().norm())).fold(0.0, f64::max);
-    off.cap_magnitude(OFF_CENTRE_MAX * arm)
+    off.cap_magnitude(CENTRE_OFFSET_MAX_SHARE * arm)
 }
 
 /// The measured state of the trial under noise.
 #[must_use]
 pub fn noise(period: f64) -> Sensors {
     let ticks = |time: f64| (time / period).round() as u64;
-    let accelerometer = ACCELEROMETER_NOISE * (BETWEEN_POSES / period).sqrt();
+    let accelerometer = ACCELEROMETER_NOISE_M_PER_S2 * (POSE_PERIOD_S / period).sqrt();
     Sensors {
         gyro_noise: 0.01,
         gyro_bias: Vector3::zeros(),
         position_noise: 2e-3,
         attitude_noise: 0.2_f64.to_radians(),
         velocity: VelocitySource::Observer { bandwidth: 8.0, noise: accelerometer, bias: Vector3::zeros() },
-        pose_every: ticks(BETWEEN_POSES).max(1),
+        pose_every: ticks(POSE_PERIOD_S).max(1),
         dropout: 0.0,
         delay_ticks: 0,
-        pose_delay_ticks: ticks(POSE_DELAY),
-        imu_delay: IMU_DELAY,
+        pose_delay_ticks: ticks(POSE_DELAY_S),
+        imu_delay: IMU_DELAY_S,
         seed: 1,
     }
 }
@@ -357,7 +356,7 @@ mod tests {
             .replace("0.120208", "0.0300520")
             .replace("[2.24e-3, 2.9e-3, 5.3e-3]", "[2e-4, 2.6e-4, 4e-4]");
         let small = Scenario::parse(&small, "small.toml").unwrap();
-        let [of_large, of_small] = [&large, &small].map(|scenario| off_centre(scenario, &MODELS[1]));
+        let [of_large, of_small] = [&large, &small].map(|scenario| off_centre(scenario, &COST_MODELS[1]));
         assert_eq!(of_large, Vector3::new(0.004, 0.003, 0.0));
         assert!((of_small.norm() - 0.03 * 0.0425).abs() < 1e-5, "{of_small}");
         assert!(of_small.cross(&of_large).norm() < 1e-12);

@@ -1,7 +1,7 @@
 //! A vehicle that leans on one foot and falls back onto all of them.
 //!
 //! The vehicle turns in the vertical plane it leans in, about a foot that stays where it is or slides. With w =
-//! [`SPREAD`] the distance of the feet from its axis and h = [`LENGTH`] that of its origin above them, leaning by theta
+//! [`FEET_RADIUS_M`] the distance of the feet from its axis and h = [`LEG_LENGTH_M`] that of its origin above them, leaning by theta
 //! towards d (horizontal; z is up, and a = z x d is the axis),
 //!
 //! ```text
@@ -23,7 +23,7 @@
 //! Where these have hardly a solution, the foot, pushed ahead of a vehicle of little inertia, digs in. What stops a
 //! foot keeps the angular momentum about it.
 //!
-//! Upright again, the other feet take all motion from it, but what they slide on with; beyond [`TILT_MAX`] it has
+//! Upright again, the other feet take all motion from it, but what they slide on with; beyond [`TILT_MAX_RAD`] it has
 //! fallen over, and lies there. Within a step theta'' stays what it is at its start: without rotors it pulls more the
 //! nearer it is to upright, so that no energy comes from that.
 //!
@@ -34,17 +34,17 @@ use super::friction::{FRICTION_COEFFICIENT, across, slowed};
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use scenario::body::BodyState;
 
-/// Of the feet from the vehicle's axis, m.
-const SPREAD: f64 = 0.1;
+/// Of the feet from the vehicle's axis.
+const FEET_RADIUS_M: f64 = 0.1;
 
-/// Of the legs, m: of the origin above the feet.
-const LENGTH: f64 = 0.1;
+/// Of the origin above the feet.
+const LEG_LENGTH_M: f64 = 0.1;
 
-/// How far a vehicle may lean and still fall back onto its feet, rad: 30 degrees.
-pub const TILT_MAX: f64 = 0.52;
+/// How far a vehicle may lean and still fall back onto its feet: 30 degrees.
+pub const TILT_MAX_RAD: f64 = 0.52;
 
 /// The share of I that resists turning, at most, of a vehicle whose foot digs in.
-const DIGS_IN: f64 = 0.01;
+const FOOT_RESISTANCE_SHARE: f64 = 0.01;
 
 /// The vehicle's mass, inertia and gravity.
 #[derive(Debug, Clone)]
@@ -97,25 +97,26 @@ pub struct Lean {
 
 impl Lean {
     /// None of one that is upright, or leans too far to stand on a foot.
-    pub fn of(state: &BodyState) -> Option<Self> {
+    pub fn measure(state: &BodyState) -> Option<Self> {
         let up = up(state);
         let toward = Vector3::new(up.x, up.y, 0.0).try_normalize(1e-9)?;
         let axis = UnitVector3::new_normalize(Vector3::z().cross(&toward));
         let rate = axis.dot(&(UnitQuaternion::new_normalize(state.attitude) * state.angular_velocity));
         let angle = tilt(state);
-        (angle <= TILT_MAX).then_some(Self { toward, axis, angle, rate })
+        (angle <= TILT_MAX_RAD).then_some(Self { toward, axis, angle, rate })
     }
 
     /// How much higher than upright the origin is, m, with a foot on the ground; and how fast that rises, m/s.
     pub fn rise(&self) -> (f64, f64) {
         let (sin, cos) = self.angle.sin_cos();
-        (SPREAD * sin - LENGTH * (1.0 - cos), (SPREAD * cos - LENGTH * sin) * self.rate)
+        (FEET_RADIUS_M * sin - LEG_LENGTH_M * (1.0 - cos), (FEET_RADIUS_M * cos - LEG_LENGTH_M * sin) * self.rate)
     }
 
     /// r, from the foot to the origin, m.
     pub fn arm(&self) -> Vector3<f64> {
         let (sin, cos) = self.angle.sin_cos();
-        self.toward * (LENGTH * sin - SPREAD * cos) + Vector3::z() * (LENGTH * cos + SPREAD * sin)
+        self.toward * (LEG_LENGTH_M * sin - FEET_RADIUS_M * cos)
+            + Vector3::z() * (LEG_LENGTH_M * cos + FEET_RADIUS_M * sin)
     }
 }
 
@@ -151,7 +152,7 @@ impl Rocking {
         let upright = UnitQuaternion::from_axis_angle(&lean.axis, -lean.angle) * attitude;
         let axis = upright.inverse() * lean.axis.into_inner();
         let own = axis.component_mul(&axis).dot(&weight.inertia);
-        let inertia = own + weight.mass * (SPREAD * SPREAD + LENGTH * LENGTH);
+        let inertia = own + weight.mass * (FEET_RADIUS_M * FEET_RADIUS_M + LEG_LENGTH_M * LEG_LENGTH_M);
         let (foot, sliding) = (state.position - lean.arm(), state.velocity);
         Self { foot, sliding, upright, inertia, lean: Lean { rate: 0.0, ..lean } }
     }
@@ -164,7 +165,7 @@ impl Rocking {
         let Lean { angle, rate, .. } = &mut self.lean;
         *angle += (*rate + 0.5 * turning * step) * step;
         *rate += turning * step;
-        if *angle > 0.0 && *angle <= TILT_MAX {
+        if *angle > 0.0 && *angle <= TILT_MAX_RAD {
             return Rocked::Leaning(self.state());
         }
         if *angle <= 0.0 {
@@ -172,7 +173,7 @@ impl Rocking {
         }
         let moved = self.state().velocity;
         self.lean.rate = 0.0;
-        let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX;
+        let slides = self.sliding != Vector3::zeros() && self.lean.angle <= TILT_MAX_RAD;
         let velocity = if slides { slowed(&moved, FRICTION_COEFFICIENT * moved.z.abs()) } else { Vector3::zeros() };
         Rocked::Ended(BodyState { velocity, ..self.state() })
     }
@@ -192,7 +193,7 @@ impl Rocking {
         let contact = Vector3::z() + along.try_normalize(0.0).unwrap_or_default() * FRICTION_COEFFICIENT;
         let lever = axis.dot(&r.cross(&contact));
         let left = self.inertia - mass * r.norm_squared() + mass * lever * axis.cross(&r).z;
-        let digs_in = left <= DIGS_IN * self.inertia;
+        let digs_in = left <= FOOT_RESISTANCE_SHARE * self.inertia;
         if digs_in && !slides {
             return (needed.z >= 0.0).then_some(stuck);
         }

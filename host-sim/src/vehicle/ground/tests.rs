@@ -4,14 +4,14 @@ use std::sync::LazyLock;
 
 mod sliding;
 
-const STEP: f64 = 1e-3;
+const STEP_S: f64 = 1e-3;
 
 fn on_the_ground() -> (Ground, Plant, f64) {
     let scenario = Scenario::paper().unwrap();
     let (vehicle, limits) = (scenario.configuration.vehicle(), scenario.configuration.limits());
-    let (ground, state) = Ground::under(vehicle, 0.1, &scenario.initial, STEP);
+    let (ground, state) = Ground::under(vehicle, 0.1, &scenario.initial, STEP_S);
     let weight = ground.weight.newtons();
-    (ground, Plant::new(vehicle, limits, STEP, state), weight)
+    (ground, Plant::new(vehicle, limits, STEP_S, state), weight)
 }
 
 fn energy(plant: &Plant, weight: f64) -> f64 {
@@ -66,7 +66,7 @@ fn a_fall_ends_without_a_bounce_upright_and_within_a_step_of_the_ground() {
     assert!(speed > 1.0 && tilt > 1e-4, "{speed} {tilt}");
     assert!((up(plant.state()) - Vector3::z()).norm() < 1e-12);
     assert_eq!(plant.state().velocity, Vector3::zeros());
-    assert!((0.0..=speed * STEP).contains(&(0.1 - plant.state().position.z)), "{:?}", plant.state());
+    assert!((0.0..=speed * STEP_S).contains(&(0.1 - plant.state().position.z)), "{:?}", plant.state());
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn one_that_comes_down_on_its_side_stays_there() {
         ground.act(&mut plant, weight * 2.0, &Vector3::new(0.01, 0.0, 0.0));
     }
     let tilt = (0..5000).find_map(|_| ground.act(&mut plant, 0.0, &Vector3::zeros())).unwrap().tilt;
-    assert!(tilt > TILT_MAX);
+    assert!(tilt > TILT_MAX_RAD);
     assert!((up(plant.state()).z - tilt.cos()).abs() < 1e-9);
 }
 
@@ -110,7 +110,7 @@ fn without_thrust_no_energy_appears() {
 fn leaning(roll: f64, pitch: f64) -> (Ground, Plant, f64) {
     let (mut ground, mut plant, weight) = on_the_ground();
     let state = BodyState { attitude: attitude_from_euler(roll, pitch, 0.7), ..*plant.state() };
-    let (rise, _) = Lean::of(&state).unwrap().rise();
+    let (rise, _) = Lean::measure(&state).unwrap().rise();
     let touching = BodyState { position: state.position + Vector3::z() * (0.999 * rise), ..state };
     let (state, touchdown) = ground.touch(&touching).unwrap();
     assert!((touchdown.tilt - (roll.cos() * pitch.cos()).acos()).abs() < 1e-9);
@@ -123,17 +123,17 @@ fn one_that_leans_falls_back_onto_its_feet_as_fast_as_its_weight_makes_it_and_a_
     for (roll, pitch) in [(0.02, 0.0), (0.2, 0.0), (-0.1, 0.25), (0.0, -0.45)] {
         let (mut ground, mut plant, weight) = leaning(roll, pitch);
         let (began, start, mut turned, mut fastest) = (energy(&plant, weight), tilt(plant.state()), 0.0, 0.0_f64);
-        let foot = |state: &BodyState| Lean::of(state).map(|lean| state.position - lean.arm());
+        let foot = |state: &BodyState| Lean::measure(state).map(|lean| state.position - lean.arm());
         let (mut before, mut rubbed) = (began, 0.0);
         while tilt(plant.state()) > 1e-9 {
             let last = *plant.state();
             assert_eq!(ground.act(&mut plant, 0.0, &Vector3::zeros()), None);
             let rate = plant.state().angular_velocity.norm();
-            (turned, fastest) = (turned + rate * STEP, fastest.max(rate));
+            (turned, fastest) = (turned + rate * STEP_S, fastest.max(rate));
             let now = energy(&plant, weight);
             assert!(ground.stands() && now <= before + 1e-9, "{before} {now}");
             // Where the foot slides back, friction takes its force times the way.
-            let carried = weight + weight / 9.81 * (plant.state().velocity.z - last.velocity.z) / STEP;
+            let carried = weight + weight / 9.81 * (plant.state().velocity.z - last.velocity.z) / STEP_S;
             let slid = foot(plant.state()).zip(foot(&last)).map_or(0.0, |(foot, last)| (foot - last).xy().norm());
             rubbed += FRICTION_COEFFICIENT * carried * slid;
             // Until the last step, in which the feet take what it has.
@@ -194,7 +194,7 @@ fn a_torque_that_turns_it_over_its_foot_leaves_it_lying() {
         ground.act(&mut plant, 0.5 * weight, &Vector3::new(0.25, 0.0, 0.0));
     }
     let lying = tilt(plant.state());
-    assert!(ground.stands() && lying > TILT_MAX && lying < TILT_MAX + 0.02, "{lying}");
+    assert!(ground.stands() && lying > TILT_MAX_RAD && lying < TILT_MAX_RAD + 0.02, "{lying}");
     for _ in 0..2000 {
         ground.act(&mut plant, 0.0, &Vector3::zeros());
     }

@@ -8,7 +8,7 @@ fn noiseless() -> Instruments {
     Instruments::new(&Estimator { imu_noise: 0.0, ..Estimator::default() }, 9.81, Vector3::zeros(), 0)
 }
 
-const STILL: BodyState = BodyState {
+const STILL_BODY: BodyState = BodyState {
     position: Vector3::new(0.0, 0.0, 0.0),
     velocity: Vector3::new(0.0, 0.0, 0.0),
     attitude: Quaternion::from_vector(nalgebra::Vector4::new(0.0, 0.0, 0.0, 1.0)),
@@ -21,8 +21,10 @@ fn filtered(feels: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     let mut shown = [Vec::new(), Vec::new()];
     for n in 1..=3_000_u64 {
         let both = Vector3::x() * feels(n as f64 * 1e-3);
-        let sample =
-            instruments.sample_of(&STILL, n * SAMPLE, |_| Felt { angular_velocity: both, specific_force: both });
+        let sample = instruments.sample_of(&STILL_BODY, n * SAMPLE_PERIOD_US, |_| TrueMotion {
+            angular_velocity: both,
+            specific_force: both,
+        });
         if n > 2_000 {
             shown[0].push(sample.angular_velocity.x.into());
             shown[1].push(sample.specific_force.x.into());
@@ -35,12 +37,12 @@ fn filtered(feels: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
 /// other, and turns, rad/s.
 fn shown(velocities: &[f64], turning: f64) -> ImuSample {
     let mut instruments = noiseless().prompt();
-    let mut state = BodyState { angular_velocity: Vector3::x() * turning, ..STILL };
+    let mut state = BodyState { angular_velocity: Vector3::x() * turning, ..STILL_BODY };
     let sample = |(velocity, time): (&f64, u64)| {
         state.velocity.z = *velocity;
         instruments.sample(&state, time)
     };
-    velocities.iter().zip((SAMPLE..).step_by(1000)).map(sample).last().unwrap()
+    velocities.iter().zip((SAMPLE_PERIOD_US..).step_by(1000)).map(sample).last().unwrap()
 }
 
 #[test]
@@ -62,7 +64,7 @@ fn no_sensor_shows_more_than_its_range() {
 
 #[test]
 fn its_own_filters_let_half_the_power_pass_at_their_bandwidths_and_none_at_half_the_rate() {
-    for (sensor, bandwidth) in [GYRO_BANDWIDTH, ACCELEROMETER_BANDWIDTH].into_iter().enumerate() {
+    for (sensor, bandwidth) in [GYRO_BANDWIDTH_HZ, ACCELEROMETER_BANDWIDTH_HZ].into_iter().enumerate() {
         let strength = |hertz: f64| {
             let samples = &filtered(|seconds| (TAU * hertz * seconds).cos())[sensor];
             (2.0 * samples.iter().map(|shown| shown * shown).sum::<f64>() / samples.len() as f64).sqrt()

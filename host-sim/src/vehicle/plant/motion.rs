@@ -8,11 +8,11 @@ use super::body::Body;
 use super::lanes::{Lanes, Vectors};
 use pulp::Simd;
 
-const THIRD: f64 = 1.0 / 3.0;
+const ONE_THIRD: f64 = 1.0 / 3.0;
 
 /// Where the bodies are and how they move.
 #[derive(Debug, Clone, Copy)]
-pub struct Moving<S: Simd> {
+pub struct BodyMotion<S: Simd> {
     /// m, world.
     pub position: Vectors<S, 3>,
     /// m/s, world.
@@ -23,11 +23,11 @@ pub struct Moving<S: Simd> {
     pub angular_velocity: Vectors<S, 3>,
 }
 
-impl<S: Simd> Moving<S> {
+impl<S: Simd> BodyMotion<S> {
     /// After so many steps under thrust, N, and torque, N m.
     #[inline(always)]
     pub fn advanced(mut self, unit: S, body: &Body, thrust: Lanes<S>, torque: Vectors<S, 3>, steps: u32) -> Self {
-        let motion = Motion::new(unit, body, thrust, torque);
+        let motion = EquationsOfMotion::new(unit, body, thrust, torque);
         self.angular_velocity = self.angular_velocity * (0.25 * body.step);
         for _ in 0..steps {
             self = motion.step(unit, &self);
@@ -42,7 +42,7 @@ impl<S: Simd> Moving<S> {
 /// With the body rate as r = h omega / 4, half a step of q' is q (0, r) and half a step of r' is
 /// r_i += 2 (J_jj - J_kk) / J_ii r_j r_k + h^2 tau_i / (8 J_ii): the factors of the method are spent once per command
 /// instead of four times per step.
-struct Motion<S: Simd> {
+struct EquationsOfMotion<S: Simd> {
     /// 2 (J_jj - J_kk) / J_ii.
     gyroscopic: Vectors<S, 3>,
     /// h^2 tau_i / (8 J_ii).
@@ -56,7 +56,7 @@ struct Motion<S: Simd> {
     position: (Lanes<S>, Vectors<S, 3>),
 }
 
-impl<S: Simd> Motion<S> {
+impl<S: Simd> EquationsOfMotion<S> {
     #[inline(always)]
     fn new(unit: S, body: &Body, thrust: Lanes<S>, torque: Vectors<S, 3>) -> Self {
         let constant = |numbers: [f64; 3]| Vectors(numbers.map(|number| Lanes::all(unit, number)));
@@ -75,8 +75,8 @@ impl<S: Simd> Motion<S> {
 
     /// One Runge-Kutta step; the angular velocity is the scaled rate.
     #[inline(always)]
-    fn step(&self, unit: S, moving: &Moving<S>) -> Moving<S> {
-        let Moving { position: p, velocity: v, attitude: q, angular_velocity: r } = *moving;
+    fn step(&self, unit: S, moving: &BodyMotion<S>) -> BodyMotion<S> {
+        let BodyMotion { position: p, velocity: v, attitude: q, angular_velocity: r } = *moving;
         // The stages r_2 to r_4; with e_4 the last half step, the weighted mean of all four changes is
         // (r_2 + 2 r_3 + r_4 - r + e_4) / 3 added up from the stages themselves.
         let (gyroscopic, torque) = (self.gyroscopic, self.torque);
@@ -86,21 +86,21 @@ impl<S: Simd> Motion<S> {
         let half_step_3 = torque + gyroscopic.times(products(r_3));
         let r_4 = r + (half_step_3 + half_step_3);
         let half_step_4 = torque + gyroscopic.times(products(r_4));
-        let r_next = ((r_2 + r_3) + (r_3 + r_4) - r + half_step_4) * THIRD;
+        let r_next = ((r_2 + r_3) + (r_3 + r_4) - r + half_step_4) * ONE_THIRD;
 
-        let q_2 = turned(q, q, r);
-        let q_3 = turned(q, q_2, r_2);
-        let q_4 = turned(q, q_3, r_3 + r_3);
+        let q_2 = rotated(q, q, r);
+        let q_3 = rotated(q, q_2, r_2);
+        let q_4 = rotated(q, q_3, r_3 + r_3);
         let sum = (q_2 + q_3) + (q_3 + q_4) - q;
         // One Newton step towards unit length; taken from the length before the step, so that nothing waits for it.
         let to_unit = Lanes::all(unit, 1.5) - norm_squared(q) * 0.5;
-        let q_next = turned(sum, q_4, r_4) * (to_unit * THIRD);
+        let q_next = rotated(sum, q_4, r_4) * (to_unit * ONE_THIRD);
 
         // The weights of v' = a are 1, 2, 2, 1 sixths; those of p, whose stages are v + h a / 2 and so on, 1, 1, 1, 0.
         let middle = lean(q_2) + lean(q_3);
         let p_lean = lean(q) + middle;
         let v_lean = p_lean + middle + lean(q_4);
-        Moving {
+        BodyMotion {
             position: p + v * self.step + p_lean * self.position.0 + self.position.1,
             velocity: v + v_lean * self.velocity.0 + self.velocity.1,
             attitude: q_next,
@@ -117,7 +117,7 @@ fn products<S: Simd>(Vectors([x, y, z]): Vectors<S, 3>) -> Vectors<S, 3> {
 
 /// `from` after half a step of q' = q (0, omega) / 2: from + q (0, r).
 #[inline(always)]
-fn turned<S: Simd>(from: Vectors<S, 4>, q: Vectors<S, 4>, r: Vectors<S, 3>) -> Vectors<S, 4> {
+fn rotated<S: Simd>(from: Vectors<S, 4>, q: Vectors<S, 4>, r: Vectors<S, 3>) -> Vectors<S, 4> {
     let (Vectors([i, j, k, w]), Vectors([x, y, z])) = (q, r);
     Vectors([
         (from[0] + w * x) + (j * z - k * y),

@@ -7,22 +7,22 @@
 
 use super::body::Body;
 use super::lanes::{Lanes, Vectors};
-use super::motion::Moving;
+use super::motion::BodyMotion;
 use nalgebra::{Quaternion, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use scenario::body::BodyState;
 
 /// Numbers of a state: position, velocity, attitude, angular velocity.
-const OF_STATE: usize = 13;
+const STATE_NUMBERS: usize = 13;
 /// Numbers of a command: thrust, torque.
-const OF_COMMAND: usize = 4;
+const COMMAND_NUMBERS: usize = 4;
 
 /// States and commands of many bodies.
 #[derive(Debug, Clone)]
 pub struct Rows {
     processor: Arch,
-    states: [Vec<f64>; OF_STATE],
-    commands: [Vec<f64>; OF_COMMAND],
+    states: [Vec<f64>; STATE_NUMBERS],
+    commands: [Vec<f64>; COMMAND_NUMBERS],
 }
 
 impl Rows {
@@ -75,8 +75,8 @@ impl Rows {
 struct Advance<'a> {
     body: &'a Body,
     steps: u32,
-    states: [&'a mut [f64]; OF_STATE],
-    commands: [&'a [f64]; OF_COMMAND],
+    states: [&'a mut [f64]; STATE_NUMBERS],
+    commands: [&'a [f64]; COMMAND_NUMBERS],
 }
 
 impl WithSimd for Advance<'_> {
@@ -97,13 +97,13 @@ fn advance<S: Simd>(
     unit: S,
     body: &Body,
     steps: u32,
-    states: [&mut [S::f64s]; OF_STATE],
-    commands: [&[S::f64s]; OF_COMMAND],
+    states: [&mut [S::f64s]; STATE_NUMBERS],
+    commands: [&[S::f64s]; COMMAND_NUMBERS],
 ) {
     for register in 0..commands[0].len() {
         let number = |row: usize| Lanes::new(unit, states[row][register]);
         let commanded = |row: usize| Lanes::new(unit, commands[row][register]);
-        let moving = Moving {
+        let moving = BodyMotion {
             position: Vectors([number(0), number(1), number(2)]),
             velocity: Vectors([number(3), number(4), number(5)]),
             attitude: Vectors([number(6), number(7), number(8), number(9)]),

@@ -34,8 +34,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 use scenario::reality::wind;
 
-/// m.
-const FOOT: f64 = 0.3048;
+const FOOT_M: f64 = 0.3048;
 
 /// Turbulence at one place.
 #[derive(Debug, Clone)]
@@ -53,11 +52,11 @@ impl Turbulence {
     /// Stationary turbulence in a mean wind of `steady`, m/s, that advances in steps of `step` s.
     #[must_use]
     pub fn new(turbulence: &wind::Turbulence, steady: &Vector3<f64>, step: f64) -> Self {
-        let height = turbulence.altitude / FOOT;
+        let height = turbulence.altitude / FOOT_M;
         let ground = 0.177 + 0.000823 * height;
         let sigma_w = 0.1 * turbulence.wind_at_20_feet;
         let sigma_u = sigma_w / ground.powf(0.4);
-        let (length_u, length_w) = (FOOT * height / ground.powf(1.2), turbulence.altitude);
+        let (length_u, length_w) = (FOOT_M * height / ground.powf(1.2), turbulence.altitude);
         let steps = |length: f64| step * turbulence.airspeed / length;
         let mut random = Xoshiro256PlusPlus::seed_from_u64(turbulence.seed);
         let horizontal = Vector3::new(steady.x, steady.y, 0.0);

@@ -30,8 +30,8 @@ fn wrench(thrust: f32, torque: [f32; 3]) -> Wrench {
     Wrench { thrust, torque: Vector3::from(torque) }
 }
 
-fn asked(thrust: f32, torque: [f32; 3]) -> Asked {
-    Asked::Wrench(wrench(thrust, torque))
+fn asked(thrust: f32, torque: [f32; 3]) -> ActuatorDemand {
+    ActuatorDemand::Wrench(wrench(thrust, torque))
 }
 
 fn gap(a: &BodyState, b: &BodyState) -> f64 {
@@ -190,8 +190,10 @@ fn where_reality_is_the_model_the_vehicle_is_the_models() {
     for k in 0..200_u8 {
         let x = f32::from(k);
         let wrench = wrench(4.9 + 0.5 * (0.3 * x).sin(), [0.02 * x.cos(), 0.02 * (0.7 * x).sin(), 0.005 * x.sin()]);
-        let (real, modelled) =
-            (flying.hold(&Asked::Wrench(wrench), 10).unwrap(), model.hold(&Asked::Wrench(wrench), 10).unwrap());
+        let (real, modelled) = (
+            flying.hold(&ActuatorDemand::Wrench(wrench), 10).unwrap(),
+            model.hold(&ActuatorDemand::Wrench(wrench), 10).unwrap(),
+        );
         assert_eq!(real, modelled);
     }
     // The model feels the rotors at the middle of each step: (step / lag)^2 / 24 of each change.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::vehicle::SimulatedVehicle;
-use crate::vehicle::actuators::Asked;
+use crate::vehicle::actuators::ActuatorDemand;
 use controller_core::state::Wrench;
 use scenario::Scenario;
 
@@ -20,7 +20,7 @@ fn sensed(scenario: &Scenario, wrench: &Wrench, ticks: u32) -> Vec<Sensed> {
     let mut vehicle = SimulatedVehicle::new(scenario, &scenario.configuration);
     let tick = |_| {
         let before = *vehicle.state();
-        vehicle.hold(&Asked::Wrench(*wrench), scenario.timing.steps_per_tick).unwrap();
+        vehicle.hold(&ActuatorDemand::Wrench(*wrench), scenario.timing.steps_per_tick).unwrap();
         let specific_force = specific_force(&before, vehicle.state(), scenario.timing.period(), 9.81);
         Sensed { specific_force, wrench: vehicle.take_acted().unwrap() }
     };

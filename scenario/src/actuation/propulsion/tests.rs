@@ -3,7 +3,7 @@
 use crate::{PAPER, Scenario};
 use controller_core::allocation::Rotor;
 
-const PLACES: &str = "
+const POSITIONS_AND_SPINS: &str = "
 [rotors]
 position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]
 spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]
@@ -11,7 +11,7 @@ lag = 0.02
 ";
 
 fn read(keys: &str) -> Result<Rotor, String> {
-    let scenario = Scenario::parse(&format!("{PAPER}{PLACES}{keys}"), "f").map_err(|error| error.what)?;
+    let scenario = Scenario::parse(&format!("{PAPER}{POSITIONS_AND_SPINS}{keys}"), "f").map_err(|error| error.what)?;
     Ok(scenario.configuration.rotors().unwrap()[0])
 }
 
@@ -19,7 +19,7 @@ fn read(keys: &str) -> Result<Rotor, String> {
 fn thrusts_stand_in_for_unknown_speeds() {
     let rotor = read("thrust_max = 4.0\nthrust_min = 0.1\ntorque_per_thrust = 0.0244").unwrap();
     assert_eq!((rotor.thrust_min, rotor.thrust_max), (0.1, 4.0));
-    assert!((rotor.speed_at(4.0) / super::NOMINAL_SPEED as f32 - 1.0).abs() < 1e-6);
+    assert!((rotor.speed_at(4.0) / super::NOMINAL_SPEED_RAD_PER_S as f32 - 1.0).abs() < 1e-6);
     assert!((rotor.drag_coefficient / rotor.thrust_coefficient / 0.0244 - 1.0).abs() < 1e-6);
     assert_eq!(read("thrust_max = 4\ntorque_per_thrust = 0.0244").unwrap(), Rotor { thrust_min: 0.0, ..rotor });
     // The same rotor by its speeds.
@@ -35,7 +35,7 @@ fn thrusts_stand_in_for_unknown_speeds() {
 
 #[test]
 fn each_unusable_field_is_named_with_the_reason() {
-    const BOTH: &str =
+    const EITHER_FORM: &str =
         "these belong together: thrust_coefficient, drag_coefficient, speed, or thrust_max, torque_per_thrust";
     for (keys, field, words) in [
         (
@@ -51,8 +51,8 @@ fn each_unusable_field_is_named_with_the_reason() {
         ("torque_per_thrust = 0.02", "rotors.thrust_max", "missing, must be a number"),
         ("thrust_min = 0.1", "rotors.thrust_max", "missing, must be a number"),
         ("thrust_coefficient = 4e-6", "rotors.drag_coefficient", "missing, must be a number"),
-        ("speed = [0, 1000]\nthrust_max = 4", "rotors.thrust_max", BOTH),
-        ("thrust_coefficient = 4e-6\ntorque_per_thrust = 0.02", "rotors.torque_per_thrust", BOTH),
+        ("speed = [0, 1000]\nthrust_max = 4", "rotors.thrust_max", EITHER_FORM),
+        ("thrust_coefficient = 4e-6\ntorque_per_thrust = 0.02", "rotors.torque_per_thrust", EITHER_FORM),
         ("thrust_coefficient = 4e-6\nthrust_min = 0", "rotors.thrust_min", "cannot stand beside thrust_coefficient"),
         ("thrust_max = 0\ntorque_per_thrust = 0.02", "rotors.thrust_max", "greater than zero, found 0"),
         ("thrust_max = -4\ntorque_per_thrust = 0.02", "rotors.thrust_max", "greater than zero, found -4"),

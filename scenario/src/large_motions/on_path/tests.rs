@@ -26,6 +26,6 @@ fn a_fast_circle_is_flown_within_centimetres_and_its_heading_nearly_held() {
 #[test]
 fn a_model_that_strays_farther_than_it_may_is_named_with_the_place() {
     let lost = flown(6.0, 1e-4).unwrap_err();
-    assert!(lost.start == START && lost.time >= SETTLING && lost.distance > 1e-4, "{lost:?}");
+    assert!(lost.start == START_NAME && lost.time >= SETTLING_TIME_S && lost.distance > 1e-4, "{lost:?}");
     assert!(lost.to_string().starts_with("model flight from its own reference: "), "{lost}");
 }

@@ -22,11 +22,11 @@ fn the_response_is_the_matrix_exponential() {
             // Order a, y_1 .. y_4, w.
             let mut rates = SMatrix::<f64, 6, 6>::zeros();
             (rates[(0, 0)], rates[(0, 5)]) = (-1.0 / lag, 1.0 / lag);
-            for m in 1..=INTEGRATORS {
+            for m in 1..=INTEGRATORS_MAX {
                 rates[(m, m - 1)] = 1.0;
             }
             let expected = exponential(rates * duration);
-            for m in 0..=INTEGRATORS {
+            for m in 0..=INTEGRATORS_MAX {
                 // Squaring twelve times costs the exponential 4096 roundings.
                 let tolerance = 1e-12;
                 assert!((response.free[m] - expected[(m, 0)]).abs() < tolerance, "free, lag {lag}, m {m}");
@@ -41,7 +41,7 @@ fn no_lag_is_the_limit_of_a_small_one() {
     let none = LagResponse::over(1.0, 0.0);
     for lag in [1e-12, 1e-300, 1e-320] {
         let small = LagResponse::over(1.0, lag);
-        for m in 0..=INTEGRATORS {
+        for m in 0..=INTEGRATORS_MAX {
             assert!((none.free[m] - small.free[m]).abs() < 2e-12, "{lag:e}");
             assert!((none.forced[m] - small.forced[m]).abs() < 2e-12, "{lag:e}");
         }

@@ -3,7 +3,7 @@
 //! The motion is a sum of sines that no loop closes, so that nothing settles and every state of the law takes part.
 
 use super::super::compensator::Compensator;
-use super::INTEGRATORS;
+use super::INTEGRATORS_MAX;
 use crate::Scenario;
 use crate::sampled_loop::Axis;
 use controller_core::certificate::certified::Certified;
@@ -14,13 +14,13 @@ use controller_core::reference::hover::Hover;
 use controller_core::state::{State, Wrench};
 use nalgebra::{DVector, Quaternion, SVector, Vector3};
 
-const FILES: [(&str, &str); 3] = [
+const SCENARIO_FILES: [(&str, &str); 3] = [
     ("hummingbird", include_str!("../../../../vehicles/hummingbird.toml")),
     ("study", include_str!("../../../../vehicles/study.toml")),
     ("paper-extended", include_str!("../../../../scenarios/paper-extended.toml")),
 ];
 
-const TICKS: usize = 1500;
+const FLIGHT_TICKS: usize = 1500;
 
 /// Where an axis points in the world, which body axis it turns about, and in which sense.
 fn directions(axis: Axis) -> (Vector3<f64>, Vector3<f64>) {
@@ -85,7 +85,7 @@ fn flown(scenario: &Scenario, axis: Axis, sign: f64) -> Vec<f64> {
             torque.cast::<f64>().dot(&about) * sent / inertia
         }
     };
-    (0..TICKS).map(tick).collect()
+    (0..FLIGHT_TICKS).map(tick).collect()
 }
 
 /// The compensator's command in the motion.
@@ -102,12 +102,12 @@ fn linear(scenario: &Scenario, axis: Axis) -> Vec<f64> {
             Axis::Roll | Axis::Pitch | Axis::Yaw => ([rate, angle, 0.0, 0.0], period.powi(-2)),
             Axis::LateralX | Axis::LateralY => ([rate, angle, v / gravity, p / gravity], period.powi(-2)),
         };
-        let y = SVector::<f64, INTEGRATORS>::from(y);
+        let y = SVector::<f64, INTEGRATORS_MAX>::from(y);
         let command = unit * ((&output * &x)[0] + (direct * y)[0]);
         x = &transition * &x + &input * y;
         command
     };
-    (0..TICKS).map(tick).collect()
+    (0..FLIGHT_TICKS).map(tick).collect()
 }
 
 /// The greatest difference over the greatest command. Half the difference of both senses leaves out what is of second
@@ -132,10 +132,10 @@ fn estimating(text: &str, line: &str) -> String {
 #[test]
 fn the_linear_law_commands_what_the_flown_law_commands() {
     // Parts of a sample late as well as whole ones.
-    let study = FILES[1].1;
+    let study = SCENARIO_FILES[1].1;
     let late = [("study, 3 ms", "0.003"), ("study, 14 ms", "0.014")]
         .map(|(name, delay)| (name, study.replace("delay = 0.010", &format!("delay = {delay}"))));
-    let texts = FILES.iter().copied().chain(late.iter().map(|(name, text)| (*name, text.as_str())));
+    let texts = SCENARIO_FILES.iter().copied().chain(late.iter().map(|(name, text)| (*name, text.as_str())));
     for (name, text) in texts {
         // The scale is learnt from products of variations, which are of second order in small motions; this loop is not
         // closed.

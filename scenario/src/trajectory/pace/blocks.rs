@@ -3,9 +3,9 @@
 use nalgebra::{SMatrix, SVector};
 
 /// Unknowns of a block.
-pub const SIZE: usize = 21;
-pub type Block = SMatrix<f64, SIZE, SIZE>;
-pub type Part = SVector<f64, SIZE>;
+pub const BLOCK_SIZE: usize = 21;
+pub type Block = SMatrix<f64, BLOCK_SIZE, BLOCK_SIZE>;
+pub type Part = SVector<f64, BLOCK_SIZE>;
 
 /// The blocks on the diagonal, of each two neighbours the one below, and the right-hand sides.
 #[derive(Debug, Clone)]

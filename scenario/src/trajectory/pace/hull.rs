@@ -4,11 +4,11 @@
 use nalgebra::Vector3;
 
 /// How often a curve is halved before it counts as outside.
-const HALVINGS: u32 = 12;
+const HALVINGS_MAX: u32 = 12;
 
 /// Whether a curve stays in a convex region, of which `is_out` knows the outside.
 pub fn stays<const N: usize>(controls: &[Vector3<f64>; N], is_out: impl Fn(&Vector3<f64>) -> bool) -> bool {
-    halved(controls, &is_out, HALVINGS)
+    halved(controls, &is_out, HALVINGS_MAX)
 }
 
 fn halved<const N: usize>(

@@ -14,21 +14,21 @@ use super::sloped::Sloped;
 use crate::judge::judge;
 use crate::trajectory::stretch;
 use crate::trajectory::vehicle::Vehicle;
-use controller_core::certificate::path::along::Taken;
-use controller_core::certificate::path::{self, PathJudge, Row};
+use controller_core::certificate::path::along::MaxShare;
+use controller_core::certificate::path::{self, PathJudge, PathRow};
 use controller_core::configuration::Configuration;
 use controller_core::reference::ReferenceBounds;
 use controller_core::reference::knot::Knot;
 
-const JUDGED: usize = Row::ALL.len();
+const JUDGED_ROWS: usize = PathRow::ALL.len();
 /// Rows of a motion.
-pub const ROWS: usize = JUDGED + ReferenceBounds::COUNT + 1;
+pub const ROW_COUNT: usize = JUDGED_ROWS + ReferenceBounds::COUNT + 1;
 /// What the rows depend on: velocity, acceleration, jerk and snap along x, y and z, and the heading's first two
 /// derivatives.
-pub const VARIABLES: usize = 14;
-const HEADING: usize = 12;
+pub const VARIABLE_COUNT: usize = 14;
+const HEADING_VARIABLE: usize = 12;
 /// The share of the bounds that is used; the rest is for rounding.
-const USED: f64 = 0.9995;
+const BOUNDS_SHARE: f64 = 0.9995;
 
 /// What motions may take.
 #[derive(Debug, Clone)]
@@ -40,7 +40,7 @@ pub struct Limits {
 }
 
 /// One judge in numbers that are exact, that have no edges, and that have slopes.
-type Judges = (PathJudge, PathJudge<Sloped<0>>, PathJudge<Sloped<VARIABLES>>);
+type Judges = (PathJudge, PathJudge<Sloped<0>>, PathJudge<Sloped<VARIABLE_COUNT>>);
 
 fn judges(configuration: &Configuration, force_kept: f32) -> Option<Judges> {
     let exact = judge(configuration, force_kept)?;
@@ -49,7 +49,7 @@ fn judges(configuration: &Configuration, force_kept: f32) -> Option<Judges> {
 
 impl Limits {
     /// Those of a vehicle; the heading keeps within its bounds in any case, all else where the file has them.
-    pub fn of(vehicle: &Vehicle) -> Self {
+    pub fn for_vehicle(vehicle: &Vehicle) -> Self {
         let Vehicle { configuration, has_bounds, force_kept } = vehicle;
         let bounds = *configuration.bounds();
         let judges = judges(configuration, *force_kept);
@@ -67,13 +67,13 @@ impl Limits {
     }
 
     /// The shares of a motion that may have a `speed`, m/s.
-    pub fn shares(&self, motion: &Motion, speed: f64) -> [f64; ROWS] {
+    pub fn shares(&self, motion: &Motion, speed: f64) -> [f64; ROW_COUNT] {
         let judge = self.judges.as_ref().map(|(_, judge, _)| judge);
         self.rows(judge, motion, speed).map(|share| share.value)
     }
 
     /// The same with their slopes.
-    pub fn sloped(&self, motion: &Motion, speed: f64) -> [Sloped<VARIABLES>; ROWS] {
+    pub fn sloped(&self, motion: &Motion, speed: f64) -> [Sloped<VARIABLE_COUNT>; ROW_COUNT] {
         self.rows(self.judges.as_ref().map(|(_, _, judge)| judge), motion, speed)
     }
 
@@ -82,19 +82,19 @@ impl Limits {
         judge: Option<&PathJudge<Sloped<N>>>,
         motion: &Motion,
         speed: f64,
-    ) -> [Sloped<N>; ROWS] {
+    ) -> [Sloped<N>; ROW_COUNT] {
         let variable = |order: usize, axis: usize| {
-            let place = if axis == 3 { HEADING + order - 1 } else { 3 * (order - 1) + axis };
+            let place = if axis == 3 { HEADING_VARIABLE + order - 1 } else { 3 * (order - 1) + axis };
             Sloped::variable(motion[order][axis], place)
         };
         let [velocity, acceleration, jerk, snap] =
             [1, 2, 3, 4].map(|order| [0, 1, 2].map(|axis| variable(order, axis)));
         let [heading_rate, heading_acceleration] = [1, 2].map(|order| variable(order, 3));
-        let mut rows = [Sloped::from(0.0); ROWS];
-        let (judged, others) = rows.split_at_mut(JUDGED);
+        let mut rows = [Sloped::from(0.0); ROW_COUNT];
+        let (judged, others) = rows.split_at_mut(JUDGED_ROWS);
         if let Some(judge) = judge {
             judged.copy_from_slice(
-                &judge.shares(&path::Motion { velocity, acceleration, jerk, snap, heading_rate }).each,
+                &judge.shares(&path::PathMotion { velocity, acceleration, jerk, snap, heading_rate }).each,
             );
         }
         let square = |parts: &[Sloped<N>]| parts.iter().fold(Sloped::from(0.0), |sum, part| sum + *part * *part);
@@ -120,8 +120,9 @@ impl Limits {
     pub fn allow(&self, knots: &[Knot]) -> bool {
         let Ok(Some(path)) = stretch::path(knots) else { return false };
         let end = knots.last().map_or(0, |last| last.time_us);
-        let is_bounded = stretch::taken(knots).is_ok_and(|taken| stretch::stretch(&taken, &self.bounds) <= USED);
-        let fits = |judge: &PathJudge| Taken::along(judge, &path, end).share < 1.0;
+        let is_bounded =
+            stretch::taken(knots).is_ok_and(|taken| stretch::stretch(&taken, &self.bounds) <= BOUNDS_SHARE);
+        let fits = |judge: &PathJudge| MaxShare::along(judge, &path, end).share < 1.0;
         is_bounded && self.judges.as_ref().is_none_or(|(judge, ..)| fits(judge))
     }
 }

@@ -8,10 +8,10 @@ use nalgebra::{Vector3, Vector4};
 
 /// How far points that are not kept may be from their leg: a share of the corridor, and at most, m; how far their
 /// heading from its, rad; and how far, relative, their speed from that at its start.
-const SHARE: f64 = 0.5;
-const MOST: f64 = 0.25;
-const HEADING: f64 = 0.05;
-const SPEED: f64 = 0.1;
+const DISTANCE_CORRIDOR_SHARE: f64 = 0.5;
+const DISTANCE_MAX_M: f64 = 0.25;
+const HEADING_TOLERANCE_RAD: f64 = 0.05;
+const SPEED_TOLERANCE_SHARE: f64 = 0.1;
 
 /// A point, m and rad, and the speed up to the next one at most, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ impl Leg {
 
 /// Which of the points are kept, and the legs between them. Both ends are.
 pub fn merged(points: &[Point], corridor: f64) -> (Vec<usize>, Vec<Leg>) {
-    let tolerance = (SHARE * corridor).min(MOST);
+    let tolerance = (DISTANCE_CORRIDOR_SHARE * corridor).min(DISTANCE_MAX_M);
     let last = points.len() - 1;
     let mut kept = vec![0];
     // Ranges whose ends are kept, the first of them last.
@@ -91,7 +91,7 @@ fn farthest(points: &[Point], (start, end): (usize, usize), tolerance: f64) -> O
         let along = (place.xyz() - off - leg.from.xyz()).norm() / leg.length().max(f64::MIN_POSITIVE);
         let turned = place.w - leg.from.w - (leg.to.w - leg.from.w) * along;
         let faster = if speed == leg.speed { 0.0 } else { (speed / leg.speed - 1.0).abs() };
-        (off.norm() / tolerance).max(turned.abs() / HEADING).max(faster / SPEED)
+        (off.norm() / tolerance).max(turned.abs() / HEADING_TOLERANCE_RAD).max(faster / SPEED_TOLERANCE_SHARE)
     };
     let between = (start + 1..end).map(|number| (number, distance(&number)));
     let (number, most) = between.max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -10,15 +10,15 @@
 use nalgebra::Vector4;
 
 /// Position to snap: the orders that a knot fixes.
-pub const ORDERS: usize = 5;
-const COEFFICIENTS: usize = 2 * ORDERS;
+pub const KNOT_ORDERS: usize = 5;
+const COEFFICIENT_COUNT: usize = 2 * KNOT_ORDERS;
 
 /// Position (m) and heading (rad), and their derivatives to the fourth, per second to the order.
-pub type Motion = [Vector4<f64>; ORDERS];
+pub type Motion = [Vector4<f64>; KNOT_ORDERS];
 
 /// W of one place: by order k, end e and order l.
 #[derive(Debug, Clone, Copy)]
-pub struct Place([[[f64; ORDERS]; 2]; ORDERS]);
+pub struct Place([[[f64; KNOT_ORDERS]; 2]; KNOT_ORDERS]);
 
 impl Place {
     /// At s.
@@ -31,7 +31,7 @@ impl Place {
     }
 
     /// W T^(l - k) of the derivative of order k, by end and l, for the powers of T from -4 to 4.
-    pub fn weights(&self, order: usize, powers: &[f64; 9]) -> [[f64; ORDERS]; 2] {
+    pub fn weights(&self, order: usize, powers: &[f64; 9]) -> [[f64; KNOT_ORDERS]; 2] {
         let mut weights = self.0[order];
         for weights in &mut weights {
             weights.iter_mut().enumerate().for_each(|(l, weight)| *weight *= powers[4 + l - order]);
@@ -46,12 +46,12 @@ pub fn powers(duration: f64) -> [f64; 9] {
 }
 
 /// W_(0,0,l), lowest power first.
-fn coefficients(l: usize) -> [f64; COEFFICIENTS] {
+fn coefficients(l: usize) -> [f64; COEFFICIENT_COUNT] {
     let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
     let choose = |n: usize, m: usize| factorial(n) / (factorial(m) * factorial(n - m));
-    let mut coefficients = [0.0; COEFFICIENTS];
-    for m in 0..ORDERS - l {
-        for power in 0..=ORDERS {
+    let mut coefficients = [0.0; COEFFICIENT_COUNT];
+    for m in 0..KNOT_ORDERS - l {
+        for power in 0..=KNOT_ORDERS {
             let sign = if power % 2 == 0 { 1.0 } else { -1.0 };
             coefficients[l + m + power] += sign * choose(5, power) * choose(4 + m, m) / factorial(l);
         }
@@ -59,7 +59,7 @@ fn coefficients(l: usize) -> [f64; COEFFICIENTS] {
     coefficients
 }
 
-fn derivative(coefficients: &[f64; COEFFICIENTS], order: usize, s: f64) -> f64 {
+fn derivative(coefficients: &[f64; COEFFICIENT_COUNT], order: usize, s: f64) -> f64 {
     let falling = |power: usize| (0..order).map(|less| (power - less) as f64).product::<f64>();
     coefficients.iter().enumerate().skip(order).rev().fold(0.0, |sum, (power, c)| sum * s + c * falling(power))
 }

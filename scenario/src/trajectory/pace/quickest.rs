@@ -13,7 +13,7 @@
 //! It finds a local optimum, whose pieces stay within the rows at the places looked at.
 
 use super::blocks::Part;
-use super::equations::{DURATION, IDLE, SHARES, barrier, equations};
+use super::equations::{DURATION_UNKNOWN, IDLE_SHARE, SHARE_COUNT, barrier, equations};
 use super::limits::Limits;
 use super::merge::Leg;
 use super::piece::Motion;
@@ -21,17 +21,17 @@ use super::places::Places;
 use super::way::Way;
 
 /// By how much rho grows, and how many steps are made with each.
-const GROWTH: f64 = 4.0;
-const STEPS: usize = 20;
+const BARRIER_GROWTH: f64 = 4.0;
+const NEWTON_STEPS_MAX: usize = 20;
 /// What the value falls by for each place in a step that is worth another.
-const WORTH: f64 = 1e-3;
+const DECREASE_PER_PLACE_MIN: f64 = 1e-3;
 /// The greatest and, inverse, the least duration of a leg from rest to rest, s.
-const SLOWEST: f64 = 1e3;
+const LEG_DURATION_MAX_S: f64 = 1e3;
 /// How often a step is halved, and damped ten times more.
-const SHORTER: u32 = 3;
-const DAMPINGS: u32 = 12;
+const STEP_HALVINGS_MAX: u32 = 3;
+const DAMPINGS_MAX: u32 = 12;
 /// The least damping, and that of unknowns that no row depends on.
-const DAMPING: f64 = 1e-9;
+const DAMPING_MIN: f64 = 1e-9;
 
 /// What is looked for, and where it is looked at.
 pub struct Search<'a> {
@@ -48,8 +48,8 @@ impl<'a> Search<'a> {
     /// From rest to rest along each leg, with half of what rest leaves of the limits; none where rest leaves nothing.
     pub fn stopping(&self, legs: Vec<Leg>) -> Option<Way> {
         let lasting = |way: &Way| {
-            let rest = self.most(&way.clone().stretched(SLOWEST));
-            let (mut fails, mut holds) = (1.0 / SLOWEST, SLOWEST);
+            let rest = self.most(&way.clone().stretched(LEG_DURATION_MAX_S));
+            let (mut fails, mut holds) = (1.0 / LEG_DURATION_MAX_S, LEG_DURATION_MAX_S);
             while holds > 1.01 * fails {
                 let middle = (fails * holds).sqrt();
                 let fits = self.most(&way.clone().stretched(middle)) < 0.5 * (1.0 + rest);
@@ -62,7 +62,7 @@ impl<'a> Search<'a> {
 
     /// Whether another `speed` for all legs, m/s, would change nothing: it is far above what `way` has.
     pub fn leaves_idle(&self, way: &Way, speed: f64) -> bool {
-        let idle = IDLE * speed * speed;
+        let idle = IDLE_SHARE * speed * speed;
         let slow =
             |piece: usize| self.places.each().all(|(place, _)| way.motion(piece, place)[1].xyz().norm_squared() < idle);
         (0..way.pieces.len()).all(slow)
@@ -75,7 +75,7 @@ impl<'a> Search<'a> {
 
     /// All shares at all places.
     fn shares(&self, way: &Way) -> Vec<f64> {
-        let mut shares = Vec::with_capacity(way.pieces.len() * self.places.count() * SHARES);
+        let mut shares = Vec::with_capacity(way.pieces.len() * self.places.count() * SHARE_COUNT);
         for (piece, (leg, _)) in way.pieces.iter().enumerate() {
             let leg = &way.legs[*leg];
             let corridor = |motion: &Motion| leg.off(&motion[0].xyz()).norm_squared() / (leg.corridor * leg.corridor);
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
     /// `way` with a share of a step. What a knot's derivatives are follows how long its pieces take.
     fn moved(way: &Way, step: &[Part], share: f64) -> Way {
         let mut moved = way.clone();
-        let longer = |piece: usize| share * step[piece][DURATION].clamp(-1.0, 1.0);
+        let longer = |piece: usize| share * step[piece][DURATION_UNKNOWN].clamp(-1.0, 1.0);
         for (number, (knot, part)) in moved.knots.iter_mut().zip(step).enumerate() {
             let around = number.saturating_sub(1)..way.pieces.len().min(number + 1);
             let mean = around.clone().map(longer).sum::<f64>() / around.len() as f64;
@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
             let leg = &way.legs[around[0].0];
             let length = (leg.to - leg.from).xyz().norm().max(leg.corridor);
             Part::from_fn(|unknown, _| match (unknown, unknown % 4) {
-                (DURATION, _) => 1.0,
+                (DURATION_UNKNOWN, _) => 1.0,
                 (_, 3) => duration.powi(unknown as i32 / 4).powi(2),
                 _ => (duration.powi(unknown as i32 / 4) / length).powi(2),
             })
@@ -135,20 +135,20 @@ impl<'a> Search<'a> {
         let mut gap = first;
         loop {
             let rho = places / (gap * way.duration());
-            let mut damping = DAMPING;
+            let mut damping = DAMPING_MIN;
             let mut shares = self.shares(&way);
-            for _ in 0..STEPS {
+            for _ in 0..NEWTON_STEPS_MAX {
                 let value = Self::value(&way, rho, &shares);
                 let Some((next, next_shares)) = self.step(&way, &shares, rho, &mut damping) else { break };
                 (way, shares) = (next, next_shares);
-                if value - Self::value(&way, rho, &shares) < WORTH * places {
+                if value - Self::value(&way, rho, &shares) < DECREASE_PER_PLACE_MIN * places {
                     break;
                 }
             }
             if gap <= last {
                 return way;
             }
-            gap = (gap / GROWTH).max(last);
+            gap = (gap / BARRIER_GROWTH).max(last);
         }
     }
 
@@ -157,17 +157,18 @@ impl<'a> Search<'a> {
         let equations = equations(self.limits, &self.places, way, shares, rho);
         let scales = Self::scales(way);
         let value = Self::value(way, rho, shares);
-        for _ in 0..DAMPINGS {
-            let damped = |knot: usize, diagonal: &Part| (diagonal + scales[knot]) * *damping + scales[knot] * DAMPING;
+        for _ in 0..DAMPINGS_MAX {
+            let damped =
+                |knot: usize, diagonal: &Part| (diagonal + scales[knot]) * *damping + scales[knot] * DAMPING_MIN;
             let step = equations.solve(damped).unwrap_or_default();
-            for halved in 0..if step.is_empty() { 0 } else { SHORTER } {
+            for halved in 0..if step.is_empty() { 0 } else { STEP_HALVINGS_MAX } {
                 let moved = Self::moved(way, &step, 0.5_f64.powi(halved as i32));
                 let moved_shares = self.shares(&moved);
                 let is_within =
                     moved_shares.iter().zip(shares).all(|(after, before)| 1.0 - after > 0.1 * (1.0 - before));
                 if is_within && Self::value(&moved, rho, &moved_shares) < value {
                     if halved == 0 {
-                        *damping = (*damping * 0.2).max(DAMPING);
+                        *damping = (*damping * 0.2).max(DAMPING_MIN);
                     }
                     return Some((moved, moved_shares));
                 }

@@ -1,15 +1,15 @@
 //! Numbers that know how they change with N others: formulas that are written for any [`Real`] give their slopes along.
 //!
-//! Where a formula has an edge these numbers round it, or a search would stop there: |x| is sqrt(x^2 + [`EDGE`]^2),
+//! Where a formula has an edge these numbers round it, or a search would stop there: |x| is sqrt(x^2 + [`EDGE_ROUNDING_SI`]^2),
 //! sqrt(x^2 + y^2) likewise; the greater of a and b is half of a + b + d, the lesser half of a + b - d + e, with
-//! d^2 = (a - b)^2 + e^2 and e^2 = [`CORNER`]^2 (a^2 + b^2). None is less than exact. Constants are exact.
+//! d^2 = (a - b)^2 + e^2 and e^2 = [`CORNER_ROUNDING_SI`]^2 (a^2 + b^2). None is less than exact. Constants are exact.
 
 use controller_core::math::real::Real;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// In SI units: m/s^2 to m/s^4 and rad/s, for which it is little.
-const EDGE: f64 = 0.3;
-const CORNER: f64 = 0.02;
+const EDGE_ROUNDING_SI: f64 = 0.3;
+const CORNER_ROUNDING_SI: f64 = 0.02;
 
 /// A number and its slopes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ impl<const N: usize> Sloped<N> {
     }
 
     /// A function of two numbers with this value and these slopes.
-    fn of(a: &Self, b: &Self, value: f64, slope: impl Fn(usize) -> f64) -> Self {
+    fn linear(a: &Self, b: &Self, value: f64, slope: impl Fn(usize) -> f64) -> Self {
         Self { value, slopes: std::array::from_fn(slope), is_constant: a.is_constant && b.is_constant }
     }
 
@@ -45,13 +45,13 @@ impl<const N: usize> Sloped<N> {
     /// The difference of two numbers with its edge rounded, and what it is where they are equal.
     fn corner(self, other: Self) -> (Self, Self) {
         let difference = self - other;
-        let squares = (self * self + other * other) * (CORNER * CORNER);
+        let squares = (self * self + other * other) * (CORNER_ROUNDING_SI * CORNER_ROUNDING_SI);
         (Self::rounded(difference * difference + squares, 0.0), Self::rounded(squares, 0.0))
     }
 
     /// What rounds the edge of a function of the number.
     fn edge(&self) -> f64 {
-        if self.is_constant { 0.0 } else { EDGE }
+        if self.is_constant { 0.0 } else { EDGE_ROUNDING_SI }
     }
 }
 
@@ -77,14 +77,14 @@ impl<const N: usize> Neg for Sloped<N> {
 impl<const N: usize> Add for Sloped<N> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::of(&self, &other, self.value + other.value, |i| self.slopes[i] + other.slopes[i])
+        Self::linear(&self, &other, self.value + other.value, |i| self.slopes[i] + other.slopes[i])
     }
 }
 
 impl<const N: usize> Sub for Sloped<N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::of(&self, &other, self.value - other.value, |i| self.slopes[i] - other.slopes[i])
+        Self::linear(&self, &other, self.value - other.value, |i| self.slopes[i] - other.slopes[i])
     }
 }
 
@@ -93,7 +93,7 @@ impl<const N: usize> Mul for Sloped<N> {
     // The product rule.
     #[expect(clippy::suspicious_arithmetic_impl)]
     fn mul(self, other: Self) -> Self {
-        Self::of(&self, &other, self.value * other.value, |i| {
+        Self::linear(&self, &other, self.value * other.value, |i| {
             self.slopes[i] * other.value + self.value * other.slopes[i]
         })
     }
@@ -105,7 +105,7 @@ impl<const N: usize> Div for Sloped<N> {
     #[expect(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         let ratio = self.value / other.value;
-        Self::of(&self, &other, ratio, |i| (self.slopes[i] - ratio * other.slopes[i]) / other.value)
+        Self::linear(&self, &other, ratio, |i| (self.slopes[i] - ratio * other.slopes[i]) / other.value)
     }
 }
 
@@ -197,10 +197,10 @@ impl<const N: usize> Real for Sloped<N> {
     }
 
     /// From x^3 = p x + q follows (3 x^2 - p) x' = p' x + q'.
-    fn greatest_cubic_root(p: Self, q: Self) -> Self {
-        let root = f64::greatest_cubic_root(p.value, q.value);
+    fn max_cubic_root(p: Self, q: Self) -> Self {
+        let root = f64::max_cubic_root(p.value, q.value);
         let steepness = 3.0 * root * root - p.value;
-        Self::of(&p, &q, root, |i| (p.slopes[i] * root + q.slopes[i]) / steepness)
+        Self::linear(&p, &q, root, |i| (p.slopes[i] * root + q.slopes[i]) / steepness)
     }
 }
 
@@ -214,7 +214,7 @@ mod tests {
         z += x.greater(y * 2.0).sqrt() / 4.0;
         z -= x.lesser(y).ln_1p().exp();
         z *= -y + 7.0;
-        z + Sloped::greatest_cubic_root(x * 9.0, y).sqrt_of_rounded()
+        z + Sloped::max_cubic_root(x * 9.0, y).sqrt_of_rounded()
     }
 
     #[test]
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn edges_are_rounded_upwards_and_constants_are_exact() {
         let [zero, one] = [0.0, 1.0].map(|value| Sloped::<1>::variable(value, 0));
-        assert_eq!((zero.abs().value, zero.abs().slopes), (EDGE, [0.0]));
+        assert_eq!((zero.abs().value, zero.abs().slopes), (EDGE_ROUNDING_SI, [0.0]));
         assert!(one.abs().value > 1.0 && one.greater(one).value > 1.0 && one.lesser(one).value >= 1.0);
         let [two, three] = [2.0, 3.0].map(Sloped::<1>::from);
         assert_eq!([(-two).abs(), two.greater(three), two.lesser(three)].map(|x| x.value), [2.0, 3.0, 2.0]);

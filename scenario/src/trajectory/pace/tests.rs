@@ -15,7 +15,7 @@ fn vehicle(rotor: f64) -> String {
 }
 
 /// Seven gates of a race.
-const RACE: [[f64; 3]; 7] = [
+const RACE_GATES: [[f64; 3]; 7] = [
     [0.0, 0.0, 1.2],
     [6.0, 2.0, 1.5],
     [11.0, 0.0, 2.2],
@@ -25,7 +25,7 @@ const RACE: [[f64; 3]; 7] = [
     [2.0, -10.0, 1.2],
 ];
 /// Three lanes, a metre and a half apart.
-const LAWN: [[f64; 3]; 6] =
+const LAWN_LANES: [[f64; 3]; 6] =
     [[0.0, 0.0, 3.0], [12.0, 0.0, 3.0], [12.0, 1.5, 3.0], [0.0, 1.5, 3.0], [0.0, 3.0, 3.0], [12.0, 3.0, 3.0]];
 
 /// Rows of x, y and z.
@@ -56,7 +56,7 @@ fn falls(numbers: &[f64]) -> bool {
 
 #[test]
 fn a_wider_corridor_never_takes_longer() {
-    for (points, speed) in [(RACE.as_slice(), 10.0), (&LAWN, 3.0)] {
+    for (points, speed) in [(RACE_GATES.as_slice(), 10.0), (&LAWN_LANES, 3.0)] {
         let durations = [0.05, 0.1, 0.25, 0.3, 1.0].map(|corridor| duration(&vehicle(11.0), points, speed, corridor));
         println!("{durations:?}");
         assert!(falls(&durations), "{durations:?}");
@@ -66,7 +66,7 @@ fn a_wider_corridor_never_takes_longer() {
 
 #[test]
 fn a_higher_speed_never_takes_longer() {
-    for points in [RACE.as_slice(), &LAWN] {
+    for points in [RACE_GATES.as_slice(), &LAWN_LANES] {
         let durations = [1.0, 2.0, 5.0, 10.0, 20.0, 1e9].map(|speed| duration(&vehicle(11.0), points, speed, 0.3));
         println!("{durations:?}");
         assert!(falls(&durations), "{durations:?}");
@@ -80,7 +80,7 @@ fn a_higher_speed_never_takes_longer() {
 fn more_thrust_never_takes_longer() {
     let same = "[control]\nlaw = \"extended\"\n[limits]\ntorque_max = [0.5, 0.5, 0.2]\n\
                 [gains]\nturn_reserve = 20.0\nturn_rate = 5.0\nyaw_acceleration = 4.0\ntilt_max = 1.2\n";
-    for points in [RACE.as_slice(), &LAWN] {
+    for points in [RACE_GATES.as_slice(), &LAWN_LANES] {
         let durations = [3.5, 5.0, 8.0, 11.0].map(|rotor| duration(&(vehicle(rotor) + same), points, 10.0, 0.3));
         println!("{durations:?}");
         assert!(falls(&durations), "{durations:?}");
@@ -90,7 +90,7 @@ fn more_thrust_never_takes_longer() {
 /// The path of `scenario` certifies, is at rest at both ends, passes all `points` in their order within the corridor
 /// and never leaves the straight legs between them farther than that.
 fn assert_kept(scenario: &Scenario, points: &[[f64; 3]], speed: f64, corridor: f64) {
-    let along = Verdict::of(scenario).unwrap().along().copied().unwrap();
+    let along = Verdict::judge(scenario).unwrap().along().copied().unwrap();
     assert!(along.holds(), "{along}");
     let route = route(scenario);
     let at = |time: f64| scenario.trajectory.at((time * 1e6).round() as u64);
@@ -120,7 +120,7 @@ fn assert_kept(scenario: &Scenario, points: &[[f64; 3]], speed: f64, corridor: f
 
 #[test]
 fn a_path_certifies_and_keeps_to_its_corridor_and_speed_at_every_instant() {
-    for (points, speed, corridor) in [(RACE.as_slice(), 6.0, 0.3), (&LAWN, 3.0, 0.07)] {
+    for (points, speed, corridor) in [(RACE_GATES.as_slice(), 6.0, 0.3), (&LAWN_LANES, 3.0, 0.07)] {
         let scenario =
             read(&vehicle(11.0), &table(points), &format!("speed = {speed}\ncorridor = {corridor}")).unwrap();
         assert_kept(&scenario, points, speed, corridor);
@@ -160,7 +160,7 @@ fn a_path_through_random_points_certifies_and_keeps_to_its_corridor() {
 fn dense_points_and_points_near_each_other_do_not_make_it_slower() {
     let mut random = random(3);
     let mut dense = Vec::new();
-    for pair in LAWN.windows(2) {
+    for pair in LAWN_LANES.windows(2) {
         let [from, to] = [pair[0], pair[1]].map(Vector3::from);
         dense.push(pair[0]);
         let count = ((to - from).norm() / 0.2) as u32;
@@ -170,15 +170,16 @@ fn dense_points_and_points_near_each_other_do_not_make_it_slower() {
             dense.push((from + (to - from) * (f64::from(i) / f64::from(count)) + noise).into());
         }
     }
-    dense.push(LAWN[5]);
-    let few = duration(&vehicle(11.0), &LAWN, 3.0, 0.3);
+    dense.push(LAWN_LANES[5]);
+    let few = duration(&vehicle(11.0), &LAWN_LANES, 3.0, 0.3);
     let scenario = read(&vehicle(11.0), &table(&dense), "speed = 3.0\ncorridor = 0.3").unwrap();
     let many = route(&scenario).duration();
-    println!("{} points {many} s, {} points {few} s", dense.len(), LAWN.len());
+    println!("{} points {many} s, {} points {few} s", dense.len(), LAWN_LANES.len());
     assert!(many < 1.02 * few, "{many} s, {few} s");
     assert_kept(&scenario, &dense, 3.0, 0.3);
     // A gate as two points, a hand apart.
-    let double: Vec<[f64; 3]> = LAWN.iter().flat_map(|[x, y, z]| [[*x, *y, *z], [x + 0.1, *y, z + 0.05]]).collect();
+    let double: Vec<[f64; 3]> =
+        LAWN_LANES.iter().flat_map(|[x, y, z]| [[*x, *y, *z], [x + 0.1, *y, z + 0.05]]).collect();
     let twice = duration(&vehicle(11.0), &double, 3.0, 0.3);
     assert!(twice < 1.03 * few, "{twice} s, {few} s");
 }
@@ -196,7 +197,7 @@ fn a_single_point_is_a_place_to_stay_and_too_many_corners_are_refused() {
 fn bounds_of_the_file_bound_the_path() {
     let bounds = "[reference_bounds]\nhorizontal_acceleration = 1.0\nvertical_acceleration = 0.3\njerk = 2.0\n\
                   snap = 6.0\nheading_rate = 0.5\nheading_second_derivative = 0.5\n";
-    let scenario = read(&(vehicle(11.0) + bounds), &table(&LAWN[..3]), "speed = 9.0").unwrap();
+    let scenario = read(&(vehicle(11.0) + bounds), &table(&LAWN_LANES[..3]), "speed = 9.0").unwrap();
     let (own, allowed) = (scenario.trajectory.bounds(), scenario.configuration.bounds());
     for (own, allowed) in own.values().iter().zip(allowed.values()) {
         assert!(*own <= allowed, "{own:?} {allowed:?}");
@@ -222,13 +223,13 @@ fn each_leg_keeps_to_its_own_speed() {
 
 #[test]
 fn corridors_and_speeds_that_are_tried_are_round_and_no_greater_than_what_is_given() {
-    assert_eq!(below(0.3, NARROWEST).len(), 5);
+    assert_eq!(below(0.3, CORRIDOR_MIN_M).len(), 5);
     for (most, greatest) in [(0.3, 0.3), (0.29, 0.2), (1.5, 1.0), (1e3, 1e3), (0.004, 0.003)] {
         let found = below(most, 0.0);
         assert!((found[0] / greatest - 1.0).abs() < 1e-9, "{most} {found:?}");
         assert!(found.windows(2).all(|pair| pair[1] < pair[0]), "{found:?}");
     }
-    assert_eq!(below(0.02, NARROWEST), [0.02]);
+    assert_eq!(below(0.02, CORRIDOR_MIN_M), [0.02]);
 }
 
 #[test]

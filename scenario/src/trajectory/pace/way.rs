@@ -2,12 +2,12 @@
 
 use super::hull::stays;
 use super::merge::Leg;
-use super::piece::{Motion, ORDERS, Place, powers};
+use super::piece::{KNOT_ORDERS, Motion, Place, powers};
 use controller_core::reference::knot::Knot;
 use nalgebra::{Vector3, Vector4};
 
 /// Control points of a piece.
-const CONTROLS: usize = 10;
+const CONTROL_POINTS: usize = 10;
 
 /// From rest to rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,8 +104,8 @@ impl Way {
         self.pieces.iter().zip(self.knots.windows(2)).all(|((leg, duration), ends)| {
             let leg = &self.legs[*leg];
             let place = controls(&ends[0], &ends[1], *duration);
-            let rate = (CONTROLS - 1) as f64 / duration;
-            let velocity: [_; CONTROLS - 1] = std::array::from_fn(|i| (place[i + 1] - place[i]) * rate);
+            let rate = (CONTROL_POINTS - 1) as f64 / duration;
+            let velocity: [_; CONTROL_POINTS - 1] = std::array::from_fn(|i| (place[i + 1] - place[i]) * rate);
             stays(&place, |place| leg.off(place).norm() > leg.corridor)
                 && stays(&velocity, |velocity| velocity.norm() > leg.speed)
         })
@@ -125,9 +125,9 @@ impl Way {
 }
 
 /// A piece's position in Bernstein form, m.
-fn controls(start: &Motion, end: &Motion, duration: f64) -> [Vector3<f64>; CONTROLS] {
+fn controls(start: &Motion, end: &Motion, duration: f64) -> [Vector3<f64>; CONTROL_POINTS] {
     // Differences of order l of the control points at an end: p^(l) T^l (9 - l)! / 9!.
-    let differences = |end: &Motion, sign: f64| -> [Vector3<f64>; ORDERS] {
+    let differences = |end: &Motion, sign: f64| -> [Vector3<f64>; KNOT_ORDERS] {
         let mut factor = 1.0;
         std::array::from_fn(|l| {
             let difference = end[l].xyz() * factor;
@@ -142,9 +142,9 @@ fn controls(start: &Motion, end: &Motion, duration: f64) -> [Vector3<f64>; CONTR
         [1.0, 3.0, 3.0, 1.0, 0.0],
         [1.0, 4.0, 6.0, 4.0, 1.0],
     ];
-    let point = |differences: &[Vector3<f64>; ORDERS], number: usize| -> Vector3<f64> {
+    let point = |differences: &[Vector3<f64>; KNOT_ORDERS], number: usize| -> Vector3<f64> {
         differences.iter().zip(choose[number]).map(|(difference, count)| difference * count).sum()
     };
     let (from, to) = (differences(start, 1.0), differences(end, -1.0));
-    std::array::from_fn(|i| if i < ORDERS { point(&from, i) } else { point(&to, CONTROLS - 1 - i) })
+    std::array::from_fn(|i| if i < KNOT_ORDERS { point(&from, i) } else { point(&to, CONTROL_POINTS - 1 - i) })
 }

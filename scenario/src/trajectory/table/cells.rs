@@ -9,12 +9,12 @@ use std::borrow::Cow;
 /// What separates cells; of two that do equally well the first.
 const SEPARATORS: [u8; 4] = *b";\t, ";
 /// What a comment begins with; a header may begin with it too.
-const COMMENT: [char; 2] = ['#', '%'];
+const COMMENT_MARKS: [char; 2] = ['#', '%'];
 /// The most rows of one file.
-const MOST_ROWS: usize = 100_000;
+const ROWS_MAX: usize = 100_000;
 
 /// The most lines above the numbers.
-const MOST_LINES_ABOVE: u64 = 1000;
+const HEADER_LINES_MAX: u64 = 1000;
 
 /// A file's cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub fn read(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Cells, String>
     let (mut before, mut start, mut header, mut is_commented) = (0, 0, None, true);
     for line in text.split_inclusive('\n') {
         let line_words = line.trim_matches([' ', '\n']);
-        let words = line_words.trim_start_matches(COMMENT);
+        let words = line_words.trim_start_matches(COMMENT_MARKS);
         let is_comment = words.len() < line_words.len();
         let (numbers, separator) = separated(words, 1, |cell| number(cell).is_some());
         if numbers > 0 && !is_comment {
@@ -50,8 +50,8 @@ pub fn read(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Cells, String>
         }
         before += 1;
         start += line.len();
-        if before > MOST_LINES_ABOVE {
-            return Err(format!("has no numbers in its first {MOST_LINES_ABOVE} lines"));
+        if before > HEADER_LINES_MAX {
+            return Err(format!("has no numbers in its first {HEADER_LINES_MAX} lines"));
         }
         // With spaces for separators, a unit belongs to the name before it.
         let words = words.replace(" [", "[").replace(" (", "(");
@@ -90,8 +90,8 @@ fn rows(text: &str, separator: u8, before: u64) -> Result<Vec<(u64, StringRecord
             continue;
         }
         rows.push((before + line, record));
-        if rows.len() > MOST_ROWS {
-            return Err(format!("has more than {MOST_ROWS} rows; leave out what a path does not need"));
+        if rows.len() > ROWS_MAX {
+            return Err(format!("has more than {ROWS_MAX} rows; leave out what a path does not need"));
         }
     }
     Ok(rows)

@@ -23,7 +23,7 @@ pub enum Quantity {
 }
 
 /// The names of what has no components.
-const SCALARS: [(Quantity, &[&str]); 4] = [
+const SCALAR_NAMES: [(Quantity, &[&str]); 4] = [
     (Quantity::Time, &["t", "time", "timestamp", "time_stamp", "stamp", "sec", "secs", "seconds", "elapsed_time"]),
     (Quantity::Heading, &["yaw", "psi", "heading"]),
     (Quantity::Speed, &["speed", "v_max"]),
@@ -32,7 +32,7 @@ const SCALARS: [(Quantity, &[&str]); 4] = [
 
 /// The components of vectors, and their names with `*` in a component's place.
 type Vector = (fn(usize) -> Quantity, &'static str, &'static [&'static str]);
-const VECTORS: [Vector; 4] = [
+const VECTOR_NAMES: [Vector; 4] = [
     (Quantity::Position, "xyz", &["*", "p*", "p_*", "pos_*", "position_*", "t*", "translation_*", "p_rs_r_*"]),
     (Quantity::Velocity, "xyz", &["v*", "v_*", "vel_*", "velocity_*", "*dot", "*_dot", "v_rs_r_*"]),
     (Quantity::Acceleration, "xyz", &["a*", "a_*", "acc_*", "acceleration_*", "a_lin_*", "*ddot"]),
@@ -40,7 +40,7 @@ const VECTORS: [Vector; 4] = [
 ];
 
 /// What stands before a name in columns made of messages of ROS.
-const MESSAGES: [&str; 3] = ["field_", "pose_", "transform_"];
+const MESSAGE_PREFIXES: [&str; 3] = ["field_", "pose_", "transform_"];
 
 /// What a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,14 +163,14 @@ pub fn recognised(name: &str) -> Result<Option<(Quantity, Option<f64>)>, String>
 fn plain(name: &str) -> String {
     let parts = name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
     let joined = parts.collect::<Vec<_>>().join("_");
-    let ends = MESSAGES.iter().filter_map(|message| Some(joined.rfind(message)? + message.len()));
+    let ends = MESSAGE_PREFIXES.iter().filter_map(|message| Some(joined.rfind(message)? + message.len()));
     joined[ends.max().unwrap_or(0)..].to_owned()
 }
 
 fn quantity(name: &str) -> Option<Quantity> {
-    let scalar = SCALARS.iter().find(|(_, names)| names.contains(&name)).map(|(quantity, _)| *quantity);
+    let scalar = SCALAR_NAMES.iter().find(|(_, names)| names.contains(&name)).map(|(quantity, _)| *quantity);
     scalar.or_else(|| {
-        VECTORS.iter().find_map(|(quantity, components, patterns)| {
+        VECTOR_NAMES.iter().find_map(|(quantity, components, patterns)| {
             let number = components.chars().position(|component| {
                 patterns.iter().any(|pattern| pattern.replace('*', &component.to_string()) == name)
             })?;

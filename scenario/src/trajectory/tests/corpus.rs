@@ -53,7 +53,7 @@ fn every_file_of_the_corpus_is_read_certified_or_refused_as_the_table_says() {
                 continue;
             }
         };
-        let along = Along::of(&scenario).unwrap();
+        let along = Along::judge(&scenario).unwrap();
         let is_certified = along.holds();
         assert_eq!(verdict, if is_certified { "certified" } else { "not certified" }, "{file}");
         let remarks = remarks(&scenario, is_certified);
@@ -89,5 +89,5 @@ fn a_heading_is_read_from_every_column_that_says_it() {
 #[test]
 fn the_path_of_the_corpus_is_certified() {
     let scenario = read("file = \"own.csv\"").unwrap();
-    assert_eq!(Verdict::of(&scenario).unwrap().refusal(), None);
+    assert_eq!(Verdict::judge(&scenario).unwrap().refusal(), None);
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// c_0, m/s^2, and the bandwidth of the slow averages, 1/s (section 9).
 const LEAST_VARIATION: f64 = 2.0;
-const SLOW: f64 = 0.7;
+const SLOW_BANDWIDTH_PER_S: f64 = 0.7;
 
 /// What is averaged: zeta, the torque bias, ybar and fbar (none before the first interval); and the scale.
 #[derive(Debug, Clone, Copy)]
@@ -47,8 +47,8 @@ impl Law {
 
         // They begin with the first interval.
         let [slow_made, slow_commanded] = before.slow.unwrap_or([made, commanded]);
-        let slow =
-            [(slow_made, made), (slow_commanded, commanded)].map(|(slow, new)| slow + (new - slow) * weight(SLOW));
+        let slow = [(slow_made, made), (slow_commanded, commanded)]
+            .map(|(slow, new)| slow + (new - slow) * weight(SLOW_BANDWIDTH_PER_S));
         let (y, f) = (made - slow[0], commanded - slow[1]);
         let step = double(p.scale_rate) * h * (y - before.scale * f).dot(&f)
             / (f.norm_squared() + LEAST_VARIATION * LEAST_VARIATION);

@@ -2,11 +2,11 @@
 
 use super::{Law, double};
 
-/// A window, the first stay, us; near the target, m; progress, as a share and in m.
-const WINDOW: u64 = 20_000_000;
-const STAY: u64 = 20_000_000;
-const NEAR: f64 = 0.5;
-const PROGRESS: [f64; 2] = [0.1, 5.0];
+/// A window, the first stay; near the target; progress, as a share and in m.
+const WINDOW_US: u64 = 20_000_000;
+const STAY_US: u64 = 20_000_000;
+const NEAR_M: f64 = 0.5;
+const PROGRESS_MIN: [f64; 2] = [0.1, 5.0];
 
 /// |p~| grows by more than this beside so much of what |v~| makes of it, m, only where reference or state jump.
 const JUMP_DISTANCE: f64 = 0.5;
@@ -54,10 +54,10 @@ impl Fallback {
 
     /// After a tick of `period` s with errors of `distance` m and `speed` m/s.
     pub fn after(self, distance: f64, speed: f64, period: f64) -> Self {
-        let near = distance.hypot(speed) < NEAR;
+        let near = distance.hypot(speed) < NEAR_M;
         let mut next = Self { now: distance, elapsed: self.elapsed + (period * 1e6).round() as u64, ..self };
         if self.slow {
-            let stay = STAY << (self.times - 1);
+            let stay = STAY_US << (self.times - 1);
             return if near && next.elapsed >= stay { next.next(false, [None; 2]) } else { next };
         }
         if distance - self.now > JUMP_DISTANCE + JUMP_SPEEDS * speed * period {
@@ -65,12 +65,13 @@ impl Fallback {
         }
         next.near |= near;
         next.greatest = [next.greatest[0].max(distance), next.greatest[1].max(speed)];
-        if next.elapsed < WINDOW {
+        if next.elapsed < WINDOW_US {
             return next;
         }
         let [farthest, fastest] = next.greatest;
         let is_broken = |record: Option<f64>, value: f64| {
-            record.is_none_or(|record| record > NEAR && record - value > PROGRESS[1].min(PROGRESS[0] * record))
+            record
+                .is_none_or(|record| record > NEAR_M && record - value > PROGRESS_MIN[1].min(PROGRESS_MIN[0] * record))
         };
         let [distance, speed] = next.records;
         if next.near {

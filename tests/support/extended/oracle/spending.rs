@@ -1,6 +1,6 @@
 //! What rotors and torque limits leave: for the torque about the tilt's axes, section 4; for thrust and yaw, section 8.
 
-use super::tick::PARTS;
+use super::tick::PART_COUNT;
 use super::{Law, double};
 use nalgebra::{Vector2, Vector3, Vector4};
 
@@ -108,7 +108,7 @@ impl Law {
         [of(|rotor| rotor.least).fold(0.0, f64::max), of(|rotor| rotor.greatest).fold(f64::INFINITY, f64::min)]
     }
 
-    pub fn spending(&self, scale: f64, nudges: [f64; PARTS]) -> Spending<'_> {
+    pub fn spending(&self, scale: f64, nudges: [f64; PART_COUNT]) -> Spending<'_> {
         let nudges = nudges.into_iter().rev().collect();
         Spending { law: self, scale, nudges, spent: Vector2::zeros() }
     }

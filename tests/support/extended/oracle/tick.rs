@@ -59,9 +59,9 @@ pub struct Nudge {
     /// What u is beside c, as far as the force is cut to it.
     pub rest: Vector3<f64>,
     /// The parts of the torque about the tilt's axes, in the order in which they are spent, N m.
-    pub parts: [Vector2<f64>; PARTS],
+    pub parts: [Vector2<f64>; PART_COUNT],
     /// The room of every row, as each part sees it, and U: relative. u_z, m/s^2.
-    pub rooms: [f64; PARTS],
+    pub rooms: [f64; PART_COUNT],
     pub greatest: f64,
     pub lift: f64,
     /// N and C, N.
@@ -73,7 +73,7 @@ pub struct Nudge {
 }
 
 /// Bias, pull, gyroscopic torque, damping, precession, turning.
-pub const PARTS: usize = 6;
+pub const PART_COUNT: usize = 6;
 
 /// What one tick comes to.
 #[derive(Debug, Clone, Copy)]
@@ -97,7 +97,7 @@ pub struct Answer {
     /// a of section 6.
     pub forward: Vector3<f64>,
     /// The sizes of what was added up to the parts of the torque about the tilt's axes, and about z, N m.
-    pub sizes: [f64; PARTS + 1],
+    pub sizes: [f64; PART_COUNT + 1],
     /// How far the tick is from an edge at which the answer jumps: the lift's switch, the side's region, its switch.
     pub edge: f64,
     /// Which way the tick went where it can go two: [`BRANCHES`].

@@ -3,8 +3,8 @@
 use super::{Law, double};
 use nalgebra::Vector3;
 
-/// k, 1/s.
-const SOFTNESS: f64 = 10.0;
+/// k.
+const SOFTNESS_PER_S: f64 = 10.0;
 
 /// How u moves, and what bounds it.
 pub struct Turn {
@@ -62,7 +62,7 @@ impl Law {
     ) -> (Vector3<f64>, [bool; 2]) {
         let Turn { rho, n, r, p, q: wanted, along: radial } = turn;
         let tangential = (q - wanted) * *n;
-        let k = SOFTNESS.min(0.5 / self.period);
+        let k = SOFTNESS_PER_S.min(0.5 / self.period);
         let mut along = 0.0;
         let falling = c_second + tangential.z;
         let climbing = -2.0 * k * c_rate - k * k * (c + double(self.p.a_down));

@@ -1,5 +1,5 @@
 use super::*;
-use crate::certificate::path::FORCE_KEPT;
+use crate::certificate::path::FORCE_KEPT_M_PER_S2;
 use crate::extended::defaults::NOTHING_GIVEN;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::Craft;
@@ -12,7 +12,7 @@ use crate::reference::waypoints::{Waypoint, Waypoints};
 fn judge<R: Real>(craft: &Craft) -> PathJudge<R> {
     let parameters = craft.constants(&NOTHING_GIVEN);
     let configuration = craft.configuration(&parameters, ReferenceBounds::REST);
-    PathJudge::new(&configuration, &craft.law(&parameters), FORCE_KEPT)
+    PathJudge::new(&configuration, &craft.law(&parameters), FORCE_KEPT_M_PER_S2)
 }
 
 /// A figure of eight, `width` m wide and half as high, flown in `seconds`, which nods and shakes its head.
@@ -41,21 +41,21 @@ fn through(random: &mut Random, seconds: f32) -> Waypoints {
 
 /// No instant takes more than is said, one takes nearly as much, and it is the one that is named.
 fn covers(judge: &PathJudge, trajectory: &dyn Trajectory, end_us: u64) -> f64 {
-    let Taken { share, row, at_us } = Taken::along(judge, trajectory, end_us);
-    let at = |time: u64| judge.shares(&Motion::from(&trajectory.at(time)));
+    let MaxShare { share, row, at_us } = MaxShare::along(judge, trajectory, end_us);
+    let at = |time: u64| judge.shares(&PathMotion::from(&trajectory.at(time)));
     for instant in 0..=5_000 {
         let worst = at(end_us / 5_000 * instant).worst();
         assert!(worst <= share, "{worst} at {instant}: {share}");
     }
     let named = at(at_us);
-    assert!(named.row() == row && named.worst() > share * (1.0 - 1.01 * TIGHTNESS), "{named:?} {share}");
+    assert!(named.row() == row && named.worst() > share * (1.0 - 1.01 * BOUND_TOLERANCE), "{named:?} {share}");
     share
 }
 
 #[test]
 fn no_instant_takes_more_than_is_said() {
     let mut random = Random(5);
-    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    let (mut min, mut max) = (f64::INFINITY, 0.0_f64);
     for number in 0..20 {
         let craft = if number == 0 { Craft::example() } else { Craft::random(&mut random) };
         let judge = judge(&craft);
@@ -64,10 +64,10 @@ fn no_instant_takes_more_than_is_said() {
             covers(&judge, &eight(6.0, f64::from(3.0 * seconds)), 6_000_000),
             covers(&judge, &through(&mut random, seconds), 16_000_000),
         ] {
-            (least, most) = (least.min(share), most.max(share));
+            (min, max) = (min.min(share), max.max(share));
         }
     }
-    assert!(least < 0.9 && most > 1.0, "{least} {most}");
+    assert!(min < 0.9 && max > 1.0, "{min} {max}");
 }
 
 /// A trembling that is looked at where nothing but its jerk shows.
@@ -83,8 +83,8 @@ fn a_peak_between_the_instants_looked_at_is_not_missed() {
         heading,
     };
     let trembling = Harmonic::new(parameters).unwrap();
-    let seen = judge.shares(&Motion::from(&trembling.at(CELL / 2))).worst();
-    assert!(covers(&judge, &trembling, 2 * CELL) > 3.0 * seen, "{seen}");
+    let seen = judge.shares(&PathMotion::from(&trembling.at(FIRST_CELL_US / 2))).worst();
+    assert!(covers(&judge, &trembling, 2 * FIRST_CELL_US) > 3.0 * seen, "{seen}");
 }
 
 #[test]
@@ -92,8 +92,8 @@ fn rounding_decides_nothing_along_a_path() {
     let craft = Craft::example();
     for seconds in [3.0, 5.0, 8.0] {
         let eight = eight(6.0, seconds);
-        let nearest = Taken::along(&judge::<f64>(&craft), &eight, 8_000_000).share;
-        let enclosed = Taken::along(&judge::<Enclosure>(&craft), &eight, 8_000_000).share;
+        let nearest = MaxShare::along(&judge::<f64>(&craft), &eight, 8_000_000).share;
+        let enclosed = MaxShare::along(&judge::<Enclosure>(&craft), &eight, 8_000_000).share;
         assert!(enclosed >= nearest && enclosed < nearest * (1.0 + 1e-9), "{nearest} {enclosed}");
     }
 }
@@ -101,6 +101,6 @@ fn rounding_decides_nothing_along_a_path() {
 #[test]
 fn at_rest_a_vehicle_takes_what_hovering_takes() {
     let judge = judge::<f64>(&Craft::example());
-    let hover = Taken::along(&judge, &Hover::ORIGIN, 3_600_000_000);
-    assert_eq!(hover.share, judge.shares(&Motion::from(&Hover::ORIGIN.at(0))).worst());
+    let hover = MaxShare::along(&judge, &Hover::ORIGIN, 3_600_000_000);
+    assert_eq!(hover.share, judge.shares(&PathMotion::from(&Hover::ORIGIN.at(0))).worst());
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::certificate::path::FORCE_KEPT;
+use crate::certificate::path::FORCE_KEPT_M_PER_S2;
 use crate::extended::tests::Random;
 use crate::extended::tests::example::Craft;
 use crate::math::enclosure::Enclosure;
@@ -12,9 +12,9 @@ fn judge<R: Real>(craft: &Craft, force_kept: f32) -> PathJudge<R> {
 }
 
 /// A level circle of 3 m at `speed`, m/s.
-fn circle(speed: f64) -> Motion {
+fn circle(speed: f64) -> PathMotion {
     let turn = speed / 3.0;
-    Motion {
+    PathMotion {
         velocity: [0.0, speed, 0.0],
         acceleration: [-speed * turn, 0.0, 0.0],
         jerk: [0.0, -speed * turn.powi(2), 0.0],
@@ -23,11 +23,11 @@ fn circle(speed: f64) -> Motion {
     }
 }
 
-fn random_motion(random: &mut Random, size: f32) -> Motion {
+fn random_motion(random: &mut Random, size: f32) -> PathMotion {
     let mut vector = |size: f32| random.vector(size).map(f64::from).into();
     let (velocity, acceleration) = (vector(2.0 * size), vector(2.0 * size));
     let (jerk, snap) = (vector(4.0 * size), vector(12.0 * size));
-    Motion { velocity, acceleration, jerk, snap, heading_rate: f64::from(random.signed() * 0.2 * size) }
+    PathMotion { velocity, acceleration, jerk, snap, heading_rate: f64::from(random.signed() * 0.2 * size) }
 }
 
 /// A vector of length at most `size`.
@@ -38,7 +38,7 @@ fn within(random: &mut Random, size: f64) -> Vector3<f64> {
 
 #[test]
 fn a_faster_circle_takes_more_until_it_takes_all() {
-    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT);
+    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT_M_PER_S2);
     let shares: [f64; 40] = core::array::from_fn(|speed| judge.shares(&circle(speed as f64 * 0.5)).worst());
     assert!(shares[0] < 0.7 && shares[39] > 1.0, "{shares:?}");
     assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{shares:?}");
@@ -66,7 +66,7 @@ fn nothing_in_the_balls_takes_more_than_the_shares_say() {
             judge.feedback = [0.0; 3];
             let [x, y, z] = motion.acceleration;
             let [f_1, f_2] = [random.signed(), random.signed()].map(f64::from);
-            motion = Motion {
+            motion = PathMotion {
                 velocity: [-x, -y, 0.0].map(|x| x / judge.drag),
                 acceleration: [x, y, z],
                 jerk: [-judge.drag * x, -judge.drag * y, f_1 * (z + judge.gravity)],
@@ -93,10 +93,10 @@ fn nothing_in_the_balls_takes_more_than_the_shares_say() {
     assert!(judged > 200 && tight.iter().all(|share| *share > 0.85), "{judged} {tight:?}");
 }
 
-fn moved(random: &mut Random, motion: &Motion, size: f64) -> Motion {
+fn moved(random: &mut Random, motion: &PathMotion, size: f64) -> PathMotion {
     let mut near = |v: [f64; 3]| (Vector3::from(v) + within(random, size)).into();
-    let Motion { velocity, acceleration, jerk, snap, heading_rate } = *motion;
-    Motion {
+    let PathMotion { velocity, acceleration, jerk, snap, heading_rate } = *motion;
+    PathMotion {
         velocity: near(velocity),
         acceleration: near(acceleration),
         jerk: near(jerk),
@@ -106,7 +106,7 @@ fn moved(random: &mut Random, motion: &Motion, size: f64) -> Motion {
 }
 
 /// The rows of a motion beside one force and one feedback, in the order of the shares.
-fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
+fn taken(judge: &PathJudge, motion: &PathMotion, random: &mut Random) -> [f64; 6] {
     let across = Vector3::new(judge.drag, judge.drag, 0.0);
     let [v, a, j, s] = [motion.velocity, motion.acceleration, motion.jerk, motion.snap].map(Vector3::from);
     let [e, e_1, e_2] = judge.feedback.map(|size| within(random, size));
@@ -131,7 +131,7 @@ fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
         judge.a_down / (judge.gravity + a.z),
         ((judge.mass * n + judge.reach * torque + judge.spin[0] * spin) / judge.ceiling[0])
             .max(judge.mass * n / judge.ceiling[1])
-            .max(swollen / judge.greatest),
+            .max(swollen / judge.max),
         p.norm() / judge.turn_rate,
         torque / judge.torque[1],
         (judge.floor + judge.reach * torque) / (0.95 * judge.mass * n),
@@ -141,14 +141,15 @@ fn taken(judge: &PathJudge, motion: &Motion, random: &mut Random) -> [f64; 6] {
 
 #[test]
 fn a_reference_that_hangs_in_the_air_by_nothing_takes_all() {
-    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT);
-    let falling = Motion { acceleration: [0.0, 0.0, -9.0], ..circle(0.0) };
+    let judge = judge::<f64>(&Craft::example(), FORCE_KEPT_M_PER_S2);
+    let falling = PathMotion { acceleration: [0.0, 0.0, -9.0], ..circle(0.0) };
     assert_eq!(judge.shares(&falling).worst(), f64::INFINITY);
     // A_- is 0.63 g.
-    let fall =
-        |acceleration: f64| judge.shares(&Motion { acceleration: [0.0, 0.0, -acceleration], ..circle(0.0) }).each[0];
+    let fall = |acceleration: f64| {
+        judge.shares(&PathMotion { acceleration: [0.0, 0.0, -acceleration], ..circle(0.0) }).each[0]
+    };
     assert!(fall(3.61) < 1.0 && fall(3.64) > 1.0);
-    let unknown = Motion { jerk: [f64::NAN; 3], ..circle(1.0) };
+    let unknown = PathMotion { jerk: [f64::NAN; 3], ..circle(1.0) };
     assert_eq!(judge.shares(&unknown).worst(), f64::INFINITY);
 }
 
@@ -158,16 +159,16 @@ fn rounding_decides_nothing() {
     for _ in 0..100 {
         let craft = Craft::random(&mut random);
         let motion = random_motion(&mut random, 1.0);
-        let nearest = judge::<f64>(&craft, FORCE_KEPT).shares(&motion).each;
-        let Motion { velocity, acceleration, jerk, snap, heading_rate } = motion;
-        let enclosed = Motion {
+        let nearest = judge::<f64>(&craft, FORCE_KEPT_M_PER_S2).shares(&motion).each;
+        let PathMotion { velocity, acceleration, jerk, snap, heading_rate } = motion;
+        let enclosed = PathMotion {
             velocity: velocity.map(Enclosure::from),
             acceleration: acceleration.map(Enclosure::from),
             jerk: jerk.map(Enclosure::from),
             snap: snap.map(Enclosure::from),
             heading_rate: Enclosure::from(heading_rate),
         };
-        let enclosed = judge::<Enclosure>(&craft, FORCE_KEPT).shares(&enclosed).each;
+        let enclosed = judge::<Enclosure>(&craft, FORCE_KEPT_M_PER_S2).shares(&enclosed).each;
         for (nearest, enclosed) in nearest.into_iter().zip(enclosed) {
             assert!(enclosed.lower() <= nearest && nearest <= enclosed.upper(), "{nearest} {enclosed:?}");
             assert!(nearest.is_infinite() || enclosed.upper() - enclosed.lower() < 1e-9 * nearest, "{enclosed:?}");

@@ -52,16 +52,16 @@ fn a_demand_is_cut_to_the_envelope_the_vertical_first() {
     for _ in 0..40 {
         let craft = Craft::random(&mut random);
         let p = craft.constants(&NOTHING_GIVEN);
-        let mut law = of(&craft, &p);
+        let mut law = build(&craft, &p);
         let gravity = craft.vehicle.gravity;
         for _ in 0..50 {
             let (_, diagnostics) = law.step_on_demand(&resting(Vector3::zeros()), &hover(), &any(&mut random)).unwrap();
-            let (ubar, greatest) = (diagnostics.feedback, law.ceiling.at(law.thrust_scale(), &law.estimates().torque));
+            let (ubar, max) = (diagnostics.feedback, law.ceiling.at(law.thrust_scale(), &law.estimates().torque));
             let lift = gravity + ubar.z;
-            assert!(ubar.z >= -p.a_down && lift <= greatest * (1.0 + 1e-6), "{ubar}");
+            assert!(ubar.z >= -p.a_down && lift <= max * (1.0 + 1e-6), "{ubar}");
             let (across, all) = (ubar.xy().norm(), ubar.xy().norm().hypot(lift));
             assert!(across <= p.a_across * (1.0 + 1e-5) && across <= lift * p.tilt_max.tan(), "{ubar}");
-            assert!(all <= greatest * (1.0 + 1e-5), "{ubar} {greatest}");
+            assert!(all <= max * (1.0 + 1e-5), "{ubar} {max}");
         }
     }
 }
@@ -140,17 +140,17 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
         let craft = Craft::random(&mut random);
         let p = craft.constants(&NOTHING_GIVEN);
         let law = PositionLaw::new(&p, craft.vehicle.gravity, h).unwrap();
-        let greatest = of(&craft, &p).ceiling.at(1.0, &Vector3::zeros());
+        let max = build(&craft, &p).ceiling.at(1.0, &Vector3::zeros());
         let force =
             Vector3::new(random.signed(), random.signed(), random.signed()) * (0.2 * p.force_down.min(p.force_up));
-        let levels = Most { up: f32::MAX, down: 0.4 * craft.vehicle.gravity, across: 0.8 * craft.vehicle.gravity };
+        let levels =
+            FeedbackLimits { up: f32::MAX, down: 0.4 * craft.vehicle.gravity, across: 0.8 * craft.vehicle.gravity };
         let mut filters =
             Filters { command: random.vector(4.0), intermediate: random.vector(4.0), smoothed: random.vector(4.0) };
         let mut state = State { velocity: random.vector(4.0), ..resting(random.vector(2.0)) };
         let origin = Reference::resting(Vector3::zeros(), Heading::FORWARD);
         let errors = law.errors(&state, &origin, &filters, &force);
-        let stop =
-            errors.z_1 + law.stopping_way(&errors.z_2, &law.stopping_levels(&errors.z_2, &force, greatest, &levels));
+        let stop = errors.z_1 + law.stopping_way(&errors.z_2, &law.stopping_levels(&errors.z_2, &force, max, &levels));
         let [first, second] = law.stages(&state, &filters, &force);
         let places = [state.position, first, second, errors.z_1, stop];
         let low = places.iter().fold(places[0], |low, place| low.inf(place));
@@ -158,7 +158,7 @@ fn a_vehicle_that_is_not_limited_stops_where_the_prospect_has_it() {
         let refuge = Reference::resting(errors.z_1, Heading::FORWARD);
         let mut stopped = false;
         for _ in 0..100_000 {
-            let feedback = law.feedback(&state, &refuge, &filters, &force, greatest, &levels);
+            let feedback = law.feedback(&state, &refuge, &filters, &force, max, &levels);
             stopped |= feedback.errors.z_2.norm() < 0.05;
             if stopped {
                 break;

@@ -40,13 +40,13 @@ fn an_acceleration_that_is_measured_counts_where_it_is_quick() {
 fn what_cannot_be_used_is_as_if_it_were_absent() {
     let p = example::parameters();
     let craft = Craft::example();
-    let absent = pulled(&mut of(&craft, &p), 100, |_| Measured::default());
+    let absent = pulled(&mut build(&craft, &p), 100, |_| Measured::default());
     for absurd in [f32::NAN, f32::INFINITY, 1e30, 600.0] {
         let along = [Vector3::x(), Vector3::z()].map(|axis| axis * absurd);
         for measured in along.map(felt).into_iter().chain(along.map(|torque| turned(5.0, torque))) {
-            assert_eq!(pulled(&mut of(&craft, &p), 100, |_| measured), absent, "{measured:?}");
+            assert_eq!(pulled(&mut build(&craft, &p), 100, |_| measured), absent, "{measured:?}");
         }
-        assert_eq!(pulled(&mut of(&craft, &p), 100, |_| turned(absurd, Vector3::zeros())), absent);
+        assert_eq!(pulled(&mut build(&craft, &p), 100, |_| turned(absurd, Vector3::zeros())), absent);
     }
 }
 
@@ -73,7 +73,7 @@ fn what_is_measured_serves_one_step_even_a_refused_one() {
 /// how far the estimated force strays from none.
 fn strayed(measures: bool) -> f32 {
     let craft = Craft { actuators: ActuatorParameters { lag: 0.02, delay: 0.0 }, ..Craft::example() };
-    let mut controller = of(&craft, &example::parameters());
+    let mut controller = build(&craft, &example::parameters());
     let (mut thrust, mut state, mut farthest) = (0.5 * 9.81, resting(Vector3::zeros()), 0.0_f32);
     let mut mean = thrust;
     for tick in 0..1_500 {
@@ -106,7 +106,7 @@ fn speeds_that_are_measured_keep_a_wrong_lag_out_of_the_force() {
 /// Rotors that turn too slowly for good: what lasts has to show in the estimates, or the vehicle would sink.
 #[test]
 fn rotors_that_turn_slowly_for_good_leave_no_error_of_height() {
-    let mut controller = of(&Craft::example(), &example::parameters());
+    let mut controller = build(&Craft::example(), &example::parameters());
     let mut state = resting(Vector3::zeros());
     let mut delivered = 0.5 * 9.81;
     for _ in 0..3_000 {

@@ -25,7 +25,13 @@ impl Watched {
         quad().effectiveness().iter().zip(thrusts).map(|(column, f)| column.map(|x| x as f32) * f).sum()
     }
 
-    fn pass(&mut self, commanded: [f32; 4], delivered: [f32; 4], force: f32, torque: Vector3<f32>) -> Option<Lost> {
+    fn pass(
+        &mut self,
+        commanded: [f32; 4],
+        delivered: [f32; 4],
+        force: f32,
+        torque: Vector3<f32>,
+    ) -> Option<LostRotor> {
         let wrench = Self::sum(delivered) + Vector4::new(force, torque.x, torque.y, torque.z);
         let inertia = vehicle().inertia;
         let gyroscopic = self.rate.cross(&inertia.component_mul(&self.rate));

@@ -12,8 +12,8 @@ fn limits() -> Limits {
     Craft::example().limits
 }
 
-fn law(lost: &Lost) -> SpinningLaw {
-    SpinningLaw::new(&vehicle(), &limits(), &quad(), lost, [0.0, PERIOD], &Estimates::NONE)
+fn law(lost: &LostRotor) -> RotorLossLaw {
+    RotorLossLaw::new(&vehicle(), &limits(), &quad(), lost, [0.0, PERIOD], &Estimates::NONE)
 }
 
 fn still(position: Vector3<f32>) -> State {
@@ -27,7 +27,7 @@ fn hover() -> Reference {
 
 /// Moves a rigid body with a drag of `drag`, N m s, about its z for a tick: of what is commanded, a rotor delivers what
 /// it has `left`.
-fn advance(state: &mut State, law: &SpinningLaw, left: &Lost, drag: f32) {
+fn advance(state: &mut State, law: &RotorLossLaw, left: &LostRotor, drag: f32) {
     let share = |index| if index == left.rotor { left.left } else { 1.0 };
     let delivered: Vector4<f32> = quad()
         .effectiveness()
@@ -52,7 +52,7 @@ fn advance(state: &mut State, law: &SpinningLaw, left: &Lost, drag: f32) {
     }
 }
 
-fn fly(law: &mut SpinningLaw, state: &mut State, left: &Lost, drag: f32, ticks: u32) -> f32 {
+fn fly(law: &mut RotorLossLaw, state: &mut State, left: &LostRotor, drag: f32, ticks: u32) -> f32 {
     let mut farthest = 0.0_f32;
     for _ in 0..ticks {
         let _ = law.step(state, &hover(), &Vector4::zeros(), PERIOD);
@@ -65,7 +65,7 @@ fn fly(law: &mut SpinningLaw, state: &mut State, left: &Lost, drag: f32, ticks: 
 #[test]
 fn without_any_of_its_rotors_it_turns_and_holds_its_place() {
     for rotor in 0..4 {
-        let lost = Lost { rotor, left: 0.0 };
+        let lost = LostRotor { rotor, left: 0.0 };
         let (mut law, mut state) = (law(&lost), still(Vector3::zeros()));
         let farthest = fly(&mut law, &mut state, &lost, 7e-3, 1_500);
         assert!(farthest < 1.0 && state.position.norm() < 0.03, "{farthest}, {state:?}");
@@ -77,7 +77,7 @@ fn without_any_of_its_rotors_it_turns_and_holds_its_place() {
 
 #[test]
 fn once_it_turns_its_axis_rests_and_so_do_the_thrusts() {
-    let lost = Lost { rotor: 0, left: 0.0 };
+    let lost = LostRotor { rotor: 0, left: 0.0 };
     let (mut law, mut state) = (law(&lost), still(Vector3::zeros()));
     let _ = fly(&mut law, &mut state, &lost, 7e-3, 3_000);
     let before = (law.commands().clone(), state.angular_velocity);
@@ -103,28 +103,28 @@ fn once_it_turns_its_axis_rests_and_so_do_the_thrusts() {
 #[test]
 fn with_a_part_of_a_rotor_left_it_holds_its_heading_too() {
     for left in [0.3, 0.6] {
-        let lost = Lost { rotor: 1, left };
+        let lost = LostRotor { rotor: 1, left };
         let (mut law, mut state) = (law(&lost), still(Vector3::new(0.5, 0.0, -0.3)));
         let _ = fly(&mut law, &mut state, &lost, 7e-3, 1_500);
         assert!(state.position.norm() < 0.02, "{state:?}");
-        assert!(Heading::of_attitude(&state.attitude).direction().x > 0.99, "{state:?}");
+        assert!(Heading::from_attitude(&state.attitude).direction().x > 0.99, "{state:?}");
     }
 }
 
 #[test]
 fn what_a_rotor_has_left_is_learnt_on() {
-    let thought = Lost { rotor: 0, left: 0.5 };
+    let thought = LostRotor { rotor: 0, left: 0.5 };
     let mut law = law(&thought);
     // Half of the thrust that it was taken to deliver was missing.
     for _ in 0..200 {
         let delivered = 1.0 * law.lost().left / 0.5;
         let missing = delivered - 1.0 * 0.25 / 0.5;
-        law.refine(delivered, missing, PERIOD);
+        law.refine_loss(delivered, missing, PERIOD);
     }
     assert!((law.lost().left - 0.25).abs() < 0.08, "{:?}", law.lost());
     // And of one that is gone, all: then the vehicle turns about another axis.
     for _ in 0..50 {
-        law.refine(1.0, 1.0, PERIOD);
+        law.refine_loss(1.0, 1.0, PERIOD);
     }
     assert_eq!(law.lost().left, 0.0);
     assert!(law.axis.z < 0.98);
@@ -134,7 +134,7 @@ fn what_a_rotor_has_left_is_learnt_on() {
 fn nothing_it_is_told_takes_a_command_out_of_its_range_or_a_wrench_out_of_its_limits() {
     let mut random = Random(7);
     for number in 0..40 {
-        let lost = Lost { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
+        let lost = LostRotor { rotor: number % 4, left: if number % 2 == 0 { 0.0 } else { random.between(0.2, 0.9) } };
         let mut law = law(&lost);
         for _ in 0..500 {
             let size = *[1.0, 30.0, 1e4].get(random.below(3)).unwrap();
@@ -145,11 +145,11 @@ fn nothing_it_is_told_takes_a_command_out_of_its_range_or_a_wrench_out_of_its_li
                 angular_velocity: random.vector(size.min(100.0)),
             };
             let pending = Vector4::repeat(random.between(-1.0, 1.0));
-            let Spinning { mrp, .. } = law.step(&state, &hover(), &pending, PERIOD);
+            let RotorLossStep { mrp, .. } = law.step(&state, &hover(), &pending, PERIOD);
             assert!(mrp.norm() <= 1.001, "{mrp}");
             for (index, (command, rotor)) in law.commands().iter().zip(quad().iter()).enumerate() {
-                let least = if index == lost.rotor && lost.left == 0.0 { 0.0 } else { rotor.thrust_min };
-                assert!((least..=rotor.thrust_max).contains(command), "{command}");
+                let min = if index == lost.rotor && lost.left == 0.0 { 0.0 } else { rotor.thrust_min };
+                assert!((min..=rotor.thrust_max).contains(command), "{command}");
             }
             let Wrench { thrust, torque } = law.delivered();
             assert!(*thrust <= 40.0 && (limits().torque_max - torque.abs()).min() >= 0.0, "{thrust} {torque}");

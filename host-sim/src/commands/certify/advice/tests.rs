@@ -7,7 +7,7 @@ use scenario::Scenario;
 use toml_edit::{DocumentMut, Item, Table, value};
 
 /// A vehicle's file alone.
-const BARE: &str = "name = \"bare\"
+const BARE_VEHICLE: &str = "name = \"bare\"
 [vehicle]
 mass = 0.62
 inertia = [0.0025, 0.0029, 0.0048]
@@ -82,7 +82,7 @@ fn margin(scenario: &Scenario, name: &str) -> f64 {
 #[test]
 fn the_advice_on_an_inequality_is_accepted_and_gives_it_margin() {
     let mut wrong = String::new();
-    for text in [BARE, HUMMINGBIRD, STUDY] {
+    for text in [BARE_VEHICLE, HUMMINGBIRD, STUDY] {
         // For the same references, also where they follow from the vehicle.
         let scenario = Scenario::parse(text, "f").unwrap();
         let bounds = scenario::constants::written(scenario.configuration.bounds().entries());
@@ -112,18 +112,18 @@ fn the_advice_on_an_inequality_is_accepted_and_gives_it_margin() {
 
 #[test]
 fn the_advice_is_accepted_by_a_vehicles_file_alone() {
-    let scenario = Scenario::parse(BARE, "f").unwrap();
+    let scenario = Scenario::parse(BARE_VEHICLE, "f").unwrap();
     for inequality in Certificate::new(&scenario.configuration).unwrap().inequalities() {
         for (path, factor) in steps(of_inequality(inequality.name)) {
-            with(BARE, path, factor).unwrap_or_else(|error| panic!("{}: {error}", inequality.name));
+            with(BARE_VEHICLE, path, factor).unwrap_or_else(|error| panic!("{}: {error}", inequality.name));
         }
     }
 }
 
 #[test]
 fn the_advice_on_paths_flights_and_loops_is_accepted() {
-    use controller_core::certificate::path::Row;
-    let rows = [Row::Fall, Row::Thrust, Row::TurningRate, Row::Torque, Row::Floor, Row::Cone];
+    use controller_core::certificate::path::PathRow;
+    let rows = [PathRow::Fall, PathRow::Thrust, PathRow::TurningRate, PathRow::Torque, PathRow::Floor, PathRow::Cone];
     let lack = |axis| of_loop(&Lack { axis, missed: 0.1, what: Shortfall::Unstable { spectral_radius: 1.1 } });
     let loops = [Axis::Roll, Axis::Yaw, Axis::LateralX, Axis::Vertical].map(lack);
     let texts = rows.map(|row| of_path(row).to_owned()).into_iter().chain(loops).chain([OF_FLIGHT.to_owned()]);
@@ -131,7 +131,7 @@ fn the_advice_on_paths_flights_and_loops_is_accepted() {
         let steps = steps(&advice);
         assert!(!steps.is_empty(), "{advice}");
         for (path, factor) in steps {
-            for text in [BARE, HUMMINGBIRD] {
+            for text in [BARE_VEHICLE, HUMMINGBIRD] {
                 // Only a reference that the file has is ever blamed.
                 if text == HUMMINGBIRD || !path.starts_with("reference.") {
                     with(text, path, factor).unwrap_or_else(|error| panic!("{advice}: {error}"));

@@ -22,7 +22,7 @@ fn the_circle_that_is_promised_certifies_and_a_faster_one_does_not() {
     for text in [HUMMINGBIRD, include_str!("../../../../../vehicles/published/pelican.toml"), PAPER] {
         let text = if text.contains("[reference]") { text.to_owned() } else { format!("{text}\n[reference]\n") };
         let speed = circle(&circling(&text, 0.1)).unwrap().speed;
-        let refusal = |speed: f64| Verdict::of(&circling(&text, speed)).unwrap().refusal();
+        let refusal = |speed: f64| Verdict::judge(&circling(&text, speed)).unwrap().refusal();
         assert_eq!(refusal(0.995 * speed), None, "{speed}");
         assert!(refusal(1.005 * speed).is_some(), "{speed}");
     }

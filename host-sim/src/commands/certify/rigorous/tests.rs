@@ -70,7 +70,7 @@ fn an_inequality_that_rounding_decides_is_named_and_does_not_hold() {
 fn a_reference_that_takes_less_than_what_is_left_does_so_whatever_rounding_did() {
     for scenario in shipped() {
         let Some((sentence, holds)) = along(&scenario) else { continue };
-        let nearest = scenario::along::Along::of(&scenario).unwrap();
+        let nearest = scenario::along::Along::judge(&scenario).unwrap();
         assert!(holds == nearest.holds() && sentence.ends_with("holds\n"), "{}: {sentence}", scenario.name);
         let share = format!("{:.1} %", 100.0 * nearest.taken.share);
         assert!(sentence.contains(&share), "{}: {sentence} {share}", scenario.name);

@@ -16,7 +16,7 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let (vehicle, rotors) = (scenario.configuration.vehicle(), scenario.configuration.rotors().unwrap());
     let (mass, k): (f64, f64) = (vehicle.mass.into(), rotors.iter().next().unwrap().thrust_coefficient.into());
     let drag = Drag { rotor_across: 1.19e-4, rotor_along: 2.32e-4, translational_lift: 3.39e-3, ..Drag::default() };
-    let truth = Truth::of_model(vehicle);
+    let truth = Truth::model(vehicle);
     let (still_air, windy) = (Air::new(Some(rotors), &truth, &Drag::default()), Air::new(Some(rotors), &truth, &drag));
     // Pressed down by the air, as in wind: more than a hover takes.
     let speed = (mass * 12.0 / (4.0 * k)).sqrt();
@@ -28,7 +28,8 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let delivered = Delivered::Speeds(speeds);
     let airspeed = Vector3::new(3.0, -2.0, 1.5);
     let still = Flow { airspeed: Vector3::zeros(), angular_velocity: Vector3::zeros(), ground_effect: 0.0 };
-    let (layout, hubs) = (Layout::of(rotors), Hubs { along: 1.0, across: 1.0, lift: drag.translational_lift / mass });
+    let (layout, hubs) =
+        (Layout::of_rotors(rotors), Hubs { along: 1.0, across: 1.0, lift: drag.translational_lift / mass });
     let (thrust, torque) = still_air.act(&still, &delivered);
     let impulse = Impulse { thrust: thrust.z, torque };
 
@@ -45,6 +46,6 @@ fn rotors_that_turn_unlike_each_other_and_hubs_that_move_act_as_the_simulated_on
     let found = (lifted - bare).z / mass;
     // What the yawing itself lifts besides is (omega_z p)^2, 0.04 of 13 m^2/s^2.
     assert!((found / hubs.lifted(&layout, &airspeed) - 1.0).abs() < 0.004, "{found}");
-    let (found, expected) = (turned - dragged, hubs.turned(&layout, &airspeed, 1.2) * mass);
+    let (found, expected) = (turned - dragged, hubs.torque(&layout, &airspeed, 1.2) * mass);
     assert!((found - expected).norm() < 1e-6 * found.norm() && found.norm() > 1e-3, "{found} {expected}");
 }

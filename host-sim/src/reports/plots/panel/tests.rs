@@ -44,7 +44,7 @@ fn labels_stand_beside_the_lines_of_bounds_and_apart() {
         let lines: Vec<f64> = shapes
             .iter()
             .filter_map(|shape| match shape {
-                Shape::Stroke { points, line: Line::Dashed, .. } => Some(points[0].1),
+                Shape::Stroke { points, line: LinePattern::Dashed, .. } => Some(points[0].1),
                 _ => None,
             })
             .collect();

@@ -17,13 +17,13 @@ fn track() -> Track {
 fn decoded(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut decoder = gif::DecodeOptions::new().read_info(bytes).unwrap();
     let size = (usize::from(decoder.width()), usize::from(decoder.height()));
-    assert_eq!(size, (SIZE.0 as usize, SIZE.1 as usize));
-    let (mut whole, mut pictures) = (vec![SAME; size.0 * size.1], Vec::new());
+    assert_eq!(size, (SIZE_PIXELS.0 as usize, SIZE_PIXELS.1 as usize));
+    let (mut whole, mut pictures) = (vec![UNCHANGED_ENTRY; size.0 * size.1], Vec::new());
     while let Some(frame) = decoder.read_next_frame().unwrap() {
         for (row, line) in frame.buffer.chunks(usize::from(frame.width)).enumerate() {
             let start = (usize::from(frame.top) + row) * size.0 + usize::from(frame.left);
             for (pixel, place) in whole[start..].iter_mut().zip(line) {
-                *pixel = if *place == SAME { *pixel } else { *place };
+                *pixel = if *place == UNCHANGED_ENTRY { *pixel } else { *place };
             }
         }
         pictures.push(whole.clone());
@@ -43,11 +43,11 @@ fn the_gif_decodes_to_the_pictures_that_were_drawn() {
     let shown = &poses[..=200];
     let last = Table::new().places(&picture(&view(shown, &gate), &gate, shown, 200, 1.0));
     assert_eq!(pictures.last(), Some(&last));
-    assert!(!last.contains(&SAME), "a colour of the table stands for what has not changed");
+    assert!(!last.contains(&UNCHANGED_ENTRY), "a colour of the table stands for what has not changed");
     assert_ne!(last, Table::new().places(&picture(&view(shown, &gate), &[], shown, 200, 1.0)), "the gate is not there");
     // The vehicle and both paths are there, in their own colours.
     for place in [0, 1, 3] {
-        assert!(last.contains(&((1 + place) * STEPS as u8)), "{:?} is nowhere", COLORS[place as usize]);
+        assert!(last.contains(&((1 + place) * COLOR_STEPS as u8)), "{:?} is nowhere", DRAWN_COLORS[place as usize]);
     }
 }
 

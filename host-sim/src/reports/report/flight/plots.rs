@@ -1,6 +1,8 @@
 //! The plots of a flight: which columns, against which bounds.
 
-use crate::flight::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR, PUBLISHED_THRUST, PUBLISHED_TORQUE};
+use crate::flight::claims::{
+    PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR_M, PUBLISHED_THRUST_N, PUBLISHED_TORQUE_N_M,
+};
 use crate::reports::report::plot::{Bound, Color, Curve, Plot};
 use crate::reports::report::track::Track;
 use controller_core::certificate::Certificate;
@@ -8,7 +10,7 @@ use controller_core::certificate::form::Interval;
 use scenario::Scenario;
 
 /// What the vehicle has, which may be far from what is ever commanded.
-const LIMIT: &str = "vehicle's limit";
+const LIMIT_LABEL: &str = "vehicle's limit";
 
 /// Every plot for which `track` has columns; cut commands only where there are any.
 #[must_use]
@@ -33,7 +35,7 @@ fn motion(scenario: &Scenario) -> Vec<Plot> {
         Plot::new("Position", "m", [flown(["px", "py", "pz"]), desired(["pdx", "pdy", "pdz"])].concat()),
         Plot::new("Position error", "m", vec![Curve::new("position_error", "|p − p_d|", Color::Blue)])
             .logarithmic()
-            .within(published(PUBLISHED_POSITION_ERROR)),
+            .within(published(PUBLISHED_POSITION_ERROR_M)),
         Plot::new(
             "Yaw",
             "°",
@@ -58,28 +60,30 @@ fn commands(scenario: &Scenario, certificate: &Certificate) -> Vec<Plot> {
     let limits = scenario.configuration.limits();
     let mut thrust = interval(certificate.thrust(), "proven", Color::Ink);
     if scenario.is_papers() {
-        thrust.extend([PUBLISHED_THRUST.0, PUBLISHED_THRUST.1].map(|value| ink(value, "published")));
+        thrust.extend([PUBLISHED_THRUST_N.0, PUBLISHED_THRUST_N.1].map(|value| ink(value, "published")));
     }
-    thrust.push(ink(f64::from(limits.thrust_max), LIMIT));
+    thrust.push(ink(f64::from(limits.thrust_max), LIMIT_LABEL));
     let mut torque = both(certificate.torque().into(), "proven");
     if scenario.is_papers() {
-        torque.extend(both(PUBLISHED_TORQUE, "published"));
+        torque.extend(both(PUBLISHED_TORQUE_N_M, "published"));
     }
-    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT));
+    torque.extend(both(limits.torque_max.map(f64::from).into(), LIMIT_LABEL));
     let mut plots = vec![
         Plot::new("Thrust", "N", vec![Curve::new("thrust", "thrust", Color::Blue)]).from_zero().within(thrust),
         Plot::new("Torques", "N m", axes(["tau_x", "tau_y", "tau_z"])).within(torque),
         Plot::new("Commands cut by the limits", "", vec![Curve::new("clipped", "1: cut", Color::Blue)]),
     ];
     if let Some(rotors) = scenario.configuration.rotors() {
-        let curve =
-            |rotor: usize| Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::of(rotor));
+        let curve = |rotor: usize| {
+            Curve::new(format!("rotor_{}", rotor + 1), format!("rotor {}", rotor + 1), Color::at_place(rotor))
+        };
         let proven = (0..rotors.len()).filter_map(|rotor| Some((rotor, certificate.rotor(rotor)?)));
         let mut bounds: Vec<Bound> = proven
-            .flat_map(|(rotor, proven)| interval(proven, &format!("rotor {}, proven", rotor + 1), Color::of(rotor)))
+            .flat_map(|(rotor, proven)| {
+                interval(proven, &format!("rotor {}, proven", rotor + 1), Color::at_place(rotor))
+            })
             .collect();
-        let given =
-            rotors.iter().map(|rotor| Interval { least: rotor.thrust_min.into(), greatest: rotor.thrust_max.into() });
+        let given = rotors.iter().map(|rotor| Interval { min: rotor.thrust_min.into(), max: rotor.thrust_max.into() });
         bounds.extend(given.take(1).flat_map(|given| interval(given, "a rotor's own limit", Color::Ink)));
         plots.push(Plot::new("Rotor thrusts", "N", (0..rotors.len()).map(curve).collect()).from_zero().within(bounds));
     }
@@ -99,7 +103,7 @@ fn inside(scenario: &Scenario) -> Vec<Plot> {
         columns
             .into_iter()
             .enumerate()
-            .map(|(place, (column, label))| Curve::new(column, label, Color::of(place)))
+            .map(|(place, (column, label))| Curve::new(column, label, Color::at_place(place)))
             .collect()
     };
     let mut filters: Vec<Curve> =
@@ -148,7 +152,7 @@ fn surroundings() -> Vec<Plot> {
 /// Curves of a vector's components.
 fn axes(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis))).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis))).collect()
 }
 
 /// Curves that stay visible beneath their reference once the two agree.
@@ -159,25 +163,25 @@ fn flown(columns: [&str; 3]) -> Vec<Curve> {
 /// What was asked of them.
 fn desired(columns: [&str; 3]) -> Vec<Curve> {
     let named = columns.into_iter().zip(["x asked", "y asked", "z asked"]).enumerate();
-    named.map(|(axis, (column, name))| Curve::new(column, name, Color::of(axis)).dashed()).collect()
+    named.map(|(axis, (column, name))| Curve::new(column, name, Color::at_place(axis)).dashed()).collect()
 }
 
 fn ink(value: f64, label: &str) -> Bound {
-    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT }
+    Bound { value, label: label.to_owned(), color: Color::Ink, always: label != LIMIT_LABEL }
 }
 
-fn interval(Interval { least, greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
+fn interval(Interval { min: least, max: greatest }: Interval, label: &str, color: Color) -> Vec<Bound> {
     [least, greatest].map(|value| Bound { value, label: label.to_owned(), color, always: true }).into()
 }
 
 /// A level on each side of zero for each axis; equal levels are one.
 fn both(levels: [f64; 3], label: &str) -> Vec<Bound> {
     let sides = |level: f64, named: String, color| {
-        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT })
+        [level, -level].map(|value| Bound { value, label: named.clone(), color, always: label != LIMIT_LABEL })
     };
     if levels.iter().all(|level| *level == levels[0]) {
         return sides(levels[0], format!("each, {label}"), Color::Ink).into();
     }
     let named = levels.into_iter().zip(["x", "y", "z"]).enumerate();
-    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::of(axis))).collect()
+    named.flat_map(|(axis, (level, name))| sides(level, format!("{name}, {label}"), Color::at_place(axis))).collect()
 }

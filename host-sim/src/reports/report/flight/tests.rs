@@ -8,9 +8,9 @@ use serde_json::Value;
 /// The page of a flight of `text`, and log.csv of the same flight.
 fn flown(text: &str) -> (Page, String) {
     let scenario = Scenario::parse(text, "test").unwrap();
-    let verdict = Verdict::of(&scenario).unwrap();
+    let verdict = Verdict::judge(&scenario).unwrap();
     let mut flight = ClosedLoop::new(&scenario).unwrap();
-    let (mut seen, mut recorder, mut rows) = (Flown::new(&scenario), recorder(&scenario), Vec::new());
+    let (mut seen, mut recorder, mut rows) = (FlightExtremes::new(&scenario), recorder(&scenario), Vec::new());
     for _ in 0..scenario.timing.ticks {
         let tick = flight.tick().unwrap();
         log::write_row(&mut rows, &tick).unwrap();

@@ -4,7 +4,7 @@ use crate::reports::report::prose::Cell;
 use crate::reports::report::replay::Body;
 
 /// Text of a file that tries to break out of a page.
-const ATTACK: &str = "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\"> & <!-- é";
+const HOSTILE_TEXT: &str = "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\"> & <!-- é";
 
 fn page(text: &str) -> Page {
     let mut table = Table::new(text, &[text, "verdict"]);
@@ -59,7 +59,7 @@ fn data(html: &str) -> Value {
 
 #[test]
 fn text_from_files_adds_no_element_and_is_read_back_as_it_was() {
-    let (attacked, harmless) = (page(ATTACK).html(), page(&"h".repeat(ATTACK.chars().count())).html());
+    let (attacked, harmless) = (page(HOSTILE_TEXT).html(), page(&"h".repeat(HOSTILE_TEXT.chars().count())).html());
     assert_eq!(elements(&attacked), elements(&harmless));
     assert!(!attacked.contains("onerror=\"") && !attacked.contains("<img"), "{attacked}");
     let data = data(&attacked);
@@ -71,7 +71,7 @@ fn text_from_files_adds_no_element_and_is_read_back_as_it_was() {
         "/replays/0/bodies/0/label",
         "/distributions/0/groups/0/label",
     ] {
-        assert_eq!(data.pointer(place).and_then(Value::as_str), Some(ATTACK), "{place}");
+        assert_eq!(data.pointer(place).and_then(Value::as_str), Some(HOSTILE_TEXT), "{place}");
     }
 }
 
@@ -143,8 +143,8 @@ fn without_the_program_every_plot_and_the_path_are_pictures_in_the_pages_colours
 #[test]
 fn colours_of_curves_stand_out_from_the_ground_they_are_drawn_on() {
     // WCAG's contrast of 3 to 1 for what is not text; orange is for the reference's broad line, which its key names.
-    let light = within(STYLE, ":root {", "}");
-    let dark = within(STYLE, ":root:not([data-print]) {", "}");
+    let light = within(STYLE_SHEET, ":root {", "}");
+    let dark = within(STYLE_SHEET, ":root:not([data-print]) {", "}");
     for (name, scheme) in [("light", light), ("dark", dark)] {
         let luminance = |color: &str| {
             let hex = within(scheme, &format!("--{color}: #"), ";");

@@ -16,7 +16,7 @@ fn peak(at_us: u64) -> (String, Kept, Read) {
 /// The record of so many ticks of 10 ms.
 fn recorded(ticks: u64, columns: Vec<(String, Kept, Read)>) -> Track {
     let mut tick = Flight::new(&Scenario::paper().unwrap()).unwrap().tick().unwrap();
-    let mut recorder = Recorder::new(ticks, 0.01, columns);
+    let mut recorder = ReportRecorder::new(ticks, 0.01, columns);
     for number in 0..ticks {
         tick.time_us = number * 10_000;
         recorder.observe(&tick);
@@ -26,20 +26,20 @@ fn recorded(ticks: u64, columns: Vec<(String, Kept, Read)>) -> Track {
 
 #[test]
 fn every_tick_of_a_short_flight_is_a_row() {
-    let track = recorded(MOST_ROWS, vec![time(Kept::Samples), peak(120_000)]);
+    let track = recorded(ROWS_MAX, vec![time(Kept::Samples), peak(120_000)]);
     let (times, peaks) = (track.column("t").unwrap(), track.column("peak").unwrap());
-    assert_eq!((times.len() as u64, track.step), (MOST_ROWS, 0.01));
+    assert_eq!((times.len() as u64, track.step), (ROWS_MAX, 0.01));
     assert!(times.iter().enumerate().all(|(row, time)| *time == (row as f64 * 0.01) as f32));
     assert_eq!(peaks.iter().position(|value| *value == 7.0), Some(12));
 }
 
 #[test]
 fn a_long_flight_keeps_every_peak_and_stays_bounded() {
-    for ticks in [MOST_ROWS + 1, 12_345, 360_001] {
+    for ticks in [ROWS_MAX + 1, 12_345, 360_001] {
         for at in [0, 1, ticks / 3, ticks - 2, ticks - 1] {
             let track = recorded(ticks, vec![time(Kept::Samples), time(Kept::Extremes), peak(at * 10_000)]);
             let rows = track.columns[0].1.len();
-            assert!(rows as u64 <= MOST_ROWS + 2, "{ticks}: {rows} rows");
+            assert!(rows as u64 <= ROWS_MAX + 2, "{ticks}: {rows} rows");
             assert!(track.columns.iter().all(|(_, values)| values.len() == rows));
             let peaks = &track.columns[2].1;
             assert!(peaks.contains(&7.0), "{ticks}: the peak at {at} is lost");
@@ -64,7 +64,7 @@ fn yaw_has_no_jumps_of_a_turn_and_ends_beside_the_desired_one() {
     let yaw: (String, Kept, Read) = ("yaw".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.yaw));
     let asked: (String, Kept, Read) =
         ("yaw_d".to_owned(), Kept::Samples, Box::new(|instant: &Instant| instant.desired_yaw));
-    let mut recorder = Recorder::new(scenario.timing.ticks, 0.01, vec![yaw, asked]);
+    let mut recorder = ReportRecorder::new(scenario.timing.ticks, 0.01, vec![yaw, asked]);
     for _ in 0..scenario.timing.ticks {
         recorder.observe(&flight.tick().unwrap());
     }

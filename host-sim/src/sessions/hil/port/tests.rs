@@ -1,5 +1,5 @@
 use super::*;
-use crate::sessions::hil::{End, HilError, Session, serve};
+use crate::sessions::hil::{End, HilError, HilSession, serve};
 use crate::sessions::messages::decode;
 use firmware::frames;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
@@ -10,18 +10,18 @@ use std::io::Read;
 use std::path::Path;
 
 /// For waits that are to end in vain.
-const PATIENCE: Duration = Duration::from_millis(300);
+const FUTILE_WAIT: Duration = Duration::from_millis(300);
 
 /// For waits that only a hang makes long.
-const LONG: Duration = Duration::from_secs(30);
+const HANG_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A port and the flight controller's end of its connection.
-fn connected(patience: Duration) -> (Port, TcpStream) {
+fn connected(patience: Duration) -> (SimulatorPort, TcpStream) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Connect(listener.local_addr().unwrap().to_string());
-    let port = Port::open(&address, patience, &Interrupt::default()).unwrap();
+    let port = SimulatorPort::open(&address, patience, &Interrupt::default()).unwrap();
     let board = listener.accept().unwrap().0;
-    board.set_read_timeout(Some(LONG)).unwrap();
+    board.set_read_timeout(Some(HANG_TIMEOUT)).unwrap();
     (port, board)
 }
 
@@ -50,13 +50,13 @@ fn received<D: MessageData>(board: &mut TcpStream) -> Option<D> {
 
 #[test]
 fn a_command_is_found_behind_noise_other_messages_and_in_pieces() {
-    let (mut port, mut board) = connected(LONG);
+    let (mut port, mut board) = connected(HANG_TIMEOUT);
     board.write_all(&[0, 1, 2, 0x55]).unwrap();
     board.write_all(&bytes(&HEARTBEAT_DATA::default())).unwrap();
     let frame = command(7_000, 0.5);
     let (begin, end) = frame.split_at(11);
     board.write_all(begin).unwrap();
-    std::thread::sleep(PAUSE);
+    std::thread::sleep(POLL_PERIOD);
     board.write_all(end).unwrap();
     board.write_all(&command(17_000, 0.25)).unwrap();
     let first = port.receive().unwrap().unwrap();
@@ -66,10 +66,10 @@ fn a_command_is_found_behind_noise_other_messages_and_in_pieces() {
 
 #[test]
 fn a_silent_side_is_given_up_and_one_that_goes_is_no_error() {
-    let (mut port, board) = connected(PATIENCE);
+    let (mut port, board) = connected(FUTILE_WAIT);
     let started = Instant::now();
-    assert!(matches!(port.receive(), Err(PortError::Silent(PATIENCE))));
-    assert!((PATIENCE..LONG).contains(&started.elapsed()), "{:?}", started.elapsed());
+    assert!(matches!(port.receive(), Err(PortError::Silent(FUTILE_WAIT))));
+    assert!((FUTILE_WAIT..HANG_TIMEOUT).contains(&started.elapsed()), "{:?}", started.elapsed());
     drop(board);
     assert!(port.receive().unwrap().is_none());
 }
@@ -79,11 +79,13 @@ fn no_connection_is_waited_for_without_end() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     for address in [Address::Connect(free.clone()), Address::Listen(free)] {
         let started = Instant::now();
-        let Err(PortError::NoConnection(who, waited, _)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
+        let Err(PortError::NoConnection(who, waited, _)) =
+            SimulatorPort::open(&address, FUTILE_WAIT, &Interrupt::default())
+        else {
             panic!("connected")
         };
-        assert_eq!((who, waited), (address, PATIENCE));
-        assert!(started.elapsed() < LONG);
+        assert_eq!((who, waited), (address, FUTILE_WAIT));
+        assert!(started.elapsed() < HANG_TIMEOUT);
     }
 }
 
@@ -97,25 +99,25 @@ fn a_side_that_does_not_even_refuse_is_given_up_in_time_and_for_an_interrupt() {
     assert!(waiting.len() < 1000);
     let address = Address::Connect(address.to_string());
     let started = Instant::now();
-    let Err(PortError::NoConnection(..)) = Port::open(&address, PATIENCE, &Interrupt::default()) else {
+    let Err(PortError::NoConnection(..)) = SimulatorPort::open(&address, FUTILE_WAIT, &Interrupt::default()) else {
         panic!("found")
     };
     let interrupt = Interrupt::default();
     let asking = interrupt.clone();
     let user = std::thread::spawn(move || {
-        std::thread::sleep(PATIENCE);
+        std::thread::sleep(FUTILE_WAIT);
         asking.ask();
     });
-    assert!(matches!(Port::open(&address, 4 * LONG, &interrupt), Err(PortError::Interrupted(_))));
+    assert!(matches!(SimulatorPort::open(&address, 4 * HANG_TIMEOUT, &interrupt), Err(PortError::Interrupted(_))));
     user.join().unwrap();
-    assert!(started.elapsed() < LONG, "{:?}", started.elapsed());
+    assert!(started.elapsed() < HANG_TIMEOUT, "{:?}", started.elapsed());
 }
 
 #[test]
 fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_withheld() {
-    let (mut port, mut board) = connected(LONG);
+    let (mut port, mut board) = connected(HANG_TIMEOUT);
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let session = Session { duration: Some(0.03), pose_until: Some(0.02), speed: None };
+    let session = HilSession { duration: Some(0.03), pose_until: Some(0.02), speed: None };
     let board = std::thread::spawn(move || {
         for tick in 0..3 {
             let time = 5_000 + 10_000 * tick;
@@ -140,13 +142,13 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
 
 /// Everything that a board receives in a session with sensors at 1 kHz, whose commands come a little irregularly.
 fn received_in_a_noisy_session() -> Vec<u8> {
-    const TICKS: u64 = 20;
-    let (mut port, mut board) = connected(LONG);
+    const TICK_COUNT: u64 = 20;
+    let (mut port, mut board) = connected(HANG_TIMEOUT);
     let study = std::fs::read_to_string("../vehicles/study.toml").unwrap();
     let scenario = Scenario::parse(&format!("{study}\n[estimator]\n"), "test.toml").unwrap();
     let board = std::thread::spawn(move || {
         let mut bytes = Vec::new();
-        for tick in 0..TICKS {
+        for tick in 0..TICK_COUNT {
             let time = 5_000 + 10_000 * tick + 3 * (tick % 4);
             board.write_all(&command(time, 0.9)).unwrap();
             let mut ends = 0;
@@ -161,7 +163,7 @@ fn received_in_a_noisy_session() -> Vec<u8> {
         }
         bytes
     });
-    let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed: None };
+    let session = HilSession { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed: None };
     serve(&scenario, &mut port, &session, None, None).unwrap();
     board.join().unwrap()
 }
@@ -187,33 +189,33 @@ fn a_session_with_noise_is_the_same_to_the_last_bit_each_time_and_says_how_sure_
 
 #[test]
 fn a_session_is_held_to_a_speed_of_this_desks_time() {
-    const TICKS: u64 = 20;
+    const TICK_COUNT: u64 = 20;
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
     let took = |speed| {
-        let (mut port, mut board) = connected(LONG);
+        let (mut port, mut board) = connected(HANG_TIMEOUT);
         let board = std::thread::spawn(move || {
-            for tick in 1..=TICKS {
+            for tick in 1..=TICK_COUNT {
                 board.write_all(&command(10_000 * tick, 0.0)).unwrap();
                 while received::<HIL_SENSOR_DATA>(&mut board).is_none() {}
             }
         });
-        let session = Session { duration: Some(0.01 * TICKS as f64), pose_until: None, speed };
+        let session = HilSession { duration: Some(0.01 * TICK_COUNT as f64), pose_until: None, speed };
         let summary = serve(&scenario, &mut port, &session, None, None).unwrap();
         board.join().unwrap();
-        assert_eq!(summary.pace.ticks(), TICKS);
+        assert_eq!(summary.pace.ticks(), TICK_COUNT);
         summary.took
     };
     // 0.2 s of the vehicle's; the first tick starts the clock.
     let (free, held) = (took(None), took(Some(0.25)));
-    assert!((Duration::from_millis(760)..LONG).contains(&held) && free < held, "{free:?} {held:?}");
+    assert!((Duration::from_millis(760)..HANG_TIMEOUT).contains(&held) && free < held, "{free:?} {held:?}");
 }
 
 #[test]
 fn a_command_that_is_no_number_ends_the_session_in_words() {
-    let (mut port, mut board) = connected(LONG);
+    let (mut port, mut board) = connected(HANG_TIMEOUT);
     board.write_all(&command(5_000, f32::NAN)).unwrap();
     let scenario = Scenario::load(Path::new("../vehicles/study.toml")).unwrap();
-    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &Session::default(), None, None) else {
+    let Err(HilError::Flight(what)) = serve(&scenario, &mut port, &HilSession::default(), None, None) else {
         panic!("flown")
     };
     assert!(what.contains("0 to 1"), "{what}");

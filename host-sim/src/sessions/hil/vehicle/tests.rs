@@ -8,7 +8,7 @@ fn study() -> Scenario {
 }
 
 fn all(command: f32) -> Controls {
-    Controls { time: 0, armed: true, commands: [command; MOTORS] }
+    Controls { time: 0, armed: true, commands: [command; MOTOR_COUNT] }
 }
 
 /// The command that hovers: u^2 of the rotors' greatest thrust is the weight.

@@ -72,7 +72,7 @@ fn a_gain_is_set_refused_or_certified_and_flown_after_a_restart() {
     flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
     flown.pass(14.8);
     assert_eq!(flown.mode(), Mode::Holding, "{:?}", flown.sitl.texts);
-    assert!((flown.sitl.world.state().position.z - 1.5).abs() < 0.05);
+    assert!((flown.sitl.hardware.state().position.z - 1.5).abs() < 0.05);
 }
 
 #[test]

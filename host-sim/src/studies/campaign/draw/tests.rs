@@ -6,7 +6,7 @@ use scenario::campaign::Campaign;
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
 
 /// Every range open.
-const EVERYTHING: &str = "[campaign]\ngust = 2.0\nturbulence = 1.0\npose_delay = 0.05\nmass = 0.1\ninertia = 0.2\n\
+const EVERY_RANGE: &str = "[campaign]\ngust = 2.0\nturbulence = 1.0\npose_delay = 0.05\nmass = 0.1\ninertia = 0.2\n\
     centre_of_mass = 0.01\nthrust_scale = 0.15\nrotor_scales = 0.05\n\
     rotor_failures = 0.5\nthrust_left = [0.1, 0.6]\n";
 
@@ -21,7 +21,7 @@ fn drawn(scenario: &Scenario, number: u64) -> Scenario {
 
 #[test]
 fn a_draw_is_of_its_seed_and_number_alone() {
-    let scenario = hummingbird(EVERYTHING);
+    let scenario = hummingbird(EVERY_RANGE);
     let ranges = &scenario.campaign.ranges;
     for number in 0..20 {
         let thrown = circumstances(&scenario, ranges, 7, number);
@@ -43,7 +43,7 @@ fn flight_3_stays_what_it_is() {
 #[test]
 fn a_range_that_changes_leaves_the_other_draws_as_they_are() {
     let plain = drawn(&hummingbird("[campaign]\n"), 5);
-    let open = drawn(&hummingbird(EVERYTHING), 5);
+    let open = drawn(&hummingbird(EVERY_RANGE), 5);
     assert_eq!(plain.initial, open.initial);
     assert_eq!(plain.reality.wind.unwrap().steady, open.reality.wind.unwrap().steady);
     let (plain, open) = (plain.reality.sensors.unwrap(), open.reality.sensors.unwrap());
@@ -53,9 +53,9 @@ fn a_range_that_changes_leaves_the_other_draws_as_they_are() {
 
 #[test]
 fn draws_fill_their_ranges_and_stay_within_them() {
-    let scenario = hummingbird(EVERYTHING);
+    let scenario = hummingbird(EVERY_RANGE);
     let ranges = scenario.campaign.ranges;
-    let model = Truth::of_model(scenario.configuration.vehicle());
+    let model = Truth::model(scenario.configuration.vehicle());
     // Each quantity over its range.
     let mut greatest = [0.0_f64; 12];
     for number in 0..2000 {
@@ -117,7 +117,7 @@ fn what_the_file_says_of_sensors_stands_but_for_the_seed() {
 
 #[test]
 fn as_many_rotors_fail_as_are_to_each_alike_and_soon_enough() {
-    let scenario = hummingbird(EVERYTHING);
+    let scenario = hummingbird(EVERY_RANGE);
     let failures: Vec<Failure> = (0..2000).filter_map(|number| drawn(&scenario, number).reality.failure).collect();
     assert!((900..1100).contains(&failures.len()), "{}", failures.len());
     for rotor in 0..4 {

@@ -1,16 +1,16 @@
 //! Campaigns of short flights: the same bytes at any number of threads, in any split, after any interruption.
 
 use super::super::batches;
-use super::super::manifest::{CHUNK, MANIFEST};
-use super::super::step::longest;
-use super::super::store::{REPORT, RESULT, SCENARIO};
+use super::super::manifest::{CHUNK_FLIGHTS, MANIFEST_FILE};
+use super::super::step::with_longest_step;
+use super::super::store::{REPORT_FILE, RESULT_FILE, SCENARIO_FILE};
 use super::*;
 use crate::output::whole_file::WholeFile;
 use std::fs;
 use std::path::PathBuf;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
-const FLIGHTS: u64 = 4 * CHUNK + 7;
+const FLIGHT_COUNT: u64 = 4 * CHUNK_FLIGHTS + 7;
 
 /// Flights that are too short to get anywhere.
 fn text() -> String {
@@ -23,16 +23,16 @@ fn directory(test: &str) -> PathBuf {
     path
 }
 
-fn source(text: String) -> Source {
-    Source::new(longest(&Scenario::parse(&text, "f").unwrap()), text, "f".to_owned()).unwrap()
+fn source(text: String) -> CampaignSource {
+    CampaignSource::new(with_longest_step(&Scenario::parse(&text, "f").unwrap()), text, "f".to_owned()).unwrap()
 }
 
-fn fly(source: &Source, orders: &Orders, directory: &Path) -> Result<Summary, CampaignError> {
+fn fly(source: &CampaignSource, orders: &Orders, directory: &Path) -> Result<Summary, CampaignError> {
     campaign(source, &LawChoice::Ours, orders, directory, &Interrupt::default())
 }
 
 fn orders(part: u64, parts: u64) -> Orders {
-    Orders { flights: FLIGHTS, seed: 5, shard: (part, parts) }
+    Orders { flights: FLIGHT_COUNT, seed: 5, shard: (part, parts) }
 }
 
 fn fly_on(threads: usize, orders: &Orders, directory: &Path) -> Summary {
@@ -59,8 +59,8 @@ fn names(directory: &Path) -> Vec<String> {
 fn any_number_of_threads_and_shards_gives_the_same_bytes() {
     let whole = directory("whole");
     let summary = fly_on(1, &orders(1, 1), &whole);
-    assert_eq!((summary.flights, summary.beyond, summary.holds), (FLIGHTS, 0, false), "{summary}");
-    assert_eq!(names(&whole), [RESULT, MANIFEST, REPORT, SCENARIO, SUMMARY]);
+    assert_eq!((summary.flights, summary.beyond, summary.holds), (FLIGHT_COUNT, 0, false), "{summary}");
+    assert_eq!(names(&whole), [RESULT_FILE, MANIFEST_FILE, REPORT_FILE, SCENARIO_FILE, SUMMARY_FILE]);
     let expected = files(&whole);
     for threads in [2, 3] {
         let again = directory("threads");
@@ -88,7 +88,7 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     fly_on(2, &orders(1, 1), &whole);
     // As an end of the power leaves it: a chunk that is there, one that is damaged, and one that was being written.
     let source = source(text());
-    let manifest = Manifest::new(&source.scenario, &source.text, FLIGHTS, 5, (1, 1));
+    let manifest = Manifest::new(&source.scenario, &source.text, FLIGHT_COUNT, 5, (1, 1));
     let store = Store::open(&again, &manifest, &source.text).unwrap();
     let flown = Store::complete(&whole).unwrap().1;
     let kept = flown[1].clone();
@@ -111,7 +111,7 @@ fn what_was_finished_is_not_flown_again_and_what_is_damaged_is() {
     assert!((0..arrow).step_by(13).all(|end| part(&sealed[..end]).is_none()));
     let there = fs::metadata(again.join("parts/000001.arrow")).unwrap().modified().unwrap();
     let (verdict, none) = (source.verdict().unwrap(), Interrupt::default());
-    let ours = Flier::new(&LawChoice::Ours, &source.scenario, verdict.certified()).unwrap();
+    let ours = LawOnVehicle::new(&LawChoice::Ours, &source.scenario, verdict.certified()).unwrap();
     assert_eq!(Chunks::new(&source, &ours, verdict.certificate(), &store, &none).fly().unwrap(), flown);
     // One writes into a directory at a time.
     drop(store);
@@ -135,10 +135,10 @@ fn a_directory_is_of_one_campaign() {
     refuse(&Orders { flights: 61, ..few }, text(), "not the same number of flights (60 and 61)");
     refuse(&Orders { shard: (1, 2), ..few }, text(), "not the same shard ([1,1] and [1,2])");
     refuse(&few, format!("{}# Another.\n", text()), "not the same scenario;");
-    fs::write(first.join(MANIFEST), "{}").unwrap();
+    fs::write(first.join(MANIFEST_FILE), "{}").unwrap();
     let error = fly(&source(text()), &few, &first).unwrap_err().to_string();
     assert!(error.ends_with("campaign.json: is no campaign's of this program"), "{error}");
-    fs::write(first.join(MANIFEST), &before[1].1).unwrap();
+    fs::write(first.join(MANIFEST_FILE), &before[1].1).unwrap();
     assert_eq!(files(&first), before);
     fs::remove_dir_all(&first).unwrap();
 }
@@ -147,8 +147,8 @@ fn a_directory_is_of_one_campaign() {
 fn what_cannot_be_written_in_the_end_is_found_before_anything_is_flown() {
     let out = directory("taken");
     fly_on(1, &orders(1, 1), &out);
-    fs::remove_file(out.join(RESULT)).unwrap();
-    fs::create_dir(out.join(RESULT)).unwrap();
+    fs::remove_file(out.join(RESULT_FILE)).unwrap();
+    fs::create_dir(out.join(RESULT_FILE)).unwrap();
     let error = fly(&source(text()), &orders(1, 1), &out).unwrap_err().to_string();
     assert!(error.contains("campaign.arrow: cannot be written"), "{error}");
     assert_eq!(fs::read_dir(out.join("parts")).unwrap().count(), 0);
@@ -158,7 +158,7 @@ fn what_cannot_be_written_in_the_end_is_found_before_anything_is_flown() {
 #[test]
 fn a_scenario_that_nothing_is_thrown_from_is_named_by_its_file() {
     let (text, out) = (format!("{HUMMINGBIRD}\n[ground]\nheight = 0.0\n"), directory("grounded"));
-    let grounded = Source::new(Scenario::parse(&text, "f").unwrap(), text, "mine.toml".to_owned());
+    let grounded = CampaignSource::new(Scenario::parse(&text, "f").unwrap(), text, "mine.toml".to_owned());
     let flown = grounded.and_then(|source| fly(&source, &orders(1, 1), &out));
     let error = flown.unwrap_err().to_string();
     assert!(error.starts_with("mine.toml: ground: a campaign throws"), "{error}");
@@ -184,7 +184,7 @@ fn shards_that_do_not_belong_together_are_refused() {
     refuse(&[one, other], "not the same seed (1 and 9)");
     refuse(&[one, other], &format!("{}: merge: expects each of the shards of one campaign once", other.display()));
     refuse(&[one, &out], "holds no campaign: there is no campaign.json");
-    fs::remove_file(two.join(RESULT)).unwrap();
+    fs::remove_file(two.join(RESULT_FILE)).unwrap();
     refuse(&[one, two], "is not complete: campaign.arrow is missing or damaged");
     shards.iter().for_each(|directory| fs::remove_dir_all(directory).unwrap());
 }

@@ -2,7 +2,7 @@
 
 use super::super::manifest::Manifest;
 use super::super::outcome::Outcome;
-use super::super::rows::{Row, batch};
+use super::super::rows::{FlightRow, batch};
 use super::*;
 use crate::flight::Flight;
 use scenario::Scenario;
@@ -16,17 +16,17 @@ type Flown = (Option<usize>, Option<(usize, f64)>, f64, f64);
 fn losses(flights: &[Flown]) -> Losses {
     let text = include_str!("../../../../../vehicles/hummingbird.toml").replace("duration = 40.0", "duration = 1.0");
     let scenario = Scenario::parse(&text, "f").unwrap();
-    let verdict = Verdict::of(&scenario).unwrap();
-    let outcome = Outcome::of(&scenario, Flight::new(&scenario).unwrap(), verdict.certificate());
+    let verdict = Verdict::judge(&scenario).unwrap();
+    let outcome = Outcome::judge(&scenario, Flight::new(&scenario).unwrap(), verdict.certificate());
     let row = |(number, (failed, found, height_lost, final_error)): (u64, &Flown)| {
         let failure = failed.map(|rotor| Failure { rotor, time: 10.0, thrust_left: 0.0 });
         let mut rotor = outcome.rotor;
         (rotor.failure, rotor.found) = (failure, *found);
         (rotor.height_lost, rotor.distance) = (*height_lost, 2.0 * final_error);
-        Row::new(number, &scenario, Outcome { rotor, final_error: *final_error, ..outcome })
+        FlightRow::new(number, &scenario, Outcome { rotor, final_error: *final_error, ..outcome })
     };
-    let rows: Vec<Row> = (100..).zip(flights).map(row).collect();
-    Losses::of(&[batch(&rows, &Manifest::new(&scenario, &text, 5, 0, (1, 1))).unwrap()])
+    let rows: Vec<FlightRow> = (100..).zip(flights).map(row).collect();
+    Losses::count(&[batch(&rows, &Manifest::new(&scenario, &text, 5, 0, (1, 1))).unwrap()])
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::super::outcome::Outcome;
 use super::*;
 use crate::flight::Flight;
-use scenario::rotor_loss::PLACE_HELD;
+use scenario::rotor_loss::PLACE_HELD_DISTANCE_M;
 use scenario::verdict::Verdict;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
@@ -13,8 +13,8 @@ fn scenario(sections: &str) -> Scenario {
 }
 
 fn flown(scenario: &Scenario) -> Outcome {
-    let verdict = Verdict::of(scenario).unwrap();
-    Outcome::of(scenario, Flight::new(scenario).unwrap(), verdict.certificate())
+    let verdict = Verdict::judge(scenario).unwrap();
+    Outcome::judge(scenario, Flight::new(scenario).unwrap(), verdict.certificate())
 }
 
 #[test]
@@ -34,13 +34,13 @@ fn without_a_failure_none_is_found_and_none_is_missed() {
     let loss = flown(&scenario("")).rotor;
     assert_eq!((loss.failure, loss.found, loss.height_lost, loss.distance), (None, None, 0.0, 0.0));
     // One that would fail after the flight's end did not fail.
-    assert_eq!(RotorLoss::of(&scenario("[failure]\nrotor = 3\ntime = 9.0\n")).failure, None);
+    assert_eq!(RotorLoss::before_flight(&scenario("[failure]\nrotor = 3\ntime = 9.0\n")).failure, None);
 }
 
 #[test]
 fn a_false_alarm_is_a_rotor_that_had_not_failed() {
-    let failing = RotorLoss::of(&scenario("[failure]\nrotor = 3\ntime = 2.0\n"));
-    let sound = RotorLoss::of(&scenario(""));
+    let failing = RotorLoss::before_flight(&scenario("[failure]\nrotor = 3\ntime = 2.0\n"));
+    let sound = RotorLoss::before_flight(&scenario(""));
     for (loss, found, expected) in [
         (failing, None, false),
         (failing, Some((2, 2.0)), false),
@@ -56,7 +56,9 @@ fn a_false_alarm_is_a_rotor_that_had_not_failed() {
 #[test]
 fn a_flight_without_a_rotor_tracks_if_it_ends_near_its_place() {
     let outcome = flown(&scenario("[failure]\nrotor = 3\ntime = 2.0\n"));
-    for (final_error, expected) in [(PLACE_HELD, "holds"), (PLACE_HELD + 0.01, "away"), (f64::INFINITY, "away")] {
+    for (final_error, expected) in
+        [(PLACE_HELD_DISTANCE_M, "holds"), (PLACE_HELD_DISTANCE_M + 0.01, "away"), (f64::INFINITY, "away")]
+    {
         assert_eq!(Outcome { final_error, ..outcome }.verdict(true), expected, "{final_error}");
     }
     assert_eq!(Outcome { beyond: 1, ..outcome }.verdict(true), "beyond");
@@ -76,7 +78,7 @@ fn height_lost_is_counted_from_the_lower_of_where_it_failed_and_the_reference() 
         tick
     };
     let lost = |ticks: &[(f64, f64, f32)]| {
-        let mut loss = RotorLoss::of(&scenario);
+        let mut loss = RotorLoss::before_flight(&scenario);
         ticks.iter().for_each(|(seconds, height, wanted)| loss.observe(&at(*seconds, *height, *wanted), None));
         (loss.height_lost, loss.distance)
     };

@@ -14,7 +14,9 @@ fn vehicle(name: &str, sections: &str) -> Scenario {
 
 #[test]
 fn the_longest_step_that_fits_is_taken() {
-    let taken = |scenario: &Scenario| (longest(scenario).timing.steps_per_tick, longest(scenario).delay_steps);
+    let taken = |scenario: &Scenario| {
+        (with_longest_step(scenario).timing.steps_per_tick, with_longest_step(scenario).delay_steps)
+    };
     assert_eq!(taken(&vehicle("paper", "")), (2, 0));
     assert_eq!(taken(&vehicle("study", "")), (2, 2));
     let mut late = vehicle("study", "");
@@ -24,7 +26,7 @@ fn the_longest_step_that_fits_is_taken() {
     let mut spinning = vehicle("paper", "");
     spinning.campaign.ranges.rate = 150.0;
     assert_eq!(taken(&spinning), (3, 0), "half a radian a step");
-    let half = of(&vehicle("study", ""), 2.5e-3).unwrap();
+    let half = with_step(&vehicle("study", ""), 2.5e-3).unwrap();
     assert_eq!((half.timing.steps_per_tick, half.delay_steps), (4, 4));
 }
 
@@ -33,7 +35,7 @@ fn the_longest_step_that_fits_is_taken() {
 #[test]
 fn the_papers_flight_moves_by_less_than_a_micrometre() {
     let fine = divided(&vehicle("paper", ""), 20).unwrap();
-    let coarse = longest(&fine);
+    let coarse = with_longest_step(&fine);
     assert_eq!((fine.timing.step(), coarse.timing.step()), (5e-4, 5e-3));
     let (mut fine, mut coarse) = (Flight::new(&fine).unwrap(), Flight::new(&coarse).unwrap());
     let mut greatest = 0.0_f64;

@@ -21,7 +21,7 @@ fn without_lag_a_turn_takes_as_long_as_the_closed_form_says() {
     let acceleration = 2.0 * greatest * 0.120208 / 3.65e-3;
     for angle in [0.3, 1.0, PI] {
         let time = Turning::new(&scenario, 0).by(angle).time;
-        assert!((time - 2.0 * (angle / acceleration).sqrt()).abs() < 4.0 * STEP, "{angle}: {time}");
+        assert!((time - 2.0 * (angle / acceleration).sqrt()).abs() < 4.0 * INTEGRATION_STEP_S, "{angle}: {time}");
     }
 }
 
@@ -33,7 +33,7 @@ fn a_fall_is_the_turns_and_the_brakings() {
     let time = Turning::new(&scenario, 0).by(PI).time;
     let lost = 0.5 * gravity * time * time * (1.0 + gravity / up);
     assert!((limit.height_lost - lost).abs() < 0.01 * lost, "{limit:?} {lost}");
-    assert!((limit.recovered - time * (1.0 + gravity / up)).abs() < 5.0 * STEP, "{limit:?} {time}");
+    assert!((limit.recovered - time * (1.0 + gravity / up)).abs() < 5.0 * INTEGRATION_STEP_S, "{limit:?} {time}");
 }
 
 #[test]
@@ -56,9 +56,9 @@ fn a_short_step_is_over_before_it_brakes_and_a_long_one_stops_within_reach() {
     let coasted = 0.1 + speed / 10.0 + (0.9 - pushed) / speed;
     let braked = 0.1 + speed / 10.0 + 0.2 + (speed - 2.0) / 10.0;
     let expected = if 0.9 <= pushed + 0.2 * speed { coasted } else { braked };
-    assert!((stepped(1.0, &[10.0, 0.1, 0.2]) - expected).abs() < 1e-12);
+    assert!((step_time(1.0, &[10.0, 0.1, 0.2]) - expected).abs() < 1e-12);
     // Without turns: 4 + 4 s for 160 m at 10 m/s^2, but for the last metre of the way.
-    let whole = stepped(159.9, &[10.0, 0.0, 0.0]);
+    let whole = step_time(159.9, &[10.0, 0.0, 0.0]);
     assert!((whole - (8.0 - 0.2)).abs() < 1e-9, "{whole}");
 }
 

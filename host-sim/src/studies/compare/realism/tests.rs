@@ -3,7 +3,7 @@
 use super::*;
 use crate::rivals::choice::LawChoice;
 use crate::rivals::gains::Set;
-use crate::rivals::kind::Kind;
+use crate::rivals::kind::RivalKind;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
 
@@ -34,11 +34,12 @@ fn each_scene_has_its_difference() {
 #[test]
 fn a_strong_law_holds_the_vehicle_in_every_scene_and_its_figures_are_rows() {
     let file = hummingbird();
-    let set = Set::built_in(&file, &[Kind::Indi]).unwrap();
+    let set = Set::built_in(&file, &[RivalKind::Indi]).unwrap();
     let law: LawChoice = set.laws().next().unwrap();
-    let flier = Flier::new(&law, &file, None).unwrap();
-    let shown: Vec<_> = all(&file).unwrap().iter().map(|scene| (scene.name, vec![show(&flier, scene)])).collect();
-    let rows = rows(&shown);
+    let law = LawOnVehicle::new(&law, &file, None).unwrap();
+    let figures: Vec<_> =
+        all(&file).unwrap().iter().map(|scene| (scene.name, vec![fly_realism_scene(&law, scene)])).collect();
+    let rows = rows(&figures);
     assert_eq!(rows.len(), 4 * 9);
     let of = |scene: &str, figure: &str| rows.iter().find(|row| row.scene == scene && row.figure == figure).unwrap();
     for row in rows.iter().filter(|row| row.figure == "lost") {

@@ -3,8 +3,8 @@
 use super::*;
 use crate::vehicle::ground::friction::across;
 
-/// m/s^2: the vehicle's, in single precision.
-const GRAVITY: f64 = 9.81_f32 as f64;
+/// The vehicle's, in single precision.
+const GRAVITY_M_PER_S2: f64 = 9.81_f32 as f64;
 
 /// The speed along the ground, m/s, after `steps` under `force`, N, of what stood at rest.
 fn pulled(force: Vector3<f64>, steps: u32) -> f64 {
@@ -16,14 +16,14 @@ fn pulled(force: Vector3<f64>, steps: u32) -> f64 {
     assert!(state.position.z == plant.state().position.z && state.attitude == plant.state().attitude);
     let moved = (state.position - plant.state().position).norm();
     let speed = state.velocity.norm();
-    assert!((moved - 0.5 * speed * f64::from(steps) * STEP).abs() < 1e-9, "{moved} m at {speed} m/s");
+    assert!((moved - 0.5 * speed * f64::from(steps) * STEP_S).abs() < 1e-9, "{moved} m at {speed} m/s");
     speed
 }
 
 #[test]
 fn what_is_pulled_harder_than_friction_holds_slides_by_the_rest() {
     let (_, _, weight) = on_the_ground();
-    let mass = weight / GRAVITY;
+    let mass = weight / GRAVITY_M_PER_S2;
     for (share, lift) in [(0.59, 0.0), (0.29, 0.5), (0.0, 1.0)] {
         assert_eq!(pulled(Vector3::new(0.0, share * weight, lift * weight), 1000), 0.0, "{share}");
     }
@@ -42,7 +42,7 @@ fn a_slope_holds_what_stands_on_it_up_to_the_angle_of_friction() {
     let steepest = FRICTION_COEFFICIENT.atan();
     assert_eq!((speed(0.1), speed(0.99 * steepest)), (0.0, 0.0));
     for angle in [1.05 * steepest, 1.0] {
-        let expected = 0.5 * GRAVITY * (angle.sin() - FRICTION_COEFFICIENT * angle.cos());
+        let expected = 0.5 * GRAVITY_M_PER_S2 * (angle.sin() - FRICTION_COEFFICIENT * angle.cos());
         assert!((speed(angle) - expected).abs() < 1e-9, "{angle}: {} m/s, not {expected}", speed(angle));
     }
 }
@@ -51,8 +51,8 @@ fn a_slope_holds_what_stands_on_it_up_to_the_angle_of_friction() {
 fn what_slides_without_a_push_stops_by_friction_and_stays() {
     let (mut ground, plant, _) = on_the_ground();
     let mut state = BodyState { velocity: Vector3::new(0.3, -0.4, 0.0), ..*plant.state() };
-    let stop = 0.5 / (FRICTION_COEFFICIENT * GRAVITY);
-    for _ in 0..(stop / STEP) as u32 + 2 {
+    let stop = 0.5 / (FRICTION_COEFFICIENT * GRAVITY_M_PER_S2);
+    for _ in 0..(stop / STEP_S) as u32 + 2 {
         state = ground.hold(&state, &Vector3::zeros(), &Vector3::zeros()).unwrap();
     }
     let gone = state.position - plant.state().position;
@@ -65,7 +65,7 @@ fn what_slides_without_a_push_stops_by_friction_and_stays() {
 fn skidding(roll: f64, velocity: Vector3<f64>) -> (Ground, Plant, f64) {
     let (mut ground, mut plant, weight) = on_the_ground();
     let state = BodyState { attitude: attitude_from_euler(roll, 0.0, 0.0), velocity, ..*plant.state() };
-    let rise = Lean::of(&state).map_or(0.0, |lean| lean.rise().0);
+    let rise = Lean::measure(&state).map_or(0.0, |lean| lean.rise().0);
     let (state, _) = ground.touch(&BodyState { position: state.position + Vector3::z() * rise, ..state }).unwrap();
     plant.place(state);
     (ground, plant, weight)
@@ -105,8 +105,8 @@ fn a_sliding_foot_feels_friction_times_what_it_carries() {
         let mut before = *plant.state();
         for step in 0..10 {
             assert_eq!(ground.act(&mut plant, 0.0, &Vector3::zeros()), None);
-            let change = (plant.state().velocity - before.velocity) / STEP;
-            let carried = change.z + GRAVITY;
+            let change = (plant.state().velocity - before.velocity) / STEP_S;
+            let carried = change.z + GRAVITY_M_PER_S2;
             let expected = -FRICTION_COEFFICIENT * carried * along.signum();
             assert!(carried > 0.0 && (change.y - expected).abs() < 0.15, "{roll} {along} {step}: {change}");
             before = *plant.state();

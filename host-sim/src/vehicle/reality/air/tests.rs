@@ -15,7 +15,7 @@ fn rotors(heights: [f32; 4]) -> Rotors {
 }
 
 fn truth() -> Truth {
-    Truth::of_model(Scenario::parse(HUMMINGBIRD, "hummingbird").unwrap().configuration.vehicle())
+    Truth::model(Scenario::parse(HUMMINGBIRD, "hummingbird").unwrap().configuration.vehicle())
 }
 
 fn speeds(list: [f64; 4]) -> Delivered {

@@ -24,7 +24,7 @@ fn gap(a: &BodyState, b: &BodyState) -> f64 {
 
 fn body(centre_of_mass: Vector3<f64>) -> RigidBody {
     let vehicle = *Scenario::paper().unwrap().configuration.vehicle();
-    let truth = Truth { centre_of_mass, ..Truth::of_model(&vehicle) };
+    let truth = Truth { centre_of_mass, ..Truth::model(&vehicle) };
     RigidBody::new(&truth, f64::from(vehicle.gravity), &tumbling())
 }
 

@@ -4,13 +4,13 @@ use super::*;
 use scenario::Scenario;
 
 const HUMMINGBIRD: &str = include_str!("../../../../../vehicles/hummingbird.toml");
-const LAG: f64 = 0.03;
-const STEP: f64 = 1e-3;
+const LAG_S: f64 = 0.03;
+const STEP_S: f64 = 1e-3;
 const THRUST_COEFFICIENT: f64 = 5.57e-6;
 
 fn propulsion(sections: &str, lag: f64) -> Propulsion {
     let scenario = Scenario::parse(&format!("{HUMMINGBIRD}{sections}"), "f").unwrap();
-    Propulsion::new(&scenario.configuration, lag, &scenario.reality, STEP)
+    Propulsion::new(&scenario.configuration, lag, &scenario.reality, STEP_S)
 }
 
 fn speeds(delivered: &Delivered) -> [f64; ROTORS_MAX] {
@@ -33,15 +33,15 @@ fn speed_of(thrust: f64) -> f64 {
 
 #[test]
 fn speeds_follow_the_first_order_response_at_every_stage() {
-    let mut propulsion = propulsion("", LAG);
+    let mut propulsion = propulsion("", LAG_S);
     let start = propulsion.speeds()[0];
     assert!((start - speed_of(0.5 * 9.81 / 4.0)).abs() < 1e-4);
     propulsion.command(&[2.0; 4]);
     let end = speed_of(2.0);
     for now in 0..200_u64 {
         for (stage, part) in propulsion.advance(now).iter().zip(STAGE_TIMES) {
-            let time = (now as f64 + part) * STEP;
-            let exact = end + (start - end) * (-time / LAG).exp();
+            let time = (now as f64 + part) * STEP_S;
+            let exact = end + (start - end) * (-time / LAG_S).exp();
             assert!((speeds(stage)[0] - exact).abs() < 1e-4, "{time}: {} {exact}", speeds(stage)[0]);
             assert_eq!(speeds(stage)[4..], [0.0; 4]);
         }
@@ -58,7 +58,7 @@ fn without_lag_a_rotor_is_at_its_speed_at_once() {
 
 #[test]
 fn a_failed_rotor_settles_at_its_share_of_the_thrust_with_the_rotors_lag() {
-    let mut failing = propulsion("[failure]\nrotor = 1\ntime = 0.5\nthrust_left = 0.25", LAG);
+    let mut failing = propulsion("[failure]\nrotor = 1\ntime = 0.5\nthrust_left = 0.25", LAG_S);
     let before = after(&mut failing, 0..500);
     assert!((before - speed_of(2.0)).abs() < 1e-3);
     let later = after(&mut failing, 500..530);
@@ -66,13 +66,13 @@ fn a_failed_rotor_settles_at_its_share_of_the_thrust_with_the_rotors_lag() {
     assert!((later - expected).abs() < 1e-3, "{later} {expected}");
     assert!((after(&mut failing, 530..2000) - speed_of(0.5)).abs() < 1e-3);
     assert!((failing.speeds()[1] - speed_of(2.0)).abs() < 1e-3);
-    let mut stopping = propulsion("[failure]\nrotor = 1\ntime = 0.5", LAG);
+    let mut stopping = propulsion("[failure]\nrotor = 1\ntime = 0.5", LAG_S);
     assert!(after(&mut stopping, 0..2000) < 1e-9);
 }
 
 #[test]
 fn a_weakened_rotor_delivers_its_share_besides_its_failures_until_it_is_whole_again() {
-    let mut weak = propulsion("[failure]\nrotor = 1\ntime = 0.5\nthrust_left = 0.5", LAG);
+    let mut weak = propulsion("[failure]\nrotor = 1\ntime = 0.5\nthrust_left = 0.5", LAG_S);
     weak.weaken(0, 0.5);
     assert!((after(&mut weak, 0..500) - speed_of(1.0)).abs() < 1e-3);
     assert!((after(&mut weak, 500..2000) - speed_of(0.5)).abs() < 1e-3);
@@ -85,7 +85,7 @@ fn a_weakened_rotor_delivers_its_share_besides_its_failures_until_it_is_whole_ag
 fn thrust_falls_with_the_square_of_the_voltage() {
     let battery =
         "[battery]\nfull_voltage = 9.45\nempty_voltage = 9.45\nresistance = 0\ncapacity = 10\nnominal_voltage = 12.6";
-    let mut sagging = propulsion(battery, LAG);
+    let mut sagging = propulsion(battery, LAG_S);
     let speed = after(&mut sagging, 0..2000);
     assert!((THRUST_COEFFICIENT * speed * speed - 2.0 * 0.75 * 0.75).abs() < 1e-5, "{speed}");
     assert_eq!(sagging.battery().unwrap().0, 9.45);
@@ -95,7 +95,7 @@ fn thrust_falls_with_the_square_of_the_voltage() {
 fn a_loaded_battery_sags_by_what_the_rotors_draw() {
     let battery =
         "[battery]\nfull_voltage = 12.6\nempty_voltage = 12.6\nresistance = 0.1\ncapacity = 100\nefficiency = 0.5";
-    let mut sagging = propulsion(battery, LAG);
+    let mut sagging = propulsion(battery, LAG_S);
     let speed = after(&mut sagging, 0..2000);
     let (voltage, current) = sagging.battery().unwrap();
     assert!((12.6 - voltage - 0.1 * current).abs() < 1e-9);
@@ -124,7 +124,7 @@ fn a_curve_bends_the_thrust_between_none_and_all() {
 #[test]
 fn without_rotors_the_wrench_acts_within_the_limits() {
     let paper = Scenario::paper().unwrap();
-    let mut direct = Propulsion::new(&paper.configuration, 0.0, &paper.reality, STEP);
+    let mut direct = Propulsion::new(&paper.configuration, 0.0, &paper.reality, STEP_S);
     let wrench = |thrust: f32, y: f32| Wrench { thrust, torque: Vector3::new(0.1, y, 0.0) };
     assert!(!direct.command_directly(&wrench(5.0, -0.2)));
     let torque = wrench(5.0, -0.2).torque.map(f64::from);
@@ -137,7 +137,7 @@ fn without_rotors_the_wrench_acts_within_the_limits() {
 
 #[test]
 fn a_command_within_the_deadband_changes_nothing() {
-    let mut propulsion = propulsion("\n[truth]\ndeadband = 0.05\n", LAG);
+    let mut propulsion = propulsion("\n[truth]\ndeadband = 0.05\n", LAG_S);
     let speed = |propulsion: &Propulsion| propulsion.motors.as_ref().unwrap().commands[0];
     propulsion.command(&[2.0; 4]);
     let taken = speed(&propulsion);
@@ -150,7 +150,7 @@ fn a_command_within_the_deadband_changes_nothing() {
 
 #[test]
 fn rotors_with_inertia_turn_the_body_back_and_make_it_precess() {
-    let mut propulsion = propulsion("\n[truth]\nrotor_inertia = 1e-6\n", LAG);
+    let mut propulsion = propulsion("\n[truth]\nrotor_inertia = 1e-6\n", LAG_S);
     // Rotors 1 and 3 turn clockwise.
     propulsion.command(&[3.0, 1.0, 3.0, 1.0]);
     let before = propulsion.speeds();

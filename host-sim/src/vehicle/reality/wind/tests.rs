@@ -2,11 +2,11 @@
 
 use super::*;
 
-const STEP: f64 = 1e-3;
+const STEP_S: f64 = 1e-3;
 
 fn blowing(shape: Shape) -> MovingAir {
     let gust = Gust { shape, start: 0.3, velocity: Vector3::new(4.0, 0.0, -2.0) };
-    MovingAir::new(&Wind { steady: Vector3::new(1.0, 2.0, 3.0), gust: Some(gust), turbulence: None }, STEP)
+    MovingAir::new(&Wind { steady: Vector3::new(1.0, 2.0, 3.0), gust: Some(gust), turbulence: None }, STEP_S)
 }
 
 /// The wind less the steady wind, over the gust's velocity.
@@ -21,7 +21,7 @@ fn a_step_is_there_from_its_plant_step_on_and_not_at_the_end_of_the_one_before()
     let air = blowing(Shape::Step);
     assert_eq!((share_at(&air, 299, 1.0), share_at(&air, 300, 0.0), share_at(&air, 9000, 0.5)), (0.0, 1.0, 1.0));
     for (time, step) in [(0.0, 0), (0.3, 300), (0.3004, 301), (0.7, 700), (1e4, 10_000_000)] {
-        assert_eq!(first_step(time, STEP), step);
+        assert_eq!(first_step(time, STEP_S), step);
     }
 }
 
