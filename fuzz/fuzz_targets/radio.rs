@@ -17,10 +17,7 @@ use nalgebra::{Quaternion, Vector3};
 use uf_crsf::packets::{PacketAddress, RcChannelsPacked, write_packet_to_buffer};
 
 /// Above it a switch is high.
-const CHANNEL_HIGH: u16 = 1402;
-=======
 const SWITCH_HIGH_MIN: u16 = 1402;
->>>>>>> .merge_file_qX8RKR
 
 #[derive(Debug, Arbitrary)]
 enum Event {
@@ -58,10 +55,7 @@ fuzz_target!(|events: Vec<Event>| {
                         .unwrap();
                 let heard = last_frame.replace(now).is_some_and(|last| now - last <= RADIO_TIMEOUT_US);
                 radio.feed(&frame[..length], now);
-                let kills = channels[6] >= CHANNEL_HIGH;
-=======
                 let kills = channels[6] >= SWITCH_HIGH_MIN;
->>>>>>> .merge_file_qX8RKR
                 killing = if killing.0 == kills { (kills, killing.1, killing.2 + 1) } else { (kills, now, 1) };
                 let moved =
                     shared.killed.get().filter(|killed| killed.time == now && last_killed != Some(killed.value));
