@@ -66,7 +66,7 @@ fn sources(folder: &Path, prefix: &str) -> BTreeSet<String> {
 
 #[test]
 fn what_becomes_of_each_model_is_what_the_page_says() {
-    let page = fs::read_to_string(folder().join("../../docs/import.md")).unwrap();
+    let page = fs::read_to_string(folder().join("../../../docs/import.md")).unwrap();
     let (_, table) = page.split_once("| model | its shape | what becomes of it |\n|---|---|---|\n").unwrap();
     let rows = table.lines().take_while(|line| line.starts_with("| `"));
     let mut listed = BTreeSet::new();
