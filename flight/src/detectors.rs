@@ -7,7 +7,7 @@
 //!   than a vehicle that reverses in the air does, in a rising wind for example.
 //! - *Landed*, by the IMU alone: an impact has stopped the vehicle, and the law now commands less thrust than carries
 //!   it. Or, where the ground was soft, so little thrust that the vehicle must fall faster, and it does not. Rotors
-//!   that deliver 8 % more than commanded would snapshot the same: with the law's thrust scale and force they do not.
+//!   that deliver 8 % more than commanded would look the same: with the law's thrust scale and force they do not.
 //!   So would the air's drag of a vehicle that sinks. A vehicle that rises or sinks on has not landed, and landing is
 //!   detected only once its descent is fast enough to show, or after a touchdown; but a hit leaves a false speed.
 //! - *The IMU is doubtful*, without poses: it measures another force than commanded that is not the ground's, friction
