@@ -254,7 +254,7 @@ impl Controller {
         self.memory.wrench_offset = lasting;
         let forward = Vector3::new(tilt.acceleration.x, tilt.acceleration.y, yaw.forward);
         self.remember(state, axis, forward, &wrench, scale);
-        Ok((wrench, diagnostics(&filters, &feedback, &direction, &errors, &tilt, &motion)))
+        Ok((wrench, Self::diagnostics(&filters, &feedback, &direction, &errors, &tilt, &motion)))
     }
 
     /// What the next tick needs of this one.
@@ -299,7 +299,6 @@ mod sections;
 mod without_a_rotor;
 
 pub use forecast::StoppingForecast;
-use sections::diagnostics;
 
 #[cfg(test)]
 mod tests;

@@ -20,7 +20,7 @@ use embassy_futures::select::{Either, select};
 use embassy_futures::yield_now;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Read;
-use foreign::Explained;
+use explained::Explained;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, HEARTBEAT_DATA, LOG_ERASE_DATA,
@@ -34,6 +34,7 @@ use upload::Upload;
 
 mod addressed;
 mod commands;
+mod explained;
 mod foreign;
 mod missions;
 mod parameters;

@@ -275,35 +275,35 @@ impl Controller {
         let drag = self.law.parameters.drag_across;
         Vector3::new(derivative.x + drag * below.x, derivative.y + drag * below.y, derivative.z)
     }
-}
 
-/// What a tick went through.
-#[inline(always)]
-pub(super) fn diagnostics(
-    filters: &Filters,
-    feedback: &PositionFeedback,
-    direction: &DirectionCommand,
-    errors: &AttitudeErrors,
-    tilt: &TiltTorque,
-    motion: &AngularMotion,
-) -> Diagnostics {
-    Diagnostics {
-        position_error: feedback.errors.position,
-        velocity_error: feedback.errors.velocity,
-        z_1: feedback.errors.z_1,
-        z_2: feedback.errors.z_2,
-        feedback: feedback.feedback,
-        filtered: filters.command,
-        intermediate: filters.intermediate,
-        acceleration_command: direction.command,
-        desired_attitude: direction.desired.attitude(),
-        desired_angular_velocity: motion.velocity,
-        desired_angular_acceleration: motion.acceleration,
-        attitude_error: errors.lifted.quaternion,
-        mrp: errors.lifted.mrp,
-        lift_sign: errors.lifted.lift.sign,
-        angular_velocity_error: errors.projected.push(errors.projected_yaw),
-        attitude_feedback: tilt.potential.push(0.0),
-        rate_feedback: tilt.damping.push(0.0),
+    /// What a tick went through.
+    #[inline(always)]
+    pub(super) fn diagnostics(
+        filters: &Filters,
+        feedback: &PositionFeedback,
+        direction: &DirectionCommand,
+        errors: &AttitudeErrors,
+        tilt: &TiltTorque,
+        motion: &AngularMotion,
+    ) -> Diagnostics {
+        Diagnostics {
+            position_error: feedback.errors.position,
+            velocity_error: feedback.errors.velocity,
+            z_1: feedback.errors.z_1,
+            z_2: feedback.errors.z_2,
+            feedback: feedback.feedback,
+            filtered: filters.command,
+            intermediate: filters.intermediate,
+            acceleration_command: direction.command,
+            desired_attitude: direction.desired.attitude(),
+            desired_angular_velocity: motion.velocity,
+            desired_angular_acceleration: motion.acceleration,
+            attitude_error: errors.lifted.quaternion,
+            mrp: errors.lifted.mrp,
+            lift_sign: errors.lifted.lift.sign,
+            angular_velocity_error: errors.projected.push(errors.projected_yaw),
+            attitude_feedback: tilt.potential.push(0.0),
+            rate_feedback: tilt.damping.push(0.0),
+        }
     }
 }

@@ -33,15 +33,6 @@ const FLOWN_MESSAGES: usize = 5;
 /// Behind every payload: for every system.
 const FOR_ALL: usize = 255;
 
-/// Which of them were explained.
-#[derive(Debug, Default)]
-pub(super) struct Explained {
-    /// A bit for each, in the order of the list.
-    explained: u16,
-    /// The last setpoint's name.
-    setpoint: Option<Stamped<&'static str>>,
-}
-
 impl<M: RawMutex> Receiver<'_, M> {
     /// Explains a message that is not understood.
     pub(super) fn foreign(&mut self, frame: &Frame<'_>) {
