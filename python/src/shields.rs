@@ -174,7 +174,7 @@ hand_overs=10)")]
         self.one.shield.request_again();
     }
 
-    /// ShieldRow control tick.
+    /// One control tick.
     ///
     /// Args:
     ///     state: (13,).
@@ -322,7 +322,7 @@ hand_overs=10)")]
         Ok(())
     }
 
-    /// ShieldRow tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
+    /// One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
     /// to wrenches (rows, 4).
     ///
     /// If a state is refused, the error names the row and no row has changed.
