@@ -12,7 +12,7 @@
 //! A start is refused, by its name, if the law's own [fallback](controller_core::extended::fallback) comes before the
 //! vehicle is there, or if half an hour passes. This is no proof: it says nothing about any other start. It shows
 //! cycles with these gains at this rate: measured, of vehicles that were given too little [turning
-//! rate](controller_core::extended::turning), or ticks too long for their gains.
+//! rate](controller_core::extended::direction_limiter), or ticks too long for their gains.
 
 pub mod on_path;
 

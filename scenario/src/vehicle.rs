@@ -2,7 +2,7 @@
 //!
 //! `[vehicle] gravity` is 9.81 m/s^2 where it is left out. `[limits]`, or a key of it, may be left out beside
 //! `[rotors]`: then the limits are what the rotors can give, all their maximum thrusts together and
-//! [`greatest_torques`].
+//! [`max_torques`].
 //!
 //! `[control] law` is `"paper"` or `"extended"` ([`crate::extended`]). Left out it is the paper's where `[gains]` has a
 //! gain that the paper's law alone has. `[control] thrust_floor` (N) is an option of the paper's law: see
