@@ -192,6 +192,11 @@ impl StreamFollower {
             return HeadDrive::Averages;
         }
         let stream = stream.filter(|stream| self.judge(stream));
+        // Where most ticks end: without a copy of the stage.
+        if stream.is_none() && self.is_averaged() {
+            self.stage = Stage::AVERAGED;
+            return HeadDrive::Averages;
+        }
         match (self.stage, stream) {
             (Stage::Averaged { near, watched }, Some(stream)) if self.retry_in == 0 => {
                 let snap = averaged.map(|units| units as f32 * unit);
