@@ -150,6 +150,7 @@ fn a_flight_that_comes_late_recovers_neither_in_its_campaign_nor_flown_again() {
     }
 }
 
+#[cfg_attr(not(unix), expect(dead_code, reason = "for signals"))]
 fn spawn(directory: &Path, out: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
     command.args(["campaign", "h.toml", "--out", out]).current_dir(directory);
@@ -157,6 +158,7 @@ fn spawn(directory: &Path, out: &str) -> Child {
 }
 
 /// Waits until more than so many chunks are finished.
+#[cfg_attr(not(unix), expect(dead_code, reason = "for signals"))]
 fn more_chunks(out: &Path, than: usize) -> Vec<String> {
     let started = Instant::now();
     loop {

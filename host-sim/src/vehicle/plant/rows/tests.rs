@@ -7,6 +7,7 @@ use scenario::body::attitude_from_euler;
 
 /// This machine's instruction sets: plain instructions always.
 fn processors() -> Vec<Arch> {
+    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "nothing is added"))]
     let mut processors = vec![Arch::Scalar];
     #[cfg(target_arch = "x86_64")]
     {
