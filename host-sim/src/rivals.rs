@@ -3,7 +3,8 @@
 //!
 //! They are references for comparison, written from their papers in double precision. They are not proven, and not
 //! meant to fly. Each module says what its paper leaves open, and what it lacks that ours has (feed-forward, separate
-//! gains for tilt and yaw). Their gains are found by the cost that ours are tuned by ([`crate::studies::tune::rivals`]).
+//! gains for tilt and yaw). Their gains are found by the cost that ours are tuned by
+//! ([`crate::studies::tune::rivals`]).
 //!
 //! | module | law |
 //! |---|---|

@@ -81,19 +81,19 @@ impl Campaign {
     }
 }
 
-/// Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same bytes.
+/// Flies a campaign of randomised flights into a directory, on all cores, as `host-sim campaign` does and to the same
+/// bytes.
 ///
-/// The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any interruption
-/// give the same. What is there already is not flown again.
+/// The circumstances of a flight come from the seed and its number alone: any number of cores, any split and any
+/// interruption give the same. What is there already is not flown again.
 ///
 /// Args:
-///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight, and in how many a rotor fails.
-///     directory: where `campaign.arrow` and the rest go.
-///     flights, seed: of the whole campaign; left out: the scenario's.
-///     shard: (I, N): part I of N, from 1; `merge` puts the parts together.
-///     plant_step: s; left out: the longest of at most 5 ms that fits.
-///     law: whose flights, "ours" or one of docs/rivals.md: "lee", "px4", "mellinger", "indi", "nested", "continuous", "memoryless".
-///     gains: a file with that law's gains; left out: those built in for the vehicles of docs/rivals.md.
+///     scenario: its `[campaign]` section, if it has one, says what differs from flight to flight, and in how many a
+///     rotor fails. directory: where `campaign.arrow` and the rest go. flights, seed: of the whole campaign; left out:
+///     the scenario's. shard: (I, N): part I of N, from 1; `merge` puts the parts together. plant_step: s; left out:
+///     the longest of at most 5 ms that fits. law: whose flights, "ours" or one of docs/rivals.md: "lee", "px4",
+///     "mellinger", "indi", "nested", "continuous", "memoryless". gains: a file with that law's gains; left out: those
+///     built in for the vehicles of docs/rivals.md.
 ///
 /// Raises:
 ///     ValueError: names the argument, or says that the directory holds another campaign.

@@ -47,7 +47,8 @@ pub struct Loop {
     spectral_radius: f64,
     /// Whether it is.
     stable: bool,
-    /// Greatest factor below one on the loop's gain that destabilises it; 0 if none does. None if it is unstable as it is.
+    /// Greatest factor below one on the loop's gain that destabilises it; 0 if none does. None if it is unstable as it
+    /// is.
     gain_down: Option<f64>,
     /// Least factor above one that does; infinite if none does.
     gain_up: Option<f64>,
@@ -83,7 +84,8 @@ impl Loop {
     }
 }
 
-/// Whether a scenario may fly: the proof that its commands stay within the limits, and its sampled loops. True if it may.
+/// Whether a scenario may fly: the proof that its commands stay within the limits, and its sampled loops. True if it
+/// may.
 #[pyclass(frozen, module = "saturated_hybrid")]
 pub struct Certificate {
     verdict: Verdict,

@@ -16,8 +16,8 @@
 //! | [`whole_number`] | whole numbers as arguments |
 //! | [`errors`], [`interruptible`], [`threads`] | errors; long work that lets other threads run and Ctrl-C through; on which threads |
 //!
-//! Arrays that come in may have any numeric type and are rounded once, where the law's single precision begins; those that go
-//! out have the precision of what they hold. What documents the items here is their docstring in Python, which
+//! Arrays that come in may have any numeric type and are rounded once, where the law's single precision begins; those
+//! that go out have the precision of what they hold. What documents the items here is their docstring in Python, which
 //! `source/saturated_hybrid/_core.pyi` repeats with types; a test compares the two.
 
 mod allocations;

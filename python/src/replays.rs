@@ -22,8 +22,8 @@ const DURATION_MAX_S: f64 = 60.0;
 /// Lines in the world.
 type Things = Vec<Vec<Vector3<f64>>>;
 
-/// A picture (420, 480, 3) of uint8, as a camera that stands far away: the path of `states` (n, 13) with its shadow on the
-/// floor, that of `references` (n, 19), and the vehicle, larger than life, at the last of them.
+/// A picture (420, 480, 3) of uint8, as a camera that stands far away: the path of `states` (n, 13) with its shadow on
+/// the floor, that of `references` (n, 19), and the vehicle, larger than life, at the last of them.
 ///
 /// Args:
 ///     states, references: of a flight, row by row.
@@ -49,8 +49,8 @@ pub fn picture<'py>(
     PyArray1::from_vec(py, colors.collect()).reshape([height, width, 3])
 }
 
-/// Writes a flight that something else flew into a file that any browser opens: a moving picture, `.gif`, or a page with
-/// a replay and plots, `.html`.
+/// Writes a flight that something else flew into a file that any browser opens: a moving picture, `.gif`, or a page
+/// with a replay and plots, `.html`.
 ///
 /// Args:
 ///     scenario: its vehicle and its period.

@@ -68,7 +68,8 @@ impl Tuned {
     }
 }
 
-/// Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As `host-sim tune`.
+/// Refines a scenario's constants: they certify, and then please a pilot most; about a minute, on all cores. As
+/// `host-sim tune`.
 ///
 /// Args:
 ///     name: of the tuned scenario; left out: its own with `-tuned`.

@@ -6,8 +6,8 @@
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
 //! of factors is judged here.
 //!
-//! The firmware's build and `host-sim sitl` ask the same question here, so that each scenario that flies on a desk can be built
-//! for a board.
+//! The firmware's build and `host-sim sitl` ask the same question here, so that each scenario that flies on a desk can
+//! be built for a board.
 
 use crate::file::Scenario;
 use crate::reality::estimator::rates_delay;

@@ -19,8 +19,8 @@
 //! | `[initial]`, or fields of it | on the reference's first point, at rest, level, facing world x |
 //!
 //! [`mod@file`] reads the whole file; each section has a module, which declares its keys ([`key`]) and reads them.
-//! [`schema`] prints the declarations as a JSON schema. Numbers are read in double precision and rounded once, where the law's
-//! types take them.
+//! [`schema`] prints the declarations as a JSON schema. Numbers are read in double precision and rounded once, where
+//! the law's types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
 //! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a model, and from what the

@@ -1,7 +1,7 @@
 //! The requirements on the sampled loops: stable, with margins.
 //!
-//! A linear model without margin models a vehicle that does not exist. [`LoopMargin::FLYABLE_MIN`] is what a configuration
-//! must have to fly; `host-sim tune` asks for more.
+//! A linear model without margin models a vehicle that does not exist. [`LoopMargin::FLYABLE_MIN`] is what a
+//! configuration must have to fly; `host-sim tune` asks for more.
 
 use crate::sampled_loop::{Axis, LoopReport};
 use std::fmt;

@@ -1,5 +1,5 @@
-//! Models in the shapes that public files have, `tests/numbers/vehicle_import/corpus`: what becomes of each is what the table
-//! of docs/import.md says; where their parts stand; and that a vehicle file that is there already is kept.
+//! Models in the shapes that public files have, `tests/numbers/vehicle_import/corpus`: what becomes of each is what the
+//! table of docs/import.md says; where their parts stand; and that a vehicle file that is there already is kept.
 
 use crate::support::binary::{self, files, host_sim, status, stderr, stdout};
 use host_sim::identification::import::numbers::{Actuation, VehicleNumbers};

@@ -1,6 +1,7 @@
 //! Whatever the documentation names exists: the tests and theorems that the map of the paper names, the files and
 //! headings that the Markdown pages link to, the diagram of the flight modes, the constants of the extended law, the
-//! columns of log.csv, the scenario examples and refusals, the names of the newcomer's walk. The front page stays short.
+//! columns of log.csv, the scenario examples and refusals, the names of the newcomer's walk. The front page stays
+//! short.
 
 use controller_core::extended::parameters::ExtendedParameters;
 use flight::rules::TABLE;
@@ -132,7 +133,8 @@ fn the_walk_answers_fifteen_questions_with_names_that_are_in_their_files() {
             let said = said.rsplit_once(')').map_or(said, |(_, said)| said);
             let file = target.0.split('#').next().unwrap();
             let text = read(&format!("docs/{file}"));
-            // What stands before the link since the last is in its file: identifiers, that is, not other programs' names.
+            // What stands before the link since the last is in its file: identifiers, that is, not other programs'
+            // names.
             for name in said.split('`').skip(1).step_by(2).filter(|name| !name.contains("::") && !name.ends_with('/')) {
                 assert!(text.contains(name), "{file} has no `{name}`: {answer}");
                 found += 1;

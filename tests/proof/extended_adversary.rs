@@ -139,7 +139,8 @@ impl World {
         }
     }
 
-    /// One tick, judged. None if it is refused, or a rotor is found to fail: from a reset then; else memory and commands are then as before.
+    /// One tick, judged. None if it is refused, or a rotor is found to fail: from a reset then; else memory and
+    /// commands are then as before.
     fn step(&self, controller: &mut Controller, state: &State, wanted: &Wanted, shown: &mut Shown) -> Option<Wrench> {
         let answer = match wanted {
             Wanted::Flight(reference) => controller.step(state, reference),

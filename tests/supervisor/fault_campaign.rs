@@ -9,7 +9,8 @@
 //! - `run`: one flight, to the ground; `report`: the table;
 //! - `found`: what the campaign has found, each defect with the flight that showed it.
 //!
-//! `cargo test -p host-sim fault_campaign -- --nocapture` prints the table. `tests/supervisor/all_pairs.rs` flies every pair.
+//! `cargo test -p host-sim fault_campaign -- --nocapture` prints the table. `tests/supervisor/all_pairs.rs` flies every
+//! pair.
 
 mod expected;
 mod failure;
@@ -95,7 +96,8 @@ fn singles() -> Vec<Case> {
 /// When the second of two failures strikes, after the first: with it, some hundred milliseconds later, seconds later.
 const SECOND_FAILURE_TICKS: [Range<u64>; 3] = [0..1, 10..100, 100..500];
 
-/// Every ordered pair of failures in every phase, each as much later as `random` has it within one of [`SECOND_FAILURE_TICKS`].
+/// Every ordered pair of failures in every phase, each as much later as `random` has it within one of
+/// [`SECOND_FAILURE_TICKS`].
 pub fn pairs(random: &mut impl Rng) -> Vec<(Case, usize)> {
     let mut pairs = Vec::new();
     for phase in Phase::ALL {

@@ -20,8 +20,8 @@ use crate::math::real::Real;
 use nalgebra::Vector3;
 
 /// By how much, relative, bounds are raised to cover the single-precision arithmetic of the law. One evaluation's
-/// relative error is below 2e-6 (tests/law/independent_law.rs); what the filters' rounding adds up to over many ticks is
-/// below 2e-5 for ticks down to 0.25 ms and bandwidths down to 0.2 1/s (tests/proof/sharp_derivation.rs).
+/// relative error is below 2e-6 (tests/law/independent_law.rs); what the filters' rounding adds up to over many ticks
+/// is below 2e-5 for ticks down to 0.25 ms and bandwidths down to 0.2 1/s (tests/proof/sharp_derivation.rs).
 pub const ARITHMETIC_ALLOWANCE: f64 = 1e-4;
 
 /// Least and greatest of a quantity.

@@ -11,8 +11,9 @@
 //! | [`TorqueBias::filtered`], [`TorqueBias::estimate`] | tau_b: the same averaged with the bandwidth L_tau, each component cut to its level |
 //! | [`ThrustScale::updated`] | s += gamma_s h (dy - s df) . df / (\|df\|^2 + c_0^2), s in [s_lo, s_hi] |
 //!
-//! d enters the position law and passes its filters, tau_b is subtracted from the torque, and rotors are commanded f / s:
-//! no derivative of them is needed. Where no velocity is known, the torque bias alone is learnt: rates are enough for it.
+//! d enters the position law and passes its filters, tau_b is subtracted from the torque, and rotors are commanded f /
+//! s: no derivative of them is needed. Where no velocity is known, the torque bias alone is learnt: rates are enough
+//! for it.
 //!
 //! In steady flight a wrong scale and a force look alike, and the force carries both. So the scale is learnt from
 //! variations alone: dy and df are y and f = bbar F / m, both less their slow averages. y - ybar = s (f - fbar) for any
@@ -152,8 +153,8 @@ impl TorqueBias {
         }
     }
 
-    /// The unexplained torque, N m, body frame, over an interval with these `angular_velocities`, rad/s, at its start and
-    /// end, in which the mean `torque` acted.
+    /// The unexplained torque, N m, body frame, over an interval with these `angular_velocities`, rad/s, at its start
+    /// and end, in which the mean `torque` acted.
     pub fn observed(&self, angular_velocities: [&Vector3<f32>; 2], torque: &Vector3<f32>) -> Vector3<f32> {
         let [start, end] = angular_velocities;
         let sum = start + end;

@@ -1,5 +1,5 @@
-//! The constants of the extended law, declared once, each with its default, and validated. A default is a formula of the
-//! vehicle's numbers, of what follows from them ([`super::quantities`]) and of other constants, d. Section 14 of
+//! The constants of the extended law, declared once, each with its default, and validated. A default is a formula of
+//! the vehicle's numbers, of what follows from them ([`super::quantities`]) and of other constants, d. Section 14 of
 //! `docs/extended-law.md` derives each; `docs/scenario-file.md` shows them.
 
 use super::quantities::Quantities;

@@ -10,8 +10,8 @@
 //! The bounds do not depend on any of this: the windows need no more than alpha in C. From a state in motion, arrival
 //! is by feedback: far from the target w turns slowly and ||w - u|| falls at nearly one a tick until u = w, which then
 //! persists; when the target is passed at speed the same law brakes and returns. That every such pursuit ends is shown
-//! by test (at worst 1.4 times as late as stopping first would) and by the campaign in `tests/setpoints/governor_campaign.rs`,
-//! not proven.
+//! by test (at worst 1.4 times as late as stopping first would) and by the campaign in
+//! `tests/setpoints/governor_campaign.rs`, not proven.
 
 use super::braking::{BRAKING_SHARE, approach_speed};
 use super::windows::Windows;

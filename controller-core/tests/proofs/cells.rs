@@ -23,8 +23,8 @@ fn cells_after(cuts: usize, finest: usize) -> usize {
 }
 
 /// Looks into the cells of N ranges, down to the finest. `of` is a cell's bound, for how many cells each range has, and
-/// the cell's number in each. `raises` says whether a bound is above the greatest found so far; its second argument says
-/// that the bound is a finest cell's, which counts as found.
+/// the cell's number in each. `raises` says whether a bound is above the greatest found so far; its second argument
+/// says that the bound is a finest cell's, which counts as found.
 fn look_into<const N: usize>(
     finest: [usize; N],
     of: &impl Fn([usize; N], [usize; N]) -> f64,

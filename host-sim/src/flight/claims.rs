@@ -10,9 +10,9 @@
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
 //! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside
 //! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
-//! duration and stayed near it ([`crate::flight::extremes`] says how near); and that once there it never strayed further than the
-//! file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well; for any other the
-//! errors of its last quarter are reported without a verdict.
+//! duration and stayed near it ([`crate::flight::extremes`] says how near); and that once there it never strayed
+//! further than the file's `reference.tolerance`. The paper's own scenario claims the figures of Section VI as well;
+//! for any other the errors of its last quarter are reported without a verdict.
 
 use crate::flight::extremes::{FlightExtremes, MRP_TOLERANCE, POSITION_TOLERANCE_M};
 use crate::output::table::{aligned, short};

@@ -1,7 +1,7 @@
 //! The law that flies: ours, or a rival with its gains.
 //!
-//! A [`LawChoice`] names a law; a [`LawOnVehicle`] is that law on one vehicle, ready for any number of flights. Our law is
-//! certified once for all flights, as on boards; an uncertified one flies as its scenario has it.
+//! A [`LawChoice`] names a law; a [`LawOnVehicle`] is that law on one vehicle, ready for any number of flights. Our law
+//! is certified once for all flights, as on boards; an uncertified one flies as its scenario has it.
 
 use crate::flight::Flight;
 use crate::rivals::choice::{LawChoice, OUR_LAW};

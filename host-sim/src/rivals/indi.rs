@@ -95,7 +95,8 @@ impl Indi {
     }
 }
 
-/// The rotation from `state` to `desired`, rad, body: the shortest that brings body z to its place, and about z the rest.
+/// The rotation from `state` to `desired`, rad, body: the shortest that brings body z to its place, and about z the
+/// rest.
 fn turn(state: &UnitQuaternion<f64>, desired: &UnitQuaternion<f64>) -> Vector3<f64> {
     let error = state.inverse() * desired;
     let about = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 2.0 * error.k.atan2(error.w));

@@ -1,5 +1,5 @@
-//! The true vehicle in moving air: it replaces [`crate::vehicle::plant`] and [`crate::vehicle::actuators`] where the scenario has more
-//! than its model ([`scenario::reality`]).
+//! The true vehicle in moving air: it replaces [`crate::vehicle::plant`] and [`crate::vehicle::actuators`] where the
+//! scenario has more than its model ([`scenario::reality`]).
 //!
 //! ```text
 //! wrench -> (delay) -> allocation -> motors (battery, failure) -> rotor speeds -> thrusts, drag -> body -> ground

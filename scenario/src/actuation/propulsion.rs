@@ -1,10 +1,10 @@
 //! What one rotor of `[rotors]` delivers, in either of two forms: coefficients and speeds, or, where the speeds are not
 //! known, thrusts and the torque for each newton of them.
 //!
-//! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with [`NOMINAL_SPEED_RAD_PER_S`]
-//! at its maximum thrust: k_eta = thrust_max / [`NOMINAL_SPEED_RAD_PER_S`]^2, k_m = torque_per_thrust k_eta. The wrench, its lag
-//! and a thrust curve do not depend on that speed; what the air does to a rotor (`[drag]`, per rad/s) and the power
-//! that it draws from a `[battery]` do.
+//! Thrust is proportional to the squared speed in both. In the second a rotor is taken to turn with
+//! [`NOMINAL_SPEED_RAD_PER_S`] at its maximum thrust: k_eta = thrust_max / [`NOMINAL_SPEED_RAD_PER_S`]^2, k_m =
+//! torque_per_thrust k_eta. The wrench, its lag and a thrust curve do not depend on that speed; what the air does to a
+//! rotor (`[drag]`, per rad/s) and the power that it draws from a `[battery]` do.
 
 use crate::key::{Bounds, Key, Values};
 use crate::section::{FieldError, Section};

@@ -1,4 +1,5 @@
-//! Whole files: what they become, and which defaults fill the gaps. tests/program/cli.rs holds the table of malformed ones.
+//! Whole files: what they become, and which defaults fill the gaps. tests/program/cli.rs holds the table of malformed
+//! ones.
 
 use super::*;
 use controller_core::certificate::Certificate;

@@ -40,7 +40,8 @@ pub(super) struct SampleMargins {
     pub gain_up: f64,
     /// Maximum factor below one at which stability is lost; zero if none.
     pub gain_down: f64,
-    /// Minimum further delay at which stability is lost. Zero for a loop slower than [`FREQUENCY_MIN_RAD_PER_S`], which is not looked at.
+    /// Minimum further delay at which stability is lost. Zero for a loop slower than [`FREQUENCY_MIN_RAD_PER_S`], which
+    /// is not looked at.
     pub delay: f64,
     /// Highest frequency at which the loop's gain is one.
     pub crossover: f64,

@@ -1,8 +1,8 @@
 //! The spectral radius of a small matrix by repeated squaring.
 //!
-//! Gelfand: rho(A) = lim |A^N|^(1/N), taken at N = 2^[`SQUARING_COUNT`] with the norm divided out after every squaring. It
-//! always takes the same number of steps and cannot fail to converge, unlike an iteration for the eigenvalues. What is
-//! left of |A^N| / rho^N, at most 1e100 even for coinciding eigenvalues, goes into rho as its N-th root: below 1e-9.
+//! Gelfand: rho(A) = lim |A^N|^(1/N), taken at N = 2^[`SQUARING_COUNT`] with the norm divided out after every squaring.
+//! It always takes the same number of steps and cannot fail to converge, unlike an iteration for the eigenvalues. What
+//! is left of |A^N| / rho^N, at most 1e100 even for coinciding eigenvalues, goes into rho as its N-th root: below 1e-9.
 //!
 //! Like any eigenvalue in double precision it is no better than the matrix is conditioned: several eigenvalues that
 //! coincide are known to a root of 1e-16 only.

@@ -1,4 +1,5 @@
-//! That the schema and the reader agree: on every scenario of the repository, and on keys and values that neither takes.
+//! That the schema and the reader agree: on every scenario of the repository, and on keys and values that neither
+//! takes.
 
 use super::*;
 use crate::Scenario;

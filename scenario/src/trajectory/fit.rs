@@ -5,9 +5,10 @@
 //!
 //! p(t) = sum over k = 0..5 of B_k(u) c_(i+k).
 //!
-//! The coefficients c minimise, by least squares, what the rows' positions deviate by, in units of the distance requested
-//! for; with velocities and accelerations, where rows have them, in units of that distance per h and h^2; and, by next
-//! to nothing, the fifth differences of c, which decide where there are no rows. The normal equations are banded.
+//! The coefficients c minimise, by least squares, what the rows' positions deviate by, in units of the distance
+//! requested for; with velocities and accelerations, where rows have them, in units of that distance per h and h^2;
+//! and, by next to nothing, the fifth differences of c, which decide where there are no rows. The normal equations are
+//! banded.
 //!
 //! The number of intervals grows by a third until every row's position is within the distance of the path as flown. So
 //! noise and rounding of a recording are left out as far as that distance allows, and the path asks for little

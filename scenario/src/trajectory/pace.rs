@@ -5,7 +5,8 @@
 //! on, at last with more places. What it finds is stretched in time until it certifies at every instant.
 //!
 //! A search may end in a local optimum. But a path in a narrower corridor is one in a wider one, and a slower one is
-//! one below a higher speed: so the same is done for all of [`SERIES_PER_DECADE`] below what is given, and the quickest is kept.
+//! one below a higher speed: so the same is done for all of [`SERIES_PER_DECADE`] below what is given, and the quickest
+//! is kept.
 
 mod blocks;
 mod equations;

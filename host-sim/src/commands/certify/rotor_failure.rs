@@ -24,7 +24,8 @@ const FAILURE_S: f64 = 1.0;
 const WATCHED_S: f64 = 10.0;
 const WATCHED_MAX_S: f64 = 30.0;
 
-/// A vehicle that moves faster after that is lost, as one is that is farther from its place than [`PLACE_HELD_DISTANCE_M`].
+/// A vehicle that moves faster after that is lost, as one is that is farther from its place than
+/// [`PLACE_HELD_DISTANCE_M`].
 const SPEED_MAX_M_PER_S: f64 = 1.0;
 
 /// Up to here a vehicle keeps its heading.

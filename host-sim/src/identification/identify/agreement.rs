@@ -11,8 +11,8 @@ use crate::output::table::{percent, short};
 use nalgebra::{SMatrix, SVector};
 
 /// What one statement too many may leave over, in standard uncertainties: 99.9 of 100 consistent ones leave less by a
-/// normal distribution. By Student's t it is more ([`student_t`]): the flight's uncertainty is known from a few parts of
-/// it.
+/// normal distribution. By Student's t it is more ([`student_t`]): the flight's uncertainty is known from a few parts
+/// of it.
 const NORMAL_QUANTILE: f64 = 3.291;
 /// Its one-sided quantile at 99.9 %, for [`greatest`].
 const ONE_SIDED_QUANTILE: f64 = 3.090;

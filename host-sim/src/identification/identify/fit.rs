@@ -11,11 +11,11 @@
 //! (L. Ljung, section 7.6), without bias whatever the gusts' spectrum.
 //!
 //! The covariance is A^-1 B A^-T with A = sum Z' J, and B = sum Z' Z for white residuals. What remains true if they are
-//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each `JACKKNIFE_BLOCK_S`
-//! long, is left out, (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G. It counts in full
-//! what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not, because a block
-//! pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it to lack
-//! ([`UNCERTAINTY_FACTORS`]).
+//! not white is the jackknife's: by how much the unknowns move if a block b, one of G parts of the log, each
+//! `JACKKNIFE_BLOCK_S` long, is left out, (A - A_b)^-1 sum_b Z' e, squared and summed over G blocks, times (G - 1) / G.
+//! It counts in full what rests on a few blocks only, as drag does on the quickest legs; sums of Z' e alone would not,
+//! because a block pulls the fit to itself. The greater of the two counts for each unknown, times what trials show it
+//! to lack ([`UNCERTAINTY_FACTORS`]).
 //!
 //! Of the body rates the fit uses the innovation at each tick ([`super::low_passes`]). Of the velocities it uses ten
 //! samples a second only: thrust over mass, drag and wind change slowly, and an estimator's prediction between its own

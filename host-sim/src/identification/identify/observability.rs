@@ -68,8 +68,8 @@ pub fn unexcited(log: &FlightLog) -> Vec<String> {
     missing
 }
 
-/// The requirement on a quantity: its name, itself, how wide its interval may be, of itself or as it stands, and what to
-/// fly for a narrower one.
+/// The requirement on a quantity: its name, itself, how wide its interval may be, of itself or as it stands, and what
+/// to fly for a narrower one.
 type Asked<'q> = (&'static str, &'q Quantity, f64, &'static str, &'static str);
 
 fn asked(identified: &Quantities) -> [Asked<'_>; 7] {

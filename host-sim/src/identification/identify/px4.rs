@@ -7,8 +7,8 @@
 //! ```
 //!
 //! North, east, down and forward, right, down become z up and forward, left, up: y and z change their signs, of vectors
-//! and of quaternions. The clock is one of `CLOCK_PERIOD_S`; where a topic has a gap, or the vehicle stands, there is no
-//! flight.
+//! and of quaternions. The clock is one of `CLOCK_PERIOD_S`; where a topic has a gap, or the vehicle stands, there is
+//! no flight.
 //!
 //! Supposed: a full output is a rotor's greatest thrust, and thrust goes with the square of the output, or as the
 //! bench's thrust stand has it; a part of it in all motors alike is found as the thrust scale. `CA_ROTOR…` parameters

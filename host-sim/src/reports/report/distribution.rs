@@ -1,8 +1,8 @@
 //! How a quantity is spread over many flights: a histogram, the share of flights up to each value, a table of
 //! quantiles.
 //!
-//! A page holds no flight's value by itself but `HISTOGRAM_BARS` counts and [`QUANTILE_STEPS`] + 1 evenly spaced quantiles for each
-//! group, the least and the greatest among them, whether a hundred flights were flown or a million.
+//! A page holds no flight's value by itself but `HISTOGRAM_BARS` counts and [`QUANTILE_STEPS`] + 1 evenly spaced
+//! quantiles for each group, the least and the greatest among them, whether a hundred flights were flown or a million.
 
 use super::plot::{Color, LinePattern};
 use super::prose::{Cell, Table};

@@ -1,4 +1,5 @@
-//! The rotation to the desired attitude, and what measured force and torque are for: what the model does not know leaves no offset.
+//! The rotation to the desired attitude, and what measured force and torque are for: what the model does not know
+//! leaves no offset.
 
 use super::*;
 use crate::flight::Flight;

@@ -1,9 +1,9 @@
 //! Differential evolution with feasibility first.
 //!
 //! For each member x of the population a trial is made from three others, x_a + F (x_b - x_c), coordinates taken over
-//! with probability `CROSSOVER_PROBABILITY` (DE/rand/1/bin; half of the time x_a is the best member, which is faster and still
-//! explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two that are not
-//! the one nearer to acceptance wins, of two that are the one of less cost.
+//! with probability `CROSSOVER_PROBABILITY` (DE/rand/1/bin; half of the time x_a is the best member, which is faster
+//! and still explores). A trial replaces its parent if it is better: an acceptable one beats one that is not, of two
+//! that are not the one nearer to acceptance wins, of two that are the one of less cost.
 
 use super::candidate::{Judging, Verdict};
 use super::effort::Effort;

@@ -4,9 +4,9 @@
 //! greatest admissible value; delta and alpha stay as the file has them: they are about noise.
 //!
 //! Under the extended law it holds the logarithms of factors, one for each constant that [`ExtendedParameters::TABLE`]
-//! marks; those of `TIED_CONSTANTS` move with them, and all others follow by the formulas, unless the file chose them. So a
-//! candidate uses no more torque and thrust than the rotors have. A factor of one leaves a constant to the formulas as
-//! well: the start is the file's law to the bit.
+//! marks; those of `TIED_CONSTANTS` move with them, and all others follow by the formulas, unless the file chose them.
+//! So a candidate uses no more torque and thrust than the rotors have. A factor of one leaves a constant to the
+//! formulas as well: the start is the file's law to the bit.
 
 use super::chosen::chosen;
 use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};

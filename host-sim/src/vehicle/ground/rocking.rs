@@ -1,8 +1,8 @@
 //! A vehicle that leans on one foot and falls back onto all of them.
 //!
 //! The vehicle turns in the vertical plane it leans in, about a foot that stays where it is or slides. With w =
-//! [`FEET_RADIUS_M`] the distance of the feet from its axis and h = [`LEG_LENGTH_M`] that of its origin above them, leaning by theta
-//! towards d (horizontal; z is up, and a = z x d is the axis),
+//! [`FEET_RADIUS_M`] the distance of the feet from its axis and h = [`LEG_LENGTH_M`] that of its origin above them,
+//! leaning by theta towards d (horizontal; z is up, and a = z x d is the axis),
 //!
 //! ```text
 //! r = d (h sin theta - w cos theta) + z (h cos theta + w sin theta)      from the foot to the origin, m

@@ -2,8 +2,8 @@
 //! derivatives.
 //!
 //! A row with share s adds b'(s) times the slope of s to the value's slope, and b''(s) times the square of that slope
-//! and b'(s) times [`CURVATURE_PER_SLOPE_SQUARED`] times its square in all directions to the second derivative. The corridor's own second
-//! derivative is known.
+//! and b'(s) times [`CURVATURE_PER_SLOPE_SQUARED`] times its square in all directions to the second derivative. The
+//! corridor's own second derivative is known.
 
 use super::blocks::{BLOCK_SIZE, Blocks, Part};
 use super::limits::{PathLimits, ROW_COUNT, VARIABLE_COUNT};

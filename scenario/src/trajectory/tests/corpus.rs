@@ -1,5 +1,5 @@
-//! The files in `tests/flights/trajectory_files`, in shapes that other programs write: each is read or refused as the table in
-//! `docs/trajectories.md` says, and all that are read are the same path.
+//! The files in `tests/flights/trajectory_files`, in shapes that other programs write: each is read or refused as the
+//! table in `docs/trajectories.md` says, and all that are read are the same path.
 
 use super::{on_in, route};
 use crate::Scenario;
