@@ -62,8 +62,7 @@ const NEAR_SPANS_MIN: f32 = 0.4;
 const RETRY_SPANS: f32 = 1.0;
 const RETRY_SPANS_MAX: f32 = 32.0;
 
-/// What the head follows. Tagged, so that averaged at the beginning is all zeros: [`super::Memory::EMPTY`] counts on
-/// it.
+/// What the head follows. Tagged, so that averaged is all zeros: [`super::Memory::EMPTY`] counts on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(u32)]
 enum Stage {
