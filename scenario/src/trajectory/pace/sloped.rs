@@ -1,9 +1,9 @@
 //! Numbers that know how they change with N others: formulas that are written for any [`Real`] give their slopes along.
 //!
-//! Where a formula has an edge these numbers round it, or a search would stop there: |x| is sqrt(x^2 +
-//! [`EDGE_ROUNDING_SI`]^2), sqrt(x^2 + y^2) likewise; the greater of a and b is half of a + b + d, the lesser half of a
-//! + b - d + e, with d^2 = (a - b)^2 + e^2 and e^2 = [`CORNER_ROUNDING_SI`]^2 (a^2 + b^2). None is less than exact.
-//! Constants are exact.
+//! Where a formula has an edge these numbers round it, or a search would stop there: |x| is
+//! sqrt(x^2 + [`EDGE_ROUNDING_SI`]^2), sqrt(x^2 + y^2) likewise; the greater of a and b is half of a + b + d, the lesser
+//! half of a + b - d + e, with d^2 = (a - b)^2 + e^2 and e^2 = [`CORNER_ROUNDING_SI`]^2 (a^2 + b^2). None is less than
+//! exact. Constants are exact.
 
 use controller_core::math::real::Real;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
