@@ -19,10 +19,14 @@
 //!
 //! Between two increments a tick turns the attitude on by the increment [under way](Conditioner::under_way).
 //!
-//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter, 116 Hz in a BMI088, is what stops
-//! that. What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample counts as of that much
-//! earlier, and the estimator carries the state on to the present. The law's body rates stay late, by both filters and
-//! up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the sampled loops.
+//! Above 150 Hz the low-pass lets up to a third through: the sensor's own filter is what stops that, and each
+//! [sensor]'s is chosen for it. What a sensor shows is as late as its filter ([`ImuParameters::late`]). So a sample
+//! counts as of that much earlier, and the estimator carries the state on to the present. The law's body rates stay
+//! late, by both filters and up to a sample more: [`ImuParameters::rates_late`] must be counted in the margins of the
+//! sampled loops.
+//!
+//! Where the rotors' speeds are known, [notches](rotor_notches) at these stand in front of the low-pass. They are late
+//! as well, by [`RotorNotches::delay_max`] at most.
 //!
 //! [`faults`] finds invalid samples: stuck ones, full scale, an accelerometer that does not answer. A shock is over
 //! sooner than full scale is a fault, and the sensor's own filter hides its peak, but its increment is flagged, for the
@@ -36,19 +40,23 @@ pub mod calibration;
 pub mod faults;
 pub mod integrator;
 pub mod low_pass;
+pub mod rotor_notches;
+pub mod sensor;
 pub mod six_point;
 pub mod standstill;
 
 pub use calibration::Calibration;
 pub use faults::ImuFault;
+pub use sensor::ImuParameters;
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};
 use controller_core::error::{ParameterError, require_positive};
-use faults::{FaultMonitor, Ranges};
+use faults::FaultMonitor;
 use integrator::{Integrator, Sample};
 use low_pass::LowPass;
 use nalgebra::Vector3;
+use rotor_notches::{ROTOR_COUNT, RotorNotches};
 
 /// How long an increment lasts, us, where no sample is missing.
 pub const INCREMENT_US: u64 = 5_000;
@@ -56,52 +64,6 @@ pub const INCREMENT_US: u64 = 5_000;
 /// The longest time without samples that is bridged, us: an increment then stays below
 /// [`crate::estimator::EXTRAPOLATION_MAX_US`].
 pub const BRIDGED_MAX_US: u64 = 15_000;
-
-/// A sensor and how it is to be read.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImuParameters {
-    /// Samples a second, Hz.
-    pub rate: f32,
-    /// The gyro's full scale, rad/s.
-    pub gyro_range: f32,
-    /// The accelerometer's full scale, m/s^2.
-    pub accelerometer_range: f32,
-    /// By how much two samples of the accelerometer differ, m/s^2, from which on it may have felt more than its full
-    /// scale: its own filter flattens a shock.
-    pub leap: f32,
-    /// How late a sample is when it can be read, by the sensor's own filters, us.
-    pub late: u64,
-}
-
-impl ImuParameters {
-    /// A BMI088 at 1 kHz: 2000 deg/s, 24 g.
-    ///
-    /// Its data sheet gives the bandwidth of its gyro's filter, 116 Hz, and no delay: this is that of a second-order
-    /// Butterworth filter, sqrt(2) / (2 pi 116 Hz). Its accelerometer's, 145 Hz, would be 0.4 ms less late, which is
-    /// not distinguished. From rest to full scale within a millisecond it rises by 0.22 of that from one sample to the
-    /// next, 52 m/s^2; some is left for vibration.
-    pub const BMI088: Self =
-        Self { rate: 1000.0, gyro_range: 34.906_586, accelerometer_range: 235.36, leap: 40.0, late: 1_940 };
-
-    /// The same as simulators have it, without filters of its own.
-    pub const PROMPT: Self = Self { leap: f32::MAX, late: 0, ..Self::BMI088 };
-
-    /// How late the body rates of a law with ticks every `period` us are at most, s, as long as they change slowly: by
-    /// both filters, and by the time to the next sample.
-    pub fn rates_late(&self, period: u64) -> f32 {
-        self.low_pass(period).delay() + self.late as f32 * 1e-6 + 1.0 / self.rate
-    }
-
-    /// Where what it shows ends.
-    pub fn ranges(&self) -> Ranges {
-        Ranges { gyro: self.gyro_range, accelerometer: self.accelerometer_range, leap: self.leap }
-    }
-
-    /// The low-pass for the body rates of a law with ticks every `period` us.
-    pub fn low_pass(&self, period: u64) -> LowPass {
-        LowPass::before_ticks(period, self.rate.into())
-    }
-}
 
 /// The result of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,6 +82,7 @@ pub struct Conditioner {
     late: u64,
     calibration: Calibration,
     watch: FaultMonitor,
+    notches: RotorNotches,
     low_pass: LowPass,
     integrator: Integrator,
     newest: Option<Stamped<ImuSample>>,
@@ -145,6 +108,7 @@ impl Conditioner {
             late: p.late,
             calibration: *calibration,
             watch: FaultMonitor::new(p.ranges()),
+            notches: RotorNotches::new(p.rate),
             low_pass: p.low_pass(period),
             integrator: Integrator::EMPTY,
             newest: None,
@@ -165,8 +129,8 @@ impl Conditioner {
         Ok(())
     }
 
-    /// The newest sample as the law takes it: corrected, the body rate low-passed. Its time is that of the motion it
-    /// shows, but for the low-pass.
+    /// The newest sample as the law takes it: corrected, the body rate filtered. Its time is that of the motion it
+    /// shows, but for notches and low-pass.
     pub fn newest(&self) -> Option<Stamped<ImuSample>> {
         self.newest
     }
@@ -179,6 +143,12 @@ impl Conditioner {
     /// Corrects samples in another way from now on.
     pub fn calibrate(&mut self, calibration: &Calibration) {
         self.calibration = *calibration;
+    }
+
+    /// The rotors turn so fast, rad/s; none: nobody knows. Counts until it is told again, or for
+    /// [`rotor_notches::SPEEDS_TIMEOUT_US`].
+    pub fn follow_rotors(&mut self, speeds: &[Option<f32>; ROTOR_COUNT]) {
+        self.notches.follow(speeds);
     }
 
     /// Takes the sample that could be read at `time` (us): the gyro's, rad/s, and the accelerometer's, m/s^2, if that
@@ -201,12 +171,13 @@ impl Conditioner {
         match self.integrator.age(time) {
             Some(0) => Conditioned { increment: None, fault: fault.or(Some(ImuFault::Clock)) },
             Some(age) if age <= BRIDGED_MAX_US => {
-                let smooth = self.low_pass.take(&rate);
+                let smooth = self.low_pass.take(&self.notches.take(&rate));
                 let increment = self.integrator.take(&sample, INCREMENT_US);
                 self.keep(time, &smooth, force);
                 Conditioned { increment, fault }
             }
             before => {
+                self.notches.begin();
                 self.low_pass.settle(&rate);
                 self.integrator.begin(&sample);
                 self.keep(time, &rate, force);

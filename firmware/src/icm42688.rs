@@ -8,13 +8,14 @@
 //!
 //! | what | setting |
 //! |---|---|
-//! | gyroscope | 1000 Hz, 258 Hz bandwidth (249 Hz), low noise, +-2000 deg/s in 16 bits |
-//! | accelerometer | 1000 Hz, 258 Hz bandwidth (249 Hz), low noise, +-16 g in 16 bits |
+//! | gyroscope | 1000 Hz, 126 Hz bandwidth (122 Hz), low noise, +-2000 deg/s in 16 bits |
+//! | accelerometer | 1000 Hz, 126 Hz bandwidth (122 Hz), low noise, +-16 g in 16 bits |
 //! | clock | the device's own |
 //! | bus | SPI mode 0 or 3, at most 24 MHz |
 //!
-//! The bandwidths are those of the anti-alias filters. The filters behind them are set to let everything pass, so that
-//! the samples are as young as they can be. There is a buffer of samples in the device, which is not used: every sample
+//! The bandwidths are those of the anti-alias filters, the lowest that keep the samples as young as a BMI088's
+//! ([`estimation::imu::sensor`]): at 258 Hz a vibration of 200 Hz would pass 2.7 times as strongly. The filters behind
+//! them are set to let everything pass. There is a buffer of samples in the device, which is not used: every sample
 //! is read as it becomes ready.
 //!
 //! Every sample reads the device's identity, and is refused if it is what a device holds that was reset: one that lost
@@ -38,12 +39,6 @@ mod tests;
 
 /// m/s^2 in one count, at 16 g.
 pub const ACCELERATION_PER_COUNT: f32 = acceleration_per_count(16.0);
-
-/// 1000 Hz, 2000 deg/s and 16 g, and the low-pass at 60 Hz that the BMI088 has. As late as a second-order Butterworth
-/// filter of 249 Hz, 0.9 ms, and an eighth of a sample for what follows it. Where half a sine of a millisecond reaches
-/// the full scale, this filter rises by 0.43 of that from one sample to the next, 68 m/s^2; some is left for vibration.
-pub const PARAMETERS: ImuParameters =
-    ImuParameters { rate: 1000.0, gyro_range: 34.906_586, accelerometer_range: 156.906_4, leap: 52.0, late: 1_030 };
 
 /// Time between samples.
 const SAMPLE_PERIOD_US: u64 = 1_000;
@@ -83,12 +78,20 @@ impl Model {
         }
     }
 
-    /// The anti-alias filters' parameters DELT, DELTSQR and BITSHIFT: 258 Hz of the ICM-42688-P, 249 Hz of the
+    /// What its samples are.
+    pub const fn parameters(self) -> ImuParameters {
+        match self {
+            Self::Icm42688P => ImuParameters::ICM42688P,
+            Self::Icm42605 => ImuParameters::ICM42605,
+        }
+    }
+
+    /// The anti-alias filters' parameters DELT, DELTSQR and BITSHIFT: 126 Hz of the ICM-42688-P, 122 Hz of the
     /// ICM-42605.
     const fn filter(self) -> (u8, u16, u8) {
         match self {
-            Self::Icm42688P => (6, 36, 10),
-            Self::Icm42605 => (21, 440, 6),
+            Self::Icm42688P => (3, 9, 12),
+            Self::Icm42605 => (11, 122, 8),
         }
     }
 
@@ -206,7 +209,7 @@ impl<D: spi::Device, P: DataReady, C: Clock> Imu for Icm42688<D, P, C> {
     }
 
     fn parameters(&self) -> ImuParameters {
-        PARAMETERS
+        self.model.parameters()
     }
 
     fn is_polled(&self) -> bool {
