@@ -57,6 +57,9 @@ pub const IDENTITY: u32 = {identity};
 /// The time between control ticks.
 pub const PERIOD_US: u64 = {period};
 
+/// Whether its sampled loops have margin for notches on the gyro that follow the rotors.
+pub const FOLLOWS_ROTORS: bool = {follows};
+
 /// Which factors on its gains have sampled loops with margin.
 pub static LOOPS: JudgedLoops = JudgedLoops::from_bits([{across}], [{vertical}]);
 
@@ -79,6 +82,7 @@ fn built() -> Result<Configuration, ParameterError> {{
         across = bytes(across),
         vertical = bytes(vertical),
         identity = board::identity(scenario),
+        follows = board::may_follow_rotors(scenario),
         period = scenario.timing.period_us,
         mass = vehicle.mass,
         inertia = vector(&vehicle.inertia),

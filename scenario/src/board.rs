@@ -1,7 +1,8 @@
 //! What the firmware can fly of all scenarios: 50 Hz to 1 kHz, four rotors, and sampled loops with margin.
 //!
 //! On a board the law gets its body rates from the estimator, and they are late ([`rates_delay`]); they are in the
-//! loops judged here, whether the scenario has `[estimator]` or not.
+//! loops judged here, whether the scenario has `[estimator]` or not. So is the delay of the notches that follow rotors,
+//! where there is margin for it ([`may_follow_rotors`]); without margin a board does without them.
 //!
 //! Gains may be changed on board by a few factors ([`controller_core::tuning`]). No board judges loops, so every choice
 //! of factors is judged here.
@@ -10,7 +11,7 @@
 //! be built for a board.
 
 use crate::file::Scenario;
-use crate::reality::estimator::rates_delay;
+use crate::reality::estimator::{notches_delay, rates_delay};
 use crate::sampled_loop::{Axis, LoopModel, LoopTiming};
 use crate::stability::LoopMargin;
 use crate::verdict::{Refusal, Verdict};
@@ -64,7 +65,7 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
     fits(scenario, name)?;
     let verdict = Verdict::judge(scenario).map_err(|error| format!("{name}: {error}"))?;
     let law = scenario.configuration.law();
-    let loops = LoopModel::new(scenario.configuration.vehicle(), law, timing(scenario));
+    let loops = LoopModel::new(scenario.configuration.vehicle(), law, plain_timing(scenario));
     let loops = loops.map_err(|error| format!("{name}: {error}"))?.reports();
     if let Some(lack) = verdict.lacking().or_else(|| LoopMargin::FLYABLE_MIN.first_lacking(&loops)) {
         let late = rates_delay(&scenario.timing) * 1e3;
@@ -80,10 +81,32 @@ pub fn check(scenario: &Scenario, name: &str) -> Result<Option<String>, String> 
     Ok(refusal.map(|refusal| format!("{name}: {refusal}; this firmware will refuse to arm")))
 }
 
-/// The scenario's timing on a board.
+/// Whether the sampled loops of `scenario` keep their margin with the delay of notches that follow the rotors.
+#[must_use]
+pub fn may_follow_rotors(scenario: &Scenario) -> bool {
+    let configuration = &scenario.configuration;
+    let loops = LoopModel::new(configuration.vehicle(), configuration.law(), notched_timing(scenario));
+    loops.is_ok_and(|loops| LoopMargin::FLYABLE_MIN.first_lacking(&loops.reports()).is_none())
+}
+
+/// The scenario's timing on a board, as late as it may be there.
 fn timing(scenario: &Scenario) -> LoopTiming {
-    let timing = scenario.loop_timing();
+    if may_follow_rotors(scenario) { notched_timing(scenario) } else { plain_timing(scenario) }
+}
+
+/// The same on a board that does not know its rotors' speeds.
+fn plain_timing(scenario: &Scenario) -> LoopTiming {
     let late = if scenario.reality.estimator.is_some() { 0.0 } else { rates_delay(&scenario.timing) };
+    later(scenario.loop_timing(), late)
+}
+
+/// The same with notches.
+fn notched_timing(scenario: &Scenario) -> LoopTiming {
+    later(plain_timing(scenario), notches_delay())
+}
+
+/// The same `late` seconds later.
+fn later(timing: LoopTiming, late: f64) -> LoopTiming {
     LoopTiming { delay_samples: timing.delay_samples + late / timing.period, ..timing }
 }
 
@@ -95,7 +118,7 @@ const HORIZONTAL_AXES: [Axis; 2] = [Axis::LateralX, Axis::LateralY];
 /// Which factors on the gains of `scenario` leave its sampled loops stable and with their margin.
 #[must_use]
 pub fn judged(scenario: &Scenario) -> JudgedLoops {
-    let law = scenario.configuration.law();
+    let (law, timing) = (scenario.configuration.law(), timing(scenario));
     let vertical = [Axis::Vertical];
     let with_vertical = matches!(law, LawParameters::Paper(_));
     // The choices come sorted by the attitude's factors: its loops are judged once for all that have the same.
@@ -104,20 +127,20 @@ pub fn judged(scenario: &Scenario) -> JudgedLoops {
         let key = (factors.attitude, factors.rate);
         let (_, holds) = *attitude
             .take_if(|(last, _)| *last == key)
-            .get_or_insert_with(|| (key, has_margins(scenario, factors, &ATTITUDE_AXES)));
+            .get_or_insert_with(|| (key, has_margins(scenario, timing, factors, &ATTITUDE_AXES)));
         attitude = Some((key, holds));
         holds
-            && has_margins(scenario, factors, &HORIZONTAL_AXES)
-            && (!with_vertical || has_margins(scenario, factors, &vertical))
+            && has_margins(scenario, timing, factors, &HORIZONTAL_AXES)
+            && (!with_vertical || has_margins(scenario, timing, factors, &vertical))
     };
-    JudgedLoops::judge(across, |factors| has_margins(scenario, factors, &vertical))
+    JudgedLoops::judge(across, |factors| has_margins(scenario, timing, factors, &vertical))
 }
 
 /// Whether these loops have their margin under `factors`. Gains that the law is undefined for have none.
-fn has_margins(scenario: &Scenario, factors: &Factors, axes: &[Axis]) -> bool {
+fn has_margins(scenario: &Scenario, timing: LoopTiming, factors: &Factors, axes: &[Axis]) -> bool {
     let configuration = &scenario.configuration;
     let Ok(law) = factors.law(configuration.law(), configuration.vehicle()) else { return false };
-    let loops = LoopModel::new(configuration.vehicle(), &law, timing(scenario));
+    let loops = LoopModel::new(configuration.vehicle(), &law, timing);
     loops.is_ok_and(|loops| axes.iter().all(|axis| LoopMargin::FLYABLE_MIN.lacking(&loops.report(*axis)).is_none()))
 }
 
@@ -214,6 +237,22 @@ mod tests {
         }
         println!("{good} choices hold, {bad} do not");
         assert!(good > 0 && bad > 0);
+    }
+
+    #[test]
+    fn notches_are_counted_where_there_is_margin_for_them() {
+        for text in [STUDY, include_str!("../../vehicles/hummingbird.toml")] {
+            let scenario = Scenario::parse(text, "a test").unwrap();
+            assert!(may_follow_rotors(&scenario));
+            let (plain, notched) = (plain_timing(&scenario), timing(&scenario));
+            let late = (notched.delay_samples - plain.delay_samples) * plain.period;
+            assert!((late - notches_delay()).abs() < 1e-9 && (1e-3..1.3e-3).contains(&late), "{late}");
+        }
+        // Damped harder and harder: before there is too little margin to fly, there is too little for notches.
+        let damped = (20..60).map(|hundredths| damped(f64::from(hundredths) * 0.01));
+        let first = damped.into_iter().find(|scenario| !may_follow_rotors(scenario)).unwrap();
+        assert_eq!(timing(&first), plain_timing(&first));
+        assert!(check(&first, "damped").is_ok());
     }
 
     #[test]

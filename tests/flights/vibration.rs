@@ -17,6 +17,9 @@
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
 use estimation::estimator::PoseMeasurement;
+use estimation::imu::ImuParameters;
+use estimation::imu::sensor::GAIN_MAX_SHARE;
+use firmware::hardware::MOTOR_COUNT;
 use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
 use host_sim::vehicle::instruments::{SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
@@ -34,6 +37,16 @@ const UPWARD_SHARE: f64 = 0.5;
 const ROTOR_SPEED_STEP_SHARE: f64 = 0.004;
 
 const HOVER_HEIGHT_M: f64 = 1.5;
+
+/// The rotors turn so fast in hover where none is said to be faster.
+const HOVER_HZ: f64 = 74.7;
+
+/// How often rotors tell their speeds, and how finely: a revolution a second.
+const TELEMETRY_PERIOD_US: u64 = 10_000;
+const SPEED_STEP_RAD_PER_S: f64 = std::f64::consts::TAU;
+
+/// When noise is looked at.
+const NOISE_US: std::ops::Range<u64> = 8_000_000..12_000_000;
 
 /// What happens when, us: arming, take-off; from when on it hovers, and to when; what is then requested or lost.
 const ARM_US: u64 = 2_000_000;
@@ -66,6 +79,13 @@ struct Unbalanced {
     force: Vector3<f64>,
     rate: Vector3<f64>,
     angle: Vector3<f64>,
+    /// Whose gyro it is, where its own filter is to let through what its data sheet's does: see [`passed`].
+    gyro: Option<ImuParameters>,
+    /// The body rate that its filter is given, rad/s.
+    sensed: Vector3<f64>,
+    /// Whether the rotors tell their speeds, and what they have told, rad/s.
+    is_telling: bool,
+    told: [Option<f32>; MOTOR_COUNT],
     /// Whether poses come.
     is_seen: bool,
     /// Sums of squares while the vehicle hovers, and of how many samples.
@@ -93,6 +113,10 @@ impl Unbalanced {
             force: zero,
             rate: zero,
             angle: zero,
+            gyro: None,
+            sensed: zero,
+            is_telling: false,
+            told: [None; MOTOR_COUNT],
             is_seen: true,
             squares: (0.0, 0.0, 0.0),
         }
@@ -110,6 +134,7 @@ impl Meddler for Unbalanced {
         let bent = |x: f64, y: f64| Vector3::new(x, y, UPWARD_SHARE * x);
         let seconds = SAMPLE_PERIOD_US as f64 * 1e-6;
         (self.force, self.rate, self.angle) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
+        self.sensed = Vector3::zeros();
         for (shaker, thrust) in self.shakers.iter_mut().zip(vehicle.thrusts()) {
             let speed = shaker.faster * (thrust / self.coefficient).max(0.0).sqrt();
             let quicker = (speed - shaker.speed) / seconds;
@@ -119,7 +144,9 @@ impl Meddler for Unbalanced {
             let (heavy, behind) =
                 (bent(cosine, sine) * self.unbalance, bent(sine, -cosine) * (self.unbalance * shaker.sense));
             self.force += (heavy * (speed * speed) + behind * quicker) / self.mass;
-            self.rate += shaker.place.cross(&(behind * speed)).component_div(&self.inertia);
+            let rate = shaker.place.cross(&(behind * speed)).component_div(&self.inertia);
+            self.rate += rate;
+            self.sensed += rate * self.gyro.map_or(1.0, |gyro| passed(&gyro, speed));
             self.angle -= shaker.place.cross(&heavy).component_div(&self.inertia);
         }
     }
@@ -129,14 +156,32 @@ impl Meddler for Unbalanced {
         self.squares = (force + self.force.norm_squared(), rate + self.rate.norm_squared(), samples + 1.0);
         let turned = UnitQuaternion::from_scaled_axis(-self.angle);
         TrueMotion {
-            angular_velocity: turned * felt.angular_velocity + self.rate,
+            angular_velocity: turned * felt.angular_velocity + self.sensed,
             specific_force: turned * (felt.specific_force + self.force),
         }
+    }
+
+    fn rotor_speeds(&mut self, time: u64) -> [Option<f32>; MOTOR_COUNT] {
+        if self.is_telling && time.is_multiple_of(TELEMETRY_PERIOD_US) {
+            for (told, shaker) in self.told.iter_mut().zip(&self.shakers) {
+                *told = Some(((shaker.speed / SPEED_STEP_RAD_PER_S).round() * SPEED_STEP_RAD_PER_S) as f32);
+            }
+        }
+        self.told
     }
 
     fn pose(&mut self, pose: Stamped<Pose>, _: u64) -> Option<Stamped<PoseMeasurement>> {
         self.is_seen.then(|| Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
     }
+}
+
+/// What a gyro's own filter lets through at `speed`, rad/s, over what the filter of the simulated sensor does: that one
+/// is sampled, and stops half the rate of the samples altogether.
+fn passed(gyro: &ImuParameters, speed: f64) -> f64 {
+    let (frequency, bandwidth) = (speed / std::f64::consts::TAU, f64::from(gyro.gyro_bandwidth));
+    let warped = |frequency: f64| (std::f64::consts::PI * frequency * SAMPLE_PERIOD_US as f64 * 1e-6).tan();
+    let gain = |ratio: f64| 1.0 / (1.0 + ratio.powi(4)).sqrt();
+    gain(frequency / bandwidth) / gain(warped(frequency) / warped(bandwidth))
 }
 
 /// What came of a flight.
@@ -233,7 +278,7 @@ fn at_whatever_speed_the_rotors_turn_their_shaking_is_no_slow_motion() {
         for faster in [0.88, 0.95, 1.07, 1.2, 1.3, 1.335, 1.345, 1.4, 1.5, 1.65, 1.8, 2.2, 2.68, 2.7, 3.1, 3.6] {
             let flown = fly(&vehicle(name), 2e-5 / (faster * faster), faster, false);
             let (force, rate) = flown.strength;
-            let hertz = 74.7 * faster;
+            let hertz = HOVER_HZ * faster;
             println!(
                 "{name:12} {hertz:5.1} Hz, {force:4.1} m/s^2, {rate:.2} rad/s    {:5.1} mm RMS",
                 flown.off.0 * 1e3
@@ -254,9 +299,64 @@ fn at_any_rate_of_control_shaking_is_no_slow_motion() {
         let hummingbird = Scenario::parse(&text, "vehicles/hummingbird.toml").unwrap();
         for faster in faster {
             let flown = fly(&hummingbird, 2e-5 / (faster * faster), faster, false);
-            let (hertz, off) = (74.7 * faster, flown.off.0 * 1e3);
+            let (hertz, off) = (HOVER_HZ * faster, flown.off.0 * 1e3);
             println!("hummingbird at {rate} Hz, shaken at {hertz:5.1} Hz: {off:5.1} mm RMS");
             check(&flown, false, 6e-3, &format!("{rate} Hz, rotors {faster} times as fast"));
         }
+    }
+}
+
+/// The RMS of what the gyro is shaken by, and of what is left of that in the law's body rates, all axes together, rad/s.
+fn noise(scenario: &Scenario, gyro: &ImuParameters, hertz: f64, is_telling: bool) -> (f64, f64) {
+    let faster = hertz / HOVER_HZ;
+    let certified = Certified::new(scenario.configuration.clone()).unwrap();
+    let mut place = Place::new(&scenario.configuration);
+    let settings = FlightSettings::DEFAULT;
+    let vehicle = PilotedVehicle::new(scenario, Ok(&certified), &settings, &mut place, 0).unwrap();
+    let mut vehicle = vehicle.with_gyro_of(gyro).unwrap();
+    let unbalanced = Unbalanced::new(scenario, 2e-5 / (faster * faster), faster);
+    let mut shaken = Unbalanced { gyro: Some(*gyro), is_telling, ..unbalanced };
+    let period = scenario.timing.period_us;
+    let (mut squares, mut ticks) = (0.0, 0.0);
+    for time in (period..NOISE_US.end).step_by(period as usize) {
+        let request = match time {
+            ARM_US => Some(Request::Arm),
+            TAKE_OFF => Some(Request::TakeOff(Some(HOVER_HEIGHT_M as f32))),
+            _ => None,
+        };
+        let given = Inputs { request, ground_station: Some(vehicle.now() + period), ..Inputs::default() };
+        vehicle.tick(&given, &mut shaken).unwrap();
+        if time == NOISE_US.start {
+            shaken.squares = (0.0, 0.0, 0.0);
+        }
+        if NOISE_US.contains(&time) {
+            let error = vehicle.body_rate().unwrap().map(f64::from) - vehicle.vehicle().state().angular_velocity;
+            (squares, ticks) = (squares + error.norm_squared(), ticks + 1.0);
+        }
+    }
+    (shaken.strength().1, (squares / ticks).sqrt())
+}
+
+#[test]
+fn each_gyros_noise_at_the_tick_with_and_without_notches() {
+    // What noise of the sensor and motion of the vehicle make without any shaking.
+    const FLOOR_RAD_PER_S: f64 = 0.02;
+    let hummingbird = vehicle("hummingbird");
+    println!("rotors   shaken by   left at the tick, without notches; with: {:?}", ImuParameters::DRIVEN.map(|s| s.0));
+    for hertz in [100.0, 150.0, 199.0, 250.0, 301.0, 400.0] {
+        let mut line = String::new();
+        let mut tested = None;
+        for (name, gyro) in &ImuParameters::DRIVEN {
+            let [(shaken, plain), (_, notched)] = [false, true].map(|tells| noise(&hummingbird, gyro, hertz, tells));
+            if tested.is_none() {
+                line += &format!("{hertz:4.0} Hz {shaken:6.2} rad/s ");
+            }
+            let tested = *tested.get_or_insert(plain);
+            line += &format!("  {plain:.3}; {notched:.3}");
+            let what = format!("{name}, rotors at {hertz} Hz, shaken by {shaken:.2} rad/s: {plain:.3}, {notched:.3}");
+            assert!(plain < f64::from(GAIN_MAX_SHARE) * tested + FLOOR_RAD_PER_S, "{what}; a BMI088 {tested:.3}");
+            assert!(notched < 0.3 * plain + FLOOR_RAD_PER_S, "{what}");
+        }
+        println!("{line}");
     }
 }

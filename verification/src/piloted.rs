@@ -65,6 +65,11 @@ pub trait Meddler {
         Some(sample)
     }
 
+    /// The rotors' speeds as they are known at `time`, us, rad/s; none: nobody knows.
+    fn rotor_speeds(&mut self, _time: u64) -> [Option<f32>; MOTOR_COUNT] {
+        [None; MOTOR_COUNT]
+    }
+
     /// A pose that arrives at `now`, us, as it is delivered; none: it is lost.
     fn pose(&mut self, pose: Stamped<Pose>, _now: u64) -> Option<Stamped<PoseMeasurement>> {
         Some(Stamped { value: PoseMeasurement::new(&pose.value), time: pose.time })
@@ -176,6 +181,18 @@ impl<'m> PilotedVehicle<'m> {
         })
     }
 
+    /// The same with the gyro of another sensor than a BMI088, read each millisecond.
+    ///
+    /// # Errors
+    /// [`PilotedError::Parameter`], as [`Self::new`].
+    pub fn with_gyro_of(mut self, sensor: &ImuParameters) -> Result<Self, PilotedError> {
+        let ImuParameters { gyro_bandwidth, late, .. } = *sensor;
+        let read = ImuParameters { gyro_bandwidth, late, ..ImuParameters::BMI088 };
+        self.conditioner = Conditioner::new(&read, &Calibration::NONE, self.pilot.period())?;
+        self.instruments = self.instruments.with_gyro_of(&read);
+        Ok(self)
+    }
+
     /// A period passes; then the pilot decides, on the vehicle's measurements and on what is `given` besides: `now`,
     /// increments, body rate and poses of that are replaced by the vehicle's own. Returns its outcome and the motors'
     /// command from now on.
@@ -220,6 +237,7 @@ impl<'m> PilotedVehicle<'m> {
         let sample = self.instruments.sample_of(self.vehicle.state(), self.now, |felt| meddler.feel(felt, self.now));
         if let Some(sample) = meddler.sample(sample, self.now) {
             let force = Some(&sample.specific_force);
+            self.conditioner.follow_rotors(&meddler.rotor_speeds(self.now));
             let taken = self.conditioner.sample(self.now, &sample.angular_velocity, force);
             // As in the firmware's IMU task, a stuck gyro counts as missing.
             let is_stuck = taken.fault == Some(ImuFault::GyroStuck);
@@ -244,6 +262,12 @@ impl<'m> PilotedVehicle<'m> {
     #[must_use]
     pub fn now(&self) -> u64 {
         self.now
+    }
+
+    /// The body rate that the law had last, rad/s.
+    #[must_use]
+    pub fn body_rate(&self) -> Option<Vector3<f32>> {
+        self.body_rate.map(|newest| newest.value)
     }
 
     /// Other flight settings, as the firmware's control task hands them on: taken while nothing is armed.

@@ -11,6 +11,7 @@ use crate::hardware::RawImu;
 use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
+use estimation::imu::rotor_notches::ROTOR_COUNT;
 use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters};
 
 /// How long a fault must have been absent to be reported again.
@@ -55,6 +56,11 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     /// An error names the parameter that makes no sense.
     pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
         self.conditioner.take_over(parameters, calibration)
+    }
+
+    /// The rotors turn so fast, rad/s; none: nobody knows. To be told again with every sample.
+    pub fn follow_rotors(&mut self, speeds: &[Option<f32>; ROTOR_COUNT]) {
+        self.conditioner.follow_rotors(speeds);
     }
 
     /// Takes the next sample.

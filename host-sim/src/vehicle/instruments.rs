@@ -6,7 +6,7 @@
 //! ```
 //!
 //! G and A are the sensor's own filters: a BMI088's, of 116 and 145 Hz by its data sheet, taken as second-order
-//! Butterworth filters. They make it 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
+//! Butterworth filters; another gyro's with [`Instruments::with_gyro_of`]. They make it 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
 //!
 //! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed
 //! decides everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor feels or
@@ -28,8 +28,7 @@ use std::collections::VecDeque;
 /// Of the instruments.
 pub const SAMPLE_PERIOD_US: u64 = 1_000;
 
-/// Bandwidths of a BMI088's own filters as `firmware/src/bmi088.rs` sets them.
-const GYRO_BANDWIDTH_HZ: f64 = 116.0;
+/// The bandwidth of a BMI088's accelerometer's own filter as `firmware/src/bmi088.rs` sets it.
 const ACCELEROMETER_BANDWIDTH_HZ: f64 = 145.0;
 
 /// An IMU's input, before filters and noise.
@@ -55,7 +54,7 @@ fn butterworth(bandwidth: f64) -> LowPass {
 
 /// The gyro's own filter, sampled at [`IMU_RATE_HZ`].
 pub fn gyro_filter() -> LowPass {
-    butterworth(GYRO_BANDWIDTH_HZ)
+    butterworth(ImuParameters::BMI088.gyro_bandwidth.into())
 }
 
 impl OwnFilter {
@@ -119,6 +118,14 @@ impl Instruments {
     /// The same without filters of its own: what its IMU shows is true when it can be read.
     pub fn prompt(self) -> Self {
         Self { filters: None, ..self }
+    }
+
+    /// The same with the gyro's own filter of another sensor, which has one.
+    pub fn with_gyro_of(mut self, sensor: &ImuParameters) -> Self {
+        if let Some([gyro, _]) = &mut self.filters {
+            *gyro = OwnFilter::new(butterworth(sensor.gyro_bandwidth.into()));
+        }
+        self
     }
 
     /// The IMU's sample of a vehicle at `state`, a millisecond after the last. A pose of this moment, if one is due,

@@ -8,6 +8,7 @@ use crate::section::{FieldError, Section};
 use crate::timing::Timing;
 use estimation::estimator::EstimatorParameters;
 use estimation::imu::ImuParameters;
+use estimation::imu::rotor_notches::RotorNotches;
 
 /// Of its samples.
 pub const IMU_RATE_HZ: f64 = 1e3;
@@ -75,10 +76,22 @@ impl Estimator {
     }
 }
 
-/// The maximum delay of the law's body rates, s: [`ImuParameters::rates_late`].
+/// The maximum delay of the law's body rates, s: [`ImuParameters::rates_late`] of the latest of all sensors that boards
+/// have, since any board may carry what flies on a desk, and its second sensor may take over. They differ by 0.15 ms.
 #[must_use]
 pub fn rates_delay(timing: &Timing) -> f64 {
-    ImuParameters::BMI088.rates_late(timing.period_us).into()
+    latest(|sensor| sensor.rates_late(timing.period_us))
+}
+
+/// What the notches that follow the rotors add to that at most, s: [`RotorNotches::delay_max`].
+#[must_use]
+pub fn notches_delay() -> f64 {
+    latest(|sensor| RotorNotches::delay_max(sensor.rate))
+}
+
+/// The greatest of what each sensor has, s.
+fn latest(late: impl Fn(&ImuParameters) -> f32) -> f64 {
+    ImuParameters::DRIVEN.iter().map(|(_, sensor)| f64::from(late(sensor))).fold(0.0, f64::max)
 }
 
 /// The keys of `[estimator]`; their defaults are those of [`Estimator`].
