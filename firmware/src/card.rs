@@ -1,8 +1,9 @@
-//! Every flight as a file on a memory card: each tick, and every text that goes out.
+//! Every flight as a file on a memory card: each tick, every text that goes out, and the raw gyro where that is wanted.
 //!
 //! ```text
 //! control -> recorder's ring --+-> sectors of whole ULog messages -> LOG00012.ULG
 //! events  -> a queue of its own +
+//! gyro    -> blocks of samples -+
 //! ring as a reset left it ---------------------------------------> REC00013.ULG
 //! ```
 //!
@@ -190,6 +191,14 @@ impl<K: Clock, M: RawMutex> Logger<'_, K, M> {
     /// Writes what there is to be written.
     fn write<C: Card>(&mut self, volume: &Volume<'_, C>, log: &mut Log) -> Result<Flight, Trouble> {
         self.keep_events();
+        while !log.is_full()
+            && let Some(block) = self.shared.gyro_log().take()
+        {
+            // Of flights alone.
+            if log.has_begun() {
+                log.gyro(volume, &block)?;
+            }
+        }
         for _ in 0..RECORDS_AT_ONCE {
             match self.shared.recorder().follow(&mut self.follower) {
                 Followed::Record { is_first: true, .. } if log.has_begun() => {

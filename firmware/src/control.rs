@@ -17,6 +17,7 @@ use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::link::origin::Origin;
 use crate::outputs::{Outputs, voltage_ratio};
 use crate::parameters::table::Name;
+use crate::recorder::{RECORD_SPACING_MIN_US, SPACING_BESIDE_GYRO_US};
 use crate::shared::{
     ControlView, Event, INCREMENTS_CAPACITY, MissionReport, POSES_CAPACITY, Queue, QueuedRequest, Report, Take, Timing,
 };
@@ -71,7 +72,9 @@ struct ReportedFaults {
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies by `pilot`, with `outputs` for the motors.
     pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
-        shared.recorder().ticks_last(pilot.period());
+        let spacing =
+            if shared.gyro_log().is_attached() { SPACING_BESIDE_GYRO_US } else { RECORD_SPACING_MIN_US };
+        shared.recorder().ticks_last(pilot.period(), spacing);
         Self {
             shared,
             outputs,

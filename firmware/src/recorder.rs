@@ -8,7 +8,8 @@
 //!   The one before it is lost then, and not sooner: after a crash that reset the board, what led to it is there to be
 //!   fetched.
 //! - A record is of one tick. Up to 100 Hz each tick makes one, above that each second, third ...: records are
-//!   [`RECORD_SPACING_MIN_US`] or more apart, so that memory and card hold as long a flight at any rate.
+//!   [`RECORD_SPACING_MIN_US`] or more apart, so that memory and card hold as long a flight at any rate. Where the card
+//!   takes the [raw gyro](gyro) as well they are [`SPACING_BESIDE_GYRO_US`] apart.
 //! - Every record carries a number and a checksum ([`ring`]). What a reset cut short is left out, and so is what was
 //!   never written.
 //! - What is fetched is a [ULog file](ulog), which PlotJuggler, `pyulog` and PX4's Flight Review read. No recording is
@@ -18,6 +19,7 @@
 //! every record to it.
 
 pub mod follow;
+pub mod gyro;
 pub mod ring;
 pub mod tick;
 pub mod ulog;
@@ -33,6 +35,9 @@ pub const RECORDED_AFTERWARDS_US: u64 = 2_000_000;
 
 /// The least time between two records.
 pub const RECORD_SPACING_MIN_US: u64 = 10_000;
+
+/// The same beside the raw gyro: a card then writes no more sectors than without it, 33 a second.
+pub const SPACING_BESIDE_GYRO_US: u64 = 40_000;
 
 /// What records, and what there is.
 struct Recording {
@@ -75,11 +80,12 @@ impl<M: RawMutex> Recorder<M> {
         self.with(|recording| recording.vehicle).unwrap_or_default()
     }
 
-    /// Control ticks are so long apart, us: [`RECORD_SPACING_MIN_US`], unless this says otherwise.
-    pub fn ticks_last(&self, period: u64) {
+    /// Control ticks are so long apart, us, and records `spacing` at least: [`RECORD_SPACING_MIN_US`] both, unless this
+    /// says otherwise.
+    pub fn ticks_last(&self, period: u64, spacing: u64) {
         self.with(|recording| {
             recording.period = period.max(1);
-            recording.spacing = RECORD_SPACING_MIN_US.div_ceil(recording.period) * recording.period;
+            recording.spacing = spacing.div_ceil(recording.period) * recording.period;
         });
     }
 

@@ -57,6 +57,7 @@ use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
 use crate::parameters::Parameters;
 use crate::recorder::Recorder;
+use crate::recorder::gyro::GyroLog;
 use controller_core::governor::Setpoint;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
@@ -210,6 +211,8 @@ values! {
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
+    /// The raw gyro on its way to the card, where `LOG_GYRO` asks for it and the board has memory for it.
+    pub gyro_log: GyroLog<M> { All: BootView; Write: SamplesView; Take: CardView; Read: ControlView }
     /// The memory card, where the board has one. Its task may be silent for [`CARD_TIMEOUT_US`].
     pub card: CardStatus { Write: CardView; Read: ReceiveView, TransmitView, StatusView }
     /// The link's questions about the card's files.

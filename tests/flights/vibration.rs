@@ -16,11 +16,15 @@
 
 use crate::support::extended::vehicle;
 use controller_core::certificate::certified::Certified;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use estimation::estimator::PoseMeasurement;
 use estimation::imu::ImuParameters;
 use estimation::imu::sensor::GAIN_MAX_SHARE;
 use firmware::hardware::MOTOR_COUNT;
-use flight::{FlightSettings, Inputs, Pose, Reason, Request, Stamped};
+use firmware::recorder::gyro::{self, GyroLog};
+use flight::{FlightSettings, ImuSample, Inputs, Pose, Reason, Request, Stamped};
+use host_sim::identification::ulog::command;
+use host_sim::identification::ulog::writer::{Topic, Writer};
 use host_sim::vehicle::instruments::{SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -304,6 +308,67 @@ fn at_any_rate_of_control_shaking_is_no_slow_motion() {
             check(&flown, false, 6e-3, &format!("{rate} Hz, rotors {faster} times as fast"));
         }
     }
+}
+
+/// A gyro that is logged raw.
+struct Logged {
+    shaken: Unbalanced,
+    log: GyroLog<NoopRawMutex>,
+    file: Writer,
+}
+
+impl Meddler for Logged {
+    fn act(&mut self, vehicle: &mut RealVehicle, time: u64) {
+        self.shaken.act(vehicle, time);
+    }
+
+    fn feel(&mut self, felt: TrueMotion, time: u64) -> TrueMotion {
+        self.shaken.feel(felt, time)
+    }
+
+    fn sample(&mut self, sample: ImuSample, time: u64) -> Option<ImuSample> {
+        self.log.put(time, &sample.angular_velocity);
+        while let Some(block) = self.log.take() {
+            self.file.record(0, u64::from_le_bytes(*block.first_chunk().unwrap()), &block[8..]);
+        }
+        Some(sample)
+    }
+}
+
+#[test]
+fn the_raw_gyros_spectrum_shows_the_rotors() {
+    let faster = 1.6;
+    let hummingbird = vehicle("hummingbird");
+    let certified = Certified::new(hummingbird.configuration.clone()).unwrap();
+    let mut place = Place::new(&hummingbird.configuration);
+    let settings = FlightSettings::DEFAULT;
+    let mut vehicle = PilotedVehicle::new(&hummingbird, Ok(&certified), &settings, &mut place, 0).unwrap();
+    let (name, fields) = gyro::FORMAT.split_once(':').unwrap();
+    let mut logged = Logged {
+        shaken: Unbalanced::new(&hummingbird, 2e-5 / (faster * faster), faster),
+        log: GyroLog::new(),
+        file: Writer::new(0, &[Topic { name, fields }], &[], &[]),
+    };
+    logged.log.attach(Box::leak(vec![[0; gyro::BLOCK_BYTES]; 2].into_boxed_slice()));
+    let period = hummingbird.timing.period_us;
+    for time in (period..NOISE_US.end).step_by(period as usize) {
+        let request = match time {
+            ARM_US => Some(Request::Arm),
+            TAKE_OFF => Some(Request::TakeOff(Some(HOVER_HEIGHT_M as f32))),
+            _ => None,
+        };
+        let given = Inputs { request, ground_station: Some(vehicle.now() + period), ..Inputs::default() };
+        vehicle.tick(&given, &mut logged).unwrap();
+    }
+    // For docs/vibration.md, whose picture is this one.
+    let folder = std::env::var_os("LOGS").map_or_else(std::env::temp_dir, Into::into);
+    let (log, picture) = (folder.join("shaken.ulg"), folder.join("shaken.svg"));
+    std::fs::write(&log, logged.file.finish()).unwrap();
+    let told = command::draw(&log, &picture).unwrap();
+    println!("{told}");
+    let greatest: f64 = told.lines().nth(1).unwrap().trim().split(' ').next().unwrap().parse().unwrap();
+    assert!((greatest - HOVER_HZ * faster).abs() < 4.0, "{told}");
+    assert!(std::fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
 }
 
 /// The RMS of what the gyro is shaken by, and of what is left of that in the law's body rates, all axes together, rad/s.

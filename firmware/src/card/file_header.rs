@@ -1,7 +1,7 @@
 //! The beginning of a flight's file: what the recorder's file has, and the parameters and constants that are flown.
 //!
 //! ```text
-//! 2 sectors of information and format | 9 of parameters (kind P) and, at their end, the subscription
+//! 2 sectors of information and format | 9 of parameters (kind P) | 1 of the gyro's format, and the subscriptions
 //! ```
 //!
 //! The law's constants are those that were built; the parameters `GAIN_...` beside them are percent of them. All
@@ -13,17 +13,20 @@ use crate::configuration::CONSTANTS;
 use crate::hardware::SECTOR_BYTES;
 use crate::parameters::Parameters;
 use crate::parameters::table::PARAMETERS;
-use crate::recorder::ulog;
+use crate::recorder::{gyro, ulog};
 use crate::shared::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 
 /// Sectors that a file begins with.
-pub const HEAD_SECTORS: usize = 11;
+pub const HEAD_SECTORS: usize = 12;
 
 /// Those of information and format.
 const DEFINITION_SECTORS: usize = 2;
 
-/// Parameters and constants in each of the others.
+/// Those of parameters and constants; one is behind them.
+const CONSTANT_SECTORS: usize = HEAD_SECTORS - DEFINITION_SECTORS - 1;
+
+/// Parameters and constants in each of these.
 const CONSTANTS_PER_SECTOR: usize = 13;
 
 /// The longest of their names, bytes.
@@ -33,12 +36,9 @@ const NAME_MAX: usize = 24;
 const KIND: &str = "float ";
 
 const _: () = {
-    assert!(PARAMETERS.len() + CONSTANTS.len() <= (HEAD_SECTORS - DEFINITION_SECTORS) * CONSTANTS_PER_SECTOR);
+    assert!(PARAMETERS.len() + CONSTANTS.len() <= CONSTANT_SECTORS * CONSTANTS_PER_SECTOR);
     let message = MESSAGE_HEAD_BYTES + 1 + KIND.len() + NAME_MAX + size_of::<f32>();
-    assert!(
-        CONSTANTS_PER_SECTOR * message + ulog::SUBSCRIPTION_PARTS[0].len() + ulog::SUBSCRIPTION_PARTS[1].len()
-            <= SECTOR_CAPACITY_BYTES
-    );
+    assert!(CONSTANTS_PER_SECTOR * message <= SECTOR_CAPACITY_BYTES);
 };
 
 /// What a file says of the vehicle.
@@ -54,6 +54,7 @@ impl<M: RawMutex> FileHeader<'_, M> {
     pub fn sector(&self, place: usize, time: u64) -> [u8; SECTOR_BYTES] {
         match place.checked_sub(DEFINITION_SECTORS) {
             None => self.defined(place, time),
+            Some(CONSTANT_SECTORS) => subscribed(),
             Some(place) => self.numbers(place),
         }
     }
@@ -79,11 +80,17 @@ impl<M: RawMutex> FileHeader<'_, M> {
             let head = ulog::head(b'P', 1 + length + size_of_val(&value));
             let _ = sector.put(&[&head, &[length as u8], KIND.as_bytes(), name.as_bytes(), &value.to_le_bytes()]);
         }
-        if place + DEFINITION_SECTORS + 1 == HEAD_SECTORS {
-            let _ = sector.put(&ulog::SUBSCRIPTION_PARTS);
-        }
         sector.finish()
     }
+}
+
+/// The last.
+fn subscribed() -> [u8; SECTOR_BYTES] {
+    let mut sector = Sector::new();
+    for parts in [gyro::FORMAT_PARTS, ulog::SUBSCRIPTION_PARTS, gyro::SUBSCRIPTION_PARTS] {
+        let _ = sector.put(&parts);
+    }
+    sector.finish()
 }
 
 #[cfg(test)]

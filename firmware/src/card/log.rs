@@ -12,6 +12,7 @@ use super::file_header::{FileHeader, HEAD_SECTORS};
 use super::sector::{BLANK_SECTOR, Content, SECTOR_CAPACITY_BYTES, Sector};
 use super::volume::{File, Kind, Trouble, Volume};
 use crate::hardware::{Card, SECTOR_BYTES};
+use crate::recorder::gyro::{self, Block};
 use crate::recorder::{tick, ulog};
 use crate::shared::{Event, Severity, Text};
 use embassy_sync::blocking_mutex::raw::RawMutex;
@@ -22,9 +23,9 @@ pub const GROWTH_BYTES: u32 = 64 << 10;
 /// The longest file: 16 minutes.
 pub const SIZE_MAX_BYTES: u32 = 0x00FF_0000;
 
-/// Room for what is written between two looks at [`Log::is_full`]: a record, every event that waits, and the
-/// sector that had begun.
-const RESERVE_BYTES: u32 = 8 * SECTOR_STEP_BYTES;
+/// Room for what is written between two looks at [`Log::is_full`]: a record, a block of the gyro, every event that
+/// waits, and the sector that had begun.
+const RESERVE_BYTES: u32 = 9 * SECTOR_STEP_BYTES;
 
 /// Bytes before the first record's sector.
 const BEGINNING_BYTES: u32 = (HEAD_SECTORS * SECTOR_BYTES) as u32;
@@ -33,6 +34,7 @@ const BEGINNING_BYTES: u32 = (HEAD_SECTORS * SECTOR_BYTES) as u32;
 const SECTOR_STEP_BYTES: u32 = SECTOR_BYTES as u32;
 
 const _: () = assert!(ulog::DATA_HEAD.len() + tick::TICK_BYTES <= SECTOR_CAPACITY_BYTES);
+const _: () = assert!(2 * (gyro::DATA_HEAD.len() + gyro::BLOCK_BYTES) <= SECTOR_CAPACITY_BYTES);
 
 /// A file that is being filled.
 pub struct Log {
@@ -168,6 +170,12 @@ impl Log {
         self.put(volume, &[&ulog::DATA_HEAD, record])?;
         self.pending += 1;
         Ok(())
+    }
+
+    /// Adds a block of the gyro.
+    /// Fails if a sector cannot be written.
+    pub fn gyro<C: Card>(&mut self, volume: &Volume<'_, C>, block: &Block) -> Result<(), Trouble> {
+        self.put(volume, &[&gyro::DATA_HEAD, block])
     }
 
     /// Adds an event of `time`, us.

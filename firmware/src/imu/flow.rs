@@ -65,6 +65,7 @@ impl<'a, M: RawMutex> Flow<'a, M> {
 
     /// Takes the next sample.
     pub fn take(&mut self, raw: &RawImu) {
+        self.shared.gyro_log().put(raw.time, &raw.angular_velocity);
         let before = self.conditioner.newest().map(|newest| newest.time);
         let force = raw.specific_force.as_ref();
         let Conditioned { increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);

@@ -173,6 +173,9 @@ parameters! {
     SerialRate: row("SER_BAUD", [57_600.0, 921_600.0], 921_600.0, "", 57_600.0);
     /// Whether what is not signed is refused, once there is a key. Taken over at once.
     SignedOnly: row("SIGN_ONLY", [0.0, 1.0], 1.0, "", 1.0);
+    /// Whether the card takes the raw gyro, where there is one: see [`crate::recorder::gyro`]. Taken over at the next
+    /// boot.
+    LogGyro: row("LOG_GYRO", [0.0, 1.0], 0.0, "", 1.0);
 }
 
 impl Name {

@@ -19,12 +19,14 @@ use crate::link::signing::{Refusal, Signing};
 use crate::parameters::table::Name;
 use crate::parameters::{Parameters, ValueRefusal};
 use crate::recorder::Recorder;
+use crate::recorder::gyro::{Block, GyroLog};
 use crate::recorder::follow::{Followed, Follower};
 use crate::recorder::tick::Tick;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use flight::{FlightSettings, Stamped};
 use mavlink::MAVLinkV2MessageRaw;
+use nalgebra::Vector3;
 
 /// An access: a reference, and what it is for.
 macro_rules! accesses {
@@ -110,10 +112,13 @@ offers! {
         fn answer(question: Question) -> Answer;
     }
     [M: RawMutex] Write<'_, Recorder<M>> {
-        fn ticks_last(period: u64);
+        fn ticks_last(period: u64, spacing: u64);
         fn record(armed: bool, tick: impl FnOnce() -> Tick);
     }
     [M: RawMutex] Take<'_, Recorder<M>> { fn erase(); }
+    [M: RawMutex] Read<'_, GyroLog<M>> { fn is_attached() -> bool; }
+    [M: RawMutex] Write<'_, GyroLog<M>> { fn put(time: u64, rate: &Vector3<f32>); }
+    [M: RawMutex] Take<'_, GyroLog<M>> { fn take() -> Option<Block>; }
     [] Read<'_, CardStatus> {
         fn state() -> CardState;
         fn is_silent(now: u64) -> bool;

@@ -79,7 +79,7 @@ fn a_flight_and_two_seconds_after_it_are_recorded_and_the_next_one_replaces_it()
 fn at_any_rate_records_are_ten_milliseconds_or_more_apart_and_last_as_long() {
     for (period, spacing) in [(1_000, 10_000), (2_000, 10_000), (4_000, 12_000), (20_000, 20_000)] {
         let shared = shared();
-        shared.recorder.ticks_last(period);
+        shared.recorder.ticks_last(period, RECORD_SPACING_MIN_US);
         assert_eq!(shared.recorder.spacing(), spacing);
         let times = RefCell::new(Vec::new());
         for now in (0..5_000_000).step_by(period as usize) {

@@ -4,9 +4,10 @@
 //! |---|---|
 //! | `formats` | a message's fields, where they begin, nested ones flattened |
 //! | `reader` | a file's topics as columns, its parameters, information and texts |
+//! | `spectrum` | the raw gyro's amplitudes over frequency |
 //! | [`writer`] | a file of topics |
 //! | `topics` | the firmware's ticks as PX4's topics, in PX4's frames |
-//! | [`command`] | `host-sim log`, from a file to a file |
+//! | [`command`] | `host-sim log`, from a file to a file or a picture |
 //!
 //! The reader is our own: px4-ulog 0.6.1, the project's crate, panics on a subscription or a parameter that is too
 //! short, and files come from anywhere.
@@ -14,6 +15,7 @@
 pub mod command;
 pub(crate) mod formats;
 pub(crate) mod reader;
+pub(crate) mod spectrum;
 pub(crate) mod topics;
 pub mod writer;
 

@@ -49,7 +49,7 @@ Examples:
                                      search for gains that certify and fly well
   host-sim identify log.csv --scenario mine.toml --out found.toml
                                      mass, inertia, lag, drag ... from a log
-  host-sim log LOG00012.ULG --ulog px4.ulg
+  host-sim log LOG00012.ULG --ulog px4.ulg --spectrum gyro.svg
                                      for Flight Review and PlotJuggler
   host-sim vehicle cf2x.urdf --out cf2x.toml
                                      a vehicle from another program's file

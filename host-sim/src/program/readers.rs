@@ -6,6 +6,7 @@ use host_sim::identification::identify::command::{self, Refused, Task};
 use host_sim::identification::import;
 use host_sim::identification::import::existing;
 use host_sim::identification::import::written::written;
+use host_sim::identification::ulog;
 use host_sim::output::whole_file::WholeFile;
 use scenario::{STUDY, Scenario};
 use std::path::Path;
@@ -46,11 +47,16 @@ pub fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
     }
 }
 
-pub fn run_log(LogArguments { log, ulog }: &LogArguments) -> Result<ExitCode, String> {
-    if same_file(ulog, log) {
-        return Err(format!("{}: --ulog must be another file than the log", ulog.display()));
+pub fn run_log(LogArguments { log, ulog, spectrum }: &LogArguments) -> Result<ExitCode, String> {
+    let runs: [(_, _, fn(&Path, &Path) -> Result<String, String>); 2] =
+        [("--ulog", ulog, ulog::command::run), ("--spectrum", spectrum, ulog::command::draw)];
+    for (option, out, run) in runs {
+        let Some(out) = out else { continue };
+        if same_file(out, log) {
+            return Err(format!("{}: {option} must be another file than the log", out.display()));
+        }
+        print_text(&run(log, out)?)?;
     }
-    print_text(&host_sim::identification::ulog::command::run(log, ulog)?)?;
     Ok(status(true, None))
 }
 

@@ -24,6 +24,7 @@ use crate::link::port::Line;
 use crate::outputs::{self, Outputs};
 use crate::parameters::storage::Storage;
 use crate::parameters::table::Name;
+use crate::recorder::gyro::{BLOCK_BYTES, Block};
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{
@@ -34,7 +35,7 @@ use crate::{boot, card, configuration, imu, link, radio, status};
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use static_cell::StaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 
 type Raw = CriticalSectionRawMutex;
 type Shared = shared::Shared<Raw>;
@@ -75,6 +76,10 @@ pub fn run() -> ! {
     }
     if chip::has_no_brown_out() {
         booting.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
+    }
+    if board.card.is_some() && booting.parameters().get(Name::LogGyro) == 1.0 {
+        static BLOCKS: ConstStaticCell<[Block; chip::GYRO_BLOCKS]> = ConstStaticCell::new([[0; BLOCK_BYTES]; _]);
+        booting.gyro_log().attach(BLOCKS.take());
     }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
         booting.recorder().attach(Ring::recover(memory), configuration::NAME);

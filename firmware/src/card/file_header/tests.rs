@@ -4,7 +4,7 @@ use crate::shared::Shared;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 
 #[test]
-fn it_is_whole_messages_with_every_number_before_the_subscription() {
+fn it_is_whole_messages_with_every_number_before_the_subscriptions() {
     let shared = Shared::<NoopRawMutex>::new();
     shared.parameters.set(Name::MotorIdle, 0.0625).unwrap();
     let beginning = FileHeader { vehicle: "mine", parameters: shared.for_card().parameters() };
@@ -23,7 +23,7 @@ fn it_is_whole_messages_with_every_number_before_the_subscription() {
     }
     assert_eq!((at, idle), (bytes.len(), Some(0.0625)));
     let count = PARAMETERS.len() + CONSTANTS.len();
-    assert_eq!(kinds.replace('Z', ""), format!("BIIIIIF{}A", "P".repeat(count)));
+    assert_eq!(kinds.replace('Z', ""), format!("BIIIIIF{}FAA", "P".repeat(count)));
 }
 
 #[test]

@@ -28,6 +28,9 @@ pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::CAN1_TX;
 /// Cycles of the core in 0.08 ms.
 pub const FRAME_PAUSE_CYCLES: u32 = 13_440;
 
+/// Blocks of the raw gyro that wait for a card: its board has no slot.
+pub const GYRO_BLOCKS: usize = 0;
+
 /// Where the vector table of the chip's own bootloader is.
 pub const BOOTLOADER_ADDRESS: u32 = 0x1FFF_0000;
 

@@ -31,6 +31,9 @@ pub const SERVICES_INTERRUPT: interrupt::Interrupt = interrupt::SAI3;
 /// Cycles of the core in 0.08 ms.
 pub const FRAME_PAUSE_CYCLES: u32 = 32_000;
 
+/// Blocks of the raw gyro that wait for a card, 7 KB: a second at 1 kHz.
+pub const GYRO_BLOCKS: usize = 32;
+
 /// Where the vector table of the chip's own bootloader is.
 pub const BOOTLOADER_ADDRESS: u32 = 0x1FF0_9800;
 
