@@ -37,9 +37,15 @@ def read(file):
 def card(file):
     """A card's file: who flew, with what, what was said; and every tick."""
     log = read(file)
-    assert [data.name for data in log.data_list] == ["tick"]
+    assert [data.name for data in log.data_list] == ["tick", "sensor_gyro_fifo"]
     ticks = log.get_dataset("tick").data
     assert len(ticks["timestamp"]) == 399, len(ticks["timestamp"])
+    gyro = log.get_dataset("sensor_gyro_fifo").data
+    assert (gyro["samples"] == 32).all() and (gyro["dt"] == 1000.0).all()
+    # 1 rad/s about x and y, a quarter of a turn apart.
+    for n in range(32):
+        x, y = (gyro[f"{axis}[{n}]"] * gyro["scale"] for axis in "xy")
+        assert (abs(x**2 + y**2 - 1.0) < 1e-2).all(), n
     information = told("ulog_info", file)
     for words in ["sys_name: saturated hybrid feedback", "vehicle: mine", "ver_sw: 0.2.0", "frames: world z up"]:
         assert words in information, information

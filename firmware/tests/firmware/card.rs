@@ -7,15 +7,18 @@ use crate::support::Simulated;
 use crate::support::card::{Image, PARTITION_START, Parsed, Simulation, files, formatted, parsed, small};
 use crate::support::receiver::{Local, texts};
 use core::ops::Range;
+use core::f32::consts::TAU;
 use fatfs::FatType;
 use firmware::card::log::{GROWTH_BYTES, SIZE_MAX_BYTES};
 use firmware::card::{RETRY_INTERVAL_US, run};
 use firmware::hardware::{MotorCommand, SECTOR_BYTES};
 use firmware::link::telemetry::vehicle;
 use firmware::recorder::RECORDED_AFTERWARDS_US;
+use firmware::recorder::gyro::BLOCK_BYTES;
 use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::shared::{CardState, Event, Report, Severity, Shared, Traffic};
 use mavlink::dialects::common::MavSysStatusSensor;
+use nalgebra::Vector3;
 use proptest::prelude::*;
 
 /// A second, us.
@@ -89,8 +92,15 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
         let card = Simulation::new(image, sectors, &clock);
         let mut ticks = Ticks::new(&shared);
         let flights = [SECOND_US..3 * SECOND_US, 6 * SECOND_US..7 * SECOND_US];
+        shared.gyro_log.attach(Box::leak(vec![[0; BLOCK_BYTES]; 32].into_boxed_slice()));
+        let mut sampled = 0;
         clock.run(10 * SECOND_US, run(card.clone(), GROWTH_BYTES, &clock, shared.for_card()), |now| {
             ticks.until(now, &flights);
+            while sampled <= now {
+                let phase = TAU * 125.0 * sampled as f32 * 1e-6;
+                shared.gyro_log.put(sampled, &Vector3::new(phase.cos(), phase.sin(), 0.1));
+                sampled += 1_000;
+            }
             if now == 900_000 || now == 2_000_000 {
                 shared.announce(Event::new(Severity::Critical, format_args!("said at {now}")));
             }
@@ -110,6 +120,10 @@ fn every_flight_is_a_file_with_each_tick_and_every_text() {
         assert_eq!((first.time, first.is_whole, first.gaps.len()), (SECOND_US, true, 0));
         let expected = [900_000, 2_000_000].map(|time| ('2', time, format!("said at {time}")));
         assert!(expected.iter().all(|text| first.texts.contains(text)), "{:?}", first.texts);
+        // The whole flight's raw gyro, in blocks of 32 ms.
+        assert!(first.gyro.windows(2).all(|pair| pair[1] - pair[0] == 32_000), "{:?}", first.gyro);
+        let (begin, end) = (first.gyro[0], *first.gyro.last().unwrap());
+        assert!(begin < SECOND_US + 40_000 && end > 5 * SECOND_US - 60_000, "{begin} to {end}");
         assert_eq!(logs[1].1.ticks, times(6 * SECOND_US, 7 * SECOND_US));
         assert!(logs[2].1.ticks.is_empty() && logs[2].1.is_whole);
         assert_eq!(

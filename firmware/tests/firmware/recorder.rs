@@ -8,7 +8,7 @@ use firmware::hardware::MotorCommand;
 use firmware::link::transmit::transmit;
 use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::recorder::ulog;
-use firmware::recorder::{RECORD_SPACING_MIN_US, RECORDED_AFTERWARDS_US};
+use firmware::recorder::{RECORD_SPACING_MIN_US, RECORDED_AFTERWARDS_US, SPACING_BESIDE_GYRO_US};
 use firmware::shared::Report;
 use mavlink::dialects::common::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_END_DATA, LOG_REQUEST_LIST_DATA,
@@ -77,9 +77,16 @@ fn a_flight_and_two_seconds_after_it_are_recorded_and_the_next_one_replaces_it()
 
 #[test]
 fn at_any_rate_records_are_ten_milliseconds_or_more_apart_and_last_as_long() {
-    for (period, spacing) in [(1_000, 10_000), (2_000, 10_000), (4_000, 12_000), (20_000, 20_000)] {
+    let alone = RECORD_SPACING_MIN_US;
+    for (period, least, spacing) in [
+        (1_000, alone, 10_000),
+        (2_000, alone, 10_000),
+        (4_000, alone, 12_000),
+        (20_000, alone, 20_000),
+        (10_000, SPACING_BESIDE_GYRO_US, 40_000),
+    ] {
         let shared = shared();
-        shared.recorder.ticks_last(period, RECORD_SPACING_MIN_US);
+        shared.recorder.ticks_last(period, least);
         assert_eq!(shared.recorder.spacing(), spacing);
         let times = RefCell::new(Vec::new());
         for now in (0..5_000_000).step_by(period as usize) {

@@ -4,7 +4,7 @@
 use super::Simulated;
 use fatfs::{FatType, FileSystem, FormatVolumeOptions, FsOptions, format_volume};
 use firmware::hardware::{Card, Fault, SECTOR_BYTES};
-use firmware::recorder::tick;
+use firmware::recorder::{gyro, tick};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Error, Read, Result, Seek, SeekFrom, Write};
@@ -175,6 +175,8 @@ pub struct Parsed {
     pub ticks: Vec<u64>,
     /// Its records.
     pub records: Vec<Vec<u8>>,
+    /// The times of the gyro's blocks, us.
+    pub gyro: Vec<u64>,
     /// The texts, with levels and times.
     pub texts: Vec<(char, u64, String)>,
     /// Gaps, ms.
@@ -197,6 +199,7 @@ pub fn parsed(file: &[u8]) -> Parsed {
                 parsed.ticks.push(number(&body[2..10]));
                 parsed.records.push(body[2..].to_vec());
             }
+            b'D' if body[..2] == [1, 0] && length == 2 + gyro::BLOCK_BYTES => parsed.gyro.push(number(&body[2..10])),
             b'L' => {
                 let text = String::from_utf8(body[9..].to_vec()).unwrap();
                 parsed.texts.push((char::from(body[0]), number(&body[1..9]), text));
