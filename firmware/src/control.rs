@@ -72,8 +72,7 @@ struct ReportedFaults {
 impl<'a, M: RawMutex> Control<'a, M> {
     /// A task that flies by `pilot`, with `outputs` for the motors.
     pub fn new(shared: ControlView<'a, M>, pilot: &'a mut Pilot, outputs: Outputs) -> Self {
-        let spacing =
-            if shared.gyro_log().is_attached() { SPACING_BESIDE_GYRO_US } else { RECORD_SPACING_MIN_US };
+        let spacing = if shared.gyro_log().is_attached() { SPACING_BESIDE_GYRO_US } else { RECORD_SPACING_MIN_US };
         shared.recorder().ticks_last(pilot.period(), spacing);
         Self {
             shared,

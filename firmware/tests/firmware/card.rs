@@ -6,8 +6,8 @@
 use crate::support::Simulated;
 use crate::support::card::{Image, PARTITION_START, Parsed, Simulation, files, formatted, parsed, small};
 use crate::support::receiver::{Local, texts};
-use core::ops::Range;
 use core::f32::consts::TAU;
+use core::ops::Range;
 use fatfs::FatType;
 use firmware::card::log::{GROWTH_BYTES, SIZE_MAX_BYTES};
 use firmware::card::{RETRY_INTERVAL_US, run};

@@ -14,7 +14,7 @@
 //! | `flash` | the parameters' memory |
 //! | [`key`] | the key that signs frames |
 //! | `session` | a session's options, and its end |
-//! | `record` | the session as MCAP |
+//! | `record`, `gyro` | the session as MCAP, its raw gyro as ULog |
 //!
 //! Control, IMU, both halves of the link, status, parameters and restart are the library's tasks that boards run; here
 //! they share a thread and a simulated clock, which is let go no further than the desk's. The configuration is
@@ -24,6 +24,7 @@ pub mod clock;
 mod downlink;
 pub mod faults;
 pub(crate) mod flash;
+mod gyro;
 pub mod key;
 pub mod memory_line;
 mod record;
@@ -53,6 +54,7 @@ use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
+use gyro::GyroFile;
 use memory_line::MemoryLine;
 use record::SessionRecord;
 use scenario::{Scenario, board};
@@ -89,6 +91,8 @@ pub struct Sitl {
     period: u64,
     /// What the vehicle is called.
     name: &'static str,
+    /// Whether its raw gyro is logged.
+    logs_gyro: bool,
     /// Set by the firmware: start it anew.
     restart: Rc<Cell<bool>>,
 }
@@ -150,6 +154,7 @@ impl Sitl {
             identity,
             period: scenario.timing.period_us,
             name: Box::leak(scenario.name.clone().into_boxed_str()),
+            logs_gyro: session.gyro.is_some(),
             restart: Rc::default(),
         };
         sitl.start().map_err(|error| in_file(error.to_string()))?;
@@ -170,6 +175,9 @@ impl Sitl {
         let mut parameters = Storage::load(self.flash.clone(), shared.for_storage());
         let memory = Box::leak(vec![[0; SLOT_BYTES]; RECORDER_CAPACITY].into_boxed_slice());
         shared.recorder.attach(Ring::recover(memory), self.name);
+        if self.logs_gyro {
+            shared.gyro_log.attach(gyro::memory());
+        }
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);
         let built = Built { configuration, loops: self.loops, identity: self.identity, period };
@@ -277,6 +285,7 @@ pub fn run(
 ) -> Result<SitlSummary, SitlError> {
     let create = |(path, text): &(PathBuf, String)| SessionRecord::create(path, scenario, text);
     let mut record = session.recording.as_ref().map(create).transpose().map_err(SitlError::Input)?;
+    let mut gyro = session.gyro.as_deref().map(GyroFile::create).transpose().map_err(SitlError::Input)?;
     let (mut sitl, warning) = Sitl::boot(scenario, session, say).map_err(SitlError::Input)?;
     warning.iter().for_each(|warning| show(&format!("warning: {warning}")));
     let Ports { offboard, ground, local } = session.ports;
@@ -305,6 +314,9 @@ pub fn run(
             sitl.receive();
         }
         sitl.pass(next);
+        if let Some(gyro) = &mut gyro {
+            gyro.take(&sitl.shared.gyro_log);
+        }
         if let Some(truth) = &mut truth {
             truth.write_when_due(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.hardware.state());
         }
@@ -323,6 +335,7 @@ pub fn run(
     };
     // Also of a session that ended badly: what led to it is in there.
     record.map_or(Ok(()), SessionRecord::finish).map_err(SitlError::Input)?;
+    gyro.map_or(Ok(()), GyroFile::finish).map_err(SitlError::Input)?;
     ended
 }
 

@@ -86,11 +86,26 @@ impl Flight<'_> {
         }
         if all {
             samples.print("IMU sample");
+            let Some(notched) = self.notched() else { return false };
+            notched.print("IMU sample, with notches at four rotors");
             increments.print("estimator, IMU increment of 5 ms");
             states.print("estimator, state of now");
         }
         poses.print(stream.what);
         true
+    }
+
+    /// What samples cost where four rotors tell their speeds, and these change.
+    fn notched(&self) -> Option<Cost> {
+        let mut conditioner = Conditioner::new(&ImuParameters::PROMPT, &Calibration::NONE, PERIOD_US).ok()?;
+        let (sample, mut cost): (Sample, _) = (black_box(Conditioner::sample), Cost::default());
+        for n in 0..SAMPLE_COUNT {
+            let (now, jitter) = (n * 1_000, (n % 5) as f32 * 1e-4);
+            conditioner.follow_rotors(&[700.0, 710.0, 720.0, 730.0].map(|speed| Some(speed + (n % 64) as f32)));
+            let (rate, force) = (Vector3::new(jitter, 0.0, RATE_RAD_PER_S), Vector3::new(jitter, 0.0, 9.81));
+            cost.add(self.counter.short(|| sample(&mut conditioner, now, &rate, Some(&force))).0);
+        }
+        Some(cost)
     }
 }
 

@@ -101,7 +101,8 @@ impl Spectrum {
     /// The greatest peaks, a line each.
     pub fn told(&self) -> String {
         let rate = 2.0 * self.step * (WINDOW_SAMPLES / 2) as f64;
-        let mut text = format!("{:.1} s of the gyro at {rate:.0} Hz; greatest peaks, rad/s about x, y, z:\n", self.seconds);
+        let mut text =
+            format!("{:.1} s of the gyro at {rate:.0} Hz; greatest peaks, rad/s about x, y, z:\n", self.seconds);
         for k in self.peaks() {
             let [x, y, z] = self.amplitudes.each_ref().map(|axis| axis[k]);
             // A string takes whatever is written to it.

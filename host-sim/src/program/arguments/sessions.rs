@@ -40,6 +40,9 @@ pub struct SitlArguments {
     /// up at the end
     #[arg(long, value_name = "FILE.mcap")]
     mcap: Option<PathBuf>,
+    /// Write the raw gyro as a ULog, for `host-sim log --spectrum`; the file shows up at the end
+    #[arg(long, value_name = "FILE.ulg")]
+    gyro: Option<PathBuf>,
     /// Send where the vehicle really is to this port of this machine, 100 lines of JSON a second: a motion capture for
     /// a bridge to be tried on
     #[arg(long, value_name = "PORT")]
@@ -161,6 +164,7 @@ impl SitlArguments {
             signing_key: self.signing_key.as_deref().map(sitl::key::read).transpose()?,
             truth: self.truth_port,
             recording: self.mcap.clone().map(|path| (path, text)),
+            gyro: self.gyro.clone(),
         })
     }
 }

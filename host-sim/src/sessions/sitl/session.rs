@@ -31,6 +31,8 @@ pub struct SitlSession {
     pub truth: Option<u16>,
     /// Where it is recorded as MCAP, and the scenario file's text, which goes with it.
     pub recording: Option<(PathBuf, String)>,
+    /// Where its raw gyro goes as ULog.
+    pub gyro: Option<PathBuf>,
 }
 
 /// Why a session could not be run, or not to its end.

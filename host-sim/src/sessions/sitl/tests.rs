@@ -52,6 +52,7 @@ impl Flown {
             signing_key,
             truth: None,
             recording: None,
+            gyro: None,
         };
         let mut said = String::new();
         let say = |line: &str| said.push_str(line);
@@ -311,6 +312,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
         signing_key: None,
         truth: None,
         recording: None,
+        gyro: None,
     };
     let quiet = |_: &str| ();
     let refused = |text: &str| Sitl::boot(&Scenario::parse(text, "a test").unwrap(), &session, quiet).err().unwrap();
