@@ -149,6 +149,8 @@ impl Notch {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RotorNotches {
     notches: [[Notch; HARMONICS]; ROTOR_COUNT],
+    /// Whether any is on, or is to be.
+    is_on: bool,
     /// Samples a second, Hz.
     rate: f32,
     /// Whose turn it is to be tuned.
@@ -165,6 +167,7 @@ impl RotorNotches {
         let silence_max = (SPEEDS_TIMEOUT_US as f32 * 1e-6 * rate) as u32;
         Self {
             notches: [const { [const { Notch::OFF }; HARMONICS] }; ROTOR_COUNT],
+            is_on: false,
             rate,
             turn: 0,
             silence: silence_max,
@@ -191,6 +194,7 @@ impl RotorNotches {
                 notch.wanted = depth(frequency, self.rate);
                 // One that fades stays where it was.
                 if notch.wanted > 0.0 {
+                    self.is_on = true;
                     notch.share = frequency / self.rate;
                 }
             }
@@ -204,15 +208,20 @@ impl RotorNotches {
 
     /// The next sample in, the filtered one out.
     pub fn take(&mut self, sample: &Vector3<f32>) -> Vector3<f32> {
+        if !self.is_on {
+            return *sample;
+        }
         let is_lost = self.silence >= self.silence_max;
         self.silence = self.silence.saturating_add(1);
         let step = DEPTH_CHANGE_PER_S / self.rate;
         let (turn, mut value) = (self.turn, *sample);
         self.turn = if turn + 1 < ROTOR_COUNT * HARMONICS { turn + 1 } else { 0 };
+        self.is_on = false;
         for (place, notch) in self.notches.as_flattened_mut().iter_mut().enumerate() {
             if is_lost {
                 notch.wanted = 0.0;
             }
+            self.is_on |= !notch.is_off();
             if notch.is_off() || (notch.depth == 0.0 && place != turn) {
                 continue;
             }

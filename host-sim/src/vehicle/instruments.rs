@@ -6,7 +6,8 @@
 //! ```
 //!
 //! G and A are the sensor's own filters: a BMI088's, of 116 and 145 Hz by its data sheet, taken as second-order
-//! Butterworth filters; another gyro's with [`Instruments::with_gyro_of`]. They make it 1.9 and 1.4 ms late, for which the conditioner allows ([`ImuParameters::late`]).
+//! Butterworth filters; another gyro's with [`Instruments::with_gyro_of`]. They make it 1.9 and 1.4 ms late, for which
+//! the conditioner allows ([`ImuParameters::late`]).
 //!
 //! Noise densities and the walks of the biases are a BMI088's times `imu_noise`; the biases are drawn once. The seed
 //! decides everything that is drawn: the same motion is sensed in the same way, to the last bit. No sensor feels or
