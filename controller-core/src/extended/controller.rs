@@ -146,6 +146,11 @@ impl Controller {
         self.spinning.as_ref().map_or(believed, |law| Estimates { force: law.force(), ..believed })
     }
 
+    /// The vehicle's rotors, where they are known.
+    pub fn rotors(&self) -> Option<&Rotors> {
+        self.rotors.as_ref()
+    }
+
     /// The law without a rotor, once one is lost.
     pub fn spinning(&self) -> Option<&RotorLossLaw> {
         self.spinning.as_ref()

@@ -173,6 +173,11 @@ parameters! {
     SerialRate: row("SER_BAUD", [57_600.0, 921_600.0], 921_600.0, "", 57_600.0);
     /// Whether what is not signed is refused, once there is a key. Taken over at once.
     SignedOnly: row("SIGN_ONLY", [0.0, 1.0], 1.0, "", 1.0);
+    /// How the motors' controllers are spoken to: 0 DShot300; 1 both ways, they answer how fast their motors turn; 2
+    /// the same, and they are asked for temperature, voltage and current. Taken over at the next boot.
+    MotorProtocol: row("MOT_DSHOT", [0.0, 2.0], 0.0, "", 1.0);
+    /// The motors' magnetic poles. Taken over at once.
+    MotorPoles: row("MOT_POLES", [2.0, 60.0], 14.0, "", 2.0);
 }
 
 impl Name {
