@@ -197,8 +197,8 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
         }
         // Only where the motors' controllers would answer as well.
         ESC_STATUS_DATA::ID if shared.parameters().get(Name::MotorProtocol) > 0.0 => {
-            let message = frame.decode::<ESC_STATUS_DATA>().filter(|message| message.index == 0);
-            if let Some((message, time)) = message.and_then(|message| Some((message, hil.stamp(message.time_usec)?))) {
+            let Some(message) = frame.decode::<ESC_STATUS_DATA>() else { return };
+            if let (Some(time), 0) = (hil.stamp(message.time_usec), message.index) {
                 let speeds = message.rpm.map(|rpm| Some(rpm.unsigned_abs() as f32 * RAD_PER_S_PER_RPM));
                 shared.rotor_speeds().put(speeds, time);
             }
