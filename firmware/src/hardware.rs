@@ -170,8 +170,8 @@ pub trait Light {
     fn set(&mut self, on: bool);
 }
 
-/// What flash is read and written by: 256 bytes, whole words of any flash there is.
-pub type Record = [u32; 64];
+/// What flash is read and written by: 512 bytes, whole words of any flash there is.
+pub type Record = [u32; 128];
 
 /// Two sectors of flash, for records in places 0 to twice [`Self::RECORDS_PER_SECTOR`]. Each call blocks until the
 /// flash is done, and never without end: while it programs or erases itself, the code in it may not run anyway.

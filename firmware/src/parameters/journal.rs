@@ -5,8 +5,10 @@
 //! |---|---|
 //! | 0 | its number, one more than that of the record before it |
 //! | 1 | how many words it holds, and in its upper half the number of the other kind's newest |
-//! | 2 to 62 | these, the rest of them blank |
-//! | 63 | CRC-32 of the others, and its kind |
+//! | 2 to 126 | these, the rest of them blank |
+//! | 127 | CRC-32 of the others, and its kind |
+//!
+//! Older firmware wrote records of 64 words: up to two of them stand in a place, and are read like the others.
 //!
 //! Records fill one sector; then the other is erased and takes the next ones, first of all a copy of the other kind's
 //! newest. Power may fail at any point. A sector in which a kind's newest record is is never erased, so that record is
@@ -27,6 +29,9 @@ pub const VALUES_MAX: usize = CHECKSUM_WORD - FIRST_VALUE_WORD;
 /// Where in a record its values start, and where they end, which is where its checksum is.
 const FIRST_VALUE_WORD: usize = 2;
 const CHECKSUM_WORD: usize = size_of::<Record>() / size_of::<u32>() - 1;
+
+/// Words of a record of older firmware.
+const OLDER_RECORD_WORDS: usize = 64;
 
 /// A word without anything in it.
 const BLANK_WORD: u32 = u32::MAX;
@@ -108,10 +113,8 @@ impl<F: Flash> Journal<F> {
                 continue;
             }
             (ends[place / F::RECORDS_PER_SECTOR], journal.is_blank) = (place + 1, false);
-            if let Ok(record) = record
-                && let Some(kind) = kind(&record)
-            {
-                journal.find(kind, place, &record);
+            if let Ok(record) = record {
+                whole(&record).for_each(|(kind, record)| journal.find(kind, place, &record));
             }
         }
         if journal.number > 0 {
@@ -182,7 +185,7 @@ impl<F: Flash> Journal<F> {
         let Some(newest) = self.newest[kind as usize] else {
             return if kept == Kept::Lost { kept } else { Kept::Never };
         };
-        let Ok(record) = self.flash.read(newest.place) else { return Kept::Lost };
+        let Ok(record) = self.record(newest) else { return Kept::Lost };
         let stored = record[FIRST_VALUE_WORD..CHECKSUM_WORD].iter().take((record[1] & COUNT_MASK) as usize);
         words.iter_mut().zip(stored).for_each(|(word, stored)| *word = *stored);
         kept
@@ -208,11 +211,17 @@ impl<F: Flash> Journal<F> {
         let other = kind.other();
         match self.newest(other) {
             Some(newest) if !newest.knows_other() => {
-                let mut record = self.flash.read(newest.place)?;
+                let mut record = self.record(newest)?;
                 self.put(other, &mut record)
             }
             _ => Ok(()),
         }
+    }
+
+    /// What the flash has of a record.
+    fn record(&mut self, newest: Newest) -> Result<Record, Fault> {
+        let place = self.flash.read(newest.place)?;
+        whole(&place).find_map(|(_, record)| (record[0] == newest.number).then_some(record)).ok_or(Fault)
     }
 
     /// A kind's newest record; none if that is lost, whatever older one there is.
@@ -242,7 +251,7 @@ impl<F: Flash> Journal<F> {
         }
         match self.newest(left) {
             Some(newest) if newest.place / F::RECORDS_PER_SECTOR != self.next / F::RECORDS_PER_SECTOR => {
-                let mut record = self.flash.read(newest.place)?;
+                let mut record = self.record(newest)?;
                 (0..RECORD_COPIES).try_for_each(|_| self.write(left, &mut record))
             }
             _ => Ok(()),
@@ -301,9 +310,21 @@ impl Kind {
     }
 }
 
+/// The whole records in a place, with what they hold: one, or those of older firmware as they would be written today.
+fn whole(place: &Record) -> impl Iterator<Item = (usize, Record)> {
+    let older = place.as_chunks::<OLDER_RECORD_WORDS>().0.iter().filter_map(|words| {
+        let (_, values) = words.split_last()?;
+        let mut record = [BLANK_WORD; _];
+        record.iter_mut().zip(values).for_each(|(word, value)| *word = *value);
+        Some((kind(words)?, record))
+    });
+    kind(place).map(|kind| (kind, *place)).into_iter().chain(older)
+}
+
 /// What a record holds, if it is whole.
-fn kind(record: &Record) -> Option<usize> {
-    let seal = record[CHECKSUM_WORD] ^ checksum(&record[..CHECKSUM_WORD]);
+fn kind(record: &[u32]) -> Option<usize> {
+    let (found, others) = record.split_last()?;
+    let seal = found ^ checksum(others);
     CHECKSUM_MASKS.iter().position(|known| *known == seal)
 }
 

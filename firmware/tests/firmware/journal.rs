@@ -1,6 +1,7 @@
 //! The journal under power cuts: after any of them, the value before or the new one, and room for the next.
 
 use crate::support::chip::{Chip, FLASH_RECORDS, SECTOR_BYTES, Torn, Words};
+use firmware::hardware::Record;
 use firmware::parameters::journal::{Journal, Kept, Kind};
 use std::cell::RefCell;
 
@@ -132,7 +133,7 @@ fn a_record_is_erased_no_sooner_than_there_is_no_other_place() {
     assert!(saved::<4>(&chip, 0.5));
     let both = chip.borrow().bytes.clone();
     // One sector is full, the other has the newest.
-    assert!(first.iter().zip(&both).filter(|(old, new)| old != new).count() <= 2 * 64);
+    assert!(first.iter().zip(&both).filter(|(old, new)| old != new).count() <= 2 * size_of::<Record>());
 }
 
 #[test]

@@ -132,17 +132,18 @@ fn damaged_bytes_never_become_a_value_out_of_range() {
     }
 }
 
-/// A record as it is in flash, from the values' bits; its checksum by dividing bit after bit, the highest first.
-fn record(number: u32, values: &[f32]) -> Record {
+/// A record of so many words as it is in flash, from the values' bits; its checksum by dividing bit after bit, the
+/// highest first.
+fn record<const WORDS: usize>(number: u32, values: &[f32]) -> [u32; WORDS] {
     let mut record = [u32::MAX; _];
     (record[0], record[1]) = (number, values.len() as u32);
     record[2..].iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
-    let bits = record[..63].iter().flat_map(|word| (0..32).map(move |bit| (word >> bit) & 1));
+    let bits = record[..WORDS - 1].iter().flat_map(|word| (0..32).map(move |bit| (word >> bit) & 1));
     let remainder = bits.fold(u32::MAX, |remainder, bit| {
         let divisor = if remainder >> 31 == bit { 0 } else { 0x04C1_1DB7 };
         (remainder << 1) ^ divisor
     });
-    record[63] = !remainder.reverse_bits();
+    record[WORDS - 1] = !remainder.reverse_bits();
     record
 }
 
@@ -188,6 +189,36 @@ fn records_of_firmware_with_fewer_parameters_and_with_more_are_read() {
     let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&values), bits(&more[..PARAMETERS.len()]));
     assert!(texts(&shared).is_empty());
+}
+
+#[test]
+fn half_as_long_records_of_older_firmware_are_read_and_followed_by_whole_ones() {
+    let older = |number, id| record::<64>(number, &[id, 30.0, 7.0]);
+    let pair = |[first, second]: [[u32; 64]; 2]| {
+        let mut words = first.into_iter().chain(second);
+        [(); _].map(|()| words.next().unwrap())
+    };
+    let blank = [u32::MAX; _];
+    let torn = [0x55; _];
+    let places = [
+        vec![[older(1, 42.0), older(2, 42.0)]],
+        vec![[older(1, 1.0), older(2, 1.0)], [older(3, 42.0), older(4, 42.0)]],
+        vec![[older(1, 1.0), older(2, 42.0)], [older(3, 42.0), torn]],
+        vec![[older(1, 42.0), older(2, 42.0)], [torn, blank]],
+    ];
+    for places in places {
+        let chip = Chip::erased();
+        for (place, halves) in places.iter().enumerate() {
+            Words::<4>(&chip).write(place, &pair(*halves)).unwrap();
+        }
+        let shared = booted::<4>(&chip);
+        assert_eq!(shared.parameters.get(Name::SystemId), 42.0);
+        assert!(texts(&shared).is_empty());
+        kept::<4>(&chip, &shared, 10_000, |_| shared.parameters.set(Name::VerticalSpeed, 3.0).unwrap());
+        let shared = booted::<4>(&chip);
+        assert_eq!([Name::SystemId, Name::VerticalSpeed].map(|name| shared.parameters.get(name)), [42.0, 3.0]);
+        assert!(texts(&shared).is_empty());
+    }
 }
 
 #[test]

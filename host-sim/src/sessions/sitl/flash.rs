@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::rc::Rc;
 
-const SECTOR_RECORDS: usize = 16;
+const SECTOR_RECORDS: usize = 8;
 const RECORD_BYTES: usize = size_of::<Record>();
 const BLANK_RECORD: Record = [u32::MAX; _];
 
