@@ -28,6 +28,8 @@ fn a_motor_that_turns_is_never_asked_and_ends_the_row() {
 fn who_has_answered_at_length_is_asked_no_more() {
     let mut request = Request::default();
     request.note(&[Some(Answer::Temperature(20)), Some(Answer::Period(900)), None, Some(Answer::AtRest)]);
-    let asked = (0..INTERVAL_FRAMES - 1).map(|_| request.next(true)).next_back();
-    assert_eq!(asked, Some([false, true, true, true]));
+    for _ in 0..INTERVAL_FRAMES - 2 {
+        request.next(true);
+    }
+    assert_eq!(request.next(true), [false, true, true, true]);
 }
