@@ -200,7 +200,8 @@ impl Tuning {
             thrust_max: if max == built_most { rotor.thrust_max } else { max },
             ..*rotor
         };
-        let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> = collected(built_rotors.iter().map(changed));
+        let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> =
+            collected(built_rotors.iter().map(changed));
         let changed = Rotors::new(&rotors)?;
         Ok(if built_rotors.are_of_nominal_speed() { changed.of_nominal_speed() } else { changed })
     }

@@ -37,8 +37,8 @@ use embedded_io_async::{Read, Write};
 use flight::Stamped;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
-    ODOMETRY_DATA,
+    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags,
+    MavModeFlag, ODOMETRY_DATA,
 };
 use nalgebra::Vector3;
 

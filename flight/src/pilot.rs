@@ -201,7 +201,9 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let turning = match self.mode {
             Mode::Idling => Turning::Idling,
             // What is left of a rotor is learnt from the motion.
-            mode if mode.flies() && chain.lost().is_none() => chain.thrusts().map_or(Turning::No, |f| Turning::Flying(f)),
+            mode if mode.flies() && chain.lost().is_none() => {
+                chain.thrusts().map_or(Turning::No, |f| Turning::Flying(f))
+            }
             _ => Turning::No,
         };
         let findings = self.rotor_check.tick(turning, speeds, inputs.now);

@@ -6,11 +6,11 @@ use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
+use super::stm32::ears::{Ears, MotorPin};
 use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST_EDGES, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
-use super::stm32::ears::{Ears, MotorPin};
 use super::stm32::motors::{Dshot, Line, OnTimer};
 use super::stm32::restart;
 use super::stm32::storage::ParameterFlash;
@@ -26,8 +26,8 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH0, SDMMC1, TIM1, TIM4, USART1, USART2, USART6,
-    USB_OTG_FS,
+    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH0, SDMMC1, TIM1, TIM4, USART1, USART2,
+    USART6, USB_OTG_FS,
 };
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;

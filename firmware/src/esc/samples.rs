@@ -7,8 +7,8 @@
 //! A line rests high; the answer begins with the first low sample. Every edge sets the count of bits anew, so that a
 //! controller's clock may differ by a twelfth: a run is of three bits at most, and half a bit may be missing of it.
 
-use crate::dshot::BIT_RATE_HZ;
 use super::gcr::LEVEL_COUNT;
+use crate::dshot::BIT_RATE_HZ;
 
 /// Samples in a bit of an answer.
 pub const SAMPLES_PER_BIT: usize = 4;

@@ -29,7 +29,17 @@ impl Bench {
         let rotors = rotors();
         let check = RotorCheck::new(Some(&rotors), LAG_S, PERIOD_US as f32 * 1e-6);
         let (reports, lost) = (Vec::new(), None);
-        Self { check, rotors, speeds: [0.0; 4], shares: [1.0; 4], answers: [true; 4], ratio: 1.0, now: 0, reports, lost }
+        Self {
+            check,
+            rotors,
+            speeds: [0.0; 4],
+            shares: [1.0; 4],
+            answers: [true; 4],
+            ratio: 1.0,
+            now: 0,
+            reports,
+            lost,
+        }
     }
 
     fn tick(&mut self, turning: Turning, commands: [f32; 4]) {
@@ -121,10 +131,10 @@ fn a_silent_controller_is_said_and_nothing_is_lost() {
     bench.fly(HOVER_N, 1.0);
     bench.answers[3] = false;
     bench.fly(HOVER_N, 1.0);
-    assert_eq!(bench.reports.iter().map(|(_, fault)| *fault).collect::<Vec<_>>(), [RotorFault {
-        rotor: 3,
-        deviation: RotorDeviation::Silent
-    }]);
+    assert_eq!(
+        bench.reports.iter().map(|(_, fault)| *fault).collect::<Vec<_>>(),
+        [RotorFault { rotor: 3, deviation: RotorDeviation::Silent }]
+    );
     assert_eq!(bench.lost, None);
     // All of them silent are controllers that do not answer at all.
     let mut bench = Bench { answers: [false; 4], ..Bench::new() };

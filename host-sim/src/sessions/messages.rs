@@ -8,7 +8,8 @@ use firmware::link::signing::Signing;
 use firmware::link::time_sync;
 use flight::{ImuSample, Stamped};
 use mavlink::dialects::common::{
-    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
+    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag,
+    ODOMETRY_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 

@@ -12,8 +12,8 @@
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
 
-use super::transfers;
 use super::ears::Ears;
+use super::transfers;
 use crate::dshot::{self, BIT_RATE_HZ, Protocol, WAVEFORM_ROWS, Waveform};
 use crate::esc::answer::Answer;
 use crate::esc::gcr;

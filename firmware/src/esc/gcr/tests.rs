@@ -70,7 +70,8 @@ fn a_level_that_is_wrong_for_a_bit_hardly_ever_passes() {
     let mut passed = 0;
     for value in values() {
         let levels = encoded(value);
-        passed += (0..LEVEL_COUNT).filter(|place| decoded(levels ^ 1 << place).is_some_and(|read| read != value)).count();
+        passed +=
+            (0..LEVEL_COUNT).filter(|place| decoded(levels ^ 1 << place).is_some_and(|read| read != value)).count();
     }
     // Of 4096 answers times 21 places. Two quintets change at once, by the same bits: 0 and 9, 4 and D after 8 and 1.
     assert_eq!(passed, 384);

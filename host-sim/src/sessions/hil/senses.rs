@@ -48,7 +48,8 @@ impl Senses {
         let Some((instruments, deviations)) = &mut self.instruments else {
             return exact(command + self.period, moved);
         };
-        let mut answer = Answer { poses: Vec::new(), rotor_speeds: turned(command + self.period, moved), samples: Vec::new() };
+        let mut answer =
+            Answer { poses: Vec::new(), rotor_speeds: turned(command + self.period, moved), samples: Vec::new() };
         for (state, time) in moved.path.iter().zip((command + SAMPLE_PERIOD_US..).step_by(SAMPLE_PERIOD_US as usize)) {
             answer.samples.push(Stamped { value: instruments.sample(state, time), time });
             while let Some(Stamped { value: pose, time }) = instruments.arrived() {
