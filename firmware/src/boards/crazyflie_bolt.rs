@@ -94,7 +94,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     // The motors first: PA15 is pulled up until here, and the controllers must not see that.
     let lines = [Line::direct(p.PA1), Line::direct(p.PB11), Line::direct(p.PA15), Line::direct(p.PB10)].map(Some);
     let outputs = OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts);
-    let ears = Ears::on_a_port(p.TIM8, pac::GPIOA, p.DMA2_CH1, Interrupts);
+    let ears = Ears::on_a_port(p.TIM8, MOTOR_PINS, pac::GPIOA, p.DMA2_CH1, Interrupts);
     let motors = Dshot::new(outputs, ears.and(pac::GPIOB, p.DMA2_CH2, Interrupts));
     // The controllers have power for as long as these are held: for ever.
     forget([

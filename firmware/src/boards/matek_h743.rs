@@ -117,7 +117,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let first = OnTimer::new(p.TIM8, lines, p.DMA1_CH2, Interrupts);
     let lines = [None, None, Some(Line::direct(p.PA0)), Some(Line::direct(p.PA1))];
     let second = OnTimer::new(p.TIM2, lines, p.DMA1_CH7, Interrupts);
-    let ears = Ears::on_a_port(p.TIM4, pac::GPIOB, p.DMA2_CH0, Interrupts);
+    let ears = Ears::on_a_port(p.TIM4, MOTOR_PINS, pac::GPIOB, p.DMA2_CH0, Interrupts);
     let motors = Dshot::new((first, second), ears.and(pac::GPIOA, p.DMA2_CH1, Interrupts));
     // The chip pulls the buzzer's line up; low is silent.
     forget(Output::new(p.PA15, Level::Low, Speed::Low));

@@ -107,7 +107,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     // The motors first: their lines float until here.
     let lines = [Line::direct(p.PE14), Line::direct(p.PE13), Line::direct(p.PE11), Line::direct(p.PE9)].map(Some);
     let outputs = OnTimer::new(p.TIM1, lines, p.DMA1_CH2, Interrupts);
-    let motors = Dshot::new(outputs, Ears::on_a_port(p.TIM4, pac::GPIOE, p.DMA2_CH0, Interrupts));
+    let motors = Dshot::new(outputs, Ears::on_a_port(p.TIM4, MOTOR_PINS, pac::GPIOE, p.DMA2_CH0, Interrupts));
 
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());

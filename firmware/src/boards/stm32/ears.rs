@@ -12,9 +12,8 @@
 //! [`SAMPLES_PER_BIT`]: crate::esc::samples::SAMPLES_PER_BIT
 
 use super::transfers;
-use crate::boards::chosen::MOTOR_PINS;
 use crate::esc::samples::{self, SAMPLE_COUNT, SAMPLE_RATE_HZ};
-use crate::hardware::Fault;
+use crate::hardware::{Fault, MOTOR_COUNT};
 use embassy_futures::join::join;
 use embassy_futures::select::{Either, select};
 use embassy_stm32::Peri;
@@ -45,14 +44,14 @@ impl MotorPin {
     }
 }
 
-/// The motors' timers drive their pins.
-pub fn drive() {
-    MOTOR_PINS.iter().for_each(|pin| pin.set(Moder::ALTERNATE));
+/// Has the motors' timers drive their pins.
+pub fn drive(pins: &[MotorPin]) {
+    pins.iter().for_each(|pin| pin.set(Moder::ALTERNATE));
 }
 
-/// The motors' pins are inputs: somebody else may drive the lines.
-pub fn release() {
-    MOTOR_PINS.iter().for_each(|pin| pin.set(Moder::INPUT));
+/// Makes inputs of the motors' pins: somebody else may drive the lines.
+pub fn release(pins: &[MotorPin]) {
+    pins.iter().for_each(|pin| pin.set(Moder::INPUT));
 }
 
 /// The samples of one port.
@@ -75,14 +74,17 @@ impl Ear {
 /// What listens to all motors' lines. Must live in memory that the DMA controller reaches.
 pub struct Ears<T: GeneralInstance4Channel> {
     timer: Timer<'static, T>,
+    /// In the order of the outputs.
+    pins: [MotorPin; MOTOR_COUNT],
     first: Ear,
     second: Option<Ear>,
 }
 
 impl<T: GeneralInstance4Channel> Ears<T> {
-    /// On the pins of one port, paced by a timer that nothing else uses; `dma` is its update request.
+    /// For the motors' `pins` on one port, paced by a timer that nothing else uses; `dma` is its update request.
     pub fn on_a_port<D: UpDma<T>>(
         timer: Peri<'static, T>,
+        pins: [MotorPin; MOTOR_COUNT],
         port: Gpio,
         dma: Peri<'static, D>,
         interrupts: impl Binding<D::Interrupt, InterruptHandler<D>> + 'static,
@@ -93,10 +95,10 @@ impl<T: GeneralInstance4Channel> Ears<T> {
         registers.ccr(0).write(|w| w.set_ccr(registers.arr().read().arr() / 2));
         let request = dma.request();
         let channel = Channel::new(dma, interrupts);
-        Self { timer, first: Ear { port, channel, request, samples: [0; SAMPLE_COUNT] }, second: None }
+        Self { timer, pins, first: Ear { port, channel, request, samples: [0; SAMPLE_COUNT] }, second: None }
     }
 
-    /// And on those of a second one; `dma` is the timer's first compare request.
+    /// And for those on a second one; `dma` is the timer's first compare request.
     #[must_use]
     pub fn and<D: Dma<T, Ch1>>(
         mut self,
@@ -112,7 +114,7 @@ impl<T: GeneralInstance4Channel> Ears<T> {
 
     /// Pulls the lines up, for good: what nobody drives rests high.
     pub fn pull_up(&self) {
-        for pin in MOTOR_PINS {
+        for pin in self.pins {
             pin.port.pupdr().modify(|w| w.set_pupdr(usize::from(pin.number), Pupdr::PULL_UP));
         }
     }
@@ -121,7 +123,7 @@ impl<T: GeneralInstance4Channel> Ears<T> {
     /// Errors: [`Fault`] if the samples did not come.
     pub async fn listen(&mut self) -> Result<(), Fault> {
         let registers = self.timer.regs_gp16();
-        let listening = Listening::begin(registers);
+        let listening = Listening::begin(registers, self.pins);
         let begun = transfers::begin();
         let second = async {
             if let Some(second) = &mut self.second {
@@ -141,7 +143,7 @@ impl<T: GeneralInstance4Channel> Ears<T> {
 
     /// The levels of the answer on the motors' pin of this index, if there was one.
     pub fn levels(&self, output: usize) -> Option<u32> {
-        let pin = MOTOR_PINS.get(output)?;
+        let pin = self.pins.get(output)?;
         let ears = [Some(&self.first), self.second.as_ref()];
         let ear = ears.into_iter().flatten().find(|ear| ear.port.as_ptr() == pin.port.as_ptr())?;
         samples::levels(&ear.samples, pin.number)
@@ -149,18 +151,18 @@ impl<T: GeneralInstance4Channel> Ears<T> {
 }
 
 /// While the pins are inputs and the timer may ask for transfers.
-struct Listening(TimGp16);
+struct Listening(TimGp16, [MotorPin; MOTOR_COUNT]);
 
 impl Listening {
-    fn begin(timer: TimGp16) -> Self {
+    fn begin(timer: TimGp16, pins: [MotorPin; MOTOR_COUNT]) -> Self {
         timer.cnt().write(|w| w.set_cnt(0));
         timer.sr().write(|w| w.0 = 0);
         timer.dier().modify(|w| {
             w.set_ude(true);
             w.set_ccde(0, true);
         });
-        release();
-        Self(timer)
+        release(&pins);
+        Self(timer, pins)
     }
 }
 
@@ -171,6 +173,6 @@ impl Drop for Listening {
             w.set_ude(false);
             w.set_ccde(0, false);
         });
-        drive();
+        drive(&self.1);
     }
 }

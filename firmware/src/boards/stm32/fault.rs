@@ -32,7 +32,7 @@
 use super::chip::{FRAME_PAUSE_CYCLES, WATCHDOG};
 use super::ears::{drive, release};
 use super::motors::{protocol, rest};
-use crate::boards::chosen::MOTOR_TIMERS;
+use crate::boards::chosen::{MOTOR_PINS, MOTOR_TIMERS};
 use crate::boards::fault::Fault;
 use crate::boards::kept;
 use crate::dshot::{FRAME_BITS, Protocol, zero_width};
@@ -93,7 +93,7 @@ fn stop(frames: usize) {
         rest_lines(both_ways);
         stop_frame();
         if both_ways {
-            release();
+            release(&MOTOR_PINS);
         }
     }
     rest_lines(both_ways);
@@ -105,7 +105,7 @@ fn rest_lines(both_ways: bool) {
     silence();
     if both_ways {
         silence();
-        drive();
+        drive(&MOTOR_PINS);
     }
 }
 
