@@ -6,6 +6,9 @@
 //! complementary outputs too, which cannot capture. Pins on two ports take two streams, at the timer's update and at
 //! its first compare event, half a sample later.
 //!
+//! Modes of pins are changed by reading and writing a register that a port's pins share. Nothing but this changes one
+//! once the tasks run.
+//!
 //! However listening ends, also if it is dropped half-way, the pins are outputs again and the timer rests. Where a
 //! panic cuts it, [`drive`] does it.
 //!
