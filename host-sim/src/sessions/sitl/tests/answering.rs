@@ -83,3 +83,15 @@ fn a_motor_that_stops_in_flight_is_found_by_its_speed_and_flown_without() {
     println!("found by its speed after {found:.2} s, by the motion after {by_motion:.2} s");
     assert!(found <= 0.05 && found <= by_motion, "{found} {by_motion}");
 }
+
+#[test]
+fn a_rotor_that_keeps_some_of_its_thrust_is_found_by_the_motion_as_without_answers() {
+    // 0.3 of the thrust is 0.55 of the speed: no rotor counts as lost by its speed for that.
+    let mut flown = answering(&["rotor1=0.3@20"]);
+    flown.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0);
+    flown.command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0);
+    flown.pass(15.8);
+    let found = time_of(&flown, "Rotor 1 lost").unwrap_or_else(|| panic!("{:?}", flown.sitl.texts)) - 20.0;
+    println!("found by the motion after {found:.2} s");
+    assert!(found <= 0.2, "{found}");
+}
