@@ -27,7 +27,7 @@ use answer::Answer;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::Stamped;
 
-/// How long a speed counts: some twenty frames.
+/// How long a speed counts: some seventeen frames.
 pub const SPEED_AGE_MAX_US: u64 = 20_000;
 
 /// How fast the rotors turn, rad/s, in their order; none of a rotor whose controller has not answered of late.
