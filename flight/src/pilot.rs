@@ -27,7 +27,7 @@ use controller_core::governor::{FollowingReport, GovernorLimits};
 use estimation::estimator::{Accepted, EstimatedState, Estimator, Fault};
 use nalgebra::Vector3;
 
-/// Everything that decides what the motors do. Size: about 5.7 KB, and its [`Memory`] and [`Estimator`].
+/// Everything that decides what the motors do. Size: about 6.3 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,
