@@ -125,6 +125,23 @@ impl Law {
         self.spinning().map(|law| *law.lost())
     }
 
+    /// Flies on without a rotor that measurements beside the motion show to fail: see
+    /// [`extended::controller::Controller::lose`]. The paper's law flies on with all of them.
+    pub fn lose(&mut self, lost: &LostRotor) {
+        if let Self::Extended(law) = self {
+            law.lose(lost);
+        }
+    }
+
+    /// The wrench of rotors that turn at these speeds, rad/s, where the law can use it: see
+    /// [`Measured::wrench`](crate::extended::measured::Measured::wrench).
+    pub fn wrench_at(&self, speeds: &[Option<f32>]) -> Option<Wrench> {
+        match self {
+            Self::Paper(_) => None,
+            Self::Extended(law) => law.rotors()?.wrench_at(speeds),
+        }
+    }
+
     /// What the law has commanded of each rotor, N, in place of a wrench to allocate: once a rotor is lost.
     pub fn commands(&self) -> Option<&Thrusts> {
         self.spinning().map(RotorLossLaw::commands)

@@ -193,15 +193,17 @@ impl Tuning {
     }
 
     /// `rotors` with the thrusts that were changed.
-    fn rotors(&self, rotors: &Rotors, built: &Figures) -> Result<Rotors, ParameterError> {
+    fn rotors(&self, built_rotors: &Rotors, built: &Figures) -> Result<Rotors, ParameterError> {
         let ([min, max], [built_least, built_most]) = (self.figures.rotor_thrust, built.rotor_thrust);
         let changed = |rotor: &Rotor| Rotor {
             thrust_min: if min == built_least { rotor.thrust_min } else { min },
             thrust_max: if max == built_most { rotor.thrust_max } else { max },
             ..*rotor
         };
-        let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> = collected(rotors.iter().map(changed));
-        Rotors::new(&rotors)
+        let rotors: Vec<Rotor, { crate::allocation::geometry::ROTORS_MAX }> =
+            collected(built_rotors.iter().map(changed));
+        let changed = Rotors::new(&rotors)?;
+        Ok(if built_rotors.are_of_nominal_speed() { changed.of_nominal_speed() } else { changed })
     }
 }
 

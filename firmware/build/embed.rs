@@ -42,6 +42,7 @@ fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let configuration = &scenario.configuration;
     let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
     let bounds = fields(configuration.bounds().entries());
+    let rotors_are_nominal = rotors.are_of_nominal_speed();
     let rotors: String = rotors.iter().map(|rotor| format!("        {},\n", rotor_source(rotor))).collect();
     let law = law_source(configuration.law());
     let constants = constants(configuration.law());
@@ -73,10 +74,11 @@ fn built() -> Result<Configuration, ParameterError> {{
     let limits = Limits::new(limits, &vehicle)?;
     let bounds = ReferenceBounds {{ {bounds} }};
     let rotors = Rotors::new(&[
-{rotors}    ])?;
+{rotors}    ])?{speeds};
 {law}}}
 ",
         name = scenario.name.escape_default(),
+        speeds = if rotors_are_nominal { ".of_nominal_speed()" } else { "" },
         count = constants.len(),
         constants = constants.join(", "),
         across = bytes(across),

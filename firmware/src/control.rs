@@ -12,6 +12,7 @@
 
 use crate::configuration::Pilot;
 use crate::deadline::within;
+use crate::esc::SPEED_AGE_MAX_US;
 use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::link::origin::Origin;
@@ -25,7 +26,7 @@ use controller_core::error::InputError;
 use core::mem;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::estimator::{Accepted, Fault as EstimatorFault, Increment, Rejected};
-use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Stored, Transition};
+use flight::{Battery, Inputs, MissionItem, MissionStep, Outcome, Reason, Refusal, Stamped, Stored, Transition};
 use heapless::Vec;
 
 /// How long the motors' frame may take to write at most: half of a period, where that is less.
@@ -117,7 +118,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         increments.iter().for_each(|increment| self.integrate(increment));
         let asked = self.shared.requests().take();
         self.pilot.use_settings(&self.shared.parameters().flight_settings());
-        let inputs = Inputs { increments: &increments, poses: &poses, ..self.inputs(now, asked) };
+        let speeds = self.shared.rotor_speeds().get();
+        let rotor_speeds = speeds.as_ref().map(|speeds| Stamped { value: &speeds.value[..], time: speeds.time });
+        let inputs = Inputs { increments: &increments, poses: &poses, rotor_speeds, ..self.inputs(now, asked) };
         let outcome = self.pilot.tick(&inputs);
         let has_armed = outcome.transition.is_some_and(|transition| transition.reason == Reason::Armed);
         if has_armed {
@@ -140,7 +143,8 @@ impl<'a, M: RawMutex> Control<'a, M> {
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
         let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX_US, now);
-        self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, voltage));
+        let turned = self.shared.rotor_speeds().recent(SPEED_AGE_MAX_US, now).unwrap_or_default();
+        self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, turned, voltage));
         command
     }
 
@@ -245,6 +249,9 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
         if let Some(share) = outcome.doubtful_thrust {
             self.shared.announce(Event::Thrust(share));
+        }
+        if let Some(fault) = outcome.rotor_fault {
+            self.shared.announce(Event::RotorFault(fault));
         }
         if let Some(lost) = outcome.lost {
             self.shared.announce(Event::RotorLost(lost));

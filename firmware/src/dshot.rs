@@ -5,6 +5,9 @@
 //! stands still, 48 to 2047 turn the motor. A bit takes a 300,000th of a second, high for 3/8 of it if zero and for 6/8
 //! if one. [`Waveform`] holds a frame for each of a timer's four channels, one row a bit, in the order in which its
 //! burst transfer wants them. Channels without a motor stay low.
+//!
+//! *Both ways* (bidirectional DShot, [`Protocol::BothWays`]) the line rests high, pulses are low and the checksum is
+//! inverted, by which a controller knows that it is to answer each frame on the same line: [`crate::esc`].
 
 use crate::hardware::{Fault, MOTOR_COUNT, MotorCommand};
 use dshot_frame::{Command, NormalFrame};
@@ -22,6 +25,36 @@ pub const WAVEFORM_ROWS: usize = FRAME_BITS + 2;
 
 /// Values that turn a motor, less one: from the slowest (48 on the wire) to the fastest (2047).
 const THROTTLE_STEPS: f32 = 1999.0;
+
+/// How controllers are spoken to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Protocol {
+    /// They listen.
+    #[default]
+    Plain,
+    /// They answer each frame.
+    BothWays,
+}
+
+impl Protocol {
+    /// The checksum's bits that differ from a plain frame's.
+    const fn inverted(self) -> u16 {
+        match self {
+            Self::Plain => 0,
+            Self::BothWays => 0xF,
+        }
+    }
+
+    /// The bits of a frame, the first to leave highest.
+    fn bits(self, frame: &NormalFrame) -> u16 {
+        frame.inner() ^ self.inverted()
+    }
+
+    /// The bits of the stop frame: zeros, its plain checksum included.
+    pub const fn stop_bits(self) -> u16 {
+        self.inverted()
+    }
+}
 
 /// One frame for each motor, in the motors' order.
 /// Errors: [`Fault`] if a command is not finite. A vehicle with one dead motor flies worse than it falls, so nothing
@@ -44,6 +77,11 @@ pub fn frames(command: MotorCommand) -> Result<[NormalFrame; MOTOR_COUNT], Fault
 /// The stop command for every motor.
 pub fn stop() -> [NormalFrame; MOTOR_COUNT] {
     [(); MOTOR_COUNT].map(|()| NormalFrame::command(Command::MotorStop, false))
+}
+
+/// The frame that asks a controller for extended answers, and stops its motor.
+pub fn extend() -> NormalFrame {
+    NormalFrame::command(Command::ExtendedTelemetryEnable, true)
 }
 
 /// The frame of a word to a controller.
@@ -83,12 +121,19 @@ impl<W: From<u16>> Waveform<W> {
     }
 
     /// Draws `frames` at `period` ticks a bit, motor i on channel `channels[i]` (0 to 3) or on none of this timer's.
-    pub fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT], channels: &[Option<u8>; MOTOR_COUNT], period: u16) {
+    /// Both ways the pulses are those of an output that is inverted.
+    pub fn draw(
+        &mut self,
+        frames: &[NormalFrame; MOTOR_COUNT],
+        protocol: Protocol,
+        channels: &[Option<u8>; MOTOR_COUNT],
+        period: u16,
+    ) {
         let zero = zero_width(period);
         for (frame, &channel) in frames.iter().zip(channels) {
             let Some(channel) = channel.map(usize::from) else { continue };
             // The first to leave is the highest.
-            let bits = frame.inner().reverse_bits();
+            let bits = protocol.bits(frame).reverse_bits();
             for (index, row) in self.0.iter_mut().enumerate() {
                 let width = match index {
                     FRAME_BITS.. => 0,

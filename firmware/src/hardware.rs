@@ -3,6 +3,7 @@
 //! Boards hold pins, clocks and registers behind these and decide nothing. Times are microseconds of the board's own
 //! clock since boot. The byte link is `embedded-io-async`'s `Read` and `Write`.
 
+use crate::esc::answer::Answer;
 use core::future::{Future, ready};
 use estimation::imu::ImuParameters;
 use flight::Word;
@@ -125,6 +126,12 @@ pub trait Motors {
     /// Sends one frame to every motor. The caller bounds the time this may take.
     /// Errors: [`Fault`] if the frame did not go out.
     fn write(&mut self, command: MotorCommand) -> impl Future<Output = Result<(), Fault>>;
+
+    /// What the controllers have answered to the last frame, in the rotors' order; each answer once. None where they do
+    /// not answer.
+    fn answers(&mut self) -> [Option<Answer>; MOTOR_COUNT] {
+        [None; MOTOR_COUNT]
+    }
 }
 
 /// The watchdog that stops a vehicle whose control task does not come back.

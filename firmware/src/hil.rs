@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | HIL_ACTUATOR_CONTROLS | out, one a tick | its time; commands 0 to 1 in the rotors' order; armed unless stopped |
 //! | ODOMETRY | in | a pose, as from any source of poses; may come late, may be left out |
+//! | ESC_STATUS | in | how fast the rotors turn, the first four; may be left out; taken where `MOT_DSHOT` is set |
 //! | HIL_SENSOR | in | gyro and accelerometer; as many of them as the simulator likes, in order; taken as a sensor's: [`Flow`] |
 //!
 //! The time of either answer is that of its values, by the vehicle's clock: the simulator adds to the time of a
@@ -36,8 +37,8 @@ use embedded_io_async::{Read, Write};
 use flight::Stamped;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags, MavModeFlag,
-    ODOMETRY_DATA,
+    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilActuatorControlsFlags, HilSensorUpdatedFlags,
+    MavModeFlag, ODOMETRY_DATA,
 };
 use nalgebra::Vector3;
 
@@ -49,6 +50,9 @@ const READ_TIMEOUT_US: u64 = 100_000;
 
 /// Pause before the line is read again.
 const RETRY_DELAY_US: u64 = 1_000;
+
+/// rad/s in a revolution a minute.
+const RAD_PER_S_PER_RPM: f32 = core::f32::consts::TAU / 60.0;
 
 /// What a simulator must send: accelerometer and gyro, all axes.
 const INERTIAL: HilSensorUpdatedFlags = HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_XACC
@@ -189,6 +193,14 @@ fn take<M: RawMutex>(hil: &Hil<M>, frame: &Frame<'_>, flow: &mut Flow<'_, M>, sh
             if let Some(sample) = stamped {
                 flow.take(&sample);
                 hil.answered(sample.time);
+            }
+        }
+        // Only where the motors' controllers would answer as well.
+        ESC_STATUS_DATA::ID if shared.parameters().get(Name::MotorProtocol) > 0.0 => {
+            let Some(message) = frame.decode::<ESC_STATUS_DATA>() else { return };
+            if let (Some(time), 0) = (hil.stamp(message.time_usec), message.index) {
+                let speeds = message.rpm.map(|rpm| Some(rpm.unsigned_abs() as f32 * RAD_PER_S_PER_RPM));
+                shared.rotor_speeds().put(speeds, time);
             }
         }
         ODOMETRY_DATA::ID => {

@@ -9,6 +9,7 @@
 //! | [`control`] | the control task: pilot in, motors out, on time |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
+//! | [`esc`] | what the motors' controllers answer |
 //! | [`stop_sequence`] | the order of a board's last acts |
 //! | [`frames`] | MAVLink's frames to the law's and back |
 //! | [`hardware`] | a board's peripherals, as narrow traits |
@@ -49,6 +50,7 @@ pub mod configuration;
 pub mod control;
 pub mod deadline;
 pub mod dshot;
+pub mod esc;
 pub mod frames;
 pub mod hardware;
 pub mod hil;

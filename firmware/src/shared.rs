@@ -51,6 +51,8 @@ pub use requests::{REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 
 use self::recent_texts::RecentTexts;
+use crate::esc::{Controller, RotorSpeeds};
+use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
 use crate::link::acknowledgement::Order;
 use crate::link::origin::Origin;
@@ -95,6 +97,8 @@ views! {
     ImuView = for_imu;
     /// The task with inertial samples: the IMU's or a simulator's.
     SamplesView = for_samples;
+    /// What the task that repeats the motors' commands may do with what their [controllers](crate::esc) answer.
+    MotorsView = for_motors;
     /// What a [simulator](crate::hil)'s tasks may do besides that.
     SimulatorView = for_simulator;
     /// What the [link](crate::link)'s receiving half may do.
@@ -142,6 +146,10 @@ values! {
     pub ground_station: Latest<M, ()> { Write: ReceiveView, RadioView; Read: ControlView, StatusView }
     /// The newest setpoint. An unread one is replaced: only the last counts.
     pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView; Take: ControlView }
+    /// How fast the rotors turn, while their controllers answer. [`flight`] decides how old it may be.
+    pub rotor_speeds: Latest<M, RotorSpeeds> { Write: MotorsView, SimulatorView; Read: ControlView, TransmitView }
+    /// What the controllers have answered. It counts for 1 s.
+    pub controllers: Latest<M, [Controller; MOTOR_COUNT]> { Write: MotorsView; Read: TransmitView }
     /// Requests for control, in the order they came. Put in with [`Values::request`].
     pub requests: Requests<M> { Take: ControlView }
     /// Raised by a disarm command with force; no full queue can lose it. Raised with [`Values::request_disarm`].
@@ -182,7 +190,7 @@ values! {
     /// The battery, V. It counts for 1 s.
     pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView }
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
-    pub hil: Flag { Write: ReceiveView, BootView; Read: ControlView, ImuView, TransmitView }
+    pub hil: Flag { Write: ReceiveView, BootView; Read: ControlView, ImuView, MotorsView, TransmitView }
     /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
     pub on_port: Flag { Write: PortView; Read: ReceiveView, TransmitView }
     /// Raised while parameters are written to flash: nothing begins to turn. Control reads this and the next two with
@@ -205,7 +213,7 @@ values! {
     /// What may be set from the ground.
     pub parameters: Parameters<M> {
         All: BootView, StorageView; Write: ImuView, ReceiveView;
-        Read: ControlView, SimulatorView, TransmitView, StatusView, CardView
+        Read: ControlView, SimulatorView, MotorsView, TransmitView, StatusView, CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }

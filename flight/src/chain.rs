@@ -94,6 +94,9 @@ pub(super) struct Chain<'m> {
     lift_off: LiftOff,
     /// The rotor that was found to fail, in this flight or one before.
     lost: Option<LostRotor>,
+    /// The wrench by the rotors' speeds at the last tick, and its mean since the one before.
+    turned: Option<Wrench>,
+    turned_mean: Option<Wrench>,
 }
 
 /// What `make` makes, moved in one piece: inlined, each of its fields would be moved for itself.
@@ -142,6 +145,8 @@ impl<'m> Chain<'m> {
             refused: 0,
             lift_off: LiftOff::DONE,
             lost: None,
+            turned: None,
+            turned_mean: None,
         })
     }
 
@@ -224,9 +229,26 @@ impl<'m> Chain<'m> {
         self.refused >= REFUSAL_MAX_US
     }
 
-    /// Takes the mean acceleration since the last tick, m/s^2, world, for the tick to come.
-    pub fn take_acceleration(&mut self, acceleration: Option<Vector3<f32>>) {
-        self.law.measured(&Measured { acceleration, wrench: None });
+    /// Takes the rotors' speeds at this tick, rad/s: their mean wrench since the last one, for the law.
+    pub fn take_speeds(&mut self, speeds: Option<&[Option<f32>]>) {
+        let now = speeds.and_then(|speeds| self.law.wrench_at(speeds));
+        let before = core::mem::replace(&mut self.turned, now);
+        self.turned_mean = now.zip(before).map(|(now, before)| Wrench {
+            thrust: 0.5 * (now.thrust + before.thrust),
+            torque: (now.torque + before.torque) * 0.5,
+        });
+    }
+
+    /// Takes the mean acceleration since the last tick, m/s^2, world, for the tick to come, with what the rotors'
+    /// speeds have made.
+    pub fn take_measured(&mut self, acceleration: Option<Vector3<f32>>) {
+        self.law.measured(&Measured { acceleration, wrench: self.turned_mean });
+    }
+
+    /// Flies on without a rotor that its speed shows to fail, where the law can.
+    pub fn lose(&mut self, lost: &LostRotor) {
+        self.law.lose(lost);
+        self.lost = self.law.lost().or(self.lost);
     }
 
     /// One tick on the governor's reference.

@@ -6,6 +6,7 @@ use super::motor::Word;
 use super::policy::Handover;
 use super::refusal::{Refusal, Stored};
 use super::request::Request;
+use super::rotor_check::RotorFault;
 use super::rules::{Mode, Transition};
 use super::stream_check::Streamed;
 use controller_core::allocation::Thrusts;
@@ -45,6 +46,8 @@ pub struct Inputs<'a> {
     pub under_way: Option<Increment>,
     /// The newest body rate, low-passed, rad/s, as the sensor has it.
     pub body_rate: Option<Stamped<Vector3<f32>>>,
+    /// How fast the rotors turn, rad/s, in their order; none of a rotor whose controller did not answer of late.
+    pub rotor_speeds: Option<Stamped<&'a [Option<f32>]>>,
     /// The fault of gyro or accelerometer, present or within the last second.
     pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.
@@ -141,6 +144,8 @@ pub struct Outcome {
     pub flown: Option<Result<Flown, InputError>>,
     /// The rotors' thrust over the commanded thrust, in the ticks that report a persistent deviation.
     pub doubtful_thrust: Option<f32>,
+    /// A rotor that does not turn as it is commanded to, in the ticks that report it.
+    pub rotor_fault: Option<RotorFault>,
     /// The rotor that is found to fail, in the tick in which it is.
     pub lost: Option<LostRotor>,
     /// How a stream of setpoints is flown, in the ticks that report it.

@@ -15,6 +15,7 @@
 //! - [`FlightSettings`]: the operator's settings for failures;
 //! - `policy`: a policy aboard, behind a shield;
 //! - `trust`: whether a source of poses may still be believed;
+//! - `rotor_check`: whether each rotor turns as it is commanded to, by its measured speed;
 //! - `thrust_check`: delivered over commanded thrust, checked;
 //! - `stream_check`: whether a stream of setpoints is flown as it is sent;
 //! - `chain`: from setpoints to thrusts, and why levelling is within the certificate; `braking`, `spool`, `sinking`:
@@ -64,6 +65,7 @@ mod policy;
 pub mod reason;
 mod refusal;
 mod request;
+mod rotor_check;
 pub mod rules;
 mod settings;
 mod sinking;
@@ -86,6 +88,7 @@ pub use policy::{Aboard, Guarded, Handover, NoPolicy, Shielded};
 pub use reason::Reason;
 pub use refusal::{Grounded, Refusal, Stored};
 pub use request::{Request, SETPOINT_AGE_MAX_US};
+pub use rotor_check::{RotorDeviation, RotorFault, SPEEDS_STALE_AFTER_US};
 pub use rules::{Mode, Transition};
 pub use settings::FlightSettings;
 pub use stream_check::Streamed;

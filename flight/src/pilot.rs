@@ -15,6 +15,7 @@ use super::policy::{Aboard, Handover, NoPolicy};
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::NewestSetpoint;
+use super::rotor_check::{RotorCheck, RotorFindings, SPEEDS_STALE_AFTER_US, Turning};
 use super::rules::{self, BRAKING_MAX_US, Conditions, LEVELLING_MAX_US, Mode, Transition};
 use super::settings::FlightSettings;
 use super::stream_check::StreamCheck;
@@ -26,7 +27,7 @@ use controller_core::governor::{FollowingReport, GovernorLimits};
 use estimation::estimator::{Accepted, EstimatedState, Estimator, Fault};
 use nalgebra::Vector3;
 
-/// Everything that decides what the motors do. Size: about 5.7 KB, and its [`Memory`] and [`Estimator`].
+/// Everything that decides what the motors do. Size: about 6.3 KB, and its [`Memory`] and [`Estimator`].
 #[derive(Debug, PartialEq)]
 pub struct Pilot<'m, P = NoPolicy> {
     chain: Result<Chain<'m>, Grounded>,
@@ -52,6 +53,7 @@ pub struct Pilot<'m, P = NoPolicy> {
     /// How high above the place of arming a landing has been, m.
     landing_from: f32,
     thrust_check: ThrustCheck,
+    rotor_check: RotorCheck,
     stream_check: StreamCheck,
     /// Whether a vehicle that has lost a rotor was told where to land.
     lands_elsewhere: bool,
@@ -116,6 +118,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             trust: Trust::default(),
             landing_from: 0.0,
             thrust_check: ThrustCheck::default(),
+            rotor_check: RotorCheck::of(certification.ok().map(Certified::configuration), period),
             stream_check: StreamCheck::default(),
             lands_elsewhere: false,
             policy,
@@ -187,6 +190,27 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         } else if !self.mode.is_armed() {
             self.trust = Trust::default();
         }
+    }
+
+    /// What the rotors' speeds tell: the law gets them, and goes on without a rotor that is lost by its speed.
+    fn check_rotors(&mut self, inputs: &Inputs) -> RotorFindings {
+        let recent = inputs.rotor_speeds.filter(|speeds| speeds.age(inputs.now) < SPEEDS_STALE_AFTER_US);
+        let speeds = recent.map(|speeds| speeds.value);
+        let Ok(chain) = &mut self.chain else { return RotorFindings::default() };
+        chain.take_speeds(speeds);
+        let turning = match self.mode {
+            Mode::Idling => Turning::Idling,
+            // What is left of a rotor is learnt from the motion.
+            mode if mode.flies() && chain.lost().is_none() => {
+                chain.thrusts().map_or(Turning::No, |f| Turning::Flying(f))
+            }
+            _ => Turning::No,
+        };
+        let findings = self.rotor_check.tick(turning, speeds, inputs.now);
+        if let Some(lost) = &findings.lost {
+            chain.lose(lost);
+        }
+        findings
     }
 
     /// The rotors' thrust over the commanded thrust, where the law flew.
@@ -303,7 +327,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
             return TickOutput::without(Output::Stop);
         };
-        chain.take_acceleration(estimate.felt);
+        chain.take_measured(estimate.felt);
         let mut handover = None;
         let flown = if self.mode == Mode::Descending {
             // Poses that are given up do not come back.

@@ -3,6 +3,7 @@
 //! Each fits the 50 characters of a MAVLink STATUSTEXT; longer names (of inequalities, of fields) are cut to fit.
 
 use super::mission::MissionRefusal;
+use super::rotor_check::RotorFault;
 use controller_core::certificate::certified::Refused;
 use controller_core::error::ParameterError;
 use core::fmt;
@@ -82,6 +83,8 @@ pub enum Refusal {
     MotorsFail,
     /// A rotor was found to fail since the boot.
     RotorLost,
+    /// A rotor does not idle as the others do.
+    Rotor(RotorFault),
     /// The battery is low.
     BatteryLow,
     /// The battery is to be watched, and there is no reading of it.
@@ -153,6 +156,9 @@ impl fmt::Display for Refusal {
             Self::Reference(field) => return write!(f, "Refused: no start at this {field:.24}"),
             Self::Setpoint(field) => return write!(f, "Refused: {field:.28} out of range"),
             Self::Mission(refusal) => return write!(f, "Mission refused: {refusal}"),
+            Self::Rotor(fault) => {
+                return write!(f, "Refused: rotor {} {}", fault.rotor + 1, fault.deviation.text());
+            }
             Self::Lost(Stored::Parameter(name)) => return write!(f, "Refused: {name:.16} lost; set again"),
             Self::Lost(Stored::SigningKey) => "Refused: signing key lost; set it over USB",
             Self::AlreadyArmed => "Refused: armed already",

@@ -90,6 +90,7 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
         Reason::DoesNotSpan => spin_order::refused(&list),
         _ => root.refused(&each.in_file(error)),
     })?;
+    let rotors = if each.has_speeds() { rotors } else { rotors.of_nominal_speed() };
     let hover = vehicle.mass * vehicle.gravity;
     rotors.check_hover(hover).map_err(|error| {
         let field = each.in_file(error).field;

@@ -18,6 +18,7 @@
 use super::collected;
 use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
+use crate::state::Wrench;
 use core::ops::Deref;
 use heapless::Vec;
 use nalgebra::{Vector3, Vector4};
@@ -137,6 +138,7 @@ pub struct Rotors {
     rotors: Vec<Rotor, ROTORS_MAX>,
     columns: Vec<Vector4<f64>, ROTORS_MAX>,
     inverse: Vec<Vector4<f64>, ROTORS_MAX>,
+    speeds_are_nominal: bool,
 }
 
 impl Rotors {
@@ -212,6 +214,30 @@ impl Rotors {
         &self.inverse
     }
 
+    /// The same rotors, of which only thrusts are known: a coefficient is that of a speed which nobody has measured.
+    #[must_use]
+    pub fn of_nominal_speed(self) -> Self {
+        Self { speeds_are_nominal: true, ..self }
+    }
+
+    /// Whether the thrust coefficients belong to speeds that nobody has measured.
+    pub fn are_of_nominal_speed(&self) -> bool {
+        self.speeds_are_nominal
+    }
+
+    /// The wrench of rotors that turn at `speeds`, rad/s; none where one of them is missing, and where only nominal
+    /// speeds are known.
+    pub fn wrench_at(&self, speeds: &[Option<f32>]) -> Option<Wrench> {
+        if self.speeds_are_nominal || speeds.len() < self.rotors.len() {
+            return None;
+        }
+        let mut sum = Vector4::zeros();
+        for ((rotor, column), speed) in self.rotors.iter().zip(&self.columns).zip(speeds) {
+            sum += column.map(|x| x as f32) * rotor.thrust_at((*speed)?);
+        }
+        Some(Wrench { thrust: sum.x, torque: Vector3::new(sum.y, sum.z, sum.w) })
+    }
+
     /// The least and the greatest thrust of all rotors together, N.
     pub fn thrust_together(&self) -> (f32, f32) {
         let sum = |thrust: fn(&Rotor) -> f32| self.rotors.iter().map(thrust).sum();
@@ -265,7 +291,7 @@ impl Rotors {
         }
         let solved = |column: Vector4<f64>| Vector4::from(inverted.map(|row| row.dot(&column)));
         let inverse = collected(scaled().map(|column| solved(column).component_mul(&scale)));
-        Some(Self { rotors, columns, inverse })
+        Some(Self { rotors, columns, inverse, speeds_are_nominal: false })
     }
 }
 

@@ -146,6 +146,11 @@ impl Controller {
         self.spinning.as_ref().map_or(believed, |law| Estimates { force: law.force(), ..believed })
     }
 
+    /// The vehicle's rotors, where they are known.
+    pub fn rotors(&self) -> Option<&Rotors> {
+        self.rotors.as_ref()
+    }
+
     /// The law without a rotor, once one is lost.
     pub fn spinning(&self) -> Option<&RotorLossLaw> {
         self.spinning.as_ref()
@@ -213,7 +218,9 @@ impl Controller {
         let suspicion = self.memory.suspicion;
         let axis = thrust_axis(&state.attitude);
         let PastCommands { acted, pending, lasting } = self.past_commands(measured.wrench.as_ref());
-        if self.has_lost(state, &axis, &measured, &acted) {
+        // By the commands alone: what a rotor's speed has lost is missing in the motion, and not to be explained away.
+        let commanded = self.memory.acted;
+        if self.has_lost(state, &axis, &measured, &commanded) {
             cold_path();
             return Ok(self.spin(state, reference, &axis, &pending));
         }

@@ -7,6 +7,7 @@ use super::stm32::absent::{NoBattery, NoCard};
 use super::stm32::board::Board;
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
+use super::stm32::ears::{Ears, MotorPin};
 use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardBmi088, Bus, FAST_EDGES, SharedBus};
 use super::stm32::light::Lamp;
@@ -18,12 +19,15 @@ use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
+use crate::hardware::MOTOR_COUNT;
 use crate::mounting::Mounting;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
-use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, TIM2, USART2, USART3, USB_OTG_FS};
+use embassy_stm32::peripherals::{
+    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH1, DMA2_CH2, TIM2, TIM8, USART2, USART3, USB_OTG_FS,
+};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::usart::{BufferedUart, Uart};
 use embassy_stm32::usb::Driver;
@@ -39,6 +43,8 @@ bind_interrupts!(
         DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
+        DMA2_STREAM1 => Errors<DMA2_CH1>, dma::InterruptHandler<DMA2_CH1>;
+        DMA2_STREAM2 => Errors<DMA2_CH2>, dma::InterruptHandler<DMA2_CH2>;
         EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         USART2 => usart::InterruptHandler<USART2>;
@@ -53,11 +59,19 @@ const MOUNTING: Mounting = Mounting::ALIGNED;
 pub type BoardImu = BoardBmi088;
 
 /// The motors.
-pub type BoardMotors = Dshot<OnTimer<TIM2, DMA1_CH1, Interrupts>>;
+pub type BoardMotors = Dshot<OnTimer<TIM2, DMA1_CH1, Interrupts>, TIM8>;
 
 /// Their timers, as far as stopping needs them.
 // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
 pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) }];
+
+/// Their pins, in the order of the outputs.
+pub const MOTOR_PINS: [MotorPin; MOTOR_COUNT] = [
+    MotorPin { port: pac::GPIOA, number: 1 },
+    MotorPin { port: pac::GPIOB, number: 11 },
+    MotorPin { port: pac::GPIOA, number: 15 },
+    MotorPin { port: pac::GPIOB, number: 10 },
+];
 
 /// The radio's own processor measures the battery, and this firmware does not talk to it.
 pub type BoardBattery = NoBattery;
@@ -79,7 +93,9 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
 
     // The motors first: PA15 is pulled up until here, and the controllers must not see that.
     let lines = [Line::direct(p.PA1), Line::direct(p.PB11), Line::direct(p.PA15), Line::direct(p.PB10)].map(Some);
-    let motors = Dshot(OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts));
+    let outputs = OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts);
+    let ears = Ears::on_a_port(p.TIM8, MOTOR_PINS, pac::GPIOA, p.DMA2_CH1, Interrupts);
+    let motors = Dshot::new(outputs, ears.and(pac::GPIOB, p.DMA2_CH2, Interrupts));
     // The controllers have power for as long as these are held: for ever.
     forget([
         Output::new(p.PA0, Level::High, Speed::Low),

@@ -8,6 +8,7 @@ use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
+use super::stm32::ears::{Ears, MotorPin};
 use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardIcm42688, Bus, SLOW_EDGES, SharedBus};
 use super::stm32::light::Lamp;
@@ -18,6 +19,7 @@ use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
 use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
+use crate::hardware::MOTOR_COUNT;
 use crate::icm42688::{Icm42688, Model};
 use crate::mounting::Mounting;
 use crate::redundant::Redundant;
@@ -26,8 +28,8 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA1_CH7, SDMMC1, TIM2, TIM8, UART7, USART1,
-    USART6, USB_OTG_FS,
+    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA1_CH7, DMA2_CH0, DMA2_CH1, SDMMC1, TIM2,
+    TIM4, TIM8, UART7, USART1, USART6, USB_OTG_FS,
 };
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
@@ -48,6 +50,8 @@ bind_interrupts!(
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
         DMA1_STREAM7 => Errors<DMA1_CH7>, dma::InterruptHandler<DMA1_CH7>;
+        DMA2_STREAM0 => Errors<DMA2_CH0>, dma::InterruptHandler<DMA2_CH0>;
+        DMA2_STREAM1 => Errors<DMA2_CH1>, dma::InterruptHandler<DMA2_CH1>;
         EXTI2 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI2>;
         EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
@@ -72,7 +76,7 @@ const BATTERY_DIVIDER: f32 = 11.0;
 pub type BoardImu = Redundant<BoardIcm42688, BoardIcm42688>;
 
 /// The motors.
-pub type BoardMotors = Dshot<(OnTimer<TIM8, DMA1_CH2, Interrupts>, OnTimer<TIM2, DMA1_CH7, Interrupts>)>;
+pub type BoardMotors = Dshot<(OnTimer<TIM8, DMA1_CH2, Interrupts>, OnTimer<TIM2, DMA1_CH7, Interrupts>), TIM4>;
 
 /// Their timers, as far as stopping needs them.
 pub const MOTOR_TIMERS: [TimGp16; 2] = [
@@ -80,6 +84,14 @@ pub const MOTOR_TIMERS: [TimGp16; 2] = [
     unsafe { TimGp16::from_ptr(pac::TIM8.as_ptr()) },
     // SAFETY: TIM2 is a 32-bit general timer, with the registers of a 16-bit one at the same places.
     unsafe { TimGp16::from_ptr(pac::TIM2.as_ptr()) },
+];
+
+/// Their pins, in the order of the outputs.
+pub const MOTOR_PINS: [MotorPin; MOTOR_COUNT] = [
+    MotorPin { port: pac::GPIOB, number: 0 },
+    MotorPin { port: pac::GPIOB, number: 1 },
+    MotorPin { port: pac::GPIOA, number: 0 },
+    MotorPin { port: pac::GPIOA, number: 1 },
 ];
 
 /// The battery.
@@ -104,7 +116,9 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let lines = [Some(Line::complementary(p.PB0)), Some(Line::complementary(p.PB1)), None, None];
     let first = OnTimer::new(p.TIM8, lines, p.DMA1_CH2, Interrupts);
     let lines = [None, None, Some(Line::direct(p.PA0)), Some(Line::direct(p.PA1))];
-    let motors = Dshot((first, OnTimer::new(p.TIM2, lines, p.DMA1_CH7, Interrupts)));
+    let second = OnTimer::new(p.TIM2, lines, p.DMA1_CH7, Interrupts);
+    let ears = Ears::on_a_port(p.TIM4, MOTOR_PINS, pac::GPIOB, p.DMA2_CH0, Interrupts);
+    let motors = Dshot::new((first, second), ears.and(pac::GPIOA, p.DMA2_CH1, Interrupts));
     // The chip pulls the buzzer's line up; low is silent.
     forget(Output::new(p.PA15, Level::Low, Speed::Low));
 

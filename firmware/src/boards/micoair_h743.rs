@@ -6,6 +6,7 @@ use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
 use super::stm32::chip;
 use super::stm32::clock::SystemClock;
+use super::stm32::ears::{Ears, MotorPin};
 use super::stm32::edges::{StampedPin, Stamps};
 use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST_EDGES, SharedBus};
 use super::stm32::light::Lamp;
@@ -18,14 +19,15 @@ use super::stm32::usb;
 use super::stm32::watchdog::ChipWatchdog;
 use crate::bmi088::Bmi088;
 use crate::bmi270::Bmi270;
+use crate::hardware::MOTOR_COUNT;
 use crate::mounting::Mounting;
 use crate::redundant::Redundant;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, SDMMC1, TIM1, USART1, USART2, USART6,
-    USB_OTG_FS,
+    DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH0, SDMMC1, TIM1, TIM4, USART1, USART2,
+    USART6, USB_OTG_FS,
 };
 use embassy_stm32::sdmmc::{self, Sdmmc};
 use embassy_stm32::spi::Spi;
@@ -45,6 +47,7 @@ bind_interrupts!(
         DMA1_STREAM4 => Errors<DMA1_CH4>, dma::InterruptHandler<DMA1_CH4>;
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
+        DMA2_STREAM0 => Errors<DMA2_CH0>, dma::InterruptHandler<DMA2_CH0>;
         EXTI9_5 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI9_5>;
         EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
@@ -69,11 +72,19 @@ const BATTERY_DIVIDER: f32 = 21.12;
 pub type BoardImu = Redundant<BoardBmi088, BoardBmi270>;
 
 /// The motors.
-pub type BoardMotors = Dshot<OnTimer<TIM1, DMA1_CH2, Interrupts>>;
+pub type BoardMotors = Dshot<OnTimer<TIM1, DMA1_CH2, Interrupts>, TIM4>;
 
 /// Their timers, as far as stopping needs them.
 // SAFETY: TIM1 is an advanced timer, and the registers of a general one are a subset of its own at the same places.
 pub const MOTOR_TIMERS: [TimGp16; 1] = [unsafe { TimGp16::from_ptr(pac::TIM1.as_ptr()) }];
+
+/// Their pins, in the order of the outputs.
+pub const MOTOR_PINS: [MotorPin; MOTOR_COUNT] = [
+    MotorPin { port: pac::GPIOE, number: 14 },
+    MotorPin { port: pac::GPIOE, number: 13 },
+    MotorPin { port: pac::GPIOE, number: 11 },
+    MotorPin { port: pac::GPIOE, number: 9 },
+];
 
 /// The battery.
 pub type BoardBattery = DividedBattery;
@@ -95,7 +106,8 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
 
     // The motors first: their lines float until here.
     let lines = [Line::direct(p.PE14), Line::direct(p.PE13), Line::direct(p.PE11), Line::direct(p.PE9)].map(Some);
-    let motors = Dshot(OnTimer::new(p.TIM1, lines, p.DMA1_CH2, Interrupts));
+    let outputs = OnTimer::new(p.TIM1, lines, p.DMA1_CH2, Interrupts);
+    let motors = Dshot::new(outputs, Ears::on_a_port(p.TIM4, MOTOR_PINS, pac::GPIOE, p.DMA2_CH0, Interrupts));
 
     static FIRST_BUS: StaticCell<SharedBus> = StaticCell::new();
     let spi = Spi::new(p.SPI2, p.PD3, p.PC3, p.PC2, p.DMA1_CH1, p.DMA1_CH0, Interrupts, imu::config());

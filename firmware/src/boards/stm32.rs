@@ -11,6 +11,7 @@ pub mod cause;
 pub mod chip;
 pub mod clock;
 pub mod crystal;
+pub mod ears;
 pub mod edges;
 pub mod executors;
 pub(super) mod fault;

@@ -1,4 +1,5 @@
 use super::*;
+use dshot_frame::BidirectionalFrame;
 
 /// Ticks of a bit on the MicoAir: 200 MHz / 300 kHz.
 const PERIOD_TICKS: u16 = 666;
@@ -12,6 +13,11 @@ fn read(waveform: &Waveform<u16>, channel: usize) -> u16 {
     let rows: &[[u16; MOTOR_COUNT]] = waveform.words().as_chunks().0;
     let bit = |row: &[u16; MOTOR_COUNT]| u16::from(row[channel] > PERIOD_TICKS / 2);
     rows[..FRAME_BITS].iter().fold(0, |frame, row| frame << 1 | bit(row))
+}
+
+/// Draws a command, motor i on channel i.
+fn draw(waveform: &mut Waveform<u16>, command: MotorCommand) {
+    waveform.draw(&frames(command).unwrap(), Protocol::Plain, &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
 }
 
 #[test]
@@ -71,7 +77,7 @@ fn each_motors_frame_comes_out_of_its_channel() {
     let frames = frames(MotorCommand::Run([0.0, 0.3, 0.7, 1.0])).unwrap();
     let channels = [3, 2, 0, 1];
     let mut waveform = Waveform::silent();
-    waveform.draw(&frames, &channels.map(Some), PERIOD_TICKS);
+    waveform.draw(&frames, Protocol::Plain, &channels.map(Some), PERIOD_TICKS);
     for (frame, channel) in frames.iter().zip(channels) {
         assert_eq!(read(&waveform, channel.into()), frame.inner(), "channel {channel}");
     }
@@ -83,7 +89,7 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
     let wiring = [[Some(1), None, Some(2), None], [None, Some(0), None, Some(1)]];
     for channels in wiring {
         let mut waveform = Waveform::silent();
-        waveform.draw(&frames, &channels, PERIOD_TICKS);
+        waveform.draw(&frames, Protocol::Plain, &channels, PERIOD_TICKS);
         for channel in 0..4_u8 {
             let motor = channels.iter().position(|&on| on == Some(channel));
             let low = waveform.words().iter().skip(channel.into()).step_by(MOTOR_COUNT).all(|width| *width == 0);
@@ -97,10 +103,10 @@ fn motors_on_two_timers_get_their_frames_there_and_other_channels_stay_low() {
 #[test]
 fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
+    draw(&mut waveform, MotorCommand::Run([1.0; MOTOR_COUNT]));
     let first = f64::from(waveform.words()[0]) / f64::from(PERIOD_TICKS);
     assert!((first - 0.75).abs() < 0.003, "{first}");
-    waveform.draw(&stop(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
+    draw(&mut waveform, MotorCommand::Stop);
     let first = f64::from(waveform.words()[0]) / f64::from(PERIOD_TICKS);
     assert!((first - 0.375).abs() < 0.003, "{first}");
     assert!(waveform.words()[0].abs_diff(zero_width(PERIOD_TICKS)) <= 1);
@@ -109,7 +115,7 @@ fn ones_are_high_for_three_quarters_and_zeros_for_three_eighths() {
 #[test]
 fn a_waveform_ends_silent_and_fills_whole_bursts() {
     let mut waveform = Waveform::<u16>::silent();
-    waveform.draw(&frames(MotorCommand::Run([1.0; MOTOR_COUNT])).unwrap(), &[0, 1, 2, 3].map(Some), PERIOD_TICKS);
+    draw(&mut waveform, MotorCommand::Run([1.0; MOTOR_COUNT]));
     let words = waveform.words();
     assert!(
         words[FRAME_BITS * MOTOR_COUNT..].iter().all(|word| *word == 0) && words.len() == WAVEFORM_ROWS * MOTOR_COUNT
@@ -117,4 +123,21 @@ fn a_waveform_ends_silent_and_fills_whole_bursts() {
     assert_eq!(size_of_val(words) % 16, 0);
     assert_eq!(size_of_val(Waveform::<u32>::silent().words()) % 16, 0);
     assert_eq!(align_of::<Waveform<u16>>(), 16);
+}
+
+#[test]
+fn both_ways_frames_are_those_of_a_bidirectional_controller() {
+    for step in 0..2000 {
+        let expected = BidirectionalFrame::new(step, false).unwrap();
+        let frame = NormalFrame::new(step, false).unwrap();
+        assert_eq!(Protocol::BothWays.bits(&frame), expected.inner());
+        assert_eq!(Protocol::Plain.bits(&frame), frame.inner());
+    }
+    let mut waveform = Waveform::silent();
+    let channels = [0, 1, 2, 3].map(Some);
+    waveform.draw(&stop(), Protocol::BothWays, &channels, PERIOD_TICKS);
+    let expected = BidirectionalFrame::command(Command::MotorStop, false).inner();
+    assert_eq!(read(&waveform, 2), expected);
+    assert_eq!(Protocol::BothWays.stop_bits(), expected);
+    assert_eq!(Protocol::Plain.stop_bits(), NormalFrame::command(Command::MotorStop, false).inner());
 }

@@ -3,14 +3,18 @@
 //! - [`kind`]: which messages there are: an entry each;
 //! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
 //! - [`motion`]: how it moves: attitude, position, odometry, target, home;
+//! - [`controllers`]: what the motors' controllers answer;
 //! - [`identity`]: what it is.
 
+pub mod controllers;
 pub mod identity;
 pub mod kind;
 pub mod motion;
 pub mod vehicle;
 
 use super::origin::Origin;
+use crate::esc::{Controller, RotorSpeeds};
+use crate::hardware::MOTOR_COUNT;
 use crate::shared::{Report, Traffic};
 use flight::Stamped;
 
@@ -29,6 +33,10 @@ pub struct View {
     pub simulated: bool,
     /// Whether flights are logged, if there is a card.
     pub is_logged: Option<bool>,
+    /// How fast the rotors turn, if that was measured within the last second.
+    pub rotor_speeds: Option<Stamped<RotorSpeeds>>,
+    /// What their controllers have answered, likewise.
+    pub controllers: Option<[Controller; MOTOR_COUNT]>,
     /// Where the local frame is on the globe.
     pub origin: Origin,
 }

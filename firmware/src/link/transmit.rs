@@ -185,6 +185,8 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
             traffic: shared.traffic().get().map_or_else(Default::default, |traffic| traffic.value),
             simulated: shared.hil().is_raised(),
             is_logged: shared.card().health(now),
+            rotor_speeds: shared.rotor_speeds().get().filter(|speeds| speeds.age(now) <= REPORT_AGE_MAX_US),
+            controllers: shared.controllers().recent(REPORT_AGE_MAX_US, now),
             origin: shared.origin().get().map_or_else(Origin::default, |origin| origin.value),
         };
         let system = self.system();

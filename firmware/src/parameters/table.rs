@@ -176,6 +176,11 @@ parameters! {
     /// Whether the card takes the raw gyro, where there is one: see [`crate::recorder::gyro`]. Taken over at the next
     /// boot.
     LogGyro: row("LOG_GYRO", [0.0, 1.0], 0.0, "", 1.0);
+    /// How the motors' controllers are spoken to: 0 DShot300; 1 both ways, they answer how fast their motors turn; 2
+    /// the same, and they are asked for temperature, voltage and current. Taken over at the next boot.
+    MotorProtocol: row("MOT_DSHOT", [0.0, 2.0], 0.0, "", 1.0);
+    /// The motors' magnetic poles. Taken over at once.
+    MotorPoles: row("MOT_POLES", [2.0, 60.0], 14.0, "", 2.0);
 }
 
 impl Name {

@@ -3,6 +3,7 @@
 //! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is
 //! NaN.
 
+use crate::esc::RotorSpeeds;
 use crate::hardware::MotorCommand;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
@@ -12,10 +13,10 @@ use nalgebra::Vector3;
 /// The fields of a record in the order of [`Tick::to_bytes`], in ULog's words. The longest first: ULog knows no gaps.
 pub const FORMAT: &str = "tick:uint64_t timestamp;float[3] position;float[3] velocity;float[4] attitude;\
 float[3] angular_velocity;float[3] reference_position;float[3] reference_velocity;float thrust;float[3] torque;\
-float[4] motors;float voltage;float thrust_scale;float pose_age;uint16_t missed_ticks;uint8_t mode;uint8_t airborne;";
+float[4] motors;float[4] rotor_speeds;float voltage;float thrust_scale;float pose_age;uint16_t missed_ticks;uint8_t mode;uint8_t airborne;";
 
 /// Bytes of a record.
-pub const TICK_BYTES: usize = 8 + 4 * 30 + 2 + 1 + 1;
+pub const TICK_BYTES: usize = 8 + 4 * 34 + 2 + 1 + 1;
 
 /// One control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +41,8 @@ pub struct Tick {
     pub missed: u32,
     /// The motors' command.
     pub command: MotorCommand,
+    /// How fast the rotors turn, rad/s, as their controllers answered of late.
+    pub rotor_speeds: RotorSpeeds,
     /// The battery, V, if it is known.
     pub voltage: Option<f32>,
 }
@@ -62,6 +65,7 @@ impl Tick {
         record.floats([self.wrench.map_or(f32::NAN, |wrench| wrench.thrust)]);
         record.vector(self.wrench.as_ref().map(|wrench| &wrench.torque));
         record.floats(self.command.levels());
+        record.floats(self.rotor_speeds.map(|speed| speed.unwrap_or(f32::NAN)));
         record.floats([
             self.voltage.unwrap_or(f32::NAN),
             self.thrust_scale.unwrap_or(f32::NAN),

@@ -5,7 +5,7 @@ use controller_core::allocation::remaining::LostRotor;
 use controller_core::error::InputError;
 use core::fmt::{self, Write};
 use estimation::estimator::{Accepted, Fault, Rejected};
-use flight::{Handover, MissionStep, Reason, Refusal, Streamed};
+use flight::{Handover, MissionStep, Reason, Refusal, RotorFault, Streamed};
 
 /// The greatest length of a text, bytes: that of a MAVLink STATUSTEXT.
 pub const TEXT_MAX: usize = 50;
@@ -63,6 +63,8 @@ pub enum Event {
     Input(InputError),
     /// For a while now the rotors have delivered this share of the commanded thrust.
     Thrust(f32),
+    /// A rotor does not turn as it is commanded to.
+    RotorFault(RotorFault),
     /// A rotor is found to fail.
     RotorLost(LostRotor),
     /// How a stream of setpoints is flown.
@@ -107,6 +109,7 @@ impl Event {
             | Self::Pose(Err(_))
             | Self::Estimator(_)
             | Self::Thrust(_)
+            | Self::RotorFault(_)
             | Self::Streamed(_)
             | Self::Handover(_)
             | Self::BatteryMissing
@@ -126,6 +129,7 @@ impl fmt::Display for Event {
             Self::Estimator(fault) => fault.fmt(f),
             Self::Input(error) => error.fmt(f),
             Self::Thrust(share) => write!(f, "Thrust x{share:.2}: check battery, mass, THR_CURVE"),
+            Self::RotorFault(fault) => fault.fmt(f),
             Self::RotorLost(LostRotor { rotor, left }) => {
                 write!(f, "Rotor {} lost: {:.0} % of its thrust left", rotor + 1, 100.0 * left)
             }

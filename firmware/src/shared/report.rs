@@ -1,5 +1,6 @@
 //! What a control tick did and what the line carried, for telemetry and the log.
 
+use crate::esc::RotorSpeeds;
 use crate::hardware::MotorCommand;
 use crate::recorder::tick::Tick;
 use controller_core::reference::Reference;
@@ -77,8 +78,8 @@ impl Report {
 }
 
 impl Report {
-    /// For the flight recorder: with the motors' command, and the battery's voltage, V.
-    pub fn tick(&self, time: u64, command: MotorCommand, voltage: Option<f32>) -> Tick {
+    /// For the flight recorder: with the motors' command, the rotors' speeds, and the battery's voltage, V.
+    pub fn tick(&self, time: u64, command: MotorCommand, rotor_speeds: RotorSpeeds, voltage: Option<f32>) -> Tick {
         Tick {
             time,
             mode: self.mode,
@@ -90,6 +91,7 @@ impl Report {
             pose_age: self.health.pose_age,
             missed: self.timing.missed,
             command,
+            rotor_speeds,
             voltage,
         }
     }

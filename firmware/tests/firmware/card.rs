@@ -51,7 +51,7 @@ impl<'s> Ticks<'s> {
     pub fn until(&mut self, now: u64, armed: &[Range<u64>]) {
         while self.due <= now {
             let time = self.due;
-            let tick = || Report::NONE.tick(time, MotorCommand::Stop, Some(11.1));
+            let tick = || Report::NONE.tick(time, MotorCommand::Stop, [None; 4], Some(11.1));
             self.shared.recorder.record(armed.iter().any(|range| range.contains(&time)), tick);
             self.due += TICK_US;
         }

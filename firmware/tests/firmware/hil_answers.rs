@@ -6,7 +6,8 @@ use crate::support::receiver::{Local, newest};
 use crate::support::simulator::{COMMANDED_US, Hil, command, commanded, odometry, sensor};
 use crate::support::{Simulated, patched, v2};
 use firmware::hil;
-use mavlink::dialects::common::{HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
+use firmware::parameters::table::Name;
+use mavlink::dialects::common::{ESC_STATUS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, ODOMETRY_DATA};
 use nalgebra::Vector3;
 
 /// When the answer to that command is true, us: the vehicle has moved on by a period.
@@ -14,7 +15,12 @@ const ANSWER_TIME_US: u64 = COMMANDED_US + PERIOD_US;
 
 /// The shared values after the simulator has sent `bytes`, 5 ms after its command.
 fn received(hil: &Hil, bytes: Vec<u8>) -> Local {
-    let (clock, shared, line) = (Simulated::default(), Local::new(), Line::default());
+    received_by(Local::new(), hil, bytes)
+}
+
+/// The same of a vehicle that has these.
+fn received_by(shared: Local, hil: &Hil, bytes: Vec<u8>) -> Local {
+    let (clock, line) = (Simulated::default(), Line::default());
     clock.0.set(COMMANDED_US + 5_000);
     line.borrow_mut().push_back(Delivery::Bytes(bytes));
     clock.run(3_000, hil::receive(hil, Incoming(&line), &clock, shared.for_simulator(), PERIOD_US), |_| ());
@@ -37,6 +43,28 @@ fn an_answer_is_what_the_sensors_say_a_period_after_its_command() {
         pose.value.velocity().unwrap()
     );
     assert!(!hil.awaiting());
+}
+
+#[test]
+fn rotor_speeds_are_taken_where_the_controllers_would_answer() {
+    let status = |index, time_usec| ESC_STATUS_DATA { time_usec, rpm: [6000, -60, 0, 7], index, ..Default::default() };
+    let answers = || {
+        let shared = Local::new();
+        shared.parameters.set(Name::MotorProtocol, 1.0).unwrap();
+        shared
+    };
+    let shared = received_by(answers(), &commanded(), v2(1, &status(0, ANSWER_TIME_US)));
+    let speeds = shared.rotor_speeds.get().unwrap();
+    assert_eq!(speeds.time, ANSWER_TIME_US);
+    assert!((speeds.value[0].unwrap() - 628.3185).abs() < 1e-3 && speeds.value[2] == Some(0.0), "{speeds:?}");
+    // Of other rotors, of a time to come, and where controllers do not answer.
+    for (shared, status) in [
+        (answers(), status(4, ANSWER_TIME_US)),
+        (answers(), status(0, ANSWER_TIME_US + 1)),
+        (Local::new(), status(0, ANSWER_TIME_US)),
+    ] {
+        assert!(received_by(shared, &commanded(), v2(1, &status)).rotor_speeds.get().is_none());
+    }
 }
 
 #[test]

@@ -5,10 +5,12 @@ use controller_core::reference::Reference;
 use controller_core::state::State;
 use estimation::estimator::{Estimator, EstimatorParameters, Health, Settings};
 use estimation::imu::ImuFault;
+use firmware::esc::Controller;
+use firmware::esc::answer::Answer;
 use firmware::link::origin::Origin;
-use firmware::link::telemetry::{motion, vehicle};
+use firmware::link::telemetry::{controllers, motion, vehicle};
 use firmware::shared::{Report, Traffic};
-use flight::Mode;
+use flight::{Mode, Stamped};
 use mavlink::dialects::common::{
     EstimatorStatusFlags, MavLandedState, MavSysStatusSensor as Sensor, PositionTargetTypemask as Mask,
 };
@@ -199,4 +201,20 @@ fn modes_have_names_and_the_heartbeat_says_the_same_number() {
     let number = vehicle::heartbeat(Some(shown), false).custom_mode;
     assert_eq!(number, 4 << 16 | 11 << 24);
     assert_eq!(named.iter().any(|named| named.custom_mode == number), option_env!("POLICY").is_some());
+}
+
+#[test]
+fn controllers_that_answer_are_told_with_what_they_say() {
+    let speeds = Stamped { value: [Some(100.0 * core::f32::consts::TAU), Some(0.0), None, Some(10.0)], time: 7 };
+    let mut said = [Controller::default(); 4];
+    said[0] = Controller { temperature: Some(40), voltage: Some(15.5), current: Some(3), ..Controller::default() };
+    said[0] = Controller { answered: 65_537, missed: 9, ..said[0] };
+    said[1].status = Some(Answer::STALLED);
+    let status = controllers::status(speeds, Some(&said));
+    assert_eq!((status.time_usec, status.rpm, status.index), (7, [6000, 0, 0, 95], 0));
+    assert!(status.voltage[0] == 15.5 && status.current[0] == 3.0 && status.voltage[1].is_nan());
+    let info = controllers::info(speeds, &said);
+    assert_eq!((info.info, info.count, info.counter, info.error_count[0]), (0b1011, 4, 1, 9));
+    assert_eq!(info.temperature, [4000, i16::MAX, i16::MAX, i16::MAX]);
+    assert_eq!(info.failure_flags, [0, 32, 0, 0]);
 }

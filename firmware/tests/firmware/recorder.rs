@@ -30,7 +30,7 @@ fn shared() -> Local {
 /// Ticks of a vehicle that is armed or not, from tick `from` on.
 fn ticks(shared: &Local, armed: bool, from: u64, count: u64) {
     for number in from..from + count {
-        let tick = || Report::NONE.tick(number * 10_000, MotorCommand::Stop, Some(11.1));
+        let tick = || Report::NONE.tick(number * 10_000, MotorCommand::Stop, [None; 4], Some(11.1));
         shared.recorder.record(armed, tick);
     }
 }
@@ -92,7 +92,7 @@ fn at_any_rate_records_are_ten_milliseconds_or_more_apart_and_last_as_long() {
         for now in (0..5_000_000).step_by(period as usize) {
             shared.recorder.record((1_200_000..2_400_000).contains(&now), || {
                 times.borrow_mut().push(now);
-                Report::NONE.tick(now, MotorCommand::Stop, None)
+                Report::NONE.tick(now, MotorCommand::Stop, [None; 4], None)
             });
         }
         let times = times.into_inner();

@@ -25,6 +25,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         require(!inputs.is_clock_doubtful, Refusal::ClockDoubtful)?;
         require(!inputs.motors_fail, Refusal::MotorsFail)?;
         require(!self.has_lost_a_rotor(), Refusal::RotorLost)?;
+        self.rotor_check.grounding(inputs.now).map_or(Ok(()), |fault| Err(Refusal::Rotor(fault)))?;
         require(!matches!(inputs.battery, Battery::Low | Battery::Critical), Refusal::BatteryLow)?;
         require(inputs.battery != Battery::Missing, Refusal::BatteryMissing)?;
         // A failed accelerometer repeats its last value, which looks like rest.

@@ -29,6 +29,8 @@ impl<P: Aboard> Pilot<'_, P> {
         // Estimate.
         let followed = self.follow_jump(estimate);
         let detected = self.detect(inputs, estimate);
+        let had_lost = self.has_lost_a_rotor();
+        let rotors = self.check_rotors(inputs);
         self.judge_poses(estimate, &detected, now);
         // Setpoints and requests.
         self.keep_setpoint(inputs);
@@ -43,7 +45,6 @@ impl<P: Aboard> Pilot<'_, P> {
         let transition = self.change_mode(conditions, inputs, estimate, &detected);
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
-        let had_lost = self.has_lost_a_rotor();
         let TickOutput { output, flown, handover } = self.output(estimate, detected.touched, now);
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
         let streamed = self.stream_check.tick(self.following(), now);
@@ -66,6 +67,7 @@ impl<P: Aboard> Pilot<'_, P> {
             pose: estimate.pose,
             flown,
             doubtful_thrust,
+            rotor_fault: rotors.report,
             lost: if had_lost { None } else { self.chain.as_ref().ok().and_then(Chain::lost) },
             streamed,
             flies_policy: self.flies_policy,

@@ -1,7 +1,24 @@
 //! The sensors' answer to a flight controller's command: poses, and the IMU's samples.
 
+use firmware::esc::answer;
+use firmware::hardware::MOTOR_COUNT;
 use flight::{ImuSample, Stamped};
 use nalgebra::{Quaternion, Vector3};
+
+/// The poles of every simulated motor.
+const MOTOR_POLES: f32 = 14.0;
+
+/// What a motor that turns at `speed`, rad/s, has its controller answer.
+pub fn controller_answer(speed: f64) -> answer::Answer {
+    answer::Answer::of_speed(speed as f32, MOTOR_POLES)
+}
+
+/// The speed, rad/s, that its answer gives.
+pub fn answered_speed(speed: f64) -> f32 {
+    answer::Answer::from_bits(controller_answer(speed).to_bits())
+        .and_then(|answer| answer.speed(MOTOR_POLES))
+        .unwrap_or(0.0)
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPose {
@@ -20,6 +37,8 @@ pub struct MeasuredPose {
 pub struct Answer {
     /// Poses that have arrived, in the order of their times.
     pub poses: Vec<Stamped<MeasuredPose>>,
+    /// How fast the rotors turn, rad/s, as their controllers answer.
+    pub rotor_speeds: Option<Stamped<[f32; MOTOR_COUNT]>>,
     /// The IMU's samples, in the order of their times; the last is of the period's end.
     pub samples: Vec<Stamped<ImuSample>>,
 }

@@ -8,7 +8,8 @@ use firmware::link::signing::Signing;
 use firmware::link::time_sync;
 use flight::{ImuSample, Stamped};
 use mavlink::dialects::common::{
-    HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag, ODOMETRY_DATA,
+    ESC_STATUS_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavFrame, MavModeFlag,
+    ODOMETRY_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 
@@ -58,9 +59,10 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// Appends an answer: the poses, then the sensors' samples.
+    /// Appends an answer: the poses, the rotors' speeds, then the sensors' samples.
     pub fn answer(&mut self, answer: &Answer, bytes: &mut Vec<u8>) {
         answer.poses.iter().for_each(|pose| self.odometry(pose, bytes));
+        answer.rotor_speeds.iter().for_each(|speeds| self.controllers(speeds, bytes));
         answer.samples.iter().for_each(|sample| self.sensor(sample, bytes));
     }
 
@@ -105,6 +107,14 @@ impl Encoder {
             },
             bytes,
         );
+    }
+
+    /// Appends the rotors' speeds as an ESC_STATUS.
+    fn controllers(&mut self, speeds: &Stamped<[f32; MOTOR_COUNT]>, bytes: &mut Vec<u8>) {
+        let rpm = speeds.value.map(|speed| (speed * 60.0 / std::f32::consts::TAU).round() as i32);
+        let unknown = [f32::NAN; MOTOR_COUNT];
+        let status = ESC_STATUS_DATA { time_usec: speeds.time, rpm, voltage: unknown, current: unknown, index: 0 };
+        self.append(&status, bytes);
     }
 
     /// Appends gyro and accelerometer as a HIL_SENSOR.

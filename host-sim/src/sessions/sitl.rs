@@ -44,11 +44,14 @@ use downlink::Downlink;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use faults::{Faults, FaultyPart};
 use firmware::control::Control;
+use firmware::esc::Published;
 use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
 use firmware::parameters::storage::Storage;
+use firmware::parameters::table::Name;
 use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT_BYTES};
+use firmware::repeat::FRAME_INTERVAL_US;
 use firmware::shared::Shared;
 use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
@@ -198,6 +201,16 @@ impl Sitl {
         spawn(&spawner, async move {
             Control::new(shared.for_control(), pilot, outputs).run(&time, &mut motors, &mut watchdog).await
         });
+        if shared.parameters.get(Name::MotorProtocol) > 0.0 {
+            let mut motors = Published::new(hardware.clone(), shared.for_motors(), clock.clone());
+            let time = clock.clone();
+            spawn(&spawner, async move {
+                loop {
+                    time.until(time.now() + FRAME_INTERVAL_US).await;
+                    motors.publish();
+                }
+            });
+        }
         let (mut sensor, time) = (hardware.clone(), clock.clone());
         spawn(&spawner, async move { imu::run(shared.for_imu(), &time, &mut sensor, period).await });
         let (ear, time) = (self.up.clone(), clock.clone());

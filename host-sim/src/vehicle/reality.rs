@@ -36,6 +36,7 @@ use crate::vehicle::plant::Diverged;
 use crate::vehicle::sensed::Acted;
 use air::{Air, Flow, ground_effect};
 use body::{RigidBody, STAGE_TIMES};
+use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
@@ -144,6 +145,11 @@ impl RealVehicle {
     /// The present state of its origin.
     pub fn state(&self) -> &BodyState {
         &self.state
+    }
+
+    /// The rotors' speeds at this moment, rad/s; zero where there is no rotor.
+    pub fn rotor_speeds(&self) -> [f64; ROTORS_MAX] {
+        self.propulsion.speeds()
     }
 
     /// The rotors' thrusts at this moment in still air, N; none without rotors.

@@ -82,6 +82,12 @@ impl Propulsion {
         ParameterError { field, reason }
     }
 
+    /// Whether the file says at which speeds the rotors turn.
+    #[must_use]
+    pub fn has_speeds(&self) -> bool {
+        self.form == Form::Speeds
+    }
+
     /// The unit of the thrust range in the file.
     #[must_use]
     pub fn unit(&self) -> &'static str {

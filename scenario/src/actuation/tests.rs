@@ -217,3 +217,17 @@ fn rotors_that_do_not_surround_the_centre_of_mass_are_refused() {
     let what = Scenario::parse(&extended.replace(rotors, &ahead), "f").err().unwrap().what;
     assert!(what.starts_with("rotors.position: leaves rotor 1 without a share of the thrust"), "{what}");
 }
+
+#[test]
+fn only_a_file_with_coefficients_knows_its_rotors_speeds() {
+    let rotors = |text: &str| Scenario::parse(text, "f").unwrap().configuration.rotors().unwrap().clone();
+    let by_speed = include_str!("../../../vehicles/hummingbird.toml");
+    assert!(!rotors(by_speed).are_of_nominal_speed());
+    let by_thrust = format!(
+        "{}\n[rotors]{}",
+        "name = \"mine\"\n[vehicle]\nmass = 1.28\ninertia = [0.0123, 0.0126, 0.0224]",
+        "\nposition = [[0.163, 0.163, 0.0], [0.163, -0.163, 0.0], [-0.163, -0.163, 0.0], [-0.163, 0.163, 0.0]]\n\
+         spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\nthrust_max = 7.8\ntorque_per_thrust = 0.014\nlag = 0.03\n"
+    );
+    assert!(rotors(&by_thrust).are_of_nominal_speed());
+}

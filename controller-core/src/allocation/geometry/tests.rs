@@ -106,3 +106,22 @@ fn rotors_hover_a_weight_between_their_least_and_greatest_thrust() {
     assert_eq!(refused(max), ParameterError { field: "rotors.speed", reason: Reason::NotAbove(max) });
     assert_eq!(refused(min), ParameterError { field: "rotors.speed", reason: Reason::NotBelow(min) });
 }
+
+#[test]
+fn the_wrench_of_rotors_by_their_speeds_is_that_of_their_thrusts() {
+    let rotors = Rotors::quad_x(hummingbird()).unwrap();
+    let thrusts = [1.5_f32, 2.0, 0.7, 1.1];
+    let mut speeds = [None; 4];
+    for ((speed, rotor), thrust) in speeds.iter_mut().zip(rotors.iter()).zip(thrusts) {
+        *speed = Some(rotor.speed_at(thrust));
+    }
+    let wrench = rotors.wrench_at(&speeds).unwrap();
+    let expected: Vector4<f64> =
+        rotors.effectiveness().iter().zip(thrusts).map(|(column, thrust)| column * f64::from(thrust)).sum();
+    let found = Vector4::new(wrench.thrust, wrench.torque.x, wrench.torque.y, wrench.torque.z);
+    assert!((found.cast::<f64>() - expected).norm() < 1e-5, "{found} {expected}");
+    // One that does not answer, too few, and speeds that nobody has measured.
+    assert_eq!(rotors.wrench_at(&[speeds[0], None, speeds[2], speeds[3]]), None);
+    assert_eq!(rotors.wrench_at(&speeds[..3]), None);
+    assert!(rotors.of_nominal_speed().wrench_at(&speeds).is_none());
+}

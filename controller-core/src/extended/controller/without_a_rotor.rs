@@ -1,6 +1,7 @@
 //! From the tick on in which a rotor is found to fail.
 
 use super::Controller;
+use crate::allocation::remaining::LostRotor;
 use crate::controller::Diagnostics;
 use crate::extended::measured::Measured;
 use crate::extended::memory::{LastTick, Memory};
@@ -8,7 +9,6 @@ use crate::extended::rotor_loss::detector::Interval;
 use crate::extended::rotor_loss::spinning::{RotorLossLaw, RotorLossStep};
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
-use core::hint::cold_path;
 use nalgebra::{Quaternion, Vector3, Vector4};
 
 impl Controller {
@@ -44,11 +44,21 @@ impl Controller {
         }
         interval.acted *= self.memory.averages.scale.scale;
         let Some(lost) = self.detector.observe(&mut self.memory.suspicion, &interval) else { return false };
-        cold_path();
-        let (estimates, times) = (self.estimates(), [self.late, self.period]);
-        let law = |rotors| RotorLossLaw::new(&self.vehicle, &self.limits, rotors, &lost, times, &estimates);
-        self.spinning = self.rotors.as_ref().map(law);
+        self.lose(&lost);
         self.spinning.is_some()
+    }
+
+    /// From now on without a rotor of which something else than the motion says that it fails, unless one is lost
+    /// already.
+    #[cold]
+    #[inline(never)]
+    pub fn lose(&mut self, lost: &LostRotor) {
+        if self.spinning.is_some() {
+            return;
+        }
+        let (estimates, times) = (self.estimates(), [self.late, self.period]);
+        let law = |rotors| RotorLossLaw::new(&self.vehicle, &self.limits, rotors, lost, times, &estimates);
+        self.spinning = self.rotors.as_ref().filter(|rotors| lost.rotor < rotors.len()).map(law);
     }
 
     /// A tick without a rotor: the wrench of the commands, as all rotors would deliver it.

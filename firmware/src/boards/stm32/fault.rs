@@ -19,7 +19,8 @@
 //!
 //! What the controllers see: the frame that was going out is cut and discarded by its checksum; stop frames follow, and
 //! then silence until the firmware runs again and sends stop frames. The stop frame is 16 zero bits, checksum included,
-//! so it needs no waveform: sixteen periods at the width of a zero.
+//! and both ways twelve zeros and four ones: sixteen periods at their widths. Controllers that are spoken to both ways
+//! answer these frames, too: after each the pins are inputs, and the silence lasts twice as long.
 //!
 //! A stack that overflowed is no hindrance: a fault begins it anew ([`crate::boards::guard`]).
 //!
@@ -29,11 +30,12 @@
 //! is theirs and names them as its cause; if one of them hangs, it is the watchdog's.
 
 use super::chip::{FRAME_PAUSE_CYCLES, WATCHDOG};
-use super::motors::rest;
-use crate::boards::chosen::MOTOR_TIMERS;
+use super::ears::{drive, release};
+use super::motors::{protocol, rest};
+use crate::boards::chosen::{MOTOR_PINS, MOTOR_TIMERS};
 use crate::boards::fault::Fault;
 use crate::boards::kept;
-use crate::dshot::{FRAME_BITS, zero_width};
+use crate::dshot::{FRAME_BITS, Protocol, zero_width};
 use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
 use crate::stop_sequence::{STOP_FRAMES_AFTER, STOP_FRAMES_BEFORE, StopSequence};
@@ -47,8 +49,12 @@ use embassy_stm32::pac::timer::TimGp16;
 /// peripheral bus.
 const PERIOD_POLLS_MAX: usize = 10_000;
 
+/// Stop frames in a row where controllers answer each.
+const STOP_FRAMES_BOTH_WAYS_MAX: usize = 100;
+
 /// All of it, us, is over before the most impatient of the watchdogs restarts the chip.
 const _: () = assert!((STOP_FRAMES_BEFORE + STOP_FRAMES_AFTER) * 140 < 34_000);
+const _: () = assert!((STOP_FRAMES_BEFORE + STOP_FRAMES_BOTH_WAYS_MAX + 1) * 220 < 34_000);
 
 static STOP_SEQUENCE: StopSequence = StopSequence::new();
 
@@ -80,12 +86,27 @@ fn end(words: impl FnOnce() -> LastWords) -> ! {
 
 /// Sends so many stop frames to every motor and leaves the lines low; takes as long where their timers do not run.
 fn stop(frames: usize) {
+    // Before the timers are set up, pins are left alone.
+    let both_ways = MOTOR_TIMERS.map(protocol).contains(&Protocol::BothWays);
+    let frames = if both_ways { frames.min(STOP_FRAMES_BOTH_WAYS_MAX) } else { frames };
     for _ in 0..frames {
-        MOTOR_TIMERS.into_iter().for_each(rest);
-        silence();
+        rest_lines(both_ways);
         stop_frame();
+        if both_ways {
+            release(&MOTOR_PINS);
+        }
     }
+    rest_lines(both_ways);
+}
+
+/// Rests the lines, and is silent; for as long as an answer takes, where there may be one.
+fn rest_lines(both_ways: bool) {
     MOTOR_TIMERS.into_iter().for_each(rest);
+    silence();
+    if both_ways {
+        silence();
+        drive(&MOTOR_PINS);
+    }
 }
 
 /// Silence before each frame. Waits by SysTick, which nothing else uses: a loop takes as long as caches and pipelines
@@ -109,7 +130,7 @@ fn silence() {
 /// One stop frame by polling, on all timers at once; none on one that does not run.
 fn stop_frame() {
     for timer in MOTOR_TIMERS {
-        widths(timer, zero_width(timer.arr().read().arr().saturating_add(1)));
+        widths(timer, width(timer, 0));
         // Widths take effect at an update: the first update begins bit one, the seventeenth ends bit sixteen.
         timer.sr().write(|w| w.0 = 0);
         timer.cr1().modify(|w| w.set_cen(true));
@@ -120,13 +141,21 @@ fn stop_frame() {
             *runs = *runs && period_ends(timer);
         }
     };
-    for _ in 0..FRAME_BITS {
+    for bit in 0..FRAME_BITS {
         periods_end();
-    }
-    for timer in MOTOR_TIMERS {
-        widths(timer, 0);
+        MOTOR_TIMERS.into_iter().for_each(|timer| widths(timer, width(timer, bit + 1)));
     }
     periods_end();
+}
+
+/// The width of a bit of the stop frame, counted from 0; behind the last there is silence.
+fn width(timer: TimGp16, bit: usize) -> u16 {
+    let zero = zero_width(timer.arr().read().arr().saturating_add(1));
+    match FRAME_BITS.checked_sub(bit + 1) {
+        None => 0,
+        Some(place) if protocol(timer).stop_bits() >> place & 1 == 1 => 2 * zero,
+        Some(_) => zero,
+    }
 }
 
 fn widths(timer: TimGp16, width: u16) {

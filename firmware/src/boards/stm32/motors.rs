@@ -6,11 +6,18 @@
 //! half-way, the timer rests again, and a controller discards the frame that was cut by its checksum. Two timers send
 //! at the same time, each on its own.
 //!
+//! *Both ways* ([`Protocol::BothWays`]) the outputs are inverted: they rest high, and the same widths are low pulses.
+//! [`Ears`] then hear what the controllers answer.
+//!
 //! The words are as wide as the timer's compare registers: a half-word written to a 32-bit timer would arrive doubled
 //! in both halves of the register, a motor at full throttle.
 
+use super::ears::Ears;
 use super::transfers;
-use crate::dshot::{self, BIT_RATE_HZ, WAVEFORM_ROWS, Waveform};
+use crate::dshot::{self, BIT_RATE_HZ, Protocol, WAVEFORM_ROWS, Waveform};
+use crate::esc::answer::Answer;
+use crate::esc::gcr;
+use crate::esc::request::Request;
 use crate::hardware::{Fault, MOTOR_COUNT, MotorCommand, Motors};
 use core::marker::PhantomData;
 use core::mem::forget;
@@ -37,6 +44,10 @@ const FRAME_TIMEOUT_US: u64 = 4 * WAVEFORM_ROWS as u64 * 1_000_000 / BIT_RATE_HZ
 /// complementary outputs have nothing in the second's place.
 const DIRECT_ENABLE_BIT: u32 = 1;
 const COMPLEMENTARY_ENABLE_BIT: u32 = 1 << 2;
+
+/// From an enable bit to the bit that inverts the output, and all of those.
+const INVERTING_SHIFT: u32 = 1;
+const INVERTING_BITS: u32 = 0xAAAA;
 
 /// An output: a pin that a channel of the timer drives from here on.
 pub struct Line<T> {
@@ -72,8 +83,11 @@ pub trait Lines {
     /// Wires motor i to the output `wiring[i]` of those that the board has.
     fn wire(&mut self, wiring: [usize; MOTOR_COUNT]);
 
+    /// Speaks both ways from now on: the lines rest high.
+    fn invert(&mut self);
+
     /// Prepares a frame for each motor.
-    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]);
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT], protocol: Protocol);
 
     /// Sends the frames.
     fn send(&mut self) -> impl Future<Output = Result<(), Fault>>;
@@ -87,6 +101,8 @@ pub struct OnTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     waveform: Waveform<T::Word>,
     /// The channel (0 to 3) of each motor; none where it is on another timer.
     channels: [Option<u8>; MOTOR_COUNT],
+    /// The enable bits of the lines.
+    enable: u32,
     /// Timer ticks in a bit.
     period: u16,
 }
@@ -119,7 +135,7 @@ where
         timer.enable_outputs();
         let period = timer.regs_gp16().arr().read().arr() + 1;
         let channels = lines.map(|line| line.map(|line| line.channel));
-        Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, period }
+        Self { timer, dma, interrupts, waveform: Waveform::silent(), channels, enable, period }
     }
 }
 
@@ -134,8 +150,12 @@ where
         self.channels = wiring.map(|output| channels.get(output).copied().flatten());
     }
 
-    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]) {
-        self.waveform.draw(frames, &self.channels, self.period);
+    fn invert(&mut self) {
+        self.timer.regs_gp16().ccer().modify(|w| w.0 |= self.enable << INVERTING_SHIFT);
+    }
+
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT], protocol: Protocol) {
+        self.waveform.draw(frames, protocol, &self.channels, self.period);
     }
 
     async fn send(&mut self) -> Result<(), Fault> {
@@ -161,9 +181,14 @@ impl<A: Lines, B: Lines> Lines for (A, B) {
         self.1.wire(wiring);
     }
 
-    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT]) {
-        self.0.draw(frames);
-        self.1.draw(frames);
+    fn invert(&mut self) {
+        self.0.invert();
+        self.1.invert();
+    }
+
+    fn draw(&mut self, frames: &[NormalFrame; MOTOR_COUNT], protocol: Protocol) {
+        self.0.draw(frames, protocol);
+        self.1.draw(frames, protocol);
     }
 
     async fn send(&mut self) -> Result<(), Fault> {
@@ -173,22 +198,69 @@ impl<A: Lines, B: Lines> Lines for (A, B) {
 }
 
 /// The motors on their lines.
-pub struct Dshot<L>(pub L);
+pub struct Dshot<L, T: GeneralInstance4Channel> {
+    lines: L,
+    ears: Ears<T>,
+    protocol: Protocol,
+    /// The output of each motor.
+    wiring: [usize; MOTOR_COUNT],
+    /// Where controllers are asked for extended answers.
+    request: Option<Request>,
+    answers: [Option<Answer>; MOTOR_COUNT],
+}
 
-impl<L: Lines> Dshot<L> {
+impl<L: Lines, T: GeneralInstance4Channel> Dshot<L, T> {
+    /// Plain frames, motor i on output i.
+    pub fn new(lines: L, ears: Ears<T>) -> Self {
+        let (protocol, wiring) = (Protocol::Plain, [0, 1, 2, 3]);
+        Self { lines, ears, protocol, wiring, request: None, answers: [None; MOTOR_COUNT] }
+    }
+
     /// Wires motor i to the output `wiring[i]` of those that the board has.
     pub fn wire(&mut self, wiring: [usize; MOTOR_COUNT]) {
-        self.0.wire(wiring);
+        self.wiring = wiring;
+        self.lines.wire(wiring);
+    }
+
+    /// Speaks both ways from now on, where the controllers may be asked for `extended` answers as well.
+    pub fn listen(&mut self, extended: bool) {
+        self.protocol = Protocol::BothWays;
+        self.request = extended.then(Request::default);
+        self.ears.pull_up();
+        self.lines.invert();
+    }
+
+    async fn hear(&mut self) {
+        self.answers = [None; MOTOR_COUNT];
+        if self.ears.listen().await.is_ok() {
+            let heard = |output| Answer::from_bits(gcr::decoded(self.ears.levels(output)?)?);
+            self.answers = self.wiring.map(heard);
+        }
+        if let Some(request) = &mut self.request {
+            request.note(&self.answers);
+        }
     }
 }
 
-impl<L: Lines> Motors for Dshot<L> {
+impl<L: Lines, T: GeneralInstance4Channel> Motors for Dshot<L, T> {
     async fn write(&mut self, command: MotorCommand) -> Result<(), Fault> {
         let frames = dshot::frames(command);
         let usable = frames.as_ref().map(|_| ()).map_err(|fault| *fault);
-        self.0.draw(&frames.unwrap_or_else(|_| dshot::stop()));
-        self.0.send().await?;
+        let mut frames = frames.unwrap_or_else(|_| dshot::stop());
+        if let Some(request) = &mut self.request {
+            let asked = request.next(command == MotorCommand::Stop);
+            frames.iter_mut().zip(asked).filter(|(_, asked)| *asked).for_each(|(frame, _)| *frame = dshot::extend());
+        }
+        self.lines.draw(&frames, self.protocol);
+        self.lines.send().await?;
+        if self.protocol == Protocol::BothWays {
+            self.hear().await;
+        }
         usable
+    }
+
+    fn answers(&mut self) -> [Option<Answer>; MOTOR_COUNT] {
+        core::mem::take(&mut self.answers)
     }
 }
 
@@ -211,4 +283,9 @@ pub fn rest(timer: TimGp16) {
         timer.ccr(channel).write(|w| w.set_ccr(0));
     }
     timer.egr().write(|w| w.set_ug(true));
+}
+
+/// How the controllers on a timer are spoken to, as its registers say.
+pub fn protocol(timer: TimGp16) -> Protocol {
+    if timer.ccer().read().0 & INVERTING_BITS == 0 { Protocol::Plain } else { Protocol::BothWays }
 }

@@ -18,6 +18,7 @@ use crate::boards::chosen::{self, BoardBattery, BoardCard, BoardImu, BoardMotors
 use crate::boards::{guard, handover, kept, recorder};
 use crate::configuration::{PERIOD_US, Pilot};
 use crate::control::Control;
+use crate::esc::Published;
 use crate::hil::{self, SelectedMotors};
 use crate::last_words::LastWords;
 use crate::link::port::Line;
@@ -28,7 +29,7 @@ use crate::recorder::gyro::{BLOCK_BYTES, Block};
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{
-    self, CardView, ControlView, Event, ImuView, PortView, RadioView, ReceiveView, RestartView, Severity,
+    self, CardView, ControlView, Event, ImuView, MotorsView, PortView, RadioView, ReceiveView, RestartView, Severity,
     SimulatorView, StatusView, StorageView, TransmitView,
 };
 use crate::{boot, card, configuration, imu, link, radio, status};
@@ -71,6 +72,10 @@ pub fn run() -> ! {
     if let Some(wiring) = outputs::wiring(booting.parameters().get(Name::MotorOrder)) {
         board.motors.wire(wiring);
     }
+    let protocol = booting.parameters().get(Name::MotorProtocol);
+    if protocol > 0.0 {
+        board.motors.listen(protocol > 1.0);
+    }
     if board.transmitter.set_baudrate(booting.parameters().get(Name::SerialRate) as u32).is_err() {
         booting.announce(Event::new(Severity::Warning, "SER_BAUD: this clock cannot make it"));
     }
@@ -95,7 +100,7 @@ pub fn run() -> ! {
     // Beside control: one that hangs without giving way sends nothing more.
     static REPEATED: StaticCell<Repeated> = StaticCell::new();
     let repeated = REPEATED.init_with(Repeated::new);
-    spawner.spawn(repeat_commands(repeated, board.motors).unwrap());
+    spawner.spawn(repeat_commands(shared.for_motors(), repeated, board.motors).unwrap());
     spawner.spawn(control(shared.for_control(), hil, pilot, outputs, repeated, board.watchdog).unwrap());
 
     SENSOR_INTERRUPT.set_priority(Priority::P7);
@@ -137,7 +142,8 @@ async fn control(
 }
 
 #[embassy_executor::task]
-async fn repeat_commands(repeated: &'static Repeated, mut motors: BoardMotors) {
+async fn repeat_commands(shared: MotorsView<'static, Raw>, repeated: &'static Repeated, motors: BoardMotors) {
+    let mut motors = Published::new(motors, shared, SystemClock);
     repeat::run(repeated, &mut motors, &SystemClock, PERIOD_US).await;
 }
 

@@ -2,15 +2,16 @@
 
 #![expect(deprecated, reason = "PROTOCOL_VERSION: clients still ask for it")]
 
-use super::{View, identity, motion, vehicle};
+use super::{View, controllers, identity, motion, vehicle};
 use crate::link::time_sync;
 use crate::link::writer::Writer;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA,
-    ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA,
-    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA,
-    PROTOCOL_VERSION_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, TIMESYNC_DATA,
+    ESC_INFO_DATA, ESC_STATUS_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA,
+    GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA,
+    ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, PROTOCOL_VERSION_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    TIMESYNC_DATA,
 };
 
 /// A message's default rate.
@@ -87,6 +88,10 @@ messages! { view:
     CurrentMode: CURRENT_MODE_DATA, Rate::Every(1_000_000) => Some(vehicle::current_mode(&view.report()?.into()));
     MissionCurrent: MISSION_CURRENT_DATA, Rate::Every(1_000_000) => Some(vehicle::mission_current(view.report()?));
     HomePosition: HOME_POSITION_DATA, Rate::Every(2_000_000) => motion::home(view.report()?, &view.origin);
+    EscStatus: ESC_STATUS_DATA, Rate::Every(200_000) =>
+        Some(controllers::status(view.rotor_speeds?, view.controllers.as_ref()));
+    EscInfo: ESC_INFO_DATA, Rate::Every(1_000_000) =>
+        Some(controllers::info(view.rotor_speeds?, view.controllers.as_ref()?));
     SystemTime: SYSTEM_TIME_DATA, Rate::Every(2_000_000) => Some(motion::system_time(view.now));
     GlobalOrigin: GPS_GLOBAL_ORIGIN_DATA, Rate::OnRequest => Some(motion::origin(&view.origin));
     AutopilotVersion: AUTOPILOT_VERSION_DATA, Rate::OnRequest => Some(identity::autopilot_version());

@@ -44,6 +44,7 @@ fn unknown_values_are_nan_and_all_of_a_record_is_written() {
         pose_age: None,
         missed: 0,
         command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]),
+        rotor_speeds: [Some(500.0), None, Some(600.0), Some(0.0)],
         voltage: None,
     };
     let bytes = tick.to_bytes();
@@ -55,6 +56,7 @@ fn unknown_values_are_nan_and_all_of_a_record_is_written() {
         match name {
             "timestamp" => assert_eq!(field, [7, 0, 0, 0, 0, 0, 0, 0]),
             "motors" => assert_eq!(floats, [0.1, 0.2, 0.3, 0.4]),
+            "rotor_speeds" => assert!(floats[0] == 500.0 && floats[1].is_nan() && floats[3] == 0.0, "{floats:?}"),
             "missed_ticks" => assert_eq!(field, [0, 0]),
             "mode" => assert_eq!(field, [Mode::Locked as u8]),
             "airborne" => assert_eq!(field, [1]),

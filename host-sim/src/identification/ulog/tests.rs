@@ -45,6 +45,7 @@ fn recording() -> Vec<u8> {
             pose_age: None,
             missed: 0,
             command: MotorCommand::Run([0.1, 0.2, 0.3, 0.4]),
+            rotor_speeds: [Some(500.0), None, Some(600.0), Some(0.0)],
             voltage: Some(15.5),
         };
         ring.put(&tick.to_bytes());

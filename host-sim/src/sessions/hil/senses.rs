@@ -8,7 +8,8 @@
 //! Every time is the flight controller's own: that of a command and what the vehicle has moved since.
 
 use super::vehicle::Moved;
-use crate::sessions::answer::{Answer, MeasuredPose};
+use crate::sessions::answer::{Answer, MeasuredPose, answered_speed};
+use crate::sessions::messages::MOTOR_COUNT;
 use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use flight::{ImuSample, Stamped};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -47,7 +48,8 @@ impl Senses {
         let Some((instruments, deviations)) = &mut self.instruments else {
             return exact(command + self.period, moved);
         };
-        let mut answer = Answer { poses: Vec::new(), samples: Vec::new() };
+        let mut answer =
+            Answer { poses: Vec::new(), rotor_speeds: turned(command + self.period, moved), samples: Vec::new() };
         for (state, time) in moved.path.iter().zip((command + SAMPLE_PERIOD_US..).step_by(SAMPLE_PERIOD_US as usize)) {
             answer.samples.push(Stamped { value: instruments.sample(state, time), time });
             while let Some(Stamped { value: pose, time }) = instruments.arrived() {
@@ -73,7 +75,17 @@ fn exact(time: u64, moved: &Moved) -> Answer {
     };
     let specific_force = moved.specific_force.map(|component| component as f32);
     let sample = ImuSample { angular_velocity: measured.angular_velocity, specific_force };
-    Answer { poses: vec![Stamped { value: pose, time }], samples: vec![Stamped { value: sample, time }] }
+    Answer {
+        poses: vec![Stamped { value: pose, time }],
+        rotor_speeds: turned(time, moved),
+        samples: vec![Stamped { value: sample, time }],
+    }
+}
+
+/// How fast the rotors turn at the end of a motion, at `time`, us, as their controllers answer.
+fn turned(time: u64, moved: &Moved) -> Option<Stamped<[f32; MOTOR_COUNT]>> {
+    let speeds: Vec<f32> = moved.speeds.iter().map(|speed| answered_speed(*speed)).collect();
+    speeds.try_into().ok().map(|value| Stamped { value, time })
 }
 
 #[cfg(test)]

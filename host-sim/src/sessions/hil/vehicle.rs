@@ -29,6 +29,8 @@ pub struct Moved {
     pub specific_force: Vector3<f64>,
     /// The rotors' thrust then, N.
     pub thrust: f64,
+    /// How fast the rotors turn then, rad/s.
+    pub speeds: Vec<f64>,
     /// The last touchdown on the way there.
     pub touchdown: Option<Touchdown>,
 }
@@ -124,7 +126,7 @@ impl HilVehicle {
         let state = *self.plant.state();
         let held = (state.velocity - before) / self.period + Vector3::z() * self.gravity;
         let specific_force = UnitQuaternion::new_normalize(state.attitude).inverse_transform_vector(&held);
-        Ok(Moved { state, path, specific_force, thrust, touchdown })
+        Ok(Moved { state, path, specific_force, thrust, speeds: self.rotors.speeds().collect(), touchdown })
     }
 }
 

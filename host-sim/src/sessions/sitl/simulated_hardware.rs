@@ -13,13 +13,14 @@
 use super::clock::SimClock;
 use super::faults::{Faults, FaultyPart};
 use super::memory_line::MemoryLine;
-use crate::sessions::answer::{Answer, MeasuredPose};
+use crate::sessions::answer::{Answer, MeasuredPose, controller_answer};
 use crate::sessions::messages::Encoder;
 use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use crate::vehicle::plant::Diverged;
 use crate::vehicle::reality::RealVehicle;
 use controller_core::allocation::{Rotor, ThrustCurve};
 use estimation::imu::ImuParameters;
+use firmware::esc;
 use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTOR_COUNT, MotorCommand, Motors, RawImu, Watchdog};
 use firmware::link::frame::Frame;
 use firmware::link::signing::{Key, Stamp};
@@ -216,8 +217,11 @@ impl Body {
             let (position, attitude) = (pose.position(), pose.attitude());
             let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
-            let answer =
-                Answer { poses: vec![Stamped { value, time: time + CAMERA_CLOCK_OFFSET_US }], samples: Vec::new() };
+            let answer = Answer {
+                poses: vec![Stamped { value, time: time + CAMERA_CLOCK_OFFSET_US }],
+                rotor_speeds: None,
+                samples: Vec::new(),
+            };
             self.encoder.answer(&answer, &mut bytes);
             self.line.push(&bytes);
         }
@@ -269,6 +273,14 @@ impl Motors for SimulatedHardware {
         }
         self.command(command);
         Ok(())
+    }
+
+    fn answers(&mut self) -> [Option<esc::answer::Answer>; MOTOR_COUNT] {
+        self.catch_up();
+        let mut speeds = self.0.body.borrow().vehicle.rotor_speeds().into_iter();
+        // As over the wire, in 12 bits.
+        let answer = |speed| esc::answer::Answer::from_bits(controller_answer(speed).to_bits());
+        std::array::from_fn(|_| speeds.next().filter(|_| !self.failed(FaultyPart::Motors)).and_then(answer))
     }
 }
 

@@ -11,6 +11,7 @@ use scenario::STUDY;
 use scenario::body::BodyState;
 use std::net::{Ipv4Addr, UdpSocket};
 
+mod answering;
 mod kept;
 
 /// A session without a desk's clock, and a client of it.

@@ -47,6 +47,11 @@ impl SpinningRotors {
         self.speeds.iter().zip(self.rotors.iter()).map(thrust).collect()
     }
 
+    /// The speeds of this moment, rad/s.
+    pub fn speeds(&self) -> impl Iterator<Item = f64> {
+        self.speeds.iter().map(|(speed, _)| *speed)
+    }
+
     /// Asks each rotor for a thrust, N.
     pub fn command(&mut self, thrusts: &[f32]) {
         for ((speed, rotor), thrust) in self.speeds.iter_mut().zip(self.rotors.iter()).zip(thrusts) {

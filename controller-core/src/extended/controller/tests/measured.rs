@@ -1,6 +1,7 @@
 //! What is measured beside the state: used once, where it can be used, and never beyond a level.
 
 use super::*;
+use crate::allocation::remaining::LostRotor;
 use crate::extended::measured::Measured;
 
 /// Accelerates along x by 1 m/s^2 for `ticks`, while `measured` says what it likes.
@@ -118,4 +119,22 @@ fn rotors_that_turn_slowly_for_good_leave_no_error_of_height() {
         state.velocity.z += 0.01 * acceleration;
     }
     assert!(state.position.z.abs() < 2e-3, "{}", state.position.z);
+}
+
+#[test]
+fn a_rotor_that_is_said_to_be_lost_is_flown_without_from_the_next_step_on() {
+    let mut controller = controller(&example::parameters());
+    let state = resting(Vector3::zeros());
+    let lost = |rotor| LostRotor { rotor, left: 0.0 };
+    controller.lose(&lost(9));
+    controller.step(&state, &hover()).unwrap();
+    assert!(controller.spinning().is_none());
+    controller.lose(&lost(1));
+    // The first counts.
+    controller.lose(&lost(2));
+    controller.step(&state, &hover()).unwrap();
+    let law = controller.spinning().unwrap();
+    assert!(law.lost().rotor == 1 && law.commands()[1] == 0.0 && law.commands()[3] < law.commands()[0]);
+    controller.reset();
+    assert!(controller.spinning().is_none());
 }
