@@ -29,6 +29,7 @@
 //! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX_US`] without
 //! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
 //! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! [`vibration`] measures what shakes the accelerometer, for an operator to see.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
@@ -38,9 +39,11 @@ pub mod integrator;
 pub mod low_pass;
 pub mod six_point;
 pub mod standstill;
+pub mod vibration;
 
 pub use calibration::Calibration;
 pub use faults::ImuFault;
+pub use vibration::{Vibration, VibrationReport};
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};

@@ -3,16 +3,20 @@
 //! - [`kind`]: which messages there are: an entry each;
 //! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
 //! - [`motion`]: how it moves: attitude, position, odometry, target, home;
+//! - [`bench`]: what a person on the bench looks at, before there is a pose;
 //! - [`identity`]: what it is.
 
+pub mod bench;
 pub mod identity;
 pub mod kind;
 pub mod motion;
 pub mod vehicle;
 
 use super::origin::Origin;
+use bench::Calibrated;
 use crate::shared::{Report, Traffic};
-use flight::Stamped;
+use estimation::imu::VibrationReport;
+use flight::{ImuSample, Stamped};
 
 /// The inputs of a message.
 #[derive(Debug, Clone)]
@@ -21,6 +25,14 @@ pub struct View {
     pub now: u64,
     /// Control's last report, if it is recent.
     pub report: Option<Stamped<Report>>,
+    /// The newest inertial sample, if it is recent.
+    pub imu: Option<Stamped<ImuSample>>,
+    /// How much the accelerometer is shaken, if that is recent.
+    pub vibration: Option<VibrationReport>,
+    /// What has been calibrated.
+    pub calibrated: Calibrated,
+    /// Which of the [named values](bench::named) has its turn.
+    pub turn: usize,
     /// V, if it is known.
     pub voltage: Option<f32>,
     /// The line's counts.

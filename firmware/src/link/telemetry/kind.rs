@@ -2,15 +2,16 @@
 
 #![expect(deprecated, reason = "PROTOCOL_VERSION: clients still ask for it")]
 
-use super::{View, identity, motion, vehicle};
+use super::{View, bench, identity, motion, vehicle};
 use crate::link::time_sync;
 use crate::link::writer::Writer;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA,
     ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA,
-    HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA,
-    PROTOCOL_VERSION_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, TIMESYNC_DATA,
+    HIGHRES_IMU_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA, NAMED_VALUE_FLOAT_DATA,
+    ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, PROTOCOL_VERSION_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    TIMESYNC_DATA, VIBRATION_DATA,
 };
 
 /// A message's default rate.
@@ -64,7 +65,7 @@ macro_rules! messages {
     };
 }
 
-// At the default rates they take 4 KB/s of a line's 5.7 KB/s at 57,600 baud.
+// At the default rates they take 4.5 KB/s of a line's 5.7 KB/s at 57,600 baud.
 messages! { view:
     Heartbeat: HEARTBEAT_DATA, Rate::Every(1_000_000) =>
         Some(vehicle::heartbeat(view.report().map(Into::into), view.simulated));
@@ -87,6 +88,9 @@ messages! { view:
     CurrentMode: CURRENT_MODE_DATA, Rate::Every(1_000_000) => Some(vehicle::current_mode(&view.report()?.into()));
     MissionCurrent: MISSION_CURRENT_DATA, Rate::Every(1_000_000) => Some(vehicle::mission_current(view.report()?));
     HomePosition: HOME_POSITION_DATA, Rate::Every(2_000_000) => motion::home(view.report()?, &view.origin);
+    Imu: HIGHRES_IMU_DATA, Rate::Every(200_000) => bench::imu(view);
+    Vibration: VIBRATION_DATA, Rate::Every(1_000_000) => bench::vibration(view);
+    NamedValue: NAMED_VALUE_FLOAT_DATA, Rate::Every(250_000) => bench::named(view);
     SystemTime: SYSTEM_TIME_DATA, Rate::Every(2_000_000) => Some(motion::system_time(view.now));
     GlobalOrigin: GPS_GLOBAL_ORIGIN_DATA, Rate::OnRequest => Some(motion::origin(&view.origin));
     AutopilotVersion: AUTOPILOT_VERSION_DATA, Rate::OnRequest => Some(identity::autopilot_version());
