@@ -52,7 +52,7 @@ impl Sources<'_> {
     pub fn line(&self, number: usize) -> Line {
         let certificate = match self.verdict {
             Some(Ok(certified)) => Some(certified.certificate()),
-            Some(Err(Refused::Fails(certificate))) => Some(&**certificate),
+            Some(Err(Refused::Fails(certificate))) => Some(certificate),
             Some(Err(Refused::Undefined(_))) | None => None,
         };
         let Some(row) = number.checked_sub(HEAD_LINES) else { return self.head(number) };

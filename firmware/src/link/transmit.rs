@@ -140,6 +140,8 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
     /// Writes the first message that is due; whether there is one.
     fn send_scheduled(&mut self, now: u64) -> bool {
         let telemetry = self.telemetry();
+        let report = self.shared.report().recent(REPORT_AGE_MAX_US, now);
+        self.schedule.set_bench(report.is_none_or(|report| report.state.is_none()));
         while let Some(kind) = self.schedule.next_due(telemetry, now) {
             if self.send_message(kind, now) {
                 return true;

@@ -57,7 +57,7 @@ use memory_line::MemoryLine;
 use record::SessionRecord;
 use scenario::{Scenario, board};
 pub use session::{SitlError, SitlSession, SitlSummary};
-use simulated_hardware::{PoseSource, SimulatedHardware};
+use simulated_hardware::{Hands, PoseSource, SimulatedHardware};
 use std::cell::{Cell, RefCell};
 use std::future::Future;
 use std::path::PathBuf;
@@ -215,6 +215,14 @@ impl Sitl {
                 up.push(frame);
             }
         });
+    }
+
+    /// Lays a person's hands on the vehicle, with the kill switch of a radio on or off.
+    pub fn hold(&self, hands: Hands, is_killed: bool) {
+        self.hardware.hold(hands);
+        if is_killed != self.shared.killed.get().is_some_and(|killed| killed.value) {
+            self.shared.killed.put(is_killed, self.clock.now());
+        }
     }
 
     /// Lets time pass until `end`, us.
