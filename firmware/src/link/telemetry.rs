@@ -13,8 +13,8 @@ pub mod motion;
 pub mod vehicle;
 
 use super::origin::Origin;
-use bench::Calibrated;
 use crate::shared::{Report, Traffic};
+use bench::Calibrated;
 use estimation::imu::VibrationReport;
 use flight::{ImuSample, Stamped};
 

@@ -11,12 +11,11 @@ use firmware::link::telemetry::bench::Calibrated;
 use firmware::link::telemetry::{motion, vehicle};
 use firmware::link::transmit::transmit;
 use firmware::parameters::table::Name;
-use firmware::shared::{Report, Reply, TEXT_MAX, Timing, Traffic};
+use firmware::shared::{Reply, Report, TEXT_MAX, Timing, Traffic};
 use flight::{ImuSample, Lean, Mode, MotorTest, Request};
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, COMMAND_LONG_DATA, HIGHRES_IMU_DATA, LOCAL_POSITION_NED_DATA, MavCmd,
-    MavResult, MavSeverity, MavSysStatusSensor, NAMED_VALUE_FLOAT_DATA, ODOMETRY_DATA, STATUSTEXT_DATA,
-    VIBRATION_DATA,
+    MavResult, MavSeverity, MavSysStatusSensor, NAMED_VALUE_FLOAT_DATA, ODOMETRY_DATA, STATUSTEXT_DATA, VIBRATION_DATA,
 };
 use nalgebra::{Quaternion, Vector3};
 
@@ -57,10 +56,8 @@ fn gravity_gives_roll_and_pitch_and_nothing_that_could_be_taken_for_an_estimate(
 #[test]
 fn sensor_and_vibration_go_out_in_axes_of_the_link_and_old_ones_do_not() {
     let shared = Local::new();
-    let sample = ImuSample {
-        angular_velocity: Vector3::new(0.1, 0.2, 0.3),
-        specific_force: Vector3::new(1.0, 2.0, 9.0),
-    };
+    let sample =
+        ImuSample { angular_velocity: Vector3::new(0.1, 0.2, 0.3), specific_force: Vector3::new(1.0, 2.0, 9.0) };
     let shaken = VibrationReport { level: Vector3::new(1.0, 2.0, 3.0), clipped: 5 };
     let written = transmitted(&shared, 2_000_000, |now| {
         shared.imu.put(sample, now);
@@ -163,11 +160,14 @@ fn the_bench_report_comes_without_a_certificate_and_a_report_too_and_not_of_an_a
     let words: Vec<_> = bench_report(&shared).into_iter().collect();
     let text = |text: &str, severity| (text.to_owned(), severity);
     let (information, critical) = (MavSeverity::MAV_SEVERITY_INFO, MavSeverity::MAV_SEVERITY_CRITICAL);
-    assert_eq!(words[1..], [
-        text("Calibration: gyro no, accel no, level no", information),
-        text("No report from control", critical),
-        text("Report ends", information),
-    ]);
+    assert_eq!(
+        words[1..],
+        [
+            text("Calibration: gyro no, accel no, level no", information),
+            text("No report from control", critical),
+            text("Report ends", information),
+        ]
+    );
     for (mode, result) in [
         (Mode::Ready, MavResult::MAV_RESULT_ACCEPTED),
         (Mode::Idling, MavResult::MAV_RESULT_TEMPORARILY_REJECTED),

@@ -13,9 +13,9 @@ mod tune;
 mod vehicle;
 
 pub use campaign::{CampaignArguments, MergeArguments};
-pub use first_flight::FirstFlightArguments;
 use clap::{Parser, Subcommand};
 pub use compare::{CompareArguments, GainsWanted};
+pub use first_flight::FirstFlightArguments;
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;

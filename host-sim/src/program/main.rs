@@ -6,8 +6,8 @@ mod searches;
 mod terminal;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, HilArguments, ManArguments, MergeArguments, ReferenceArguments,
-    FirstFlightArguments, ReplayArguments, SitlArguments, completions, manual,
+    Arguments, CampaignArguments, Command, FirstFlightArguments, HilArguments, ManArguments, MergeArguments,
+    ReferenceArguments, ReplayArguments, SitlArguments, completions, manual,
 };
 use clap::{CommandFactory, Parser};
 use host_sim::commands::certify::rigorous::{self, Rigorous};
@@ -35,8 +35,8 @@ use host_sim::studies::campaign::summary::Summary;
 use host_sim::studies::campaign::written::above;
 use host_sim::studies::campaign::{self, CampaignError};
 use readers::{given_or_study, run_identify, run_log, run_vehicle};
-use scenario::{Scenario, board};
 use scenario::verdict::Verdict;
+use scenario::{Scenario, board};
 use searches::{run_compare, run_tune};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

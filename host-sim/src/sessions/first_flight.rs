@@ -82,7 +82,10 @@ impl Outcome {
     }
 
     fn read(word: &str, figures: String) -> Option<Self> {
-        [Self::Passed, Self::Failed, Self::Skipped].map(|of| of(figures.clone())).into_iter().find(|it| it.word() == word)
+        [Self::Passed, Self::Failed, Self::Skipped]
+            .map(|of| of(figures.clone()))
+            .into_iter()
+            .find(|it| it.word() == word)
     }
 }
 

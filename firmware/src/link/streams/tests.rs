@@ -45,7 +45,10 @@ fn messages_of_the_bench_come_until_there_is_an_estimate_and_then_on_request() {
     let mut schedule = Schedule::new(0);
     schedule.set_bench(true);
     let bench = counts(&mut schedule, 10);
-    assert_eq!((count(&bench, Kind::Imu), count(&bench, Kind::Vibration), count(&bench, Kind::NamedValue)), (50, 10, 40));
+    assert_eq!(
+        (count(&bench, Kind::Imu), count(&bench, Kind::Vibration), count(&bench, Kind::NamedValue)),
+        (50, 10, 40)
+    );
     schedule.set_bench(false);
     schedule.set_interval(Kind::Vibration, 500_000, 0);
     let flying = counts(&mut schedule, 10);

@@ -126,10 +126,34 @@ impl Hold {
 pub fn place(rotor: &Rotor) -> &'static str {
     let (x, y) = (rotor.position.x, rotor.position.y);
     match (x.abs() > 0.3 * y.abs(), y.abs() > 0.3 * x.abs()) {
-        (true, true) if x > 0.0 => if y > 0.0 { "front left" } else { "front right" },
-        (true, true) => if y > 0.0 { "rear left" } else { "rear right" },
-        (true, false) => if x > 0.0 { "front" } else { "rear" },
-        (false, _) => if y > 0.0 { "left" } else { "right" },
+        (true, true) if x > 0.0 => {
+            if y > 0.0 {
+                "front left"
+            } else {
+                "front right"
+            }
+        }
+        (true, true) => {
+            if y > 0.0 {
+                "rear left"
+            } else {
+                "rear right"
+            }
+        }
+        (true, false) => {
+            if x > 0.0 {
+                "front"
+            } else {
+                "rear"
+            }
+        }
+        (false, _) => {
+            if y > 0.0 {
+                "left"
+            } else {
+                "right"
+            }
+        }
     }
 }
 
@@ -143,7 +167,8 @@ pub fn direction(rotor: &Rotor) -> &'static str {
 #[must_use]
 pub fn wrong_share(hold: Hold, rotors: &Rotors, shares: &[f32]) -> Option<usize> {
     let wrong = |(rotor, share): (&Rotor, &f32)| {
-        hold.speeds_up(rotor).is_some_and(|faster| if faster { *share <= 1.0 + SHARE_MIN } else { *share >= 1.0 - SHARE_MIN })
+        hold.speeds_up(rotor)
+            .is_some_and(|faster| if faster { *share <= 1.0 + SHARE_MIN } else { *share >= 1.0 - SHARE_MIN })
     };
     rotors.iter().zip(shares).position(wrong).map(|index| index + 1)
 }

@@ -38,7 +38,8 @@ impl FromStr for Address {
     fn from_str(text: &str) -> Result<Self, String> {
         let form = "must be serial:/dev/ttyACM0, serial:COM3@57600, tcp:HOST:PORT or udp:HOST:PORT";
         let (kind, rest) = text.split_once(':').ok_or(form)?;
-        let is_place = rest.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
+        let is_place =
+            rest.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
         match (kind, rest.rsplit_once('@')) {
             ("serial", Some((path, rate))) => {
                 let rate = rate.parse().map_err(|_| format!("{form}; the rate behind @ is no number: {rate}"))?;

@@ -56,7 +56,8 @@ impl Record {
         };
         let wrong = |what: &str| format!("{}: {what}; give another --record, or remove it", path.display());
         let document: DocumentMut = text.parse().map_err(|_| wrong("is no record of a first flight"))?;
-        let text_of = |key: &str| document.get(key).and_then(Item::as_str).ok_or_else(|| wrong(&format!("{key}: missing")));
+        let text_of =
+            |key: &str| document.get(key).and_then(Item::as_str).ok_or_else(|| wrong(&format!("{key}: missing")));
         let found = Subject {
             board: text_of("board")?.to_owned(),
             scenario: text_of("scenario")?.to_owned(),

@@ -7,9 +7,9 @@ use crate::output::interrupt::Interrupt;
 use firmware::frames;
 use firmware::link::frame::{Frame, Parser};
 use mavlink::dialects::common::{
-    COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, HIGHRES_IMU_DATA, LOCAL_POSITION_NED_DATA,
-    MavCmd, MavModeFlag, MavResult, MavType, NAMED_VALUE_FLOAT_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-    PARAM_VALUE_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA, VIBRATION_DATA,
+    COMMAND_ACK_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, HIGHRES_IMU_DATA, LOCAL_POSITION_NED_DATA, MavCmd,
+    MavModeFlag, MavResult, MavType, NAMED_VALUE_FLOAT_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA,
+    STATUSTEXT_DATA, SYS_STATUS_DATA, VIBRATION_DATA,
 };
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use nalgebra::Vector3;
@@ -126,7 +126,8 @@ impl Vehicle {
         } else if frame.header.system != self.system {
         } else if let Some(imu) = frame.decode::<HIGHRES_IMU_DATA>() {
             let force = frames::body(&Vector3::new(imu.xacc, imu.yacc, imu.zacc));
-            self.imu = Some(((imu.time_usec, force, frames::body(&Vector3::new(imu.xgyro, imu.ygyro, imu.zgyro))), now));
+            self.imu =
+                Some(((imu.time_usec, force, frames::body(&Vector3::new(imu.xgyro, imu.ygyro, imu.zgyro))), now));
         } else if let Some(position) = frame.decode() {
             self.position = Some((position, now));
         } else if let Some(status) = frame.decode() {

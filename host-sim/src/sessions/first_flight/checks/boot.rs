@@ -119,7 +119,8 @@ pub fn bootloader(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     if !walk.confirm("bootloader", text)? {
         return Ok(Outcome::Skipped("not tried".to_owned()));
     }
-    let answer = walk.vehicle.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
+    let answer =
+        walk.vehicle.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
     if answer != MavResult::MAV_RESULT_ACCEPTED {
         return Ok(Outcome::Failed(format!("command 246: {answer:?}")));
     }

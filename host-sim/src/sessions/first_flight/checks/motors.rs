@@ -86,7 +86,8 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
             let Some(level) = levels.peek().copied() else {
                 return Ok(Outcome::Failed(format!("motor {motor} does not turn at {:.0} %", 100.0 * LEVELS[5])));
             };
-            walk.person.tell(&format!("motors.{motor}"), &format!("Motor {motor} turns at {:.0} % for 2 s.", 100.0 * level));
+            walk.person
+                .tell(&format!("motors.{motor}"), &format!("Motor {motor} turns at {:.0} % for 2 s.", 100.0 * level));
             let answer = turn(walk, motor, level, TEST_S)?;
             if answer != MavResult::MAV_RESULT_ACCEPTED {
                 let words = walk.vehicle.texts().pop().unwrap_or_default();
@@ -108,7 +109,9 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         };
         let (answer, level) = found;
         if answer != expected {
-            return Ok(Outcome::Failed(format!("motor {motor} is {answer}, in the file {expected}: MOT_ORDER, or wires")));
+            return Ok(Outcome::Failed(format!(
+                "motor {motor} is {answer}, in the file {expected}: MOT_ORDER, or wires"
+            )));
         }
         let turned = walk.choose(&format!("motors.{motor}.way"), "Which way, seen from above?", &["cw", "ccw"])?;
         if turned != way {
@@ -170,7 +173,11 @@ pub fn kill(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     let stopped = loop {
         // Each renews the one before: the motor turns on.
         let answer = turn(walk, 1, level, TEST_S)?;
-        if walk.vehicle.wait(Duration::from_secs(1), |vehicle| vehicle.has_said("Stopped: kill switch").then_some(()))?.is_some() {
+        if walk
+            .vehicle
+            .wait(Duration::from_secs(1), |vehicle| vehicle.has_said("Stopped: kill switch").then_some(()))?
+            .is_some()
+        {
             break true;
         }
         if answer != MavResult::MAV_RESULT_ACCEPTED || Instant::now() >= end {
@@ -204,7 +211,10 @@ pub fn radio(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     let begin = Instant::now();
     if walk.vehicle.wait(SWITCH_TIMEOUT, |vehicle| vehicle.has_said("Radio lost").then_some(()))?.is_none() {
         let what = "the receiver goes on sending: set it to send nothing when it hears nothing";
-        return Ok(Outcome::Failed(format!("\"Radio lost\" was not said within {} s: {what}", begin.elapsed().as_secs())));
+        return Ok(Outcome::Failed(format!(
+            "\"Radio lost\" was not said within {} s: {what}",
+            begin.elapsed().as_secs()
+        )));
     }
     walk.person.tell("radio.on", "Turn it on again.");
     let is_back = walk.vehicle.wait(SWITCH_TIMEOUT, |vehicle| vehicle.has_said("Radio received").then_some(()))?;

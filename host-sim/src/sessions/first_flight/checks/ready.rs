@@ -90,7 +90,8 @@ fn carried(walk: &mut Walk<'_>, key: &str, text: &str, way: Vector3<f32>) -> Res
         let along = moved.dot(&way);
         (along > CARRIED_MIN_M && along > 0.8 * moved.norm()).then_some(())
     })?;
-    let seen = format!("{key}: moved {:.2} {:.2} {:.2} m north, east, down: frames of the bridge", moved.x, moved.y, moved.z);
+    let seen =
+        format!("{key}: moved {:.2} {:.2} {:.2} m north, east, down: frames of the bridge", moved.x, moved.y, moved.z);
     Ok(found.ok_or(seen))
 }
 
@@ -106,9 +107,7 @@ fn armed(walk: &mut Walk<'_>) -> Result<Result<(), String>, Stop> {
 /// Waits for a word, and that the vehicle is disarmed then.
 fn ended(walk: &mut Walk<'_>, word: &str, timeout: Duration) -> Result<Result<(), String>, Stop> {
     let has_said = walk.vehicle.wait(timeout, |vehicle| vehicle.has_said(word).then_some(()))?.is_some();
-    let is_armed = |vehicle: &mut Vehicle| {
-        (!vehicle.has(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)).then_some(())
-    };
+    let is_armed = |vehicle: &mut Vehicle| (!vehicle.has(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)).then_some(());
     let is_disarmed = walk.vehicle.wait(WORD_TIMEOUT, is_armed)?.is_some();
     Ok(if has_said && is_disarmed { Ok(()) } else { Err(format!("\"{word}\" was not said")) })
 }
@@ -165,7 +164,9 @@ pub fn arming(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     let lost = ended(walk, "Disarmed: ground station lost", WORD_TIMEOUT);
     walk.vehicle.speak(true);
     Ok(match lost? {
-        Ok(()) => Outcome::Passed("carried as told; armed; disarmed by itself, by command, by force, without heartbeats".to_owned()),
+        Ok(()) => Outcome::Passed(
+            "carried as told; armed; disarmed by itself, by command, by force, without heartbeats".to_owned(),
+        ),
         Err(words) => Outcome::Failed(format!("{words}: another ground station, or a radio, still speaks")),
     })
 }

@@ -35,7 +35,16 @@ fn shown(walk: &mut Walk<'_>, hold: Hold) -> Result<Result<Vector3<f32>, String>
         let since = *since.get_or_insert_with(Instant::now);
         (since.elapsed() >= SHOWN).then_some(force)
     })?;
-    let was = format!("{}: force {:.1} {:.1} {:.1} m/s^2, turned {:.2} {:.2} {:.2} rad", hold.name(), felt.x, felt.y, felt.z, turned.x, turned.y, turned.z);
+    let was = format!(
+        "{}: force {:.1} {:.1} {:.1} m/s^2, turned {:.2} {:.2} {:.2} rad",
+        hold.name(),
+        felt.x,
+        felt.y,
+        felt.z,
+        turned.x,
+        turned.y,
+        turned.z
+    );
     Ok(found.ok_or(was))
 }
 
@@ -46,7 +55,9 @@ pub fn axes(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     for hold in Hold::ALL {
         match shown(walk, hold)? {
             Ok(force) => figures.push(format!("{} {:.1} {:.1} {:.1}", hold.name(), force.x, force.y, force.z)),
-            Err(was) => return Ok(Outcome::Failed(format!("{was}: the mounting in the board's file is not this board's"))),
+            Err(was) => {
+                return Ok(Outcome::Failed(format!("{was}: the mounting in the board's file is not this board's")));
+            }
         }
         if hold != Hold::ALL[3] {
             let text = "Lay it flat again.";
@@ -104,6 +115,7 @@ pub fn calibration(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
             return Ok(Outcome::Failed(format!("{name}: {words}")));
         }
     }
+    walk.vehicle.stream::<NAMED_VALUE_FLOAT_DATA>(50_000.0)?;
     walk.vehicle.forget_named();
     let names = ["CAL_GYRO", "CAL_ACCEL", "CAL_LEVEL"];
     let found = walk.vehicle.wait(Duration::from_secs(10), |vehicle| {
@@ -131,17 +143,18 @@ pub fn levelling(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         let found = walk.vehicle.wait(HAND_TIMEOUT, |vehicle| {
             let (_, force, rate) = vehicle.imu_sample()?;
             if !hold.is_held(&force, &rate) {
-                (held, _) = (None, vehicle.forget_named());
+                // Shares of another hold.
+                vehicle.forget_named();
+                held = None;
                 return None;
             }
-            held.get_or_insert_with(Instant::now);
+            let since = *held.get_or_insert_with(Instant::now);
             let names = ["LEVEL_M1", "LEVEL_M2", "LEVEL_M3", "LEVEL_M4"];
             let shares = names.iter().map(|name| vehicle.named(name)).collect::<Option<Vec<f32>>>()?;
             let words: Vec<_> = shares.iter().map(|share| format!("{share:.3}")).collect();
             last = words.join(" ");
-            // It may have come of the moment before.
             let is_right = wrong_share(hold, &rotors, &shares).is_none();
-            (is_right && held.is_some_and(|since| since.elapsed() >= SHOWN)).then_some(())
+            (is_right && since.elapsed() >= SHOWN).then_some(())
         })?;
         if found.is_none() {
             let last = if last.is_empty() { "not held, or no shares came".to_owned() } else { last };

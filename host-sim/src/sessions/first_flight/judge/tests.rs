@@ -71,9 +71,7 @@ fn texts(verdict: &Result<Certified, Refused>) -> Vec<String> {
     let certificate = verdict.as_ref().unwrap().certificate();
     let mut texts = vec!["Started by Power on a desk".to_owned(), "Scenario study".to_owned()];
     texts.extend(
-        certificate
-            .inequalities()
-            .map(|row| format!("{:.28}: {:.4} of {:.4}", row.name, row.required, row.available)),
+        certificate.inequalities().map(|row| format!("{:.28}: {:.4} of {:.4}", row.name, row.required, row.available)),
     );
     texts.extend(["Certified".to_owned(), "Calibration: gyro yes, accel no, level no".to_owned()]);
     texts.extend(["Refused: no ground station for 2.5 s".to_owned(), "Report ends".to_owned()]);
