@@ -49,8 +49,8 @@ impl Bench {
         }
     }
 
-    /// Goes on, `elapsed` us after its beginning, with a test of the motor that turns already; whether it does. The test
-    /// passes [`Self::check`].
+    /// Goes on, `elapsed` us after its beginning, with a test of the motor that turns already; whether it does. The
+    /// test passes [`Self::check`].
     pub fn renew(&mut self, test: &MotorTest, elapsed: u64) -> bool {
         match self {
             Self::Turning(turning) if turning.rotor == test.rotor => {

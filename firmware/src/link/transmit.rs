@@ -31,7 +31,8 @@ use mavlink::dialects::common::{
 /// The longest a frame may take to be written: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIMEOUT_US: u64 = 100_000;
 
-/// Time between the values of a list of parameters, and the lines of a report: slow enough to leave the line to the rest.
+/// Time between the values of a list of parameters, and between the lines of a report: slow enough to leave the line to
+/// the rest.
 const LIST_INTERVAL_US: u64 = 20_000;
 
 /// The greatest age of a report that is still sent, and of a voltage.

@@ -22,7 +22,8 @@ pub fn page(record: &Record, checks: &[Check], file: &str, time: &str) -> String
     }
     let _ = write!(
         page,
-        "\nA check that was skipped was not made: its reason stands beside it. A check that failed forbids the flight.\n\n\
+        "\nA check that was skipped was not made: its reason stands beside it. A check that failed forbids the \
+         flight.\n\n\
          Propellers on, tether fixed, room clear, both people know the four ways to stop:\n\n\
          | | name | signature | date |\n|---|---|---|---|\n\
          | at the ground station | | | |\n| at the vehicle | | | |\n"
