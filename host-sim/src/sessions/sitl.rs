@@ -24,6 +24,7 @@ pub mod clock;
 mod downlink;
 pub mod faults;
 pub(crate) mod flash;
+pub mod hands;
 pub mod key;
 pub mod memory_line;
 mod record;
@@ -33,6 +34,7 @@ mod truth;
 
 use crate::output::interrupt::Interrupt;
 use crate::reports::recording::session::SessionMoment;
+use crate::sessions::input;
 use crate::sessions::pace::Pace;
 use crate::sessions::ports::{ClientPort, Ports};
 use clock::SimClock;
@@ -53,15 +55,17 @@ use firmware::{boot, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
+use hands::Holder;
 use memory_line::MemoryLine;
 use record::SessionRecord;
 use scenario::{Scenario, board};
 pub use session::{SitlError, SitlSession, SitlSummary};
-use simulated_hardware::{Hands, PoseSource, SimulatedHardware};
+use simulated_hardware::{PoseSource, SimulatedHardware};
 use std::cell::{Cell, RefCell};
 use std::future::Future;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 use truth::Truth;
 
@@ -217,11 +221,11 @@ impl Sitl {
         });
     }
 
-    /// Lays a person's hands on the vehicle, with the kill switch of a radio on or off.
-    pub fn hold(&self, hands: Hands, is_killed: bool) {
-        self.hardware.hold(hands);
-        if is_killed != self.shared.killed.get().is_some_and(|killed| killed.value) {
-            self.shared.killed.put(is_killed, self.clock.now());
+    /// Lays a person's hands on the vehicle, and on a kill switch.
+    pub fn hold(&self, holder: &Holder) {
+        self.hardware.hold(holder.hands);
+        if holder.is_killed != self.shared.killed.get().is_some_and(|killed| killed.value) {
+            self.shared.killed.put(holder.is_killed, self.clock.now());
         }
     }
 
@@ -296,8 +300,12 @@ pub fn run(
     let mut truth = session.truth.map(Truth::open).transpose().map_err(SitlError::Input)?;
     let mut pace = Pace::new(session.speed);
     let mut shown = Instant::now();
+    let (words, mut holder) = (session.has_hands.then(input::lines), Holder::default());
     let ended = loop {
         let now = sitl.clock.now();
+        for line in words.iter().flat_map(Receiver::try_iter) {
+            holder.take(&line).unwrap_or_else(|error| show(&error));
+        }
         if let Some(signal) = interrupt.signal() {
             break Ok(sitl.summary(Some(signal)));
         }
@@ -312,6 +320,8 @@ pub fn run(
         if keeps_up || session.poses == PoseSource::Camera {
             sitl.receive();
         }
+        holder.pass((next - now) as f32 * 1e-6);
+        sitl.hold(&holder);
         sitl.pass(next);
         if let Some(truth) = &mut truth {
             truth.write_when_due(sitl.clock.now(), pace.desk_time(sitl.clock.now()), &sitl.hardware.state());

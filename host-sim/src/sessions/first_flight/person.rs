@@ -2,9 +2,10 @@
 //!
 //! Nothing here waits: the link is served meanwhile, and a vehicle without heartbeats would disarm.
 
+use crate::sessions::input;
 use std::collections::BTreeMap;
-use std::io::{BufRead, Write};
-use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::io::Write;
+use std::sync::mpsc::{Receiver, TryRecvError};
 use toml_edit::{DocumentMut, Item};
 
 /// What came of a question so far.
@@ -37,15 +38,7 @@ impl Terminal {
     /// Reads lines from standard input, on a thread of its own.
     #[must_use]
     pub fn open() -> Self {
-        let (lines, received) = mpsc::channel();
-        std::thread::spawn(move || {
-            for line in std::io::stdin().lock().lines() {
-                if line.map_or(true, |line| lines.send(line).is_err()) {
-                    break;
-                }
-            }
-        });
-        Self(received)
+        Self(input::lines())
     }
 }
 

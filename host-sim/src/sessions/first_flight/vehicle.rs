@@ -123,8 +123,12 @@ impl Vehicle {
                 self.system = frame.header.system;
                 self.heartbeat = Some((heartbeat, now));
             }
-        } else if frame.header.system != self.system {
-        } else if let Some(imu) = frame.decode::<HIGHRES_IMU_DATA>() {
+            return;
+        }
+        if frame.header.system != self.system {
+            return;
+        }
+        if let Some(imu) = frame.decode::<HIGHRES_IMU_DATA>() {
             let force = frames::body(&Vector3::new(imu.xacc, imu.yacc, imu.zacc));
             self.imu =
                 Some(((imu.time_usec, force, frames::body(&Vector3::new(imu.xgyro, imu.ygyro, imu.zgyro))), now));
