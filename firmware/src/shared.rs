@@ -46,7 +46,7 @@ pub use library::{Answer, Bytes, LOG_CHUNK_BYTES, Library, Question};
 pub use mission::Mission;
 pub use queue::{Full, Queue};
 pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
-pub use report::{MissionReport, Report, Started, Timing, Traffic, Verdict};
+pub use report::{Calibrated, MissionReport, Report, Started, Timing, Traffic, Verdict};
 pub use requests::{REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 

@@ -15,8 +15,7 @@
 //!
 //! The numbers are those that were required and those that are available; names are cut to fit.
 
-use super::telemetry::bench::Calibrated;
-use crate::shared::{Event, Report, Severity, Started, Verdict};
+use crate::shared::{Calibrated, Event, Report, Severity, Started, Verdict};
 use controller_core::certificate::certified::{Certified, Refused};
 
 /// Its lines besides those of the certificate.

@@ -13,8 +13,7 @@ pub mod motion;
 pub mod vehicle;
 
 use super::origin::Origin;
-use crate::shared::{Report, Traffic};
-use bench::Calibrated;
+use crate::shared::{Calibrated, Report, Traffic};
 use estimation::imu::VibrationReport;
 use flight::{ImuSample, Stamped};
 

@@ -16,6 +16,17 @@ pub type Started = (&'static str, &'static str);
 /// The certificate's verdict on what is to be flown.
 pub type Verdict = &'static Result<Certified, Refused>;
 
+/// What has been calibrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Calibrated {
+    /// The gyro's bias, since the boot.
+    pub gyro: bool,
+    /// The accelerometer, ever.
+    pub accelerometer: bool,
+    /// Its level, ever.
+    pub level: bool,
+}
+
 /// One control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {

@@ -7,11 +7,10 @@ use crate::support::receiver::{Fed, Local, command, ordered, replies, report, te
 use crate::support::{Simulated, sent};
 use core::cell::RefCell;
 use estimation::imu::VibrationReport;
-use firmware::link::telemetry::bench::Calibrated;
 use firmware::link::telemetry::{motion, vehicle};
 use firmware::link::transmit::transmit;
 use firmware::parameters::table::Name;
-use firmware::shared::{Reply, Report, TEXT_MAX, Timing, Traffic};
+use firmware::shared::{Calibrated, Reply, Report, TEXT_MAX, Timing, Traffic};
 use flight::{ImuSample, Lean, Mode, MotorTest, Request};
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, COMMAND_LONG_DATA, HIGHRES_IMU_DATA, LOCAL_POSITION_NED_DATA, MavCmd,

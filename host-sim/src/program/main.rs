@@ -22,10 +22,12 @@ use host_sim::reports::log::bytes_per_row;
 use host_sim::reports::plots::replay::gif;
 use host_sim::reports::reference_rows;
 use host_sim::rivals::choice::LawChoice;
+use host_sim::sessions::first_flight::checks::CHECKS;
 use host_sim::sessions::first_flight::line::Line;
 use host_sim::sessions::first_flight::record::Record;
 use host_sim::sessions::first_flight::vehicle::{Stop, Vehicle};
-use host_sim::sessions::first_flight::{self, CHECKS, Walk};
+use host_sim::sessions::first_flight::walk::Walk;
+use host_sim::sessions::first_flight::{self, course};
 use host_sim::sessions::hil::port::SimulatorPort;
 use host_sim::sessions::hil::relay::Relay;
 use host_sim::sessions::hil::{self, Clients, End, HilError};
@@ -316,8 +318,8 @@ fn run_first_flight(arguments: &FirstFlightArguments) -> Result<ExitCode, String
     why.iter().for_each(|why| complain(why));
     WholeFile::try_name(&page).map_err(|error| format!("--page {}: cannot be written: {error}", page.display()))?;
     let vehicle = Vehicle::new(Line::open(arguments.link.clone())?, watch()?);
-    let made =
-        Walk::new(vehicle, person.as_mut(), &scenario, arguments.board()).make(&mut record, arguments.only.as_deref());
+    let mut walk = Walk::new(vehicle, person.as_mut(), &scenario, arguments.board());
+    let made = course::make(&mut walk, &mut record, arguments.only.as_deref());
     let text = first_flight::page::page(&record, &CHECKS, &scenario.name, &first_flight::page::now());
     first_flight::record::write(&page, &text)?;
     print_text(&format!("{}\n", page.display()))?;

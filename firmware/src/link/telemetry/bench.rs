@@ -22,17 +22,6 @@ const MEASURED: HighresImuUpdatedFlags = HighresImuUpdatedFlags::HIGHRES_IMU_UPD
     .union(HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_YGYRO)
     .union(HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_ZGYRO);
 
-/// What has been calibrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Calibrated {
-    /// The gyro's bias, since the boot.
-    pub gyro: bool,
-    /// The accelerometer, ever.
-    pub accelerometer: bool,
-    /// Its level, ever.
-    pub level: bool,
-}
-
 /// Rates and specific force, as the newest sample has them: low-passed, calibrated.
 pub fn imu(view: &View) -> Option<HIGHRES_IMU_DATA> {
     let sample = view.imu?;

@@ -1,10 +1,11 @@
 //! The arguments of `first-flight`, in clap's terms, and their checks.
 
 use clap::{Args, ValueEnum};
+use host_sim::sessions::first_flight::checks::CHECKS;
 use host_sim::sessions::first_flight::line::Address;
 use host_sim::sessions::first_flight::person::{Person, Prepared, Terminal};
 use host_sim::sessions::first_flight::record::Subject;
-use host_sim::sessions::first_flight::{BOARDS, Board, CHECKS};
+use host_sim::sessions::first_flight::walk::{BOARDS, Board};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 

@@ -13,7 +13,20 @@ mod motors;
 mod ready;
 mod sensors;
 
-use super::{Check, Outcome, Stop, Walk};
+use super::outcome::Outcome;
+use super::vehicle::Stop;
+use super::walk::Walk;
+
+/// A check.
+pub struct Check {
+    /// Its name on the command line, and in the record.
+    pub id: &'static str,
+    /// Its line on the page.
+    pub title: &'static str,
+    /// What it is about, to be read before it begins.
+    pub about: &'static str,
+    pub(super) run: fn(&mut Walk<'_>) -> Result<Outcome, Stop>,
+}
 
 /// All of them.
 pub const CHECKS: [Check; 15] = [

@@ -1,6 +1,6 @@
 //! The page to sign: what was checked, with its figures, as Markdown that prints well.
 
-use super::Check;
+use super::checks::Check;
 use super::record::{Record, Subject};
 use std::fmt::Write;
 use std::time::{SystemTime, UNIX_EPOCH};

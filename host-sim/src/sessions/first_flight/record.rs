@@ -3,7 +3,7 @@
 //! A record is of one board, one scenario file and one image. Where any of them is another, it begins anew: what was
 //! checked was not that.
 
-use super::Outcome;
+use super::outcome::Outcome;
 use crate::output::whole_file::WholeFile;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -68,7 +68,8 @@ impl Record {
             ("scenario file", &found.scenario, &empty.subject.scenario),
             ("image", &found.image, &empty.subject.image),
         ];
-        if let Some((what, ..)) = differs.into_iter().find(|(_, one, other)| one != other) {
+        let differs = differs.into_iter().find(|(_, one, other)| one != other).map(|(what, ..)| what);
+        if let Some(what) = differs {
             return Ok((empty, Some(format!("{}: was of another {what}: it begins anew", path.display()))));
         }
         let tables = document.get("check").and_then(Item::as_array_of_tables);

@@ -1,20 +1,27 @@
 //! The walk from its first check to its last, with the firmware's own tasks behind the link and a person who has hands.
 
+use super::checks::CHECKS;
+use super::course::make;
 use super::line::{Address, Line};
-use super::record::Subject;
-use super::*;
+use super::outcome::Outcome;
+use super::page;
+use super::person::{Person, Reply};
+use super::record::{Record, Subject};
+use super::vehicle::Vehicle;
+use super::walk::{BOARDS, Walk};
 use crate::output::interrupt::Interrupt;
 use crate::sessions::ports::Ports;
 use crate::sessions::sitl::Sitl;
 use crate::sessions::sitl::hands::Holder;
 use crate::sessions::sitl::session::SitlSession;
 use crate::sessions::sitl::simulated_hardware::PoseSource;
+use scenario::Scenario;
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// How many times as fast as the test's the vehicle's time passes.
 const SPEED: u64 = 2;
@@ -191,7 +198,7 @@ fn a_walk_passes_from_the_first_check_to_the_last_and_its_page_says_so() {
         vehicle.set_parameter(name, volts).unwrap();
     }
     let mut record = record("walk");
-    let made = Walk::new(vehicle, &mut person, &scenario, BOARDS[0]).make(&mut record, None);
+    let made = make(&mut Walk::new(vehicle, &mut person, &scenario, BOARDS[0]), &mut record, None);
     let page = page::page(&record, &CHECKS, "study", "today");
     assert_eq!(made, Ok(true), "{page}\n{:#?}", person.told);
     let skipped: Vec<_> = record.entries.iter().filter(|entry| matches!(entry.outcome, Outcome::Skipped(_))).collect();
@@ -201,7 +208,7 @@ fn a_walk_passes_from_the_first_check_to_the_last_and_its_page_says_so() {
     assert!(!page.contains("FAILED") && !page.contains("not made"), "{page}");
     assert!(page.contains("inequalities as in the file, certified") && page.contains("16.00 V, the meter 16.05 V"));
     // What passed is not made again, but for the first.
-    let again = Walk::new(link(&desk), &mut person, &scenario, BOARDS[0]).make(&mut record, None);
+    let again = make(&mut Walk::new(link(&desk), &mut person, &scenario, BOARDS[0]), &mut record, None);
     assert_eq!(again, Ok(true));
 }
 
@@ -210,7 +217,7 @@ fn failing(desk: &Desk, only: Option<&str>, wrong: &[(&'static str, &'static str
     let scenario = Scenario::parse(scenario::STUDY, "a file").unwrap();
     let mut person = Somebody::at(desk, wrong);
     let mut record = record("failing");
-    let made = Walk::new(link(desk), &mut person, &scenario, BOARDS[0]).make(&mut record, only);
+    let made = make(&mut Walk::new(link(desk), &mut person, &scenario, BOARDS[0]), &mut record, only);
     assert_eq!(made, Ok(false), "{:#?}", person.told);
     let entry = record.entries.last().unwrap();
     assert!(matches!(entry.outcome, Outcome::Failed(_)), "{entry:?}");
@@ -234,7 +241,7 @@ fn a_walk_ends_at_what_is_wrong_and_names_it() {
     let other = scenario::STUDY.replace("name = \"study\"", "name = \"other\"");
     let other = Scenario::parse(&other, "another").unwrap();
     let (mut person, mut record) = (Somebody::at(&desk, &[]), record("other"));
-    let made = Walk::new(link(&desk), &mut person, &other, BOARDS[0]).make(&mut record, None);
+    let made = make(&mut Walk::new(link(&desk), &mut person, &other, BOARDS[0]), &mut record, None);
     assert_eq!(made, Ok(false));
     assert!(record.entries[0].outcome.figures().contains("the file is \"other\""), "{:?}", record.entries);
 }

@@ -151,7 +151,7 @@ impl Vehicle {
 
     /// Sends a message.
     pub fn send(&mut self, message: &impl MessageData) {
-        let header = MavHeader { system_id: OWN_SYSTEM, component_id: OWN_COMPONENT, sequence: self.sequence };
+        let header = MavHeader { system_id: OWN_SYSTEM.into(), component_id: OWN_COMPONENT, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message_data(header, message);

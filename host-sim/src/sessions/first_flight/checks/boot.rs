@@ -1,7 +1,9 @@
 //! Boot, ticks, the port, and the way into the bootloader.
 
-use super::{Outcome, Stop, Walk};
 use crate::sessions::first_flight::judge::BootReport;
+use crate::sessions::first_flight::outcome::Outcome;
+use crate::sessions::first_flight::vehicle::Stop;
+use crate::sessions::first_flight::walk::Walk;
 use mavlink::dialects::common::{HIGHRES_IMU_DATA, MavCmd, MavResult, NAMED_VALUE_FLOAT_DATA};
 use scenario::board;
 use std::time::Duration;

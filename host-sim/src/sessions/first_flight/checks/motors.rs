@@ -1,7 +1,9 @@
 //! Battery, frames, each motor, and the ways to stop one on the bench.
 
-use super::{Outcome, Stop, Walk};
 use crate::sessions::first_flight::judge::{direction, place};
+use crate::sessions::first_flight::outcome::Outcome;
+use crate::sessions::first_flight::vehicle::Stop;
+use crate::sessions::first_flight::walk::Walk;
 use mavlink::dialects::common::{MavCmd, MavModeFlag, MavResult, VIBRATION_DATA};
 use std::time::{Duration, Instant};
 

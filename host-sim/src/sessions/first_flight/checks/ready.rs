@@ -1,8 +1,9 @@
 //! Settings of a first flight, and arming with propellers off.
 
 use super::motors::stands;
-use super::{Outcome, Stop, Walk};
-use crate::sessions::first_flight::vehicle::Vehicle;
+use crate::sessions::first_flight::outcome::Outcome;
+use crate::sessions::first_flight::vehicle::{Stop, Vehicle};
+use crate::sessions::first_flight::walk::Walk;
 use mavlink::dialects::common::{MavCmd, MavModeFlag, MavResult, MavSysStatusSensor};
 use nalgebra::Vector3;
 use std::time::Duration;

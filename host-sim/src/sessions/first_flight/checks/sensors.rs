@@ -1,8 +1,9 @@
 //! Axes, calibration, and the thrusts with which the law would level the vehicle.
 
-use super::{Outcome, Stop, Walk};
-use crate::sessions::first_flight::HAND_TIMEOUT;
 use crate::sessions::first_flight::judge::{Hold, wrong_share};
+use crate::sessions::first_flight::outcome::Outcome;
+use crate::sessions::first_flight::vehicle::Stop;
+use crate::sessions::first_flight::walk::{HAND_TIMEOUT, Walk};
 use mavlink::dialects::common::{HIGHRES_IMU_DATA, MavCmd, MavResult, NAMED_VALUE_FLOAT_DATA};
 use nalgebra::Vector3;
 use std::time::{Duration, Instant};
