@@ -79,7 +79,7 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     }
     walk.vehicle.stream::<VIBRATION_DATA>(100_000.0)?;
     let clipped_before = walk.vehicle.vibration().map_or(0, |(_, clipped)| clipped);
-    let (mut greatest, mut shaken, mut clipped) = (0.0f32, 0.0f32, clipped_before);
+    let (mut greatest, mut shaken, mut clipped) = (0.0f32, None::<f32>, clipped_before);
     for (index, rotor) in rotors.iter().enumerate() {
         let motor = index + 1;
         let (expected, way) = (place(rotor), direction(rotor));
@@ -99,7 +99,7 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
             while Instant::now() < end {
                 walk.vehicle.serve()?;
                 if let Some((level, count)) = walk.vehicle.vibration() {
-                    (shaken, clipped) = (shaken.max(level.max()), clipped.max(count));
+                    (shaken, clipped) = (Some(shaken.unwrap_or(0.0).max(level.max())), clipped.max(count));
                 }
             }
             let answer = walk.choose(&format!("motors.{motor}.place"), "Which motor turned?", &PLACES)?;
@@ -123,6 +123,7 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         greatest = greatest.max(level);
     }
     let idle = walk.vehicle.parameter("MOT_IDLE")?;
+    let Some(shaken) = shaken else { return Ok(Outcome::Failed("VIBRATION does not come".to_owned())) };
     let figures = format!(
         "each in its place, each the right way; all turn at {:.0} %, MOT_IDLE {:.1} %; vibration {shaken:.1} m/s^2, {} \
          samples at full scale",
@@ -169,6 +170,9 @@ pub fn kill(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         return Ok(Outcome::Failed("propellers off first".to_owned()));
     }
     let level = walk.vehicle.parameter("MOT_IDLE")?.max(LEVELS[0]);
+    if turn(walk, 1, level, TEST_S)? != MavResult::MAV_RESULT_ACCEPTED {
+        return Ok(Outcome::Failed("the motor test was refused: is the kill switch on?".to_owned()));
+    }
     walk.vehicle.texts();
     walk.person.tell("kill.on", "Motor 1 turns until you move the kill switch: now.");
     let end = Instant::now() + SWITCH_TIMEOUT;
