@@ -33,6 +33,7 @@
 //! estimator to be less sure afterwards ([`Clipped`](crate::estimator::Clipped)). Up to [`BRIDGED_MAX_US`] without
 //! samples are bridged, by the mean of the samples on both sides; after more the next sample begins anew, and so does
 //! the estimator. [`calibration`] corrects every sample; [`standstill`] and [`six_point`] find what it corrects by.
+//! [`vibration`] measures what shakes the accelerometer, for an operator to see.
 //!
 //! SI units, body frame (x forward, y left, z up), time in us.
 
@@ -44,10 +45,12 @@ pub mod rotor_notches;
 pub mod sensor;
 pub mod six_point;
 pub mod standstill;
+pub mod vibration;
 
 pub use calibration::Calibration;
 pub use faults::ImuFault;
 pub use sensor::ImuParameters;
+pub use vibration::{Vibration, VibrationReport};
 
 use crate::estimator::Increment;
 use crate::measurement::{ImuSample, Stamped};

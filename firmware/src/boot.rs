@@ -5,7 +5,8 @@
 //!
 //! It takes two to six seconds on a Cortex-M4F (350 to 930 million instructions: double precision is software there),
 //! and more of the stack than anything later, before any task runs: `budgets.toml` bounds it. A refused configuration
-//! boots as well: it answers, tests motors, never arms, and names the inequality that fails.
+//! boots as well: it answers, tests motors, never arms, and names the inequality that fails. The numbers are sent on
+//! request: see [`crate::link::bench_report`].
 
 use crate::configuration::{self, Pilot};
 use crate::outputs::Outputs;
@@ -84,6 +85,7 @@ pub fn start_named<M: RawMutex>(
     };
     let certification = certify(place, tuned);
     log(certification);
+    shared.verdict().put(certification, 0);
     if certification.is_err() && is_named {
         for name in parameters.set_by_hand() {
             let words = format_args!("{} {}: cannot be flown", name.row().name, parameters.get(name));

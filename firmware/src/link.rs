@@ -9,6 +9,7 @@
 //! | [`transmit`] | what goes out, and when |
 //! | [`streams`] | which messages go out by the clock, and how often |
 //! | [`telemetry`] | what the vehicle knows as messages |
+//! | [`bench_report`] | what a probe's log says of the boot, for whoever has only the link |
 //! | [`origin`] | a local frame on the globe |
 //! | [`download`] | the list of logs, and a log, part by part |
 //! | [`port`] | which of two lines it is on |
@@ -26,6 +27,7 @@
 //! does not know (a frame, a command, a type) is not decoded.
 
 pub mod acknowledgement;
+pub mod bench_report;
 pub mod command;
 mod commander;
 pub mod download;

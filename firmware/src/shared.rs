@@ -46,7 +46,7 @@ pub use library::{Answer, Bytes, LOG_CHUNK_BYTES, Library, Question};
 pub use mission::Mission;
 pub use queue::{Full, Queue};
 pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
-pub use report::{MissionReport, Report, Timing, Traffic};
+pub use report::{Calibrated, MissionReport, Report, Started, Timing, Traffic, Verdict};
 pub use requests::{REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 
@@ -64,7 +64,7 @@ use controller_core::governor::Setpoint;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use estimation::estimator::{Increment, PoseMeasurement};
-use estimation::imu::ImuFault;
+use estimation::imu::{ImuFault, VibrationReport};
 use flight::{ImuSample, Mode, Refusal, Request, Stamped};
 use mavlink::dialects::common::MavResult;
 use table::{offers, values, views};
@@ -123,7 +123,11 @@ views! {
 values! {
     /// The newest inertial sample, calibrated and low-passed, with its data-ready time. [`flight`] decides how old it
     /// may be.
-    pub imu: Latest<M, ImuSample> { Write: SamplesView; Read: ControlView, StatusView }
+    pub imu: Latest<M, ImuSample> { Write: SamplesView; Read: ControlView, StatusView, TransmitView }
+    /// How much the accelerometer is shaken.
+    pub vibration: Latest<M, VibrationReport> { Write: SamplesView; Read: TransmitView }
+    /// Raised once the gyro's bias was found since the boot.
+    pub gyro_calibrated: Flag { Write: ImuView; Read: TransmitView }
     /// The newest fault of gyro or accelerometer. It counts for 1 s.
     pub imu_fault: Latest<M, ImuFault> { Write: SamplesView; Read: ControlView }
     /// What the inertial samples add up to, in order. Put in with [`Values::increment`].
@@ -208,6 +212,10 @@ values! {
     pub has_bootloader: Flag { Write: RestartView; Read: ReceiveView }
     /// Raised at boot where the clock's crystal does not run: arming is refused.
     pub clock_doubtful: Flag { Write: BootView; Read: ControlView }
+    /// What made the chip start, and the board's name; a desktop has neither.
+    pub started: Latest<M, Started> { Write: BootView; Read: TransmitView }
+    /// The certificate's verdict on what is to be flown.
+    pub verdict: Latest<M, Verdict> { Write: BootView; Read: TransmitView }
     /// Why the vehicle restarted by itself, where it did.
     pub last_words: Latest<M, LastWords> { Write: BootView; Read: StatusView }
     /// What may be set from the ground.

@@ -49,6 +49,18 @@ impl Bench {
         }
     }
 
+    /// Goes on, `elapsed` us after its beginning, with a test of the motor that turns already; whether it does. The
+    /// test passes [`Self::check`].
+    pub fn renew(&mut self, test: &MotorTest, elapsed: u64) -> bool {
+        match self {
+            Self::Turning(turning) if turning.rotor == test.rotor => {
+                *turning = MotorTest { duration: elapsed.saturating_add(test.duration), ..*test };
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// Whether it is over after `elapsed`, us.
     pub fn is_over(&self, elapsed: u64) -> bool {
         elapsed

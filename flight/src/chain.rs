@@ -1,7 +1,8 @@
 //! The chain from setpoints to rotor thrusts, of a configuration that is certified: governor, law, allocation.
 //!
 //! `taking_over` brings a flight to rest, or takes it up, from the vehicle's motion; `without_pose` levels and goes
-//! down; `delivered` estimates delivered over commanded thrust.
+//! down; `delivered` estimates delivered over commanded thrust; `levelling` says
+//! what the law would do about a lean on the bench.
 //!
 //! Starting on the ground, braking and a jump of the estimate all start the governor at a steady velocity, with the
 //! heading at rest: nothing to fade out, so no bridge is needed, and such a start fits in a tick.
@@ -370,6 +371,7 @@ impl<'m> Chain<'m> {
 }
 
 mod delivered;
+mod levelling;
 mod taking_over;
 #[cfg(test)]
 mod tests;

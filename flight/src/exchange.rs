@@ -1,6 +1,7 @@
 //! The inputs and the outcome of a tick.
 
 use super::chain::Flown;
+use super::lean::Lean;
 use super::mission::{MissionItem, MissionStep};
 use super::motor::Word;
 use super::policy::Handover;
@@ -48,6 +49,8 @@ pub struct Inputs<'a> {
     pub body_rate: Option<Stamped<Vector3<f32>>>,
     /// How fast the rotors turn, rad/s, in their order; none of a rotor whose controller did not answer of late.
     pub rotor_speeds: Option<Stamped<&'a [Option<f32>]>>,
+    /// The newest specific force, m/s^2, as the sensor has it.
+    pub specific_force: Option<Stamped<Vector3<f32>>>,
     /// The fault of gyro or accelerometer, present or within the last second.
     pub imu_fault: Option<ImuFault>,
     /// The poses that came, with the times at which they were true.
@@ -135,6 +138,11 @@ pub struct Outcome {
     pub mission_step: Option<MissionStep>,
     /// The state at this tick, while there is one.
     pub estimated: Option<EstimatedState>,
+    /// How it leans by gravity alone, while the law drives no motor and it rests.
+    pub lean: Option<Lean>,
+    /// The thrusts with which the law would level it then in hover, each over their mean, in the rotors' order; none
+    /// without a certified configuration.
+    pub levelling: Option<Thrusts>,
     /// The estimate's health.
     pub health: Health,
     /// The verdict on this tick's poses: the last refusal, or else what the last was taken for; none where none came,

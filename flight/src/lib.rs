@@ -7,6 +7,7 @@
 //!   turns, and their output;
 //! - [`estimation::measurement`]: poses and time stamps; [`Pose::new`] checks a pose;
 //! - `estimate`: the [estimator](estimation::estimator)'s state in a tick, and how long it has been healthy;
+//! - `lean`: how a vehicle leans by gravity alone, on the bench;
 //! - `lift_off`: whether an armed vehicle still stands where it was armed;
 //! - `detectors`: whether it follows, has landed, or lies on its back;
 //! - `fall`: whether a vehicle whose motors were stopped in the air lies still again;
@@ -55,6 +56,7 @@ mod estimate;
 mod exchange;
 mod fall;
 mod fence;
+mod lean;
 mod lift_off;
 mod low_pass;
 mod mission;
@@ -81,6 +83,7 @@ pub use estimation::measurement::{
     DISTANCE_MAX_M, ImuSample, Pose, PoseError, QUATERNION_LENGTH_TOLERANCE, STAMP_LEAD_MAX_US, Stamped, Velocity,
 };
 pub use exchange::{Battery, Inputs, Outcome, Output};
+pub use lean::Lean;
 pub use mission::{ACCEPTANCE_RADIUS_M, Leg, MissionItem, MissionRefusal, MissionStep};
 pub use motor::{MotorSetting, MotorTest, Setting, Word};
 pub use pilot::Pilot;

@@ -1,6 +1,7 @@
 //! Requests for one motor, and for its controller, while nothing else turns.
 
-/// One motor to be turned slowly for a while, to see which it is and which way it turns.
+/// One motor to be turned slowly for a while, to see which it is and which way it turns. While it turns, another test
+/// of the same motor takes the place of this one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorTest {
     /// Its index in the rotors' order.

@@ -10,13 +10,14 @@ use super::estimate::{Estimate, Estimation};
 use super::exchange::{Inputs, Output};
 use super::fall::Fall;
 use super::fence::Fence;
+use super::lean::Lean;
 use super::mission::Progress;
 use super::policy::{Aboard, Handover, NoPolicy};
 use super::reason::Reason;
 use super::refusal::Grounded;
 use super::request::NewestSetpoint;
 use super::rotor_check::{RotorCheck, RotorFindings, SPEEDS_STALE_AFTER_US, Turning};
-use super::rules::{self, BRAKING_MAX_US, Conditions, LEVELLING_MAX_US, Mode, Transition};
+use super::rules::{self, BRAKING_MAX_US, Conditions, IMU_AGE_MAX_US, LEVELLING_MAX_US, Mode, Transition};
 use super::settings::FlightSettings;
 use super::stream_check::StreamCheck;
 use super::thrust_check::ThrustCheck;
@@ -25,6 +26,7 @@ use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
 use controller_core::governor::{FollowingReport, GovernorLimits};
 use estimation::estimator::{Accepted, EstimatedState, Estimator, Fault};
+use estimation::measurement::is_fresh;
 use nalgebra::Vector3;
 
 /// Everything that decides what the motors do. Size: about 6.3 KB, and its [`Memory`] and [`Estimator`].
@@ -312,6 +314,14 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let is_stopped = was_airborne && !self.mode.flies() && !has_landed;
         self.fall.tick(is_stopped, estimate.state.as_ref(), inputs.now);
         transition
+    }
+
+    /// How a vehicle leans whose motors the law does not drive, by the accelerometer.
+    fn lean(&self, inputs: &Inputs) -> Option<Lean> {
+        let is_fresh = |time| is_fresh(time, IMU_AGE_MAX_US, inputs.now);
+        let force = inputs.specific_force.filter(|force| is_fresh(force.time))?;
+        let rate = inputs.body_rate.filter(|rate| is_fresh(rate.time))?;
+        if self.mode.is_armed() || self.fall.may_fall() { None } else { Lean::felt(&force.value, &rate.value) }
     }
 
     /// What the mode does in this tick.

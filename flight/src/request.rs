@@ -33,6 +33,8 @@ pub enum Request {
     Land,
     /// Turn one motor slowly.
     MotorTest(MotorTest),
+    /// End a motor test.
+    EndMotorTest,
     /// Send a setting to one motor's controller, while no motor turns.
     MotorSetting(MotorSetting),
 }

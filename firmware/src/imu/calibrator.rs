@@ -216,6 +216,9 @@ impl<'a, M: RawMutex> Calibrator<'a, M> {
                 self.shared.announce(Event::new(Severity::Warning, refused));
             }
         }
+        if procedure == Procedure::Gyro {
+            self.shared.gyro_calibrated().raise();
+        }
         if let Some(job) = self.job.take()
             && let Some(order) = job.order
         {

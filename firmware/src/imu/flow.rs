@@ -12,7 +12,7 @@ use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::rotor_notches::ROTOR_COUNT;
-use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters};
+use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters, Vibration};
 
 /// How long a fault must have been absent to be reported again.
 const FAULT_REPORT_PAUSE_US: u64 = 1_000_000;
@@ -21,6 +21,7 @@ const FAULT_REPORT_PAUSE_US: u64 = 1_000_000;
 pub struct Flow<'a, M: RawMutex> {
     shared: SamplesView<'a, M>,
     conditioner: Conditioner,
+    vibration: Vibration,
     is_simulated: bool,
     /// The time between control ticks, us.
     period: u64,
@@ -38,7 +39,8 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         period: u64,
     ) -> Result<Self, ParameterError> {
         let conditioner = Conditioner::new(parameters, calibration, period)?;
-        Ok(Self { shared, conditioner, is_simulated: false, period, seen: [None; _] })
+        let vibration = Vibration::new(parameters.accelerometer_range);
+        Ok(Self { shared, conditioner, vibration, is_simulated: false, period, seen: [None; _] })
     }
 
     /// From a simulator.
@@ -55,7 +57,9 @@ impl<'a, M: RawMutex> Flow<'a, M> {
     /// Goes on with another sensor's samples.
     /// An error names the parameter that makes no sense.
     pub fn take_over(&mut self, parameters: &ImuParameters, calibration: &Calibration) -> Result<(), ParameterError> {
-        self.conditioner.take_over(parameters, calibration)
+        self.conditioner.take_over(parameters, calibration)?;
+        self.vibration = Vibration::new(parameters.accelerometer_range);
+        Ok(())
     }
 
     /// The rotors turn so fast, rad/s; none: nobody knows. To be told again with every sample.
@@ -83,8 +87,12 @@ impl<'a, M: RawMutex> Flow<'a, M> {
             sample.angular_velocity = raw.angular_velocity;
         }
         self.shared.imu().put(sample, newest.time);
+        if let Some(force) = force {
+            self.vibration.take(force, before.map_or(0, |before| newest.time.saturating_sub(before)));
+        }
         if let Some(increment) = increment {
             self.shared.increment(increment);
+            self.shared.vibration().put(self.vibration.report(), newest.time);
         }
         if let Some(under_way) = self.conditioner.under_way() {
             self.shared.under_way().put(under_way, under_way.end);

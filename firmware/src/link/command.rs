@@ -10,9 +10,11 @@
 //! | 193 DO_PAUSE_CONTINUE | requests to hold (0), to go on with the mission (1) |
 //! | 224 DO_SET_MISSION_CURRENT | makes item parameter 1 the mission's next |
 //! | 209 DO_MOTOR_TEST | requests a test of one motor (1 to 4), throttle in percent, for a time in seconds |
+//! | 310 ACTUATOR_TEST | the same, by a value from 0 to 1 (parameter 1; NaN ends it), for a time (parameter 2, s; 0 ends it), of motor 1 to 4 (parameter 5), or 1101 to 1104 as QGroundControl counts PX4's; a test of the motor that turns goes on |
 //! | 311 CONFIGURE_ACTUATOR | requests one motor (parameter 5, 1 to 4) to beep (1), or turn as wired (4) or the other way (5) from now on |
 //! | 241 PREFLIGHT_CALIBRATION | while disarmed: gyro (parameter 1 = 1), accelerometer (parameter 5 = 1, 2 or 4); all zero ends it |
 //! | 246 PREFLIGHT_REBOOT_SHUTDOWN | parameter 1 = 1: restarts the vehicle, disarmed and with no motor turning; 3: into the chip's bootloader. Anything else is not done here |
+//! | 401 RUN_PREARM_CHECKS | while disarmed: the [bench report](super::bench_report), in texts |
 //! | 192 DO_REPOSITION | by COMMAND_INT: requests a flight to a latitude, longitude and altitude and to hold there |
 //! | 512 REQUEST_MESSAGE, 511, 510 SET and GET_MESSAGE_INTERVAL | any message of [`STREAMS`](super::telemetry::kind::STREAMS); 435 AVAILABLE_MODES on request |
 //! | any other | is answered as unsupported |
@@ -126,6 +128,9 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
         MavCmd::MAV_CMD_NAV_LAND => Action::Request(Request::Land),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(call, origin, home),
         MavCmd::MAV_CMD_DO_MOTOR_TEST => motor_test(call),
+        MavCmd::MAV_CMD_ACTUATOR_TEST => actuator_test(call),
+        MavCmd::MAV_CMD_RUN_PREARM_CHECKS if armed => Action::Answer(MavResult::MAV_RESULT_TEMPORARILY_REJECTED),
+        MavCmd::MAV_CMD_RUN_PREARM_CHECKS => Action::Reply(Reply::BenchReport),
         MavCmd::MAV_CMD_CONFIGURE_ACTUATOR => configure_actuator(call),
         MavCmd::MAV_CMD_DO_SET_MODE => set_mode(call, armed),
         MavCmd::MAV_CMD_MISSION_START => mission_start(call),
@@ -282,6 +287,22 @@ fn motor_test(call: &Call) -> Action {
             Action::Request(Request::MotorTest(MotorTest { rotor, level, duration }))
         }
         _ => denied("Motor test: one motor, 1 to 4, in percent"),
+    }
+}
+
+/// What QGroundControl adds to the number that PX4 has for motor 1, 101, and to each after it; motors count from 1.
+const QGROUNDCONTROLS_MOTORS: f32 = 1100.0;
+
+/// The same by ACTUATOR_TEST. A client repeats it for as long as a person holds a slider: that goes on.
+fn actuator_test(call: &Call) -> Action {
+    let [level, seconds, _, _, function, ..] = call.parameters;
+    let number = if function > QGROUNDCONTROLS_MOTORS { function - QGROUNDCONTROLS_MOTORS } else { function };
+    match motor(number) {
+        Some(_) if level.is_nan() || seconds == 0.0 => Action::Request(Request::EndMotorTest),
+        Some(rotor) if seconds.is_finite() => {
+            Action::Request(Request::MotorTest(MotorTest { rotor, level, duration: (seconds * 1e6) as u64 }))
+        }
+        _ => denied("Motor test: parameter 5 is motor 1 to 4"),
     }
 }
 

@@ -4,8 +4,10 @@
 //! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
 //! - [`motion`]: how it moves: attitude, position, odometry, target, home;
 //! - [`controllers`]: what the motors' controllers answer;
+//! - [`bench`]: what a person on the bench looks at, before there is a pose;
 //! - [`identity`]: what it is.
 
+pub mod bench;
 pub mod controllers;
 pub mod identity;
 pub mod kind;
@@ -15,8 +17,11 @@ pub mod vehicle;
 use super::origin::Origin;
 use crate::esc::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
+use crate::shared::{Calibrated, Report, Traffic};
 use crate::shared::{Report, Traffic};
+use estimation::imu::VibrationReport;
 use flight::Stamped;
+use flight::{ImuSample, Stamped};
 
 /// The inputs of a message.
 #[derive(Debug, Clone)]
@@ -25,6 +30,14 @@ pub struct View {
     pub now: u64,
     /// Control's last report, if it is recent.
     pub report: Option<Stamped<Report>>,
+    /// The newest inertial sample, if it is recent.
+    pub imu: Option<Stamped<ImuSample>>,
+    /// How much the accelerometer is shaken, if that is recent.
+    pub vibration: Option<VibrationReport>,
+    /// What has been calibrated.
+    pub calibrated: Calibrated,
+    /// Which of the [named values](bench::named) has its turn.
+    pub turn: usize,
     /// V, if it is known.
     pub voltage: Option<f32>,
     /// The line's counts.

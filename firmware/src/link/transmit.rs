@@ -3,19 +3,22 @@
 //! Every write has [`WRITE_TIMEOUT_US`]; a line that takes no more loses frames, and holds up nothing but this task.
 
 use super::acknowledgement::{Acknowledgement, Order};
+use super::bench_report::{Line, Sources};
 use super::download::{Download, Message};
 use super::files::NoFiles;
 use super::mission_lists::About;
 use super::origin::Origin;
 use super::streams::{Schedule, interval_of_rate};
+use super::telemetry::bench::NAMED_COUNT;
 use super::telemetry::kind::Kind;
 use super::telemetry::{View, vehicle};
 use super::time_sync;
 use super::writer::Writer;
 use crate::deadline::send;
 use crate::hardware::Clock;
+use crate::parameters::calibration;
 use crate::parameters::table::Name;
-use crate::shared::{Event, MissionList, MissionReport, Reply, Severity, TransmitView};
+use crate::shared::{Calibrated, Event, MissionList, MissionReport, Reply, Severity, TransmitView};
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embedded_io_async::Write;
@@ -28,7 +31,8 @@ use mavlink::dialects::common::{
 /// The longest a frame may take to be written: 280 bytes take 49 ms at 57,600 baud.
 pub const WRITE_TIMEOUT_US: u64 = 100_000;
 
-/// Time between the values of a list of parameters: slow enough to leave the line to the rest.
+/// Time between the values of a list of parameters, and between the lines of a report: slow enough to leave the line to
+/// the rest.
 const LIST_INTERVAL_US: u64 = 20_000;
 
 /// The greatest age of a report that is still sent, and of a voltage.
@@ -76,6 +80,10 @@ struct Transmitter<'a, M: RawMutex> {
     schedule: Schedule,
     /// The next of a list of parameters, and when it is due, us.
     list: Option<(usize, u64)>,
+    /// The next line of a bench report, and when it is due, us.
+    report: Option<(usize, u64)>,
+    /// The named value that has its turn.
+    turn: usize,
     /// What is still to be sent of the logs.
     download: Download,
     /// What was said of the mission.
@@ -98,6 +106,8 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
             shared,
             schedule: Schedule::new(now),
             list: None,
+            report: None,
+            turn: 0,
             download: Download::new(),
             mission: MissionReport::default(),
             writer: Writer::new(),
@@ -124,19 +134,21 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
 
     /// When something is due, us.
     fn next(&self) -> u64 {
-        let list = self.list.map_or(u64::MAX, |(_, time)| time);
-        self.schedule.next(self.telemetry()).min(list).min(self.download.due())
+        let listed = [self.list, self.report].into_iter().flatten().map(|(_, time)| time);
+        self.schedule.next(self.telemetry()).min(listed.min().unwrap_or(u64::MAX)).min(self.download.due())
     }
 
     /// Writes the first message that is due; whether there is one.
     fn send_scheduled(&mut self, now: u64) -> bool {
         let telemetry = self.telemetry();
+        let report = self.shared.report().recent(REPORT_AGE_MAX_US, now);
+        self.schedule.set_bench(report.is_none_or(|report| report.state.is_none()));
         while let Some(kind) = self.schedule.next_due(telemetry, now) {
             if self.send_message(kind, now) {
                 return true;
             }
         }
-        self.send_mission_progress() || self.send_listed(now) || self.send_download(now)
+        self.send_mission_progress() || self.send_listed(now) || self.send_reported(now) || self.send_download(now)
     }
 
     /// Writes what the mission has done since: an item reached, or another current one.
@@ -164,6 +176,37 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
         true
     }
 
+    /// Writes the next line of a bench report, if there is one and it is due.
+    fn send_reported(&mut self, now: u64) -> bool {
+        let Some((number, time)) = self.report.filter(|&(_, time)| now >= time) else { return false };
+        let shared = self.shared;
+        let sources = Sources {
+            started: shared.started().get().map(|started| started.value),
+            vehicle: shared.recorder().vehicle(),
+            verdict: shared.verdict().get().map(|verdict| verdict.value),
+            calibrated: self.calibrated(),
+            report: shared.report().recent(REPORT_AGE_MAX_US, now),
+        };
+        let line = sources.line(number);
+        let next = if matches!(line, Line::LeftOut) { time } else { now.saturating_add(LIST_INTERVAL_US) };
+        self.report = Some((number + 1, next));
+        match line {
+            Line::Text(event) => self.send(&vehicle::text(&event)),
+            Line::LeftOut => return false,
+            Line::End => {
+                self.report = None;
+                return false;
+            }
+        }
+        true
+    }
+
+    /// What has been calibrated.
+    fn calibrated(&self) -> Calibrated {
+        let (accelerometer, level) = calibration::found(self.shared.parameters());
+        Calibrated { gyro: self.shared.gyro_calibrated().is_raised(), accelerometer, level }
+    }
+
     /// Writes the next message about the logs, if one is requested and due.
     fn send_download(&mut self, now: u64) -> bool {
         match self.download.next(now, self.shared) {
@@ -181,6 +224,10 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
         let view = View {
             now,
             report: shared.report().get().filter(|report| report.age(now) <= REPORT_AGE_MAX_US),
+            imu: shared.imu().get().filter(|sample| sample.age(now) <= REPORT_AGE_MAX_US),
+            vibration: shared.vibration().recent(REPORT_AGE_MAX_US, now),
+            calibrated: self.calibrated(),
+            turn: self.turn,
             voltage: voltage.map(|voltage| voltage.value),
             traffic: shared.traffic().get().map_or_else(Default::default, |traffic| traffic.value),
             simulated: shared.hil().is_raised(),
@@ -189,6 +236,7 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
             controllers: shared.controllers().recent(REPORT_AGE_MAX_US, now),
             origin: shared.origin().get().map_or_else(Origin::default, |origin| origin.value),
         };
+        self.turn = self.turn.wrapping_add(usize::from(kind == Kind::NamedValue)) % NAMED_COUNT;
         let system = self.system();
         view.write(kind, system, &mut self.writer)
     }
@@ -290,6 +338,10 @@ impl<'a, M: RawMutex> Transmitter<'a, M> {
             }
             Reply::Interval { kind, interval } => {
                 self.schedule.set_interval(kind, interval, now);
+                return false;
+            }
+            Reply::BenchReport => {
+                self.report = Some((0, now));
                 return false;
             }
             Reply::AllParameters => {

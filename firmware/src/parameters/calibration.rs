@@ -6,7 +6,7 @@
 use super::table::{Name, PARAMETERS};
 use super::{Parameters, ValueRefusal};
 use crate::hardware::Unit;
-use crate::shared::Write;
+use crate::shared::{Read, Write};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use estimation::imu::Calibration;
 use estimation::imu::standstill::StandstillMeans;
@@ -22,6 +22,15 @@ fn rows(unit: Unit) -> impl Iterator<Item = Name> {
         Unit::Second => Name::Imu2GyroX,
     };
     PARAMETERS.iter().skip(first as usize).take(ROWS_OF_A_SENSOR).map(|row| row.parameter)
+}
+
+/// Whether the first sensor's accelerometer has been calibrated, and its level: whether their rows are no defaults.
+pub fn found<M: RawMutex>(parameters: Read<'_, Parameters<M>>) -> (bool, bool) {
+    let is_set = |name: Name| parameters.get(name) != name.row().default;
+    let is_any_set = |from: Name, to: Name| {
+        PARAMETERS.iter().take(to as usize + 1).skip(from as usize).any(|row| is_set(row.parameter))
+    };
+    (is_any_set(Name::Imu1OffsetX, Name::Imu1ScaleZ), is_any_set(Name::Imu1LevelX, Name::Imu1LevelY))
 }
 
 /// What corrects the samples of `unit`.

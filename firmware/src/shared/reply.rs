@@ -71,6 +71,8 @@ pub enum Reply {
     Parameter(Name),
     /// PARAM_VALUE of every parameter, one after the other.
     AllParameters,
+    /// STATUSTEXT: the [bench report](crate::link::bench_report), line by line.
+    BenchReport,
     /// A message, once.
     Message(Kind),
     /// A message, once, and COMMAND_ACK: whether it was sent.

@@ -1,14 +1,32 @@
-//! What a control tick did and what the line carried, for telemetry and the log.
+//! How the vehicle booted, what a control tick did, and what the line carried, for telemetry and the log.
 
 use crate::esc::RotorSpeeds;
-use crate::hardware::MotorCommand;
+use crate::hardware::{MOTOR_COUNT, MotorCommand};
 use crate::recorder::tick::Tick;
+use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};
 use estimation::estimator::Health;
 use estimation::imu::ImuFault;
-use flight::Mode;
+use flight::{Lean, Mode, Refusal};
 use nalgebra::Vector3;
+
+/// What made the chip start, and the board's name.
+pub type Started = (&'static str, &'static str);
+
+/// The certificate's verdict on what is to be flown.
+pub type Verdict = &'static Result<Certified, Refused>;
+
+/// What has been calibrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Calibrated {
+    /// The gyro's bias, since the boot.
+    pub gyro: bool,
+    /// The accelerometer, ever.
+    pub accelerometer: bool,
+    /// Its level, ever.
+    pub level: bool,
+}
 
 /// One control tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,13 +35,19 @@ pub struct Report {
     pub mode: Mode,
     /// Whether an arm command would be granted.
     pub ready: bool,
+    /// Why it would be refused, while no motor turns.
+    pub refusal: Option<Refusal>,
     /// Whether the vehicle has left the ground.
     pub is_airborne: bool,
     /// Whether it was stopped in the air, and may still fall.
     pub may_fall: bool,
     /// Where the vehicle is and how it moves, as it is estimated; none before the estimate begins, and without an IMU.
     pub state: Option<State>,
-    /// What that is worth.
+    /// How it leans by gravity alone, while the law drives no motor and it rests: nothing that could be flown.
+    pub lean: Option<Lean>,
+    /// The thrusts with which the law would level it then in hover, each over their mean.
+    pub levelling: Option<[f32; MOTOR_COUNT]>,
+    /// What the estimate is worth.
     pub health: Health,
     /// What is, or was a moment ago, wrong with gyro or accelerometer.
     pub imu_fault: Option<ImuFault>,
@@ -61,9 +85,12 @@ impl Report {
     pub const NONE: Self = Self {
         mode: Mode::Boot,
         ready: false,
+        refusal: None,
         is_airborne: false,
         may_fall: false,
         state: None,
+        lean: None,
+        levelling: None,
         health: Health::NONE,
         imu_fault: None,
         motors_fail: false,

@@ -90,7 +90,7 @@ const fn kind(request: &Request) -> u8 {
         Request::FlySetpoints | Request::FlyMission(_) | Request::FlyPolicy => 3,
         Request::Hold | Request::GoTo(_) => 4,
         Request::Land => 5,
-        Request::MotorTest(_) | Request::MotorSetting(_) => 6,
+        Request::MotorTest(_) | Request::MotorSetting(_) | Request::EndMotorTest => 6,
         Request::SetMissionItem(_) => 7,
     }
 }

@@ -3,6 +3,7 @@
 #![expect(deprecated, reason = "PING's fields are, and clients still send it")]
 
 mod arming;
+mod bench_link;
 mod boards;
 mod card;
 mod card_cuts;

@@ -69,6 +69,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             }
             Request::Disarm => require(!self.is_airborne(), Refusal::InTheAir),
             Request::MotorTest(test) => self.begin_on_the_bench(Bench::Turning(test), inputs),
+            Request::EndMotorTest => require(!self.mode.is_armed(), Refusal::AlreadyArmed),
             Request::MotorSetting(setting) => self.begin_on_the_bench(Bench::Setting(setting), inputs),
             Request::TakeOff(height) => self.take_off(height, inputs, estimate),
             Request::FlySetpoints => {
@@ -112,12 +113,15 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     fn begin_on_the_bench(&mut self, bench: Bench, inputs: &Inputs) -> Result<(), Refusal> {
-        permission::to_turn_motors(self.mode)?;
+        let elapsed = inputs.now.saturating_sub(self.since);
+        let permission = permission::to_turn_motors(self.mode);
         require(!inputs.killed, Refusal::Killed)?;
         require(!inputs.is_busy, Refusal::Busy)?;
         bench.check(self.chain.as_ref().map_or(ROTORS_MIN, Chain::rotors))?;
-        self.bench = bench;
-        Ok(())
+        match bench {
+            Bench::Turning(test) if self.mode == Mode::MotorTest && self.bench.renew(&test, elapsed) => Ok(()),
+            _ => permission.map(|()| self.bench = bench),
+        }
     }
 
     pub(super) fn take_off(

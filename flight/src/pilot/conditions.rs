@@ -33,6 +33,8 @@ impl<P: Aboard> Pilot<'_, P> {
         let setpoints = is_ready && (self.mode != Mode::Idling || self.prepare_start(inputs, estimate).is_ok());
         let holds = matches!(mission, Some(MissionStep::Over | MissionStep::Refused(..)));
         let lands = matches!(mission, Some(MissionStep::Lands(_)));
+        // The motor turns on.
+        let is_renewed = self.mode == Mode::MotorTest && is(|request| matches!(request, Request::MotorTest(_)));
         let begins = is(|request| matches!(request, Request::FlyMission(_) | Request::FlyPolicy));
         Conditions::NONE
             .with(Condition::Disarmed, inputs.disarm || is(|request| *request == Request::Disarm))
@@ -42,7 +44,7 @@ impl<P: Aboard> Pilot<'_, P> {
                 Condition::MotorTestPermitted,
                 is(|request| matches!(request, Request::MotorTest(_) | Request::MotorSetting(_))),
             )
-            .with(Condition::Requested, inputs.request.is_some())
+            .with(Condition::Requested, inputs.request.is_some() && !is_renewed)
             .with(Condition::TakeOffRequested, is(|request| matches!(request, Request::TakeOff(_))))
             .with(Condition::HoldRequested, holds || is(|request| matches!(request, Request::Hold | Request::GoTo(_))))
             .with(Condition::LandRequested, lands || is(|request| *request == Request::Land))

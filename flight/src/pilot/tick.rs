@@ -46,6 +46,8 @@ impl<P: Aboard> Pilot<'_, P> {
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
         let TickOutput { output, flown, handover } = self.output(estimate, detected.touched, now);
+        let lean = self.lean(inputs);
+        let levelling = lean.as_ref().and_then(|lean| self.chain.as_mut().ok()?.levelling(lean));
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);
         let streamed = self.stream_check.tick(self.following(), now);
         Outcome {
@@ -63,6 +65,8 @@ impl<P: Aboard> Pilot<'_, P> {
             mission: (self.mission.next, self.flies_mission()),
             mission_step: mission,
             estimated: estimate.state,
+            lean,
+            levelling,
             health: estimate.health,
             pose: estimate.pose,
             flown,

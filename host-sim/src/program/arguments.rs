@@ -2,6 +2,7 @@
 
 mod campaign;
 mod compare;
+mod first_flight;
 mod identify;
 mod log;
 mod reference;
@@ -14,6 +15,7 @@ mod vehicle;
 pub use campaign::{CampaignArguments, MergeArguments};
 use clap::{Parser, Subcommand};
 pub use compare::{CompareArguments, GainsWanted};
+pub use first_flight::FirstFlightArguments;
 use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;
@@ -58,6 +60,8 @@ Examples:
   host-sim law mine.toml < lines     the law alone, for simulators of your own
   host-sim hil --connect 127.0.0.1:5760 vehicles/study.toml
                                      the vehicle alone, for firmware elsewhere
+  host-sim first-flight micoair-h743 mine.toml --link serial:/dev/ttyACM0
+                                     bench checks before a first flight
   host-sim sitl                      firmware and vehicle, for MAVLink on UDP
                                      14540 and 14550
 
@@ -175,6 +179,9 @@ pub enum Command {
     /// Run the firmware's own tasks with a simulated vehicle; MAVLink clients connect by UDP on this machine.
     #[command(after_help = SITL_HELP)]
     Sitl(SitlArguments),
+    /// Walk through a first flight's bench checks with a vehicle on a link: no debug probe, propellers off.
+    #[command(after_help = first_flight::HELP)]
+    FirstFlight(FirstFlightArguments),
     /// Print the JSON schema of scenario files, with which editors complete and check keys.
     #[command(after_help = shells::SCHEMA_HELP)]
     Schema,

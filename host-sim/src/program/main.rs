@@ -6,8 +6,8 @@ mod searches;
 mod terminal;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, HilArguments, ManArguments, MergeArguments, ReferenceArguments,
-    ReplayArguments, SitlArguments, completions, manual,
+    Arguments, CampaignArguments, Command, FirstFlightArguments, HilArguments, ManArguments, MergeArguments,
+    ReferenceArguments, ReplayArguments, SitlArguments, completions, manual,
 };
 use clap::{CommandFactory, Parser};
 use host_sim::commands::certify::rigorous::{self, Rigorous};
@@ -22,6 +22,12 @@ use host_sim::reports::log::bytes_per_row;
 use host_sim::reports::plots::replay::gif;
 use host_sim::reports::reference_rows;
 use host_sim::rivals::choice::LawChoice;
+use host_sim::sessions::first_flight::checks::CHECKS;
+use host_sim::sessions::first_flight::line::Line;
+use host_sim::sessions::first_flight::record::Record;
+use host_sim::sessions::first_flight::vehicle::{Stop, Vehicle};
+use host_sim::sessions::first_flight::walk::Walk;
+use host_sim::sessions::first_flight::{self, course};
 use host_sim::sessions::hil::port::SimulatorPort;
 use host_sim::sessions::hil::relay::Relay;
 use host_sim::sessions::hil::{self, Clients, End, HilError};
@@ -31,8 +37,8 @@ use host_sim::studies::campaign::summary::Summary;
 use host_sim::studies::campaign::written::above;
 use host_sim::studies::campaign::{self, CampaignError};
 use readers::{given_or_study, run_identify, run_log, run_vehicle};
-use scenario::Scenario;
 use scenario::verdict::Verdict;
+use scenario::{Scenario, board};
 use searches::{run_compare, run_tune};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -61,6 +67,7 @@ fn main() -> ExitCode {
             Some(Command::Law { file }) => run_law(file.as_deref()),
             Some(Command::Hil(arguments)) => run_hil(&arguments),
             Some(Command::Sitl(arguments)) => run_sitl(&arguments),
+            Some(Command::FirstFlight(arguments)) => run_first_flight(&arguments),
             Some(Command::Schema) => {
                 print_text(&format!("{:#}\n", scenario::schema::schema())).map(|()| ExitCode::SUCCESS)
             }
@@ -299,6 +306,35 @@ fn run_sitl(arguments: &SitlArguments) -> Result<ExitCode, String> {
             Ok(status(false, None))
         }
         Err(SitlError::Input(what)) => Err(what),
+    }
+}
+
+fn run_first_flight(arguments: &FirstFlightArguments) -> Result<ExitCode, String> {
+    let text = text_of(Some(&arguments.file))?;
+    let scenario = Scenario::parse(&text, &arguments.file.display().to_string()).map_err(|error| error.to_string())?;
+    board::fits(&scenario, &arguments.file.display().to_string())?;
+    let (subject, mut person, page) = (arguments.subject(&text)?, arguments.person()?, arguments.page());
+    let (mut record, why) = Record::open(&arguments.record(), subject)?;
+    why.iter().for_each(|why| complain(why));
+    WholeFile::try_name(&page).map_err(|error| format!("--page {}: cannot be written: {error}", page.display()))?;
+    let vehicle = Vehicle::new(Line::open(arguments.link.clone())?, watch()?);
+    let mut walk = Walk::new(vehicle, person.as_mut(), &scenario, arguments.board());
+    let made = course::make(&mut walk, &mut record, arguments.only.as_deref());
+    let text = first_flight::page::page(&record, &CHECKS, &scenario.name, &first_flight::page::now());
+    first_flight::record::write(&page, &text)?;
+    print_text(&format!("{}\n", page.display()))?;
+    match made {
+        Ok(holds) => Ok(status(holds, None)),
+        Err(Stop::Interrupted(signal)) => Ok(status(false, Some(signal))),
+        Err(Stop::Unwritable(what)) => Err(what),
+        Err(Stop::Left) => {
+            complain("broken off: the next walk goes on here");
+            Ok(status(false, None))
+        }
+        Err(Stop::Silent(what)) => {
+            complain(format_args!("{}: no answer to {what}", arguments.link));
+            Ok(status(false, None))
+        }
     }
 }
 

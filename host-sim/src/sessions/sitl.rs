@@ -25,6 +25,7 @@ mod downlink;
 pub mod faults;
 pub(crate) mod flash;
 mod gyro;
+pub mod hands;
 pub mod key;
 pub mod memory_line;
 mod record;
@@ -34,6 +35,7 @@ mod truth;
 
 use crate::output::interrupt::Interrupt;
 use crate::reports::recording::session::SessionMoment;
+use crate::sessions::input;
 use crate::sessions::pace::Pace;
 use crate::sessions::ports::{ClientPort, Ports};
 use clock::SimClock;
@@ -58,6 +60,7 @@ use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
 use gyro::GyroFile;
+use hands::Holder;
 use memory_line::MemoryLine;
 use record::SessionRecord;
 use scenario::{Scenario, board};
@@ -67,6 +70,7 @@ use std::cell::{Cell, RefCell};
 use std::future::Future;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 use truth::Truth;
 
@@ -238,6 +242,14 @@ impl Sitl {
         });
     }
 
+    /// Lays a person's hands on the vehicle, and on a kill switch.
+    pub fn hold(&self, holder: &Holder) {
+        self.hardware.hold(holder.hands);
+        if holder.is_killed != self.shared.killed.get().is_some_and(|killed| killed.value) {
+            self.shared.killed.put(holder.is_killed, self.clock.now());
+        }
+    }
+
     /// Lets time pass until `end`, us.
     pub fn pass(&mut self, end: u64) {
         self.clock.run(&mut self.pool, end);
@@ -310,8 +322,12 @@ pub fn run(
     let mut truth = session.truth.map(Truth::open).transpose().map_err(SitlError::Input)?;
     let mut pace = Pace::new(session.speed);
     let mut shown = Instant::now();
+    let (words, mut holder) = (session.has_hands.then(input::lines), Holder::default());
     let ended = loop {
         let now = sitl.clock.now();
+        for line in words.iter().flat_map(Receiver::try_iter) {
+            holder.take(&line).unwrap_or_else(|error| show(&error));
+        }
         if let Some(signal) = interrupt.signal() {
             break Ok(sitl.summary(Some(signal)));
         }
@@ -326,6 +342,8 @@ pub fn run(
         if keeps_up || session.poses == PoseSource::Camera {
             sitl.receive();
         }
+        holder.pass((next - now) as f32 * 1e-6);
+        sitl.hold(&holder);
         sitl.pass(next);
         if let Some(gyro) = &mut gyro {
             gyro.take(&sitl.shared.gyro_log);

@@ -50,6 +50,18 @@ impl Cause {
         matches!(self, Self::Power | Self::BrownOut)
     }
 
+    /// It, in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Power => "Power",
+            Self::BrownOut => "BrownOut",
+            Self::Pin => "Pin",
+            Self::Software => "Software",
+            Self::Watchdog => "Watchdog",
+            Self::Unknown => "Unknown",
+        }
+    }
+
     /// The report where no words were kept.
     pub fn words(self) -> Option<&'static str> {
         match self {

@@ -54,6 +54,7 @@ pub fn run() -> ! {
     static SHARED: StaticCell<Shared> = StaticCell::new();
     let shared = SHARED.init_with(Shared::new);
     let booting = shared.for_boot();
+    booting.started().put((board.restart.name(), chosen::NAME), 0);
     let kept = kept::take(board.restart.is_power());
     if let Some(words) = kept.or_else(|| board.restart.words().map(LastWords::new)) {
         defmt::error!("{=str}", words.as_str());

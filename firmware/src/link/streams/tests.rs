@@ -15,7 +15,7 @@ fn each_message_comes_at_its_rate_and_those_on_request_do_not() {
     for (kind, count) in counts(&mut Schedule::new(0), 10) {
         let rate = STREAMS.iter().find(|(other, _)| *other == kind).unwrap().1;
         let expected = match rate {
-            Rate::OnRequest => 0,
+            Rate::OnRequest | Rate::Bench(_) => 0,
             Rate::Every(interval) => 10_000_000 / interval as usize,
             Rate::Telemetry => 250,
         };
@@ -41,6 +41,22 @@ fn rates_are_changed_stopped_and_put_back() {
 }
 
 #[test]
+fn messages_of_the_bench_come_until_there_is_an_estimate_and_then_on_request() {
+    let mut schedule = Schedule::new(0);
+    schedule.set_bench(true);
+    let bench = counts(&mut schedule, 10);
+    assert_eq!(
+        (count(&bench, Kind::Imu), count(&bench, Kind::Vibration), count(&bench, Kind::NamedValue)),
+        (50, 10, 40)
+    );
+    schedule.set_bench(false);
+    schedule.set_interval(Kind::Vibration, 500_000, 0);
+    let flying = counts(&mut schedule, 10);
+    assert_eq!((count(&flying, Kind::Imu), count(&flying, Kind::Vibration)), (0, 20));
+    assert_eq!((count(&flying, Kind::NamedValue), schedule.interval_of(Kind::Imu, 40_000)), (0, None));
+}
+
+#[test]
 fn every_message_is_known_by_its_number() {
     for (kind, _) in STREAMS {
         assert_eq!(Kind::from_number(kind.number()).unwrap().number(), kind.number());
@@ -54,7 +70,7 @@ fn the_default_rates_fit_a_slow_line() {
     let bytes = |signature: usize| -> u64 {
         let of_one = |(kind, rate): &(Kind, Rate)| {
             let interval = match rate {
-                Rate::OnRequest => return 0,
+                Rate::OnRequest | Rate::Bench(_) => return 0,
                 Rate::Every(interval) => *interval,
                 Rate::Telemetry => 40_000,
             };

@@ -2,16 +2,16 @@
 
 #![expect(deprecated, reason = "PROTOCOL_VERSION: clients still ask for it")]
 
-use super::{View, controllers, identity, motion, vehicle};
+use super::{View, bench, controllers, identity, motion, vehicle};
 use crate::link::time_sync;
 use crate::link::writer::Writer;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, CURRENT_MODE_DATA,
     ESC_INFO_DATA, ESC_STATUS_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA, GLOBAL_POSITION_INT_DATA,
-    GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MISSION_CURRENT_DATA,
-    ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, PROTOCOL_VERSION_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
-    TIMESYNC_DATA,
+    GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA, HIGHRES_IMU_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA,
+    MISSION_CURRENT_DATA, NAMED_VALUE_FLOAT_DATA, ODOMETRY_DATA, POSITION_TARGET_LOCAL_NED_DATA, PROTOCOL_VERSION_DATA,
+    SYS_STATUS_DATA, SYSTEM_TIME_DATA, TIMESYNC_DATA, VIBRATION_DATA,
 };
 
 /// A message's default rate.
@@ -21,6 +21,8 @@ pub enum Rate {
     OnRequest,
     /// Every so many us.
     Every(u64),
+    /// Every so many us as long as there is no estimate, and with it nothing of where the vehicle is; later on request.
+    Bench(u64),
     /// At [`crate::parameters::table::Name::TelemetryRate`].
     Telemetry,
 }
@@ -92,6 +94,9 @@ messages! { view:
         Some(controllers::status(view.rotor_speeds?, view.controllers.as_ref()));
     EscInfo: ESC_INFO_DATA, Rate::Every(1_000_000) =>
         Some(controllers::info(view.rotor_speeds?, view.controllers.as_ref()?));
+    Imu: HIGHRES_IMU_DATA, Rate::Bench(200_000) => bench::imu(view);
+    Vibration: VIBRATION_DATA, Rate::Bench(1_000_000) => bench::vibration(view);
+    NamedValue: NAMED_VALUE_FLOAT_DATA, Rate::Bench(250_000) => bench::named(view);
     SystemTime: SYSTEM_TIME_DATA, Rate::Every(2_000_000) => Some(motion::system_time(view.now));
     GlobalOrigin: GPS_GLOBAL_ORIGIN_DATA, Rate::OnRequest => Some(motion::origin(&view.origin));
     AutopilotVersion: AUTOPILOT_VERSION_DATA, Rate::OnRequest => Some(identity::autopilot_version());

@@ -19,16 +19,22 @@ fn milliseconds(time: u64) -> u32 {
     (time / 1000) as u32
 }
 
-/// Attitude as angles, and body rates, at `time`, us; none without an estimate, as everything here.
+/// Attitude as angles, and body rates, at `time`, us; none without an estimate, as everything here. But on the bench,
+/// before there is one, gravity gives roll and pitch, with a yaw of 0: of all messages this one alone, with the AHRS of
+/// SYS_STATUS unhealthy and no flag of ESTIMATOR_STATUS.
 pub fn attitude(time: u64, report: &Report) -> Option<ATTITUDE_DATA> {
-    let state = report.state.as_ref()?;
-    let angles = euler(&frames::attitude(&state.attitude));
-    let rates = frames::body(&state.angular_velocity);
+    let (attitude, rates, yaw_share) = match (&report.state, &report.lean) {
+        (Some(state), _) => (&state.attitude, &state.angular_velocity, 1.0),
+        (None, Some(lean)) => (&lean.attitude, &lean.angular_velocity, 0.0),
+        (None, None) => return None,
+    };
+    let angles = euler(&frames::attitude(attitude));
+    let rates = frames::body(rates);
     Some(ATTITUDE_DATA {
         time_boot_ms: milliseconds(time),
         roll: angles.roll.to_radians(),
         pitch: angles.pitch.to_radians(),
-        yaw: angles.yaw.to_radians(),
+        yaw: yaw_share * angles.yaw.to_radians(),
         rollspeed: rates.x,
         pitchspeed: rates.y,
         yawspeed: rates.z,

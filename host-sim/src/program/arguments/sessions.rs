@@ -30,6 +30,10 @@ pub struct SitlArguments {
     /// that share of its thrust left; may be given again
     #[arg(long = "fault", value_name = "WHAT@START..END")]
     faults: Vec<Fault>,
+    /// Take words from standard input for a person's hands on the vehicle that stands, one a line: nose-up, left-up,
+    /// flat, turned-left, on-back, carry X Y Z, kill and so on; another word lists all
+    #[arg(long)]
+    hands: bool,
     /// Keep parameters in this file from one session to the next
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
@@ -159,6 +163,7 @@ impl SitlArguments {
                 Poses::Camera => PoseSource::Camera,
                 Poses::Link => PoseSource::Link,
             },
+            has_hands: self.hands,
             faults: self.faults.clone(),
             parameters: self.parameters.clone(),
             signing_key: self.signing_key.as_deref().map(sitl::key::read).transpose()?,

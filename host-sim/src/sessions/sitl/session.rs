@@ -21,6 +21,8 @@ pub struct SitlSession {
     pub duration: Option<f64>,
     /// Where its poses come from.
     pub poses: PoseSource,
+    /// Whether a person lays hands on it, told by standard input: see [`super::hands`].
+    pub has_hands: bool,
     /// To be injected.
     pub faults: Vec<Fault>,
     /// Where parameters are kept.

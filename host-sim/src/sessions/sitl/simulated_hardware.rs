@@ -25,7 +25,7 @@ use firmware::hardware::{Battery, Clock, Fault, Imu, Light, MOTOR_COUNT, MotorCo
 use firmware::link::frame::Frame;
 use firmware::link::signing::{Key, Stamp};
 use flight::{ImuSample, Stamped};
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::{BodyState, attitude_from_euler};
 use scenario::reality::ground::Ground;
@@ -45,6 +45,30 @@ pub enum PoseSource {
     Camera,
     /// A client: there is no simulated camera.
     Link,
+}
+
+/// A person's hands on a vehicle that stands: what its sensors and the camera show of that. The vehicle itself stands
+/// on: nobody flies what is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hands {
+    /// How it is turned from how it stands.
+    pub turn: UnitQuaternion<f32>,
+    /// How fast, rad/s, body axes.
+    pub rate: Vector3<f32>,
+    /// How far it is carried from where it stands, m, world.
+    pub carried: Vector3<f32>,
+    /// Whether the camera sees it.
+    pub is_seen: bool,
+}
+
+impl Hands {
+    /// Nobody touches it.
+    pub const OFF: Self = Self {
+        turn: UnitQuaternion::new_unchecked(Quaternion::new(1.0, 0.0, 0.0, 0.0)),
+        rate: Vector3::new(0.0, 0.0, 0.0),
+        carried: Vector3::new(0.0, 0.0, 0.0),
+        is_seen: true,
+    };
 }
 
 /// The hardware of one vehicle, and all around it; clones are the same.
@@ -75,6 +99,7 @@ struct Body {
     /// The rotors' commanded thrusts, N.
     acting: [f32; MOTOR_COUNT],
     sample: ImuSample,
+    hands: Hands,
     encoder: Encoder,
     /// The way poses take.
     line: MemoryLine,
@@ -117,6 +142,7 @@ impl SimulatedHardware {
             waiting: VecDeque::new(),
             acting: [0.0; MOTOR_COUNT],
             sample: ImuSample { angular_velocity: Vector3::zeros(), specific_force: Vector3::zeros() },
+            hands: Hands::OFF,
             encoder: Encoder::default(),
             line,
             diverged: None,
@@ -136,6 +162,11 @@ impl SimulatedHardware {
     /// Where the vehicle really is.
     pub fn state(&self) -> BodyState {
         *self.0.body.borrow().vehicle.state()
+    }
+
+    /// Lays hands on it.
+    pub fn hold(&self, hands: Hands) {
+        self.0.body.borrow_mut().hands = hands;
     }
 
     /// Its rotors' true thrusts, N.
@@ -210,11 +241,13 @@ impl Body {
         }
         self.now += SAMPLE_PERIOD_US;
         self.sample = self.instruments.sample(self.vehicle.state(), self.now);
+        self.sample.angular_velocity += self.hands.rate;
+        self.sample.specific_force = self.hands.turn.inverse() * self.sample.specific_force;
         while let Some(Stamped { value: pose, time }) = self.instruments.arrived() {
-            if self.source == PoseSource::Link || faults.has(FaultyPart::Pose, self.now) {
+            if self.source == PoseSource::Link || !self.hands.is_seen || faults.has(FaultyPart::Pose, self.now) {
                 continue;
             }
-            let (position, attitude) = (pose.position(), pose.attitude());
+            let (position, attitude) = (pose.position() + self.hands.carried, pose.attitude());
             let value = MeasuredPose { position, attitude, motion: None, deviations: Some(self.deviations) };
             let mut bytes = Vec::new();
             let answer = Answer {
