@@ -59,6 +59,7 @@ pub fn start<M: RawMutex>(
         loops: &configuration::LOOPS,
         identity: configuration::IDENTITY,
         period: configuration::PERIOD_US,
+        follows_rotors: configuration::FOLLOWS_ROTORS,
     };
     start_named(place, shared, built, configuration::IS_NAMED)
 }
@@ -74,6 +75,9 @@ pub fn start_named<M: RawMutex>(
 ) -> Result<(&'static mut Pilot, Outputs), ParameterError> {
     let parameters = shared.parameters();
     let built: &'static Built = place.built.init_with(|| built);
+    if built.follows_rotors {
+        shared.follows_rotors().raise();
+    }
     if parameters.boot(built) {
         shared.announce(Event::new(Severity::Warning, "Another configuration was tuned: as built now"));
     }

@@ -151,7 +151,11 @@ values! {
     /// The newest setpoint. An unread one is replaced: only the last counts.
     pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView; Take: ControlView }
     /// How fast the rotors turn, while their controllers answer. [`flight`] decides how old it may be.
-    pub rotor_speeds: Latest<M, RotorSpeeds> { Write: MotorsView, SimulatorView; Read: ControlView, TransmitView }
+    pub rotor_speeds: Latest<M, RotorSpeeds> {
+        Write: MotorsView, SimulatorView; Read: SamplesView, ControlView, TransmitView
+    }
+    /// Raised where notches on the gyro may follow the rotors.
+    pub follows_rotors: Flag { Write: BootView; Read: SamplesView }
     /// What the controllers have answered. It counts for 1 s.
     pub controllers: Latest<M, [Controller; MOTOR_COUNT]> { Write: MotorsView; Read: TransmitView }
     /// Requests for control, in the order they came. Put in with [`Values::request`].

@@ -7,11 +7,11 @@
 //! low-pass made for 1 kHz would be late by many of them: they pass as they are. And a simulator's sensors may be free
 //! of noise, so that equal samples are no fault of theirs.
 
+use crate::esc::SPEED_AGE_MAX_US;
 use crate::hardware::RawImu;
 use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;
 use embassy_sync::blocking_mutex::raw::RawMutex;
-use estimation::imu::rotor_notches::ROTOR_COUNT;
 use estimation::imu::{Calibration, Conditioned, Conditioner, INCREMENT_US, ImuFault, ImuParameters, Vibration};
 
 /// How long a fault must have been absent to be reported again.
@@ -62,14 +62,14 @@ impl<'a, M: RawMutex> Flow<'a, M> {
         Ok(())
     }
 
-    /// The rotors turn so fast, rad/s; none: nobody knows. To be told again with every sample.
-    pub fn follow_rotors(&mut self, speeds: &[Option<f32>; ROTOR_COUNT]) {
-        self.conditioner.follow_rotors(speeds);
-    }
-
     /// Takes the next sample.
     pub fn take(&mut self, raw: &RawImu) {
         self.shared.gyro_log().put(raw.time, &raw.angular_velocity);
+        if self.shared.follows_rotors().is_raised()
+            && let Some(speeds) = self.shared.rotor_speeds().recent(SPEED_AGE_MAX_US, raw.time)
+        {
+            self.conditioner.follow_rotors(&speeds);
+        }
         let before = self.conditioner.newest().map(|newest| newest.time);
         let force = raw.specific_force.as_ref();
         let Conditioned { increment, fault } = self.conditioner.sample(raw.time, &raw.angular_velocity, force);

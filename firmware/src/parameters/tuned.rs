@@ -31,6 +31,8 @@ pub struct Built {
     pub identity: u32,
     /// The time between control ticks, us.
     pub period: u64,
+    /// Whether its sampled loops have margin for notches on the gyro that follow the rotors.
+    pub follows_rotors: bool,
 }
 
 /// Why tuned parameters may not fly.

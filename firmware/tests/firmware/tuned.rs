@@ -83,6 +83,7 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
         loops: &configuration::LOOPS,
         identity: configuration::IDENTITY,
         period: PERIOD_US,
+        follows_rotors: false,
     };
     let flown = built.tuned(|name| again.parameters.raw(name)).unwrap();
     assert_eq!(flown.vehicle().mass, 0.4);
@@ -127,7 +128,8 @@ fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
 fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certificate_says() {
     let shared = Local::new();
     let configuration = configuration::embedded().unwrap();
-    let built = Built { configuration, loops: &JudgedLoops::BUILT, identity: 7, period: PERIOD_US };
+    let built =
+        Built { configuration, loops: &JudgedLoops::BUILT, identity: 7, period: PERIOD_US, follows_rotors: false };
     boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap();
     let words = texts_of_setting(&shared, Name::GainRate, 110.0);
     assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
@@ -142,6 +144,7 @@ fn what_was_built_for_no_vehicle_never_arms_and_says_what_to_do() {
         loops: &configuration::LOOPS,
         identity: 7,
         period: PERIOD_US,
+        follows_rotors: false,
     };
     let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, _) = boot::start_named(place, shared.for_boot(), built, false).unwrap();

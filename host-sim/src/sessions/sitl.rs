@@ -94,6 +94,8 @@ pub struct Sitl {
     configuration: Configuration,
     loops: &'static JudgedLoops,
     identity: u32,
+    /// Whether notches on its gyro may follow the rotors.
+    follows_rotors: bool,
     /// The time between control ticks, us.
     period: u64,
     /// What the vehicle is called.
@@ -159,6 +161,7 @@ impl Sitl {
             configuration: scenario.configuration.clone(),
             loops,
             identity,
+            follows_rotors: board::may_follow_rotors(scenario),
             period: scenario.timing.period_us,
             name: Box::leak(scenario.name.clone().into_boxed_str()),
             logs_gyro: session.gyro.is_some(),
@@ -187,7 +190,8 @@ impl Sitl {
         }
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);
-        let built = Built { configuration, loops: self.loops, identity: self.identity, period };
+        let Self { loops, identity, follows_rotors, .. } = *self;
+        let built = Built { configuration, loops, identity, period, follows_rotors };
         let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;
 
         let pool = LocalPool::new();
