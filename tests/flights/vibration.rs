@@ -425,7 +425,7 @@ fn noise(scenario: &Scenario, gyro: &ImuParameters, hertz: f64, is_telling: bool
 #[test]
 fn each_gyros_noise_at_the_tick_with_and_without_notches() {
     /// Less is nothing.
-    const FLOOR_RAD_PER_S: f64 = 0.001;
+    const FLOOR_RAD_PER_S: f64 = 0.002;
     let hummingbird = vehicle("hummingbird");
     println!("rotors  shaken by   left at the tick, without notches; with: {:?}", ImuParameters::DRIVEN.map(|s| s.0));
     for hertz in [75.0, 100.0, 150.0, 199.0, 250.0, 301.0, 400.0] {
