@@ -28,9 +28,9 @@ fn body_rates_are_late_and_no_later_than_the_sampled_loops_count() {
         }
     }
     let (late, counted) = (late / count, scenario.input_delay());
-    // Sampled at the ticks they are a sample less late than they may be; the estimator takes a tenth of a millisecond
-    // for a bias.
-    assert!(late < counted && late > counted - 1.25e-3, "{late} s of {counted} s");
+    // Sampled at the ticks they are a sample less late than they may be; the latest sensor would be 0.11 ms later; the
+    // estimator takes a tenth of a millisecond for a bias.
+    assert!(late < counted && late > counted - 1.36e-3, "{late} s of {counted} s");
     // By the sensor's own filter as well: this is what was missed once.
     assert!(late > 5e-3, "{late}");
 }

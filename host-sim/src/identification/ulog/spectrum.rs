@@ -1,7 +1,7 @@
 //! The spectrum of a raw gyro: which frequencies shake the vehicle, and how strongly.
 //!
-//! The samples of `sensor_gyro_fifo`, ours or PX4's, are cut into windows of N = 512, half over one another, each without
-//! its mean and weighed with Hann's window w. What a vibration of amplitude a at the frequency k f_s / N leaves is
+//! The samples of `sensor_gyro_fifo`, ours or PX4's, are cut into windows of N = 512, half over one another, each
+//! without its mean and weighed with Hann's window w. What a vibration of amplitude a at the frequency k f_s / N leaves is
 //!
 //! ```text
 //! a_k = 2 |sum_n w_n x_n exp(-2 pi i k n / N)| / sum_n w_n
@@ -141,7 +141,7 @@ impl Spectrum {
             let curve = axis.iter().enumerate().skip(1);
             let points = curve.map(|(k, value)| (x(k as f64 * self.step), y(*value))).collect();
             drawing.stroke(points, color, 1.5);
-            let at = left + 6.0 * EM * place as f64;
+            let at = left + 7.5 * EM * place as f64;
             drawing.stroke(vec![(at, 1.5 * EM), (at + 1.8 * EM, 1.5 * EM)], color, 1.8);
             drawing.words(format!("about {name}"), (at + 2.2 * EM, 1.85 * EM), Side::Start, EM, Color::Ink);
         }

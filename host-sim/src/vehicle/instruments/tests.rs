@@ -64,7 +64,9 @@ fn no_sensor_shows_more_than_its_range() {
 
 #[test]
 fn its_own_filters_let_half_the_power_pass_at_their_bandwidths_and_none_at_half_the_rate() {
-    for (sensor, bandwidth) in [GYRO_BANDWIDTH_HZ, ACCELEROMETER_BANDWIDTH_HZ].into_iter().enumerate() {
+    for (sensor, bandwidth) in
+        [ImuParameters::BMI088.gyro_bandwidth.into(), ACCELEROMETER_BANDWIDTH_HZ].into_iter().enumerate()
+    {
         let strength = |hertz: f64| {
             let samples = &filtered(|seconds| (TAU * hertz * seconds).cos())[sensor];
             (2.0 * samples.iter().map(|shown| shown * shown).sum::<f64>() / samples.len() as f64).sqrt()
