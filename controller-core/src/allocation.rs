@@ -27,7 +27,7 @@ pub mod remaining;
 pub mod support;
 
 pub use attainable::max_torques;
-pub use curve::{Battery, ThrustCurve};
+pub use curve::{Battery, Motor, ThrustCurve};
 pub use geometry::{QuadX, Rotor, Rotors, Spin};
 pub use minimum_norm::{MinimumNorm, Thrusts};
 pub use mixer::{Allocation, Mixer};

@@ -6,7 +6,7 @@
 //! The numbers are written with all the digits that reading back bit for bit takes. Nothing that is worked out from
 //! them is carried over: the board works out the rotors' inverse and the certificate again at boot.
 
-use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::allocation::{Motor, Rotor, Rotors, Spin};
 use controller_core::configuration::{ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::constants::Constant;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -48,6 +48,7 @@ fn source(scenario: &Scenario, rotors: &Rotors) -> String {
     let constants = constants(configuration.law());
     let loops = board::judged(scenario);
     let (across, vertical) = loops.bits();
+    let Motor { linear, idle } = scenario.motor();
     format!(
         "/// The scenario's name.
 pub const NAME: &str = \"{name}\";
@@ -57,6 +58,9 @@ pub const IDENTITY: u32 = {identity};
 
 /// The time between control ticks.
 pub const PERIOD_US: u64 = {period};
+
+/// What turns the rotors.
+pub const MOTOR: Motor = Motor {{ linear: {linear:e}, idle: {idle:e} }};
 
 /// Whether its sampled loops have margin for notches on the gyro that follow the rotors.
 pub const FOLLOWS_ROTORS: bool = {follows};

@@ -10,7 +10,6 @@
 
 use crate::configuration::{self, Pilot};
 use crate::outputs::Outputs;
-use crate::parameters::table::Name;
 use crate::parameters::tuned::Built;
 use crate::shared::{BootView, Event, Severity};
 use controller_core::certificate::certified::{Certified, Refused};
@@ -56,6 +55,7 @@ pub fn start<M: RawMutex>(
     let configuration = configuration::embedded()?;
     let built = Built {
         configuration,
+        motor: configuration::MOTOR,
         loops: &configuration::LOOPS,
         identity: configuration::IDENTITY,
         period: configuration::PERIOD_US,
@@ -97,9 +97,11 @@ pub fn start_named<M: RawMutex>(
         }
     }
     // What is grounded answers and tests motors as built.
-    let configuration = certification.as_ref().map_or(&built.configuration, Certified::configuration);
-    let curve = parameters.get(Name::ThrustCurve);
-    let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, curve)?;
+    let (configuration, motor) = match certification {
+        Ok(certified) => (certified.configuration(), built.motor(|name| parameters.raw(name))),
+        Err(_) => (&built.configuration, built.motor),
+    };
+    let outputs = Outputs::new(configuration.rotors().ok_or(configuration::NO_ROTORS)?, motor)?;
     let estimator = estimator(place, &Settings::bmi088(configuration.vehicle()));
     let (limits, settings) = (parameters.governor_limits(), parameters.flight_settings());
     Ok((pilot(place, certification.as_ref(), &limits, &settings, built.period, estimator), outputs))

@@ -1,7 +1,7 @@
 //! The configuration this build flies: chosen with `SCENARIO=file.toml` at build time, certified again at boot.
 
 use crate::hardware::MOTOR_COUNT;
-use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::allocation::{Motor, Rotor, Rotors, Spin};
 use controller_core::configuration::Configuration;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::reference::ReferenceBounds;

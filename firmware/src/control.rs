@@ -141,7 +141,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
         self.shared.report().put(report, now);
         let (parameters, voltage) = (self.shared.parameters(), self.shared.voltage().get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
-        let command = self.outputs.command(&outcome.output, ratio, parameters.get(Name::MotorIdle));
+        let command = self.outputs.command(&outcome.output, ratio);
         let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX_US, now);
         let turned = self.shared.rotor_speeds().recent(SPEED_AGE_MAX_US, now).unwrap_or_default();
         self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, turned, voltage));

@@ -4,10 +4,13 @@
 //! square of the command, a = 0 in `controller_core::allocation::curve`; most lie between that and a line, and
 //! `docs/thrust-stand.md` describes how a is measured. A full command is the scenario's greatest thrust, at the voltage
 //! where it was measured.
+//!
+//! No motor that turns is commanded below what it idles at, on the ground or in flight: it would stall. One stops with
+//! all others, or because it is lost.
 
 use crate::hardware::{MOTOR_COUNT, MotorCommand};
 use controller_core::allocation::curve::Battery;
-use controller_core::allocation::{Rotor, Rotors, ThrustCurve};
+use controller_core::allocation::{Motor, Rotor, Rotors, ThrustCurve};
 use controller_core::error::{ParameterError, Reason};
 use flight::{Output, Stamped};
 
@@ -24,11 +27,11 @@ pub fn wiring(order: f32) -> Option<[usize; MOTOR_COUNT]> {
 pub struct Outputs([ThrustCurve; MOTOR_COUNT]);
 
 impl Outputs {
-    /// For `rotors`, one to each motor, whose curves have the part `linear` in [0, 1] that grows with the command
-    /// itself.
-    /// An error names `rotors` if there are not [`MOTOR_COUNT`] of them, `rotors.curve` if there is no such curve.
-    pub fn new(rotors: &Rotors, linear: f32) -> Result<Self, ParameterError> {
-        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, linear);
+    /// For `rotors`, one to each `motor`, which are alike.
+    /// An error names `rotors` if there are not [`MOTOR_COUNT`] of them, `rotors.thrust_curve` or `rotors.idle` if there
+    /// is no such motor.
+    pub fn new(rotors: &Rotors, motor: Motor) -> Result<Self, ParameterError> {
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, motor);
         match &rotors[..] {
             [a, b, c, d] => Ok(Self([curve(a)?, curve(b)?, curve(c)?, curve(d)?])),
             fewer if fewer.len() < MOTOR_COUNT => {
@@ -38,12 +41,11 @@ impl Outputs {
         }
     }
 
-    /// The motors' command for `output` at V_0 / V = `ratio`, from [`voltage_ratio`], where `idle` is what they
-    /// idle at.
-    pub fn command(&self, output: &Output, ratio: f32, idle: f32) -> MotorCommand {
+    /// The motors' command for `output` at V_0 / V = `ratio`, from [`voltage_ratio`].
+    pub fn command(&self, output: &Output, ratio: f32) -> MotorCommand {
         match output {
             Output::Stop => MotorCommand::Stop,
-            Output::Idle => MotorCommand::Run([idle; MOTOR_COUNT]),
+            Output::Idle => MotorCommand::Run(self.0.each_ref().map(ThrustCurve::idle)),
             Output::Test { rotor, level } => MotorCommand::One { motor: *rotor, level: *level },
             Output::Word { rotor, word } => MotorCommand::Word { motor: *rotor, word: *word },
             Output::Thrusts(thrusts) => {

@@ -92,7 +92,11 @@ fn built() -> &'static Built {
     static LOOPS: OnceLock<JudgedLoops> = OnceLock::new();
     static BUILT: OnceLock<Built> = OnceLock::new();
     let loops = LOOPS.get_or_init(|| JudgedLoops::judge(|factors| factors.rate.percent() >= 90.0, |_| true));
-    BUILT.get_or_init(|| Built { configuration: firmware::configuration::embedded().unwrap(), loops, identity: 7 })
+    BUILT.get_or_init(|| {
+        let configuration = firmware::configuration::embedded().unwrap();
+        let (motor, period) = (firmware::configuration::MOTOR, firmware::configuration::PERIOD_US);
+        Built { configuration, motor, loops, identity: 7, period }
+    })
 }
 
 /// A name that there is, where there is none; its value then lies within its range, on one of its steps.

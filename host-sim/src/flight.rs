@@ -9,6 +9,7 @@
 //! | `estimation` | the core's estimator on the simulated instruments |
 //! | `law_on_vehicle` | a law on a vehicle, ready for any number of flights |
 //! | [`course`] | a flight's figures: height lost, overshoot, settling time |
+//! | [`least_command`] | the least command of any rotor in it |
 //! | [`extremes`], [`claims`] | a flight's extremes; its claims and verdicts |
 
 pub mod claims;
@@ -17,6 +18,7 @@ pub mod course;
 pub(crate) mod estimation;
 pub mod extremes;
 pub(crate) mod law_on_vehicle;
+pub mod least_command;
 
 use crate::flight::controller::Controller;
 use crate::flight::estimation::{Estimation, NoEstimate};
@@ -89,6 +91,8 @@ pub struct Tick {
     pub rotors: Vec<f64>,
     /// Thrust commanded of each rotor, N; empty without rotors.
     pub rotor_thrusts: Thrusts,
+    /// The rotor that the law has found to fail, if it has.
+    pub lost: Option<LostRotor>,
 }
 
 /// Of a control tick what a verdict on the flight needs. What the law went through is not even worked out.
@@ -234,7 +238,7 @@ impl Flight {
         let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
         let (measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
             self.advance(Controller::step)?;
-        let estimates = self.controller.estimates();
+        let (estimates, lost) = (self.controller.estimates(), self.controller.lost());
         Ok(Tick {
             time_us,
             state,
@@ -247,6 +251,7 @@ impl Flight {
             clipped,
             rotors,
             rotor_thrusts,
+            lost,
         })
     }
 

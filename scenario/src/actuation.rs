@@ -1,5 +1,6 @@
 //! `[rotors]` and `[sampling]`: what stands between the law's wrench and the body. Both may be left out.
 
+pub mod idle;
 pub mod propulsion;
 mod spin_order;
 
@@ -9,8 +10,9 @@ use crate::sampled_loop::DELAY_MAX_SAMPLES;
 use crate::section::{FieldError, Section, in_line, vector_at};
 use crate::timing::Timing;
 use controller_core::allocation::{Rotor, Rotors, Spin};
-use controller_core::error::Reason;
+use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
+use idle::LeastCommand;
 use propulsion::Propulsion;
 use toml::Value;
 
@@ -34,6 +36,8 @@ pub const ROTORS: Layout = Layout {
         propulsion::THRUST_KEYS[0],
         propulsion::THRUST_KEYS[1],
         propulsion::THRUST_KEYS[2],
+        idle::KEYS[0],
+        idle::KEYS[1],
     ],
 };
 
@@ -59,12 +63,12 @@ pub fn read_lag(root: &Section) -> Result<f64, FieldError> {
     read_time(&section, "lag")
 }
 
-/// Reads `[rotors]` of `vehicle`; none without the section.
+/// Reads `[rotors]` of `vehicle`, with their least command; none without the section.
 ///
 /// # Errors
 /// Names the field that is missing or refused; `rotors` where together they cannot produce every wrench; what says how
 /// much thrust they have if it cannot hover the vehicle.
-pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, FieldError> {
+pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<(Rotors, LeastCommand)>, FieldError> {
     let Some(section) = root.open(&ROTORS)? else {
         return Ok(None);
     };
@@ -75,6 +79,7 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
         return Err(FieldError::new(section.path_of("spin"), problem));
     }
     let each = Propulsion::read(&section)?;
+    let least = LeastCommand::read(&section, &each)?;
     let mut list = Vec::new();
     for ((path, position), (spin_path, spin)) in positions.into_iter().zip(spins) {
         list.push(Rotor {
@@ -82,7 +87,7 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
             spin: read_spin(spin_path, spin)?,
             thrust_coefficient: each.thrust_coefficient,
             drag_coefficient: each.drag_coefficient,
-            thrust_min: each.thrust_min,
+            thrust_min: least.thrust_min,
             thrust_max: each.thrust_max,
         });
     }
@@ -92,7 +97,12 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
     })?;
     let rotors = if each.has_speeds() { rotors } else { rotors.of_nominal_speed() };
     let hover = vehicle.mass * vehicle.gravity;
-    rotors.check_hover(hover).map_err(|error| {
+    let checked = match rotors.check_hover(hover) {
+        // Idle lifts it: whether its rotors are a vehicle's at all is asked first.
+        Err(ParameterError { reason: Reason::NotBelow(_), .. }) if least.is_of_idle() => Ok(()),
+        checked => checked,
+    };
+    checked.map_err(|error| {
         let field = each.in_file(error).field;
         let found = root.lookup(field).unwrap_or_default();
         let (min, max) = rotors.thrust_together();
@@ -104,7 +114,7 @@ pub fn read_rotors(root: &Section, vehicle: &Vehicle) -> Result<Option<Rotors>, 
         );
         FieldError::new(field, problem)
     })?;
-    Ok(Some(rotors))
+    Ok(Some((rotors, least)))
 }
 
 /// Reads `[sampling]`: the delay in plant steps.

@@ -15,7 +15,7 @@ use crate::reality::estimator::{notches_delay, rates_delay};
 use crate::sampled_loop::{Axis, LoopModel, LoopTiming};
 use crate::stability::LoopMargin;
 use crate::verdict::{Refusal, Verdict};
-use controller_core::allocation::{Rotor, Spin};
+use controller_core::allocation::{Motor, Rotor, Spin};
 use controller_core::configuration::{Configuration, ExtendedLaw, LawParameters, PaperLaw};
 use controller_core::extended::actuators::ActuatorParameters;
 use controller_core::tuning::Factors;
@@ -149,7 +149,8 @@ fn has_margins(scenario: &Scenario, timing: LoopTiming, factors: &Factors, axes:
 pub fn identity(scenario: &Scenario) -> u32 {
     let LoopTiming { period, rotor_lag, delay_samples } = timing(scenario);
     let mut numbers = numbers(&scenario.configuration);
-    numbers.extend([period, rotor_lag, delay_samples]);
+    let Motor { linear, idle } = scenario.motor();
+    numbers.extend([period, rotor_lag, delay_samples, linear.into(), idle.into()]);
     hash(&numbers)
 }
 

@@ -2,6 +2,7 @@
 
 mod layout;
 
+use crate::actuation::idle::LeastCommand;
 use crate::body::BodyState;
 use crate::campaign::{self, Campaign};
 use crate::path;
@@ -14,6 +15,7 @@ use crate::timing::Timing;
 use crate::trajectory::vehicle::PathVehicle;
 use crate::trajectory::{Directory, FORCE_KEPT, TOLERANCE};
 use crate::{actuation, initial, plausibility, vehicle};
+use controller_core::allocation::Motor;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::error::ParameterError;
 use controller_core::extended::actuators::ActuatorParameters;
@@ -46,6 +48,8 @@ pub struct Scenario {
     pub configuration: Configuration,
     /// First-order lag of the rotors' speeds, s; zero for none.
     pub rotor_lag: f64,
+    /// The rotors' least command in flight; none without rotors.
+    pub least_command: Option<LeastCommand>,
     /// From a tick to the moment its wrench acts, plant steps.
     pub delay_steps: u64,
     /// The true vehicle, air and sensors, beyond the model.
@@ -108,12 +112,15 @@ impl Scenario {
         let sensors = sensors::read(root, &timing, delay / timing.period())?;
         let estimator = estimator::read(root, &timing)?;
         let vehicle = vehicle::read_vehicle(root)?;
-        let rotors = actuation::read_rotors(root, &vehicle)?;
+        let (rotors, least_command) = actuation::read_rotors(root, &vehicle)?.unzip();
         let rotor_lag = actuation::read_lag(root)?;
         // What is measured shows a command's effect later by what the sensors are late.
         let shown = delay + sensors.map_or(0.0, |sensors| sensors.delay_ticks as f64 * timing.period());
         let actuators = ActuatorParameters { lag: rotor_lag as f32, delay: shown as f32 };
         let unusual = plausibility::check(root, &vehicle, rotors.as_ref(), rotor_lag)?;
+        if let (Some(rotors), Some(least)) = (&rotors, &least_command) {
+            least.check_hover(&vehicle, rotors)?;
+        }
         let limits = vehicle::read_limits(root, &vehicle, rotors.as_ref())?;
         let configuration = |own: &ReferenceBounds| {
             vehicle::read_configuration(root, (vehicle, limits, rotors.clone()), own, actuators, timing.period())
@@ -143,6 +150,7 @@ impl Scenario {
             timing,
             configuration,
             rotor_lag,
+            least_command,
             delay_steps,
             reality,
             initial,
@@ -153,6 +161,12 @@ impl Scenario {
             campaign,
             unusual,
         })
+    }
+
+    /// The rotors' motors; ideal ones without rotors.
+    #[must_use]
+    pub fn motor(&self) -> Motor {
+        self.least_command.map_or(Motor::IDEAL, |least| least.motor)
     }
 
     /// From a tick to the moment its wrench acts, s.
@@ -211,6 +225,7 @@ impl Scenario {
         self.timing == other.timing
             && self.configuration == other.configuration
             && self.rotor_lag == other.rotor_lag
+            && self.motor() == other.motor()
             && self.delay_steps == other.delay_steps
             && self.reality == other.reality
             && self.initial == other.initial

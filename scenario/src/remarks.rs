@@ -6,7 +6,7 @@ use crate::path::Swing;
 use crate::reference::ReferenceKind;
 use crate::trajectory::{Route, RouteWay};
 
-/// Of the vehicle of a scenario: which of its numbers are unusual. Of the reference: where it swings out, how near it
+/// Of the vehicle of a scenario: which of its numbers are unusual, and whether its motors may stall. Of the reference: where it swings out, how near it
 /// is to the rows of a file, and where it is too fast.
 #[must_use]
 pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
@@ -20,7 +20,8 @@ pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     let excess = if is_certified { None } else { Excess::find(scenario) };
     let reference = summary.into_iter().chain(source).chain(swing).chain(excess.map(|excess| excess.to_string()));
     let vehicle = scenario.unusual.iter().map(|unusual| format!("vehicle, unusual: {unusual}"));
-    vehicle.chain(reference.map(|remark| format!("reference: {remark}"))).collect()
+    let idle = scenario.least_command.and_then(|least| least.doubt()).map(|doubt| format!("vehicle, motors: {doubt}"));
+    vehicle.chain(idle).chain(reference.map(|remark| format!("reference: {remark}"))).collect()
 }
 
 fn summary(route: &Route) -> Option<String> {

@@ -50,7 +50,7 @@ def card(file):
     for words in ["sys_name: saturated hybrid feedback", "vehicle: mine", "ver_sw: 0.2.0", "frames: world z up"]:
         assert words in information, information
     parameters = dict(line.split(",") for line in told("ulog_params", file).splitlines())
-    assert float(parameters["MOT_IDLE"]) == float(log.initial_parameters["MOT_IDLE"]) > 0.0
+    assert float(parameters["LAND_SPEED"]) == float(log.initial_parameters["LAND_SPEED"]) > 0.0
     assert {"SYS_ID", "GAIN_ATT_P", "MASS", "k_p_across"} <= parameters.keys(), sorted(parameters)
     assert not log.changed_parameters
     assert "said at 2000000" in told("ulog_messages", file)

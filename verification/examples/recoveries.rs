@@ -63,6 +63,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let count = |what: fn(&Outcome) -> bool| flown.iter().filter(|outcome| what(outcome)).count();
     let lost = count(|outcome| !outcome.tracks());
     println!("not settled within the first 90 %: {lost}");
+    let least = flown.iter().filter_map(|outcome| outcome.least_command.least()).fold(f64::INFINITY, f64::min);
+    println!(
+        "least rotor command: {:.2} % of a full one; motors idle at {:.2} %",
+        100.0 * least,
+        100.0 * scenario.motor().idle
+    );
     println!("with the fallback: {}", count(|outcome| outcome.fallback > 0));
     println!("with a rotor commanded more than it has: {}", count(|outcome| outcome.clipped > 0));
     println!("with a command beyond its certified bound: {}", count(|outcome| outcome.beyond > 0));

@@ -31,9 +31,6 @@ use scenario::reality::ground::Ground;
 use std::collections::VecDeque;
 use std::fmt;
 
-/// The motors' idle command, part of a full one: the firmware's default.
-const IDLE_COMMAND: f32 = 0.03;
-
 /// Where a pilot's estimator, governor and mixer lie.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
@@ -126,8 +123,6 @@ pub struct PilotedVehicle<'m> {
     /// Commands on their way, with the times at which they act, us.
     waiting: VecDeque<(u64, MotorCommand)>,
     acting: MotorCommand,
-    /// The part of its thrust that each rotor is left with.
-    left: [f32; MOTOR_COUNT],
     increments: Vec<Increment>,
     body_rate: Option<Stamped<Vector3<f32>>>,
     poses: Vec<Stamped<PoseMeasurement>>,
@@ -148,8 +143,9 @@ impl<'m> PilotedVehicle<'m> {
     ) -> Result<Self, PilotedError> {
         let configuration = &scenario.configuration;
         let rotors = configuration.rotors().ok_or(firmware::configuration::NO_ROTORS)?;
-        let outputs = Outputs::new(rotors, 0.0)?;
-        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+        let motor = scenario.motor();
+        let outputs = Outputs::new(rotors, motor)?;
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, motor);
         let [a, b, c, d] = &rotors[..] else { return Err(firmware::configuration::NO_ROTORS.into()) };
         let standing = standing(scenario);
         let what = standing.reality.estimator.unwrap_or_default();
@@ -174,7 +170,6 @@ impl<'m> PilotedVehicle<'m> {
             now,
             waiting: VecDeque::new(),
             acting: MotorCommand::Stop,
-            left: [1.0; MOTOR_COUNT],
             increments: Vec::new(),
             body_rate: None,
             poses: Vec::new(),
@@ -218,7 +213,7 @@ impl<'m> PilotedVehicle<'m> {
             ..*given
         };
         let outcome = self.pilot.tick(&inputs);
-        let command = self.outputs.command(&outcome.output, 1.0, IDLE_COMMAND);
+        let command = self.outputs.command(&outcome.output, 1.0);
         self.waiting.push_back((self.now + self.delay, command));
         Ok((outcome, command))
     }
@@ -252,10 +247,10 @@ impl<'m> PilotedVehicle<'m> {
         Ok(())
     }
 
-    /// The commanded thrusts, N, as far as the rotors can give them.
+    /// The commanded thrusts, N.
     fn thrusts(&self) -> [f32; MOTOR_COUNT] {
         let commands = self.acting.levels();
-        std::array::from_fn(|rotor| self.left[rotor] * self.curves[rotor].thrust(commands[rotor], 1.0))
+        std::array::from_fn(|rotor| self.curves[rotor].thrust(commands[rotor], 1.0))
     }
 
     /// The vehicle's clock, us.
@@ -294,9 +289,7 @@ impl<'m> PilotedVehicle<'m> {
 
     /// Leaves a rotor with a part of its commanded thrust, from now on.
     pub fn weaken(&mut self, rotor: usize, left: f32) {
-        if let Some(part) = self.left.get_mut(rotor) {
-            *part = left;
-        }
+        self.vehicle.weaken(rotor, left.into());
     }
 }
 

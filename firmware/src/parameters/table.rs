@@ -1,6 +1,7 @@
 //! What may be set: names, ranges, defaults, units.
 
 use crate::outputs;
+use controller_core::allocation::curve::IDLE_MAX;
 use controller_core::tuning::Percent;
 
 /// One row.
@@ -101,7 +102,7 @@ parameters! {
     Imu2LevelX: row("IMU2_LEVEL_X", [-0.09, 0.09], 0.0, "", 0.0);
     Imu2LevelY: row("IMU2_LEVEL_Y", [-0.09, 0.09], 0.0, "", 0.0);
     /// a of the motors' thrust curve a u + (1 - a) u^2 over the command u. Taken over at the next boot.
-    ThrustCurve: row("THR_CURVE", [0.0, 1.0], 0.0, "", 0.0);
+    ThrustCurve: built("THR_CURVE", [0.0, 1.0], "");
     /// The voltage at which the rotors' greatest thrust was measured; commands are corrected by the voltage there is. 0
     /// for never. Taken over at once.
     BatteryNominal: row("BAT_NOMINAL", [0.0, 60.0], 0.0, "V", 0.0);
@@ -110,8 +111,9 @@ parameters! {
     PoseDelay: row("POSE_DELAY", [0.0, 150.0], 0.0, "ms", 0.0);
     /// Below this voltage the vehicle lands, whatever is requested; 0 never does. Taken over at once.
     BatteryCritical: row("BAT_CRIT", [0.0, 60.0], 0.0, "V", 0.0);
-    /// What the motors idle at, as a part of the command's range. Taken over at once.
-    MotorIdle: row("MOT_IDLE", [0.0, 0.1], 0.03, "", 0.0);
+    /// What the motors idle at, on the ground and in flight, as a part of the command's range. Certified and taken over
+    /// as the rows from mass on.
+    MotorIdle: built("MOT_IDLE", [0.0, IDLE_MAX], "");
     /// How high a take-off goes that names no height. Rows of flight settings are taken over at once.
     TakeOffHeight: row("TKO_ALT", [0.5, 50.0], 1.5, "m", 0.0);
     /// How fast a landing goes down.
@@ -124,7 +126,7 @@ parameters! {
     FenceHeight: row("FENCE_HEIGHT", [2.0, 10_000.0], 50.0, "m", 0.0);
     /// How far from its reference the vehicle may be for longer than 5 s before it lands.
     TrackingErrorMax: row("TRACK_ERR", [0.5, 100.0], 3.0, "m", 0.0);
-    /// The configuration that the following rows were tuned on. Read-only.
+    /// The configuration that the following rows, and motors, were tuned on. Read-only.
     TunedOn: row("CFG_ID", [0.0, 16_777_215.0], 0.0, "", 1.0);
     /// Mass. The rows from here to the last gain are certified when they are set, and taken over at the next boot: see
     /// [`super::tuned`].
@@ -192,7 +194,8 @@ impl Name {
 
     /// Whether it stands for something of the built configuration.
     pub fn is_tuned(self) -> bool {
-        (Self::Mass as u8..=Self::GainVelocityVertical as u8).contains(&(self as u8))
+        matches!(self, Self::ThrustCurve | Self::MotorIdle)
+            || (Self::Mass as u8..=Self::GainVelocityVertical as u8).contains(&(self as u8))
     }
 
     /// Every one that does.

@@ -8,10 +8,14 @@
 //! flies is the second one's, so a change counts from the next boot. A parameter that was never set is as built,
 //! whatever was built.
 //!
+//! What motors idle at, and their curve, make a least thrust of each rotor: the configuration has that one, or what it
+//! was built or tuned to have if that is greater.
+//!
 //! Certifying takes long (`docs/firmware.md`), and a stack like that of booting. It runs in the link's task, below
 //! control, which keeps its time; and arming is refused meanwhile.
 
 use super::table::Name;
+use controller_core::allocation::{Motor, ThrustCurve};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::inequality::Inequality;
 use controller_core::configuration::Configuration;
@@ -25,6 +29,8 @@ use core::fmt;
 pub struct Built {
     /// The configuration.
     pub configuration: Configuration,
+    /// What turns its rotors.
+    pub motor: Motor,
     /// Which factors on its gains have sampled loops with margin.
     pub loops: &'static JudgedLoops,
     /// A number that other configurations have not, below 2^24.
@@ -76,10 +82,20 @@ impl Built {
                 *factor = Percent::new(value).ok_or(LOOPS)?;
             }
         }
+        // No rotor may be asked for less than what its motor makes when it idles.
+        let [min, max] = &mut tuning.figures.rotor_thrust;
+        *min = min.max(ThrustCurve::new(*max, self.motor(&value))?.thrust_min());
         if !self.loops.hold(&tuning.factors) {
             return Err(LOOPS);
         }
         tuning.apply(&self.configuration)
+    }
+
+    /// The motors with these values; one that is no number is as built.
+    pub fn motor(&self, value: impl Fn(Name) -> f32) -> Motor {
+        let set = |name, built| Some(value(name)).filter(|value| !value.is_nan()).unwrap_or(built);
+        let Motor { linear, idle } = self.motor;
+        Motor { linear: set(Name::ThrustCurve, linear), idle: set(Name::MotorIdle, idle) }
     }
 
     /// Whether the configuration with these values may fly.
@@ -98,7 +114,11 @@ impl Built {
     pub fn value(&self, name: Name) -> Option<f32> {
         let mut figures = Figures::from_configuration(&self.configuration);
         let factor = factor(&mut Factors::BUILT.clone(), name).map(|factor| factor.percent());
-        figure(&mut figures, name).copied().or(factor)
+        match name {
+            Name::ThrustCurve => Some(self.motor.linear),
+            Name::MotorIdle => Some(self.motor.idle),
+            _ => figure(&mut figures, name).copied().or(factor),
+        }
     }
 }
 

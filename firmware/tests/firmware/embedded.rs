@@ -39,6 +39,7 @@ fn the_embedded_configuration_is_the_files_to_the_bit() {
     assert_eq!(firmware::configuration::embedded().unwrap(), scenario.configuration);
     assert_eq!(firmware::configuration::LOOPS, board::judged(&scenario));
     assert_eq!(firmware::configuration::IDENTITY, board::identity(&scenario));
+    assert_eq!(firmware::configuration::MOTOR, scenario.motor());
     assert_eq!(firmware::configuration::PERIOD_US, scenario.timing.period_us);
 }
 

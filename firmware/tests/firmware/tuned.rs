@@ -8,12 +8,13 @@ use crate::support::chip::{Chip, Words};
 use crate::support::receiver::{Fed, Local, replies, report, texts};
 use controller_core::tuning::judged::JudgedLoops;
 use firmware::control::Control;
+use firmware::hardware::MotorCommand;
 use firmware::parameters::storage::Storage;
 use firmware::parameters::table::{Name, PARAMETERS};
 use firmware::parameters::tuned::Built;
 use firmware::shared::{Flag, QueuedRequest, Reply};
 use firmware::{boot, configuration};
-use flight::{Grounded, Mode, Request};
+use flight::{Grounded, Mode, Output, Request};
 use mavlink::dialects::common::{MavParamType, PARAM_SET_DATA};
 use std::cell::RefCell;
 
@@ -21,6 +22,18 @@ use std::cell::RefCell;
 fn boot_on(shared: &Local) -> Option<Grounded> {
     let (pilot, _) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
     pilot.grounded()
+}
+
+/// What this image is built for.
+fn built() -> Built {
+    Built {
+        configuration: configuration::embedded().unwrap(),
+        motor: configuration::MOTOR,
+        loops: &configuration::LOOPS,
+        identity: configuration::IDENTITY,
+        period: PERIOD_US,
+        follows_rotors: false,
+    }
 }
 
 /// Booted with nothing set.
@@ -52,6 +65,7 @@ fn every_row_of_the_configuration_shows_what_was_built() {
     assert_eq!(shown(Name::TorqueMaxZ), configuration.limits().torque_max.z);
     assert_eq!(shown(Name::Snap), configuration.bounds().snap);
     assert_eq!(shown(Name::RotorThrustMax), configuration.rotors().unwrap()[0].thrust_max);
+    assert_eq!([shown(Name::MotorIdle), shown(Name::ThrustCurve)], [0.055, 0.0]);
     for row in PARAMETERS.iter().filter(|row| row.parameter.is_tuned()) {
         let value = shown(row.parameter);
         assert!(row.allows(value) && (row.unit != "%" || value == 100.0), "{}: {value}", row.name);
@@ -78,13 +92,7 @@ fn a_good_value_is_taken_from_the_next_boot_on_and_survives_it() {
     assert_eq!((again.parameters.get(Name::Mass), again.parameters.get(Name::GainAttitude)), (0.4, 90.0));
     assert_eq!(again.parameters.set_by_hand().collect::<Vec<_>>(), [Name::Mass, Name::GainAttitude]);
     // What flies is lighter, and turns more gently.
-    let built = Built {
-        configuration: configuration::embedded().unwrap(),
-        loops: &configuration::LOOPS,
-        identity: configuration::IDENTITY,
-        period: PERIOD_US,
-        follows_rotors: false,
-    };
+    let built = built();
     let flown = built.tuned(|name| again.parameters.raw(name)).unwrap();
     assert_eq!(flown.vehicle().mass, 0.4);
     assert_ne!(flown.law(), built.configuration.law());
@@ -112,6 +120,56 @@ fn a_value_that_does_not_certify_changes_nothing_and_the_inequality_is_reported(
     assert_eq!(texts_of_setting(&shared, Name::RotorThrustMax, before)[0], "ROT_THR_MAX: refused, cannot be flown");
 }
 
+/// The least and the greatest thrust, N, of the first rotor with what is set on `shared`.
+fn range_with(shared: &Local) -> [f32; 2] {
+    let built = built();
+    let rotors = built.tuned(|name| shared.parameters.raw(name)).unwrap().rotors().unwrap().to_vec();
+    [rotors[0].thrust_min, rotors[0].thrust_max]
+}
+
+#[test]
+fn what_motors_make_when_they_idle_is_certified_as_the_least_thrust() {
+    let shared = booted();
+    let [least, most] = range_with(&shared);
+    assert_eq!(least, built().configuration.rotors().unwrap()[0].thrust_min);
+    let said = |name: Name| [format!("{}: may be flown, from the next boot on", name.row().name)];
+    // The file's least speed pushes more than that.
+    assert_eq!(texts_of_setting(&shared, Name::MotorIdle, 0.09), said(Name::MotorIdle));
+    assert_eq!(range_with(&shared), [least, most]);
+    // A curve with a linear part makes more of the same command, and so does a higher one.
+    assert_eq!(texts_of_setting(&shared, Name::ThrustCurve, 0.5), said(Name::ThrustCurve));
+    let [curved, _] = range_with(&shared);
+    let command = 0.09 / 0.8;
+    assert!((curved / most - 0.5 * (command + command * command)).abs() < 1e-6 && curved > least, "{curved}");
+    let words = texts_of_setting(&shared, Name::MotorIdle, 0.3);
+    assert_eq!(words[0], "MOT_IDLE: refused, cannot be flown");
+    assert!(words.len() == 2 && shared.parameters.get(Name::MotorIdle) == 0.09, "{words:?}");
+    // A least thrust below it counts for nothing.
+    assert_eq!(texts_of_setting(&shared, Name::RotorThrustMin, 0.01), said(Name::RotorThrustMin));
+    assert_eq!(range_with(&shared), [curved, most]);
+}
+
+#[test]
+fn stored_motors_that_do_not_certify_keep_it_on_the_ground_and_are_named() {
+    let stored = [(Name::ThrustCurve, 1.0), (Name::MotorIdle, 0.3)];
+    let (grounded, texts, _) = booted_with(configuration::IDENTITY, &stored);
+    assert!(grounded.is_some());
+    assert_eq!(texts, ["THR_CURVE 1: cannot be flown", "MOT_IDLE 0.3: cannot be flown"]);
+}
+
+#[test]
+fn motors_idle_as_they_were_when_it_booted() {
+    let stored = [(Name::MotorIdle, 0.08)];
+    let (grounded, _, shared) = booted_with(configuration::IDENTITY, &stored);
+    assert_eq!(grounded, None);
+    let (_, outputs) = boot::start(Box::leak(Box::new(boot::Place::new())), shared.for_boot()).unwrap();
+    assert_eq!(outputs.command(&Output::Idle, 1.0), MotorCommand::Run([0.08; 4]));
+    // Of another configuration's nothing is left.
+    let (_, texts, shared) = booted_with(configuration::IDENTITY ^ 1, &stored);
+    assert_eq!(texts, ["Another configuration was tuned: as built now"]);
+    assert_eq!(shared.parameters.get(Name::MotorIdle), 0.055);
+}
+
 #[test]
 fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
     let shared = booted();
@@ -127,9 +185,7 @@ fn a_value_for_which_there_is_no_vehicle_is_refused_by_field() {
 #[test]
 fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certificate_says() {
     let shared = Local::new();
-    let configuration = configuration::embedded().unwrap();
-    let built =
-        Built { configuration, loops: &JudgedLoops::BUILT, identity: 7, period: PERIOD_US, follows_rotors: false };
+    let built = Built { loops: &JudgedLoops::BUILT, identity: 7, ..built() };
     boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap();
     let words = texts_of_setting(&shared, Name::GainRate, 110.0);
     assert_eq!(words, ["GAIN_ATT_D: refused, cannot be flown", "sampled loops: without margin at these gains"]);
@@ -139,13 +195,7 @@ fn gains_whose_loops_nobody_found_with_margin_are_refused_whatever_the_certifica
 #[test]
 fn what_was_built_for_no_vehicle_never_arms_and_says_what_to_do() {
     let shared = Local::new();
-    let built = Built {
-        configuration: configuration::embedded().unwrap(),
-        loops: &configuration::LOOPS,
-        identity: 7,
-        period: PERIOD_US,
-        follows_rotors: false,
-    };
+    let built = Built { identity: 7, ..built() };
     let place = Box::leak(Box::new(boot::Place::new()));
     let (pilot, _) = boot::start_named(place, shared.for_boot(), built, false).unwrap();
     assert_eq!(texts(&shared), ["No vehicle: build with SCENARIO"]);

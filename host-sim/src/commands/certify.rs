@@ -45,6 +45,7 @@ pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     }
     text += "\n";
     text += &loops(scenario, &verdict)?;
+    text += &scenario.least_command.map_or(String::new(), |least| format!("rotors: {least}\n"));
     if let LawParameters::Extended(law) = scenario.configuration.law() {
         text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
     }

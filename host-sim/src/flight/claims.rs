@@ -7,6 +7,8 @@
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
 //! ```
 //!
+//! With rotors it claims that none was commanded below what its motor idles at ([`least_command`]).
+//!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
 //! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside
 //! down](scenario::large_motions); that it reached its reference, position and attitude, within the first 90 % of its
@@ -15,7 +17,8 @@
 //! for any other the errors of its last quarter are reported without a verdict.
 
 use crate::flight::extremes::{FlightExtremes, MRP_TOLERANCE, POSITION_TOLERANCE_M};
-use crate::output::table::{aligned, short};
+use crate::flight::least_command::LeastCommand;
+use crate::output::table::{aligned, percent, short};
 use controller_core::certificate::Certificate;
 use controller_core::certificate::form::Interval;
 use scenario::Scenario;
@@ -74,6 +77,7 @@ pub fn claims(scenario: &Scenario, verdict: &Verdict, flown: &FlightExtremes) ->
         claims.extend(torques("published bound", &flown.torque, &PUBLISHED_TORQUE_N_M));
     }
     claims.extend(bounds(verdict.certificate(), flown));
+    claims.extend(least_command(&flown.least_command));
     let limits = scenario.configuration.limits();
     let thrust_max = Some(f64::from(limits.thrust_max));
     claims.push(at_most("thrust, vehicle's limit".to_owned(), flown.thrust.1, thrust_max, " N"));
@@ -185,6 +189,17 @@ fn bounds(certificate: &Certificate, flown: &FlightExtremes) -> Vec<Claim> {
         claims.extend(bound.map(claim));
     }
     claims
+}
+
+/// Whether no rotor was commanded below what motors idle at, if there are rotors.
+fn least_command(flown: &LeastCommand) -> Option<Claim> {
+    let (least, idle) = (flown.least()?, flown.idle());
+    Some(Claim {
+        claim: "least rotor command, what motors idle at".to_owned(),
+        required: format!(">= {}", percent(idle)),
+        flown: percent(least),
+        holds: Some(least >= idle),
+    })
 }
 
 fn torques(what: &str, flown: &[f64; 3], limits: &[f64; 3]) -> Vec<Claim> {

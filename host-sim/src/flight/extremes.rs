@@ -10,6 +10,7 @@
 //! the reference's velocity. From then on it is on its way with its reference, and the greatest distance from it counts
 //! as tracking error: before, it recovers or approaches.
 
+use crate::flight::least_command::LeastCommand;
 use crate::flight::{Flight, FlightError, Tick};
 use controller_core::reference::{Reference, ReferenceBounds};
 use nalgebra::Vector3;
@@ -46,6 +47,8 @@ pub struct FlightExtremes {
     pub torque: [f64; 3],
     /// Least and greatest thrust commanded of each rotor, N; empty without rotors.
     pub rotors: Vec<(f64, f64)>,
+    /// Least command of any rotor.
+    pub least_command: LeastCommand,
     /// Greatest component of u_f and u_s, m/s^2.
     pub filter: f64,
     /// Ticks at which the plant clipped a command.
@@ -89,6 +92,7 @@ impl FlightExtremes {
             thrust: EMPTY_EXTREMES,
             torque: [0.0; 3],
             rotors: Vec::new(),
+            least_command: LeastCommand::before_flight(scenario),
             filter: 0.0,
             clipped: 0,
             lift_changes: 0,
@@ -111,10 +115,15 @@ impl FlightExtremes {
         self.filter = self.filter.max(f64::from(diagnostics.filtered.amax().max(diagnostics.intermediate.amax())));
         // While the first command is on its way there is none.
         self.rotors.resize(self.rotors.len().max(tick.rotor_thrusts.len()), EMPTY_EXTREMES);
-        for (extremes, thrust) in self.rotors.iter_mut().zip(&tick.rotor_thrusts) {
+        for (rotor, (extremes, thrust)) in self.rotors.iter_mut().zip(&tick.rotor_thrusts).enumerate() {
             let thrust = f64::from(*thrust);
+            // A rotor that is gone is stopped.
+            if thrust == 0.0 && tick.lost.is_some_and(|lost| lost.rotor == rotor) {
+                continue;
+            }
             *extremes = (extremes.0.min(thrust), extremes.1.max(thrust));
         }
+        self.least_command.observe(&tick.rotor_thrusts);
         self.clipped += u64::from(tick.clipped);
         self.lift_changes += u64::from(self.last_sign.is_some_and(|sign| sign != diagnostics.lift_sign));
         self.last_sign = Some(diagnostics.lift_sign);

@@ -39,6 +39,7 @@ use crate::sessions::input;
 use crate::sessions::pace::Pace;
 use crate::sessions::ports::{ClientPort, Ports};
 use clock::SimClock;
+use controller_core::allocation::Motor;
 use controller_core::configuration::Configuration;
 use controller_core::error::ParameterError;
 use controller_core::tuning::judged::JudgedLoops;
@@ -92,6 +93,7 @@ pub struct Sitl {
     texts: Rc<RefCell<Vec<(u64, String)>>>,
     flash: DeskFlash,
     configuration: Configuration,
+    motor: Motor,
     loops: &'static JudgedLoops,
     identity: u32,
     /// Whether notches on its gyro may follow the rotors.
@@ -159,6 +161,7 @@ impl Sitl {
             texts: Rc::default(),
             flash,
             configuration: scenario.configuration.clone(),
+            motor: scenario.motor(),
             loops,
             identity,
             follows_rotors: board::may_follow_rotors(scenario),
@@ -190,8 +193,8 @@ impl Sitl {
         }
         let place = Box::leak(Box::new(boot::Place::new()));
         let (configuration, period) = (self.configuration.clone(), self.period);
-        let Self { loops, identity, follows_rotors, .. } = *self;
-        let built = Built { configuration, loops, identity, period, follows_rotors };
+        let Self { motor, loops, identity, follows_rotors, .. } = *self;
+        let built = Built { configuration, motor, loops, identity, period, follows_rotors };
         let (pilot, outputs) = boot::start_with(place, shared.for_boot(), built)?;
 
         let pool = LocalPool::new();

@@ -96,7 +96,8 @@ impl RealVehicle {
         let (reality, step) = (&scenario.reality, scenario.timing.step());
         let model = configuration.vehicle();
         let truth = reality.truth.clone().unwrap_or_else(|| Truth::model(model));
-        let propulsion = Propulsion::new(configuration, truth.lag.unwrap_or(scenario.rotor_lag), reality, step);
+        let lag = truth.lag.unwrap_or(scenario.rotor_lag);
+        let propulsion = Propulsion::new(configuration, scenario.motor(), lag, reality, step);
         let gravity = f64::from(model.gravity);
         let (ground, start) = match reality.ground {
             Some(ground) => {

@@ -36,7 +36,7 @@ pub struct Propulsion {
     pub thrust_coefficient: f32,
     /// k_m, N m/(rad/s)^2.
     pub drag_coefficient: f32,
-    /// Minimum thrust while flying, N.
+    /// Minimum thrust while flying, N, as these keys have it.
     pub thrust_min: f32,
     /// Maximum thrust, N.
     pub thrust_max: f32,
@@ -86,6 +86,15 @@ impl Propulsion {
     #[must_use]
     pub fn has_speeds(&self) -> bool {
         self.form == Form::Speeds
+    }
+
+    /// The key of the least thrust in the file.
+    #[must_use]
+    pub fn least_key(&self) -> &'static str {
+        match self.form {
+            Form::Speeds => "speed",
+            Form::Thrusts => "thrust_min",
+        }
     }
 
     /// The unit of the thrust range in the file.

@@ -15,6 +15,7 @@ thrust_coefficient = 5.57e-6
 drag_coefficient = 1.36e-7
 speed = [100, 1500.0]
 lag = 0.005
+idle = 0
 
 [sampling]
 delay = 0.01

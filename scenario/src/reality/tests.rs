@@ -86,7 +86,7 @@ fn every_key_becomes_what_the_file_says() {
     let Reality { truth, drag, wind, disturbance, battery, failure, ground, sensors, .. } =
         read(REALITY).unwrap().reality;
     let truth = truth.unwrap();
-    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve, truth.lag), (0.55, 0.8, 0.3, Some(0.015)));
+    assert_eq!((truth.mass, truth.thrust_scale, truth.thrust_curve, truth.lag), (0.55, 0.8, Some(0.3), Some(0.015)));
     assert_eq!(truth.inertia, Vector3::new(3.9e-3, 3.9e-3, 7.5e-3));
     assert_eq!(
         (truth.centre_of_mass, truth.rotor_scales),

@@ -23,8 +23,8 @@ pub struct Truth {
     pub thrust_scale: f64,
     /// The same for each rotor, besides; empty for 1.
     pub rotor_scales: Vec<f64>,
-    /// a of the thrust a u + (1 - a) u^2 that a motor command u gives; the controller's model has a = 0.
-    pub thrust_curve: f64,
+    /// a of the thrust a u + (1 - a) u^2 that a motor command u gives; none for the model's.
+    pub thrust_curve: Option<f64>,
     /// Lag of the rotors' speeds, s; none for the model's.
     pub lag: Option<f64>,
     /// Of each rotor about its axis, kg m^2.
@@ -45,7 +45,7 @@ impl Truth {
             centre_of_mass: Vector3::zeros(),
             thrust_scale: 1.0,
             rotor_scales: Vec::new(),
-            thrust_curve: 0.0,
+            thrust_curve: None,
             lag: None,
             rotor_inertia: 0.0,
             deadband: 0.0,
@@ -71,7 +71,8 @@ pub const LAYOUT: Layout = Layout {
         Key::number("thrust_scale", SCALE_BOUNDS, "Of every rotor's thrust and drag torque.").or(1.0),
         Key::new("rotor_scales", Values::List(&Values::Number(SCALE_BOUNDS)), "Of each, besides; left out: 1.")
             .optional(),
-        Key::number("thrust_curve", Bounds::SHARE, "a of the thrust a u + (1 - a) u^2 of a command u.").or(0.0),
+        Key::number("thrust_curve", Bounds::SHARE, "a of a command's thrust; left out: rotors.thrust_curve.")
+            .optional(),
         Key::number("lag", Bounds::between(0.0, 1.0, "s"), "Of the rotors' speeds; left out: rotors.lag.").optional(),
         Key::number("rotor_inertia", Bounds::between(0.0, 1.0, "kg m^2"), "Of each rotor about its axis.").or(0.0),
         Key::number("deadband", Bounds::between(0.0, 0.5, ""), "Share of the speed that a command must differ by.")
@@ -108,7 +109,7 @@ pub fn read(root: &Section, model: &Vehicle, rotors: Option<usize>) -> Result<Op
         centre_of_mass: section.vector("centre_of_mass")?,
         thrust_scale: section.number("thrust_scale")?,
         rotor_scales: read_rotor_scales(&section, rotors.unwrap_or(0))?,
-        thrust_curve: section.number("thrust_curve")?,
+        thrust_curve: section.optional_number("thrust_curve")?,
         lag: section.optional_number("lag")?,
         rotor_inertia: section.number("rotor_inertia")?,
         deadband: section.number("deadband")?,

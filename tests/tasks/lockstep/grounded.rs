@@ -37,7 +37,7 @@ fn refused() -> (Flight, &'static str) {
         memory,
         configuration::policy(),
     )));
-    let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap(), 0.0).unwrap()));
+    let flight = Flight::with(|_| (pilot, Outputs::new(too_agile().rotors().unwrap(), configuration::MOTOR).unwrap()));
     (flight, failed)
 }
 

@@ -21,8 +21,8 @@ fn boot_at(rate: u32) -> Flight {
     let period = scenario.timing.period_us;
     assert_eq!(period, u64::from(1_000_000 / rate));
     // Nothing is tuned on board here, so which choices could be does not matter.
-    let built =
-        Built { configuration: scenario.configuration, loops: &LOOPS, identity: 0, period, follows_rotors: false };
+    let (motor, configuration) = (scenario.motor(), scenario.configuration);
+    let built = Built { configuration, motor, loops: &LOOPS, identity: 0, period, follows_rotors: false };
     Flight::with(|shared| boot::start_with(Box::leak(Box::new(boot::Place::new())), shared.for_boot(), built).unwrap())
 }
 

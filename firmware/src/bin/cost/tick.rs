@@ -107,7 +107,7 @@ fn fly(
 ) -> Option<Flown> {
     let configuration = certified.configuration();
     let shared: Shared<NoopRawMutex> = Shared::new();
-    let outputs = Outputs::new(configuration.rotors()?, 0.0).ok()?;
+    let outputs = Outputs::new(configuration.rotors()?, firmware::configuration::MOTOR).ok()?;
     let limits = GovernorLimits::default();
     let mut pilot = Pilot::carrying(
         Ok(certified),

@@ -16,8 +16,12 @@ pub fn constants(scenario: &Scenario) -> String {
             ("paper", floor + &written(gains.entries()))
         }
     };
+    let motors = scenario.least_command.map_or(String::new(), |least| {
+        let [idle, linear] = [Number(least.motor.idle), Number(least.motor.linear)];
+        format!("# with [rotors] idle = {idle}, thrust_curve = {linear}: {least}\n")
+    });
     format!(
-        "# {}: all that `[control] law = \"{law}\"` flies with, in place of these sections\n{constants}\n{}",
+        "# {}: all that `[control] law = \"{law}\"` flies with, in place of these sections\n{motors}{constants}\n{}",
         scenario.name,
         written(configuration.bounds().entries())
     )

@@ -59,7 +59,7 @@ pub struct Bench {
     pub swings: Vec<Swing>,
     /// Greatest thrust over the file's.
     pub thrust_scale: Option<Measured>,
-    /// a, for the parameter `THR_CURVE`.
+    /// a, for `rotors.thrust_curve`.
     pub curve: Option<f64>,
 }
 

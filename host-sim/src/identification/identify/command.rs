@@ -184,7 +184,7 @@ fn remarks(identified: &Quantities, bench: &Bench) -> String {
                  observable in flight; weigh it (--bench)\n";
     }
     if let Some(curve) = bench.curve {
-        text += &format!("thrust curve a = {}: set the parameter THR_CURVE\n", short(curve));
+        text += &format!("thrust curve a = {}: write it as rotors.thrust_curve\n", short(curve));
     }
     text
 }

@@ -69,7 +69,7 @@ impl HilVehicle {
         };
         let step = scenario.timing.step();
         let (ground, state) = Ground::under(configuration.vehicle(), GROUND_HEIGHT_M, &scenario.initial, step);
-        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, scenario.motor());
         let curves = rotors.iter().map(curve).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
         Ok(Self {
             plant: Plant::new(configuration.vehicle(), configuration.limits(), step, state),
@@ -100,7 +100,7 @@ impl HilVehicle {
         if let Some(bad) = controls.commands.iter().find(|command| !(0.0..=1.0).contains(*command)) {
             return Err(format!("a motor command is not from 0 to 1: {bad}"));
         }
-        let thrust = |(curve, command): (&ThrustCurve, f32)| curve.thrust(command, 1.0);
+        let thrust = |(curve, command): (&ThrustCurve, f32)| curve.thrust(curve.held(command), 1.0);
         let thrusts = self.curves.iter().zip(controls.commands).map(thrust).collect();
         self.waiting.push_back((self.now + self.delay, thrusts));
         let before = self.plant.state().velocity;

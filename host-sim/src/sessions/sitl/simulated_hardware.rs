@@ -125,7 +125,7 @@ impl SimulatedHardware {
         }
         let configuration = &scenario.configuration;
         let rotors = configuration.rotors().ok_or("rotors: missing")?;
-        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, 0.0);
+        let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, scenario.motor());
         let gravity = configuration.vehicle().gravity;
         let what = scenario.reality.estimator.unwrap_or_default();
         let believed = what.believed(gravity);

@@ -9,6 +9,7 @@
 //! | heading | since when its heading has been within [`HEADING_TOLERANCE_RAD`] of the reference's for good |
 //! | in time | whether all three were within the first [`REACHED_BY_SHARE`] of the flight, as a flight by itself claims |
 //! | final error | distance from the reference at the last tick |
+//! | least command | the least of any rotor, part of a full one ([`LeastCommand`]) |
 //! | share | the greatest part of a certified bound that was used: 1 is all of it |
 //!
 //! The share of a thrust or a rotor is its command over the greatest that is proven: the least is a constant near
@@ -20,6 +21,7 @@
 use super::rotor_loss::{BOUND_TOLERANCE, RotorLoss, is_within_ranges};
 use crate::flight::claims::REACHED_BY_SHARE;
 use crate::flight::extremes::{MRP_TOLERANCE, claimed_error, heading_is_followed};
+use crate::flight::least_command::LeastCommand;
 use crate::flight::{Brief, Flight};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::certificate::Certificate;
@@ -55,6 +57,8 @@ pub struct Outcome {
     pub beyond: u64,
     /// Greatest share of each certified bound that was used.
     pub shares: Shares,
+    /// Least command of any rotor.
+    pub least_command: LeastCommand,
     /// How often the law's fallback came.
     pub fallback: u64,
     /// A rotor that failed, or was taken to.
@@ -97,6 +101,7 @@ impl Outcome {
             clipped: 0,
             beyond: 0,
             shares: Shares::default(),
+            least_command: LeastCommand::before_flight(scenario),
             fallback: 0,
             rotor: RotorLoss::before_flight(scenario),
             ticks: 0,
@@ -133,6 +138,7 @@ impl Outcome {
         self.height_lost = self.height_lost.max(start - position.z);
         self.rise = self.rise.max(position.z - start.max(wanted.z));
         self.clipped += u64::from(tick.clipped);
+        self.least_command.observe(&tick.rotor_thrusts);
         self.final_error = (position - wanted).norm();
         self.ticks += 1;
         let next = Some((tick.time_us + period_us) as f64 / 1e6);

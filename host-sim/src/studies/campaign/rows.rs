@@ -22,6 +22,7 @@
 //! | `failure_time`, `found_time` | s | when; null for none |
 //! | `thrust_left` | | what the failed rotor had left; null for none |
 //! | `failure_height_lost`, `failure_distance` | m | after the failure ([`RotorLoss`]); null for none |
+//! | `least_command` | | least command of any rotor, part of a full one; null without rotors |
 //!
 //! A file of another law than ours says which in its schema's metadata, under `law`.
 
@@ -101,6 +102,8 @@ const REACHED_COLUMNS: [&str; 3] = ["settled", "attitude", "heading"];
 const ROTOR_COLUMNS: [&str; 2] = ["failed_rotor", "found_rotor"];
 const LOSS_COLUMNS: [&str; 5] =
     ["failure_time", "thrust_left", "found_time", "failure_height_lost", "failure_distance"];
+/// The column of the least command of any rotor.
+pub const LEAST_COMMAND_COLUMN: &str = "least_command";
 const SHARE_COLUMNS: [&str; 4] = ["share_thrust", "share_torque_x", "share_torque_y", "share_torque_z"];
 
 /// The columns of what `manifest` describes.
@@ -116,6 +119,7 @@ pub fn schema(manifest: &Manifest) -> Schema {
     fields.push(Field::new("verdict", DataType::Utf8, false));
     fields.extend(ROTOR_COLUMNS.iter().map(|name| Field::new(*name, DataType::UInt64, true)));
     fields.extend(LOSS_COLUMNS.iter().map(|name| Field::new(*name, DataType::Float64, true)));
+    fields.push(Field::new(LEAST_COMMAND_COLUMN, DataType::Float64, true));
     let schema = Schema::new(fields);
     match manifest.rival() {
         Some(law) => schema.with_metadata([(LAW_KEY.to_owned(), law.to_owned())]),
@@ -162,6 +166,7 @@ pub fn batch(rows: &[FlightRow], manifest: &Manifest) -> Result<RecordBatch, Arr
         Arc::new(UInt64Array::from_iter(numbers))
     }));
     columns.extend(LOSS_OF.map(|figure| optional(rows, |row| figure(&row.outcome.rotor))));
+    columns.push(optional(rows, |row| row.outcome.least_command.least()));
     RecordBatch::try_new(Arc::new(schema(manifest)), columns)
 }
 

@@ -6,9 +6,9 @@ use super::losses::Losses;
 use super::manifest::Manifest;
 use super::outcome::{HEADING_TOLERANCE_RAD, SETTLED_DISTANCE_M, in_time};
 use super::quantile;
-use super::rows::{HOLDS_COLUMN, share_of_rotor};
+use super::rows::{HOLDS_COLUMN, LEAST_COMMAND_COLUMN, share_of_rotor};
 use crate::flight::extremes::MRP_TOLERANCE;
-use crate::output::table::{aligned, short};
+use crate::output::table::{aligned, percent, short};
 use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use scenario::Scenario;
@@ -33,6 +33,8 @@ pub struct Summary {
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
+    /// The least command of any rotor in all flights, and what motors idle at, parts of a full one; none without rotors.
+    pub least_command: Option<(f64, f64)>,
     /// Flights in which the law's fallback came.
     pub fallback: u64,
     /// Rotors that failed or were taken to.
@@ -100,6 +102,8 @@ impl Summary {
         let refusal = verdict.refusal().map(|refusal| refusal.to_string());
         let ever = |column: &str| counts(flown, column).iter().filter(|ticks| **ticks > 0).count() as u64;
         let rival = manifest.rival();
+        let least = floats(flown, LEAST_COMMAND_COLUMN).into_iter().fold(f64::INFINITY, f64::min);
+        let least_command = least.is_finite().then(|| (least, f64::from(scenario.motor().idle)));
         Self {
             title: title(scenario, manifest, numbers.len()),
             flights: numbers.len() as u64,
@@ -107,11 +111,13 @@ impl Summary {
             rival,
             beyond: ever("beyond"),
             clipped: ever("clipped"),
+            least_command,
             fallback: ever("fallback"),
             looks: rival.is_none() && scenario.configuration.paper().is_none(),
             losses,
             holds: (refusal.is_none() || rival.is_some())
                 && tracking == numbers.len()
+                && (rival.is_some() || least_command.is_none_or(|(least, idle)| least >= idle))
                 && verdicts.iter().all(|verdict| *verdict == HOLDS_COLUMN),
             refusal,
             quantiles: table(&numbers, figures.iter().chain(&shares)),
@@ -136,6 +142,10 @@ impl fmt::Display for Summary {
             if self.rival.is_some() { " of ours" } else { "" },
             self.clipped
         )?;
+        if let Some((least, idle)) = self.least_command {
+            let (least, says, idle) = (percent(least), if least < idle { "BELOW" } else { "not below" }, percent(idle));
+            writeln!(f, "least rotor command: {least} of a full one, {says} the {idle} at which motors idle\n")?;
+        }
         if self.fallback > 0 {
             writeln!(f, "the extended law's fallback came in {} flights\n", self.fallback)?;
         }

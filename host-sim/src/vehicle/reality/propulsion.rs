@@ -1,9 +1,11 @@
 //! From the rotors' commanded thrusts to their speeds.
 //!
-//! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta), its motor command is u =
-//! w_c / w_max. What a real one settles at, and how it gets there:
+//! The controller's model of a rotor that is to give f turns it at w_c = sqrt(f / k_eta); its motor command is u =
+//! phi^-1(f / f_max) with the model's curve, w_c / w_max where that is a square. What a real one settles at, and how it
+//! gets there:
 //!
 //! ```text
+//! u >= u_0                                                  a motor that turns idles at least; zero stops it
 //! u' = u V / V_0                                            a motor sees the command times the voltage
 //! w_s = w_max sqrt(a u' + (1 - a) u'^2)                     thrust curve; a = 0: w_s = w_c V / V_0
 //! w_s = sqrt(share) w_s                                     from the failure's time on, for the rotor that fails; or as told
@@ -26,7 +28,7 @@ use super::battery::BatteryState;
 use super::body::STAGE_TIMES;
 use super::wind::first_step;
 use controller_core::allocation::geometry::ROTORS_MAX;
-use controller_core::allocation::{Rotor, Rotors, Spin};
+use controller_core::allocation::{Motor, Rotor, Rotors, Spin, ThrustCurve};
 use controller_core::configuration::Configuration;
 use controller_core::state::Wrench;
 use nalgebra::{Vector3, Vector4};
@@ -53,8 +55,10 @@ struct Motors {
     rotors: Rotors,
     /// The share of a speed error that remains at each stage of a plant step.
     decay: [f64; 3],
-    /// a.
-    curve: f64,
+    /// a: the model's, and the true one.
+    linear: [f64; 2],
+    /// The model's w_c of a motor that idles, rad/s.
+    idling: [f64; ROTORS_MAX],
     /// w_c, rad/s.
     commands: [f64; ROTORS_MAX],
     /// w, rad/s.
@@ -83,12 +87,12 @@ pub struct Propulsion {
 }
 
 impl Propulsion {
-    /// The vehicle's at rest in its command to hover. `lag` and `step` in s.
-    pub fn new(configuration: &Configuration, lag: f64, reality: &Reality, step: f64) -> Self {
+    /// The vehicle's, with the model's `motor`, at rest in its command to hover. `lag` and `step` in s.
+    pub fn new(configuration: &Configuration, motor: Motor, lag: f64, reality: &Reality, step: f64) -> Self {
         let (vehicle, limits) = (configuration.vehicle(), configuration.limits());
         let hover = vehicle.mass * vehicle.gravity;
         Self {
-            motors: configuration.rotors().map(|rotors| Motors::hovering(rotors, hover, lag, reality, step)),
+            motors: configuration.rotors().map(|rotors| Motors::hovering(rotors, motor, hover, lag, reality, step)),
             direct: (f64::from(hover), Vector3::zeros()),
             limits: (f64::from(limits.thrust_max), limits.torque_max.map(f64::from)),
             step,
@@ -112,8 +116,10 @@ impl Propulsion {
     /// Asks each rotor for a thrust, N.
     pub fn command(&mut self, thrusts: &[f32]) {
         if let Some(motors) = &mut self.motors {
-            for ((command, rotor), thrust) in motors.commands.iter_mut().zip(motors.rotors.iter()).zip(thrusts) {
+            let rotors = motors.rotors.iter().zip(&motors.idling);
+            for ((command, (rotor, idling)), thrust) in motors.commands.iter_mut().zip(rotors).zip(thrusts) {
                 let wanted = f64::from(rotor.speed_at(*thrust));
+                let wanted = if *thrust > 0.0 { wanted.max(*idling) } else { wanted };
                 if (wanted - *command).abs() >= motors.deadband * *command {
                     *command = wanted;
                 }
@@ -170,22 +176,30 @@ impl Propulsion {
 }
 
 impl Motors {
-    fn hovering(rotors: &Rotors, hover: f32, lag: f64, reality: &Reality, step: f64) -> Self {
+    fn hovering(rotors: &Rotors, motor: Motor, hover: f32, lag: f64, reality: &Reality, step: f64) -> Self {
         let mut commands = [0.0; ROTORS_MAX];
         let rows = rotors.pseudo_inverse();
         for ((command, rotor), row) in commands.iter_mut().zip(rotors.iter()).zip(rows) {
             *command = hovering_speed(rotor, row, hover);
         }
+        let mut idling = [0.0; ROTORS_MAX];
+        for (idling, rotor) in idling.iter_mut().zip(rotors.iter()) {
+            let curve = ThrustCurve::new(rotor.thrust_max, motor).ok();
+            *idling = f64::from(rotor.speed_at(curve.map_or(0.0, |curve| curve.thrust(motor.idle, 1.0))));
+        }
+        let modelled = f64::from(motor.linear);
+        let truth = reality.truth.as_ref();
         let left = |time: f64| if lag > 0.0 { (-time * step / lag).exp() } else { f64::from(time == 0.0) };
         let mut motors = Self {
             rotors: rotors.clone(),
             decay: STAGE_TIMES.map(left),
-            curve: reality.truth.as_ref().map_or(0.0, |truth| truth.thrust_curve),
+            linear: [modelled, truth.and_then(|truth| truth.thrust_curve).unwrap_or(modelled)],
+            idling,
             commands,
             speeds: commands,
             changes: [0.0; ROTORS_MAX],
-            inertia: reality.truth.as_ref().map_or(0.0, |truth| truth.rotor_inertia),
-            deadband: reality.truth.as_ref().map_or(0.0, |truth| truth.deadband),
+            inertia: truth.map_or(0.0, |truth| truth.rotor_inertia),
+            deadband: truth.map_or(0.0, |truth| truth.deadband),
             failure: reality.failure.map(|failure| (failure, first_step(failure.time, step))),
             left: [1.0; ROTORS_MAX],
             battery: reality.battery.map(|battery| BatteryState::new(&battery)),
@@ -199,11 +213,13 @@ impl Motors {
         let voltage = self.battery.as_ref().map_or(1.0, BatteryState::ratio);
         let mut settled = self.commands;
         for (speed, rotor) in settled.iter_mut().zip(self.rotors.iter()) {
-            *speed *= voltage;
-            if self.curve > 0.0 {
+            if self.linear == [0.0; 2] {
+                *speed *= voltage;
+            } else {
+                let [modelled, linear] = self.linear;
                 let greatest = f64::from(rotor.speed_at(rotor.thrust_max));
-                let command = *speed / greatest;
-                *speed = greatest * (self.curve * command + (1.0 - self.curve) * command * command).sqrt();
+                let command = voltage * command_of(*speed / greatest, modelled);
+                *speed = greatest * (linear * command + (1.0 - linear) * command * command).sqrt();
             }
         }
         if let Some((failed, _)) = self.failure.filter(|(_, first)| now >= *first)
@@ -255,6 +271,17 @@ impl Motors {
             battery.draw(power.sum(), step);
         }
         stages.map(Delivered::Speeds)
+    }
+}
+
+/// The command of a rotor that is to turn at this part of its greatest speed, with the curve's `linear` part.
+fn command_of(speed: f64, linear: f64) -> f64 {
+    let fraction = speed * speed;
+    // Without a linear part, zero would be divided by zero.
+    if linear > 0.0 {
+        2.0 * fraction / (linear + (linear * linear + 4.0 * (1.0 - linear) * fraction).sqrt())
+    } else {
+        speed
     }
 }
 

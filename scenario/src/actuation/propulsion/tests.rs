@@ -8,6 +8,7 @@ const POSITIONS_AND_SPINS: &str = "
 position = [[0.12, 0.12, 0.0], [-0.12, 0.12, 0.0], [-0.12, -0.12, 0.0], [0.12, -0.12, 0.0]]
 spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]
 lag = 0.02
+idle = 0
 ";
 
 fn read(keys: &str) -> Result<Rotor, String> {

@@ -10,7 +10,7 @@ const THRUST_COEFFICIENT: f64 = 5.57e-6;
 
 fn propulsion(sections: &str, lag: f64) -> Propulsion {
     let scenario = Scenario::parse(&format!("{HUMMINGBIRD}{sections}"), "f").unwrap();
-    Propulsion::new(&scenario.configuration, lag, &scenario.reality, STEP_S)
+    Propulsion::new(&scenario.configuration, scenario.motor(), lag, &scenario.reality, STEP_S)
 }
 
 fn speeds(delivered: &Delivered) -> [f64; ROTORS_MAX] {
@@ -122,9 +122,38 @@ fn a_curve_bends_the_thrust_between_none_and_all() {
 }
 
 #[test]
+fn a_model_with_the_true_curve_gets_what_it_asks_for() {
+    for (linear, voltage) in [(0.4, 1.0), (1.0, 1.0), (0.4, 0.75)] {
+        let text = HUMMINGBIRD.replace("[rotors] ", &format!("[rotors]\nthrust_curve = {linear} "));
+        let battery = format!(
+            "[battery]\nfull_voltage = {0}\nempty_voltage = {0}\nresistance = 0\ncapacity = 10\nnominal_voltage = 12.6",
+            12.6 * voltage
+        );
+        let scenario = Scenario::parse(&format!("{text}{battery}"), "f").unwrap();
+        let mut rotors = Propulsion::new(&scenario.configuration, scenario.motor(), 0.0, &scenario.reality, STEP_S);
+        let full = THRUST_COEFFICIENT * 1500.0 * 1500.0;
+        rotors.command(&[2.0; 4]);
+        let thrust = THRUST_COEFFICIENT * speeds(&rotors.advance(0)[0])[0].powi(2);
+        let curve = |u: f64| full * (linear * u + (1.0 - linear) * u * u);
+        // The command whose thrust is 2 N, with less of it as the voltage is less.
+        let commands = (0..=1_000_000).map(|step| f64::from(step) * 1e-6);
+        let command = commands.min_by(|a, b| (curve(*a) - 2.0).abs().total_cmp(&(curve(*b) - 2.0).abs())).unwrap();
+        assert!((thrust - curve(command * voltage)).abs() < 1e-4, "{linear} {voltage}: {thrust}");
+    }
+}
+
+#[test]
+fn a_motor_that_turns_idles_at_least_and_a_stopped_one_stands() {
+    let mut propulsion = propulsion("", 0.0);
+    propulsion.command(&[1e-6, 0.0, 2.0, 2.0]);
+    let speeds = speeds(&propulsion.advance(0)[0]);
+    assert!((speeds[0] - 0.055 * 1500.0).abs() < 1e-3 && speeds[1] == 0.0, "{speeds:?}");
+}
+
+#[test]
 fn without_rotors_the_wrench_acts_within_the_limits() {
     let paper = Scenario::paper().unwrap();
-    let mut direct = Propulsion::new(&paper.configuration, 0.0, &paper.reality, STEP_S);
+    let mut direct = Propulsion::new(&paper.configuration, paper.motor(), 0.0, &paper.reality, STEP_S);
     let wrench = |thrust: f32, y: f32| Wrench { thrust, torque: Vector3::new(0.1, y, 0.0) };
     assert!(!direct.command_directly(&wrench(5.0, -0.2)));
     let torque = wrench(5.0, -0.2).torque.map(f64::from);
