@@ -57,7 +57,8 @@ impl Sources<'_> {
         let Some(row) = number.checked_sub(HEAD_LINES) else { return self.head(number) };
         let rows = certificate.map_or(0, |certificate| certificate.inequalities().count());
         if let Some(inequality) = certificate.and_then(|certificate| certificate.inequalities().nth(row)) {
-            let (required, available) = (inequality.required, inequality.available);
+            // In single precision: double has words of its own, 2 KB.
+            let (required, available) = (inequality.required as f32, inequality.available as f32);
             let severity = if inequality.holds() { Severity::Information } else { Severity::Critical };
             // 28, 2, 8, 4 and 8 characters.
             let words = format_args!("{:.28}: {required:.4} of {available:.4}", inequality.name);

@@ -93,6 +93,8 @@ impl Line {
                 let mut port = SerialPort::open(path, *rate)?;
                 port.set_read_timeout(READ_TIMEOUT)?;
                 port.set_write_timeout(WRITE_TIMEOUT)?;
+                // USB's sign that a program has it open; a line without that sign works as well.
+                let _ = port.set_dtr(true);
                 Open::Serial(port)
             }
             Address::Tcp(place) => {
