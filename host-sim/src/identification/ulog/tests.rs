@@ -205,6 +205,7 @@ fn ticks_become_px4s_topics_in_px4s_frames() {
         "vehicle_angular_velocity",
         "vehicle_local_position",
         "actuator_motors",
+        "esc_status",
         "battery_status",
         "vehicle_status",
         "vehicle_land_detected",
@@ -215,6 +216,8 @@ fn ticks_become_px4s_topics_in_px4s_frames() {
     assert_eq!(first("vehicle_angular_velocity", &["xyz[0]", "xyz[1]", "xyz[2]"]), [-1.0, 2.0, 3.0]);
     assert_eq!(first("vehicle_local_position", &["x", "y", "z", "xy_valid"]), [1.0, -2.0, -3.0, 1.0]);
     assert!((first("actuator_motors", &["control[3]"])[0] - 0.4).abs() < 1e-6);
+    let of_motors = ["esc[0].esc_rpm", "esc[1].esc_rpm", "esc_count", "esc_online_flags", "esc_armed_flags"];
+    assert_eq!(first("esc_status", &of_motors), [4775.0, 0.0, 4.0, 13.0, 15.0]);
     assert_eq!(first("battery_status", &["voltage_v"]), [15.5]);
     // AUTO_LOITER, armed, in the air.
     assert_eq!(first("vehicle_status", &["nav_state", "arming_state"]), [4.0, 2.0]);

@@ -28,7 +28,7 @@ const TICK_FIELDS: [(&str, usize); 11] = [
 ];
 
 /// What is written, with PX4's names.
-const TOPICS_WRITTEN: [Topic; 9] = [
+const TOPICS_WRITTEN: [Topic; 11] = [
     Topic { name: "vehicle_attitude", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[4] q;" },
     Topic { name: "vehicle_angular_velocity", fields: "uint64_t timestamp;uint64_t timestamp_sample;float[3] xyz;" },
     Topic {
@@ -45,7 +45,23 @@ const TOPICS_WRITTEN: [Topic; 9] = [
     Topic { name: "battery_status", fields: "uint64_t timestamp;float voltage_v;float current_a;float remaining;" },
     Topic { name: "vehicle_status", fields: "uint64_t timestamp;uint8_t nav_state;uint8_t arming_state;" },
     Topic { name: "vehicle_land_detected", fields: "uint64_t timestamp;bool landed;" },
+    Topic {
+        name: "esc_status",
+        fields: "uint64_t timestamp;uint16_t counter;uint8_t esc_count;uint8_t esc_connectiontype;\
+                 uint8_t esc_online_flags;uint8_t esc_armed_flags;esc_report[4] esc;",
+    },
+    // What that holds of each; no record is of it alone.
+    Topic { name: "esc_report", fields: "uint64_t timestamp;int32_t esc_rpm;" },
 ];
+
+/// The place of `esc_status` among them.
+const ESC_STATUS: u16 = 9;
+
+/// PX4's `esc_connectiontype` of DShot.
+const CONNECTED_BY_DSHOT: u8 = 5;
+
+/// How fast the rotors turn, where the firmware records it, rad/s.
+const SPEED_FIELDS: [&str; 4] = ["rotor_speeds[0]", "rotor_speeds[1]", "rotor_speeds[2]", "rotor_speeds[3]"];
 
 /// PX4's `arming_state`.
 const ARMED_STATE: u8 = 2;
@@ -80,12 +96,17 @@ pub fn written(log: &Ulog) -> Result<Vec<u8>, String> {
     let parameters: Vec<(&str, f64)> = log.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let mut writer = Writer::new(log.start, &TOPICS_WRITTEN, &information, &parameters);
     let mut texts = log.texts.iter().peekable();
+    // Older firmware recorded none.
+    let mut speeds = ticks.columns(&SPEED_FIELDS).into_iter().flatten();
     for row in &rows {
         let tick = Record(row);
         while let Some(text) = texts.next_if(|text| text.time <= tick.time()) {
             writer.text(text.level, text.time, &text.words);
         }
         tick.write(&mut writer);
+        if let Some(speeds) = speeds.next().filter(|speeds| speeds.iter().any(|speed| speed.is_finite())) {
+            writer.record(ESC_STATUS, tick.time(), &tick.esc_status(&speeds));
+        }
     }
     texts.for_each(|text| writer.text(text.level, text.time, &text.words));
     Ok(writer.finish())
@@ -117,6 +138,18 @@ impl Record<'_> {
         let numbers = self.field(name);
         let kept = numbers.len() - 2;
         numbers.iter().enumerate().map(|(at, number)| if at < kept { *number } else { -number }).collect()
+    }
+
+    /// The rotors' speeds, rad/s, as their controllers' report.
+    fn esc_status(&self, speeds: &[f64]) -> Vec<u8> {
+        let mode = Mode::ALL.get(self.field("mode")[0] as usize).copied().unwrap_or(Mode::Boot);
+        let all = (1_u8 << speeds.len()) - 1;
+        let online = speeds.iter().rev().fold(0, |bits, speed| bits << 1 | u8::from(speed.is_finite()));
+        let head = [0, 0, speeds.len() as u8, CONNECTED_BY_DSHOT, online, if mode.is_armed() { all } else { 0 }];
+        let rpm = |speed: &f64| (speed * 60.0 / std::f64::consts::TAU).round() as i32;
+        let reports =
+            speeds.iter().flat_map(|speed| self.time().to_le_bytes().into_iter().chain(rpm(speed).to_le_bytes()));
+        head.into_iter().chain(reports).collect()
     }
 
     /// In the order of [`TOPICS_WRITTEN`].
