@@ -28,8 +28,8 @@ pub struct Outputs([ThrustCurve; MOTOR_COUNT]);
 
 impl Outputs {
     /// For `rotors`, one to each `motor`, which are alike.
-    /// An error names `rotors` if there are not [`MOTOR_COUNT`] of them, `rotors.thrust_curve` or `rotors.idle` if there
-    /// is no such motor.
+    /// An error names `rotors` if there are not [`MOTOR_COUNT`] of them, `rotors.thrust_curve` or `rotors.idle` if
+    /// there is no such motor.
     pub fn new(rotors: &Rotors, motor: Motor) -> Result<Self, ParameterError> {
         let curve = |rotor: &Rotor| ThrustCurve::new(rotor.thrust_max, motor);
         match &rotors[..] {

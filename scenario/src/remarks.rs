@@ -6,8 +6,8 @@ use crate::path::Swing;
 use crate::reference::ReferenceKind;
 use crate::trajectory::{Route, RouteWay};
 
-/// Of the vehicle of a scenario: which of its numbers are unusual, and whether its motors may stall. Of the reference: where it swings out, how near it
-/// is to the rows of a file, and where it is too fast.
+/// Of the vehicle of a scenario: which of its numbers are unusual, and whether its motors may stall. Of the reference:
+/// where it swings out, how near it is to the rows of a file, and where it is too fast.
 #[must_use]
 pub fn remarks(scenario: &Scenario, is_certified: bool) -> Vec<String> {
     let route = match &scenario.reference {

@@ -1,10 +1,10 @@
 //! What the least rotor command costs:
 //! `cargo run --release -p verification --example idle -- COUNT FILES`.
 //!
-//! Each vehicle flies with rotors that may be commanded as low as its `speed` says (`idle = 0`), with its file's idle, and
-//! with that on motors whose thrust is by 0.3 linear in the command: from upside down at rest, and COUNT random flights
-//! as `host-sim campaign` draws them. Prints a row of a table for each, and why a vehicle is not certified. Fails if a flight does not recover, or a rotor is
-//! commanded below what its motor idles at.
+//! Each vehicle flies with rotors that may be commanded as low as its `speed` says (`idle = 0`), with its file's idle,
+//! and with that on motors whose thrust is by 0.3 linear in the command: from upside down at rest, and COUNT random
+//! flights as `host-sim campaign` draws them. Prints a row of a table for each, and why a vehicle is not certified. Fails
+//! if a flight does not recover, or a rotor is commanded below what its motor idles at.
 
 use controller_core::certificate::certified::{Certified, Refused};
 use host_sim::flight::Flight;

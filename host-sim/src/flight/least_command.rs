@@ -1,5 +1,6 @@
-//! The least command of any rotor in a flight, part of a full one: u = phi^-1(f / f_max) of the commanded thrust f, with
-//! the model's curve at nominal voltage ([`controller_core::allocation::curve`]), and not raised to the motor's idle.
+//! The least command of any rotor in a flight, part of a full one: u = phi^-1(f / f_max) of the commanded thrust f,
+//! with the model's curve at nominal voltage ([`controller_core::allocation::curve`]), and not raised to the motor's
+//! idle.
 //!
 //! A thrust of zero stops a rotor, one that is lost. That is no command; whether it may be, the bounds on the rotors'
 //! thrusts say.

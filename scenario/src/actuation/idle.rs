@@ -1,11 +1,12 @@
-//! `[rotors] idle` and `thrust_curve`: the least command of a rotor in flight, and the least thrust that follows from it.
+//! `[rotors] idle` and `thrust_curve`: the least command of a rotor in flight, and the least thrust that follows from
+//! it.
 //!
 //! ```text
 //! thrust_min = max(what speed[0] or thrust_min says, f_max phi(idle / VOLTAGE_RATIO_MIN))
 //! ```
 //!
-//! with phi of [`controller_core::allocation::curve`]. Everything that commands rotors takes its least thrust from here:
-//! law, certificate, simulated vehicle and boards.
+//! with phi of [`controller_core::allocation::curve`]. Everything that commands rotors takes its least thrust from
+//! here: law, certificate, simulated vehicle and boards.
 
 use super::propulsion::Propulsion;
 use crate::key::{Bounds, Key};

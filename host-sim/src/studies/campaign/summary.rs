@@ -33,7 +33,8 @@ pub struct Summary {
     pub beyond: u64,
     /// Flights with a command that a rotor could not follow.
     pub clipped: u64,
-    /// The least command of any rotor in all flights, and what motors idle at, parts of a full one; none without rotors.
+    /// The least command of any rotor in all flights, and what motors idle at, parts of a full one; none without
+    /// rotors.
     pub least_command: Option<(f64, f64)>,
     /// Flights in which the law's fallback came.
     pub fallback: u64,
