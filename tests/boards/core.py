@@ -1,8 +1,9 @@
 """A Cortex-M core that runs an image as it is flashed: Unicorn executes its instructions, and this module is what Unicorn
 lacks of the core: exceptions with their frames on the stack, sleep, faults, and time.
 
-Time: a block of code takes `ns_per_byte` for each of its bytes, an access to a peripheral `ACCESS_NS`. Neither is exact to
-the cycle. An exception is taken between two blocks, as soon as it is due, more urgent than what runs, and not masked.
+Time: an instruction takes `instruction_ns`, an access to a peripheral `ACCESS_NS` more. Neither is exact to the cycle.
+Instructions run in stretches to the next thing that is due; an access that makes anything else due ends its stretch. A
+stretch with an interrupt that waits for the core to unmask it is at most `MASKED_INSTRUCTIONS` long.
 
 Exceptions (ARMv7-M Architecture Reference Manual, B1.5.6 to B1.5.8): the core saves a frame on the stack,
 
@@ -22,18 +23,20 @@ from unicorn import arm_const as arm
 from nvic import FIRST_INTERRUPT, HARD_FAULT, SystemControl
 from peripheral import Bus
 from schedule import Schedule
+from unicorns import FLOATS, PLAIN, Instructions, Registers
 
 # An access to a register of a peripheral.
 ACCESS_NS = 20
+# The longest stretch, and that with an interrupt that waits.
+STRETCH_INSTRUCTIONS, MASKED_INSTRUCTIONS = 1_000_000, 40
 
 # Where code returns to that ends an exception: in a page that nothing else has.
 _RETURN_PAGE = 0xFFFF_F000
 _EXC_RETURN_FLOATS = 0xFFFF_FFE9
 _EXC_RETURN_PLAIN = 0xFFFF_FFF9
 
-_PLAIN = [arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
-          arm.UC_ARM_REG_LR]
-_FLOATS = [getattr(arm, f"UC_ARM_REG_D{number}") for number in range(8)]
+# `b .`
+_LOOP = b"\xfe\xe7"
 _WFE, _WFI = b"\x20\xbf", b"\x30\xbf"
 
 # What CFSR says of a fault: (without, with a valid address in BFAR).
@@ -43,13 +46,16 @@ PRECISE_BUS_FAULT, INSTRUCTION_BUS_FAULT, UNDEFINED = 1 << 9 | 1 << 15, 1 << 8, 
 class Core:
     """One core, its memory and the bus to its peripherals."""
 
-    def __init__(self, model: int, part: int, hz: int, ns_per_byte: float, memories: list[tuple[int, int]]) -> None:
+    def __init__(self, model: int, part: int, hz: int, instruction_ns: float, memories: list[tuple[int, int]]) -> None:
         """`memories`: (address, bytes) of RAM and flash. `hz`: the core's clock once the image has set it."""
         self.schedule = Schedule()
         self.bus = Bus()
         self.system = SystemControl(part, lambda: self.schedule.now, lambda: hz)
         self.bus.add(self.system)
-        self.ns_per_byte = ns_per_byte
+        self._instruction_ns = instruction_ns
+        self.instructions = 0
+        # Instructions of this stretch that `now` has counted already, and when the stretch ends.
+        self._counted, self._stretch_end = 0, 0
         self.stopped: str | None = None
         self.pc = 0
         # Interrupts taken, and how long each waited at most, ns; the lowest address that the stack had at one.
@@ -58,7 +64,7 @@ class Core:
         self.idle_ns = 0
         self._asleep = False
         self._woken = False
-        self._sleeps: set[int] = set()
+        self._hung: tuple[int, bytes] | None = None
         uc = self.uc = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
         uc.ctl_set_cpu_model(model)
         for address, size in memories:
@@ -66,7 +72,11 @@ class Core:
         uc.mem_map(_RETURN_PAGE, 0x1000)
         uc.hook_add(unicorn.UC_HOOK_CODE, lambda uc, *_: uc.emu_stop(), begin=_RETURN_PAGE, end=0xFFFF_FFFF)
         uc.mmio_map(0xE000_0000, 0x10_0000, self._read, 0xE000_0000, self._write, 0xE000_0000)
-        uc.hook_add(unicorn.UC_HOOK_BLOCK, self._block)
+        self._run = Instructions(uc, model)
+        self._masks = Registers(uc, [arm.UC_ARM_REG_PRIMASK, arm.UC_ARM_REG_FAULTMASK, arm.UC_ARM_REG_BASEPRI])
+        self._frame = Registers(uc, [*PLAIN, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP])
+        self._floats = Registers(uc, [*FLOATS, arm.UC_ARM_REG_FPSCR])
+        self._pc = Registers(uc, [arm.UC_ARM_REG_PC])
         uc.hook_add(unicorn.UC_HOOK_MEM_UNMAPPED, self._unmapped)
         uc.hook_add(unicorn.UC_HOOK_INSN_INVALID, self._undefined)
         uc.hook_add(unicorn.UC_HOOK_INTR, self._trapped)
@@ -104,25 +114,61 @@ class Core:
     def reset(self) -> None:
         """The registers as after a reset; `begin` sets those that a start gives."""
         self.stopped, self._asleep, self._woken = None, False, False
+        if self._hung is not None:
+            self.replace(*self._hung)
+            self._hung = None
         for register in (arm.UC_ARM_REG_PRIMASK, arm.UC_ARM_REG_BASEPRI, arm.UC_ARM_REG_FAULTMASK,
                          arm.UC_ARM_REG_CONTROL):
             self.uc.reg_write(register, 0)
 
+    def set_control(self, *, process_stack: bool = False, float_in_use: bool = False) -> None:
+        """CONTROL as a bootloader's task leaves it: SPSEL with a stack of its own, FPCA."""
+        if process_stack:
+            self.uc.reg_write(arm.UC_ARM_REG_PSP, self.uc.reg_read(arm.UC_ARM_REG_MSP) - 0x1000)
+        self.uc.reg_write(arm.UC_ARM_REG_CONTROL, 2 * process_stack | 4 * float_in_use)
+
+    def replace(self, address: int, code: bytes) -> None:
+        """Puts other instructions in place of those at `address`, to spoil a run."""
+        self.uc.mem_write(address & ~1, code)
+        self.uc.ctl_remove_cache(address & ~1, (address & ~1) + len(code))
+
+    def hang(self) -> None:
+        """The core goes round in a loop where it is, its interrupts masked, until it is reset."""
+        self._wake()
+        self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 1)
+        self._hang_at(self.pc)
+
+    def hang_in(self, function: str) -> None:
+        """A function of the image never comes back, until the core is reset."""
+        self._hang_at(self.symbols[function] & ~1)
+
+    def _hang_at(self, place: int) -> None:
+        self._hung = place, bytes(self.uc.mem_read(place, 2))
+        self.replace(place, _LOOP)
+
     # What Unicorn calls.
 
+    def _pass_time(self) -> None:
+        """`now` is that of the instruction at hand."""
+        run = self._run.run()
+        self.schedule.now += int((run - self._counted) * self._instruction_ns)
+        self._counted = run
+
     def _read(self, _uc: unicorn.Uc, offset: int, size: int, base: int) -> int:
-        self.schedule.now += ACCESS_NS
+        self._pass_time()
+        schedule = self.schedule
+        schedule.now += ACCESS_NS
+        if schedule.now >= self._stretch_end:
+            self._run.stop()
         return self.bus.read(base + offset, size)
 
     def _write(self, _uc: unicorn.Uc, offset: int, size: int, value: int, base: int) -> None:
-        self.schedule.now += ACCESS_NS
+        self._pass_time()
+        schedule, system = self.schedule, self.system
+        schedule.now += ACCESS_NS
         self.bus.write(base + offset, size, value)
-
-    def _block(self, uc: unicorn.Uc, _address: int, size: int, _user: object) -> None:
-        schedule = self.schedule
-        schedule.now += int(size * self.ns_per_byte) + 1
-        if schedule.now >= schedule.next_due or self.system.pending and self._next() is not None:
-            uc.emu_stop()
+        if system.pending or schedule.next_due < self._stretch_end or schedule.now >= self._stretch_end:
+            self._run.stop()
 
     def _sleep(self, uc: unicorn.Uc, address: int, _size: int, _user: object) -> None:
         self._asleep, self._resume = True, address + 2
@@ -146,43 +192,56 @@ class Core:
     @property
     def faults_masked(self) -> bool:
         """FAULTMASK."""
-        return bool(self.uc.reg_read(arm.UC_ARM_REG_FAULTMASK) & 1)
+        return bool(self._masks.read()[1] & 1)
 
     def _next(self) -> int | None:
-        uc = self.uc
-        if self.faults_masked:
-            return None
-        return self.system.next_exception(uc.reg_read(arm.UC_ARM_REG_PRIMASK), uc.reg_read(arm.UC_ARM_REG_BASEPRI))
+        primask, faultmask, basepri = self._masks.read()
+        return None if faultmask & 1 else self.system.next_exception(primask & 1, basepri & 0xFF)
 
     def run(self, until_ns: int) -> None:
         """Runs until that time, or until something stops the core: `stopped` says what."""
-        schedule, uc = self.schedule, self.uc
+        schedule, system = self.schedule, self.system
         while schedule.now < until_ns and self.stopped is None:
-            schedule.run_due()
-            exception = self._next() if self.system.pending else None
+            if schedule.next_due <= schedule.now:
+                schedule.run_due()
+                if self.stopped is not None:
+                    return
+            exception = self._next() if system.pending else None
             if exception is not None:
                 self._wake()
                 self._enter(exception)
             elif self._asleep:
-                if self._woken or self.system.wakes():
+                if self._woken or system.pending and system.wakes():
                     self._wake()
                 else:
                     slept = max(0, min(schedule.next_due, until_ns) - schedule.now)
                     self.idle_ns += slept
                     schedule.now += slept
                     continue
-            self._fault: tuple[int, int | None] | None = None
-            try:
-                uc.emu_start(self.pc | 1, 0)
-            except unicorn.UcError as error:
-                if self._fault is None:
-                    self.stopped = f"{error} at {uc.reg_read(arm.UC_ARM_REG_PC):#x}"
-                    return
-            self.pc = uc.reg_read(arm.UC_ARM_REG_PC)
-            if self._fault is not None:
-                self._take_fault(*self._fault)
-            elif self.pc >= _RETURN_PAGE:
-                self._leave()
+            self._execute(min(schedule.next_due, until_ns))
+
+    def _execute(self, until_ns: int) -> None:
+        """One stretch of instructions."""
+        schedule, system = self.schedule, self.system
+        self._stretch_end = until_ns
+        limit = max(1, min(STRETCH_INSTRUCTIONS, int((until_ns - schedule.now) / self._instruction_ns) + 1))
+        if system.pending and system.wakes():
+            limit = min(limit, MASKED_INSTRUCTIONS)
+        self._fault: tuple[int, int | None] | None = None
+        self._counted = 0
+        try:
+            self.uc.emu_start(self.pc | 1, 0, count=limit)
+        except unicorn.UcError as error:
+            if self._fault is None:
+                self.stopped = f"{error} at {self.uc.reg_read(arm.UC_ARM_REG_PC):#x}"
+                return
+        self._pass_time()
+        self.instructions += self._counted
+        self.pc = self._pc.read()[0] & 0xFFFF_FFFE
+        if self._fault is not None:
+            self._take_fault(*self._fault)
+        elif self.pc >= _RETURN_PAGE:
+            self._leave()
 
     def _wake(self) -> None:
         if self._asleep:
@@ -201,42 +260,38 @@ class Core:
         self._take_fault(UNDEFINED, None)
 
     def _enter(self, exception: int) -> None:
-        uc, system = self.uc, self.system
-        floats = system.saves_floats
-        sp, flags = uc.reg_read(arm.UC_ARM_REG_SP), uc.reg_read(arm.UC_ARM_REG_XPSR)
-        frame_bytes = 104 if floats else 32
-        padded = sp - frame_bytes & 4
-        frame = sp - frame_bytes & ~7
-        words = [uc.reg_read(register) for register in _PLAIN]
+        system, saves_floats = self.system, self.system.saves_floats
+        values = self._frame.read()
+        *words, flags, sp = [value & 0xFFFF_FFFF for value in values]
+        size = 104 if saves_floats else 32
+        frame = sp - size & ~7
         number = system.active[-1][0] if system.active else 0
-        saved = struct.pack("<8I", *words, self.pc, flags & 0xFF00_0000 | (0x200 if padded else 0) | 1 << 24 | number)
-        if floats:
-            doubles = [uc.reg_read(register) for register in _FLOATS]
-            saved += struct.pack("<8Q2I", *doubles, uc.reg_read(arm.UC_ARM_REG_FPSCR), 0)
-        uc.mem_write(frame, saved)
-        uc.reg_write(arm.UC_ARM_REG_SP, frame)
-        uc.reg_write(arm.UC_ARM_REG_LR, _EXC_RETURN_FLOATS if floats else _EXC_RETURN_PLAIN)
+        flags = flags & 0xF900_0000 | 1 << 24 | (0x200 if sp - size & 4 else 0) | number
+        saved = struct.pack("<8I", *words, self.pc, flags)
+        if saves_floats:
+            *doubles, status = self._floats.read()
+            saved += struct.pack("<8Q2I", *doubles, status & 0xFFFF_FFFF, 0)
+        self.uc.mem_write(frame, saved)
+        values[5] = _EXC_RETURN_FLOATS if saves_floats else _EXC_RETURN_PLAIN
+        values[7] = frame
+        self._frame.write()
         self.deepest_stack = min(self.deepest_stack, frame)
         system.enter(exception)
         self.taken[exception - FIRST_INTERRUPT] += 1
-        vector = struct.unpack("<I", uc.mem_read(system.vector_table + 4 * exception, 4))[0]
+        vector = struct.unpack("<I", self.uc.mem_read(system.vector_table + 4 * exception, 4))[0]
         self.pc = vector & ~1
 
     def _leave(self) -> None:
-        uc, system = self.uc, self.system
-        frame = uc.reg_read(arm.UC_ARM_REG_SP)
-        floats = not self.pc & 0x10
-        saved = uc.mem_read(frame, 104 if floats else 32)
+        has_floats = not self.pc & 0x10
+        values = self._frame.read()
+        frame = values[7] & 0xFFFF_FFFF
+        saved = self.uc.mem_read(frame, 104 if has_floats else 32)
         *words, pc, flags = struct.unpack_from("<8I", saved)
-        for register, value in zip(_PLAIN, words):
-            uc.reg_write(register, value)
-        if floats:
-            *doubles, status = struct.unpack_from("<8QI", saved, 32)
-            for register, value in zip(_FLOATS, doubles):
-                uc.reg_write(register, value)
-            uc.reg_write(arm.UC_ARM_REG_FPSCR, status)
-        uc.reg_write(arm.UC_ARM_REG_SP, frame + len(saved) + (4 if flags & 0x200 else 0))
-        uc.reg_write(arm.UC_ARM_REG_XPSR, flags & 0xF900_0000)
+        if has_floats:
+            self._floats.values[:] = struct.unpack_from("<8QI", saved, 32)
+            self._floats.write()
+        values[:] = [*words, flags & 0xF900_0000, frame + len(saved) + (4 if flags & 0x200 else 0)]
+        self._frame.write()
         self.pc = pc & ~1
         self._woken = True
-        system.leave()
+        self.system.leave()

@@ -14,7 +14,7 @@ import time
 from boards import Board
 from chip import POWER
 from schedule import NS_PER_MS, NS_PER_S
-from station import OFFBOARD, OFFBOARD_MAIN, Station, mavlink
+from station import OFFBOARD, OFFBOARD_MAIN, PoseSource, Station, mavlink
 from vehicle import START, Vehicle
 
 HEIGHT = 0.6
@@ -29,14 +29,16 @@ class Flight:
     """One board, its vehicle and its ground station."""
 
     def __init__(self, name: str, image: str, vehicle: pathlib.Path) -> None:
-        self.wall = time.process_time()
+        self.wall, self.is_quiet = time.process_time(), False
         self.board = Board(name, image)
         self.vehicle = Vehicle(self.board, vehicle)
-        self.station = Station(self.board, self.vehicle)
+        self.poses = PoseSource(self.board, self.vehicle)
+        self.station = Station(self.board)
 
     def say(self, words: str) -> None:
         """Prints a measured figure."""
-        print(f"    {self.board.schedule.now / NS_PER_S:8.3f} s  {words}", flush=True)
+        if not self.is_quiet:
+            print(f"    {self.board.schedule.now / NS_PER_S:8.3f} s  {words}", flush=True)
 
     def boot(self, cause: str = POWER) -> None:
         """From power on to the first heartbeat and the first frame of the motors."""

@@ -1,4 +1,4 @@
-"""A ground station and a source of poses on an emulated board's serial line, by pymavlink, in the vehicle's time."""
+"""A ground station and a source of poses, each on an emulated board's serial line, by pymavlink, in the vehicle's time."""
 
 import os
 from collections import Counter
@@ -20,16 +20,32 @@ HEARTBEAT_NS, SETPOINT_NS = NS_PER_S // 2, NS_PER_S // 10
 LOOK_NS = 5 * NS_PER_MS
 
 
-class Station:
-    """Sends heartbeats, poses and setpoints, and keeps what the board says."""
+class PoseSource:
+    """A motion-capture system: sends what it sees of the vehicle, late."""
 
     def __init__(self, board: Board, vehicle: Vehicle) -> None:
-        self.board, self.vehicle = board, vehicle
+        self.board, self.vehicle, self.is_on = board, vehicle, True
+        self._sender = mavlink.MAVLink(None, srcSystem=1, srcComponent=197)
+        board.schedule.after(0, self._see)
+
+    def _see(self) -> None:
+        schedule = self.board.schedule
+        schedule.after(POSE_PERIOD_NS, self._see)
+        if self.is_on:
+            place, attitude = self.vehicle.pose()
+            message = mavlink.MAVLink_att_pos_mocap_message(schedule.now // NS_PER_US, attitude, *place)
+            schedule.after(POSE_DELAY_NS, self.board.link.receive, message.pack(self._sender))
+
+
+class Station:
+    """Sends heartbeats and setpoints, and keeps what the board says."""
+
+    def __init__(self, board: Board) -> None:
+        self.board = board
         self._parser = mavlink.MAVLink(None)
         self._parser.robust_parsing = True
         self._sender = mavlink.MAVLink(None, srcSystem=255, srcComponent=190)
-        self._source = mavlink.MAVLink(None, srcSystem=1, srcComponent=197)
-        self.is_talking, self.has_poses = True, True
+        self.is_talking = True
         self.target: tuple[float, float, float] | None = None
         self.counts: Counter[str] = Counter()
         self.last: dict[str, Any] = {}
@@ -42,7 +58,6 @@ class Station:
         self.is_quiet = False
         schedule = board.schedule
         schedule.after(0, self._heartbeat)
-        schedule.after(0, self._pose)
         schedule.after(0, self._setpoint)
 
     # Sending.
@@ -55,14 +70,6 @@ class Station:
         self.board.schedule.after(HEARTBEAT_NS, self._heartbeat)
         if self.is_talking:
             self.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
-
-    def _pose(self) -> None:
-        schedule = self.board.schedule
-        schedule.after(POSE_PERIOD_NS, self._pose)
-        if self.has_poses:
-            place, attitude = self.vehicle.pose()
-            message = mavlink.MAVLink_att_pos_mocap_message(schedule.now // NS_PER_US, attitude, *place)
-            schedule.after(POSE_DELAY_NS, self.board.link.receive, message.pack(self._source))
 
     def _setpoint(self) -> None:
         self.board.schedule.after(SETPOINT_NS, self._setpoint)

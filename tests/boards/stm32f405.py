@@ -61,7 +61,7 @@ class Stm32F405(Chip):
 
     def __init__(self) -> None:
         memories = [(0x0800_0000, PARAMETERS - 0x0800_0000), *self.VOLATILE, (self.SYSTEM_MEMORY, 0x1_0000)]
-        core = Core(arm.UC_CPU_ARM_CORTEX_M4, 0x410F_C241, 168_000_000, 3.4, memories)
+        core = Core(arm.UC_CPU_ARM_CORTEX_M4, 0x410F_C241, 168_000_000, 9.0, memories)
         super().__init__(core)
         for address, size in [(0x4000_0000, 0x8_0000), (0x5000_0000, 0x4_0000)]:
             core.map_peripherals(address, size)

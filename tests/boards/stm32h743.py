@@ -134,7 +134,7 @@ class Stm32H743(Chip):
     def __init__(self) -> None:
         memories = [(0x0000_0000, 0x1_0000), (0x0800_0000, PARAMETERS - 0x0800_0000), *self.VOLATILE,
                     (self.SYSTEM_MEMORY, 0x2_0000)]
-        core = Core(arm.UC_CPU_ARM_CORTEX_M7, 0x411F_C271, 400_000_000, 1.5, memories)
+        core = Core(arm.UC_CPU_ARM_CORTEX_M7, 0x411F_C271, 400_000_000, 4.0, memories)
         super().__init__(core)
         for address, size in [(0x4000_0000, 0x10_0000), (0x4802_0000, 0x1_0000), (0x5100_0000, 0x10_0000),
                               (0x5200_0000, 0x1_0000), (0x5800_0000, 0x3_0000), (0x5C00_1000, 0x1000)]:

@@ -46,7 +46,7 @@ class Vehicle:
         self._step_ns = round(plant.get("step", 0.001) * 1e9)
         self._draw = random.Random(2)
         self.position, self.attitude, self.velocity = START, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        self.highest = 0.0
+        self.last_driven_ns = 0
         # Whether the vehicle moves at all: at first it waits for its board.
         self.is_free = False
         # Every so often: (time, position).
@@ -57,6 +57,8 @@ class Vehicle:
         board = self.board
         board.schedule.after(self._step_ns, self._advance)
         commands = board.escs.commands()
+        if not board.escs.are_still():
+            self.last_driven_ns = board.schedule.now
         if not self.is_free:
             if not any(commands):
                 return
@@ -67,7 +69,6 @@ class Vehicle:
         self.position, self.velocity, self.attitude = tuple(state[0:3]), tuple(state[3:6]), tuple(state[6:10])
         board.motion.angular_velocity = tuple(state[10:13])
         board.motion.specific_force = tuple(self.body.specific_force.tolist())
-        self.highest = max(self.highest, self.position[2])
         if len(self.track) * 10 * NS_PER_MS <= board.schedule.now:
             self.track.append((board.schedule.now, self.position))
 
