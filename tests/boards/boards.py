@@ -5,6 +5,7 @@ one is held to.
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from card import Card
 from chip import Chip
 from escs import Escs, INTERVAL_MAX_NS
 from schedule import NS_PER_MS, Schedule
@@ -45,6 +46,8 @@ class Wires:
     levels: dict[str, int]
     # Counts of the converter for the battery, where the board measures it.
     battery_counts: int | None = None
+    # Whether a memory card is in its slot: of the two boards that have one, one flies with it and one without.
+    has_card: bool = False
 
 
 MICOAIR = Wires(
@@ -62,6 +65,7 @@ MICOAIR = Wires(
     levels={},
     # 16 V through a divider of 21.12.
     battery_counts=round(16.0 / 21.12 / 3.3 * 65535),
+    has_card=True,
 )
 MATEK = Wires(
     feature="matek-h743",
@@ -109,6 +113,8 @@ class Board:
         self.link = chip.uarts[self.wires.link]
         if self.wires.battery_counts is not None:
             chip.converter.counts = self.wires.battery_counts
+        if self.wires.has_card:
+            chip.slot.card = Card()
         self.vectors = self.core.load(image)
         # Why it was started again, each time.
         self.restarts: list[str] = []
@@ -165,6 +171,9 @@ class Board:
             wrong += [f"{name}: {what}, {count} times" for what, count in spi.wrong.items()]
         wrong += [f"motors: {what}, {count} times" for what, count in self.escs.wrong.items()]
         wrong += [f"flash: {what}" for what in self.chip.flash.wrong]
+        if self.chip.slot is not None:
+            wrong += [f"SDMMC1: {what}, {count} times: not memory that it reaches"
+                      for what, count in self.chip.slot.unreachable.items()]
         return wrong
 
     def flight_complaints(self) -> list[str]:

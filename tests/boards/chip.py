@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from card import Slot
 from core import Core
 from dma import Controller
 from flash import Flash
@@ -39,6 +40,7 @@ class Chip:
         self.flash: Flash
         self.watchdog: Watchdog
         self.time_base: TimeBase
+        self.slot: Slot | None = None
         self.cause = POWER
         # Told of every edge of an output, and of pulses.
         self.on_pin: Callable[[str, int], None] = lambda pin, level: None

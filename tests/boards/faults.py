@@ -143,6 +143,11 @@ def _transfer_errors(what: str, kind: str, times_ms: int) -> Callable[[Flight], 
     return strike
 
 
+def _card_pulled(flight: Flight) -> None:
+    """The card that logs the flight is pulled out."""
+    flight.board.chip.slot.card = None
+
+
 _TAKES_OVER = ("IMU: the second takes over",)
 _NO_IMU = Expected(off_within_ms=30.0, words=("Stopped: no IMU",))
 _BRIEF_MS = 5
@@ -169,6 +174,7 @@ FAULTS: dict[str, Fault] = {
     "no-data-ready-edges": Fault(_silent, Expected(words=("IMU: no data-ready edges, polled",))),
     "edges-every-100-us": Fault(_storm(100_000), Expected(unsaid=("Restarted",))),
     "edges-every-20-us": Fault(_storm(20_000), Expected(unsaid=("Restarted",))),
+    "card-pulled": Fault(_card_pulled, Expected(unsaid=("Restarted",)), boards=("micoair",)),
     "dma-error-sensor-rx": Fault(_transfer_errors("sensor", "RX", _BRIEF_MS), Expected()),
     "dma-error-sensor-tx": Fault(_transfer_errors("sensor", "TX", _BRIEF_MS), Expected()),
     "dma-error-link-rx": Fault(_transfer_errors("link", "RX", 100), Expected(unsaid=("Pose lost",))),

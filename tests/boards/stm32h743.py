@@ -3,6 +3,7 @@ for timers, 100 MHz for serial lines and sensors)."""
 
 from unicorn import arm_const as arm
 
+from card import Slot
 from chip import BROWN_OUT, PIN, POWER, SOFTWARE, WATCHDOG, Chip, ResetAndClocks
 from core import Core
 from dma import Controller, Stream
@@ -103,24 +104,6 @@ class _Converter(Peripheral):
             self.values[offset] = value
 
 
-class EmptySlot(Peripheral):
-    """SDMMC1 (chapter 55) without a card: no command is answered."""
-
-    KNOWN = frozenset([*range(0, 0x60, 4), 0x80])
-
-    def __init__(self) -> None:
-        super().__init__("SDMMC1", 0x5200_7000)
-
-    def write(self, offset: int, value: int) -> None:
-        if offset == 0x38:
-            self.values[0x34] = self.values.get(0x34, 0) & ~value
-            return
-        self.values[offset] = value
-        if offset == 0x0C:
-            # CTIMEOUT.
-            self.values[0x34] = self.values.get(0x34, 0) | 1 << 2
-
-
 class Stm32H743(Chip):
     """The chip."""
 
@@ -165,7 +148,7 @@ class Stm32H743(Chip):
             self.pulse_timers[name] = self.add(PulseTimer(name, base, core, self.dma[0], _TIMER_HZ, is_advanced, made))
         self.time_base = self.add(TimeBase("TIM5", 0x4000_0C00, core, _TIMER_HZ, 50))
         self.converter = self.add(_Converter())
-        self.slot = self.add(EmptySlot())
+        self.slot = self.add(Slot(core, 49, (0x2400_0000, 0x2408_0000)))
         self.usb = self.add(UnpluggedPort(0x4008_0000, 0x2300))
         self.debug = self.add(Store("DBGMCU", 0x5C00_1000, [0x00, 0x04, 0x3C], {0x00: 0x2003_6450}))
         self.add(Store("AXI", 0x5100_8000, [0x108]))
