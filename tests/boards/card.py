@@ -83,6 +83,12 @@ class Slot(Peripheral):
         if self._wants_interrupt():
             self.core.system.raise_interrupt(self.interrupt)
 
+    def read(self, offset: int) -> int:
+        status = self.values.get(offset, 0)
+        if offset == _STATUS and status & _DATA_ACTIVE:
+            self.core.spin()
+        return status
+
     def write(self, offset: int, value: int) -> None:
         if offset == _CLEAR:
             self.values[_STATUS] = self.values.get(_STATUS, 0) & ~value

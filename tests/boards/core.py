@@ -3,7 +3,8 @@ lacks of the core: exceptions with their frames on the stack, sleep, faults, and
 
 Time: an instruction takes `instruction_ns`, an access to a peripheral `ACCESS_NS` more. Neither is exact to the cycle.
 Instructions run in stretches to the next thing that is due; an access that makes anything else due ends its stretch. A
-stretch with an interrupt that waits for the core to unmask it is at most `MASKED_INSTRUCTIONS` long.
+stretch with an interrupt that waits for the core to unmask it is short, `MASKED_INSTRUCTIONS`, the longer it waits the
+longer.
 
 Exceptions (ARMv7-M Architecture Reference Manual, B1.5.6 to B1.5.8): the core saves a frame on the stack,
 
@@ -15,6 +16,7 @@ Laziness is left out: the floats are saved at once.
 
 import struct
 from collections import Counter
+from collections.abc import Callable
 
 import unicorn
 from elftools.elf.elffile import ELFFile
@@ -23,14 +25,14 @@ from unicorn import arm_const as arm
 from nvic import FIRST_INTERRUPT, HARD_FAULT, SystemControl
 from peripheral import Bus
 from schedule import Schedule
-from unicorns import FLOATS, PLAIN, Instructions, Registers
+from unicorns import FLOATS, PLAIN, Instructions, Registers, map_callbacks
 
 # An access to a register of a peripheral.
 ACCESS_NS = 20
-# The longest stretch, and that with an interrupt that waits.
-STRETCH_INSTRUCTIONS, MASKED_INSTRUCTIONS = 1_000_000, 40
+# The longest stretch, and those with an interrupt that waits: the first, and the longest.
+STRETCH_INSTRUCTIONS, MASKED_INSTRUCTIONS = 1_000_000, (40, 5_000)
 
-# Where code returns to that ends an exception: in a page that nothing else has.
+# Where code returns to that ends an exception: in a page where nothing is, so that Unicorn stops there.
 _RETURN_PAGE = 0xFFFF_F000
 _EXC_RETURN_FLOATS = 0xFFFF_FFE9
 _EXC_RETURN_PLAIN = 0xFFFF_FFF9
@@ -62,6 +64,7 @@ class Core:
         self.taken: Counter[int] = Counter()
         self.deepest_stack = 1 << 32
         self.idle_ns = 0
+        self._masked_stretch = MASKED_INSTRUCTIONS[0]
         self._asleep = False
         self._woken = False
         self._hung: tuple[int, bytes] | None = None
@@ -69,9 +72,9 @@ class Core:
         uc.ctl_set_cpu_model(model)
         for address, size in memories:
             uc.mem_map(address, size)
-        uc.mem_map(_RETURN_PAGE, 0x1000)
-        uc.hook_add(unicorn.UC_HOOK_CODE, lambda uc, *_: uc.emu_stop(), begin=_RETURN_PAGE, end=0xFFFF_FFFF)
-        uc.mmio_map(0xE000_0000, 0x10_0000, self._read, 0xE000_0000, self._write, 0xE000_0000)
+        self._kept: list[object] = []
+        self._error: BaseException | None = None
+        self.map_peripherals(0xE000_0000, 0x10_0000)
         self._run = Instructions(uc, model)
         self._masks = Registers(uc, [arm.UC_ARM_REG_PRIMASK, arm.UC_ARM_REG_FAULTMASK, arm.UC_ARM_REG_BASEPRI])
         self._frame = Registers(uc, [*PLAIN, arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_SP])
@@ -83,10 +86,16 @@ class Core:
 
     def map_peripherals(self, address: int, size: int) -> None:
         """Sends accesses to these addresses to the bus."""
-        self.uc.mmio_map(address, size, self._read, address, self._write, address)
+        self.map_memory(address, size, self._read, self._write)
+
+    def map_memory(self, address: int, size: int, read: Callable[[int, int], int],
+                   write: Callable[[int, int, int], None]) -> None:
+        """Sends accesses to these addresses to a model."""
+        self._kept.append(map_callbacks(self.uc, address, size, read, write, self._failed))
 
     def load(self, path: str) -> int:
         """Writes an ELF file's contents to memory; the address of its vector table."""
+        self._image = path
         with open(path, "rb") as file:
             elf = ELFFile(file)
             for segment in elf.iter_segments():
@@ -94,15 +103,27 @@ class Core:
                     self.uc.mem_write(segment["p_paddr"], segment.data())
             text = elf.get_section_by_name(".text")
             self._watch_sleep(text["sh_addr"], text.data())
-            symbols = elf.get_section_by_name(".symtab").iter_symbols()
-            self.symbols = {symbol.name: symbol["st_value"] for symbol in symbols}
             return elf.get_section_by_name(".vector_table")["sh_addr"]
 
     def _watch_sleep(self, base: int, code: bytes) -> None:
         """The image's instructions stay as they are: the core stops before each that sleeps."""
-        for offset in range(0, len(code) - 1, 2):
-            if code[offset:offset + 2] in (_WFE, _WFI):
-                self.uc.hook_add(unicorn.UC_HOOK_CODE, self._sleep, begin=base + offset, end=base + offset)
+        for instruction in (_WFE, _WFI):
+            offset = code.find(instruction)
+            while offset >= 0:
+                if offset % 2 == 0:
+                    self.uc.hook_add(unicorn.UC_HOOK_CODE, self._sleep, begin=base + offset, end=base + offset)
+                offset = code.find(instruction, offset + 1)
+
+    def _address(self, function: str) -> int:
+        """Of a function of the image."""
+        with open(self._image, "rb") as file:
+            symbols = ELFFile(file).get_section_by_name(".symtab")
+            return next(symbol["st_value"] for symbol in symbols.iter_symbols() if symbol.name == function) & ~1
+
+    def spin(self) -> None:
+        """Code polls for what takes a while: time goes on to the next thing that is due."""
+        schedule = self.schedule
+        schedule.now = max(schedule.now, min(schedule.next_due, self._stretch_end))
 
     def begin(self, vector_table: int) -> None:
         """Starts at a vector table as the hardware does after a reset, or as a bootloader does."""
@@ -140,7 +161,7 @@ class Core:
 
     def hang_in(self, function: str) -> None:
         """A function of the image never comes back, until the core is reset."""
-        self._hang_at(self.symbols[function] & ~1)
+        self._hang_at(self._address(function))
 
     def _hang_at(self, place: int) -> None:
         self._hung = place, bytes(self.uc.mem_read(place, 2))
@@ -154,20 +175,26 @@ class Core:
         self.schedule.now += int((run - self._counted) * self._instruction_ns)
         self._counted = run
 
-    def _read(self, _uc: unicorn.Uc, offset: int, size: int, base: int) -> int:
+    def _failed(self, error: BaseException) -> None:
+        self._error = error
+        self._run.stop()
+
+    def _read(self, address: int, size: int) -> int:
         self._pass_time()
         schedule = self.schedule
         schedule.now += ACCESS_NS
         if schedule.now >= self._stretch_end:
             self._run.stop()
-        return self.bus.read(base + offset, size)
+        return self.bus.read(address, size)
 
-    def _write(self, _uc: unicorn.Uc, offset: int, size: int, value: int, base: int) -> None:
+    def _write(self, address: int, size: int, value: int) -> None:
         self._pass_time()
         schedule, system = self.schedule, self.system
         schedule.now += ACCESS_NS
-        self.bus.write(base + offset, size, value)
-        if system.pending or schedule.next_due < self._stretch_end or schedule.now >= self._stretch_end:
+        changes = system.changes
+        self.bus.write(address, size, value)
+        if (schedule.next_due < self._stretch_end or schedule.now >= self._stretch_end or self.stopped is not None
+                or system.changes != changes and system.pending and system.next_exception(0, 0) is not None):
             self._run.stop()
 
     def _sleep(self, uc: unicorn.Uc, address: int, _size: int, _user: object) -> None:
@@ -225,8 +252,11 @@ class Core:
         schedule, system = self.schedule, self.system
         self._stretch_end = until_ns
         limit = max(1, min(STRETCH_INSTRUCTIONS, int((until_ns - schedule.now) / self._instruction_ns) + 1))
-        if system.pending and system.wakes():
-            limit = min(limit, MASKED_INSTRUCTIONS)
+        if system.pending and system.next_exception(0, 0) is not None:
+            limit = min(limit, self._masked_stretch)
+            self._masked_stretch = min(2 * self._masked_stretch, MASKED_INSTRUCTIONS[1])
+        else:
+            self._masked_stretch = MASKED_INSTRUCTIONS[0]
         self._fault: tuple[int, int | None] | None = None
         self._counted = 0
         try:
@@ -235,13 +265,16 @@ class Core:
             if self._fault is None:
                 self.stopped = f"{error} at {self.uc.reg_read(arm.UC_ARM_REG_PC):#x}"
                 return
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
         self._pass_time()
         self.instructions += self._counted
         self.pc = self._pc.read()[0] & 0xFFFF_FFFE
-        if self._fault is not None:
-            self._take_fault(*self._fault)
-        elif self.pc >= _RETURN_PAGE:
+        if self.pc >= _RETURN_PAGE:
             self._leave()
+        elif self._fault is not None:
+            self._take_fault(*self._fault)
 
     def _wake(self) -> None:
         if self._asleep:

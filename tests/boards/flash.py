@@ -11,8 +11,6 @@ On the F405 the core stands still while the flash works: code comes from the sam
 import random
 from collections.abc import Callable
 
-import unicorn
-
 from core import Core
 from peripheral import Peripheral
 from schedule import NS_PER_MS, NS_PER_US
@@ -45,7 +43,7 @@ class Flash(Peripheral):
         self.on_power_lost: Callable[[], None] = lambda: None
         # What must not happen.
         self.wrong: list[str] = []
-        core.uc.mmio_map(first_address, len(self.memory), self._load, None, self._store, None)
+        core.map_memory(first_address, len(self.memory), self._load, self._store)
 
     def reset(self) -> None:
         super().reset()
@@ -53,12 +51,14 @@ class Flash(Peripheral):
 
     # As memory.
 
-    def _load(self, _uc: unicorn.Uc, offset: int, size: int, _user: object) -> int:
+    def _load(self, address: int, size: int) -> int:
+        offset = address - self.first_address
         if offset // self.WORD_BYTES in self.torn:
             self.read_torn()
         return int.from_bytes(self.memory[offset:offset + size], "little")
 
-    def _store(self, _uc: unicorn.Uc, offset: int, size: int, value: int, _user: object) -> None:
+    def _store(self, address: int, size: int, value: int) -> None:
+        offset = address - self.first_address
         if size != 4 or not self.may_program():
             self.wrong.append(f"a write of {size} bytes to a flash that is not open for it")
             return
@@ -117,14 +117,18 @@ class Flash(Peripheral):
     def _work(self, duration_ns: int) -> None:
         schedule = self.core.schedule
         self.busy_until_ns = schedule.now + duration_ns
+        schedule.at(self.busy_until_ns, lambda: None)
         if self.STALLS:
             # Nothing else of the core happens meanwhile; what is outside goes on.
             schedule.now = self.busy_until_ns
 
     @property
     def is_busy(self) -> bool:
-        """Whether it is at work."""
-        return self.core.schedule.now < self.busy_until_ns
+        """Whether it is at work; who waits for it polls this."""
+        is_busy = self.core.schedule.now < self.busy_until_ns
+        if is_busy:
+            self.core.spin()
+        return is_busy
 
     def may_program(self) -> bool:
         """Whether it is open, and for programming."""

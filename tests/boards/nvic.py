@@ -17,7 +17,7 @@ FIRST_INTERRUPT = 16
 THREAD_PRIORITY = 256
 HARD_FAULT_PRIORITY = -1
 
-_ISER, _ICER, _ISPR, _ICPR, _IPR = 0x100, 0x180, 0x200, 0x280, 0x400
+_ISER, _ICER, _ISPR, _ICPR, _ICPR_END, _IPR, _IPR_END = 0x100, 0x180, 0x200, 0x280, 0x2C0, 0x400, 0x5F0
 _ICSR, _VTOR, _AIRCR, _CCR, _SHCSR, _CFSR, _HFSR, _BFAR = 0xD04, 0xD08, 0xD0C, 0xD14, 0xD24, 0xD28, 0xD2C, 0xD38
 _FPCCR = 0xF34
 _STIR = 0xF00
@@ -30,8 +30,8 @@ class SystemControl(Peripheral):
         """`part`: the core's identification (CPUID)."""
         self.KNOWN = frozenset([
             0x004, 0x008, 0x010, 0x014, 0x018,
-            *range(0x100, 0x120, 4), *range(0x180, 0x1A0, 4), *range(0x200, 0x220, 4), *range(0x280, 0x2A0, 4),
-            *range(0x400, 0x4F0, 4),
+            *range(0x100, 0x140, 4), *range(0x180, 0x1C0, 4), *range(0x200, 0x240, 4), *range(0x280, 0x2C0, 4),
+            *range(_IPR, _IPR_END, 4),
             *range(0xD00, 0xD40, 4), 0xD78, 0xD7C, 0xD80, 0xD84, 0xD88, *range(0xD90, 0xDA4, 4),
             0xF00, 0xF34, 0xF38, 0xF3C, 0xF50, 0xF5C, 0xF60, 0xF64, 0xF68, 0xF6C, 0xF70, 0xF74, 0xF90, 0xF94, 0xF9C,
         ])
@@ -45,16 +45,19 @@ class SystemControl(Peripheral):
         self.lines: dict[int, Callable[[], bool]] = {}
         self.enabled: set[int] = set()
         self.pending: set[int] = set()
-        self.priorities = [0] * 256
+        self.priorities = [0] * 512
         self.active: list[tuple[int, int]] = []
+        # Grows whenever an exception may have become pending or enabled.
+        self.changes = 0
         self._systick_from = 0
 
     def reset(self) -> None:
         super().reset()
-        self.enabled, self.pending, self.priorities, self.active = set(), set(), [0] * 256, []
+        self.enabled, self.pending, self.priorities, self.active = set(), set(), [0] * 512, []
 
     def raise_interrupt(self, interrupt: int) -> None:
         """Its line rises."""
+        self.changes += 1
         self.pending.add(FIRST_INTERRUPT + interrupt)
 
     @property
@@ -111,15 +114,15 @@ class SystemControl(Peripheral):
             self.values[_BFAR] = address
 
     def _bits(self, members: set[int], offset: int) -> int:
-        first = FIRST_INTERRUPT + 8 * (offset & 0x1C)
+        first = FIRST_INTERRUPT + 8 * (offset & 0x3C)
         return sum(1 << bit for bit in range(32) if first + bit in members)
 
     def read(self, offset: int) -> int:
-        if _ISER <= offset < 0x1A0:
+        if _ISER <= offset < _ISPR:
             return self._bits(self.enabled, offset)
-        if _ISPR <= offset < 0x2A0:
+        if _ISPR <= offset < _ICPR_END:
             return self._bits(self.pending, offset)
-        if _IPR <= offset < 0x4F0:
+        if _IPR <= offset < _IPR_END:
             first = FIRST_INTERRUPT + offset - _IPR
             return int.from_bytes(bytes(self.priorities[first:first + 4]), "little")
         if offset == _ICSR:
@@ -129,8 +132,9 @@ class SystemControl(Peripheral):
         return self.values.get(offset, 0)
 
     def write(self, offset: int, value: int) -> None:
-        if _ISER <= offset < 0x2A0 and offset & 0x7F < 0x20:
-            first = FIRST_INTERRUPT + 8 * (offset & 0x1C)
+        self.changes += 1
+        if _ISER <= offset < _ICPR_END:
+            first = FIRST_INTERRUPT + 8 * (offset & 0x3C)
             members = {first + bit for bit in range(32) if value >> bit & 1}
             if offset < _ICER:
                 self.enabled |= members
@@ -144,7 +148,7 @@ class SystemControl(Peripheral):
                 self.pending |= members
             else:
                 self.pending -= members
-        elif _IPR <= offset < 0x4F0:
+        elif _IPR <= offset < _IPR_END:
             # The chips have the upper four bits.
             first = FIRST_INTERRUPT + offset - _IPR
             self.priorities[first:first + 4] = [byte & 0xF0 for byte in value.to_bytes(4, "little")]

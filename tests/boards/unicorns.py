@@ -1,10 +1,12 @@
-"""What Unicorn's Python package leaves slow or out: registers in one call, and how many instructions have run.
+"""What Unicorn's Python package leaves slow or out: registers in one call, peripherals without its detours, and how many
+instructions have run.
 
 Unicorn counts instructions to stop after so many, and does not say how many there were when something else stopped it. The
 count is a word of its own memory, which is found by two runs of known length.
 """
 
 import ctypes
+from collections.abc import Callable
 
 import unicorn
 from unicorn import arm_const as arm
@@ -71,6 +73,34 @@ class Instructions:
     def stop(self) -> None:
         """Has the run end with this instruction."""
         self._limit.value = self._count.value
+
+
+_READ = ctypes.CFUNCTYPE(ctypes.c_uint64, ctypes.c_void_p, ctypes.c_uint64, ctypes.c_uint, ctypes.c_void_p)
+_WRITE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_uint64, ctypes.c_uint, ctypes.c_uint64, ctypes.c_void_p)
+
+
+def map_callbacks(uc: unicorn.Uc, address: int, size: int, read: Callable[[int, int], int],
+                  write: Callable[[int, int, int], None], failed: Callable[[BaseException], None]) -> tuple[object, object]:
+    """Sends accesses to these addresses to `read` (address, bytes) and `write` (address, bytes, value); what they raise to
+    `failed`, as nothing can be raised through Unicorn. The result has to be kept for as long as `uc` runs."""
+    def reading(_uc: int, offset: int, count: int, _user: int) -> int:
+        try:
+            return read(address + offset, count)
+        except BaseException as error:  # whatever it is, it is raised where the run began
+            failed(error)
+            return 0
+
+    def writing(_uc: int, offset: int, count: int, value: int, _user: int) -> None:
+        try:
+            write(address + offset, count, value)
+        except BaseException as error:  # as above
+            failed(error)
+
+    kept = _READ(reading), _WRITE(writing)
+    status = uclib.uc_mmio_map(uc._uch, address, size, ctypes.cast(kept[0], ctypes.c_void_p), None,
+                               ctypes.cast(kept[1], ctypes.c_void_p), None)
+    assert status == unicorn.UC_ERR_OK, f"{address:#x} cannot be mapped, {status}"
+    return kept
 
 
 PLAIN = [arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_R3, arm.UC_ARM_REG_R12,
