@@ -29,7 +29,7 @@ class Flight:
     """One board, its vehicle and its ground station."""
 
     def __init__(self, name: str, image: str, vehicle: pathlib.Path) -> None:
-        self.wall, self.is_quiet = time.process_time(), False
+        self.wall, self.is_quiet, self.poses_at_boot = time.process_time(), False, bool(int(__import__("os").environ.get("P","1")))
         self.board = Board(name, image)
         self.vehicle = Vehicle(self.board, vehicle)
         self.poses = PoseSource(self.board, self.vehicle)
@@ -43,6 +43,7 @@ class Flight:
     def boot(self, cause: str = POWER) -> None:
         """From power on to the first heartbeat and the first frame of the motors."""
         board, station = self.board, self.station
+        self.poses.is_on = self.poses_at_boot
         board.start(cause)
         station.until("a heartbeat", lambda: station.counts["HEARTBEAT"] > 0, BOOT_MAX)
         self.say(f"booted, {board.escs.frames} frames to the motors")
@@ -51,6 +52,7 @@ class Flight:
         """Until the gyroscope is calibrated and poses are flown by: it says that it is ready to arm."""
         station = self.station
         station.set_parameter("POSE_DELAY", 5.0)
+        self.poses.is_on = True
         station.until("telemetry", lambda: station.position is not None, READY_MAX)
         station.wait(1.0)
         error = math.dist(station.position, START)
