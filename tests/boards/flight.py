@@ -29,7 +29,7 @@ class Flight:
     """One board, its vehicle and its ground station."""
 
     def __init__(self, name: str, image: str, vehicle: pathlib.Path) -> None:
-        self.wall, self.is_quiet, self.poses_at_boot = time.process_time(), False, bool(int(__import__("os").environ.get("P","1")))
+        self._begun_s, self.is_quiet = time.process_time(), False
         self.board = Board(name, image)
         self.vehicle = Vehicle(self.board, vehicle)
         self.poses = PoseSource(self.board, self.vehicle)
@@ -43,7 +43,6 @@ class Flight:
     def boot(self, cause: str = POWER) -> None:
         """From power on to the first heartbeat and the first frame of the motors."""
         board, station = self.board, self.station
-        self.poses.is_on = self.poses_at_boot
         board.start(cause)
         station.until("a heartbeat", lambda: station.counts["HEARTBEAT"] > 0, BOOT_MAX)
         self.say(f"booted, {board.escs.frames} frames to the motors")
@@ -52,7 +51,6 @@ class Flight:
         """Until the gyroscope is calibrated and poses are flown by: it says that it is ready to arm."""
         station = self.station
         station.set_parameter("POSE_DELAY", 5.0)
-        self.poses.is_on = True
         station.until("telemetry", lambda: station.position is not None, READY_MAX)
         station.wait(1.0)
         error = math.dist(station.position, START)
@@ -98,11 +96,14 @@ class Flight:
         station = self.station
         station.target = None
         station.order(mavlink.MAV_CMD_NAV_LAND)
-        station.until("landed", lambda: station.said("Landed: disarmed"), 15.0)
+        took = station.until("landed", lambda: station.said("Landed: disarmed"), 15.0)
         station.until("disarmed", lambda: not station.armed, 2.0)
         station.wait(0.1)
         assert self.board.escs.are_still()
-        self.say(f"landed, {1e3 * math.hypot(self.vehicle.position[0] - START[0] - STEP[0], self.vehicle.position[1] - START[1] - STEP[1]):.0f} mm away")
+        x, y, _ = self.vehicle.position
+        away = math.hypot(x - START[0] - STEP[0], y - START[1] - STEP[1])
+        self.say(f"landed and disarmed in {took:.2f} s, {1e3 * away:.0f} mm away, motors still")
+        assert away < STEP_ERROR_MAX, away
 
     def report(self) -> None:
         """What was counted, and whether all was as it must be."""
@@ -116,7 +117,7 @@ class Flight:
                  f"{board.chip.watchdog.feeds} feeds of the watchdog, "
                  f"{board.chip.watchdog.longest_wait_ns / NS_PER_MS:.2f} ms apart at most")
         self.say(f"{sum(core.taken.values())} interrupts; asleep {100 * core.idle_ns / NS_PER_S / seconds:.0f} % of the time; "
-                 f"{time.process_time() - self.wall:.0f} s of this processor")
+                 f"{time.process_time() - self._begun_s:.0f} s of this processor")
         wrong = board.flight_complaints()
         wrong += [f"restarted by {cause}" for cause in board.restarts]
         assert not wrong, "\n".join(wrong)

@@ -54,7 +54,7 @@ class Bus:
     """The core's way to the peripherals, in words."""
 
     def __init__(self) -> None:
-        self._blocks: dict[int, Peripheral] = {}
+        self.blocks: dict[int, Peripheral] = {}
         self.peripherals: list[Peripheral] = []
         # Accesses to registers that no model knows: (peripheral, offset, "read" or "write").
         self.unknown: Counter[tuple[str, str, str]] = Counter()
@@ -63,14 +63,14 @@ class Bus:
         """Puts `peripheral` where its base says."""
         first = peripheral.base >> BLOCK_BITS
         for block in range(first, first + max(1, peripheral.size >> BLOCK_BITS)):
-            assert block not in self._blocks, (peripheral.name, self._blocks[block].name)
-            self._blocks[block] = peripheral
+            assert block not in self.blocks, (peripheral.name, self.blocks[block].name)
+            self.blocks[block] = peripheral
         self.peripherals.append(peripheral)
 
     def read(self, address: int, size: int) -> int:
         """`size` bytes at `address`."""
         word = address & ~3
-        peripheral = self._blocks.get(address >> BLOCK_BITS)
+        peripheral = self.blocks.get(address >> BLOCK_BITS)
         if peripheral is None:
             self.unknown["nothing", hex(word), "read"] += 1
             return 0
@@ -83,7 +83,7 @@ class Bus:
     def write(self, address: int, size: int, value: int) -> None:
         """`size` bytes written to `address`; the rest of the word as it reads."""
         word = address & ~3
-        peripheral = self._blocks.get(address >> BLOCK_BITS)
+        peripheral = self.blocks.get(address >> BLOCK_BITS)
         if peripheral is None:
             self.unknown["nothing", hex(word), "write"] += 1
             return
