@@ -26,11 +26,13 @@ _ARMED = (11, 37, 38, 50)
 
 
 def _arm_interrupts(board: Board, priority: int) -> None:
-    """Interrupts on, some of them pending, all at a priority; SysTick runs."""
+    """Interrupts on, some of them pending, all at a priority; SysTick runs. A bootloader masks them all before it
+    hands over: its own handlers are gone."""
     system = board.core.system
+    board.core.mask()
     system.enabled |= {FIRST_INTERRUPT + interrupt for interrupt in _ARMED}
     system.pending |= {FIRST_INTERRUPT + interrupt for interrupt in _ARMED}
-    system.priorities = [priority] * 256
+    system.priorities = [priority] * len(system.priorities)
     system.values[_SYSTICK_RELOAD], system.values[_SYSTICK] = 9999, 0b111
 
 

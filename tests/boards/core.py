@@ -148,6 +148,10 @@ class Core:
             self.uc.reg_write(arm.UC_ARM_REG_PSP, self.uc.reg_read(arm.UC_ARM_REG_MSP) - 0x1000)
         self.uc.reg_write(arm.UC_ARM_REG_CONTROL, 2 * process_stack | 4 * float_in_use)
 
+    def mask(self) -> None:
+        """PRIMASK, as a bootloader leaves it."""
+        self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 1)
+
     def replace(self, address: int, code: bytes) -> None:
         """Puts other instructions in place of those at `address`, to spoil a run."""
         self.uc.mem_write(address & ~1, code)
@@ -156,7 +160,7 @@ class Core:
     def hang(self) -> None:
         """The core goes round in a loop where it is, its interrupts masked, until it is reset."""
         self._wake()
-        self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 1)
+        self.mask()
         self._hang_at(self.pc)
 
     def hang_in(self, function: str) -> None:
