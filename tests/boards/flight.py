@@ -17,7 +17,7 @@ from schedule import NS_PER_MS, NS_PER_S
 from station import OFFBOARD, OFFBOARD_MAIN, PoseSource, Station, mavlink
 from vehicle import START, Vehicle
 
-HEIGHT = 0.4
+HEIGHT = 0.5
 STEP = (0.0, 0.4)
 # What a hover and the end of a step are held to, m.
 HOVER_ERROR_MAX, STEP_ERROR_MAX = 0.03, 0.1

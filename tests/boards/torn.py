@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from chip import POWER
-from flash import SECTOR_BYTES
+from flash import SECTOR_BYTES, SECTORS
 from flight import Flight
 from outcome import Expected, Outcome
 from station import mavlink
@@ -30,9 +30,20 @@ def _cut(flight: Flight, at: int) -> bool:
     return bool(board.restarts)
 
 
+def _keep(flight: Flight, value: float) -> None:
+    """Sets the parameter, and waits until the flash has worked and works no more."""
+    flash, station = flight.board.chip.flash, flight.station
+    if station.get_parameter(_NAME) != value or flash.memory.count(b"\xff") == len(flash.memory):
+        flash.works = 0
+        station.set_parameter(_NAME, value)
+        station.until("kept", lambda: flash.works > 0, 5.0)
+    station.wait(0.2)
+
+
 def _value_after(flight: Flight) -> float:
     """The parameter's value after the start that follows."""
     station = flight.station
+    flight.board.link.sent.clear()
     station.counts.clear()
     station.texts.clear()
     station.until("a heartbeat after power came back", lambda: station.counts["HEARTBEAT"] > 0, 15.0)
@@ -53,6 +64,7 @@ class Tear:
 
     def run(self, flight: Flight) -> Outcome:
         """Cuts at each of the works in turn, from the state that the last cut left."""
+        _keep(flight, _OLD)
         self.prepare(flight)
         said: list[str] = []
         found: list[float] = []
@@ -62,8 +74,7 @@ class Tear:
             assert value in self.allowed, f"cut at {work}: {_NAME} is {value}"
             said += [text for _, text in flight.station.texts]
             found.append(value)
-            flight.station.set_parameter(_NAME, _OLD)
-            flight.station.wait(0.3)
+            _keep(flight, _OLD)
         complaints = flight.board.complaints()
         assert not complaints, complaints
         words = [f"{len(found)} cuts: {found.count(_OLD)} times the old value, {found.count(_NEW)} the new one"]
@@ -73,11 +84,12 @@ class Tear:
 def _fill_sector(flight: Flight) -> None:
     """Continues the journal with copies of its newest record until its sector is full: the next change erases."""
     flash = flight.board.chip.flash
-    records = [bytes(flash.memory[place:place + _RECORD_BYTES]) for place in range(0, SECTOR_BYTES, _RECORD_BYTES)]
+    records = [bytes(flash.memory[place:place + _RECORD_BYTES])
+               for place in range(0, SECTORS * SECTOR_BYTES, _RECORD_BYTES)]
     used = [number for number, record in enumerate(records) if record != b"\xff" * _RECORD_BYTES]
-    newest = records[used[-1]]
+    newest, per_sector = records[used[-1]], SECTOR_BYTES // _RECORD_BYTES
     number, kind = struct.unpack_from("<I", newest)[0], struct.unpack_from("<I", newest, 252)[0] ^ zlib.crc32(newest[:252])
-    for place in range(used[-1] + 1, len(records)):
+    for place in range(used[-1] + 1, (used[-1] // per_sector + 1) * per_sector):
         number += 1
         body = struct.pack("<I", number) + newest[4:252]
         record = body + struct.pack("<I", zlib.crc32(body) ^ kind)

@@ -44,6 +44,7 @@ class Vehicle:
         coefficient, fastest = rotors["thrust_coefficient"], rotors["speed"][1]
         self.thrust_max = [coefficient * fastest**2] * len(rotors["position"])
         self._step_ns = round(plant.get("step", 0.001) * 1e9)
+        assert self._step_ns == NS_PER_MS, "the sensors' filters are for a plant step of a millisecond"
         self._draw = random.Random(2)
         self.position, self.attitude, self.velocity = START, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         self.last_driven_ns = 0
@@ -67,8 +68,7 @@ class Vehicle:
         self.body.step([most * command * command for most, command in zip(self.thrust_max, commands)])
         state = self.body.state.tolist()
         self.position, self.velocity, self.attitude = tuple(state[0:3]), tuple(state[3:6]), tuple(state[6:10])
-        board.motion.angular_velocity = tuple(state[10:13])
-        board.motion.specific_force = tuple(self.body.specific_force.tolist())
+        board.motion.feel(tuple(state[10:13]), tuple(self.body.specific_force.tolist()))
         if len(self.track) * 10 * NS_PER_MS <= board.schedule.now:
             self.track.append((board.schedule.now, self.position))
 

@@ -1,8 +1,11 @@
 """What the inertial sensors have in common: a motion that is measured, a pace, a data-ready pin, noise.
 
-Counts are of a sensor's own axes: `Mounting` turns the body's into them. A sensor's own filters are left out.
+Counts are of a sensor's own axes: `Mounting` turns the body's into them. The sensors' own filters are second-order
+Butterworth ones of a BMI088's bandwidths, for all of them: a touchdown's blow lasts a millisecond, and a sensor without
+a filter would show it once, twice or not at all.
 """
 
+import math
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,12 +28,48 @@ def to_sensor(mounting: Mounting, body: Vector) -> Vector:
     return x, y, z
 
 
-@dataclass
-class Motion:
-    """The true motion now, in the body's axes."""
+MOTION_HZ = 1000.0
+_GYRO_BANDWIDTH_HZ, _ACCELEROMETER_BANDWIDTH_HZ = 116.0, 145.0
+# The range of the accelerometers, m/s^2.
+_FORCE_MAX = 24.0 * GRAVITY
 
-    angular_velocity: Vector = (0.0, 0.0, 0.0)
-    specific_force: Vector = (0.0, 0.0, GRAVITY)
+
+class _LowPass:
+    """A second-order Butterworth filter of three axes, at [`MOTION_HZ`], by the bilinear transform."""
+
+    def __init__(self, bandwidth_hz: float, value: Vector) -> None:
+        k = math.tan(math.pi * bandwidth_hz / MOTION_HZ)
+        scale = 1.0 / (1.0 + math.sqrt(2.0) * k + k * k)
+        self._b, self._a1 = k * k * scale, 2.0 * (k * k - 1.0) * scale
+        self._a2 = (1.0 - math.sqrt(2.0) * k + k * k) * scale
+        self._states = [(x * (1.0 - self._b), x * (self._b - self._a2)) for x in value]
+
+    def filter(self, value: Vector) -> Vector:
+        """The next output."""
+        b, a1, a2 = self._b, self._a1, self._a2
+        output = []
+        for axis, x in enumerate(value):
+            first, second = self._states[axis]
+            y = b * x + first
+            self._states[axis] = (2.0 * b * x - a1 * y + second, b * x - a2 * y)
+            output.append(y)
+        return output[0], output[1], output[2]
+
+
+class Motion:
+    """The motion as sensors' filters show it, in the body's axes: rad/s and m/s^2."""
+
+    def __init__(self) -> None:
+        self.angular_velocity: Vector = (0.0, 0.0, 0.0)
+        self.specific_force: Vector = (0.0, 0.0, GRAVITY)
+        self._gyro = _LowPass(_GYRO_BANDWIDTH_HZ, self.angular_velocity)
+        self._accelerometer = _LowPass(_ACCELEROMETER_BANDWIDTH_HZ, self.specific_force)
+
+    def feel(self, angular_velocity: Vector, specific_force: Vector) -> None:
+        """The true motion of the next millisecond."""
+        cut = tuple(max(-_FORCE_MAX, min(_FORCE_MAX, force)) for force in specific_force)
+        self.angular_velocity = self._gyro.filter(angular_velocity)
+        self.specific_force = self._accelerometer.filter(cut)
 
 
 @dataclass
