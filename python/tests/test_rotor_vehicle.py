@@ -50,7 +50,9 @@ def test_a_copy_flies_on_to_the_same_bits():
     assert (flown(vehicle, [1.5, 1.4, 1.4, 1.4], 50) == flown(other, [1.5, 1.4, 1.4, 1.4], 50)).all()
 
 
-@pytest.mark.parametrize("thrusts, said", [([1.0] * 3, r"must have shape \(4,\), found \(3,\)"), ([np.nan] * 4, "must be finite")])
+@pytest.mark.parametrize(
+    "thrusts, said", [([1.0] * 3, r"must have shape \(4,\), found \(3,\)"), ([np.nan] * 4, "must be finite")]
+)
 def test_thrusts_that_cannot_be_used_are_refused(thrusts, said):
     with pytest.raises(ValueError, match=f"thrusts: {said}"):
         sh.RotorVehicle(HUMMINGBIRD).step(thrusts)

@@ -1,5 +1,5 @@
-"""The three boards: what is wired to which pin, as docs/boards.md and firmware/src/boards/ have it, and what a whole run of
-one is held to.
+"""The three boards: what is wired to which pin, as docs/boards.md and firmware/src/boards/ have it, and what a whole
+run of one is held to.
 """
 
 from collections.abc import Callable

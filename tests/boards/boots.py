@@ -1,5 +1,6 @@
-"""Starts of the chip other than after a reset: what a bootloader leaves (docs/boards.md), what a board lacks, and the way
-into the chip's own bootloader."""
+"""Starts of the chip other than after a reset: what a bootloader leaves (docs/boards.md), what a board lacks, and the
+way into the chip's own bootloader.
+"""
 
 import math
 import pathlib
@@ -199,6 +200,7 @@ BOOTS: dict[str, Boot | IntoBootloader] = {
     "no-crystal": Boot(_no_crystal, Expected(0.0, ("The clock's crystal does not run: no arming",)), arms=False),
     "no-brown-out-option": Boot(lambda board: None, Expected(words=("Brown-out reset is off (BOR_LEV)",))),
     "brown-out-option": Boot(_brown_out_set, Expected(unsaid=("BOR_LEV",))),
-    "no-usb-supply": Boot(_no_usb_supply, Expected(words=("USB has no supply: the port stays off",)), boards=_H743_BOARDS),
+    "no-usb-supply": Boot(
+        _no_usb_supply, Expected(words=("USB has no supply: the port stays off",)), boards=_H743_BOARDS),
     "into-bootloader": IntoBootloader(Expected(0.0, restarts=(SOFTWARE,))),
 }

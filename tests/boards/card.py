@@ -1,8 +1,8 @@
-"""A slot for a microSD card, SDMMC1 of the STM32H743 with its own DMA (RM0433 chapter 55), and a card with an empty FAT32
-volume (SD Physical Layer Simplified Specification; Microsoft's FAT32 specification).
+"""A slot for a microSD card, SDMMC1 of the STM32H743 with its own DMA (RM0433 chapter 55), and a card with an empty
+FAT32 volume (SD Physical Layer Simplified Specification; Microsoft's FAT32 specification).
 
-A card answers at once; a sector takes as long as its bits on four lines at 25 MHz, a write a while more. One that is not
-there answers nothing.
+A card answers at once; a sector takes as long as its bits on four lines at 25 MHz, a write a while more. One that is
+not there answers nothing.
 """
 
 import struct
@@ -31,9 +31,11 @@ class Card:
         self.sectors[0] = bytes(446) + entry + bytes(48) + b"\x55\xaa"
         head = b"\xeb\x58\x90MSDOS5.0" + struct.pack(
             "<HBHBHHBHHHII", SECTOR_BYTES, _CLUSTER_SECTORS, _RESERVED, 2, 0, 0, 0xF8, 0, 63, 255, _PARTITION, volume)
-        head += struct.pack("<IHHIHH12xBBBI11s8s", _FAT_SECTORS, 0, 0, 2, 1, 6, 0x80, 0, 0x29, 1, b"NO NAME    ", b"FAT32   ")
+        head += struct.pack("<IHHIHH12xBBBI11s8s", _FAT_SECTORS, 0, 0, 2, 1, 6, 0x80, 0, 0x29, 1,
+                            b"NO NAME    ", b"FAT32   ")
         boot = head + bytes(510 - len(head)) + b"\x55\xaa"
-        information = (b"RRaA" + bytes(480) + b"rrAa" + struct.pack("<II", _CLUSTERS - 1, 3) + bytes(12) + b"\0\0\x55\xaa")
+        free = struct.pack("<II", _CLUSTERS - 1, 3)
+        information = b"RRaA" + bytes(480) + b"rrAa" + free + bytes(12) + b"\0\0\x55\xaa"
         for copy in (0, 6):
             self.sectors[_PARTITION + copy], self.sectors[_PARTITION + copy + 1] = boot, information
         table = struct.pack("<III", 0x0FFF_FFF8, 0x0FFF_FFFF, 0x0FFF_FFFF) + bytes(SECTOR_BYTES - 12)
@@ -52,7 +54,8 @@ class Card:
 
 _ARGUMENT, _COMMAND, _RESPONSE, _LENGTH, _CONTROL, _STATUS, _CLEAR, _MASK, _BUFFER = (
     0x08, 0x0C, 0x14, 0x28, 0x2C, 0x34, 0x38, 0x3C, 0x58)
-_NO_ANSWER, _DATA_TIMEOUT, _ANSWERED, _COMMAND_SENT, _DATA_END, _DATA_ACTIVE = 1 << 2, 1 << 3, 1 << 6, 1 << 7, 1 << 8, 1 << 12
+_NO_ANSWER, _DATA_TIMEOUT, _ANSWERED, _COMMAND_SENT, _DATA_END, _DATA_ACTIVE = (
+    1 << 2, 1 << 3, 1 << 6, 1 << 7, 1 << 8, 1 << 12)
 _READY = 0x900
 _ADDRESS = 0x1234
 
@@ -128,8 +131,8 @@ class Slot(Peripheral):
         if command == 2:
             return [0x0353_4453, 0x4330_3247, 0x8000_0000, 0x0101_7A01]
         if command == 9:
-            return [0x400E_0032, 0x5B59_0000 | (_SECTORS // 1024 - 1) >> 16, ((_SECTORS // 1024 - 1) & 0xFFFF) << 16 | 0x7F80,
-                    0x0A40_0001]
+            size = _SECTORS // 1024 - 1
+            return [0x400E_0032, 0x5B59_0000 | size >> 16, (size & 0xFFFF) << 16 | 0x7F80, 0x0A40_0001]
         if command == 3:
             return [_ADDRESS << 16 | 0x500]
         return [_READY | (0x20 if command == 55 else 0)]

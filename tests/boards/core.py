@@ -1,5 +1,5 @@
-"""A Cortex-M core that runs an image as it is flashed: Unicorn executes its instructions, and this module is what Unicorn
-lacks of the core: exceptions with their frames on the stack, sleep, faults, and time.
+"""A Cortex-M core that runs an image as it is flashed: Unicorn executes its instructions, and this module is what
+Unicorn lacks of the core: exceptions with their frames on the stack, sleep, faults, and time.
 
 Time: an instruction takes `instruction_ns`, an access to a peripheral `ACCESS_NS` more. Neither is exact to the cycle.
 Instructions run in stretches to the next thing that is due; an access that makes anything else due ends its stretch. A

@@ -1,8 +1,8 @@
-"""DMA controllers with streams: RM0433 chapter 16 (STM32H743, with DMAMUX1, chapter 17), RM0090 chapter 10 (STM32F405, with
-a channel in each stream). The registers of both are the same but for the channel.
+"""DMA controllers with streams: RM0433 chapter 16 (STM32H743, with DMAMUX1, chapter 17), RM0090 chapter 10 (STM32F405,
+with a channel in each stream). The registers of both are the same but for the channel.
 
-A transfer is a whole here: a peripheral takes all of a stream's data when it begins, and ends it when the data would have
-been through. Every address is held to what the controllers reach.
+A transfer is a whole here: a peripheral takes all of a stream's data when it begins, and ends it when the data would
+have been through. Every address is held to what the controllers reach.
 """
 
 from collections import Counter

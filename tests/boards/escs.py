@@ -1,10 +1,10 @@
 """Four speed controllers: they read pulses as DShot300 and turn their motors as such controllers do.
 
-DShot: 16 bits, most significant first, each a pulse of 3/8 of its period for zero, 6/8 for one: eleven of value, one that
-requests telemetry, four of checksum. Value 0 stops, 1 to 47 are commands, 48 to 2047 turn.
+DShot: 16 bits, most significant first, each a pulse of 3/8 of its period for zero, 6/8 for one: eleven of value, one
+that requests telemetry, four of checksum. Value 0 stops, 1 to 47 are commands, 48 to 2047 turn.
 
-A controller turns its motor once it has been stopped by frames for `ARMING_NS`; without a frame for `TIMEOUT_NS` it stops
-and has to be stopped by frames again. A frame that is cut or whose checksum is wrong does not count.
+A controller turns its motor once it has been stopped by frames for `ARMING_NS`; without a frame for `TIMEOUT_NS` it
+stops and has to be stopped by frames again. A frame that is cut or whose checksum is wrong does not count.
 """
 
 from collections import Counter

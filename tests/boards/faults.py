@@ -10,8 +10,7 @@ from outcome import Expected, Outcome
 from schedule import NS_PER_MS, NS_PER_S
 from vehicle import START
 
-# How long a run goes on after its fault, s: where the motors must stop, and the words come after a restart; and where the
-# flight must go on.
+# How long a run goes on after its fault, s: where the flight must go on, and where words come after a restart.
 _FLIES_ON_S, _RESTART_S = 1.5, 9.0
 # Interrupts that control's task runs in: SAI1 on the H743, UART4 on the F405.
 _CONTROL = {"STM32H743": ("SAI1", 87), "STM32F405": ("UART4", 52)}

@@ -1,9 +1,9 @@
-"""The parameters' part of the flash, the last two sectors of 128 KB: RM0433 chapter 4 (STM32H743: words of 32 bytes with an
-error-correcting code, the second bank's registers), RM0090 chapter 3 (STM32F405: words of 4 bytes).
+"""The parameters' part of the flash, the last two sectors of 128 KB: RM0433 chapter 4 (STM32H743: words of 32 bytes
+with an error-correcting code, the second bank's registers), RM0090 chapter 3 (STM32F405: words of 4 bytes).
 
 Programming clears bits, a word at a time, and takes time; so does an erase. Power that fails in the middle of either
-tears the word or the sector: which bits are done then is drawn by a seed. On the H743 a torn word has the wrong code, and
-reading it is a fault of the bus that the flash also reports (DBECCERR).
+tears the word or the sector: which bits are done then is drawn by a seed. On the H743 a torn word has the wrong code,
+and reading it is a fault of the bus that the flash also reports (DBECCERR).
 
 On the F405 the core stands still while the flash works: code comes from the same bank.
 """

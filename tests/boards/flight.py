@@ -1,5 +1,5 @@
-"""Flies an unmodified board image from power on to the motors' stop, closed over host-sim's vehicle, and holds the whole
-flight to what must be true of it.
+"""Flies an unmodified board image from power on to the motors' stop, closed over host-sim's vehicle, and holds the
+whole flight to what must be true of it.
 
 Usage: flight.py BOARD IMAGE VEHICLE.toml
 
@@ -116,7 +116,8 @@ class Flight:
         self.say(f"{board.escs.frames} DShot frames, {board.escs.longest_interval_ns / 1e6:.2f} ms apart at most; "
                  f"{board.chip.watchdog.feeds} feeds of the watchdog, "
                  f"{board.chip.watchdog.longest_wait_ns / NS_PER_MS:.2f} ms apart at most")
-        self.say(f"{sum(core.taken.values())} interrupts; asleep {100 * core.idle_ns / NS_PER_S / seconds:.0f} % of the time; "
+        asleep = 100 * core.idle_ns / NS_PER_S / seconds
+        self.say(f"{sum(core.taken.values())} interrupts; asleep {asleep:.0f} % of the time; "
                  f"{time.process_time() - self._begun_s:.0f} s of this processor")
         wrong = board.flight_complaints()
         wrong += [f"restarted by {cause}" for cause in board.restarts]

@@ -1,5 +1,5 @@
-"""The core's own peripherals: interrupt controller, system control block, SysTick (ARMv7-M Architecture Reference Manual,
-B3.2 to B3.4), and what a reset leaves in them.
+"""The core's own peripherals: interrupt controller, system control block, SysTick (ARMv7-M Architecture Reference
+Manual, B3.2 to B3.4), and what a reset leaves in them.
 
 Memory protection is only remembered: Unicorn does not enforce it.
 """
@@ -35,7 +35,8 @@ class SystemControl(Peripheral):
             *range(0xD00, 0xD40, 4), 0xD78, 0xD7C, 0xD80, 0xD84, 0xD88, *range(0xD90, 0xDA4, 4),
             0xF00, 0xF34, 0xF38, 0xF3C, 0xF50, 0xF5C, 0xF60, 0xF64, 0xF68, 0xF6C, 0xF70, 0xF74, 0xF90, 0xF94, 0xF9C,
         ])
-        self.RESET = {0xD00: part, 0xD0C: 0xFA05_0000, _CCR: 0x200, 0xD90: 0x800 if part >> 4 & 0xFFF == 0xC24 else 0x1000,
+        regions = 8 if part >> 4 & 0xFFF == 0xC24 else 16
+        self.RESET = {0xD00: part, 0xD0C: 0xFA05_0000, _CCR: 0x200, 0xD90: regions << 8,
                       0xD7C: 0x8303_C003, 0xD80: 0xF00F_E019, _FPCCR: 0xC000_0000, 0xF90: 0x1, 0xF94: 0x1}
         super().__init__("core", 0xE000_E000, size=0x1000)
         self._now, self._core_hz = now, core_hz

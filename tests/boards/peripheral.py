@@ -1,7 +1,7 @@
 """Registers: what every peripheral of a chip has in common, and the bus on which the core finds it.
 
-A register that a model does not know is no error on silicon, but a thing to look at here: it is noted, and fails the run
-unless the chip's file accepts it.
+A register that a model does not know is no error on silicon, but a thing to look at here: it is noted, and fails the
+run unless the chip's file accepts it.
 """
 
 from collections import Counter

@@ -1,5 +1,5 @@
-"""Serves an emulated board's serial line on a local TCP port, for clients that people have: `host-sim first-flight`, a ground
-station. Its vehicle stands on the ground until the motors lift it, and a motion-capture system sees it.
+"""Serves an emulated board's serial line on a local TCP port, for clients that people have: `host-sim first-flight`, a
+ground station. Its vehicle stands on the ground until the motors lift it, and a motion-capture system sees it.
 
 Usage: serve.py BOARD IMAGE VEHICLE.toml [--port N] [--no-poses]
 

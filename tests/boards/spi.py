@@ -1,4 +1,5 @@
-"""SPI masters with DMA both ways: version 4 (STM32H743, RM0433 chapter 50) and version 1 (STM32F405, RM0090 chapter 28).
+"""SPI masters with DMA both ways: version 4 (STM32H743, RM0433 chapter 50) and version 1 (STM32F405, RM0090 chapter
+28).
 
 An exchange begins when the peripheral is enabled and told to, with both streams waiting, and is over when its bits have
 been clocked. Exactly one device must be selected.

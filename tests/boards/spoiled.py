@@ -3,8 +3,9 @@ motors stood still, and what the board said.
 
 Usage: spoiled.py BOARD IMAGE VEHICLE.toml [RUN...]
 
-Runs in a hover, and those on the ground after it was booted, are children of one process that flew there: each begins from
-the same moment. The faults are in faults.py, those of the parameters' flash in torn.py, those of a start in boots.py.
+Runs in a hover, and those on the ground after it was booted, are children of one process that flew there: each begins
+from the same moment. The faults are in faults.py, those of the parameters' flash in torn.py, those of a start in
+boots.py.
 """
 
 import json
@@ -101,8 +102,8 @@ def main() -> None:
         for run, fault in faults.items():
             note(run, _child(lambda fault=fault: fault.run(flight)), fault.expected)
     failed = [row for row in rows if row.problems]
-    print(f"== {name}: {len(rows)} runs, {len(failed)} not as expected, {sum(row.outcome.processor_s for row in rows):.0f} s",
-          flush=True)
+    took = sum(row.outcome.processor_s for row in rows)
+    print(f"== {name}: {len(rows)} runs, {len(failed)} not as expected, {took:.0f} s of this processor", flush=True)
     sys.exit(1 if failed or not rows else 0)
 
 

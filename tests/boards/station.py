@@ -1,4 +1,5 @@
-"""A ground station and a source of poses, each on an emulated board's serial line, by pymavlink, in the vehicle's time."""
+"""A ground station and a source of poses, each on an emulated board's serial line, by pymavlink, in the vehicle's time.
+"""
 
 import os
 from collections import Counter

@@ -1,5 +1,6 @@
-"""The STM32F405RG (RM0090): where its peripherals are, at the clocks that the firmware sets (168 MHz for the core, 84 MHz
-for timers, 42 MHz for serial lines and the sensor)."""
+"""The STM32F405RG (RM0090): where its peripherals are, at the clocks that the firmware sets (168 MHz for the core, 84
+MHz for timers, 42 MHz for serial lines and the sensor).
+"""
 
 from unicorn import arm_const as arm
 
@@ -54,7 +55,8 @@ class Stm32F405(Chip):
 
     name = "STM32F405"
     VOLATILE = [(0x2000_0000, 0x2_0000), (0x1000_0000, 0x1_0000)]
-    CAUSES = {POWER: 0x0E00_0000, BROWN_OUT: 0x0600_0000, PIN: 0x0400_0000, SOFTWARE: 0x1400_0000, WATCHDOG: 0x2400_0000}
+    CAUSES = {POWER: 0x0E00_0000, BROWN_OUT: 0x0600_0000, PIN: 0x0400_0000, SOFTWARE: 0x1400_0000,
+              WATCHDOG: 0x2400_0000}
     SYSTEM_MEMORY = 0x1FFF_0000
     BOOTLOADER = 0x1FFF_0000
     VECTORS = 0x0800_4000

@@ -1,5 +1,6 @@
-"""The STM32H743VI (RM0433): where its peripherals are, at the clocks that the firmware sets (400 MHz for the core, 200 MHz
-for timers, 100 MHz for serial lines and sensors)."""
+"""The STM32H743VI (RM0433): where its peripherals are, at the clocks that the firmware sets (400 MHz for the core, 200
+MHz for timers, 100 MHz for serial lines and sensors).
+"""
 
 from unicorn import arm_const as arm
 
@@ -25,7 +26,8 @@ _REQUESTS = {
     84: "SPI4_TX",
 }
 _SPIS = {"SPI1": 0x4001_3000, "SPI2": 0x4000_3800, "SPI3": 0x4000_3C00, "SPI4": 0x4001_3400}
-_UARTS = {"USART1": (0x4001_1000, 37), "USART2": (0x4000_4400, 38), "USART6": (0x4001_1400, 71), "UART7": (0x4000_7800, 82)}
+_UARTS = {"USART1": (0x4001_1000, 37), "USART2": (0x4000_4400, 38), "USART6": (0x4001_1400, 71),
+          "UART7": (0x4000_7800, 82)}
 _TIMERS = {"TIM1": (0x4001_0000, True), "TIM8": (0x4001_0400, True), "TIM2": (0x4000_0000, False)}
 _STREAM_INTERRUPTS = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]]
 
@@ -109,7 +111,8 @@ class Stm32H743(Chip):
 
     name = "STM32H743"
     VOLATILE = [(0x2000_0000, 0x2_0000), (0x2400_0000, 0x8_0000), (0x3000_0000, 0x4_8000), (0x3800_0000, 0x1_0000)]
-    CAUSES = {POWER: 0x00E0_0000, BROWN_OUT: 0x0060_0000, PIN: 0x0040_0000, SOFTWARE: 0x0140_0000, WATCHDOG: 0x0440_0000}
+    CAUSES = {POWER: 0x00E0_0000, BROWN_OUT: 0x0060_0000, PIN: 0x0040_0000, SOFTWARE: 0x0140_0000,
+              WATCHDOG: 0x0440_0000}
     SYSTEM_MEMORY = 0x1FF0_0000
     BOOTLOADER = 0x1FF0_9800
     VECTORS = 0x0800_0000

@@ -1,5 +1,5 @@
-"""Timers: general and advanced ones (RM0433 chapters 38 and 39, RM0090 chapters 17 and 18), as far as this firmware uses
-them: one that counts microseconds for the scheduler, and those that make the motors' pulses.
+"""Timers: general and advanced ones (RM0433 chapters 38 and 39, RM0090 chapters 17 and 18), as far as this firmware
+uses them: one that counts microseconds for the scheduler, and those that make the motors' pulses.
 """
 
 from collections.abc import Callable

@@ -11,7 +11,7 @@ from flight import Flight
 from outcome import Expected, Outcome
 from station import mavlink
 
-_NAME, _OLD, _NEW = "POSE_DELAY", 5.0, 7.0
+_NAME, _OLD, _NEW, _BETWEEN = "POSE_DELAY", 5.0, 7.0, 6.0
 _RECORD_BYTES = 256
 
 
@@ -59,11 +59,11 @@ class Tear:
     works: tuple[int, ...]
     # Values that may be there afterwards.
     allowed: tuple[float, ...]
-    expected: Expected = Expected(unsaid=("stored values unusable", "lost"))
+    expected: Expected = Expected(0.0, unsaid=("stored values unusable", "lost"))
     boards: tuple[str, ...] | None = None
 
     def run(self, flight: Flight) -> Outcome:
-        """Cuts at each of the works in turn, from the state that the last cut left."""
+        """Cuts at each of the works in turn, each behind what the last one left."""
         _keep(flight, _OLD)
         self.prepare(flight)
         said: list[str] = []
@@ -74,6 +74,8 @@ class Tear:
             assert value in self.allowed, f"cut at {work}: {_NAME} is {value}"
             said += [text for _, text in flight.station.texts]
             found.append(value)
+            # Two cuts in a row are more than the journal promises: a whole record lies between any two here.
+            _keep(flight, _BETWEEN)
             _keep(flight, _OLD)
         complaints = flight.board.complaints()
         assert not complaints, complaints
@@ -88,7 +90,8 @@ def _fill_sector(flight: Flight) -> None:
                for place in range(0, SECTORS * SECTOR_BYTES, _RECORD_BYTES)]
     used = [number for number, record in enumerate(records) if record != b"\xff" * _RECORD_BYTES]
     newest, per_sector = records[used[-1]], SECTOR_BYTES // _RECORD_BYTES
-    number, kind = struct.unpack_from("<I", newest)[0], struct.unpack_from("<I", newest, 252)[0] ^ zlib.crc32(newest[:252])
+    (number,), (checksum,) = struct.unpack_from("<I", newest), struct.unpack_from("<I", newest, 252)
+    kind = checksum ^ zlib.crc32(newest[:252])
     for place in range(used[-1] + 1, (used[-1] // per_sector + 1) * per_sector):
         number += 1
         body = struct.pack("<I", number) + newest[4:252]

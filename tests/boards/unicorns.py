@@ -1,8 +1,8 @@
-"""What Unicorn's Python package leaves slow or out: registers in one call, peripherals without its detours, and how many
-instructions have run.
+"""What Unicorn's Python package leaves slow or out: registers in one call, peripherals without its detours, and how
+many instructions have run.
 
-Unicorn counts instructions to stop after so many, and does not say how many there were when something else stopped it. The
-count is a word of its own memory, which is found by two runs of known length.
+Unicorn counts instructions to stop after so many, and does not say how many there were when something else stopped it.
+The count is a word of its own memory, which is found by two runs of known length.
 """
 
 import ctypes
@@ -80,9 +80,10 @@ _WRITE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_uint64, ctypes.c_uint,
 
 
 def map_callbacks(uc: unicorn.Uc, address: int, size: int, read: Callable[[int, int], int],
-                  write: Callable[[int, int, int], None], failed: Callable[[BaseException], None]) -> tuple[object, object]:
-    """Sends accesses to these addresses to `read` (address, bytes) and `write` (address, bytes, value); what they raise to
-    `failed`, as nothing can be raised through Unicorn. The result has to be kept for as long as `uc` runs."""
+                  write: Callable[[int, int, int], None],
+                  failed: Callable[[BaseException], None]) -> tuple[object, object]:
+    """Sends accesses to these addresses to `read` (address, bytes) and `write` (address, bytes, value); what they raise
+    to `failed`, as nothing can be raised through Unicorn. The result has to be kept for as long as `uc` runs."""
     def reading(_uc: int, offset: int, count: int, _user: int) -> int:
         try:
             return read(address + offset, count)

@@ -1,5 +1,5 @@
-"""Closes the loop: host-sim's vehicle, which the Python wheel has, turns what the controllers drive into motion, and the
-motion into what the sensors feel and a motion-capture system sees.
+"""Closes the loop: host-sim's vehicle, which the Python wheel has, turns what the controllers drive into motion, and
+the motion into what the sensors feel and a motion-capture system sees.
 
 Frames: the world's z is up, body x forward, y left, z up; MAVLink's are north-east-down and forward-right-down.
 """

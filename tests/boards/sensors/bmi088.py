@@ -40,7 +40,7 @@ class Gyroscope(Inertial):
 
 
 class Accelerometer(Inertial):
-    """Section 5.3: data from 0x12, a byte that means nothing before each answer, SPI from the first edge of its select."""
+    """Section 5.3: data from 0x12, a byte that means nothing before each answer, SPI from its select's first edge."""
 
     PERIOD_NS = 625_000
     NOISE_COUNTS = 4.0
