@@ -11,6 +11,7 @@
 //! | [`governors`], [`allocations`] | setpoints to references, wrenches to rotors |
 //! | [`flights`], [`campaigns`], [`tuning`] | whole flights, thousands of them, the search for gains |
 //! | [`vehicles`] | rows of simulated vehicles, for environments |
+//! | [`rotor_vehicles`] | one simulated vehicle under its rotors' thrusts |
 //! | [`replays`] | pictures and replays of flights that something else flew |
 //! | [`rows`] | numpy arrays as states, references and wrenches, and back |
 //! | [`whole_number`] | whole numbers as arguments |
@@ -31,6 +32,7 @@ mod interruptible;
 mod laws;
 mod networks;
 mod replays;
+mod rotor_vehicles;
 mod rows;
 mod scenarios;
 mod shields;
@@ -61,6 +63,8 @@ mod _core {
     use super::networks::Network;
     #[pymodule_export]
     use super::replays::{picture, replay};
+    #[pymodule_export]
+    use super::rotor_vehicles::RotorVehicle;
     #[pymodule_export]
     use super::rows::{reference, state};
     #[pymodule_export]

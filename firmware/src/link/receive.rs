@@ -67,10 +67,12 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
     let mut receiver = Receiver::new(shared);
     let mut chunk = [0; READ_CHUNK_BYTES];
     let mut on_port = shared.on_port().is_raised();
+    let mut has_retried = false;
     loop {
         let wake = clock.now().saturating_add(READ_TIMEOUT_US);
         match select(line.read(&mut chunk), clock.until(wake)).await {
             Either::First(Ok(count @ 1..)) => {
+                has_retried = false;
                 let now = clock.now();
                 if on_port != shared.on_port().is_raised() {
                     on_port = !on_port;
@@ -81,8 +83,17 @@ pub async fn receive<R: Read, M: RawMutex>(mut line: R, clock: &impl Clock, shar
                 // A burst has more questions than answers can wait: the other half sends them in between.
                 yield_now().await;
             }
+            // The read that reports an overrun has ended it. Whoever waits then, on a line that is never silent for
+            // that long, finds the next overrun, and never a byte.
+            Either::First(_) if !has_retried => {
+                has_retried = true;
+                yield_now().await;
+            }
             // A line that ended or failed may come back, but must not take all the time there is.
-            Either::First(_) => clock.until(clock.now().saturating_add(RETRY_DELAY_US)).await,
+            Either::First(_) => {
+                has_retried = false;
+                clock.until(clock.now().saturating_add(RETRY_DELAY_US)).await;
+            }
             Either::Second(()) => {}
         }
     }

@@ -7,6 +7,7 @@ use controller_core::state::State;
 use core::cell::RefCell;
 use embassy_futures::join::join;
 use embedded_io_async::{ErrorKind, ErrorType, Read};
+use firmware::hardware::Clock;
 use firmware::link::acknowledgement::{Acknowledgement, Order};
 use firmware::link::files::FileRequest;
 use firmware::link::frame::Parser;
@@ -54,12 +55,52 @@ fn a_broken_line_does_not_take_all_the_time() {
     impl Read for Broken {
         async fn read(&mut self, _: &mut [u8]) -> Result<usize, ErrorKind> {
             self.0 += 1;
-            assert!(self.0 <= 101, "more than a hundred attempts in a second");
+            assert!(self.0 <= 202, "more than two hundred attempts in a second");
             Err(ErrorKind::Other)
         }
     }
     let (clock, shared) = (Simulated::default(), Local::new());
     clock.run(1_000_000, receive(Broken(0), &clock, shared.for_receive()), |_| ());
+}
+
+/// A chip's line on which a frame arrives every [`BUSY_PERIOD_US`]: one that came while nobody read is an overrun, which
+/// the next read reports and ends.
+struct Busy<'a> {
+    clock: &'a Simulated,
+    /// The first frame that has not come yet.
+    next: u64,
+    sequence: u8,
+}
+
+const BUSY_PERIOD_US: u64 = 10_000;
+
+impl ErrorType for Busy<'_> {
+    type Error = ErrorKind;
+}
+
+impl Read for Busy<'_> {
+    async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
+        let came = self.clock.now() / BUSY_PERIOD_US + 1;
+        if came > self.next {
+            self.next = came;
+            return Err(ErrorKind::Other);
+        }
+        self.clock.until(self.next * BUSY_PERIOD_US).await;
+        self.next += 1;
+        self.sequence = self.sequence.wrapping_add(1);
+        let frame = disarm(self.sequence);
+        bytes[..frame.len()].copy_from_slice(&frame);
+        Ok(frame.len())
+    }
+}
+
+#[test]
+fn a_line_that_is_never_silent_is_heard_after_an_overrun() {
+    let (clock, shared) = (Simulated::default(), Local::new());
+    let line = Busy { clock: &clock, next: 0, sequence: 0 };
+    clock.run(1_000_000, receive(line, &clock, shared.for_receive()), |_| ());
+    let heard = shared.traffic.get().map_or(0, |traffic| traffic.value.frames);
+    assert!(heard >= 90, "{heard} frames of 100");
 }
 
 #[test]

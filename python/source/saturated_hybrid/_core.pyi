@@ -22,6 +22,7 @@ __all__ = [
     "LawRows",
     "Loop",
     "Network",
+    "RotorVehicle",
     "Scenario",
     "Shield",
     "ShieldRows",
@@ -54,6 +55,29 @@ class _Rotors(TypedDict):
     """(n, 2), least and greatest, rad/s."""
     lag: float
     """First-order lag of the speeds, s."""
+
+@final
+class RotorVehicle:
+    """The vehicle that a flight of the scenario simulates, under given thrusts of its rotors: their lag and limits, and the ground
+    where the scenario has any, are its own."""
+
+    def __new__(cls, scenario: Scenario) -> Self: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, _memo: Any, /) -> Self: ...
+    def step(self, thrusts: ArrayLike) -> None:
+        """Holds the rotors' commanded thrusts (n,), N, for one plant step. `RuntimeError` where the motion is no longer finite."""
+    @property
+    def state(self) -> NDArray[np.float64]:
+        """(13,): the true one."""
+    @property
+    def thrusts(self) -> NDArray[np.float64]:
+        """(n,): the rotors' thrusts at this moment, N, after their lag."""
+    @property
+    def specific_force(self) -> NDArray[np.float64]:
+        """(3,): what an accelerometer in the origin feels, the mean of the last step, m/s^2, body."""
+    @property
+    def stands(self) -> bool:
+        """Whether it stands on the ground."""
 
 @final
 class Scenario:

@@ -1,0 +1,60 @@
+"""ICM-42688-P (TDK DS-000347) and ICM-42605 (DS-000292): registers in banks."""
+
+from schedule import NS_PER_MS
+from sensors.inertial import GRAVITY, RATE_PER_COUNT, Inertial, Wiring
+
+_READ = 0x80
+_BANK = 0x76
+_NO_DATA = bytes([0x80, 0x00]) * 6
+
+
+class Icm42688(Inertial):
+    """Data from 0x1F of the first bank, INT1 by register 0x65, 1000 Hz."""
+
+    def __init__(self, select: str, wiring: Wiring, identity: int) -> None:
+        self._identity = identity
+        super().__init__(select, wiring)
+
+    def reset(self) -> None:
+        super().reset()
+        self._banks = {
+            0: {0x75: self._identity, 0x4C: 0x30, 0x4D: 0x91, 0x64: 0x10, 0x65: 0x10, 0x4F: 0x06, 0x50: 0x06,
+                0x52: 0x11},
+            1: {0x0C: 0x0D, 0x0D: 0xAA, 0x0E: 0x80},
+            2: {0x03: 0x18, 0x04: 0x40, 0x05: 0x62},
+        }
+        self._bank, self._data = 0, _NO_DATA
+
+    def measure(self) -> None:
+        motion = self.wiring.motion
+        # INTF_CONFIG0, bit 4: the higher byte first.
+        order = "big" if self._banks[0][0x4C] >> 4 & 1 else "little"
+        self._data = (self.counts(motion.specific_force, 16.0 * GRAVITY / 32768.0, order)
+                      + self.counts(motion.angular_velocity, RATE_PER_COUNT, order))
+
+    def has_pin(self) -> bool:
+        return bool(self._banks[0].get(0x65, 0) & 8)
+
+    def _read(self, register: int) -> int:
+        if register == _BANK:
+            return self._bank
+        if self._bank == 0 and 0x1F <= register < 0x2B:
+            return self._data[register - 0x1F]
+        return self._banks.get(self._bank, {}).get(register, 0)
+
+    def exchange(self, sent: bytes) -> bytes:
+        first, answer = sent[0] & 0x7F, bytearray(len(sent))
+        if sent[0] & _READ:
+            for place in range(1, len(sent)):
+                answer[place] = self._read(first + place - 1)
+        else:
+            self.settings.append((first, sent[1]))
+            if first == _BANK:
+                self._bank = sent[1] & 7
+            elif self._bank == 0 and first == 0x11 and sent[1] & 1:
+                self.reset()
+            else:
+                self._banks.setdefault(self._bank, {})[first] = sent[1]
+                if self._bank == 0 and first == 0x4E and sent[1] & 0xF == 0xF:
+                    self.start(30 * NS_PER_MS)
+        return bytes(answer)
