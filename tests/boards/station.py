@@ -16,8 +16,9 @@ from vehicle import POSE_DELAY_NS, POSE_PERIOD_NS, Vehicle  # noqa: E402
 # Position alone counts: ignore velocity, acceleration, yaw and yaw rate.
 POSITION_ONLY = 0b110111111000
 OFFBOARD_MAIN, OFFBOARD = 6, 6 << 16
-HEARTBEAT_NS, SETPOINT_NS, RETRY_NS = NS_PER_S // 2, NS_PER_S // 10, NS_PER_S // 5
-_TRIES = 5
+HEARTBEAT_NS, SETPOINT_NS, RETRY_NS = NS_PER_S // 2, NS_PER_S // 10, NS_PER_S // 2
+# An erase keeps the link for a second and more.
+_TRIES = 8
 # How long the board runs between two looks at what it sends.
 LOOK_NS = 5 * NS_PER_MS
 
