@@ -16,7 +16,9 @@ from vehicle import POSE_DELAY_NS, POSE_PERIOD_NS, Vehicle  # noqa: E402
 # Position alone counts: ignore velocity, acceleration, yaw and yaw rate.
 POSITION_ONLY = 0b110111111000
 OFFBOARD_MAIN, OFFBOARD = 6, 6 << 16
-HEARTBEAT_NS, SETPOINT_NS = NS_PER_S // 2, NS_PER_S // 10
+HEARTBEAT_NS, SETPOINT_NS, RETRY_NS = NS_PER_S // 2, NS_PER_S // 10, NS_PER_S // 2
+# An erase keeps the link for a second and more.
+_TRIES = 8
 # How long the board runs between two looks at what it sends.
 LOOK_NS = 5 * NS_PER_MS
 
@@ -95,17 +97,25 @@ class Station:
 
     def set_parameter(self, name: str, value: float) -> None:
         """Sets a parameter and waits for its echo."""
-        self.parameters.pop(name, None)
-        self.send(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32))
-        self.until(f"{name} set", lambda: name in self.parameters, 2.0)
-        assert abs(self.parameters[name] - value) < 1e-6, (name, self.parameters[name])
+        kind = mavlink.MAV_PARAM_TYPE_REAL32
+        found = self._ask(name, mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
+        assert abs(found - value) < 1e-6, (name, found)
 
     def get_parameter(self, name: str) -> float:
         """Reads one."""
+        return self._ask(name, mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
+
+    def _ask(self, name: str, message: Any) -> float:
+        """Sends until the parameter's value comes: a board that has just started may not listen yet."""
         self.parameters.pop(name, None)
-        self.send(mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
-        self.until(f"{name} read", lambda: name in self.parameters, 2.0)
-        return self.parameters[name]
+        for _ in range(_TRIES):
+            self.send(message)
+            due = self.board.schedule.now + RETRY_NS
+            answered = lambda: name in self.parameters or self.board.schedule.now >= due  # noqa: B023, E731
+            self.until(f"an answer about {name}", answered, 1.0)
+            if name in self.parameters:
+                return self.parameters[name]
+        raise AssertionError(f"{name}: no answer to {_TRIES} requests; {self.texts[-3:]}")
 
     # Listening.
 
