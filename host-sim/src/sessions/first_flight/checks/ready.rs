@@ -70,6 +70,14 @@ pub fn settings(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
             return Ok(Outcome::Failed(list.join(", ")));
         }
     }
+    for (name, key, what) in [("BAT_LOW", "settings.low", "low"), ("BAT_CRIT", "settings.critical", "almost empty")] {
+        if walk.board.is_h743
+            && walk.vehicle.parameter(name)? == 0.0
+            && let Some(volts) = walk.number(key, &format!("{name}: below how many V is the battery {what}? (skip)"))?
+        {
+            walk.vehicle.set_parameter(name, volts as f32)?;
+        }
+    }
     let low = walk.vehicle.parameter("BAT_LOW")?;
     let critical = walk.vehicle.parameter("BAT_CRIT")?;
     if walk.board.is_h743 && !(critical > 0.0 && low > critical) {
