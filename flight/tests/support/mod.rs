@@ -105,6 +105,7 @@ impl Handed {
             under_way: *under_way,
             body_rate: *body_rate,
             specific_force: *specific_force,
+            rotor_speeds: None,
             imu_fault: *imu_fault,
             poses,
             ground_station: *ground_station,
