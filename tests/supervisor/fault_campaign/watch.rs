@@ -53,6 +53,9 @@ pub fn complaints(
     said
 }
 
+/// The least command of a motor that turns: `idle` of a file that says nothing of it.
+const MOTOR_IDLE: f32 = 0.055;
+
 /// The motor commands that each mode may send.
 fn fits(mode: Mode, command: MotorCommand) -> bool {
     match (mode, command) {
@@ -60,9 +63,10 @@ fn fits(mode: Mode, command: MotorCommand) -> bool {
             command == MotorCommand::Stop
         }
         (Mode::MotorTest, MotorCommand::One { level, .. }) => (0.0..=MOTOR_TEST_LEVEL_MAX).contains(&level),
-        (Mode::Idling, MotorCommand::Run(commands)) => commands.iter().all(|command| *command == 0.03),
+        (Mode::Idling, MotorCommand::Run(commands)) => commands.iter().all(|command| *command == MOTOR_IDLE),
         (mode, MotorCommand::Run(commands)) => {
-            mode.flies() && commands.iter().all(|command| (0.0..=1.0).contains(command))
+            // A rotor that is lost is stopped.
+            mode.flies() && commands.iter().all(|command| *command == 0.0 || (MOTOR_IDLE..=1.0).contains(command))
         }
         _ => false,
     }

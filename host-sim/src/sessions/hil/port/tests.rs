@@ -2,7 +2,9 @@ use super::*;
 use crate::sessions::hil::{End, HilError, HilSession, serve};
 use crate::sessions::messages::decode;
 use firmware::frames;
-use mavlink::dialects::common::{HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA};
+use mavlink::dialects::common::{
+    ESC_STATUS_DATA, HEARTBEAT_DATA, HIL_ACTUATOR_CONTROLS_DATA, HIL_SENSOR_DATA, ODOMETRY_DATA,
+};
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -127,6 +129,8 @@ fn each_command_is_answered_with_the_periods_end_pose_first_until_poses_are_with
                 assert_eq!((pose.time_usec, pose.z), (time + 10_000, 0.0));
                 assert_eq!((pose.pose_covariance, pose.velocity_covariance), ([0.0; 21], [0.0; 21]));
             }
+            let speeds: ESC_STATUS_DATA = received(&mut board).expect("the rotors' speeds next");
+            assert_eq!(speeds.rpm, [0; 4]);
             let sensor: HIL_SENSOR_DATA = received(&mut board).expect("sensors last");
             assert_eq!(sensor.time_usec, time + 10_000);
             // At rest it feels the ground push: up, which is against FRD's z.

@@ -8,9 +8,10 @@ fn read(text: &str) -> Scenario {
     Scenario::parse(text, "v.toml").unwrap()
 }
 
-/// The Hummingbird whose rotors follow at once, without limits of its own.
+/// The Hummingbird whose rotors follow at once and may stand still, without limits of its own.
 fn prompt() -> Scenario {
     let text = HUMMINGBIRD.replace("torque_max = [1.0, 1.0, 0.4]", "torque_max = [9.0, 9.0, 9.0]");
+    let text = text.replace("speed = [0.0, 1500.0]", "speed = [0.0, 1500.0]\nidle = 0.0");
     Scenario { rotor_lag: 0.0, ..read(&text.replace("thrust_max = 40.0", "thrust_max = 99.0")) }
 }
 
