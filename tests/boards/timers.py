@@ -14,6 +14,8 @@ CR1, DIER, SR, EGR, CCER, CNT, PSC, ARR, CCR1, BDTR, DCR, DMAR = (
     0x00, 0x0C, 0x10, 0x14, 0x20, 0x24, 0x28, 0x2C, 0x34, 0x44, 0x48, 0x4C)
 _KNOWN = frozenset(range(0, 0x70, 4))
 _UPDATE_DMA = 1 << 8
+# Of CCER: the bits that enable an output; the next one of each inverts it.
+_ENABLING_BITS = 0x5555
 
 
 class TimeBase(Peripheral):
@@ -107,6 +109,8 @@ class Pulses:
     period_ns: int
     # By the channel, 1 to 4, and whether it is its complementary output: only those that reach a pin.
     widths: dict[tuple[int, bool], list[float]]
+    # Whether the outputs rest high and the pulses are low.
+    inverted: bool = False
     # Why they are no whole frame, if so.
     fault: str | None = None
 
@@ -141,15 +145,20 @@ class PulseTimer(Peripheral):
     def _preload(self) -> list[int]:
         return [self.values.get(CCR1 + 4 * channel, 0) for channel in range(4)]
 
-    def _pulses(self, rows: list[list[int]], fault: str | None = None) -> Pulses:
+    def _pulses(self, rows: list[list[int]], fault: str | None = None, begun_ns: int | None = None) -> Pulses:
         outputs = self.values.get(CCER, 0)
+        driven = outputs & _ENABLING_BITS
+        inverted = outputs & driven << 1
+        if inverted not in (0, driven << 1):
+            fault = fault or "outputs that rest high and outputs that rest low"
         if self.is_advanced and not self.values.get(BDTR, 0) >> 15 & 1:
             outputs = 0
         reload = self.values.get(ARR, 0) + 1
         widths = {(channel + 1, complementary): [row[channel] / reload for row in rows]
                   for channel in range(4) for bit, complementary in ((0, False), (2, True))
                   if outputs >> 4 * channel + bit & 1}
-        return Pulses(self.name, self._begun_ns, self._period_ns(), widths, fault)
+        begun_ns = self._begun_ns if begun_ns is None else begun_ns
+        return Pulses(self.name, begun_ns, self._period_ns(), widths, inverted != 0, fault)
 
     def _update(self) -> None:
         """An update event: widths take effect."""
@@ -189,7 +198,7 @@ class PulseTimer(Peripheral):
         self._generation += 1
         rows, self._rows = self._rows, []
         if len(rows) > 1:
-            self.made(self._pulses(rows[1:]))
+            self.made(self._pulses(rows[1:], begun_ns=self._begun_ns + self._period_ns()))
         elif self._stream is not None and self._stream.enabled:
             self.made(self._pulses([], "cut"))
         self._stream = None

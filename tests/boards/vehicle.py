@@ -43,6 +43,7 @@ class Vehicle:
         self.board = board
         coefficient, fastest = rotors["thrust_coefficient"], rotors["speed"][1]
         self.thrust_max = [coefficient * fastest**2] * len(rotors["position"])
+        board.escs.speeds = lambda: [math.sqrt(max(0.0, thrust) / coefficient) for thrust in self.body.thrusts.tolist()]
         self._step_ns = round(plant.get("step", 0.001) * 1e9)
         assert self._step_ns == NS_PER_MS, "the sensors' filters are for a plant step of a millisecond"
         self._draw = random.Random(2)
