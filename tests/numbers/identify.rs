@@ -212,6 +212,7 @@ fn the_recorders_file_says_what_log_csv_says() {
             wrench: Some(moment.commanded.scaled(0.9)),
             thrust_scale: Some(0.9),
             pose_age: None,
+            rotor_speeds: [None; 4],
             missed: 0,
             command: MotorCommand::Run([0.5; 4]),
             voltage: None,

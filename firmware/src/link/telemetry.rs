@@ -18,9 +18,7 @@ use super::origin::Origin;
 use crate::esc::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
 use crate::shared::{Calibrated, Report, Traffic};
-use crate::shared::{Report, Traffic};
 use estimation::imu::VibrationReport;
-use flight::Stamped;
 use flight::{ImuSample, Stamped};
 
 /// The inputs of a message.

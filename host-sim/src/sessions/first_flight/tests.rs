@@ -63,6 +63,7 @@ impl Desk {
                 signing_key: None,
                 truth: None,
                 recording: None,
+                gyro: None,
             };
             let scenario = Scenario::parse(text, "a file").unwrap();
             let (mut sitl, _) = Sitl::boot(&scenario, &session, |_| ()).unwrap();

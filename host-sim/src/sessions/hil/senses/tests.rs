@@ -19,7 +19,7 @@ fn motion(velocity: f64, begin: f64, instants: u64) -> Moved {
     };
     let specific_force = Vector3::new(0.0, 0.0, 9.81);
     let path = (1..=instants).map(at).collect();
-    Moved { state: at(instants), path, specific_force, thrust: 0.0, touchdown: None }
+    Moved { state: at(instants), path, specific_force, thrust: 0.0, speeds: Vec::new(), touchdown: None }
 }
 
 /// Command times that are not quite regular, us.
