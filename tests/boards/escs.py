@@ -109,6 +109,7 @@ class Escs:
         self.speeds: Callable[[], list[float]] = lambda: [0.0] * len(outputs)
         # Whole frames, and those of them on lines that rest high.
         self.frames, self.inverted_frames = 0, 0
+        self.answers = 0
         # What frames said, a value and how often by rotor; what was wrong, with how often; frames that were cut.
         self.values: Counter[tuple[int, int]] = Counter()
         self.wrong: Counter[str] = Counter()
@@ -155,6 +156,7 @@ class Escs:
             esc.answer = None
             if pulses.inverted:
                 esc.answer_ns = pulses.begun_ns + FRAME_BITS * pulses.period_ns + answers.DELAY_NS
+                self.answers += 1
                 esc.answer = answers.levels(answers.of_speed(self.speeds()[rotor]))
         if pulses.inverted:
             begins = round(pulses.begun_ns + FRAME_BITS * pulses.period_ns + answers.DELAY_NS)

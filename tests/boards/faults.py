@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from chip import BROWN_OUT, SOFTWARE, WATCHDOG
+from dma import Stream
 from flight import Flight, HEIGHT
 from outcome import Expected, Outcome
 from schedule import NS_PER_MS, NS_PER_S
@@ -119,18 +120,17 @@ def _storm(period_ns: int) -> Callable[[Flight], None]:
     return strike
 
 
-def _stream_of(flight: Flight, request: str) -> object:
+def _stream_of(flight: Flight, request: str) -> Stream:
     """The stream that serves a request, whether it waits now or not."""
     for controller in flight.board.chip.dma:
-        for stream in controller.streams:
-            if controller.request_of(stream) == request and stream.peripheral_address:
-                return stream
+        if request in controller.served_by:
+            return controller.served_by[request]
     raise AssertionError(f"no stream for {request}")
 
 
 def _requests(flight: Flight) -> dict[str, str]:
     wires = flight.board.wires
-    return {"sensor": wires.sensors[0].bus, "link": wires.link, "motors": wires.motors[0][0]}
+    return {"sensor": wires.sensors[0].bus, "link": wires.link, "motors": wires.motors[0].timer}
 
 
 def _transfer_errors(what: str, kind: str, times_ms: int) -> Callable[[Flight], None]:
@@ -180,5 +180,5 @@ FAULTS: dict[str, Fault] = {
     "dma-error-link-tx": Fault(_transfer_errors("link", "TX", 100), Expected()),
     "dma-error-motors": Fault(_transfer_errors("motors", "UP", _BRIEF_MS), Expected()),
     "dma-error-motors-for-good": Fault(_transfer_errors("motors", "UP", 60_000), Expected(
-        260.0, restarts=())),
+        260.0, ("motors: a frame did not go out", "Restarted: watchdog"), restarts=(WATCHDOG,)), _RESTART_S),
 }

@@ -1,7 +1,9 @@
 """A ground station and a source of poses, each on an emulated board's serial line, by pymavlink, in the vehicle's time.
 """
 
+import math
 import os
+import struct
 from collections import Counter
 from collections.abc import Callable
 from typing import Any
@@ -21,6 +23,25 @@ HEARTBEAT_NS, SETPOINT_NS, RETRY_NS = NS_PER_S // 2, NS_PER_S // 10, NS_PER_S //
 _TRIES = 8
 # How long the board runs between two looks at what it sends.
 LOOK_NS = 5 * NS_PER_MS
+
+
+# Messages that pymavlink has no names for: common.xml's 291 and 290.
+_ESC_STATUS, _ESC_INFO = "UNKNOWN_291", "UNKNOWN_290"
+_RAD_S_PER_RPM = math.pi / 30.0
+
+
+def _payload(frame: bytes, size: int) -> bytes:
+    """Of a frame of MAVLink 2, with the zeros that its end was cut by."""
+    return bytes(frame[10:10 + frame[1]]).ljust(size, b"\0")
+
+
+def _esc_status(frame: bytes) -> tuple[int, list[float]]:
+    time_us, *speeds = struct.unpack_from("<Q4i", _payload(frame, 57))
+    return time_us, [speed * _RAD_S_PER_RPM for speed in speeds]
+
+
+def _esc_info(frame: bytes) -> list[int]:
+    return list(struct.unpack_from("<8x4I", _payload(frame, 46)))
 
 
 class PoseSource:
@@ -58,6 +79,9 @@ class Station:
         self.parameters: dict[str, float] = {}
         self.armed, self.mode = False, 0
         self.position: tuple[float, float, float] | None = None
+        # What ESC_STATUS has said: (the board's time, us, speeds, rad/s); ESC_INFO: frames without a valid answer.
+        self.speeds: list[tuple[int, list[float]]] = []
+        self.missed_answers: list[int] | None = None
         self.is_quiet = False
         schedule = board.schedule
         schedule.after(0, self._heartbeat)
@@ -144,6 +168,10 @@ class Station:
                 print(f"    {self.board.schedule.now / NS_PER_S:8.3f} s  {message.text}", flush=True)
         elif kind == "COMMAND_ACK":
             self.answers[message.command] = message.result
+        elif kind == _ESC_STATUS:
+            self.speeds.append(_esc_status(message.data))
+        elif kind == _ESC_INFO:
+            self.missed_answers = _esc_info(message.data)
         elif kind == "PARAM_VALUE":
             self.parameters[message.param_id] = message.param_value
 

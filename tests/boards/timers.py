@@ -41,7 +41,7 @@ class TimeBase(Peripheral):
     def _period(self) -> int:
         return self.values[ARR] + 1
 
-    def _count(self) -> int:
+    def ticks(self) -> int:
         """Ticks, wraps included."""
         if not self.values.get(CR1, 0) & 1:
             return self._origin
@@ -55,7 +55,7 @@ class TimeBase(Peripheral):
         if generation is not None and generation != self._generation:
             return
         self._generation += 1
-        count, period, status, enabled = self._count(), self._period(), self.values.get(SR, 0), self.values.get(DIER, 0)
+        count, period, status, enabled = self.ticks(), self._period(), self.values.get(SR, 0), self.values.get(DIER, 0)
         nearest = period - count % period
         if count // period > self._seen // period:
             status |= 1
@@ -76,7 +76,7 @@ class TimeBase(Peripheral):
 
     def read(self, offset: int) -> int:
         if offset == CNT:
-            return self._count() % self._period()
+            return self.ticks() % self._period()
         return self.values.get(offset, 0)
 
     def write(self, offset: int, value: int) -> None:
@@ -92,7 +92,7 @@ class TimeBase(Peripheral):
             self._set_count(value)
             return
         if offset == CR1:
-            self._set_count(self._count())
+            self._set_count(self.ticks())
         self.values[offset] = value
         self._look()
 
