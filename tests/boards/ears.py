@@ -67,7 +67,8 @@ class SamplingTimer(Peripheral):
             self.wrong[f"samples of {place:#x}, where no pins are"] += 1
             return
         levels = self.levels(port, first_ns, period_ns, stream.count)
-        data = b"".join(level.to_bytes(stream.item_bytes, "little") for level in levels)
+        size = stream.item_bytes
+        data = b"".join([level.to_bytes(size, "little") for level in levels])
         stream.put(data, port.base + IDR)
         self.samples[port.name] += len(levels)
         stream.end()

@@ -5,7 +5,7 @@ Usage: spoiled.py BOARD IMAGE VEHICLE.toml [RUN...]
 
 Runs in a hover, and those on the ground after it was booted, are children of one process that flew there: each begins
 from the same moment. The faults are in faults.py, those of the parameters' flash in torn.py, those of a start in
-boots.py.
+boots.py, those of lines that answer in listening.py.
 """
 
 import json
@@ -21,6 +21,7 @@ from boots import BOOTS
 from chip import POWER
 from faults import FAULTS
 from flight import Flight, HEIGHT
+from listening import LISTENING
 from outcome import Expected, Outcome
 from torn import TORN
 from vehicle import START
@@ -85,7 +86,7 @@ def main() -> None:
         print(rows[-1], flush=True)
 
     print(f"== {name}: spoiled\n{'run':34} {'motors off':>11}  {'took':>7}", flush=True)
-    for run, boot in wanted(BOOTS).items():
+    for run, boot in wanted({**BOOTS, **LISTENING}).items():
         note(run, _child(lambda boot=boot: boot.run(name, image, vehicle)), boot.expected)
     faults, torn = wanted(FAULTS), wanted(TORN)
     if faults or torn:

@@ -122,24 +122,26 @@ class Station:
     def set_parameter(self, name: str, value: float) -> None:
         """Sets a parameter and waits for its echo."""
         kind = mavlink.MAV_PARAM_TYPE_REAL32
-        found = self._ask(name, mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
-        assert abs(found - value) < 1e-6, (name, found)
+        message = mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)
+        # An echo of what was set before may still come.
+        self._ask(name, message, lambda found: abs(found - value) < 1e-6)
 
     def get_parameter(self, name: str) -> float:
         """Reads one."""
         return self._ask(name, mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
 
-    def _ask(self, name: str, message: Any) -> float:
-        """Sends until the parameter's value comes: a board that has just started may not listen yet."""
+    def _ask(self, name: str, message: Any, fits: Callable[[float], bool] = lambda found: True) -> float:
+        """Sends until a value of the parameter that fits comes: a board that has just started may not listen yet."""
         self.parameters.pop(name, None)
         for _ in range(_TRIES):
             self.send(message)
             due = self.board.schedule.now + RETRY_NS
-            answered = lambda: name in self.parameters or self.board.schedule.now >= due  # noqa: B023, E731
+            is_there = lambda: name in self.parameters and fits(self.parameters[name])  # noqa: E731
+            answered = lambda: is_there() or self.board.schedule.now >= due  # noqa: B023, E731
             self.until(f"an answer about {name}", answered, 1.0)
-            if name in self.parameters:
+            if is_there():
                 return self.parameters[name]
-        raise AssertionError(f"{name}: no answer to {_TRIES} requests; {self.texts[-3:]}")
+        raise AssertionError(f"{name}: {self.parameters.get(name)} after {_TRIES} requests; {self.texts[-3:]}")
 
     # Listening.
 
