@@ -129,8 +129,9 @@ class PulseTimer(Peripheral):
         self._generation = 0
         self._begun_ns = 0
         self._stream: Stream | None = None
-        # What polling code has set: rows of widths that took effect, one a period.
+        # What polling code has set: rows of widths that took effect, one a period; whether silence came after them.
         self._rows: list[list[int]] = []
+        self._is_over = False
         self._shadow = [0] * 4
 
     def reset(self) -> None:
@@ -169,7 +170,7 @@ class PulseTimer(Peripheral):
         self._generation += 1
         self._begun_ns = self.core.schedule.now
         if not self.values.get(DIER, 0) & _UPDATE_DMA:
-            self._rows = [self._shadow]
+            self._rows, self._is_over = [self._shadow], False
             return
         self._rows = []
         self._stream = self.dma.armed(f"{self.name}_UP")
@@ -193,12 +194,17 @@ class PulseTimer(Peripheral):
         else:
             self.made(self._pulses([], "the transfer failed"))
 
+    def _polled(self, rows: list[list[int]]) -> None:
+        """What polling code has made: the first period has what was there before."""
+        self.made(self._pulses(rows[1:], begun_ns=self._begun_ns + self._period_ns()))
+
     def _stop(self) -> None:
         """The counter stands; what polling code has made is a frame if it is whole."""
         self._generation += 1
         rows, self._rows = self._rows, []
         if len(rows) > 1:
-            self.made(self._pulses(rows[1:], begun_ns=self._begun_ns + self._period_ns()))
+            if not self._is_over:
+                self._polled(rows)
         elif self._stream is not None and self._stream.enabled:
             self.made(self._pulses([], "cut"))
         self._stream = None
@@ -208,6 +214,9 @@ class PulseTimer(Peripheral):
             while self.core.schedule.now >= self._begun_ns + len(self._rows) * self._period_ns():
                 self._update()
                 self._rows.append(self._shadow)
+                if not self._is_over and len(self._rows) > 2 and not any(self._shadow):
+                    self._is_over = True
+                    self._polled(self._rows)
         return self.values.get(offset, 0)
 
     def write(self, offset: int, value: int) -> None:
