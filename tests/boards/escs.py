@@ -135,7 +135,8 @@ class Escs:
             self.wrong[f"{pulses.timer}: pulses on {sorted(strangers)}"] += 1
         self.frames += 1
         self.inverted_frames += pulses.inverted
-        now = self.schedule.now
+        now, answers_ns = self.schedule.now, pulses.begun_ns + FRAME_BITS * pulses.period_ns + answers.DELAY_NS
+        speeds = self.speeds() if pulses.inverted else []
         for rotor in mine:
             output, (port, pin) = self.outputs[rotor], self.pins[rotor]
             if port.function(pin) != output.function:
@@ -155,12 +156,11 @@ class Escs:
             self.values[rotor, frame[0]] += 1
             esc.answer = None
             if pulses.inverted:
-                esc.answer_ns = pulses.begun_ns + FRAME_BITS * pulses.period_ns + answers.DELAY_NS
+                esc.answer_ns = answers_ns
                 self.answers += 1
-                esc.answer = answers.levels(answers.of_speed(self.speeds()[rotor]))
+                esc.answer = answers.levels(answers.of_speed(speeds[rotor]))
         if pulses.inverted:
-            begins = round(pulses.begun_ns + FRAME_BITS * pulses.period_ns + answers.DELAY_NS)
-            for time in (begins, begins + round(answers.DURATION_NS)):
+            for time in (answers_ns, answers_ns + round(answers.DURATION_NS)):
                 self.schedule.at(time, self._look_who_drives, mine)
         told = tuple(esc.value for esc in self.escs)
         if not self.record or self.record[-1][1] != told:
