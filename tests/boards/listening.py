@@ -20,7 +20,7 @@ class WhileListening:
     boards: tuple[str, ...] | None = None
 
     def run(self, name: str, image: str, vehicle: pathlib.Path) -> Outcome:
-        """Arms, waits for an answer, and strikes: stop frames must be whole, inverted, and from pins that are driven."""
+        """Arms, waits for an answer, strikes: stop frames must be whole, inverted, and from pins that are driven."""
         flight = Flight(name, image, vehicle)
         flight.is_quiet = flight.station.is_quiet = True
         board, station, escs = flight.board, flight.station, flight.board.escs
