@@ -115,8 +115,14 @@ class Escs:
         self.wrong: Counter[str] = Counter()
         self.cut = 0
         self.longest_interval_ns = 0
+        # The last frame of each since the board was started.
+        self._frames_ns: list[int | None] = [None] * len(outputs)
         # Every change of what the motors are told: (time, values).
         self.record: list[tuple[int, tuple[int, ...]]] = []
+
+    def begin_anew(self) -> None:
+        """The board was started: frames begin when they will."""
+        self.longest_interval_ns, self._frames_ns = 0, [None] * len(self.outputs)
 
     def take(self, pulses: Pulses) -> None:
         """What a timer has made."""
@@ -150,8 +156,9 @@ class Escs:
                 self.wrong[f"rotor {rotor + 1}: {frame}"] += 1
                 continue
             esc = self.escs[rotor]
-            if esc.last_frame_ns is not None:
-                self.longest_interval_ns = max(self.longest_interval_ns, now - esc.last_frame_ns)
+            before_ns, self._frames_ns[rotor] = self._frames_ns[rotor], now
+            if before_ns is not None:
+                self.longest_interval_ns = max(self.longest_interval_ns, now - before_ns)
             esc.take(frame[0], now)
             self.values[rotor, frame[0]] += 1
             esc.answer = None

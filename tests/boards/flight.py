@@ -63,12 +63,16 @@ class Flight:
         assert escs.inverted_frames == 0, escs.inverted_frames
         station.order(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)
         plain = escs.frames
-        board.on_start = lambda: setattr(self, "plain_frames", escs.frames)
+
+        def started() -> None:
+            self.plain_frames = escs.frames
+            escs.begin_anew()
+        board.on_start = started
         station.counts.clear()
         station.until("a heartbeat again", lambda: bool(board.restarts) and station.counts["HEARTBEAT"] > 0, BOOT_MAX)
         assert board.restarts == [SOFTWARE], board.restarts
         board.restarts.clear()
-        station.position, escs.longest_interval_ns = None, 0
+        station.position = None
         self.say(f"restarted to speak both ways, {self.plain_frames - plain} plain frames before it went")
 
     def compare_speeds(self, what: str) -> None:
