@@ -132,7 +132,8 @@ class Controller(Peripheral):
         self.transfers[stream.name, request, f"{address & 0xFF00_0000:#010x}"] += 1
         reached = any(first <= address and address + size <= end for first, end in self.reachable)
         if not reached or stream.peripheral_address != peripheral:
-            self.unreachable[stream.name, request, f"{address:#x}+{size} for {stream.peripheral_address:#x}"] += 1
+            block = f"{address & ~0xFFF:#x} and up, for {stream.peripheral_address:#x}"
+            self.unreachable[stream.name, request, block] += 1
 
     def armed(self, request: str) -> Stream | None:
         """The stream that waits for `request`."""
