@@ -60,6 +60,7 @@ class Tear:
     works: tuple[int, ...]
     # Values that may be there afterwards.
     allowed: tuple[float, ...]
+    fails_in: str = "word"
     expected: Expected = Expected(0.0, unsaid=("stored values unusable", "lost"))
     boards: tuple[str, ...] | None = None
 
@@ -71,6 +72,8 @@ class Tear:
         found: list[float] = []
         for work in self.works:
             assert _cut(flight, work), f"no work number {work}"
+            failed_in = flight.board.chip.flash.failed_in
+            assert failed_in == self.fails_in, f"work number {work} is of the {failed_in}"
             value = _value_after(flight)
             assert value in self.allowed, f"cut at {work}: {_NAME} is {value}"
             said += [text for _, text in flight.station.texts]
@@ -85,7 +88,8 @@ class Tear:
 
 
 def _fill_sector(flight: Flight) -> None:
-    """Continues the journal with copies of its newest record until its sector is full: the next change erases."""
+    """Continues the journal with copies of its newest record until its sector is full, and starts the board from it:
+    the next change erases."""
     flash = flight.board.chip.flash
     records = [bytes(flash.memory[place:place + _RECORD_BYTES])
                for place in range(0, SECTORS * SECTOR_BYTES, _RECORD_BYTES)]
@@ -98,6 +102,9 @@ def _fill_sector(flight: Flight) -> None:
         body = struct.pack("<I", number) + newest[4:_CHECKSUM]
         record = body + struct.pack("<I", zlib.crc32(body) ^ kind)
         flash.memory[place * _RECORD_BYTES:(place + 1) * _RECORD_BYTES] = record
+    flight.board.chip.request_restart(POWER)
+    flight.board.run(5_000_000)
+    assert _value_after(flight) == _OLD
 
 
 _H743 = ("micoair", "matek")
@@ -106,5 +113,5 @@ TORN: dict[str, Tear] = {
     "power-fails-at-words": Tear(lambda flight: None, (0, 1, 14, 15, 16, 17, 31), (_OLD, _NEW), boards=_H743),
     "power-fails-at-the-words": Tear(lambda flight: None, (0, 1, 126, 127, 128, 129, 255), (_OLD, _NEW),
                                      boards=("bolt",)),
-    "power-fails-in-an-erase": Tear(_fill_sector, (0,), (_OLD,)),
+    "power-fails-in-an-erase": Tear(_fill_sector, (0,), (_OLD,), "erase"),
 }
