@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from card import Card
 from chip import Chip
-from escs import Escs, INTERVAL_MAX_NS
+from escs import INTERVAL_MAX_NS, Escs, Output
 from schedule import NS_PER_MS, Schedule
 from sensors.bmi088 import Accelerometer, Gyroscope
 from sensors.bmi270 import Bmi270
@@ -37,10 +37,10 @@ class Wires:
     feature: str
     chip: Callable[[], Chip]
     sensors: tuple[Sensor, ...]
-    # By rotor: timer, channel from 1, whether the complementary output.
-    motors: tuple[tuple[str, int, bool], ...]
+    # By rotor.
+    motors: tuple[Output, ...]
     link: str
-    # The alternate function that each pin must have been given.
+    # The alternate function that each other pin must have been given.
     functions: dict[str, int]
     # Outputs that must be at a level in flight.
     levels: dict[str, int]
@@ -58,10 +58,10 @@ MICOAIR = Wires(
         Sensor(Accelerometer, "SPI2", "D4", None, ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))),
         Sensor(Bmi270, "SPI3", "A15", "B7", _ALIGNED),
     ),
-    motors=(("TIM1", 4, False), ("TIM1", 3, False), ("TIM1", 2, False), ("TIM1", 1, False)),
+    motors=(Output("TIM1", 4, False, "E14", 1), Output("TIM1", 3, False, "E13", 1),
+            Output("TIM1", 2, False, "E11", 1), Output("TIM1", 1, False, "E9", 1)),
     link="USART1",
-    functions={"E14": 1, "E13": 1, "E11": 1, "E9": 1, "D3": 5, "C2": 5, "C3": 5, "B3": 6, "B4": 6, "D6": 5, "A9": 7,
-               "A10": 7},
+    functions={"D3": 5, "C2": 5, "C3": 5, "B3": 6, "B4": 6, "D6": 5, "A9": 7, "A10": 7},
     levels={},
     # 16 V through a divider of 21.12.
     battery_counts=round(16.0 / 21.12 / 3.3 * 65535),
@@ -76,10 +76,10 @@ MATEK = Wires(
         Sensor(lambda select, wiring: Icm42688(select, wiring, 0x42), "SPI4", "C13", "E15",
                ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))),
     ),
-    motors=(("TIM8", 2, True), ("TIM8", 3, True), ("TIM2", 1, False), ("TIM2", 2, False)),
+    motors=(Output("TIM8", 2, True, "B0", 3), Output("TIM8", 3, True, "B1", 3),
+            Output("TIM2", 1, False, "A0", 1), Output("TIM2", 2, False, "A1", 1)),
     link="UART7",
-    functions={"B0": 3, "B1": 3, "A0": 1, "A1": 1, "A5": 5, "A6": 5, "D7": 5, "E12": 5, "E13": 5, "E14": 5, "E7": 7,
-               "E8": 7},
+    functions={"A5": 5, "A6": 5, "D7": 5, "E12": 5, "E13": 5, "E14": 5, "E7": 7, "E8": 7},
     levels={"A15": 0},
     battery_counts=round(16.0 / 11.0 / 3.3 * 65535),
 )
@@ -90,9 +90,10 @@ BOLT = Wires(
         Sensor(Gyroscope, "SPI2", "B0", "C14", _ALIGNED),
         Sensor(Accelerometer, "SPI2", "B1", None, _ALIGNED),
     ),
-    motors=(("TIM2", 2, False), ("TIM2", 4, False), ("TIM2", 1, False), ("TIM2", 3, False)),
+    motors=(Output("TIM2", 2, False, "A1", 1), Output("TIM2", 4, False, "B11", 1),
+            Output("TIM2", 1, False, "A15", 1), Output("TIM2", 3, False, "B10", 1)),
     link="USART2",
-    functions={"A1": 1, "B11": 1, "A15": 1, "B10": 1, "B13": 5, "B14": 5, "B15": 5, "A2": 7, "A3": 7},
+    functions={"B13": 5, "B14": 5, "B15": 5, "A2": 7, "A3": 7},
     levels={"A0": 1, "B12": 1, "C8": 1, "C15": 1},
 )
 BOARDS = {"micoair": MICOAIR, "matek": MATEK, "bolt": BOLT}
@@ -105,8 +106,8 @@ class Board:
         self.name, self.wires = name, BOARDS[name]
         chip = self.chip = self.wires.chip()
         self.core, self.motion = chip.core, Motion()
-        self.escs = Escs(chip.core.schedule, list(self.wires.motors))
-        chip.on_pulses = self.escs.take
+        self.escs = Escs(chip.core.schedule, self.wires.motors, chip.ports)
+        chip.on_pulses, chip.on_samples = self.escs.take, self.escs.levels
         self.sensors = [self._wire(sensor) for sensor in self.wires.sensors]
         self._selects = {sensor.select: sensor for sensor in self.sensors}
         chip.on_pin = self._pin
@@ -170,6 +171,7 @@ class Board:
         for name, spi in self.chip.spis.items():
             wrong += [f"{name}: {what}, {count} times" for what, count in spi.wrong.items()]
         wrong += [f"motors: {what}, {count} times" for what, count in self.escs.wrong.items()]
+        wrong += [f"{self.chip.sampler.name}: {what}, {count} times" for what, count in self.chip.sampler.wrong.items()]
         wrong += [f"flash: {what}" for what in self.chip.flash.wrong]
         if self.chip.slot is not None:
             wrong += [f"SDMMC1: {what}, {count} times: not memory that it reaches"

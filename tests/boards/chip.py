@@ -6,6 +6,7 @@ from typing import Any
 from card import Slot
 from core import Core
 from dma import Controller
+from ears import SamplingTimer
 from flash import Flash
 from gpio import EdgeInterrupts, Port
 from peripheral import Peripheral
@@ -35,6 +36,7 @@ class Chip:
         self.spis: dict[str, Master] = {}
         self.uarts: dict[str, Uart] = {}
         self.pulse_timers: dict[str, PulseTimer] = {}
+        self.sampler: SamplingTimer
         self.clocks: ResetAndClocks
         self.edges: EdgeInterrupts
         self.flash: Flash
@@ -45,6 +47,8 @@ class Chip:
         # Told of every edge of an output, and of pulses.
         self.on_pin: Callable[[str, int], None] = lambda pin, level: None
         self.on_pulses: Callable[[Pulses], None] = lambda pulses: None
+        # Asked for the levels of a port's pins at so many times, from a first one at a distance, ns.
+        self.on_samples: Callable[[Port, float, float, int], list[int]] = lambda port, first, period, count: [0] * count
         self.restarts: list[str] = []
         core.system.on_reset_request = lambda: self.request_restart(SOFTWARE)
 

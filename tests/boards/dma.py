@@ -120,6 +120,8 @@ class Controller(Peripheral):
             core.system.lines[interrupt] = stream.wants_interrupt
         # Called when a stream begins to wait for its request, by that.
         self.begun: dict[str, Callable[[Stream], None]] = {}
+        # The stream that each request had last: drivers clear a stream's register when they are done with it.
+        self.served_by: dict[str, Stream] = {}
         # (stream, request, region) of transfers, and those that no controller could do.
         self.transfers: Counter[tuple[str, str | None, str]] = Counter()
         self.unreachable: Counter[tuple[str, str | None, str]] = Counter()
@@ -130,7 +132,8 @@ class Controller(Peripheral):
         self.transfers[stream.name, request, f"{address & 0xFF00_0000:#010x}"] += 1
         reached = any(first <= address and address + size <= end for first, end in self.reachable)
         if not reached or stream.peripheral_address != peripheral:
-            self.unreachable[stream.name, request, f"{address:#x}+{size} for {stream.peripheral_address:#x}"] += 1
+            block = f"{address & ~0xFFF:#x} and up, for {stream.peripheral_address:#x}"
+            self.unreachable[stream.name, request, block] += 1
 
     def armed(self, request: str) -> Stream | None:
         """The stream that waits for `request`."""
@@ -153,7 +156,9 @@ class Controller(Peripheral):
         if offset >= 0x10 and (offset - 0x10) % 0x18 == 0:
             stream = self.streams[(offset - 0x10) // 0x18]
             if value & _ENABLE and not before & _ENABLE:
-                begun = self.begun.get(self.request_of(stream) or "")
+                request = self.request_of(stream) or ""
+                self.served_by[request] = stream
+                begun = self.begun.get(request)
                 if begun is not None:
                     begun(stream)
             elif before & _ENABLE and not value & _ENABLE:

@@ -5,13 +5,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from chip import BROWN_OUT, SOFTWARE, WATCHDOG
+from dma import Stream
 from flight import Flight, HEIGHT
 from outcome import Expected, Outcome
 from schedule import NS_PER_MS, NS_PER_S
 from vehicle import START
 
-# How long a run goes on after its fault, s: where the flight must go on, and where words come after a restart.
-_FLIES_ON_S, _RESTART_S = 1.5, 9.0
+# How long a run goes on after its fault, s: where the flight must go on, the same with a fault that takes long to
+# emulate, and where words come after a restart.
+_FLIES_ON_S, _STORM_S, _RESTART_S = 1.0, 0.3, 9.0
 # Interrupts that control's task runs in: SAI1 on the H743, UART4 on the F405.
 _CONTROL = {"STM32H743": ("SAI1", 87), "STM32F405": ("UART4", 52)}
 _UNEXPECTED_INTERRUPT = 5
@@ -119,18 +121,17 @@ def _storm(period_ns: int) -> Callable[[Flight], None]:
     return strike
 
 
-def _stream_of(flight: Flight, request: str) -> object:
+def _stream_of(flight: Flight, request: str) -> Stream:
     """The stream that serves a request, whether it waits now or not."""
     for controller in flight.board.chip.dma:
-        for stream in controller.streams:
-            if controller.request_of(stream) == request and stream.peripheral_address:
-                return stream
+        if request in controller.served_by:
+            return controller.served_by[request]
     raise AssertionError(f"no stream for {request}")
 
 
 def _requests(flight: Flight) -> dict[str, str]:
     wires = flight.board.wires
-    return {"sensor": wires.sensors[0].bus, "link": wires.link, "motors": wires.motors[0][0]}
+    return {"sensor": wires.sensors[0].bus, "link": wires.link, "motors": wires.motors[0].timer}
 
 
 def _transfer_errors(what: str, kind: str, times_ms: int) -> Callable[[Flight], None]:
@@ -171,8 +172,8 @@ FAULTS: dict[str, Fault] = {
     "only-imu-reads-ones": Fault(_answers(0xFF), _NO_IMU, boards=("bolt",)),
     "only-imu-reads-zeros": Fault(_answers(0x00), _NO_IMU, boards=("bolt",)),
     "no-data-ready-edges": Fault(_silent, Expected(words=("IMU: no data-ready edges, polled",))),
-    "edges-every-100-us": Fault(_storm(100_000), Expected(unsaid=("Restarted",))),
-    "edges-every-20-us": Fault(_storm(20_000), Expected(unsaid=("Restarted",))),
+    "edges-every-100-us": Fault(_storm(100_000), Expected(unsaid=("Restarted",)), _STORM_S),
+    "edges-every-20-us": Fault(_storm(20_000), Expected(unsaid=("Restarted",)), _STORM_S),
     "card-pulled": Fault(_card_pulled, Expected(unsaid=("Restarted",)), boards=("micoair",)),
     "dma-error-sensor-rx": Fault(_transfer_errors("sensor", "RX", _BRIEF_MS), Expected()),
     "dma-error-sensor-tx": Fault(_transfer_errors("sensor", "TX", _BRIEF_MS), Expected()),
@@ -180,5 +181,5 @@ FAULTS: dict[str, Fault] = {
     "dma-error-link-tx": Fault(_transfer_errors("link", "TX", 100), Expected()),
     "dma-error-motors": Fault(_transfer_errors("motors", "UP", _BRIEF_MS), Expected()),
     "dma-error-motors-for-good": Fault(_transfer_errors("motors", "UP", 60_000), Expected(
-        260.0, restarts=())),
+        260.0, ("motors: a frame did not go out", "Restarted: watchdog"), restarts=(WATCHDOG,)), _RESTART_S),
 }

@@ -39,6 +39,8 @@ class Flash(Peripheral):
         self.works = 0
         self.fails_at: int | None = None
         self.seed = 0
+        # What power failed in last: "word" or "erase".
+        self.failed_in: str | None = None
         # Called when power fails in the middle of it.
         self.on_power_lost: Callable[[], None] = lambda: None
         # What must not happen.
@@ -81,6 +83,7 @@ class Flash(Peripheral):
         if self.WORD_BYTES > 4 and before != b"\xff" * self.WORD_BYTES:
             self.wrong.append("a word programmed twice: its code is wrong from then on")
         if self._fails():
+            self.failed_in = "word"
             draw = random.Random(self.seed * 1_000_003 + self.works)
             done = bytes(byte | draw.getrandbits(8) for byte in data)
             self.memory[place:place + self.WORD_BYTES] = bytes(a & b for a, b in zip(before, done))
@@ -97,6 +100,7 @@ class Flash(Peripheral):
             return
         first = sector * SECTOR_BYTES
         if self._fails():
+            self.failed_in = "erase"
             # Some words are blank, some as before, and some between: every fourth here.
             draw = random.Random(self.seed * 1_000_003 + self.works)
             for word in range(first // self.WORD_BYTES, (first + SECTOR_BYTES) // self.WORD_BYTES):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from core import Core
 from peripheral import Peripheral
 
-_MODER, _IDR, _ODR, _BSRR, _AFRL = 0x00, 0x10, 0x14, 0x18, 0x20
+_MODER, _PUPDR, IDR, _ODR, _BSRR, _AFRL = 0x00, 0x0C, 0x10, 0x14, 0x18, 0x20
 
 
 class Port(Peripheral):
@@ -30,8 +30,16 @@ class Port(Peripheral):
         """Whether it is a plain output."""
         return self.values.get(_MODER, 0) >> 2 * pin & 3 == 1
 
+    def is_input(self, pin: int) -> bool:
+        """Whether nothing here drives it."""
+        return self.values.get(_MODER, 0) >> 2 * pin & 3 == 0
+
+    def is_pulled_up(self, pin: int) -> bool:
+        """Whether it rests high where nobody drives it."""
+        return self.values.get(_PUPDR, 0) >> 2 * pin & 3 == 1
+
     def read(self, offset: int) -> int:
-        return self.values.get(_ODR if offset == _IDR else offset, 0)
+        return self.values.get(_ODR if offset == IDR else offset, 0)
 
     def write(self, offset: int, value: int) -> None:
         if offset == _BSRR:

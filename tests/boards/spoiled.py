@@ -1,11 +1,11 @@
 """Spoils an emulated board on its way up and in a hover, one fault a run, and prints what became of each: how soon the
 motors stood still, and what the board said.
 
-Usage: spoiled.py BOARD IMAGE VEHICLE.toml [RUN...]
+Usage: spoiled.py BOARD IMAGE VEHICLE.toml [RUN or start, listening, torn, hover...]
 
 Runs in a hover, and those on the ground after it was booted, are children of one process that flew there: each begins
 from the same moment. The faults are in faults.py, those of the parameters' flash in torn.py, those of a start in
-boots.py.
+boots.py, those of lines that answer in listening.py.
 """
 
 import json
@@ -21,6 +21,7 @@ from boots import BOOTS
 from chip import POWER
 from faults import FAULTS
 from flight import Flight, HEIGHT
+from listening import LISTENING
 from outcome import Expected, Outcome
 from torn import TORN
 from vehicle import START
@@ -76,18 +77,19 @@ def main() -> None:
     vehicle = pathlib.Path(file)
     rows: list[_Row] = []
 
-    def wanted(runs: dict) -> dict:
+    def wanted(group: str, runs: dict) -> dict:
+        whole = not chosen or group in chosen
         return {run: what for run, what in runs.items()
-                if (not chosen or run in chosen) and (what.boards is None or name in what.boards)}
+                if (whole or run in chosen) and (what.boards is None or name in what.boards)}
 
     def note(run: str, outcome: Outcome, expected: Expected) -> None:
         rows.append(_judge(run, outcome, expected))
         print(rows[-1], flush=True)
 
     print(f"== {name}: spoiled\n{'run':34} {'motors off':>11}  {'took':>7}", flush=True)
-    for run, boot in wanted(BOOTS).items():
+    for run, boot in {**wanted("start", BOOTS), **wanted("listening", LISTENING)}.items():
         note(run, _child(lambda boot=boot: boot.run(name, image, vehicle)), boot.expected)
-    faults, torn = wanted(FAULTS), wanted(TORN)
+    faults, torn = wanted("hover", FAULTS), wanted("torn", TORN)
     if faults or torn:
         flight = Flight(name, image, vehicle)
         flight.is_quiet = flight.station.is_quiet = True

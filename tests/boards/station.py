@@ -1,7 +1,9 @@
 """A ground station and a source of poses, each on an emulated board's serial line, by pymavlink, in the vehicle's time.
 """
 
+import math
 import os
+import struct
 from collections import Counter
 from collections.abc import Callable
 from typing import Any
@@ -21,6 +23,25 @@ HEARTBEAT_NS, SETPOINT_NS, RETRY_NS = NS_PER_S // 2, NS_PER_S // 10, NS_PER_S //
 _TRIES = 8
 # How long the board runs between two looks at what it sends.
 LOOK_NS = 5 * NS_PER_MS
+
+
+# Messages that pymavlink has no names for: common.xml's 291 and 290.
+_ESC_STATUS, _ESC_INFO = "UNKNOWN_291", "UNKNOWN_290"
+_RAD_S_PER_RPM = math.pi / 30.0
+
+
+def _payload(frame: bytes, size: int) -> bytes:
+    """Of a frame of MAVLink 2, with the zeros that its end was cut by."""
+    return bytes(frame[10:10 + frame[1]]).ljust(size, b"\0")
+
+
+def _esc_status(frame: bytes) -> tuple[int, list[float]]:
+    time_us, *speeds = struct.unpack_from("<Q4i", _payload(frame, 57))
+    return time_us, [speed * _RAD_S_PER_RPM for speed in speeds]
+
+
+def _esc_info(frame: bytes) -> list[int]:
+    return list(struct.unpack_from("<8x4I", _payload(frame, 46)))
 
 
 class PoseSource:
@@ -58,6 +79,9 @@ class Station:
         self.parameters: dict[str, float] = {}
         self.armed, self.mode = False, 0
         self.position: tuple[float, float, float] | None = None
+        # What ESC_STATUS has said: (the board's time, us, speeds, rad/s); ESC_INFO: frames without a valid answer.
+        self.speeds: list[tuple[int, list[float]]] = []
+        self.missed_answers: list[int] | None = None
         self.is_quiet = False
         schedule = board.schedule
         schedule.after(0, self._heartbeat)
@@ -98,24 +122,26 @@ class Station:
     def set_parameter(self, name: str, value: float) -> None:
         """Sets a parameter and waits for its echo."""
         kind = mavlink.MAV_PARAM_TYPE_REAL32
-        found = self._ask(name, mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
-        assert abs(found - value) < 1e-6, (name, found)
+        message = mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)
+        # An echo of what was set before may still come.
+        self._ask(name, message, lambda found: abs(found - value) < 1e-6)
 
     def get_parameter(self, name: str) -> float:
         """Reads one."""
         return self._ask(name, mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
 
-    def _ask(self, name: str, message: Any) -> float:
-        """Sends until the parameter's value comes: a board that has just started may not listen yet."""
+    def _ask(self, name: str, message: Any, fits: Callable[[float], bool] = lambda found: True) -> float:
+        """Sends until a value of the parameter that fits comes: a board that has just started may not listen yet."""
         self.parameters.pop(name, None)
         for _ in range(_TRIES):
             self.send(message)
             due = self.board.schedule.now + RETRY_NS
-            answered = lambda: name in self.parameters or self.board.schedule.now >= due  # noqa: B023, E731
+            is_there = lambda: name in self.parameters and fits(self.parameters[name])  # noqa: E731
+            answered = lambda: is_there() or self.board.schedule.now >= due  # noqa: B023, E731
             self.until(f"an answer about {name}", answered, 1.0)
-            if name in self.parameters:
+            if is_there():
                 return self.parameters[name]
-        raise AssertionError(f"{name}: no answer to {_TRIES} requests; {self.texts[-3:]}")
+        raise AssertionError(f"{name}: {self.parameters.get(name)} after {_TRIES} requests; {self.texts[-3:]}")
 
     # Listening.
 
@@ -144,6 +170,10 @@ class Station:
                 print(f"    {self.board.schedule.now / NS_PER_S:8.3f} s  {message.text}", flush=True)
         elif kind == "COMMAND_ACK":
             self.answers[message.command] = message.result
+        elif kind == _ESC_STATUS:
+            self.speeds.append(_esc_status(message.data))
+        elif kind == _ESC_INFO:
+            self.missed_answers = _esc_info(message.data)
         elif kind == "PARAM_VALUE":
             self.parameters[message.param_id] = message.param_value
 

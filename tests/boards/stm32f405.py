@@ -1,5 +1,5 @@
 """The STM32F405RG (RM0090): where its peripherals are, at the clocks that the firmware sets (168 MHz for the core, 84
-MHz for timers, 42 MHz for serial lines and the sensor).
+and 168 MHz for timers, 42 MHz for serial lines and the sensor).
 """
 
 from unicorn import arm_const as arm
@@ -7,6 +7,7 @@ from unicorn import arm_const as arm
 from chip import BROWN_OUT, PIN, POWER, SOFTWARE, WATCHDOG, Chip, ResetAndClocks
 from core import Core
 from dma import Controller, Stream
+from ears import SamplingTimer
 from flash import FlashF405
 from gpio import EdgeInterrupts, Port
 from peripheral import Store
@@ -22,6 +23,8 @@ PARAMETERS = 0x080C_0000
 # Table 42: what a stream listens to, by its channel.
 _REQUESTS = {(1, 3): "TIM2_UP", (3, 0): "SPI2_RX", (4, 0): "SPI2_TX", (5, 4): "USART2_RX", (6, 4): "USART2_TX",
              (7, 3): "TIM2_UP"}
+# And table 43, of the second controller. On channel 0 the requests of two more channels, which are off, come with it.
+_REQUESTS_2 = {(1, 7): "TIM8_UP", (2, 7): "TIM8_CH1", (2, 0): "TIM8_CH1"}
 _STREAM_INTERRUPTS = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]]
 
 
@@ -36,7 +39,7 @@ class _Clocks(ResetAndClocks):
         0x10: {**{bit: f"GPIO{'ABCDEFGHI'[bit]}" for bit in range(9)}, 21: "DMA1", 22: "DMA2"},
         0x14: {7: "OTG_FS"},
         0x20: {0: "TIM2", 3: "TIM5", 14: "SPI2", 17: "USART2", 18: "USART3"},
-        0x24: {14: "SYSCFG"},
+        0x24: {1: "TIM8", 14: "SYSCFG"},
     }
 
     def read(self, offset: int) -> int:
@@ -89,12 +92,14 @@ class Stm32F405(Chip):
         made = lambda pulses: self.on_pulses(pulses)  # noqa: E731
         timer = PulseTimer("TIM2", 0x4000_0000, core, self.dma[0], _TIMER_HZ, False, made)
         self.pulse_timers["TIM2"] = self.add(timer)
+        # The timers of the faster bus count twice as fast.
+        self.sampler = self.add(SamplingTimer("TIM8", 0x4001_0400, core, self.dma[1], 2 * _TIMER_HZ, self.ports,
+                                              lambda *asked: self.on_samples(*asked)))
         self.time_base = self.add(TimeBase("TIM5", 0x4000_0C00, core, _TIMER_HZ, 50))
         self.usb = self.add(UnpluggedPort(0x5000_0000, 0x1200))
         self.debug = self.add(Store("DBGMCU", 0xE004_2000, [0x00, 0x04, 0x08, 0x0C], {0x00: 0x100F_6413}))
 
     @staticmethod
     def _request(stream: Stream) -> str | None:
-        if stream.controller.name != "DMA1":
-            return None
-        return _REQUESTS.get((stream.number, stream.control >> 25 & 7))
+        requests = _REQUESTS if stream.controller.name == "DMA1" else _REQUESTS_2
+        return requests.get((stream.number, stream.control >> 25 & 7))

@@ -8,6 +8,7 @@ from card import Slot
 from chip import BROWN_OUT, PIN, POWER, SOFTWARE, WATCHDOG, Chip, ResetAndClocks
 from core import Core
 from dma import Controller, Stream
+from ears import SamplingTimer
 from flash import FlashH743
 from gpio import EdgeInterrupts, Port
 from peripheral import Peripheral, Store
@@ -21,9 +22,9 @@ _TIMER_HZ, _SERIAL_HZ = 200_000_000, 100_000_000
 PARAMETERS = 0x081C_0000
 
 _REQUESTS = {
-    15: "TIM1_UP", 22: "TIM2_UP", 37: "SPI1_RX", 38: "SPI1_TX", 39: "SPI2_RX", 40: "SPI2_TX", 41: "USART1_RX",
-    42: "USART1_TX", 51: "TIM8_UP", 61: "SPI3_RX", 62: "SPI3_TX", 79: "UART7_RX", 80: "UART7_TX", 83: "SPI4_RX",
-    84: "SPI4_TX",
+    15: "TIM1_UP", 22: "TIM2_UP", 29: "TIM4_CH1", 32: "TIM4_UP", 37: "SPI1_RX", 38: "SPI1_TX", 39: "SPI2_RX",
+    40: "SPI2_TX", 41: "USART1_RX", 42: "USART1_TX", 51: "TIM8_UP", 61: "SPI3_RX", 62: "SPI3_TX", 79: "UART7_RX",
+    80: "UART7_TX", 83: "SPI4_RX", 84: "SPI4_TX",
 }
 _SPIS = {"SPI1": 0x4001_3000, "SPI2": 0x4000_3800, "SPI3": 0x4000_3C00, "SPI4": 0x4001_3400}
 _UARTS = {"USART1": (0x4001_1000, 37), "USART2": (0x4000_4400, 38), "USART6": (0x4001_1400, 71),
@@ -43,7 +44,7 @@ class _Clocks(ResetAndClocks):
         0x7C: {16: "SDMMC1"},
         0x80: {0: "DMA1", 1: "DMA2", 5: "ADC1", 27: "OTG_FS"},
         0x88: {bit: f"GPIO{'ABCDEFGHIJK'[bit]}" for bit in range(11)},
-        0x90: {0: "TIM2", 3: "TIM5", 14: "SPI2", 15: "SPI3", 17: "USART2", 30: "UART7"},
+        0x90: {0: "TIM2", 2: "TIM4", 3: "TIM5", 14: "SPI2", 15: "SPI3", 17: "USART2", 30: "UART7"},
         0x98: {0: "TIM1", 1: "TIM8", 4: "USART1", 5: "USART6", 12: "SPI1", 13: "SPI4"},
     }
 
@@ -149,6 +150,8 @@ class Stm32H743(Chip):
         for name, (base, is_advanced) in _TIMERS.items():
             made = lambda pulses: self.on_pulses(pulses)  # noqa: E731
             self.pulse_timers[name] = self.add(PulseTimer(name, base, core, self.dma[0], _TIMER_HZ, is_advanced, made))
+        self.sampler = self.add(SamplingTimer("TIM4", 0x4000_0800, core, self.dma[1], _TIMER_HZ, self.ports,
+                                              lambda *asked: self.on_samples(*asked)))
         self.time_base = self.add(TimeBase("TIM5", 0x4000_0C00, core, _TIMER_HZ, 50))
         self.converter = self.add(_Converter())
         self.slot = self.add(Slot(core, 49, (0x2400_0000, 0x2408_0000)))

@@ -14,6 +14,8 @@ CR1, DIER, SR, EGR, CCER, CNT, PSC, ARR, CCR1, BDTR, DCR, DMAR = (
     0x00, 0x0C, 0x10, 0x14, 0x20, 0x24, 0x28, 0x2C, 0x34, 0x44, 0x48, 0x4C)
 _KNOWN = frozenset(range(0, 0x70, 4))
 _UPDATE_DMA = 1 << 8
+# Of CCER: the bits that enable an output; the next one of each inverts it.
+_ENABLING_BITS = 0x5555
 
 
 class TimeBase(Peripheral):
@@ -39,7 +41,7 @@ class TimeBase(Peripheral):
     def _period(self) -> int:
         return self.values[ARR] + 1
 
-    def _count(self) -> int:
+    def ticks(self) -> int:
         """Ticks, wraps included."""
         if not self.values.get(CR1, 0) & 1:
             return self._origin
@@ -53,7 +55,7 @@ class TimeBase(Peripheral):
         if generation is not None and generation != self._generation:
             return
         self._generation += 1
-        count, period, status, enabled = self._count(), self._period(), self.values.get(SR, 0), self.values.get(DIER, 0)
+        count, period, status, enabled = self.ticks(), self._period(), self.values.get(SR, 0), self.values.get(DIER, 0)
         nearest = period - count % period
         if count // period > self._seen // period:
             status |= 1
@@ -74,7 +76,7 @@ class TimeBase(Peripheral):
 
     def read(self, offset: int) -> int:
         if offset == CNT:
-            return self._count() % self._period()
+            return self.ticks() % self._period()
         return self.values.get(offset, 0)
 
     def write(self, offset: int, value: int) -> None:
@@ -90,7 +92,7 @@ class TimeBase(Peripheral):
             self._set_count(value)
             return
         if offset == CR1:
-            self._set_count(self._count())
+            self._set_count(self.ticks())
         self.values[offset] = value
         self._look()
 
@@ -107,6 +109,8 @@ class Pulses:
     period_ns: int
     # By the channel, 1 to 4, and whether it is its complementary output: only those that reach a pin.
     widths: dict[tuple[int, bool], list[float]]
+    # Whether the outputs rest high and the pulses are low.
+    inverted: bool = False
     # Why they are no whole frame, if so.
     fault: str | None = None
 
@@ -125,8 +129,9 @@ class PulseTimer(Peripheral):
         self._generation = 0
         self._begun_ns = 0
         self._stream: Stream | None = None
-        # What polling code has set: rows of widths that took effect, one a period.
+        # What polling code has set: rows of widths that took effect, one a period; whether silence came after them.
         self._rows: list[list[int]] = []
+        self._is_over = False
         self._shadow = [0] * 4
 
     def reset(self) -> None:
@@ -141,15 +146,20 @@ class PulseTimer(Peripheral):
     def _preload(self) -> list[int]:
         return [self.values.get(CCR1 + 4 * channel, 0) for channel in range(4)]
 
-    def _pulses(self, rows: list[list[int]], fault: str | None = None) -> Pulses:
+    def _pulses(self, rows: list[list[int]], fault: str | None = None, begun_ns: int | None = None) -> Pulses:
         outputs = self.values.get(CCER, 0)
+        driven = outputs & _ENABLING_BITS
+        inverted = outputs & driven << 1
+        if inverted not in (0, driven << 1):
+            fault = fault or "outputs that rest high and outputs that rest low"
         if self.is_advanced and not self.values.get(BDTR, 0) >> 15 & 1:
             outputs = 0
         reload = self.values.get(ARR, 0) + 1
         widths = {(channel + 1, complementary): [row[channel] / reload for row in rows]
                   for channel in range(4) for bit, complementary in ((0, False), (2, True))
                   if outputs >> 4 * channel + bit & 1}
-        return Pulses(self.name, self._begun_ns, self._period_ns(), widths, fault)
+        begun_ns = self._begun_ns if begun_ns is None else begun_ns
+        return Pulses(self.name, begun_ns, self._period_ns(), widths, inverted != 0, fault)
 
     def _update(self) -> None:
         """An update event: widths take effect."""
@@ -160,7 +170,7 @@ class PulseTimer(Peripheral):
         self._generation += 1
         self._begun_ns = self.core.schedule.now
         if not self.values.get(DIER, 0) & _UPDATE_DMA:
-            self._rows = [self._shadow]
+            self._rows, self._is_over = [self._shadow], False
             return
         self._rows = []
         self._stream = self.dma.armed(f"{self.name}_UP")
@@ -184,12 +194,17 @@ class PulseTimer(Peripheral):
         else:
             self.made(self._pulses([], "the transfer failed"))
 
+    def _polled(self, rows: list[list[int]]) -> None:
+        """What polling code has made: the first period has what was there before."""
+        self.made(self._pulses(rows[1:], begun_ns=self._begun_ns + self._period_ns()))
+
     def _stop(self) -> None:
         """The counter stands; what polling code has made is a frame if it is whole."""
         self._generation += 1
         rows, self._rows = self._rows, []
         if len(rows) > 1:
-            self.made(self._pulses(rows[1:]))
+            if not self._is_over:
+                self._polled(rows)
         elif self._stream is not None and self._stream.enabled:
             self.made(self._pulses([], "cut"))
         self._stream = None
@@ -199,6 +214,9 @@ class PulseTimer(Peripheral):
             while self.core.schedule.now >= self._begun_ns + len(self._rows) * self._period_ns():
                 self._update()
                 self._rows.append(self._shadow)
+                if not self._is_over and len(self._rows) > 2 and not any(self._shadow):
+                    self._is_over = True
+                    self._polled(self._rows)
         return self.values.get(offset, 0)
 
     def write(self, offset: int, value: int) -> None:

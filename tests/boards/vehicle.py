@@ -8,6 +8,7 @@ import math
 import pathlib
 import random
 import tomllib
+from collections import deque
 
 import saturated_hybrid as sh
 
@@ -43,6 +44,8 @@ class Vehicle:
         self.board = board
         coefficient, fastest = rotors["thrust_coefficient"], rotors["speed"][1]
         self.thrust_max = [coefficient * fastest**2] * len(rotors["position"])
+        self._coefficient = coefficient
+        board.escs.speeds = self.speeds
         self._step_ns = round(plant.get("step", 0.001) * 1e9)
         assert self._step_ns == NS_PER_MS, "the sensors' filters are for a plant step of a millisecond"
         self._draw = random.Random(2)
@@ -52,6 +55,8 @@ class Vehicle:
         self.is_free = False
         # Every so often: (time, position).
         self.track: list[tuple[int, tuple[float, float, float]]] = []
+        # How fast the rotors turned, rad/s, of late: (time, speeds).
+        self.rotor_speeds: deque[tuple[int, list[float]]] = deque(maxlen=500)
         board.schedule.after(self._step_ns, self._advance)
 
     def _advance(self) -> None:
@@ -69,8 +74,15 @@ class Vehicle:
         state = self.body.state.tolist()
         self.position, self.velocity, self.attitude = tuple(state[0:3]), tuple(state[3:6]), tuple(state[6:10])
         board.motion.feel(tuple(state[10:13]), tuple(self.body.specific_force.tolist()))
+        self.rotor_speeds.append((board.schedule.now, self.speeds()))
         if len(self.track) * 10 * NS_PER_MS <= board.schedule.now:
             self.track.append((board.schedule.now, self.position))
+
+    def speeds(self) -> list[float]:
+        """How fast the rotors turn, rad/s."""
+        if not self.is_free:
+            return [0.0] * len(self.thrust_max)
+        return [math.sqrt(max(0.0, thrust) / self._coefficient) for thrust in self.body.thrusts.tolist()]
 
     def pose(self) -> tuple[tuple[float, float, float], tuple[float, ...]]:
         """What a motion-capture system sees: position and attitude, in MAVLink's frames."""
