@@ -20,8 +20,13 @@ use super::mps2::exit::faulted;
 #[cfg(feature = "stm32")]
 use super::stm32::fault::faulted;
 
-/// Bytes of the guard, a power of two: its place is a multiple of it.
+/// Bytes of the guard.
 pub const GUARD_BYTES: usize = 16 * 1024;
+
+/// Regions of the memory protection unit that it consists of, and their bytes, a power of two: the place of each is a
+/// multiple of that.
+const REGION_COUNT: usize = 4;
+const REGION_BYTES: usize = GUARD_BYTES / REGION_COUNT;
 
 unsafe extern "C" {
     /// Where the stack begins, and where it would meet what lies below it: the linker's.
@@ -29,9 +34,9 @@ unsafe extern "C" {
     static _stack_end: u8;
 }
 
-/// Where the guard begins: as far down as its alignment allows.
+/// Where the guard begins: as far down as its regions' alignment allows.
 fn guard() -> usize {
-    (&raw const _stack_end).addr().next_multiple_of(GUARD_BYTES)
+    (&raw const _stack_end).addr().next_multiple_of(REGION_BYTES)
 }
 
 /// Guards the stack from here on. What the guard does not cover is as without the unit; a fault's handler is not held
@@ -40,12 +45,14 @@ pub fn watch(mpu: &mut MPU) {
     /// Privileged code has the default map elsewhere; the unit is on.
     const ENABLE_BITS: u32 = 0b101;
     /// No execution; the size as a power of two, less one; on. No access.
-    const NO_ACCESS_BITS: u32 = 1 << 28 | (GUARD_BYTES.trailing_zeros() - 1) << 1 | 1;
+    const NO_ACCESS_BITS: u32 = 1 << 28 | (REGION_BYTES.trailing_zeros() - 1) << 1 | 1;
     // SAFETY: nothing lies in the guard but what a stack of this size never reaches.
     unsafe {
-        mpu.rnr.write(0);
-        mpu.rbar.write(guard() as u32);
-        mpu.rasr.write(NO_ACCESS_BITS);
+        for region in 0..REGION_COUNT {
+            mpu.rnr.write(region as u32);
+            mpu.rbar.write((guard() + region * REGION_BYTES) as u32);
+            mpu.rasr.write(NO_ACCESS_BITS);
+        }
         mpu.ctrl.write(ENABLE_BITS);
     }
     cortex_m::asm::dsb();
