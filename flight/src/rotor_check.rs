@@ -27,6 +27,7 @@ use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::allocation::remaining::LostRotor;
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::math;
+use core::cmp::Ordering;
 use core::fmt;
 use heapless::Vec;
 
@@ -250,10 +251,18 @@ impl RotorCheck {
             let command = 0.5 * (checked.low + checked.high);
             speed.filter(|_| command > 0.0).map(|speed| speed / command)
         };
-        let mut ratios: Vec<f32, ROTORS_MAX> = self.rotors.iter().zip(speeds).filter_map(of).collect();
-        ratios.sort_unstable_by(f32::total_cmp);
+        let ratios: Vec<f32, ROTORS_MAX> = self.rotors.iter().zip(speeds).filter_map(of).collect();
         let (upper, lower) = (ratios.len() / 2, ratios.len().saturating_sub(1) / 2);
-        let middle = ratios.get(lower).zip(ratios.get(upper)).map(|(lower, upper)| 0.5 * (lower + upper));
+        // The ratio of this rank. The standard library's sorting can panic.
+        let ranked = |rank: usize| {
+            let count = |ratio: &f32, counts: fn(Ordering) -> bool| {
+                ratios.iter().filter(|other| counts(other.total_cmp(ratio))).count()
+            };
+            let is_ranked =
+                |ratio: &f32| (count(ratio, Ordering::is_lt)..count(ratio, Ordering::is_le)).contains(&rank);
+            ratios.iter().copied().find(is_ranked)
+        };
+        let middle = ranked(lower).zip(ranked(upper)).map(|(lower, upper)| 0.5 * (lower + upper));
         middle.filter(|_| ratios.len() >= COMPARABLE_MIN)
     }
 
