@@ -14,8 +14,8 @@ mod target {
     use cortex_m::register::{basepri, control, primask};
     use cortex_m_rt::exception;
     use cortex_m_semihosting::hprintln;
-    use firmware::boards::kept;
     use firmware::boards::mps2::{self, exit};
+    use firmware::boards::{guard, kept};
     use firmware::last_words::LastWords;
 
     /// Which start this is: memory that no start clears.
@@ -129,7 +129,7 @@ mod target {
     }
 
     fn is_unprotected(core: &mut Peripherals) -> bool {
-        (1..core.MPU._type.read() >> 8 & 0xFF).all(|region| {
+        (guard::REGION_COUNT as u32..core.MPU._type.read() >> 8 & 0xFF).all(|region| {
             // SAFETY: only chooses what is read.
             unsafe { core.MPU.rnr.write(region) };
             core.MPU.rasr.read() & 1 == 0

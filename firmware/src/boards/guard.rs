@@ -25,7 +25,7 @@ pub const GUARD_BYTES: usize = 16 * 1024;
 
 /// Regions of the memory protection unit that it consists of, and their bytes, a power of two: the place of each is a
 /// multiple of that.
-const REGION_COUNT: usize = 4;
+pub const REGION_COUNT: usize = 4;
 const REGION_BYTES: usize = GUARD_BYTES / REGION_COUNT;
 
 unsafe extern "C" {

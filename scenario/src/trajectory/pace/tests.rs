@@ -10,7 +10,7 @@ fn vehicle(rotor: f64) -> String {
     format!(
         "name = \"test\"\n[vehicle]\nmass = 0.62\ninertia = [0.0025, 0.0029, 0.0048]\n[rotors]\n\
          position = [[0.08, 0.08, 0.0], [0.08, -0.08, 0.0], [-0.08, -0.08, 0.0], [-0.08, 0.08, 0.0]]\n\
-         spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\nthrust_max = {rotor}\ntorque_per_thrust = 0.013\nlag = 0.025\n"
+         spin = [\"cw\", \"ccw\", \"cw\", \"ccw\"]\nthrust_max = {rotor}\ntorque_per_thrust = 0.013\nlag = 0.025\nidle = 0.0\n"
     )
 }
 
