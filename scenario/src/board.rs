@@ -250,7 +250,7 @@ mod tests {
             assert!((late - notches_delay()).abs() < 1e-9 && (1e-3..1.3e-3).contains(&late), "{late}");
         }
         // Damped harder and harder: before there is too little margin to fly, there is too little for notches.
-        let damped = (50..600).map(|thousandths| damped(f64::from(thousandths) * 0.001));
+        let damped = (10..600).map(|thousandths| damped(f64::from(thousandths) * 0.001));
         let flies_without = |scenario: &Scenario| !may_follow_rotors(scenario) && check(scenario, "damped").is_ok();
         let first = damped.into_iter().find(flies_without).unwrap();
         assert_eq!(timing(&first), plain_timing(&first));
