@@ -29,10 +29,10 @@ fn leaning() -> Report {
 }
 
 /// What goes out in so many us, with the values put down anew each millisecond.
-fn transmitted(shared: &Local, duration: u64, mut each: impl FnMut(u64)) -> RefCell<Vec<u8>> {
+fn transmitted(shared: &Local, duration: u64, each: impl FnMut(u64)) -> RefCell<Vec<u8>> {
     let (clock, written) = (Simulated::default(), RefCell::default());
     let line = Outgoing { written: &written, at_once: 300 };
-    clock.run(duration, transmit(line, &clock, shared.for_transmit()), |now| each(now));
+    clock.run(duration, transmit(line, &clock, shared.for_transmit()), each);
     written
 }
 

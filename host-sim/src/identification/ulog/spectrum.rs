@@ -165,14 +165,17 @@ fn power(samples: &[f64], k: usize) -> f64 {
     one * one + two * two - twice * one * two
 }
 
-/// Samples that follow one another, in runs, rad/s; and the time between two of them, s.
-fn runs(log: &Ulog) -> Result<(Vec<Vec<[f64; 3]>>, f64), String> {
+/// Samples that follow one another, of three axes, rad/s.
+type Run = Vec<[f64; 3]>;
+
+/// The samples in runs; and the time between two of them, s.
+fn runs(log: &Ulog) -> Result<(Vec<Run>, f64), String> {
     let topic = log.topic(GYRO_TOPIC).ok_or(format!("has no {GYRO_TOPIC}: was LOG_GYRO 1 when the vehicle booted"))?;
     let mut names: Vec<String> = ["timestamp_sample", "dt", "scale", "samples"].map(str::to_owned).into();
     names.extend(["x", "y", "z"].iter().flat_map(|axis| (0..RECORD_SAMPLES_MAX).map(move |n| format!("{axis}[{n}]"))));
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let rows = topic.columns(&names).ok_or(format!("{GYRO_TOPIC}: not as PX4 has it"))?;
-    let (mut runs, mut first, mut due) = (Vec::<Vec<[f64; 3]>>::new(), None, f64::NAN);
+    let (mut runs, mut first, mut due) = (Vec::<Run>::new(), None, f64::NAN);
     for row in &rows {
         let &[time, between, scale, count, ref counts @ ..] = &row[..] else { continue };
         let first = *first.get_or_insert(between);
@@ -183,7 +186,8 @@ fn runs(log: &Ulog) -> Result<(Vec<Vec<[f64; 3]>>, f64), String> {
         }
         let begins = time - (count - 1.0) * between;
         // Without a record before it, no number is near.
-        if !((begins - due).abs() < TIME_TOLERANCE_SHARE * between) {
+        let follows = (begins - due).abs() < TIME_TOLERANCE_SHARE * between;
+        if !follows {
             runs.push(Vec::new());
         }
         due = time + between;
