@@ -315,7 +315,7 @@ fn run_first_flight(arguments: &FirstFlightArguments) -> Result<ExitCode, String
     board::fits(&scenario, &arguments.file.display().to_string())?;
     let (subject, mut person, page) = (arguments.subject(&text)?, arguments.person()?, arguments.page());
     let (mut record, why) = Record::open(&arguments.record(), subject)?;
-    why.iter().for_each(|why| complain(why));
+    why.iter().for_each(complain);
     WholeFile::try_name(&page).map_err(|error| format!("--page {}: cannot be written: {error}", page.display()))?;
     let vehicle = Vehicle::new(Line::open(arguments.link.clone())?, watch()?);
     let mut walk = Walk::new(vehicle, person.as_mut(), &scenario, arguments.board());

@@ -47,8 +47,11 @@ pub fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
     }
 }
 
+/// From a log and a place to the text that says what was written there.
+type Conversion = fn(&Path, &Path) -> Result<String, String>;
+
 pub fn run_log(LogArguments { log, ulog, spectrum }: &LogArguments) -> Result<ExitCode, String> {
-    let runs: [(_, _, fn(&Path, &Path) -> Result<String, String>); 2] =
+    let runs: [(_, _, Conversion); 2] =
         [("--ulog", ulog, ulog::command::run), ("--spectrum", spectrum, ulog::command::draw)];
     for (option, out, run) in runs {
         let Some(out) = out else { continue };
