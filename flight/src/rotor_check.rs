@@ -251,7 +251,11 @@ impl RotorCheck {
             let command = 0.5 * (checked.low + checked.high);
             speed.filter(|_| command > 0.0).map(|speed| speed / command)
         };
-        let ratios: Vec<f32, ROTORS_MAX> = self.rotors.iter().zip(speeds).filter_map(of).collect();
+        let mut ratios = Vec::<f32, ROTORS_MAX>::new();
+        for ratio in self.rotors.iter().zip(speeds).filter_map(of) {
+            // There are no more of them than rotors; collecting could panic.
+            let _ = ratios.push(ratio);
+        }
         let (upper, lower) = (ratios.len() / 2, ratios.len().saturating_sub(1) / 2);
         // The ratio of this rank. The standard library's sorting can panic.
         let ranked = |rank: usize| {
