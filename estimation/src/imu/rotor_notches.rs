@@ -1,7 +1,7 @@
 //! Notches that follow the rotors: a vibration as fast as a rotor turns does not reach the law, where rotors tell their
 //! speeds.
 //!
-//! One notch for each rotor, and for each of its [`HARMONICS`], in front of the [low-pass](super::low_pass). Of f, the
+//! One notch for each rotor, and for each of its [`HARMONIC_COUNT`], in front of the [low-pass](super::low_pass). Of f, the
 //! rotor's frequency, f_s samples a second, and the depth g from 0 to 1:
 //!
 //! ```text
@@ -43,11 +43,11 @@ use nalgebra::Vector3;
 pub const ROTOR_COUNT: usize = 4;
 
 /// Multiples of a rotor's frequency that have a notch: the first is its unbalance.
-pub const HARMONICS: usize = 1;
+pub const HARMONIC_COUNT: usize = 1;
 
 /// A notch's frequency over its width at half the power, Q. An error of one part in a hundred of the speed leaves 0.16
 /// of a vibration.
-const QUALITY: f32 = 8.0;
+const QUALITY_FACTOR: f32 = 8.0;
 
 /// Up to here there is no notch, and from here on a whole one, Hz.
 pub const FREQUENCY_MIN_HZ: f32 = 45.0;
@@ -82,7 +82,7 @@ fn phase(share: f32) -> u64 {
 
 /// Its a.
 fn half_width(share: f32) -> f32 {
-    core::f32::consts::PI / QUALITY * share
+    core::f32::consts::PI / QUALITY_FACTOR * share
 }
 
 /// One notch on three axes.
@@ -148,7 +148,7 @@ impl Notch {
 /// The notches of all rotors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RotorNotches {
-    notches: [[Notch; HARMONICS]; ROTOR_COUNT],
+    notches: [[Notch; HARMONIC_COUNT]; ROTOR_COUNT],
     /// Whether any is on, or is to be.
     is_on: bool,
     /// Samples a second, Hz.
@@ -166,7 +166,7 @@ impl RotorNotches {
     pub fn new(rate: f32) -> Self {
         let silence_max = (SPEEDS_TIMEOUT_US as f32 * 1e-6 * rate) as u32;
         Self {
-            notches: [const { [const { Notch::OFF }; HARMONICS] }; ROTOR_COUNT],
+            notches: [const { [const { Notch::OFF }; HARMONIC_COUNT] }; ROTOR_COUNT],
             is_on: false,
             rate,
             turn: 0,
@@ -177,7 +177,7 @@ impl RotorNotches {
 
     /// The longest delay of slow changes at `rate` samples a second, s: that of every rotor at [`FREQUENCY_FULL_HZ`].
     pub fn delay_max(rate: f32) -> f32 {
-        let each = (1..=HARMONICS).map(|harmonic| {
+        let each = (1..=HARMONIC_COUNT).map(|harmonic| {
             let share = harmonic as f32 * FREQUENCY_FULL_HZ / rate;
             let (_, cosine) = math::sin_cos_turns(phase(share));
             half_width(share) / (rate * (1.0 - cosine))
@@ -215,7 +215,7 @@ impl RotorNotches {
         self.silence = self.silence.saturating_add(1);
         let step = DEPTH_CHANGE_PER_S / self.rate;
         let (turn, mut value) = (self.turn, *sample);
-        self.turn = if turn + 1 < ROTOR_COUNT * HARMONICS { turn + 1 } else { 0 };
+        self.turn = if turn + 1 < ROTOR_COUNT * HARMONIC_COUNT { turn + 1 } else { 0 };
         self.is_on = false;
         for (place, notch) in self.notches.as_flattened_mut().iter_mut().enumerate() {
             if is_lost {

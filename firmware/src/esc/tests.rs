@@ -2,13 +2,13 @@ use super::*;
 use crate::shared::Shared;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 
-const POLES: f32 = 14.0;
+const POLE_COUNT: f32 = 14.0;
 
 /// Takes the answers to frames a millisecond apart, from 1 ms on.
 fn after(frames: &[[Option<Answer>; MOTOR_COUNT]]) -> Shared<NoopRawMutex> {
     let (shared, mut controllers) = (Shared::new(), Controllers::default());
     for (answers, time) in frames.iter().zip((1_000..).step_by(1_000)) {
-        controllers.take(*answers, POLES, time, shared.for_motors());
+        controllers.take(*answers, POLE_COUNT, time, shared.for_motors());
     }
     shared
 }
@@ -24,7 +24,7 @@ fn a_speed_counts_for_20_ms_and_what_a_controller_says_of_itself_for_good() {
     let (turns, warm) = (Some(Answer::Period(1000)), Some(Answer::Temperature(31)));
     let mut frames = vec![[turns, Some(Answer::AtRest), None, None], [warm, turns, None, None]];
     frames.extend([[None, turns, None, None]; 18]);
-    let speed = Answer::Period(1000).speed(POLES);
+    let speed = Answer::Period(1000).speed(POLE_COUNT);
     let shared = after(&frames);
     assert_eq!(shared.rotor_speeds.get().unwrap().value, [speed, speed, None, None]);
     frames.push([None, turns, None, None]);

@@ -7,7 +7,7 @@ use flight::Stamped;
 use mavlink::dialects::common::{ESC_INFO_DATA, ESC_STATUS_DATA, EscConnectionType, EscFailureFlags};
 
 /// Revolutions a minute at 1 rad/s.
-const RPM: f32 = 60.0 / core::f32::consts::TAU;
+const RPM_PER_RAD_S: f32 = 60.0 / core::f32::consts::TAU;
 
 /// How fast each motor turns, and its controller's voltage and current; NaN where it does not say.
 pub fn status(speeds: Stamped<RotorSpeeds>, controllers: Option<&[Controller; MOTOR_COUNT]>) -> ESC_STATUS_DATA {
@@ -16,7 +16,7 @@ pub fn status(speeds: Stamped<RotorSpeeds>, controllers: Option<&[Controller; MO
     };
     ESC_STATUS_DATA {
         time_usec: speeds.time,
-        rpm: speeds.value.map(|speed| (speed.unwrap_or(0.0) * RPM) as i32),
+        rpm: speeds.value.map(|speed| (speed.unwrap_or(0.0) * RPM_PER_RAD_S) as i32),
         voltage: of(|controller| controller.voltage),
         current: of(|controller| controller.current.map(f32::from)),
         index: 0,

@@ -114,8 +114,9 @@ impl Spectrum {
     /// As an SVG picture.
     pub fn svg(&self) -> String {
         const SIZE: (u32, u32) = (900, 420);
-        const EM: f64 = 14.0;
-        let (left, right, top, bottom) = (5.0 * EM, 900.0 - 2.0 * EM, 4.0 * EM, 420.0 - 3.0 * EM);
+        const LINE_HEIGHT_PX: f64 = 14.0;
+        let (left, right, top, bottom) =
+            (5.0 * LINE_HEIGHT_PX, 900.0 - 2.0 * LINE_HEIGHT_PX, 4.0 * LINE_HEIGHT_PX, 420.0 - 3.0 * LINE_HEIGHT_PX);
         let shown = || self.amplitudes.iter().flat_map(|axis| axis.iter().skip(2)).filter(|value| **value > 0.0);
         let least = shown().fold(f64::MAX, |least, value| value.min(least)).log10().floor();
         let greatest = shown().fold(0.0_f64, |most, value| value.max(most)).log10().ceil();
@@ -127,27 +128,49 @@ impl Spectrum {
         let mut drawing = Drawing::new(SIZE);
         for (value, text) in amplitudes.marks(6.0) {
             drawing.stroke(vec![(left, y(value)), (right, y(value))], Color::Grid, 1.0);
-            drawing.words(text, (left - 0.6 * EM, y(value) + 0.35 * EM), Side::End, EM, Color::Muted);
+            drawing.words(
+                text,
+                (left - 0.6 * LINE_HEIGHT_PX, y(value) + 0.35 * LINE_HEIGHT_PX),
+                Side::End,
+                LINE_HEIGHT_PX,
+                Color::Muted,
+            );
         }
         drawing.stroke(vec![(left, bottom), (right, bottom)], Color::Axis, 1.0);
         for (value, text) in frequencies.marks(12.0) {
-            drawing.stroke(vec![(x(value), bottom), (x(value), bottom + 0.3 * EM)], Color::Axis, 1.0);
-            drawing.words(text, (x(value), bottom + 1.4 * EM), Side::Middle, EM, Color::Muted);
+            drawing.stroke(vec![(x(value), bottom), (x(value), bottom + 0.3 * LINE_HEIGHT_PX)], Color::Axis, 1.0);
+            drawing.words(text, (x(value), bottom + 1.4 * LINE_HEIGHT_PX), Side::Middle, LINE_HEIGHT_PX, Color::Muted);
         }
-        drawing.words("Hz", (right, bottom + 2.6 * EM), Side::End, EM, Color::Muted);
-        drawing.words("rad/s", (left - 0.6 * EM, top - EM), Side::End, EM, Color::Muted);
+        drawing.words("Hz", (right, bottom + 2.6 * LINE_HEIGHT_PX), Side::End, LINE_HEIGHT_PX, Color::Muted);
+        drawing.words(
+            "rad/s",
+            (left - 0.6 * LINE_HEIGHT_PX, top - LINE_HEIGHT_PX),
+            Side::End,
+            LINE_HEIGHT_PX,
+            Color::Muted,
+        );
         for (place, (axis, name)) in self.amplitudes.iter().zip(["x", "y", "z"]).enumerate() {
             let color = Color::at_place(place);
             let curve = axis.iter().enumerate().skip(1);
             let points = curve.map(|(k, value)| (x(k as f64 * self.step), y(*value))).collect();
             drawing.stroke(points, color, 1.5);
-            let at = left + 7.5 * EM * place as f64;
-            drawing.stroke(vec![(at, 1.5 * EM), (at + 1.8 * EM, 1.5 * EM)], color, 1.8);
-            drawing.words(format!("about {name}"), (at + 2.2 * EM, 1.85 * EM), Side::Start, EM, Color::Ink);
+            let at = left + 7.5 * LINE_HEIGHT_PX * place as f64;
+            drawing.stroke(
+                vec![(at, 1.5 * LINE_HEIGHT_PX), (at + 1.8 * LINE_HEIGHT_PX, 1.5 * LINE_HEIGHT_PX)],
+                color,
+                1.8,
+            );
+            drawing.words(
+                format!("about {name}"),
+                (at + 2.2 * LINE_HEIGHT_PX, 1.85 * LINE_HEIGHT_PX),
+                Side::Start,
+                LINE_HEIGHT_PX,
+                Color::Ink,
+            );
         }
         for k in self.peaks().into_iter().take(3) {
-            let at = (x(k as f64 * self.step), y(self.together(k)) - 0.6 * EM);
-            drawing.words(format!("{:.0} Hz", k as f64 * self.step), at, Side::Middle, EM, Color::Ink);
+            let at = (x(k as f64 * self.step), y(self.together(k)) - 0.6 * LINE_HEIGHT_PX);
+            drawing.words(format!("{:.0} Hz", k as f64 * self.step), at, Side::Middle, LINE_HEIGHT_PX, Color::Ink);
         }
         drawing.svg(Inks::Light, "Amplitudes of the gyro's vibration over frequency")
     }

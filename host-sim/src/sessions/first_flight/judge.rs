@@ -26,7 +26,7 @@ const TURNING_MIN_RAD_PER_S: f32 = 0.3;
 const SHARE_MIN: f32 = 0.002;
 
 /// How the line of a report rounds: to four decimals.
-const ROUNDED: f64 = 0.000_051;
+const ROUNDING_ERROR: f64 = 0.000_051;
 
 /// How a person holds the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -231,7 +231,7 @@ impl BootReport {
             return Some(format!("{} inequalities, {} in the file's certificate", self.rows.len(), rows.len()));
         }
         for (row, (name, required, available)) in rows.iter().zip(&self.rows) {
-            let is_near = |one: f64, other: f64| (one - other).abs() <= ROUNDED + 1e-6 * other.abs();
+            let is_near = |one: f64, other: f64| (one - other).abs() <= ROUNDING_ERROR + 1e-6 * other.abs();
             if !row.name.starts_with(name.as_str())
                 || !is_near(*required, row.required)
                 || !is_near(*available, row.available)

@@ -25,10 +25,10 @@ const HEARTBEAT_PERIOD: Duration = Duration::from_millis(500);
 
 /// How long an answer may take, and how often a question is sent again.
 const ANSWER_TIMEOUT: Duration = Duration::from_millis(1_500);
-const ATTEMPTS: usize = 4;
+const ATTEMPTS_MAX: usize = 4;
 
 /// How old a value may be that counts.
-const FRESH: Duration = Duration::from_millis(2_500);
+const VALUE_AGE_MAX: Duration = Duration::from_millis(2_500);
 
 /// Why the walk ends before its end.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -68,7 +68,7 @@ pub struct Vehicle {
 }
 
 fn fresh<T: Clone>(seen: &Seen<T>) -> Option<T> {
-    seen.as_ref().filter(|(_, when)| when.elapsed() < FRESH).map(|(value, _)| value.clone())
+    seen.as_ref().filter(|(_, when)| when.elapsed() < VALUE_AGE_MAX).map(|(value, _)| value.clone())
 }
 
 impl Vehicle {
@@ -194,7 +194,7 @@ impl Vehicle {
     pub fn command(&mut self, command: MavCmd, parameters: [f32; 7]) -> Result<MavResult, Stop> {
         let [param1, param2, param3, param4, param5, param6, param7] = parameters;
         self.answers.clear();
-        for confirmation in 0..ATTEMPTS {
+        for confirmation in 0..ATTEMPTS_MAX {
             self.send(&COMMAND_LONG_DATA {
                 param1,
                 param2,
@@ -255,7 +255,7 @@ impl Vehicle {
     }
 
     fn question(&mut self, name: &str, ask: impl Fn(&mut Self)) -> Result<f32, Stop> {
-        for _ in 0..ATTEMPTS {
+        for _ in 0..ATTEMPTS_MAX {
             ask(self);
             if let Some(value) = self.wait(ANSWER_TIMEOUT, |vehicle| vehicle.parameters.get(name).copied())? {
                 return Ok(value);
@@ -311,7 +311,7 @@ impl Vehicle {
 
     /// A named value, if it is recent: they come in turn.
     pub fn named(&self, name: &str) -> Option<f32> {
-        self.named.get(name).filter(|(_, when)| when.elapsed() < 2 * FRESH).map(|(value, _)| *value)
+        self.named.get(name).filter(|(_, when)| when.elapsed() < 2 * VALUE_AGE_MAX).map(|(value, _)| *value)
     }
 
     /// Forgets named values, so that those to come are of now.

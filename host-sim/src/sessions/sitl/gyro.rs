@@ -8,11 +8,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Blocks that wait, of 32 samples each: more than come between two looks.
-const BLOCKS: usize = 64;
+const GYRO_BLOCK_COUNT: usize = 64;
 
 /// Memory for a vehicle that is starting.
 pub fn memory() -> &'static mut [Block] {
-    Box::leak(vec![[0; BLOCK_BYTES]; BLOCKS].into_boxed_slice())
+    Box::leak(vec![[0; BLOCK_BYTES]; GYRO_BLOCK_COUNT].into_boxed_slice())
 }
 
 /// A file under way.

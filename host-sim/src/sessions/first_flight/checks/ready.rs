@@ -26,7 +26,7 @@ const CARRY_TIMEOUT: Duration = Duration::from_secs(60);
 const CARRIED_MIN_M: f32 = 0.5;
 
 /// How long a vehicle idles by itself, and what a word may take.
-const IDLING: Duration = Duration::from_secs(13);
+const IDLING_TIMEOUT: Duration = Duration::from_secs(13);
 const WORD_TIMEOUT: Duration = Duration::from_secs(4);
 
 /// The number that forces, in parameter 2.
@@ -154,7 +154,7 @@ pub fn arming(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         walk.vehicle.command(ARM_DISARM, [0.0, FORCE_NUMBER, 0.0, 0.0, 0.0, 0.0, 0.0])?;
         return Ok(Outcome::Failed("not all motors idle".to_owned()));
     }
-    if let Err(words) = ended(walk, "Disarmed: nothing commanded for 10 s", IDLING)? {
+    if let Err(words) = ended(walk, "Disarmed: nothing commanded for 10 s", IDLING_TIMEOUT)? {
         return Ok(Outcome::Failed(words));
     }
     for force in [0.0, FORCE_NUMBER] {

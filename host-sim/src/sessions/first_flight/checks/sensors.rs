@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use std::time::{Duration, Instant};
 
 /// How long something must be shown.
-const SHOWN: Duration = Duration::from_millis(400);
+const SHOWN_FOR: Duration = Duration::from_millis(400);
 
 /// How long a calibration of six sides may take, and one of a second.
 const SIDES_TIMEOUT: Duration = Duration::from_secs(360);
@@ -34,7 +34,7 @@ fn shown(walk: &mut Walk<'_>, hold: Hold) -> Result<Result<Vector3<f32>, String>
             return None;
         }
         let since = *since.get_or_insert_with(Instant::now);
-        (since.elapsed() >= SHOWN).then_some(force)
+        (since.elapsed() >= SHOWN_FOR).then_some(force)
     })?;
     let was = format!(
         "{}: force {:.1} {:.1} {:.1} m/s^2, turned {:.2} {:.2} {:.2} rad",
@@ -155,7 +155,7 @@ pub fn levelling(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
             let words: Vec<_> = shares.iter().map(|share| format!("{share:.3}")).collect();
             last = words.join(" ");
             let is_right = wrong_share(hold, &rotors, &shares).is_none();
-            (is_right && since.elapsed() >= SHOWN).then_some(())
+            (is_right && since.elapsed() >= SHOWN_FOR).then_some(())
         })?;
         if found.is_none() {
             let last = if last.is_empty() { "not held, or no shares came".to_owned() } else { last };
