@@ -84,8 +84,7 @@ pub fn run() -> ! {
         booting.announce(Event::new(Severity::Information, "Brown-out reset is off (BOR_LEV)"));
     }
     if board.card.is_some() && booting.parameters().get(Name::LogGyro) == 1.0 {
-        static GYRO_MEMORY: ConstStaticCell<[Block; chip::GYRO_BLOCKS]> =
-            ConstStaticCell::new([[0; BLOCK_BYTES]; _]);
+        static GYRO_MEMORY: ConstStaticCell<[Block; chip::GYRO_BLOCKS]> = ConstStaticCell::new([[0; BLOCK_BYTES]; _]);
         booting.gyro_log().attach(GYRO_MEMORY.take());
     }
     if let Some(memory) = recorder::take(board.restart.is_power()) {
