@@ -29,8 +29,9 @@ const RECORD_SAMPLES_MAX: usize = 32;
 /// Below it motion is flight.
 const PEAK_FREQUENCY_MIN_HZ: f64 = 15.0;
 
-/// Peaks that are named.
+/// Peaks that are named: so many at most, and none below this share of the greatest.
 const PEAKS_MAX: usize = 5;
+const PEAK_SHARE_MIN: f64 = 0.01;
 
 /// Two records follow one another, and are of one sensor, to this share of the time between samples.
 const TIME_TOLERANCE_SHARE: f64 = 0.5;
@@ -95,6 +96,8 @@ impl Spectrum {
         let mut peaks: Vec<usize> = (least..all.len()).filter(is_peak).collect();
         peaks.sort_by(|a, b| all[*b].total_cmp(&all[*a]));
         peaks.truncate(PEAKS_MAX);
+        let greatest = peaks.first().map_or(0.0, |k| all[*k]);
+        peaks.retain(|k| all[*k] >= PEAK_SHARE_MIN * greatest);
         peaks
     }
 
