@@ -125,14 +125,6 @@ impl Law {
         self.spinning().map(|law| *law.lost())
     }
 
-    /// Flies on without a rotor that measurements beside the motion show to fail: see
-    /// [`extended::controller::Controller::lose`]. The paper's law flies on with all of them.
-    pub fn lose(&mut self, lost: &LostRotor) {
-        if let Self::Extended(law) = self {
-            law.lose(lost);
-        }
-    }
-
     /// The wrench of rotors that turn at these speeds, rad/s, where the law can use it: see
     /// [`Measured::wrench`](crate::extended::measured::Measured::wrench).
     pub fn wrench_at(&self, speeds: &[Option<f32>]) -> Option<Wrench> {

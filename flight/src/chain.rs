@@ -241,15 +241,9 @@ impl<'m> Chain<'m> {
     }
 
     /// Takes the mean acceleration since the last tick, m/s^2, world, for the tick to come, with what the rotors'
-    /// speeds have made.
-    pub fn take_measured(&mut self, acceleration: Option<Vector3<f32>>) {
-        self.law.measured(&Measured { acceleration, wrench: self.turned_mean });
-    }
-
-    /// Flies on without a rotor that its speed shows to fail, where the law can.
-    pub fn lose(&mut self, lost: &LostRotor) {
-        self.law.lose(lost);
-        self.lost = self.law.lost().or(self.lost);
+    /// speeds have made, and the rotor that they show to fail.
+    pub fn take_measured(&mut self, acceleration: Option<Vector3<f32>>, lost: Option<LostRotor>) {
+        self.law.measured(&Measured { acceleration, wrench: self.turned_mean, lost });
     }
 
     /// One tick on the governor's reference.

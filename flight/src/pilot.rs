@@ -194,7 +194,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         }
     }
 
-    /// What the rotors' speeds tell: the law gets them, and goes on without a rotor that is lost by its speed.
+    /// What the rotors' speeds tell; the law gets them.
     fn check_rotors(&mut self, inputs: &Inputs) -> RotorFindings {
         let recent = inputs.rotor_speeds.filter(|speeds| speeds.age(inputs.now) < SPEEDS_STALE_AFTER_US);
         let speeds = recent.map(|speeds| speeds.value);
@@ -208,11 +208,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
             }
             _ => Turning::No,
         };
-        let findings = self.rotor_check.tick(turning, speeds, inputs.now);
-        if let Some(lost) = &findings.lost {
-            chain.lose(lost);
-        }
-        findings
+        self.rotor_check.tick(turning, speeds, inputs.now)
     }
 
     /// The rotors' thrust over the commanded thrust, where the law flew.
@@ -325,7 +321,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
     }
 
     /// What the mode does in this tick.
-    fn output(&mut self, estimate: &Estimate, touched: bool, now: u64) -> TickOutput {
+    fn output(&mut self, estimate: &Estimate, touched: bool, lost: Option<LostRotor>, now: u64) -> TickOutput {
         match self.mode {
             Mode::MotorTest => {
                 return TickOutput::without(self.bench.output(now.saturating_sub(self.since), self.period));
@@ -337,7 +333,7 @@ impl<'m, P: Aboard> Pilot<'m, P> {
         let (true, Ok(chain), Some(estimated)) = (self.mode.flies(), &mut self.chain, &estimate.state) else {
             return TickOutput::without(Output::Stop);
         };
-        chain.take_measured(estimate.felt);
+        chain.take_measured(estimate.felt, lost);
         let mut handover = None;
         let flown = if self.mode == Mode::Descending {
             // Poses that are given up do not come back.

@@ -302,11 +302,11 @@ impl Flight {
         let Some(estimation) = &mut self.estimation else {
             let Some(sensors) = &mut self.sensors else { return Ok(None) };
             let measured = sensors.measure(state);
-            self.controller.measured(&Measured { acceleration: sensors.sensed_force(), wrench: None });
+            self.controller.measured(&Measured { acceleration: sensors.sensed_force(), wrench: None, lost: None });
             return Ok(Some(measured));
         };
         let (measured, jumped) = estimation.state()?;
-        self.controller.measured(&Measured { acceleration: estimation.sensed_force(), wrench: None });
+        self.controller.measured(&Measured { acceleration: estimation.sensed_force(), wrench: None, lost: None });
         if jumped {
             self.controller.hold_estimates();
         }

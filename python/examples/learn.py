@@ -229,7 +229,7 @@ def judge(task, policies, episodes, report=print):
         for shield in (False, True):
             flights = Flights(task, episodes, shield)
             act = policy(episodes).act
-            # Without the shield what is no number is taken for zero: it would stop the simulation.
+            # Without the shield what is not a number is taken for zero: it would stop the simulation.
             seen = flights.fly(
                 act if shield else lambda observations: np.nan_to_num(act(observations)), list(range(episodes))
             )

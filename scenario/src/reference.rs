@@ -109,7 +109,7 @@ impl ReferenceKind {
     /// Reads a number that every kind of `[reference]` may have: [`TOLERANCE`] or [`FORCE_KEPT`].
     ///
     /// # Errors
-    /// Names the field if it is no number or outside its bounds.
+    /// Names the field if it is not a number or outside its bounds.
     pub fn number(root: &Section, key: &Key) -> Result<f64, FieldError> {
         match (root.optional_section("reference")?, key.values) {
             (Some(section), Values::Number(bounds)) if section.has(key.name) => {

@@ -153,7 +153,7 @@ fn measured(rng: &mut ChaCha8Rng, acceleration: &Vector3<f64>, acted: &Vector4<f
             Some(Wrench { thrust: shown.x, torque: Vector3::new(shown.y, shown.z, shown.w) })
         }
     };
-    Measured { acceleration, wrench }
+    Measured { acceleration, wrench, lost: None }
 }
 
 /// What flights showed.

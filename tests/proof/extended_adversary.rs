@@ -247,6 +247,7 @@ impl World {
         Measured {
             acceleration: rng.random_bool(0.9).then_some(acceleration),
             wrench: rng.random_bool(0.9).then_some(wrench),
+            lost: None,
         }
     }
 

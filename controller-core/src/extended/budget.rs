@@ -272,7 +272,7 @@ impl Spending<'_> {
         cold_path();
         let share = self.share(wanted, kept);
         let part = wanted * share;
-        // Inputs in range can overflow together: of a torque that is no number nothing is spent.
+        // Inputs in range can overflow together: of a torque that is not a number nothing is spent.
         if !(part.x.is_finite() & part.y.is_finite()) {
             return 0.0;
         }

@@ -7,11 +7,15 @@
 //! | [`Sensors::quick_difference`] | e = W - W_c - E: how the rotors turned beside the model of their commands |
 //! | [`Sensors::quick_difference`] | E += (1 - e^(-OFFSET_BANDWIDTH_PER_S h)) e |
 //!
+//! [`Measured::lost`] is a rotor that its own speed shows to fail. It counts where the motion agrees:
+//! [`detector`](super::rotor_loss::detector).
+//!
 //! W is the mean wrench by the rotors' speeds, W_c the model's. Sensors say what is quick, states and commands what
 //! lasts: a bias or a tilt that nobody knows of moves no vehicle, and rotors that turn too slowly for good show in the
 //! estimates, or nothing would make up for them. Whatever is measured, the estimates keep to their levels, and what is
 //! spent to the tick's budget: a wrong sensor breaks no limit.
 
+use crate::allocation::remaining::LostRotor;
 use crate::math;
 use crate::state::Wrench;
 use crate::vehicle::{Limits, Vehicle};
@@ -33,6 +37,8 @@ pub struct Measured {
     pub acceleration: Option<Vector3<f32>>,
     /// W, N and N m: what the rotors' speeds make by the coefficients that commands are converted with.
     pub wrench: Option<Wrench>,
+    /// The rotor that fails by its speed.
+    pub lost: Option<LostRotor>,
 }
 
 impl Measured {

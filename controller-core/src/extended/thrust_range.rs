@@ -69,7 +69,7 @@ impl ThrustRange {
             let taken = math::max(tilted, tilted + part.per_torque.z * braking);
             max = math::min(max, scale * part.max - (taken + self.margin));
         }
-        // A thrust or a yaw torque that is no number becomes the least one.
+        // A thrust or a yaw torque that is not a number becomes the least one.
         let thrust = math::min(math::max(min, max), math::max(min, thrust));
         let [min, max] = self.yaw(thrust, tilt, scale);
         let torque = Vector3::new(tilt.x, tilt.y, math::min(max, math::max(min, yaw)));

@@ -51,7 +51,7 @@ impl Value {
     pub fn number(&self) -> f64 {
         match self {
             Self::Number(number) => *number,
-            _ => panic!("{self:?} is no number"),
+            _ => panic!("{self:?} is not a number"),
         }
     }
 
@@ -174,7 +174,7 @@ impl Proofs {
         self
     }
 
-    /// With a variable that is no number.
+    /// With a variable that is not a number.
     pub fn with_value(mut self, name: &str, value: Value) -> Self {
         self.variables.insert(name.to_owned(), value);
         self

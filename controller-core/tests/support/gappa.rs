@@ -68,7 +68,7 @@ fn interval(bound: &str) -> (String, [f64; 2]) {
 /// Decimal, or `1b-17` for 2^-17.
 fn number(text: &str) -> f64 {
     let text = text.trim();
-    let parsed = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("{text} is no number"));
+    let parsed = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("{text} is not a number"));
     match text.split_once('b') {
         Some((mantissa, exponent)) => parsed(mantissa) * parsed(exponent).exp2(),
         None => parsed(text),

@@ -22,7 +22,7 @@ pub const SAMPLE_COUNT: usize = 160;
 /// Bits that a level lasts at most: the line code has no more than two zeros in a row.
 const RUN_BITS_MAX: usize = 3;
 
-/// The levels of the answer on a `pin` (0 to 15) of a port; none where there is none, or one that is cut off.
+/// The levels of the answer on a `pin` (0 to 15) of a port; none where no answer came, or only a part of one.
 pub fn levels(samples: &[u16], pin: u8) -> Option<u32> {
     let mut high = samples.iter().map(|sample| sample >> (pin & 15) & 1 == 1).peekable();
     // It rests, or is what is left of the frame.

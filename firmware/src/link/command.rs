@@ -159,7 +159,7 @@ pub fn action(call: &Call, armed: bool, origin: &Origin, home: &Vector3<f32>) ->
             }
             _ => Action::Reply(Reply::Interval { kind, interval: second as i64 }),
         }),
-        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is no number"),
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => denied("Message interval: parameter 2 is not a number"),
         // Older clients' REQUEST_MESSAGE.
         MavCmd::MAV_CMD_GET_HOME_POSITION => Action::Send(Kind::HomePosition),
         MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => Action::Send(Kind::AutopilotVersion),

@@ -30,7 +30,7 @@ use nalgebra::Vector3;
 /// How many there may be.
 pub const MISSION_CAPACITY: usize = 64;
 
-/// A yaw that is no number.
+/// A yaw that is not a number.
 const NO_YAW: i16 = i16::MIN;
 
 /// Units of a local place in MISSION_ITEM_INT, and of a degree, which is also what is kept.

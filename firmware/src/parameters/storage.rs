@@ -92,7 +92,7 @@ impl<F: Flash> Storage<F> {
     /// Writes the values if one differs from what was saved, or has no copy; none while one is lost.
     fn save<M: RawMutex>(&mut self, shared: StorageView<'_, M>) {
         let values = shared.parameters().all();
-        // By their bits: what is as built is no number, and no number is equal to itself.
+        // By their bits: NaN stands for "as built", and NaN is not equal to itself.
         let differ = |value: &f32, saved: &f32| value.to_bits() != saved.to_bits();
         let is_saved = !values.iter().zip(&self.saved).any(|(value, saved)| differ(value, saved))
             && !self.journal.is_endangered(Kind::Parameters)

@@ -34,7 +34,7 @@ const fn row(
     Row { parameter, name, min, max, default, unit, step }
 }
 
-/// A row that stands for something of the built configuration: no number is as built.
+/// A row that stands for something of the built configuration: NaN means as built.
 const AS_BUILT: f32 = f32::NAN;
 
 /// A row of a figure of the configuration.

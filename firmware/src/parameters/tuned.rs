@@ -65,7 +65,7 @@ impl fmt::Display for Unfit {
 const LOOPS: ParameterError = ParameterError { field: "sampled loops", reason: Reason::WithoutMargin };
 
 impl Built {
-    /// The configuration with these values of the parameters; one that is no number is as built.
+    /// The configuration with these values of the parameters; a NaN means as built.
     /// Errors: values that the constructors refuse; or gains whose loops the build found without margin.
     #[inline(never)] // its stack must not be beside that of certifying
     pub fn tuned(&self, value: impl Fn(Name) -> f32) -> Result<Configuration, ParameterError> {
@@ -91,7 +91,7 @@ impl Built {
         tuning.apply(&self.configuration)
     }
 
-    /// The motors with these values; one that is no number is as built.
+    /// The motors with these values; a NaN means as built.
     pub fn motor(&self, value: impl Fn(Name) -> f32) -> Motor {
         let set = |name, built| Some(value(name)).filter(|value| !value.is_nan()).unwrap_or(built);
         let Motor { linear, idle } = self.motor;

@@ -342,7 +342,7 @@ fn every_parameter_is_listed_with_its_place() {
     assert_eq!(values.len(), PARAMETERS.len());
     for (index, (value, row)) in values.iter().zip(&PARAMETERS).enumerate() {
         assert_eq!((usize::from(value.param_index), usize::from(value.param_count)), (index, PARAMETERS.len()));
-        // By their bits: nothing was built here, and what is as built is no number.
+        // By their bits: nothing was built here, and what is as built is not a number.
         let (value, default) = ((value.param_id.to_str().unwrap(), value.param_value.to_bits()), row.default.to_bits());
         assert_eq!(value, (row.name, default));
     }

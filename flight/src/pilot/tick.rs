@@ -45,7 +45,7 @@ impl<P: Aboard> Pilot<'_, P> {
         let transition = self.change_mode(conditions, inputs, estimate, &detected);
         // Governor, law and allocation.
         let setpoint = self.fly_setpoint(inputs, estimate);
-        let TickOutput { output, flown, handover } = self.output(estimate, detected.touched, now);
+        let TickOutput { output, flown, handover } = self.output(estimate, detected.touched, rotors.lost, now);
         let lean = self.lean(inputs);
         let levelling = lean.as_ref().and_then(|lean| self.chain.as_mut().ok()?.levelling(lean));
         let doubtful_thrust = self.thrust_check.tick(self.delivered_share(&flown), now);

@@ -118,7 +118,7 @@ impl Ground {
     pub fn touch(&mut self, state: &BodyState) -> Option<(BodyState, Touchdown)> {
         let (lean, climbing) = (Lean::measure(state), state.velocity.z);
         let (rise, rising) = lean.as_ref().map_or((0.0, 0.0), Lean::rise);
-        // What is no number touches nothing.
+        // What is not a number touches nothing.
         let touches = state.position.z <= self.height + rise && climbing <= 0.0 && climbing <= rising;
         if !touches {
             self.stance = Stance::Air;

@@ -109,7 +109,7 @@ fn limits_of_a_vehicle_without_rotors_are_in_newtons_and_newton_metres() {
     assert_refused(&grams, "limits.thrust_max", &["158 times the weight", "in grams-force, write 7.00"]);
     let thousandths = paper("torque_max = [0.5, 0.5, 0.5]", "torque_max = [500, 500, 500]");
     assert_refused(&thousandths, "limits.torque_max", &["in mN m, write [0.5, 0.5, 0.5]"]);
-    // What is no number is said as of any other.
+    // What is not a number is named as well.
     for wrong in ["thrust_max = nan", "thrust_max = \"7\"", "thrust_max = -7"] {
         assert!(!read(&paper("thrust_max = 7.0", wrong)).err().unwrap().contains("weight"), "{wrong}");
     }

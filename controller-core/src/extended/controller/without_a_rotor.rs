@@ -43,19 +43,17 @@ impl Controller {
             return true;
         }
         interval.acted *= self.memory.averages.scale.scale;
-        let Some(lost) = self.detector.observe(&mut self.memory.suspicion, &interval) else { return false };
+        let found = self.detector.observe(&mut self.memory.suspicion, &interval);
+        let agrees = |lost: &LostRotor| self.detector.agrees(&self.memory.suspicion, &interval, lost);
+        let Some(lost) = found.or(measured.lost.filter(agrees)) else { return false };
         self.lose(&lost);
         self.spinning.is_some()
     }
 
-    /// From now on without a rotor of which something else than the motion says that it fails, unless one is lost
-    /// already.
+    /// From now on without this rotor.
     #[cold]
     #[inline(never)]
-    pub fn lose(&mut self, lost: &LostRotor) {
-        if self.spinning.is_some() {
-            return;
-        }
+    fn lose(&mut self, lost: &LostRotor) {
         let (estimates, times) = (self.estimates(), [self.late, self.period]);
         let law = |rotors| RotorLossLaw::new(&self.vehicle, &self.limits, rotors, lost, times, &estimates);
         self.spinning = self.rotors.as_ref().filter(|rotors| lost.rotor < rotors.len()).map(law);

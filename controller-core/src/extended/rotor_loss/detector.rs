@@ -21,6 +21,10 @@
 //! at once, one that has lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the
 //! ground pushes otherwise, or not for so long. A rotor of which nothing is commanded tells nothing either way.
 //!
+//! A rotor that its own speed shows to fail ([`Measured::lost`](super::super::measured::Measured::lost)) is found as soon
+//! as r points against its b_i most, and shows `AGREEING_SHARE` of the loss. A speed alone finds none: a
+//! controller may report what is not so.
+//!
 //! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should
 //! be with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the
 //! middle of a flip is found a little later.
@@ -63,6 +67,9 @@ const EVIDENCE_MIN_S: f32 = 0.02;
 
 /// The least thrust that tells what a rotor has lost, in its share of the weight.
 const TELLING_THRUST_SHARE_MIN: f32 = 0.3;
+
+/// The part of a loss that a rotor's speed shows, which the motion has to show as well.
+const AGREEING_SHARE: f32 = 0.25;
 
 /// For how long the model is taken to have been right before the first interval, s, and until when that counts for more
 /// than what has been seen.
@@ -216,6 +223,13 @@ impl Detector {
         (suspicion.evidence > self.enough).then_some(LostRotor { rotor, left })
     }
 
+    /// Whether the motion agrees, after [`Self::observe`], that a rotor is `lost`.
+    pub fn agrees(&self, suspicion: &Suspicion, interval: &Interval, lost: &LostRotor) -> bool {
+        self.most_aligned(&suspicion.residual).is_some_and(|(index, rotor, along)| {
+            index == lost.rotor && self.share_lost(rotor, along, interval) > AGREEING_SHARE * (1.0 - lost.left)
+        })
+    }
+
     /// A wrench in newtons.
     fn newtons(&self, wrench: &Vector4<f32>) -> Vector4<f32> {
         let arm = self.per_arm;
@@ -247,6 +261,24 @@ impl Detector {
             .is_some_and(|rotor| rotor.row.dot(&interval.acted) > TELLING_THRUST_SHARE_MIN * self.share)
     }
 
+    /// The rotor against whose b_i a residual points most, and how far, N.
+    fn most_aligned(&self, residual: &Vector4<f32>) -> Option<(usize, &Signature, f32)> {
+        let (mut max, mut which) = (0.0, None);
+        for (index, rotor) in self.rotors.iter().enumerate() {
+            let along = -residual.dot(&rotor.column) * rotor.per_length;
+            if along > max {
+                (max, which) = (along, Some((index, rotor, along)));
+            }
+        }
+        which
+    }
+
+    /// lambda of a rotor against which r points so far, N.
+    fn share_lost(&self, rotor: &Signature, along: f32, interval: &Interval) -> f32 {
+        let thrust = rotor.row.dot(&interval.acted);
+        along * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share)
+    }
+
     /// The rotor that r is most aligned with, and the share that it has lost.
     fn suspected(&self, suspicion: &Suspicion, interval: &Interval) -> Option<(usize, f32)> {
         let residual = &suspicion.residual;
@@ -261,17 +293,9 @@ impl Detector {
         if square <= min * min {
             return None;
         }
-        let (mut max, mut which) = (0.0, None);
-        for (index, rotor) in self.rotors.iter().enumerate() {
-            let along = -residual.dot(&rotor.column) * rotor.per_length;
-            if along > max {
-                (max, which) = (along, Some((index, rotor)));
-            }
-        }
-        let (index, rotor) = which?;
-        let thrust = rotor.row.dot(&interval.acted);
-        let lost = max * rotor.per_length / math::max(thrust, TELLING_THRUST_SHARE_MIN * self.share);
-        let aligned = max * max >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
+        let (index, rotor, along) = self.most_aligned(residual)?;
+        let lost = self.share_lost(rotor, along, interval);
+        let aligned = along * along >= ALIGNMENT_MIN * ALIGNMENT_MIN * square;
         let (min, most) = LOST_SHARE_RANGE;
         let tells = self.is_observable(index, interval);
         (aligned && tells && lost >= min && lost <= most).then_some((index, lost))

@@ -206,7 +206,7 @@ impl<'a> Reader<'a> {
                 self.at += length;
                 Ok(Value::Number(number))
             }
-            Err(_) => self.refused(&format!("{:?} is no number", &written[..length.min(40)])),
+            Err(_) => self.refused(&format!("{:?} is not a number", &written[..length.min(40)])),
         }
     }
 

@@ -76,7 +76,7 @@ pub struct Wishes {
 /// `vehicle` as a file called `name`.
 ///
 /// # Errors
-/// Names a value given by `--with` that is no number.
+/// Names a value given by `--with` that is not a number.
 pub fn written(vehicle: &VehicleNumbers, name: &str, from: &str, wishes: &Wishes) -> Result<Written, String> {
     let mut entries = entries(vehicle, wishes.neglect_products);
     for (path, comment) in &vehicle.notes {

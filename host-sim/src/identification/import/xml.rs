@@ -102,7 +102,7 @@ pub fn mass(node: &Node, mass: f64) -> Result<f64, String> {
     Ok(mass)
 }
 
-/// Finite numbers between spaces, or the word that is no number; a word as short as an error has room for.
+/// Finite numbers between spaces, or the word that is not a number; a word as short as an error has room for.
 fn list(text: &str) -> Result<Vec<f64>, String> {
     let finite = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
     let refused = |word: &str| word.chars().take(40).collect::<String>();

@@ -263,7 +263,7 @@ impl Reading<'_> {
     fn parameter(&mut self, body: &[u8]) -> Result<(), String> {
         let (kind, key, value) = keyed(body)?;
         let number = Number::from_name(kind).and_then(|number| number.read(value));
-        let number = number.ok_or(format!("the parameter {key} is no number"))?;
+        let number = number.ok_or(format!("the parameter {key} is not a number"))?;
         self.log.parameters.entry(key.to_owned()).or_insert(number);
         Ok(())
     }

@@ -211,7 +211,7 @@ fn runs(log: &Ulog) -> Result<(Vec<Run>, f64), String> {
             continue;
         }
         let begins = time - (count - 1.0) * between;
-        // Without a record before it, no number is near.
+        // The first record follows none: NaN is near nothing.
         let follows = (begins - due).abs() < TIME_TOLERANCE_SHARE * between;
         if !follows {
             runs.push(Vec::new());

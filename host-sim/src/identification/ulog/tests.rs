@@ -88,7 +88,7 @@ fn a_message_that_does_not_fit_is_skipped_with_its_byte_and_none_panics() {
     for (messages, said) in [
         (vec![(b'A', &[][..])], "byte 16: a subscription is cut short"),
         (vec![(b'P', &[200, 1][..])], "byte 16: a key is cut short"),
-        (vec![(b'P', b"\x07float A\x01")], "byte 16: the parameter A is no number"),
+        (vec![(b'P', b"\x07float A\x01")], "byte 16: the parameter A is not a number"),
         (vec![(b'F', b"nameless")], "byte 16: the format \"nameless\" has no name"),
         (vec![subscription], "byte 16: there is no format \"t\""),
         (vec![(b'F', b"t:t a;"), subscription], "byte 25: the format \"t\" holds itself"),

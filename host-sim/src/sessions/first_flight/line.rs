@@ -42,7 +42,7 @@ impl FromStr for Address {
             rest.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
         match (kind, rest.rsplit_once('@')) {
             ("serial", Some((path, rate))) => {
-                let rate = rate.parse().map_err(|_| format!("{form}; the rate behind @ is no number: {rate}"))?;
+                let rate = rate.parse().map_err(|_| format!("{form}; the rate behind @ is not a number: {rate}"))?;
                 Ok(Self::Serial(path.to_owned(), rate))
             }
             ("serial", None) if !rest.is_empty() => Ok(Self::Serial(rest.to_owned(), BAUD_RATE)),

@@ -16,11 +16,11 @@ fn pulled(controller: &mut Controller, ticks: u32, mut measured: impl FnMut(u32)
 }
 
 fn felt(acceleration: Vector3<f32>) -> Measured {
-    Measured { acceleration: Some(acceleration), wrench: None }
+    Measured { acceleration: Some(acceleration), wrench: None, lost: None }
 }
 
 fn turned(thrust: f32, torque: Vector3<f32>) -> Measured {
-    Measured { acceleration: None, wrench: Some(Wrench { thrust, torque }) }
+    Measured { acceleration: None, wrench: Some(Wrench { thrust, torque }), lost: None }
 }
 
 /// Pulled as velocities say, but for what is quick.
@@ -122,17 +122,25 @@ fn rotors_that_turn_slowly_for_good_leave_no_error_of_height() {
 }
 
 #[test]
-fn a_rotor_that_is_said_to_be_lost_is_flown_without_from_the_next_step_on() {
+fn a_rotor_that_is_said_to_be_lost_is_flown_without_once_the_motion_agrees() {
     let mut controller = controller(&example::parameters());
-    let state = resting(Vector3::zeros());
-    let lost = |rotor| LostRotor { rotor, left: 0.0 };
-    controller.lose(&lost(9));
-    controller.step(&state, &hover()).unwrap();
+    let (mut state, period) = (resting(Vector3::zeros()), 0.01);
+    let said = |rotor| Measured { lost: Some(LostRotor { rotor, left: 0.0 }), ..Measured::default() };
+    for tick in 0..200 {
+        controller.measured(&said([1, 9][tick % 2]));
+        controller.step(&state, &hover()).unwrap();
+    }
     assert!(controller.spinning().is_none());
-    controller.lose(&lost(1));
-    // The first counts.
-    controller.lose(&lost(2));
-    controller.step(&state, &hover()).unwrap();
+    // Half of what the second rotor makes is missing.
+    let missing = example::rotors().effectiveness()[1] * (0.5 * 0.25 * 0.5 * 9.81);
+    let missing = missing.map(|x| x as f32);
+    let turned = Vector3::new(missing.y, missing.z, missing.w).component_div(&example::vehicle().inertia);
+    for _ in 0..2 {
+        state.velocity.z -= missing.x / 0.5 * period;
+        state.angular_velocity -= turned * period;
+        controller.measured(&said(1));
+        controller.step(&state, &hover()).unwrap();
+    }
     let law = controller.spinning().unwrap();
     let commands = law.commands();
     assert_eq!((law.lost().rotor, commands[1]), (1, 0.0), "{commands:?}");

@@ -177,3 +177,33 @@ fn without_rotors_and_beyond_all_numbers_nothing_is_found() {
         assert!(suspicion.residual.iter().all(|r| r.is_finite()));
     }
 }
+
+#[test]
+fn what_a_speed_says_counts_where_the_motion_shows_a_part_of_it() {
+    let mut random = Random(7);
+    let said = |rotor| LostRotor { rotor, left: 0.0 };
+    for rotor in 0..4 {
+        let mut watched = Watched::settled(&mut random, 0.02);
+        let mut agrees = |share: f32, which: usize| {
+            let commanded = Watched::hovering(&mut random);
+            let mut delivered = commanded;
+            delivered[rotor] *= share;
+            watched.pass(commanded, delivered, 0.0, Vector3::zeros());
+            let interval = Interval {
+                acceleration: Vector3::zeros(),
+                angular_velocities: [&Vector3::zeros(), &Vector3::zeros()],
+                axis: Vector3::z(),
+                acted: Watched::sum(commanded),
+            };
+            watched.detector.agrees(&watched.suspicion, &interval, &said(which))
+        };
+        for which in 0..4 {
+            assert!(!agrees(1.0, which));
+        }
+        // Too little is missing, and then enough, of one of them alone.
+        assert!(!agrees(0.85, rotor));
+        for which in [rotor, rotor ^ 1, (rotor + 2) % 4, rotor] {
+            assert_eq!(agrees(0.4, which), which == rotor, "{rotor}, {which}");
+        }
+    }
+}
