@@ -22,6 +22,7 @@ use super::settings::FlightSettings;
 use super::stream_check::StreamCheck;
 use super::thrust_check::ThrustCheck;
 use super::trust::Trust;
+use controller_core::allocation::remaining::LostRotor;
 use controller_core::certificate::certified::{Certified, Refused};
 use controller_core::error::InputError;
 use controller_core::governor::{FollowingReport, GovernorLimits};
