@@ -5,7 +5,7 @@ from typing import Any
 
 from card import Slot
 from core import Core
-from dma import Controller
+from dma import Controller, Stream
 from ears import SamplingTimer
 from flash import Flash
 from gpio import EdgeInterrupts, Port
@@ -17,6 +17,9 @@ from watchdog import Watchdog
 
 # Why a chip starts, as its flags can say it.
 POWER, BROWN_OUT, PIN, SOFTWARE, WATCHDOG = "power", "brown-out", "pin", "software", "watchdog"
+
+# The DMA streams' interrupts: the same in both vector tables.
+_STREAM_INTERRUPTS = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]]
 
 
 class Chip:
@@ -56,6 +59,21 @@ class Chip:
         """Puts a peripheral on the bus."""
         self.core.bus.add(peripheral)
         return peripheral
+
+    def add_controllers(self, bases: tuple[int, int], reachable: list[tuple[int, int]],
+                        request: Callable[[Stream], str | None]) -> None:
+        """Both DMA controllers."""
+        for number, base in enumerate(bases):
+            interrupts = _STREAM_INTERRUPTS[number]
+            controller = Controller(f"DMA{number + 1}", base, self.core, interrupts, reachable, request)
+            self.dma.append(self.add(controller))
+
+    def add_ports(self, base: int, letters: str, modes: dict[str, int], other_modes: int) -> None:
+        """The ports, with what their pins are after a reset."""
+        for number, letter in enumerate(letters):
+            port = Port(letter, base + 0x400 * number, modes.get(letter, other_modes),
+                        lambda pin, level: self.on_pin(pin, level))
+            self.ports[letter] = self.add(port)
 
     def request_restart(self, cause: str) -> None:
         """Has the core stop where it is; `start` begins anew."""

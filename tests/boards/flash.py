@@ -26,6 +26,7 @@ class Flash(Peripheral):
     WORD_BYTES = 4
     PROGRAM_NS, ERASE_NS = 100 * NS_PER_US, 1_000 * NS_PER_MS
     STALLS = False
+    _CONTROL, _LOCK = 0, 1
 
     def __init__(self, base: int, core: Core, first_address: int) -> None:
         super().__init__("FLASH", base)
@@ -141,6 +142,20 @@ class Flash(Peripheral):
     def read_torn(self) -> None:
         """What reading a torn word does."""
 
+    def take_key(self, value: int) -> None:
+        """A key is written: both of them, one after the other, open the control register."""
+        self._keys_given = self._keys_given + 1 if value == _KEYS[self._keys_given] else 0
+        if self._keys_given == len(_KEYS):
+            self._keys_given = 0
+            self.values[self._CONTROL] &= ~self._LOCK
+
+    def is_locked(self) -> bool:
+        """Whether the control register is, at a write to it: that must not happen."""
+        is_locked = bool(self.values[self._CONTROL] & self._LOCK)
+        if is_locked:
+            self.wrong.append("the control register written while it is locked")
+        return is_locked
+
 
 class FlashH743(Flash):
     """The second bank: its registers begin at 0x100."""
@@ -170,15 +185,11 @@ class FlashH743(Flash):
 
     def write(self, offset: int, value: int) -> None:
         if offset == self._KEY:
-            self._keys_given = self._keys_given + 1 if value == _KEYS[self._keys_given] else 0
-            if self._keys_given == len(_KEYS):
-                self._keys_given = 0
-                self.values[self._CONTROL] &= ~1
+            self.take_key(value)
         elif offset == self._CLEAR:
             self.values[self._STATUS] = self.values.get(self._STATUS, 0) & ~value
         elif offset == self._CONTROL:
-            if self.values[self._CONTROL] & 1:
-                self.wrong.append("the control register written while it is locked")
+            if self.is_locked():
                 return
             self.values[offset] = value & ~(1 << 7)
             if value >> 7 & 1 and value >> 2 & 1:
@@ -211,15 +222,11 @@ class FlashF405(Flash):
 
     def write(self, offset: int, value: int) -> None:
         if offset == self._KEY:
-            self._keys_given = self._keys_given + 1 if value == _KEYS[self._keys_given] else 0
-            if self._keys_given == len(_KEYS):
-                self._keys_given = 0
-                self.values[self._CONTROL] &= ~self._LOCK
+            self.take_key(value)
         elif offset == self._STATUS:
             self.values[offset] = self.values.get(offset, 0) & ~value
         elif offset == self._CONTROL:
-            if self.values[self._CONTROL] & self._LOCK:
-                self.wrong.append("the control register written while it is locked")
+            if self.is_locked():
                 return
             self.values[offset] = value & ~(1 << 16)
             if value >> 16 & 1 and value >> 1 & 1:

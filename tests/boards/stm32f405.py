@@ -6,10 +6,10 @@ from unicorn import arm_const as arm
 
 from chip import BROWN_OUT, PIN, POWER, SOFTWARE, WATCHDOG, Chip, ResetAndClocks
 from core import Core
-from dma import Controller, Stream
+from dma import Stream
 from ears import SamplingTimer
 from flash import FlashF405
-from gpio import EdgeInterrupts, Port
+from gpio import EdgeInterrupts
 from peripheral import Store
 from spi import MasterV1
 from timers import PulseTimer, TimeBase
@@ -25,7 +25,6 @@ _REQUESTS = {(1, 3): "TIM2_UP", (3, 0): "SPI2_RX", (4, 0): "SPI2_TX", (5, 4): "U
              (7, 3): "TIM2_UP"}
 # And table 43, of the second controller. On channel 0 the requests of two more channels, which are off, come with it.
 _REQUESTS_2 = {(1, 7): "TIM8_UP", (2, 7): "TIM8_CH1", (2, 0): "TIM8_CH1"}
-_STREAM_INTERRUPTS = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]]
 
 
 class _Clocks(ResetAndClocks):
@@ -76,13 +75,8 @@ class Stm32F405(Chip):
         self.flash = self.add(FlashF405(0x4002_3C00, core, PARAMETERS, options=0x0FFF_AAED | 0xC))
         self.watchdog = self.add(Watchdog(0x4000_3000, core.schedule, lambda: self.request_restart(WATCHDOG)))
         reachable = [(0x2000_0000, 0x2002_0000), (0x0800_0000, 0x0810_0000)]
-        for number, base in enumerate((0x4002_6000, 0x4002_6400)):
-            self.dma.append(self.add(Controller(f"DMA{number + 1}", base, core, _STREAM_INTERRUPTS[number], reachable,
-                                                self._request)))
-        for bit, letter in enumerate("ABCDEFGHI"):
-            moder = {"A": 0xA800_0000, "B": 0x0000_0280}.get(letter, 0)
-            port = Port(letter, 0x4002_0000 + 0x400 * bit, moder, lambda pin, level: self.on_pin(pin, level))
-            self.ports[letter] = self.add(port)
+        self.add_controllers((0x4002_6000, 0x4002_6400), reachable, self._request)
+        self.add_ports(0x4002_0000, "ABCDEFGHI", {"A": 0xA800_0000, "B": 0x0000_0280}, 0)
         selection = self.add(Store("SYSCFG", 0x4001_3800, range(0, 0x24, 4)))
         places = {"rising": 0x08, "mask": 0x00, "pending": 0x14}
         self.edges = self.add(EdgeInterrupts(0x4001_3C00, core, places, list(range(0, 0x18, 4)), selection, 0x08))

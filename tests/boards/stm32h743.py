@@ -7,10 +7,10 @@ from unicorn import arm_const as arm
 from card import Slot
 from chip import BROWN_OUT, PIN, POWER, SOFTWARE, WATCHDOG, Chip, ResetAndClocks
 from core import Core
-from dma import Controller, Stream
+from dma import Stream
 from ears import SamplingTimer
 from flash import FlashH743
-from gpio import EdgeInterrupts, Port
+from gpio import EdgeInterrupts
 from peripheral import Peripheral, Store
 from spi import MasterV4
 from timers import PulseTimer, TimeBase
@@ -30,7 +30,6 @@ _SPIS = {"SPI1": 0x4001_3000, "SPI2": 0x4000_3800, "SPI3": 0x4000_3C00, "SPI4": 
 _UARTS = {"USART1": (0x4001_1000, 37), "USART2": (0x4000_4400, 38), "USART6": (0x4001_1400, 71),
           "UART7": (0x4000_7800, 82)}
 _TIMERS = {"TIM1": (0x4001_0000, True), "TIM8": (0x4001_0400, True), "TIM2": (0x4000_0000, False)}
-_STREAM_INTERRUPTS = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]]
 
 
 class _Clocks(ResetAndClocks):
@@ -133,13 +132,8 @@ class Stm32H743(Chip):
         self._multiplexer = self.add(Store("DMAMUX1", 0x4002_0800, range(0, 0x90, 4)))
         reachable = [(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000), (0x3800_0000, 0x3801_0000),
                      (0x0800_0000, 0x0820_0000)]
-        for number, base in enumerate((0x4002_0000, 0x4002_0400)):
-            self.dma.append(self.add(Controller(f"DMA{number + 1}", base, core, _STREAM_INTERRUPTS[number], reachable,
-                                                self._request)))
-        for bit, letter in enumerate("ABCDEFGHIJK"):
-            moder = {"A": 0xABFF_FFFF, "B": 0xFFFF_FEBF}.get(letter, 0xFFFF_FFFF)
-            port = Port(letter, 0x5802_0000 + 0x400 * bit, moder, lambda pin, level: self.on_pin(pin, level))
-            self.ports[letter] = self.add(port)
+        self.add_controllers((0x4002_0000, 0x4002_0400), reachable, self._request)
+        self.add_ports(0x5802_0000, "ABCDEFGHIJK", {"A": 0xABFF_FFFF, "B": 0xFFFF_FEBF}, 0xFFFF_FFFF)
         selection = self.add(Store("SYSCFG", 0x5800_0400, range(0, 0x40, 4)))
         places = {"rising": 0x00, "mask": 0x80, "pending": 0x88}
         self.edges = self.add(EdgeInterrupts(0x5800_0000, core, places, list(range(0, 0xC0, 4)), selection, 0x08))

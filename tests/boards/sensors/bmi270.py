@@ -3,7 +3,7 @@
 from schedule import NS_PER_MS
 from sensors.inertial import GRAVITY, RATE_PER_COUNT, Inertial
 
-_READ = 0x80
+_FILE = 0x5E
 _FILE_BYTES = 328
 
 
@@ -11,15 +11,14 @@ class Bmi270(Inertial):
     """Section 5.2: data from 0x0C, INT1 by registers 0x53 and 0x58, 800 Hz."""
 
     PERIOD_NS = 1_250_000
+    DATA = 0x0C
+    LEADING_BYTES = 2
+    SPEAKS_SPI_AT_ONCE = False
 
     def reset(self) -> None:
         super().reset()
         self.registers = {0x00: 0x24, 0x7C: 0x03}
-        self._data, self._speaks_spi, self._file = bytes(12), False, 0
-
-    def chosen(self, level: int) -> None:
-        super().chosen(level)
-        self._speaks_spi |= level == 1
+        self._data, self._file = bytes(12), 0
 
     def measure(self) -> None:
         motion = self.wiring.motion
@@ -29,26 +28,19 @@ class Bmi270(Inertial):
     def has_pin(self) -> bool:
         return bool(self.registers.get(0x58, 0) & 4 and self.registers.get(0x53, 0) & 8)
 
-    def exchange(self, sent: bytes) -> bytes:
-        first, answer = sent[0] & 0x7F, bytearray(len(sent))
-        if not self._speaks_spi:
-            return bytes(answer)
-        if sent[0] & _READ:
-            for place in range(2, len(sent)):
-                register = first + place - 2
-                inside = 0x0C <= register < 0x18
-                answer[place] = self._data[register - 0x0C] if inside else self.registers.get(register, 0)
-        elif first == 0x5E:
-            self._file += len(sent) - 1
+    def write(self, register: int, values: bytes) -> None:
+        if register == _FILE:
+            self._file += len(values)
         else:
-            self.settings.append((first, sent[1]))
-            if first == 0x7E and sent[1] == 0xB6:
-                self.reset()
-                return bytes(answer)
-            self.registers[first] = sent[1]
-            if first == 0x59 and sent[1] == 1:
-                # INTERNAL_STATUS: initialised, or an error.
-                self.registers[0x21] = 1 if self._file == _FILE_BYTES else 2
-            if first == 0x7D and sent[1] & 6 == 6:
-                self.start(45 * NS_PER_MS)
-        return bytes(answer)
+            super().write(register, values)
+
+    def set(self, register: int, value: int) -> None:
+        if register == 0x7E and value == 0xB6:
+            self.reset()
+            return
+        self.registers[register] = value
+        if register == 0x59 and value == 1:
+            # INTERNAL_STATUS: initialised, or an error.
+            self.registers[0x21] = 1 if self._file == _FILE_BYTES else 2
+        if register == 0x7D and value & 6 == 6:
+            self.start(45 * NS_PER_MS)

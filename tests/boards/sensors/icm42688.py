@@ -3,7 +3,6 @@
 from schedule import NS_PER_MS
 from sensors.inertial import GRAVITY, RATE_PER_COUNT, Inertial, Wiring
 
-_READ = 0x80
 _BANK = 0x76
 _NO_DATA = bytes([0x80, 0x00]) * 6
 
@@ -35,26 +34,19 @@ class Icm42688(Inertial):
     def has_pin(self) -> bool:
         return bool(self._banks[0].get(0x65, 0) & 8)
 
-    def _read(self, register: int) -> int:
+    def read(self, register: int) -> int:
         if register == _BANK:
             return self._bank
         if self._bank == 0 and 0x1F <= register < 0x2B:
             return self._data[register - 0x1F]
         return self._banks.get(self._bank, {}).get(register, 0)
 
-    def exchange(self, sent: bytes) -> bytes:
-        first, answer = sent[0] & 0x7F, bytearray(len(sent))
-        if sent[0] & _READ:
-            for place in range(1, len(sent)):
-                answer[place] = self._read(first + place - 1)
+    def set(self, register: int, value: int) -> None:
+        if register == _BANK:
+            self._bank = value & 7
+        elif self._bank == 0 and register == 0x11 and value & 1:
+            self.reset()
         else:
-            self.settings.append((first, sent[1]))
-            if first == _BANK:
-                self._bank = sent[1] & 7
-            elif self._bank == 0 and first == 0x11 and sent[1] & 1:
-                self.reset()
-            else:
-                self._banks.setdefault(self._bank, {})[first] = sent[1]
-                if self._bank == 0 and first == 0x4E and sent[1] & 0xF == 0xF:
-                    self.start(30 * NS_PER_MS)
-        return bytes(answer)
+            self._banks.setdefault(self._bank, {})[register] = value
+            if self._bank == 0 and register == 0x4E and value & 0xF == 0xF:
+                self.start(30 * NS_PER_MS)

@@ -88,13 +88,19 @@ class Inertial(Device):
     """A device with registers and a pace."""
 
     PERIOD_NS = 1_000_000
-    # Noise of one reading, counts, and the gyroscope's constant error.
+    # Noise of one reading, counts.
     NOISE_COUNTS = 2.0
+    # Where the samples are among the registers, how many bytes of an answer precede the first register's, and whether
+    # it speaks SPI before its select pin ever rose.
+    DATA = 0
+    LEADING_BYTES = 1
+    SPEAKS_SPI_AT_ONCE = True
 
     def __init__(self, select: str, wiring: Wiring) -> None:
         super().__init__(select)
         self.wiring = wiring
         self.registers: dict[int, int] = {}
+        self._data = b""
         self._generation = 0
         # Set by who spoils a run: no edges any more, or none while it is on.
         self.is_silent = False
@@ -106,6 +112,34 @@ class Inertial(Device):
     def reset(self) -> None:
         """As after its own reset: it measures nothing."""
         self._generation += 1
+        self._speaks_spi = self.SPEAKS_SPI_AT_ONCE
+
+    def chosen(self, level: int) -> None:
+        super().chosen(level)
+        self._speaks_spi |= level == 1
+
+    def exchange(self, sent: bytes) -> bytes:
+        first, answer = sent[0] & 0x7F, bytearray(len(sent))
+        if self._speaks_spi and sent[0] & 0x80:
+            for place in range(self.LEADING_BYTES, len(sent)):
+                answer[place] = self.read(first + place - self.LEADING_BYTES)
+        elif self._speaks_spi:
+            self.write(first, sent[1:])
+        return bytes(answer)
+
+    def read(self, register: int) -> int:
+        """What a register holds."""
+        place = register - self.DATA
+        return self._data[place] if 0 <= place < len(self._data) else self.registers.get(register, 0)
+
+    def write(self, register: int, values: bytes) -> None:
+        """Sets a register: the first value, but for what takes more of them."""
+        self.settings.append((register, values[0]))
+        self.set(register, values[0])
+
+    def set(self, register: int, value: int) -> None:
+        """What a setting does."""
+        raise NotImplementedError
 
     def start(self, wait_ns: int) -> None:
         """Begins to measure, the first time after `wait_ns`."""
