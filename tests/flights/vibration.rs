@@ -29,6 +29,7 @@ use host_sim::vehicle::instruments::{SAMPLE_PERIOD_US, TrueMotion};
 use host_sim::vehicle::reality::RealVehicle;
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
+use std::path::Path;
 use verification::piloted::{Meddler, PilotedVehicle, Place};
 
 /// Above the IMU.
@@ -372,8 +373,9 @@ fn the_raw_gyros_spectrum_shows_the_rotors() {
         let given = Inputs { request, ground_station: Some(vehicle.now() + period), ..Inputs::default() };
         vehicle.tick(&given, &mut logged).unwrap();
     }
-    // For docs/vibration.md, whose picture is this one.
-    let folder = std::env::var_os("LOGS").map_or_else(std::env::temp_dir, Into::into);
+    // For docs/vibration.md, whose picture is this one; a folder below the project's.
+    let below = |folder| Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let folder = std::env::var_os("LOGS").map_or_else(std::env::temp_dir, below);
     let (log, picture) = (folder.join("shaken.ulg"), folder.join("shaken.svg"));
     std::fs::write(&log, logged.file.finish()).unwrap();
     let told = command::draw(&log, &picture).unwrap();

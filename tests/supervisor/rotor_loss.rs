@@ -187,8 +187,8 @@ fn a_vehicle_without_a_rotor_lands_softly_from_every_phase() {
                 let last = flown.reasons.last();
                 let stops = phase == Phase::WithoutPose && last == Some(&Reason::ImuDoubtful);
                 assert!(last == Some(&Reason::Landed) || stops, "{what}");
-                let refused = found.map(|_| Err(Refusal::RotorLost));
-                assert!(flown.arming == refused || found.is_none(), "{what}");
+                let refused = if stops { Refusal::Stopped } else { Refusal::RotorLost };
+                assert!(flown.arming == Some(Err(refused)) || found.is_none(), "{what}");
                 // Without a pose nothing holds it in its place.
                 let (fell, farthest) = if phase == Phase::WithoutPose { (3.0, 13.0) } else { (2.0, 3.0) };
                 assert!(flown.fell < fell && flown.farthest < farthest, "{what}");
