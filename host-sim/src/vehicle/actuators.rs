@@ -84,17 +84,46 @@ impl ActuatorDemand {
     }
 }
 
+/// What ticks ask for, on its way to the actuators.
+#[derive(Debug, Clone)]
+pub(crate) struct Delayed {
+    steps: u64,
+    /// With the plant step at which it acts.
+    waiting: VecDeque<(u64, ActuatorDemand)>,
+    /// What acts now.
+    pub acting: ActuatorDemand,
+}
+
+impl Delayed {
+    /// Acts so many plant steps after its tick; before the first, the hover thrust, N, does.
+    pub fn new(steps: u64, hover: f32) -> Self {
+        let acting = ActuatorDemand::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
+        Self { steps, waiting: VecDeque::new(), acting }
+    }
+
+    /// A tick asks for this at plant step `now`.
+    pub fn ask(&mut self, demand: &ActuatorDemand, now: u64) {
+        self.waiting.push_back((now + self.steps, demand.clone()));
+    }
+
+    /// Whether another demand acts from plant step `now` on.
+    pub fn arrives(&mut self, now: u64) -> bool {
+        let mut arrives = false;
+        while let Some((_, due)) = self.waiting.pop_front_if(|(due, _)| *due <= now) {
+            self.acting = due;
+            arrives = true;
+        }
+        arrives
+    }
+}
+
 /// Delay and rotors between the law and the body.
 #[derive(Debug, Clone)]
 pub struct Actuators {
     pub(crate) rotors: Option<(Box<Mixer>, SpinningRotors)>,
-    delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
-    /// What is on its way, with the step at which it acts.
-    waiting: VecDeque<(u64, ActuatorDemand)>,
-    /// What acts now.
-    acting: ActuatorDemand,
+    demand: Delayed,
     /// What acted since it was last taken.
     pub(crate) acted: Acted,
 }
@@ -103,8 +132,7 @@ impl Actuators {
     /// Actuators that hold the hover thrust, N, until the first wrench arrives, `delay_steps` plant steps after its
     /// tick. Without rotors wrenches act on the body directly.
     pub fn new(rotors: Option<(Box<Mixer>, SpinningRotors)>, delay_steps: u64, hover: f32) -> Self {
-        let acting = ActuatorDemand::Wrench(Wrench { thrust: hover, torque: Vector3::zeros() });
-        Self { rotors, delay_steps, now: 0, waiting: VecDeque::new(), acting, acted: Acted::default() }
+        Self { rotors, now: 0, demand: Delayed::new(delay_steps, hover), acted: Acted::default() }
     }
 
     /// The rotors' thrusts at this moment, N, after lag; none without rotors.
@@ -114,11 +142,11 @@ impl Actuators {
 
     /// Whether a wrench acts at once.
     pub fn are_ideal(&self) -> bool {
-        self.rotors.is_none() && self.delay_steps == 0
+        self.rotors.is_none() && self.demand.steps == 0
     }
 
     fn act(&mut self, body: &Body) {
-        let (thrust, torque, _) = body.clipped(&self.acting.wrench());
+        let (thrust, torque, _) = body.clipped(&self.demand.acting.wrench());
         self.acted.add(thrust, &torque);
     }
 
@@ -131,27 +159,23 @@ impl Actuators {
         steps: u32,
     ) -> Result<(bool, Thrusts), ActuationError> {
         if self.are_ideal() {
-            self.acting = demand.clone();
+            self.demand.acting = demand.clone();
             self.act(plant.body());
             return Ok((plant.hold(&demand.wrench(), steps)?, Thrusts::new()));
         }
-        self.waiting.push_back((self.now + self.delay_steps, demand.clone()));
+        self.demand.ask(demand, self.now);
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {
-            let mut arrived = false;
-            while let Some((_, due)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
-                self.acting = due;
-                arrived = true;
-            }
+            let arrives = self.demand.arrives(self.now);
             match &mut self.rotors {
                 None => {
                     self.act(plant.body());
-                    clipped |= plant.hold(&self.acting.wrench(), 1)?;
+                    clipped |= plant.hold(&self.demand.acting.wrench(), 1)?;
                 }
                 Some((mixer, rotors)) => {
-                    if arrived {
-                        let (allocated, cut) = self.acting.allocated(mixer)?;
+                    if arrives {
+                        let (allocated, cut) = self.demand.acting.allocated(mixer)?;
                         clipped |= cut;
                         thrusts = allocated;
                         rotors.command(&thrusts);

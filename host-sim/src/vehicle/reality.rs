@@ -30,7 +30,7 @@ pub(crate) mod dryden;
 pub(crate) mod propulsion;
 pub mod wind;
 
-use crate::vehicle::actuators::{ActuationError, ActuatorDemand};
+use crate::vehicle::actuators::{ActuationError, ActuatorDemand, Delayed};
 use crate::vehicle::ground::{Ground, Touchdown};
 use crate::vehicle::plant::Diverged;
 use crate::vehicle::sensed::Acted;
@@ -39,14 +39,12 @@ use body::{RigidBody, STAGE_TIMES};
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::allocation::{Mixer, Thrusts};
 use controller_core::configuration::Configuration;
-use controller_core::state::Wrench;
 use nalgebra::{UnitQuaternion, Vector3};
 use propulsion::Propulsion;
 use scenario::Scenario;
 use scenario::body::BodyState;
 use scenario::reality::disturbance::Disturbance;
 use scenario::reality::truth::Truth;
-use std::collections::VecDeque;
 use wind::{MovingAir, first_step};
 
 /// Wind and battery at an instant.
@@ -77,13 +75,9 @@ pub struct RealVehicle {
     touchdown: Option<Touchdown>,
     /// Plant step, s.
     step: f64,
-    delay_steps: u64,
     /// Plant steps since the start.
     now: u64,
-    /// What is on its way, with the step at which it acts.
-    waiting: VecDeque<(u64, ActuatorDemand)>,
-    /// What acts now.
-    acting: ActuatorDemand,
+    demand: Delayed,
     /// What acted since it was last taken, by the model's coefficients.
     pub(crate) acted: Acted,
     /// Its origin, where the controller takes the centre of mass to be.
@@ -119,10 +113,8 @@ impl RealVehicle {
             rotors_above: reality.ground.map_or((0.0, 0.0), |ground| (truth.rotor_radius, ground.height)),
             touchdown: None,
             step,
-            delay_steps: scenario.delay_steps,
             now: 0,
-            waiting: VecDeque::new(),
-            acting: ActuatorDemand::Wrench(Wrench { thrust: model.mass * model.gravity, torque: Vector3::zeros() }),
+            demand: Delayed::new(scenario.delay_steps, model.mass * model.gravity),
             acted: Acted::default(),
             body: RigidBody::new(&truth, gravity, &start),
             state: start,
@@ -204,24 +196,20 @@ impl RealVehicle {
     /// Takes what a tick asks for and moves the vehicle for `steps` plant steps. Returns whether anything was cut, and
     /// the commanded rotor thrusts, N, as they stand at the end (none without rotors).
     pub fn hold(&mut self, demand: &ActuatorDemand, steps: u32) -> Result<(bool, Thrusts), ActuationError> {
-        self.waiting.push_back((self.now + self.delay_steps, demand.clone()));
+        self.demand.ask(demand, self.now);
         let mut clipped = false;
         let mut thrusts = Thrusts::new();
         for _ in 0..steps {
-            let mut arrived = false;
-            while let Some((_, due)) = self.waiting.pop_front_if(|(due, _)| *due <= self.now) {
-                self.acting = due;
-                arrived = true;
-            }
+            let arrives = self.demand.arrives(self.now);
             match &self.mixer {
-                Some(mixer) if arrived => {
-                    let (allocated, cut) = self.acting.allocated(mixer)?;
+                Some(mixer) if arrives => {
+                    let (allocated, cut) = self.demand.acting.allocated(mixer)?;
                     clipped |= cut;
                     thrusts = allocated;
                     self.propulsion.command(&thrusts);
                 }
                 Some(_) => {}
-                None => clipped |= self.propulsion.command_directly(&self.acting.wrench()),
+                None => clipped |= self.propulsion.command_directly(&self.demand.acting.wrench()),
             }
             self.advance();
         }

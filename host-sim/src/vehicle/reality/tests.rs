@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::vehicle::SimulatedVehicle;
+use controller_core::state::Wrench;
 use nalgebra::Quaternion;
 
 const HUMMINGBIRD: &str = include_str!("../../../../vehicles/hummingbird-paper-law.toml");
