@@ -55,7 +55,8 @@ class PoseSource:
     def _see(self) -> None:
         schedule = self.board.schedule
         schedule.after(POSE_PERIOD_NS, self._see)
-        if self.is_on:
+        hands = self.vehicle.hands
+        if self.is_on and (hands is None or hands.is_seen):
             place, attitude = self.vehicle.pose()
             message = mavlink.MAVLink_att_pos_mocap_message(schedule.now // NS_PER_US, attitude, *place)
             schedule.after(POSE_DELAY_NS, self.board.link.receive, message.pack(self._sender))

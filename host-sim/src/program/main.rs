@@ -317,7 +317,7 @@ fn run_first_flight(arguments: &FirstFlightArguments) -> Result<ExitCode, String
     let (mut record, why) = Record::open(&arguments.record(), subject)?;
     why.iter().for_each(complain);
     WholeFile::try_name(&page).map_err(|error| format!("--page {}: cannot be written: {error}", page.display()))?;
-    let vehicle = Vehicle::new(Line::open(arguments.link.clone())?, watch()?);
+    let vehicle = Vehicle::new(Line::open(arguments.link.clone())?, watch()?, arguments.slower);
     let mut walk = Walk::new(vehicle, person.as_mut(), &scenario, arguments.board());
     let made = course::make(&mut walk, &mut record, arguments.only.as_deref());
     let text = first_flight::page::page(&record, &CHECKS, &scenario.name, &first_flight::page::now());

@@ -138,6 +138,8 @@ def check_vehicle(quad_params, scenario):
     lacking = [name for name in READ if name not in quad_params]
     if lacking:
         raise ValueError(f"quad_params: {lacking[0]!r} is missing")
+    # The law's rotors idle: they may turn no slower than RotorPy's can, and as fast.
+    slowest, fastest = np.moveaxis(np.asarray(rotors["speed"], float), -1, 0)
     theirs = {
         "vehicle.mass": (scenario.mass, quad_params["mass"]),
         "vehicle.inertia": (scenario.inertia, [quad_params[name] for name in ("Ixx", "Iyy", "Izz")]),
@@ -146,7 +148,8 @@ def check_vehicle(quad_params, scenario):
         "rotors.spin": (rotors["spin"], quad_params["rotor_directions"]),
         "rotors.thrust_coefficient": (rotors["thrust_coefficient"], quad_params["k_eta"]),
         "rotors.drag_coefficient": (rotors["drag_coefficient"], quad_params["k_m"]),
-        "rotors.speed": (rotors["speed"], [quad_params["rotor_speed_min"], quad_params["rotor_speed_max"]]),
+        "rotors.speed, greatest": (fastest, quad_params["rotor_speed_max"]),
+        "rotors.speed, least": (slowest, np.maximum(slowest, quad_params["rotor_speed_min"])),
         "rotors.lag": (rotors["lag"], quad_params["tau_m"]),
     }
     for field, (ours, wanted) in theirs.items():

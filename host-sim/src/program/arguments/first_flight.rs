@@ -68,6 +68,9 @@ pub struct FirstFlightArguments {
     /// Make this check alone, whether it has passed or not
     #[arg(long, value_name = "CHECK")]
     pub only: Option<String>,
+    /// The vehicle's time passes so many times more slowly than ours: an emulated board's
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = slower)]
+    pub slower: f64,
     /// Take answers from this file
     #[arg(long, value_name = "FILE.toml")]
     answers: Option<PathBuf>,
@@ -79,6 +82,12 @@ enum BoardName {
     MicoairH743,
     MatekH743,
     CrazyflieBolt,
+}
+
+/// How many times more slowly.
+fn slower(written: &str) -> Result<f64, String> {
+    let times = written.parse().map_err(|_| "is not a number".to_owned())?;
+    if (1.0..=1000.0).contains(&times) { Ok(times) } else { Err("must be from 1 to 1000".to_owned()) }
 }
 
 /// Reads a file of any kind.

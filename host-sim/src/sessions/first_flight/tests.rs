@@ -183,7 +183,7 @@ fn record(name: &str) -> Record {
 /// A vehicle's link, heard already.
 fn link(desk: &Desk) -> Vehicle {
     let line = Line::open(Address::Udp(format!("127.0.0.1:{}", desk.ground))).unwrap();
-    let mut vehicle = Vehicle::new(line, Interrupt::default());
+    let mut vehicle = Vehicle::new(line, Interrupt::default(), 1.0);
     let heard = vehicle.wait(Duration::from_secs(60), |vehicle| vehicle.heartbeat()).unwrap();
     assert!(heard.is_some(), "no heartbeat");
     vehicle

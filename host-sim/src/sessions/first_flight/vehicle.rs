@@ -44,7 +44,23 @@ pub enum Stop {
 }
 
 /// Something that came, and when.
-type Seen<T> = Option<(T, Instant)>;
+type Seen<T> = Option<(T, Duration)>;
+
+/// The time since the walk began, as the vehicle's passes: an emulated one's passes more slowly.
+struct Clock {
+    began: Instant,
+    slower: f64,
+}
+
+impl Clock {
+    fn now(&self) -> Duration {
+        self.began.elapsed().div_f64(self.slower)
+    }
+
+    fn fresh<T: Clone>(&self, seen: &Seen<T>) -> Option<T> {
+        seen.as_ref().filter(|(_, when)| self.now() - *when < VALUE_AGE_MAX).map(|(value, _)| value.clone())
+    }
+}
 
 /// The link's end, and what came over it.
 pub struct Vehicle {
@@ -52,35 +68,31 @@ pub struct Vehicle {
     interrupt: Interrupt,
     parser: Parser,
     sequence: u8,
-    began: Instant,
+    clock: Clock,
     /// When the next heartbeat is due; none while it keeps silent.
-    heartbeat_due: Option<Instant>,
+    heartbeat_due: Option<Duration>,
     system: u8,
     heartbeat: Seen<HEARTBEAT_DATA>,
     imu: Seen<(u64, Vector3<f32>, Vector3<f32>)>,
     position: Seen<LOCAL_POSITION_NED_DATA>,
     status: Seen<SYS_STATUS_DATA>,
     vibration: Seen<VIBRATION_DATA>,
-    named: BTreeMap<String, (f32, Instant)>,
+    named: BTreeMap<String, (f32, Duration)>,
     texts: Vec<String>,
     answers: Vec<(MavCmd, MavResult)>,
     parameters: BTreeMap<String, f32>,
 }
 
-fn fresh<T: Clone>(seen: &Seen<T>) -> Option<T> {
-    seen.as_ref().filter(|(_, when)| when.elapsed() < VALUE_AGE_MAX).map(|(value, _)| value.clone())
-}
-
 impl Vehicle {
-    /// Nothing received yet.
-    pub fn new(line: Line, interrupt: Interrupt) -> Self {
+    /// Nothing received yet, of a vehicle whose time passes so many times more slowly than ours.
+    pub fn new(line: Line, interrupt: Interrupt, slower: f64) -> Self {
         Self {
             line,
             interrupt,
             parser: Parser::new(),
             sequence: 0,
-            began: Instant::now(),
-            heartbeat_due: Some(Instant::now()),
+            clock: Clock { began: Instant::now(), slower },
+            heartbeat_due: Some(Duration::ZERO),
             system: 1,
             heartbeat: None,
             imu: None,
@@ -94,6 +106,11 @@ impl Vehicle {
         }
     }
 
+    /// The time since the walk began, as the vehicle's passes.
+    pub fn now(&self) -> Duration {
+        self.clock.now()
+    }
+
     /// Takes what has come, for some 10 ms, and sends what is due.
     ///
     /// # Errors
@@ -102,13 +119,13 @@ impl Vehicle {
         if let Some(signal) = self.interrupt.signal() {
             return Err(Stop::Interrupted(signal));
         }
-        if self.heartbeat_due.is_some_and(|due| Instant::now() >= due) {
-            self.heartbeat_due = Some(Instant::now() + HEARTBEAT_PERIOD);
+        if self.heartbeat_due.is_some_and(|due| self.now() >= due) {
+            self.heartbeat_due = Some(self.now() + HEARTBEAT_PERIOD);
             self.send(&HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::DEFAULT });
         }
         let mut chunk = [0; 4096];
         let count = self.line.receive(&mut chunk);
-        let now = self.began.elapsed().as_micros() as u64;
+        let now = self.now().as_micros() as u64;
         let mut parser = std::mem::replace(&mut self.parser, Parser::new());
         parser.feed(&chunk[..count], now, &mut |frame| self.take(frame));
         self.parser = parser;
@@ -116,7 +133,7 @@ impl Vehicle {
     }
 
     fn take(&mut self, frame: &Frame<'_>) {
-        let now = Instant::now();
+        let now = self.now();
         if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
             // A companion's or another ground station's is not the vehicle's.
             if frame.header.component == 1 && heartbeat.mavtype == MavType::MAV_TYPE_QUADROTOR {
@@ -167,13 +184,13 @@ impl Vehicle {
         timeout: Duration,
         mut found: impl FnMut(&mut Self) -> Option<T>,
     ) -> Result<Option<T>, Stop> {
-        let end = Instant::now() + timeout;
+        let end = self.now() + timeout;
         loop {
             self.serve()?;
             if let Some(found) = found(self) {
                 return Ok(Some(found));
             }
-            if Instant::now() >= end {
+            if self.now() >= end {
                 return Ok(None);
             }
         }
@@ -275,12 +292,12 @@ impl Vehicle {
 
     /// Sends heartbeats, or none.
     pub fn speak(&mut self, speaks: bool) {
-        self.heartbeat_due = speaks.then(Instant::now);
+        self.heartbeat_due = speaks.then(|| self.now());
     }
 
     /// Its last heartbeat, if that is recent.
     pub fn heartbeat(&self) -> Option<HEARTBEAT_DATA> {
-        fresh(&self.heartbeat)
+        self.clock.fresh(&self.heartbeat)
     }
 
     /// Whether the last heartbeat has this flag.
@@ -290,28 +307,29 @@ impl Vehicle {
 
     /// The newest sample: its time, us, specific force, m/s^2, and body rates, rad/s, in body axes.
     pub fn imu_sample(&self) -> Option<(u64, Vector3<f32>, Vector3<f32>)> {
-        fresh(&self.imu)
+        self.clock.fresh(&self.imu)
     }
 
     /// Where it is, m, north, east, down.
     pub fn position(&self) -> Option<Vector3<f32>> {
-        fresh(&self.position).map(|position| Vector3::new(position.x, position.y, position.z))
+        self.clock.fresh(&self.position).map(|position| Vector3::new(position.x, position.y, position.z))
     }
 
     /// Its sensors and battery.
     pub fn status(&self) -> Option<SYS_STATUS_DATA> {
-        fresh(&self.status)
+        self.clock.fresh(&self.status)
     }
 
     /// Levels, m/s^2, and samples at full scale.
     pub fn vibration(&self) -> Option<(Vector3<f32>, u32)> {
-        let VIBRATION_DATA { vibration_x, vibration_y, vibration_z, clipping_0, .. } = fresh(&self.vibration)?;
+        let VIBRATION_DATA { vibration_x, vibration_y, vibration_z, clipping_0, .. } =
+            self.clock.fresh(&self.vibration)?;
         Some((Vector3::new(vibration_x, vibration_y, vibration_z), clipping_0))
     }
 
     /// A named value, if it is recent: they come in turn.
     pub fn named(&self, name: &str) -> Option<f32> {
-        self.named.get(name).filter(|(_, when)| when.elapsed() < 2 * VALUE_AGE_MAX).map(|(value, _)| *value)
+        self.named.get(name).filter(|(_, when)| self.now() - *when < 2 * VALUE_AGE_MAX).map(|(value, _)| *value)
     }
 
     /// Forgets named values, so that those to come are of now.

@@ -5,7 +5,7 @@ use crate::sessions::first_flight::outcome::Outcome;
 use crate::sessions::first_flight::vehicle::Stop;
 use crate::sessions::first_flight::walk::Walk;
 use mavlink::dialects::common::{MavCmd, MavModeFlag, MavResult, VIBRATION_DATA};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The part by which two readings of a battery may differ.
 const VOLTAGE_ERROR_MAX: f64 = 0.05;
@@ -95,8 +95,8 @@ pub fn each(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
                 let words = walk.vehicle.texts().pop().unwrap_or_default();
                 return Ok(Outcome::Failed(format!("motor {motor}: {answer:?}: {words}")));
             }
-            let end = Instant::now() + Duration::from_secs_f32(TEST_S);
-            while Instant::now() < end {
+            let end = walk.vehicle.now() + Duration::from_secs_f32(TEST_S);
+            while walk.vehicle.now() < end {
                 walk.vehicle.serve()?;
                 if let Some((level, count)) = walk.vehicle.vibration() {
                     (shaken, clipped) = (Some(shaken.unwrap_or(0.0).max(level.max())), clipped.max(count));
@@ -148,10 +148,10 @@ pub fn disarm(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         return Ok(Outcome::Failed("the motor test was refused".to_owned()));
     }
     walk.vehicle.texts();
-    let begin = Instant::now();
+    let begin = walk.vehicle.now();
     let answer = walk.vehicle.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [0.0; 7])?;
     let has_said = walk.vehicle.wait(STOP_TIMEOUT, |vehicle| vehicle.has_said("Disarmed by command").then_some(()))?;
-    let took = begin.elapsed().as_millis();
+    let took = (walk.vehicle.now() - begin).as_millis();
     Ok(match (answer, has_said) {
         (MavResult::MAV_RESULT_ACCEPTED, Some(())) => Outcome::Passed(format!("disarmed, heard after {took} ms")),
         _ => Outcome::Failed(format!("{answer:?}, and \"Disarmed by command\" was not said")),
@@ -175,7 +175,7 @@ pub fn kill(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     }
     walk.vehicle.texts();
     walk.person.tell("kill.on", "Motor 1 turns until you move the kill switch: now.");
-    let end = Instant::now() + SWITCH_TIMEOUT;
+    let end = walk.vehicle.now() + SWITCH_TIMEOUT;
     let stopped = loop {
         // Each renews the one before: the motor turns on.
         let answer = turn(walk, 1, level, TEST_S)?;
@@ -186,7 +186,7 @@ pub fn kill(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
         {
             break true;
         }
-        if answer != MavResult::MAV_RESULT_ACCEPTED || Instant::now() >= end {
+        if answer != MavResult::MAV_RESULT_ACCEPTED || walk.vehicle.now() >= end {
             break false;
         }
     };
@@ -214,12 +214,12 @@ pub fn radio(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
     }
     walk.vehicle.texts();
     walk.person.tell("radio.off", "Turn the transmitter off.");
-    let begin = Instant::now();
+    let begin = walk.vehicle.now();
     if walk.vehicle.wait(SWITCH_TIMEOUT, |vehicle| vehicle.has_said("Radio lost").then_some(()))?.is_none() {
         let what = "the receiver goes on sending: set it to send nothing when it hears nothing";
         return Ok(Outcome::Failed(format!(
             "\"Radio lost\" was not said within {} s: {what}",
-            begin.elapsed().as_secs()
+            (walk.vehicle.now() - begin).as_secs()
         )));
     }
     walk.person.tell("radio.on", "Turn it on again.");

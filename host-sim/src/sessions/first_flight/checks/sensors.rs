@@ -6,7 +6,7 @@ use crate::sessions::first_flight::vehicle::Stop;
 use crate::sessions::first_flight::walk::{HAND_TIMEOUT, Walk};
 use mavlink::dialects::common::{HIGHRES_IMU_DATA, MavCmd, MavResult, NAMED_VALUE_FLOAT_DATA};
 use nalgebra::Vector3;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long something must be shown.
 const SHOWN_FOR: Duration = Duration::from_millis(400);
@@ -33,8 +33,8 @@ fn shown(walk: &mut Walk<'_>, hold: Hold) -> Result<Result<Vector3<f32>, String>
             since = None;
             return None;
         }
-        let since = *since.get_or_insert_with(Instant::now);
-        (since.elapsed() >= SHOWN_FOR).then_some(force)
+        let since = *since.get_or_insert_with(|| vehicle.now());
+        (vehicle.now() - since >= SHOWN_FOR).then_some(force)
     })?;
     let was = format!(
         "{}: force {:.1} {:.1} {:.1} m/s^2, turned {:.2} {:.2} {:.2} rad",
@@ -77,9 +77,9 @@ fn calibrated(walk: &mut Walk<'_>, parameters: [f32; 7], timeout: Duration) -> R
     const COMMAND: MavCmd = MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION;
     walk.vehicle.texts();
     let mut result = walk.vehicle.command(COMMAND, parameters)?;
-    let end = Instant::now() + timeout;
+    let end = walk.vehicle.now() + timeout;
     let mut words = String::new();
-    while result == MavResult::MAV_RESULT_IN_PROGRESS && Instant::now() < end {
+    while result == MavResult::MAV_RESULT_IN_PROGRESS && walk.vehicle.now() < end {
         walk.vehicle.serve()?;
         for text in walk.vehicle.texts() {
             walk.person.tell("calibration.progress", &text);
@@ -149,13 +149,13 @@ pub fn levelling(walk: &mut Walk<'_>) -> Result<Outcome, Stop> {
                 held = None;
                 return None;
             }
-            let since = *held.get_or_insert_with(Instant::now);
+            let since = *held.get_or_insert_with(|| vehicle.now());
             let names = ["LEVEL_M1", "LEVEL_M2", "LEVEL_M3", "LEVEL_M4"];
             let shares = names.iter().map(|name| vehicle.named(name)).collect::<Option<Vec<f32>>>()?;
             let words: Vec<_> = shares.iter().map(|share| format!("{share:.3}")).collect();
             last = words.join(" ");
             let is_right = wrong_share(hold, &rotors, &shares).is_none();
-            (is_right && since.elapsed() >= SHOWN_FOR).then_some(())
+            (is_right && vehicle.now() - since >= SHOWN_FOR).then_some(())
         })?;
         if found.is_none() {
             let last = if last.is_empty() { "not held, or no shares came".to_owned() } else { last };
