@@ -23,8 +23,8 @@ from vehicle import Vehicle
 
 # The walk's clock goes so many times more slowly than ours: an emulated board is some ten times slower than a real one.
 _SLOWER = 20
-# How long somebody thinks before an answer, so that what was laid down lies still.
-_THINKS_NS = 2 * NS_PER_S
+# How long somebody waits with an answer, once the hands are still.
+_WAITS_NS = NS_PER_S
 # What is told, and what the hands do then.
 _DEEDS = {
     "Raise the nose": "nose-up", "Raise the left side": "left-up", "Keep it flat, and turn": "turned-left",
@@ -71,7 +71,7 @@ class Somebody:
                 self._hands.take("show")
             answer = self._reply(question[1])
             print(answer, flush=True)
-            self._answer = self._board.schedule.now + _THINKS_NS, answer.encode() + b"\n"
+            self._answer = self._board.schedule.now + _WAITS_NS, answer.encode() + b"\n"
 
     def _reply(self, key: str) -> str:
         motor, _, what = key.removeprefix("motors.").partition(".")
@@ -86,6 +86,8 @@ class Somebody:
 
     def answer(self) -> bytes:
         """What is said now."""
+        if self._answer is not None and not self._hands.are_still:
+            self._answer = self._board.schedule.now + _WAITS_NS, self._answer[1]
         if self._answer is None or self._board.schedule.now < self._answer[0]:
             return b""
         said, self._answer = self._answer[1], None

@@ -84,6 +84,11 @@ class Hands:
         way = _capped((east, north, up), _CARRY_M_PER_S * _STEP_S)
         self.carried = tuple(at + by for at, by in zip(self.carried, way))  # type: ignore[assignment]
 
+    @property
+    def are_still(self) -> bool:
+        """Whether they have turned it as far as they were told to."""
+        return max(abs(rate) for rate in self.rate) < 1e-3
+
     def felt(self, rate: Vector, force: Vector) -> tuple[Vector, Vector]:
         """Body rates and specific force of the vehicle that is held."""
         _, *held = product(product(_conjugate(self.turn), (0.0, *force)), self.turn)

@@ -65,7 +65,7 @@ fn runnable(text: &str) -> String {
     let text = text.replace("cargo run --release -p host-sim", "host-sim");
     let runs = |block: &str| block == "console" || block == "console,nightly" && everything();
     let mut kept: Vec<&str> = Vec::new();
-    let mut inside = false;
+    let (mut inside, mut is_long) = (false, false);
     for (number, block, line) in lines(&text) {
         let was = inside;
         inside = block.is_some_and(runs);
@@ -82,14 +82,18 @@ fn runnable(text: &str) -> String {
             }
         }
         if inside {
+            // What takes seconds on a busy machine says how far it is, first of all; the status is no output.
+            if is_long && !line.starts_with("? ") {
+                kept.push("...");
+                is_long = false;
+            }
             if (line, kept.last()) != ("...", Some(&"...")) {
                 kept.push(line);
             }
-            // What takes seconds on a busy machine says how far it is.
-            if ["$ host-sim campaign", "$ host-sim compare", "$ host-sim tune"].iter().any(|at| line.starts_with(at)) {
-                kept.push("...");
-            }
+            is_long |=
+                ["$ host-sim campaign", "$ host-sim compare", "$ host-sim tune"].iter().any(|at| line.starts_with(at));
         } else if was {
+            is_long = false;
             kept.push("```");
         }
     }
