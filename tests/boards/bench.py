@@ -105,7 +105,7 @@ def main() -> int:
     server = Server(board, 0)
     started = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        kept = ["--record", f"{folder}/record.toml", "--page", f"{folder}/page.md"]
+        kept = ["--record", f"{folder}/record.toml", "--page", f"{folder}/page.md", "--image", image]
         walk = subprocess.Popen(
             [program, "first-flight", BOARDS[name].feature, file, "--link", f"tcp:127.0.0.1:{server.port}",
              "--slower", str(_SLOWER), *kept], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
