@@ -19,6 +19,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const NOT_RUN: &[(&str, &str)] = &[
     ("host-sim sitl", "serves until it is stopped; `.ci/clients` flies it"),
     ("host-sim log LOG", "needs a card's file; `.ci/logs` converts one"),
+    ("host-sim first-flight", "asks a person; `.ci/boards` walks it with one"),
     ("host-sim hil", "serves firmware that runs elsewhere; `.ci/emulated_flight` flies it"),
     ("cargo micoair", "flashes a board"),
     ("cargo matek", "flashes a board"),

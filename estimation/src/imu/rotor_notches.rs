@@ -24,7 +24,7 @@
 //!
 //! A notch is as deep as its frequency allows: not at all below [`FREQUENCY_MIN_HZ`], where it would be too late and
 //! rotors hardly push, wholly from [`FREQUENCY_FULL_HZ`] on, and not at all again near half the rate of the samples. It
-//! becomes deeper or shallower by [`DEPTH_CHANGE_PER_S`] at most, and starts as if the present body rate had been there
+//! becomes deeper or shallower by `DEPTH_CHANGE_PER_S` at most, and starts as if the present body rate had been there
 //! for ever: a speed that appears or is lost makes no jump. Without a word of speeds for [`SPEEDS_TIMEOUT_US`] all of
 //! them fade.
 //!

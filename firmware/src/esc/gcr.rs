@@ -3,7 +3,7 @@
 //! | step | equation |
 //! |---|---|
 //! | checksum, as the answer's last 4 bits | c = not (a xor b xor d), of the 12 bits before it, four by four |
-//! | each 4 bits n as 5 bits g(n), never more than two zeros in a row | [`QUINTETS`] |
+//! | each 4 bits n as 5 bits g(n), never more than two zeros in a row | `QUINTETS` |
 //! | 20 bits as 21 levels: a one changes the level, a zero keeps it | l_0 = 0, l_(k+1) = l_k xor g_k |
 //!
 //! The line rests high, so that the first level, low, is an edge. A lost or an added edge changes one quintet, and so

@@ -4,7 +4,7 @@
 //! - [`vehicle`]: what it is doing: heartbeat, modes, sensors, battery, events, parameters;
 //! - [`motion`]: how it moves: attitude, position, odometry, target, home;
 //! - [`controllers`]: what the motors' controllers answer;
-//! - [`bench`]: what a person on the bench looks at, before there is a pose;
+//! - [`mod@bench`]: what a person on the bench looks at, before there is a pose;
 //! - [`identity`]: what it is.
 
 pub mod bench;

@@ -7,7 +7,7 @@
 //! m (g - M_p - K_a3) <= T <= m (sqrt(3) M_p + sqrt(K_a12^2 + (K_a3 + g)^2)),   |e_i u_f|, |e_i u_s| <= M_p
 //! ```
 //!
-//! With rotors it claims that none was commanded below what its motor idles at ([`least_command`]).
+//! With rotors it claims that none was commanded below what its motor idles at (`least_command`).
 //!
 //! It claims besides that every inequality of its certificate holds; that its sampled loops are stable with
 //! [`LoopMargin::FLYABLE_MIN`]; under the extended law, that a model of it arrives from [far away, fast and upside

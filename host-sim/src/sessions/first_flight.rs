@@ -7,7 +7,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`line`], [`vehicle`] | bytes to and from the vehicle; what it says and answers |
+//! | [`mod@line`], [`vehicle`] | bytes to and from the vehicle; what it says and answers |
 //! | [`person`] | questions and answers, at a terminal or out of a file |
 //! | [`judge`] | what measured values mean |
 //! | [`walk`] | vehicle and person together: what checks are made with |

@@ -3,10 +3,10 @@
 //!
 //! | module | checks |
 //! |---|---|
-//! | [`boot`] | what started, the certificate, ticks, the port |
-//! | [`sensors`] | axes, calibration, the levelling thrusts |
-//! | [`motors`] | battery, frames, motors, and every way to stop them on the bench |
-//! | [`ready`] | settings, poses, arming |
+//! | `boot` | what started, the certificate, ticks, the port |
+//! | `sensors` | axes, calibration, the levelling thrusts |
+//! | `motors` | battery, frames, motors, and every way to stop them on the bench |
+//! | `ready` | settings, poses, arming |
 
 mod boot;
 mod motors;
