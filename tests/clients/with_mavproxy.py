@@ -65,7 +65,8 @@ def fly(flown, proxy):
     if SIGNED:
         proxy.ask(f"signing key {PASSPHRASE}", "Setup signing key")
     flown.wait_for("ready", 20)
-    proxy.wait_for("Received 61 parameters", 20)
+    # It says so once it has all of them.
+    proxy.wait_for(" parameters to ", 20)
     proxy.ask("param show TKO_ALT", "TKO_ALT          1.5")
     proxy.type("param set TKO_ALT 2.0")
     flown.rest(1.0)
