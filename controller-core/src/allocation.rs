@@ -37,7 +37,7 @@ use heapless::Vec;
 
 /// Collects what fits; heapless' own `collect` panics when full, which the callers' counts rule out and a panic-free
 /// core must not contain.
-pub(crate) fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
+pub fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     for item in items {
         if list.push(item).is_err() {

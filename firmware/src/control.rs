@@ -12,7 +12,7 @@
 
 use crate::configuration::Pilot;
 use crate::deadline::within;
-use crate::esc::SPEED_AGE_MAX_US;
+use crate::esc::controller::SPEED_AGE_MAX_US;
 use crate::frames;
 use crate::hardware::{Clock, Fault, MotorCommand, Motors, Watchdog};
 use crate::link::origin::Origin;

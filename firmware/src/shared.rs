@@ -51,7 +51,7 @@ pub use requests::{REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 
 use self::recent_texts::RecentTexts;
-use crate::esc::{Controller, RotorSpeeds};
+use crate::esc::controller::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
 use crate::link::acknowledgement::Order;

@@ -15,16 +15,16 @@
 //! | silent | its controller does not answer while another's does |
 //!
 //! A battery that sags and air that flows through the rotors move all of them, and so r. A thrust curve that is not the
-//! motors' makes them differ while their commands do: what is less than half of a speed is therefore said, and what is
-//! more is acted on. A rotor that is lost by its speed is found before it is missed in the motion, because its speed
-//! tells where it will settle.
+//! motors' makes them differ while their commands do: what is less than half of a speed is therefore said alone. A
+//! rotor that is lost by its speed is told to the law, which flies without it once the motion shows a part of the loss.
+//! That is before the motion alone would tell, because a speed tells where it will settle.
 //!
 //! On the ground, idling, each c is the same; a rotor that does not turn keeps the vehicle there.
 
 use crate::debounce::Debounce;
-use controller_core::allocation::Rotors;
 use controller_core::allocation::geometry::ROTORS_MAX;
 use controller_core::allocation::remaining::LostRotor;
+use controller_core::allocation::{Rotors, collected};
 use controller_core::configuration::{Configuration, LawParameters};
 use controller_core::math;
 use core::cmp::Ordering;
@@ -251,11 +251,7 @@ impl RotorCheck {
             let command = 0.5 * (checked.low + checked.high);
             speed.filter(|_| command > 0.0).map(|speed| speed / command)
         };
-        let mut ratios = Vec::<f32, ROTORS_MAX>::new();
-        for ratio in self.rotors.iter().zip(speeds).filter_map(of) {
-            // There are no more of them than rotors; collecting could panic.
-            let _ = ratios.push(ratio);
-        }
+        let ratios: Vec<f32, ROTORS_MAX> = collected(self.rotors.iter().zip(speeds).filter_map(of));
         let (upper, lower) = (ratios.len() / 2, ratios.len().saturating_sub(1) / 2);
         // The ratio of this rank. The standard library's sorting can panic.
         let ranked = |rank: usize| {

@@ -7,7 +7,7 @@
 //! low-pass made for 1 kHz would be late by many of them: they pass as they are. And a simulator's sensors may be free
 //! of noise, so that equal samples are no fault of theirs.
 
-use crate::esc::SPEED_AGE_MAX_US;
+use crate::esc::controller::SPEED_AGE_MAX_US;
 use crate::hardware::RawImu;
 use crate::shared::{Event, SamplesView, Severity};
 use controller_core::error::ParameterError;

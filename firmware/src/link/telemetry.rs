@@ -15,7 +15,7 @@ pub mod motion;
 pub mod vehicle;
 
 use super::origin::Origin;
-use crate::esc::{Controller, RotorSpeeds};
+use crate::esc::controller::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
 use crate::shared::{Calibrated, Report, Traffic};
 use estimation::imu::VibrationReport;

@@ -3,7 +3,7 @@
 //! World frame z up, body frame x forward, y left, z up, SI units, as everywhere in the firmware; what is not known is
 //! NaN.
 
-use crate::esc::RotorSpeeds;
+use crate::esc::controller::RotorSpeeds;
 use crate::hardware::MotorCommand;
 use controller_core::reference::Reference;
 use controller_core::state::{State, Wrench};

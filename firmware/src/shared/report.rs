@@ -1,6 +1,6 @@
 //! How the vehicle booted, what a control tick did, and what the line carried, for telemetry and the log.
 
-use crate::esc::RotorSpeeds;
+use crate::esc::controller::RotorSpeeds;
 use crate::hardware::{MOTOR_COUNT, MotorCommand};
 use crate::recorder::tick::Tick;
 use controller_core::certificate::certified::{Certified, Refused};

@@ -21,9 +21,9 @@
 //! at once, one that has lost a third after some ten times as long. Another rotor starts anew: a gust, a hit or the
 //! ground pushes otherwise, or not for so long. A rotor of which nothing is commanded tells nothing either way.
 //!
-//! A rotor that its own speed shows to fail ([`Measured::lost`](super::super::measured::Measured::lost)) is found as soon
-//! as r points against its b_i most, and shows `AGREEING_SHARE` of the loss. A speed alone finds none: a
-//! controller may report what is not so.
+//! A rotor that its own speed shows to fail ([`Measured::lost`](super::super::measured::Measured::lost)) is found as
+//! soon as r points against its b_i most, and shows `AGREEING_SHARE` of the loss. A speed alone finds none: a controller
+//! may report what is not so.
 //!
 //! What a model leaves out grows with what the vehicle does: a lag, an inertia or a thrust that is not what it should
 //! be with the commands, the air's damping with the rates. So r has to be larger then, and a rotor that fails in the

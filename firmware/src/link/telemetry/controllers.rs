@@ -1,7 +1,7 @@
 //! The motors' controllers in MAVLink's messages, as their answers tell: nothing where they do not answer.
 
 use crate::esc::answer::Answer;
-use crate::esc::{Controller, RotorSpeeds};
+use crate::esc::controller::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
 use flight::Stamped;
 use mavlink::dialects::common::{ESC_INFO_DATA, ESC_STATUS_DATA, EscConnectionType, EscFailureFlags};
