@@ -30,7 +30,7 @@
 //! [`plausibility`] refuses numbers that no vehicle has, as those in other units; [`resolution`] says how far from the
 //! origin single precision goes.
 //!
-//! [`policy`] reads the files of policies.
+//! [`policy`] reads the files of policies, [`cells`] those of numbers.
 
 pub mod actuation;
 pub mod along;
@@ -38,6 +38,7 @@ pub mod board;
 pub mod body;
 pub mod bounds;
 pub mod campaign;
+pub mod cells;
 pub mod constants;
 pub mod excess;
 pub mod extended;

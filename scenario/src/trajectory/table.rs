@@ -10,14 +10,14 @@
 //! | `ax`, `ay`, `az` | acceleration, m/s^2 | all or none |
 //! | `speed` | the maximum speed up to the next row, m/s | as the scenario says |
 //!
-//! Or the polynomial pieces that Crazyswarm and the Crazyflie's `uav_trajectories` fly ([`super::pieces`]). `cells`
-//! finds the cells, `column` knows names and units, and [`super::slips`] what is probably not meant.
+//! Or the polynomial pieces that Crazyswarm and the Crazyflie's `uav_trajectories` fly ([`super::pieces`]).
+//! [`cells`] finds the cells, `column` knows names and units, and [`super::slips`] what is probably not meant.
 
-mod cells;
 mod column;
 
 use super::row::Row;
 use super::{pieces, slips};
+use crate::cells;
 use crate::section::FieldError;
 use column::Quantity::{self, Acceleration, Duration, Heading, Position, Quaternion, Speed, Time, Velocity};
 use csv::StringRecord;
@@ -27,6 +27,8 @@ use std::collections::BTreeSet;
 /// What rows without names hold, by how many cells they have.
 const NAMELESS_COLUMNS: [(usize, &str); 4] =
     [(3, "x,y,z"), (8, "t,x,y,z,qx,qy,qz,qw"), (1 + 3 * 8, "duration"), (1 + 4 * 8, "duration")];
+/// The most rows of one file.
+const ROWS_MAX: usize = 100_000;
 /// Two rows at one time that are no farther apart are one, m.
 const SAME_PLACE_M: f64 = 1e-3;
 /// How far the length of a quaternion may be from 1.
@@ -73,7 +75,7 @@ pub fn read(text: &str, field: &str) -> Result<Table, FieldError> {
 
 fn table(text: &str) -> Result<Table, String> {
     let cells::Cells { header, rows: lines } =
-        cells::read(text, |name| matches!(column::recognised(name), Ok(Some(_))))?;
+        cells::read(text, ROWS_MAX, |name| matches!(column::recognised(name), Ok(Some(_))))?;
     let mut remarks = Vec::new();
     let (line, names) = names(header, &lines, &mut remarks)?;
     let refuse = |problem: String| format!("line {line}: {problem}");

@@ -10,9 +10,6 @@ use std::borrow::Cow;
 const SEPARATORS: [u8; 4] = *b";\t, ";
 /// What a comment begins with; a header may begin with it too.
 const COMMENT_MARKS: [char; 2] = ['#', '%'];
-/// The most rows of one file.
-const ROWS_MAX: usize = 100_000;
-
 /// The most lines above the numbers.
 const HEADER_LINES_MAX: u64 = 1000;
 
@@ -26,17 +23,18 @@ pub struct Cells {
 }
 
 /// A number with a decimal point or comma, none for anything else.
+#[must_use]
 pub fn number(cell: &str) -> Option<f64> {
     let is_comma = cell.matches(',').count() == 1 && !cell.contains('.');
     let pointed = if is_comma { Cow::from(cell.replace(',', ".")) } else { Cow::from(cell) };
     pointed.parse().ok()
 }
 
-/// Finds the cells of `text`; `is_name` knows the names of columns.
+/// Finds the cells of `text`, of `rows_max` rows at most; `is_name` knows the names of columns.
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn read(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Cells, String> {
+pub fn read(text: &str, rows_max: usize, is_name: impl Fn(&str) -> bool) -> Result<Cells, String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
     let (mut before, mut start, mut header, mut is_commented) = (0, 0, None, true);
     for line in text.split_inclusive('\n') {
@@ -45,7 +43,7 @@ pub fn read(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Cells, String>
         let is_comment = words.len() < line_words.len();
         let (numbers, separator) = separated(words, 1, |cell| number(cell).is_some());
         if numbers > 0 && !is_comment {
-            let rows = rows(&text[start..], separator, before)?;
+            let rows = rows(&text[start..], separator, before, rows_max)?;
             return Ok(Cells { header, rows });
         }
         before += 1;
@@ -82,7 +80,7 @@ fn separated(line: &str, misfit: i64, fit: impl Fn(&str) -> bool) -> (i64, u8) {
     best
 }
 
-fn rows(text: &str, separator: u8, before: u64) -> Result<Vec<(u64, StringRecord)>, String> {
+fn rows(text: &str, separator: u8, before: u64, rows_max: usize) -> Result<Vec<(u64, StringRecord)>, String> {
     let mut rows = Vec::new();
     for row in cells(text, separator) {
         let (line, record) = row?;
@@ -90,8 +88,8 @@ fn rows(text: &str, separator: u8, before: u64) -> Result<Vec<(u64, StringRecord
             continue;
         }
         rows.push((before + line, record));
-        if rows.len() > ROWS_MAX {
-            return Err(format!("has more than {ROWS_MAX} rows; leave out what a path does not need"));
+        if rows.len() > rows_max {
+            return Err(format!("has more than {rows_max} rows; leave out what is not needed"));
         }
     }
     Ok(rows)
