@@ -2,5 +2,6 @@
 
 mod identify;
 mod identify_px4;
+mod real_flights;
 mod vehicle_import;
 mod vehicle_models;

@@ -13,6 +13,7 @@
 //! | [`flight`] | vehicle, reference and law in closed loop; a flight's figures and claims |
 //! | [`reports`] | log.csv, figures, report.html, flight.mcap |
 //! | [`identification`] | a vehicle's numbers from flights, benches and other programs' files |
+//! | [`real_flights`] | flights of real vehicles, which others recorded |
 //! | [`sessions`] | the firmware in closed loop with the vehicle: `sitl`, `hil` |
 //! | [`studies`] | many flights: `tune`, `campaign`, `compare` |
 //! | [`commands`] | `fly`, `certify`, `law` |
@@ -30,6 +31,7 @@ pub mod commands;
 pub mod flight;
 pub mod identification;
 pub mod output;
+pub mod real_flights;
 pub mod reports;
 pub mod rivals;
 pub mod sessions;

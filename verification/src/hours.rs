@@ -96,7 +96,7 @@ struct World {
 
 impl Meddler for World {
     fn act(&mut self, vehicle: &mut RealVehicle, _: u64) {
-        vehicle.push(self.push);
+        vehicle.push(self.push, Vector3::zeros());
     }
 
     fn pose(&mut self, pose: Stamped<Pose>, _: u64) -> Option<Stamped<PoseMeasurement>> {

@@ -5,6 +5,7 @@ mod compare;
 mod first_flight;
 mod identify;
 mod log;
+mod real_flights;
 mod reference;
 mod replay;
 mod sessions;
@@ -20,6 +21,8 @@ use identify::IDENTIFY_HELP;
 pub use identify::IdentifyArguments;
 use log::LOG_HELP;
 pub use log::LogArguments;
+use real_flights::REAL_FLIGHT_HELP;
+pub use real_flights::{RealFlightArguments, ReplayLawArguments};
 pub use reference::ReferenceArguments;
 pub use replay::ReplayArguments;
 pub use sessions::{HilArguments, SitlArguments};
@@ -51,6 +54,8 @@ Examples:
                                      search for gains that certify and fly well
   host-sim identify log.csv --scenario mine.toml --out found.toml
                                      mass, inertia, lag, drag ... from a log
+  host-sim replay-model log.csv --columns columns.toml --scenario mine.toml
+                                     half of a real flight foretells the other
   host-sim log LOG00012.ULG --ulog px4.ulg --spectrum gyro.svg
                                      for Flight Review and PlotJuggler
   host-sim vehicle cf2x.urdf --out cf2x.toml
@@ -153,6 +158,15 @@ pub enum Command {
     /// Find a vehicle's numbers, each with its uncertainty, from the log of a flight and from a bench.
     #[command(after_help = IDENTIFY_HELP)]
     Identify(IdentifyArguments),
+    /// Find a vehicle in one half of a real flight, and foretell the other half by it.
+    #[command(after_help = REAL_FLIGHT_HELP)]
+    ReplayModel(RealFlightArguments),
+    /// Run our estimator on the sensors of a real flight, beside the vehicle's own filter.
+    #[command(after_help = REAL_FLIGHT_HELP)]
+    ReplayEstimator(RealFlightArguments),
+    /// Fly our law on the vehicle that a real flight shows, in the same air and on the same setpoints.
+    #[command(after_help = REAL_FLIGHT_HELP)]
+    ReplayLaw(ReplayLawArguments),
     /// Write a log of the firmware as the topics of PX4, for Flight Review and PlotJuggler.
     #[command(after_help = LOG_HELP)]
     Log(LogArguments),

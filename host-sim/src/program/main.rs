@@ -2,6 +2,7 @@
 
 mod arguments;
 mod readers;
+mod real_flights;
 mod searches;
 mod terminal;
 
@@ -37,6 +38,7 @@ use host_sim::studies::campaign::summary::Summary;
 use host_sim::studies::campaign::written::above;
 use host_sim::studies::campaign::{self, CampaignError};
 use readers::{given_or_study, run_identify, run_log, run_vehicle};
+use real_flights::{run_replay_estimator, run_replay_law, run_replay_model};
 use scenario::verdict::Verdict;
 use scenario::{Scenario, board};
 use searches::{run_compare, run_tune};
@@ -59,6 +61,9 @@ fn main() -> ExitCode {
             Some(Command::Certify { file, show, rigorous }) => run_certify(file.as_deref(), show, rigorous),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
+            Some(Command::ReplayModel(arguments)) => run_replay_model(&arguments),
+            Some(Command::ReplayEstimator(arguments)) => run_replay_estimator(&arguments),
+            Some(Command::ReplayLaw(arguments)) => run_replay_law(&arguments),
             Some(Command::Log(arguments)) => run_log(&arguments),
             Some(Command::Vehicle(arguments)) => run_vehicle(&arguments),
             Some(Command::Campaign(arguments)) => run_campaign(&arguments),

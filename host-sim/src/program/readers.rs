@@ -1,6 +1,7 @@
 //! The commands that read files of others: `identify` and `log` flights, `vehicle` models.
 
 use crate::arguments::{IdentifyArguments, LogArguments, VehicleArguments};
+use crate::real_flights::identified;
 use crate::terminal::{complain, print_text, same_file, status, text_of};
 use host_sim::identification::identify::command::{self, Refused, Task};
 use host_sim::identification::import;
@@ -27,10 +28,14 @@ pub fn run_identify(arguments: &IdentifyArguments) -> Result<ExitCode, String> {
             ("the scenario", &arguments.scenario),
             ("the log", &Some(arguments.log.clone())),
             ("the bench file", &arguments.bench),
+            ("the file of columns", &arguments.columns),
         ];
         if let Some((what, _)) = read.iter().find(|(_, file)| file.as_ref().is_some_and(|file| same_file(out, file))) {
             return Err(format!("{}: --out must be another file than {what}", out.display()));
         }
+    }
+    if arguments.columns.is_some() {
+        return identified(arguments, original, file);
     }
     let task =
         Task { log: arguments.log.clone(), original, file, bench: arguments.bench.clone(), out: arguments.out.clone() };

@@ -164,10 +164,11 @@ impl RealVehicle {
         self.ground.as_ref().is_some_and(Ground::stands)
     }
 
-    /// Pushes it from now on with a force, N, world, in place of the scenario's disturbance.
-    pub fn push(&mut self, force: Vector3<f64>) {
-        let nothing = Disturbance { acceleration: Vector3::zeros(), torque: Vector3::zeros(), start: 0.0 };
-        self.disturbance = Some((nothing, 0, force));
+    /// Pushes it from now on with a force, N, world, and turns it with a torque, N m, body, in place of the scenario's
+    /// disturbance.
+    pub fn push(&mut self, force: Vector3<f64>, torque: Vector3<f64>) {
+        let turning = Disturbance { acceleration: Vector3::zeros(), torque, start: 0.0 };
+        self.disturbance = Some((turning, 0, force));
     }
 
     /// Lets a rotor, counted from 0, deliver from now on this share of the thrust that it would without this.

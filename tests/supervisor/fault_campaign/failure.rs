@@ -189,7 +189,7 @@ impl Meddler for Failures {
             (blows(Failure::Gust, GUST_M_PER_S2_AND_S) + blows(Failure::Wind, WIND_M_PER_S2_AND_S)) * in_the_air;
         let upwards = blows(Failure::Updraft, UPDRAFT_M_PER_S2_AND_S) + blows(Failure::Thermal, THERMAL_M_PER_S2_AND_S);
         let downwards = if self.has(Failure::HeldDown) { HELD_DOWN } else { 0.0 };
-        vehicle.push(Vector3::new(across, 0.0, upwards - downwards) * self.mass);
+        vehicle.push(Vector3::new(across, 0.0, upwards - downwards) * self.mass, Vector3::zeros());
         for (failure, angle) in [(Failure::Tipped, PI), (Failure::Leaned, FRAC_PI_4)] {
             let (Some(since), Some(held)) = (self.since(failure, now), &self.held) else { continue };
             if since > TIPPING_S {

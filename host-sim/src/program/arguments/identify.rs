@@ -6,8 +6,12 @@ use std::path::PathBuf;
 /// A log, and what it is held against.
 #[derive(Args)]
 pub struct IdentifyArguments {
-    /// log.csv of a flight, or a ULog: of the firmware's recorder or card, or of PX4
+    /// log.csv of a flight, or a ULog: of the firmware's recorder or card, or of PX4; with --columns, a CSV of a real
+    /// flight
     pub log: PathBuf,
+    /// Which column of a real flight's CSV is what, a few lines of TOML (docs/real-flights.md), or `nanobench`
+    #[arg(long, value_name = "FILE", conflicts_with = "bench")]
+    pub columns: Option<PathBuf>,
     /// Scenario file whose vehicle is the model: rotors, mass and inertia as they are believed to be [default:
     /// vehicles/study.toml, built in]
     #[arg(long, value_name = "FILE")]
