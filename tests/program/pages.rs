@@ -5,7 +5,7 @@
 //! runs, or have a reason here. `HOST_SIM` is the program to run, from the repository's root; else the tests' own.
 //!
 //! A block of TOML that names a file in its first line, `# mine.toml`, is that file. Each page has a folder of its own
-//! with these files, `vehicles/`, `scenarios/` and `tests/numbers/vehicle_import/`.
+//! with these files, `vehicles/`, `scenarios/`, `tests/numbers/vehicle_import/` and `tests/real_flights/`.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -115,7 +115,7 @@ fn copy(from: &Path, to: &Path) {
 
 /// A new folder with all that commands may name.
 fn workplace(folder: &Path, pages: &[(String, String)]) {
-    for name in ["vehicles", "scenarios", "tests/numbers/vehicle_import"] {
+    for name in ["vehicles", "scenarios", "tests/numbers/vehicle_import", "tests/real_flights"] {
         copy(&Path::new(ROOT).join(name), &folder.join(name));
     }
     for block in pages.iter().flat_map(|(_, text)| text.split("```toml\n").skip(1)) {

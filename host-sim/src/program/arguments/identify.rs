@@ -47,6 +47,16 @@ estimated is used, not the simulated truth.
     --scenario scenarios/identify.toml --out mine.toml
   host-sim certify mine.toml
 
+A CSV of a real flight (--columns): rotors' commands or measured speeds, IMU and
+poses or the vehicle's own estimates, in columns of any name. Thrust scale,
+rotor lag and drag come from the accelerometer then. A file of columns says
+
+  [motors]
+  columns = [\"rpm1\", \"rpm2\", \"rpm3\", \"rpm4\"]   # of the scenario's rotors
+  unit = \"rpm\"      # or rad/s: measured; share of full; N
+
+and likewise [time], [pose], [imu]: docs/real-flights.md, replay-model --help.
+
 The report ends with each margin of the certificate and of the sampled loops:
 with the file's numbers, with those found, and in the worst corner of their
 intervals.
