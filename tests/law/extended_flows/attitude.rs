@@ -318,7 +318,7 @@ fn at_the_target_nothing_pulls_whatever_hysteresis_is_allowed() {
 fn the_greatest_bias_of_a_certified_vehicle_leaves_the_reserve() {
     let mut rng = random::generator(305);
     let (mut certified, mut most) = (0, 0.0_f32);
-    while certified < 40 {
+    while certified < 12 {
         let base = random_configuration(&mut rng);
         let (room, reserve) = budget(&base);
         let least = room.radius(law(&base).parameters.scale_least);
