@@ -13,6 +13,7 @@
 //! | [`recording`] | streams in SI units and our frames, each on its own times |
 //! | `series` | a stream: repeated rows left out, gaps kept |
 //! | [`alignment`] | how late poses are on the vehicle's clock, moment by moment |
+//! | `slopes` | slopes of what is noisy |
 //! | [`flown`] | the flight, sample by sample, on the vehicle's clock |
 //! | [`suspicions`] | wrong units, axes, motors and times, each by its name |
 //! | `regression` | least squares with parts left out |
@@ -41,5 +42,6 @@ pub mod recording;
 pub(crate) mod regression;
 pub(crate) mod series;
 pub mod setpoint_path;
+pub(crate) mod slopes;
 pub mod suspicions;
 pub mod torques;

@@ -191,6 +191,8 @@ struct Written {
     every: usize,
     /// Speeds of the rotors, not commands.
     speeds: bool,
+    /// Whether it is read with an accelerometer.
+    accelerometer: bool,
 }
 
 /// A simulated flight as a CSV, with its rotors' commands or speeds, and the vehicle.
@@ -256,7 +258,11 @@ fn columns(unit: &str) -> String {
 /// What is found of a simulated flight, with the truth.
 fn found(test: &str, how: &Written) -> (Scenario, Forces, Flown, PathBuf) {
     let (csv, text) = simulated(how);
-    let map = ColumnMap::parse(&columns(if how.speeds { "rad/s" } else { "N" })).unwrap();
+    let mut columns = columns(if how.speeds { "rad/s" } else { "N" });
+    if !how.accelerometer {
+        columns = columns.replace("force = [\"ax\", \"ay\", \"az\"]\n", "");
+    }
+    let map = ColumnMap::parse(&columns).unwrap();
     let path = directory("real_flights", test).join("log.csv");
     std::fs::write(&path, csv).unwrap();
     let scenario = Scenario::parse(&text, "identify").unwrap();
@@ -268,7 +274,7 @@ fn found(test: &str, how: &Written) -> (Scenario, Forces, Flown, PathBuf) {
 
 #[test]
 fn a_simulated_flight_shows_the_vehicle_that_flew_it() {
-    let (scenario, forces, flown, _) = found("simulated", &Written { every: 1, speeds: false });
+    let (scenario, forces, flown, _) = found("simulated", &Written { every: 1, speeds: false, accelerometer: true });
     let vehicle = scenario.configuration.vehicle();
     let mass = f64::from(vehicle.mass);
     assert!((forces.strength.value * mass - 1.0).abs() < 0.02, "{forces:?}");
@@ -290,11 +296,26 @@ fn a_simulated_flight_shows_the_vehicle_that_flew_it() {
 
 #[test]
 fn measured_speeds_of_rotors_leave_no_question_of_lag() {
-    let (scenario, forces, ..) = found("speeds", &Written { every: 1, speeds: true });
+    let (scenario, forces, ..) = found("speeds", &Written { every: 1, speeds: true, accelerometer: true });
     assert!(forces.lags.is_none());
     let mass = f64::from(scenario.configuration.vehicle().mass);
     assert!((forces.strength.value * mass - 1.0).abs() < 0.02, "{forces:?}");
     assert!(forces.left[0] < 0.3 * forces.left[1], "{forces:?}");
+}
+
+#[test]
+fn without_an_accelerometer_forces_are_how_speed_changes() {
+    let with = found("felt", &Written { every: 1, speeds: false, accelerometer: true }).1;
+    let (scenario, without, flown, _) = found("seen", &Written { every: 1, speeds: false, accelerometer: false });
+    assert!(!flown.is_felt);
+    let mass = f64::from(scenario.configuration.vehicle().mass);
+    assert!((without.strength.value * mass - 1.0).abs() < 0.02, "{without:?}");
+    for (with, without) in with.drag.iter().zip(&without.drag) {
+        assert!((without.value / with.value - 1.0).abs() < 0.1, "{with:?} {without:?}");
+    }
+    for lag in without.lag_values() {
+        assert!((lag - scenario.rotor_lag).abs() < 0.025, "{lag}");
+    }
 }
 
 #[test]

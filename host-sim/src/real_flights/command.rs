@@ -322,7 +322,7 @@ pub fn replayed_law(task: &Task) -> Result<(String, LawBeside), Refused> {
     let not_shown = |what: String| Refused::NotShown(format!("{}: {what}", task.log.display()));
     let text = rewritten_by(&task.original, &read.scenario, &forces).map_err(Refused::Input)?;
     let path = SetpointPath::new(&read.flown.samples, &text, &task.file).map_err(not_shown)?;
-    let estimated = read.recording.pose.is_some().then(|| {
+    let estimated = (read.recording.pose.is_some() && read.flown.is_felt).then(|| {
         estimation::estimated(&read.flown, &read.recording, &AS_LOGGED, path.scenario.configuration.vehicle())
     });
     let estimated = estimated.transpose().map_err(not_shown)?;

@@ -88,6 +88,9 @@ pub fn estimated(
     stream: &PoseStream,
     vehicle: &Vehicle,
 ) -> Result<Estimated, String> {
+    if !flown.is_felt {
+        return Err("imu.force: is missing; the estimator needs an accelerometer".to_owned());
+    }
     let (imu, places) = if stream.aligned { on_one_clock(flown) } else { as_written(recording, flown) }
         .ok_or("imu.force or pose: is missing; the estimator needs an accelerometer and poses")?;
     let [gyro, accelerometer] = stream.imu_noise;

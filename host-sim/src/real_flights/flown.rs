@@ -5,6 +5,8 @@
 //! velocity is the slope of a parabola through 0.1 s of positions. The longest part in the air without a gap is kept, a
 //! second at each end left out: there the ground is near.
 //!
+//! Where there is no accelerometer, forces are the slopes of velocities, which softens them.
+//!
 //! Markers are seldom level: their frame leans against the IMU's. By how much, the flight shows: on the whole, speed
 //! changes by what is felt. Attitudes are turned by that constant tilt; a steady wind would pass for one.
 //!
@@ -15,6 +17,7 @@ use super::alignment::{Alignment, BRIDGED_MAX_S, three};
 use super::columns::{MotorMeasure, STANDARD_GRAVITY};
 use super::recording::{Recording, of_row};
 use super::series::Series;
+use super::slopes::slopes;
 use controller_core::allocation::Rotors;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -22,8 +25,6 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub const PERIOD_S: f64 = 0.01;
 /// Setpoints hold for so long, s; so does a battery's voltage.
 const HELD_MAX_S: f64 = 1.0;
-/// Half of the samples of a velocity.
-const SLOPE_SAMPLES: usize = 5;
 /// Flight is above this height, m, over the lowest, unless the log never rests; and with this share of the usual
 /// thrust.
 const AIRBORNE_HEIGHT_M: f64 = 0.2;
@@ -44,7 +45,7 @@ pub struct Sample {
     pub felt: f64,
     /// rad/s, body, by the gyro, without its bias.
     pub rates: Vector3<f64>,
-    /// m/s^2, body, by the accelerometer, where there is one.
+    /// m/s^2, body, by the accelerometer; without one by how speed changes.
     pub force: Option<Vector3<f64>>,
     /// Each rotor's, N, by the scenario's curve: without lag and scale.
     pub thrusts: Vec<f64>,
@@ -71,6 +72,8 @@ pub struct Flown {
     pub by_itself: bool,
     /// Whose times are kept.
     pub clock: Clock,
+    /// Whether forces are an accelerometer's; else they are how speed changes, softened.
+    pub is_felt: bool,
     /// From the IMU's axes to those of the markers; attitudes are corrected.
     pub tilt: UnitQuaternion<f64>,
 }
@@ -147,7 +150,17 @@ impl Flown {
             })
         };
         let mut samples = in_the_air(&(0..ticks).map(sample).collect::<Vec<_>>());
-        differentiate(&mut samples);
+        let velocities = slopes(&samples.iter().map(|sample| sample.position).collect::<Vec<_>>());
+        for (sample, velocity) in samples.iter_mut().zip(&velocities) {
+            sample.velocity = *velocity;
+        }
+        let is_felt = samples.iter().all(|sample| sample.force.is_some());
+        if !is_felt {
+            for (sample, acceleration) in samples.iter_mut().zip(slopes(&velocities)) {
+                let force = acceleration + Vector3::z() * STANDARD_GRAVITY;
+                sample.force = Some(sample.attitude.inverse_transform_vector(&force));
+            }
+        }
         let ends = (ENDS_S / PERIOD_S) as usize;
         let kept = samples.get(ends..samples.len().saturating_sub(ends)).unwrap_or_default().to_vec();
         let seconds = kept.len() as f64 * PERIOD_S;
@@ -162,6 +175,7 @@ impl Flown {
             alignment: alignment.cloned(),
             by_itself: recording.pose.is_none(),
             clock,
+            is_felt,
             tilt: UnitQuaternion::identity(),
         };
         flown.level();
@@ -264,17 +278,4 @@ fn in_the_air(all: &[Option<Sample>]) -> Vec<Sample> {
         }
     }
     all.get(longest).unwrap_or_default().iter().flatten().cloned().collect()
-}
-
-/// Velocities from positions: sum of i p_i over sum of i^2.
-fn differentiate(samples: &mut [Sample]) {
-    let positions: Vec<Vector3<f64>> = samples.iter().map(|sample| sample.position).collect();
-    let squares: f64 = (1..=SLOPE_SAMPLES).map(|i| 2.0 * (i * i) as f64).sum();
-    for (tick, sample) in samples.iter_mut().enumerate() {
-        let at = |tick: usize| positions.get(tick).copied();
-        let pairs = (1..=SLOPE_SAMPLES).map(|i| Some((at(tick + i)? - at(tick.checked_sub(i)?)?) * i as f64));
-        if let Some(sum) = pairs.sum::<Option<Vector3<f64>>>() {
-            sample.velocity = sum / (squares * PERIOD_S);
-        }
-    }
 }

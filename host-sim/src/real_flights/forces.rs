@@ -14,11 +14,14 @@
 //! goes with the curve. Lags are sought on a grid, then as unknowns of the linearised equations. The accelerometer's
 //! scale is the poses': on the whole, what it shows upwards carries the weight.
 //!
+//! Without an accelerometer f is how speed changes, softened over 0.2 s; then S and v are softened alike.
+//!
 //! Measured speeds of rotors have their lag behind them: there T is zero.
 
 use super::columns::MotorMeasure;
 use super::flown::{Flown, PERIOD_S, Sample};
 use super::regression::{PART_COUNT, Shown, Sums, part_of};
+use super::slopes::softened;
 use nalgebra::{DVector, Vector3};
 
 /// The lags that are tried, s.
@@ -74,11 +77,6 @@ pub fn lagged(samples: &[Sample], [up, down]: [f64; 2]) -> Vec<Vec<f64>> {
     behind
 }
 
-/// Their sums.
-fn sums(samples: &[Sample], lags: [f64; 2]) -> Vec<f64> {
-    lagged(samples, lags).iter().map(|thrusts| thrusts.iter().sum()).collect()
-}
-
 impl Forces {
     /// # Errors
     /// If there is no accelerometer, or the flight does not show them.
@@ -125,7 +123,7 @@ impl Forces {
 fn accelerometer_scale(flown: &Flown, gravity: f64) -> Result<f64, String> {
     let samples = &flown.samples;
     let up = samples.iter().map(|sample| Some((sample.attitude * sample.force?).z)).sum::<Option<f64>>();
-    let up = up.ok_or("imu.force: is missing; without an accelerometer forces are not shown")? / samples.len() as f64;
+    let up = up.ok_or("shows no forces")? / samples.len() as f64;
     let gained =
         samples.last().map_or(0.0, |last| last.velocity.z) - samples.first().map_or(0.0, |first| first.velocity.z);
     Ok(up / (gravity + gained / flown.seconds()))
@@ -139,35 +137,42 @@ struct Problem<'a> {
     /// m/s, body.
     velocities: Vec<Vector3<f64>>,
     mean_thrust: f64,
+    /// Whether forces are softened, and so all must be that is compared with them.
+    is_soft: bool,
 }
 
 impl<'a> Problem<'a> {
     fn new(flown: &'a Flown, scale: f64) -> Self {
         let samples = &flown.samples;
+        let velocities: Vec<Vector3<f64>> =
+            samples.iter().map(|sample| sample.attitude.inverse_transform_vector(&sample.velocity)).collect();
+        let along = |axis: usize| velocities.iter().map(|velocity| velocity[axis]).collect::<Vec<_>>();
+        let soft = [0, 1, 2].map(|axis| softened(&along(axis)));
+        let softer = (0..samples.len()).map(|sample| Vector3::from_fn(|axis, _| soft[axis][sample])).collect();
         let total: f64 = samples.iter().map(|sample| sample.thrusts.iter().sum::<f64>()).sum();
         Self {
             samples,
             forces: samples.iter().map(|sample| sample.force.unwrap_or_default() / scale).collect(),
-            velocities: samples
-                .iter()
-                .map(|sample| sample.attitude.inverse_transform_vector(&sample.velocity))
-                .collect(),
+            velocities: if flown.is_felt { velocities } else { softer },
+            is_soft: !flown.is_felt,
             mean_thrust: total / samples.len() as f64,
         }
     }
 
+    /// S, N, of each sample.
+    fn sums(&self, lags: [f64; 2]) -> Vec<f64> {
+        let sums: Vec<f64> = lagged(self.samples, lags).iter().map(|thrusts| thrusts.iter().sum()).collect();
+        if self.is_soft { softened(&sums) } else { sums }
+    }
+
     /// The sums of each part with these lags; with the lags as unknowns too, if so.
     fn parts(&self, lags: [f64; 2], with_lags: bool) -> Vec<Sums> {
-        let thrusts = sums(self.samples, lags);
+        let thrusts = self.sums(lags);
         let slopes: Vec<Vec<f64>> = if with_lags {
             let moved = |which: usize| {
                 let mut lags = lags;
                 lags[which] += LAG_SLOPE_S;
-                sums(self.samples, lags)
-                    .iter()
-                    .zip(&thrusts)
-                    .map(|(moved, here)| (moved - here) / LAG_SLOPE_S)
-                    .collect()
+                self.sums(lags).iter().zip(&thrusts).map(|(moved, here)| (moved - here) / LAG_SLOPE_S).collect()
             };
             vec![moved(0), moved(1)]
         } else {

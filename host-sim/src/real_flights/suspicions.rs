@@ -132,10 +132,15 @@ fn named_order(matrix: &Matrix3<f64>, map: &ColumnMap) -> String {
 /// What is wrong with all the rest.
 pub fn of_flight(recording: &Recording, flown: &Flown, map: &ColumnMap, rotors: &Rotors, weight: f64) -> Vec<String> {
     // What is wrong first makes what comes later look wrong.
-    let wrong_sensors = [sensors::force_unit(flown), sensors::force_axes(flown, map), sensors::places(flown)]
-        .into_iter()
-        .flatten()
-        .next();
+    let wrong_sensors = [
+        sensors::speed_unit(flown),
+        sensors::force_unit(flown),
+        sensors::force_axes(flown, map),
+        sensors::places(flown),
+    ]
+    .into_iter()
+    .flatten()
+    .next();
     let wrong_motors =
         [motors::battery(recording), motors::carried(recording, flown, weight), motors::motor_times(flown)]
             .into_iter()
@@ -149,14 +154,16 @@ pub fn of_flight(recording: &Recording, flown: &Flown, map: &ColumnMap, rotors: 
 /// What is put right, but said.
 pub fn remarks(flown: &Flown) -> String {
     let tilt = flown.tilt.angle().to_degrees();
-    let tilt = format!("  the poses' body leans {tilt:.1} degrees against the accelerometer's: taken away\n");
+    let tilt = if flown.is_felt {
+        format!("  the poses' body leans {tilt:.1} degrees against the accelerometer's: taken away\n")
+    } else {
+        "  no accelerometer: forces are how speed changes, softened over 0.2 s\n".to_owned()
+    };
     let late = match &flown.alignment {
         Some(alignment) => {
+            let why = if flown.is_felt { ": on these, speed changes as the accelerometer felt" } else { "" };
             let whose = if flown.clock == Clock::Poses { "the poses'" } else { "the vehicle's" };
-            format!(
-                "  {}\n  kept are {whose} times: on these, speed changes as the accelerometer felt\n",
-                alignment.described()
-            )
+            format!("  {}\n  kept are {whose} times{why}\n", alignment.described())
         }
         None if flown.by_itself => "  no poses: places are the vehicle's own estimates\n".to_owned(),
         None => "  the vehicle does not turn enough to tell how late its poses are\n".to_owned(),

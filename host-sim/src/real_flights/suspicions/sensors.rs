@@ -5,7 +5,19 @@ use crate::real_flights::columns::{ColumnMap, STANDARD_GRAVITY};
 use crate::real_flights::flown::{Flown, PERIOD_S};
 use nalgebra::Vector3;
 
+/// Without an accelerometer: speed changes as gravity and rotors allow.
+pub fn speed_unit(flown: &Flown) -> Option<String> {
+    let size = median(flown.samples.iter().filter_map(|sample| Some(sample.force?.norm())).collect())?;
+    let is_off = (size / STANDARD_GRAVITY).ln().abs() > SCALE_FACTOR.ln();
+    (!flown.is_felt && is_off).then(|| {
+        format!("pose.position: moves as if {size:.1} m/s^2 carried the weight: look at pose.unit, and at time.unit")
+    })
+}
+
 pub fn force_unit(flown: &Flown) -> Option<String> {
+    if !flown.is_felt {
+        return None;
+    }
     let size = median(flown.samples.iter().filter_map(|sample| Some(sample.force?.norm())).collect())?;
     if (size / STANDARD_GRAVITY).ln().abs() < SCALE_FACTOR.ln() {
         return None;
@@ -23,6 +35,9 @@ pub fn force_unit(flown: &Flown) -> Option<String> {
 
 /// Drag is against the velocity, along each axis across the thrust; thrust along z.
 pub fn force_axes(flown: &Flown, map: &ColumnMap) -> Option<String> {
+    if !flown.is_felt {
+        return None;
+    }
     let forces: Vec<Vector3<f64>> = flown.samples.iter().map(|sample| sample.force).collect::<Option<_>>()?;
     let mean = forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;
     let name = |axis: usize| map.imu.columns.get(3 + axis).map_or("?", |column| &*column.name);
@@ -61,6 +76,9 @@ pub fn force_axes(flown: &Flown, map: &ColumnMap) -> Option<String> {
 
 /// Positions accelerate across as the accelerometer says; their tilt, which was found by it, left in.
 pub fn places(flown: &Flown) -> Option<String> {
+    if !flown.is_felt {
+        return None;
+    }
     const SPAN: usize = 20;
     let mut both: [[Vec<f64>; 2]; 2] = Default::default();
     for window in flown.samples.windows(SPAN + 1).step_by(SPAN / 2) {
