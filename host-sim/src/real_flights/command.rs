@@ -169,13 +169,17 @@ pub fn identified(task: &Task) -> Result<(String, String), Refused> {
         "{}\n{}intervals: 95 %; of thrust scale, where a part of a next flight would be\n\
          thrust scale, part by part: {parts}\n\
          mass {} kg is the file's: a flight shows thrust scale over mass alone\n\
-         of {:.3} m/s^2 that thrust along z varies by, {:.3} are left; the accelerometer shows {:.4} of gravity\n{}",
+         of {:.3} m/s^2 that thrust along z varies by, {:.3} are left{}\n{}",
         read.head,
         aligned(&rows),
         short(mass),
         was,
         left,
-        forces.accelerometer_scale,
+        if read.flown.is_felt {
+            format!("; the accelerometer shows {:.4} of gravity", forces.accelerometer_scale)
+        } else {
+            String::new()
+        },
         reasons.concat()
     );
     let text = rewritten_by(&task.original, &read.scenario, &forces)
