@@ -150,13 +150,13 @@ impl Flown {
             })
         };
         let mut samples = in_the_air(&(0..ticks).map(sample).collect::<Vec<_>>());
-        let velocities = slopes(&samples.iter().map(|sample| sample.position).collect::<Vec<_>>());
+        let velocities = slopes(&samples.iter().map(|sample| sample.position).collect::<Vec<_>>(), PERIOD_S);
         for (sample, velocity) in samples.iter_mut().zip(&velocities) {
             sample.velocity = *velocity;
         }
         let is_felt = samples.iter().all(|sample| sample.force.is_some());
         if !is_felt {
-            for (sample, acceleration) in samples.iter_mut().zip(slopes(&velocities)) {
+            for (sample, acceleration) in samples.iter_mut().zip(slopes(&velocities, PERIOD_S)) {
                 let force = acceleration + Vector3::z() * STANDARD_GRAVITY;
                 sample.force = Some(sample.attitude.inverse_transform_vector(&force));
             }

@@ -6,19 +6,18 @@
 //!
 //! So it is the true slope's mean with the weights g. What is compared with it must be softened alike.
 
-use super::flown::PERIOD_S;
 use nalgebra::Vector3;
 
 /// Samples to either side.
 const REACH: usize = 5;
 
-/// Of each sample; zero at the ends, where there are too few.
-pub fn slopes(series: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+/// Of each sample, one each `period`, s; zero at the ends, where there are too few.
+pub fn slopes(series: &[Vector3<f64>], period: f64) -> Vec<Vector3<f64>> {
     let squares: f64 = (1..=REACH).map(|i| 2.0 * (i * i) as f64).sum();
     let slope = |sample: usize| {
         let at = |place: usize| series.get(place).copied();
         let pairs = (1..=REACH).map(|i| Some((at(sample + i)? - at(sample.checked_sub(i)?)?) * i as f64));
-        pairs.sum::<Option<Vector3<f64>>>().unwrap_or_default() / (squares * PERIOD_S)
+        pairs.sum::<Option<Vector3<f64>>>().unwrap_or_default() / (squares * period)
     };
     (0..series.len()).map(slope).collect()
 }
@@ -43,11 +42,13 @@ fn once(series: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    const PERIOD_S: f64 = 0.01;
+
     #[test]
     fn a_slopes_slope_is_the_softened_second_derivative() {
         let wave = |k: usize| (7.0 * k as f64 * PERIOD_S).sin();
         let positions: Vec<Vector3<f64>> = (0..200).map(|k| Vector3::x() * wave(k)).collect();
-        let accelerations = slopes(&slopes(&positions));
+        let accelerations = slopes(&slopes(&positions, PERIOD_S), PERIOD_S);
         let truth: Vec<f64> = (0..200).map(|k| -49.0 * wave(k)).collect();
         for (found, soft) in accelerations.iter().zip(softened(&truth)).skip(20).take(160) {
             assert!((found.x - soft).abs() < 0.05, "{} {soft}", found.x);

@@ -7,6 +7,7 @@
 
 mod motors;
 mod sensors;
+mod together;
 
 use super::alignment::Alignment;
 use super::columns::ColumnMap;
@@ -15,6 +16,7 @@ use super::recording::Recording;
 use super::series::Series;
 use controller_core::allocation::Rotors;
 use nalgebra::Matrix3;
+use together::{AXES, SCALE_FACTOR, median};
 
 /// What is left of the turning beside what there was, of streams that fit.
 const LEFT_MAX_SHARE: f64 = 0.6;
@@ -22,14 +24,6 @@ const LEFT_MAX_SHARE: f64 = 0.6;
 const BETTER_MAX_SHARE: f64 = 0.6;
 /// Less turning than this, rad within a window, tells nothing apart.
 const TURNED_MIN_RAD: f64 = 0.004;
-/// Within this factor two scales are one.
-const SCALE_FACTOR: f64 = 1.6;
-/// By how much the correlations of another order of motors must be greater, in all.
-const ORDER_BETTER_MIN: f64 = 0.3;
-/// A correlation that says something.
-const CORRELATED_MIN: f64 = 0.3;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What is wrong with the turning by gyro and poses; nothing else can be judged before.
 pub fn of_turning(recording: &Recording, map: &ColumnMap) -> Vec<String> {
@@ -171,11 +165,6 @@ pub fn remarks(flown: &Flown) -> String {
     late + &tilt
 }
 
-fn median(mut numbers: Vec<f64>) -> Option<f64> {
-    numbers.sort_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied()
-}
-
 fn estimate(flown: &Flown) -> Option<String> {
     let apart: Vec<f64> =
         flown.samples.iter().filter_map(|sample| Some((sample.own.as_ref()?.0 - sample.position).norm())).collect();
@@ -183,24 +172,4 @@ fn estimate(flown: &Flown) -> Option<String> {
     (apart > 1.0).then(|| {
         format!("estimate.position: is {apart:.2} m from the poses: another origin, another frame, or another unit")
     })
-}
-
-fn variance(series: &[f64]) -> f64 {
-    let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
-    series.iter().map(|number| (number - mean).powi(2)).sum::<f64>() / series.len().max(1) as f64
-}
-
-/// How much two series go together, from -1 to 1.
-fn correlated(a: &[f64], b: &[f64]) -> f64 {
-    let count = a.len().min(b.len()) as f64;
-    let mean = |series: &[f64]| series.iter().sum::<f64>() / count.max(1.0);
-    let (of_a, of_b) = (mean(a), mean(b));
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (a, b) in a.iter().zip(b) {
-        let (a, b) = (a - of_a, b - of_b);
-        ab += a * b;
-        aa += a * a;
-        bb += b * b;
-    }
-    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
 }

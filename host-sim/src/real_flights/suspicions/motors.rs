@@ -1,6 +1,6 @@
 //! Whether motors carry and turn the vehicle as they are said to, and when.
 
-use super::{AXES, CORRELATED_MIN, ORDER_BETTER_MIN, correlated, median};
+use super::together::{AXES, CORRELATED_MIN, ORDER_BETTER_MIN, correlated, median};
 use crate::real_flights::columns::{ColumnMap, MotorMeasure};
 use crate::real_flights::flown::{Flown, PERIOD_S};
 use crate::real_flights::forces::lagged;

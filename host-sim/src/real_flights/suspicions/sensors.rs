@@ -1,6 +1,6 @@
 //! Whether the accelerometer carries the weight and feels the drag, and positions accelerate as it says.
 
-use super::{AXES, CORRELATED_MIN, ORDER_BETTER_MIN, SCALE_FACTOR, correlated, median, variance};
+use super::together::{AXES, CORRELATED_MIN, ORDER_BETTER_MIN, SCALE_FACTOR, correlated, median, variance};
 use crate::real_flights::columns::{ColumnMap, STANDARD_GRAVITY};
 use crate::real_flights::flown::{Flown, PERIOD_S};
 use nalgebra::Vector3;
