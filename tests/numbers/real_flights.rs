@@ -249,7 +249,8 @@ fn without_sections(text: &str, names: &[&str]) -> String {
 
 fn columns(unit: &str) -> String {
     format!(
-        "[time]\ncolumn = \"t\"\n[pose]\nposition = [\"px\", \"py\", \"pz\"]\nattitude = [\"qw\", \"qx\", \"qy\", \"qz\"]\n\
+        "[time]\ncolumn = \"t\"\n\
+         [pose]\nposition = [\"px\", \"py\", \"pz\"]\nattitude = [\"qw\", \"qx\", \"qy\", \"qz\"]\n\
          [imu]\nrates = [\"gx\", \"gy\", \"gz\"]\nforce = [\"ax\", \"ay\", \"az\"]\n\
          [motors]\ncolumns = [\"m1\", \"m2\", \"m3\", \"m4\"]\nunit = \"{unit}\"\n"
     )

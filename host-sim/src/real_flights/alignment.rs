@@ -86,8 +86,8 @@ impl Turnings {
         Self { start, gyro, pose }
     }
 
-    /// The mean square of what is left of `count` poses from `first` on, if they are late by `delay` steps; none where
-    /// one is missing.
+    /// The mean squared remainder of `count` poses from `first` on, if they are late by `delay` steps; none where one
+    /// is missing.
     fn left(&self, first: usize, count: usize, delay: i64) -> Option<f64> {
         let mut sums = [0.0; 3];
         let mut along = [0.0; 3];
@@ -131,7 +131,7 @@ impl Turnings {
     fn left_of_all(&self, count: usize, delay: i64) -> Option<f64> {
         let lefts: Vec<f64> =
             (0..self.gyro.len()).step_by(count / 2).filter_map(|first| self.left(first, count, delay)).collect();
-        // A delay that leaves out half of the flight is none.
+        // A delay that leaves out half of the flight does not count.
         (lefts.len() * count > self.gyro.len()).then(|| lefts.iter().sum::<f64>() / lefts.len() as f64)
     }
 }
@@ -215,8 +215,8 @@ impl Alignment {
         let [constant, wandering] = self.left.map(f64::to_degrees);
         let off = if self.whole.abs() > NOTABLE_S { "THE TIMES OF POSES ARE OFF: " } else { "" };
         format!(
-            "{off}poses are {:.0} ms late beside the gyro, {least:.0} to {most:.0} ms as the flight goes on: put right\n  \
-             (turning left over: {constant:.2} degrees with one delay, {wandering:.2} with these, of {:.2})",
+            "{off}poses are {:.0} ms late beside the gyro, {least:.0} to {most:.0} ms as the flight goes on: put \
+             right\n  (turning left over: {constant:.2} degrees with one delay, {wandering:.2} with these, of {:.2})",
             -1e3 * self.whole,
             self.turned.to_degrees()
         )

@@ -7,7 +7,7 @@ use super::flown::{Flown, PERIOD_S};
 use super::forces::Forces;
 use super::law::{LawBeside, beside, rewritten_by};
 use super::model::FoundVehicle;
-use super::prediction::{HORIZONS_S, WAYS, foretold};
+use super::prediction::{HORIZONS_S, Way, foretold};
 use super::recording::Recording;
 use super::regression::Shown;
 use super::setpoint_path::SetpointPath;
@@ -210,15 +210,15 @@ pub fn replayed_model(task: &Task) -> Result<String, Refused> {
     let foretold = foretold(&read.flown, half, &vehicle, rotors);
     let head = ["", "ahead", "position", "velocity", "attitude", "rates"].map(str::to_owned).to_vec();
     let mut rows = vec![head];
-    for (way, errors) in WAYS.iter().zip(&foretold.errors) {
+    for (way, errors) in Way::ALL.into_iter().zip(&foretold.errors) {
         for (horizon, errors) in HORIZONS_S.iter().zip(errors) {
             rows.push(vec![
-                (*way).to_owned(),
+                way.name().to_owned(),
                 format!("{horizon} s"),
                 format!("{} m", short(errors.position)),
                 format!("{} m/s", short(errors.velocity)),
                 format!("{} degrees", short(errors.attitude.to_degrees())),
-                if *way == "gyro" { "-".to_owned() } else { format!("{} rad/s", short(errors.rates)) },
+                if way == Way::Gyro { "-".to_owned() } else { format!("{} rad/s", short(errors.rates)) },
             ]);
         }
     }
@@ -254,7 +254,7 @@ const AS_LOGGED: PoseStream = PoseStream {
     ..AS_BOARDS
 };
 
-/// An estimate that is so far off is none, m.
+/// An estimate that is so far off is lost, m.
 const LOST_M: f64 = 5.0;
 
 /// Streams of poses that the estimator is tried on.

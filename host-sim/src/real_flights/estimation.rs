@@ -1,8 +1,8 @@
 //! Our estimator on the sensors of a real flight, as boards run it.
 //!
-//! It gets each sample of the recorded IMU, and of the poses every so-manieth, as late as a link makes them, with or
-//! without gaps; its settings are the firmware's for a BMI088. What it says is compared with the poses, the three of
-//! four included that it never got. Beside it stands the vehicle's own filter, against the same poses.
+//! It gets each sample of the recorded IMU, and one in so many of the poses, as late as a link makes them, with or
+//! without gaps. What it believes of their noise is a part of [`PoseStream`]. What it says is compared with all poses,
+//! most of which it never got. Beside it stands the vehicle's own filter, against the same poses.
 //!
 //! Poses come with the vehicle's time, which is [aligned](super::alignment); or with their own, as a bridge would send
 //! them that knows no better. Then the truth is the row that has the same time in the file.

@@ -20,7 +20,7 @@
 
 use super::columns::MotorMeasure;
 use super::flown::{Flown, PERIOD_S, Sample};
-use super::regression::{PART_COUNT, Shown, Sums, part_of};
+use super::regression::{PART_COUNT, Parts, Shown, part_of};
 use super::slopes::softened;
 use nalgebra::{DVector, Vector3};
 
@@ -32,7 +32,7 @@ const APART_MAX_STEPS: i32 = 6;
 /// For slopes over the lags, s.
 const LAG_SLOPE_S: f64 = 1e-3;
 /// At the start of a flight the rotors' speeds are unknown, samples.
-const UNKNOWN_START: usize = 50;
+const UNKNOWN_START_SAMPLES: usize = 50;
 
 /// What a flight shows of forces.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,16 +49,16 @@ pub struct Forces {
     pub drag: [Shown; 3],
     /// S_0, N.
     pub mean_thrust: f64,
-    /// What the accelerometer shows of what carries the weight.
+    /// The share of the weight that the accelerometer shows.
     pub accelerometer_scale: f64,
     /// How much of f_z is left, m/s^2, RMS, and how much there was.
     pub left: [f64; 2],
 }
 
 /// Where the unknowns stand: a_b, s, D_z/m, changes of the two lags.
-const RESPONSE: usize = PART_COUNT;
-const DRAG: usize = PART_COUNT + 1;
-const LAGS: usize = PART_COUNT + 2;
+const RESPONSE_INDEX: usize = PART_COUNT;
+const DRAG_INDEX: usize = PART_COUNT + 1;
+const LAGS_INDEX: usize = PART_COUNT + 2;
 
 /// One sample's thrusts behind lags up and down, N: the speeds' roots follow.
 pub fn lagged(samples: &[Sample], [up, down]: [f64; 2]) -> Vec<Vec<f64>> {
@@ -83,33 +83,27 @@ impl Forces {
     pub fn new(flown: &Flown, measure: MotorMeasure, gravity: f64) -> Result<Self, String> {
         let scale = accelerometer_scale(flown, gravity)?;
         let problem = Problem::new(flown, scale);
-        let lags = if measure == MotorMeasure::Speed { None } else { Some(problem.searched()?) };
-        let lags = match lags {
-            None => None,
-            // Two steps of Gauss and Newton from the grid's best.
-            Some(start) => Some(problem.stepped(problem.stepped(start)?)?),
-        };
+        // Two steps of Gauss and Newton from the grid's best.
+        let sought = || problem.searched().and_then(|start| problem.stepped(problem.stepped(start)?));
+        let lags = (measure != MotorMeasure::Speed).then(sought).transpose()?;
         let parts = problem.parts(lags.unwrap_or_default(), lags.is_some());
-        let all = parts.iter().skip(1).fold(parts[0].clone(), |all, part| all.plus(part));
-        let (unknowns, left) = all.solved().ok_or("shows no thrust")?;
-        let without: Vec<DVector<f64>> = parts.iter().filter_map(|part| Some(all.without(part).solved()?.0)).collect();
+        let whole = parts.whole().ok_or("shows no thrust")?;
+        let (unknowns, left) = whole.solved().ok_or("shows no thrust")?;
         let mean_thrust = problem.mean_thrust;
         let strengths: Vec<f64> = unknowns.iter().take(PART_COUNT).map(|level| level / mean_thrust).collect();
         let mean = strengths.iter().sum::<f64>() / PART_COUNT as f64;
         let spread = strengths.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (PART_COUNT - 1) as f64;
-        let shown = |of: &dyn Fn(&DVector<f64>) -> f64| {
-            Shown::of_parts(of(&unknowns), &without.iter().map(of).collect::<Vec<_>>())
-        };
-        let across = |axis: usize| problem.drag_across(axis);
+        let shown = |of: &dyn Fn(&DVector<f64>) -> f64| parts.shown(of).ok_or("shows no thrust");
+        let of_lag = |lags: [f64; 2], which: usize| shown(&|unknowns| lags[which] + unknowns[LAGS_INDEX + which]);
         Ok(Self {
             strength: Shown { value: mean, uncertainty: (spread * (1.0 + 1.0 / PART_COUNT as f64)).sqrt() },
             strengths,
-            response: shown(&|unknowns| unknowns[RESPONSE] / mean),
-            lags: lags.map(|lags| [0, 1].map(|which| shown(&|unknowns| lags[which] + unknowns[LAGS + which]))),
-            drag: [across(0)?, across(1)?, shown(&|unknowns| unknowns[DRAG])],
+            response: shown(&|unknowns| unknowns[RESPONSE_INDEX] / mean)?,
+            lags: lags.map(|lags| Ok::<_, String>([of_lag(lags, 0)?, of_lag(lags, 1)?])).transpose()?,
+            drag: [problem.drag_across(0)?, problem.drag_across(1)?, shown(&|unknowns| unknowns[DRAG_INDEX])?],
             mean_thrust,
             accelerometer_scale: scale,
-            left: [(left / all.count).sqrt(), problem.variation()],
+            left: [(left / whole.count).sqrt(), problem.variation()],
         })
     }
 
@@ -166,7 +160,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The sums of each part with these lags; with the lags as unknowns too, if so.
-    fn parts(&self, lags: [f64; 2], with_lags: bool) -> Vec<Sums> {
+    fn parts(&self, lags: [f64; 2], with_lags: bool) -> Parts {
         let thrusts = self.sums(lags);
         let slopes: Vec<Vec<f64>> = if with_lags {
             let moved = |which: usize| {
@@ -179,17 +173,16 @@ impl<'a> Problem<'a> {
             Vec::new()
         };
         let rise = if with_lags { self.rise(&thrusts) } else { 0.0 };
-        let mut parts = vec![Sums::new(LAGS + slopes.len()); PART_COUNT];
-        for sample in UNKNOWN_START..self.samples.len() {
-            let part = part_of(sample, self.samples.len());
-            let mut row = DVector::zeros(LAGS + slopes.len());
-            row[part] = 1.0;
-            row[RESPONSE] = thrusts[sample] - self.mean_thrust;
-            row[DRAG] = -self.velocities[sample].z;
+        let mut parts = Parts::new(LAGS_INDEX + slopes.len());
+        for sample in UNKNOWN_START_SAMPLES..self.samples.len() {
+            let mut row = DVector::zeros(LAGS_INDEX + slopes.len());
+            row[part_of(sample, self.samples.len())] = 1.0;
+            row[RESPONSE_INDEX] = thrusts[sample] - self.mean_thrust;
+            row[DRAG_INDEX] = -self.velocities[sample].z;
             for (which, slope) in slopes.iter().enumerate() {
-                row[LAGS + which] = rise * slope[sample];
+                row[LAGS_INDEX + which] = rise * slope[sample];
             }
-            parts[part].add(&row, self.forces[sample].z);
+            parts.add(sample, self.samples.len(), &row, self.forces[sample].z);
         }
         parts
     }
@@ -208,9 +201,8 @@ impl<'a> Problem<'a> {
 
     /// The sum of squares that these lags leave.
     fn left(&self, lags: [f64; 2]) -> f64 {
-        let parts = self.parts(lags, false);
-        let all = parts.iter().skip(1).fold(parts[0].clone(), |all, part| all.plus(part));
-        all.solved().map_or(f64::INFINITY, |(_, left)| left)
+        let solved = self.parts(lags, false).whole().and_then(|whole| whole.solved());
+        solved.map_or(f64::INFINITY, |(_, left)| left)
     }
 
     /// The best lags of the grid: first alike, then apart.
@@ -227,23 +219,19 @@ impl<'a> Problem<'a> {
 
     /// A step of Gauss and Newton for the lags.
     fn stepped(&self, lags: [f64; 2]) -> Result<[f64; 2], String> {
-        let parts = self.parts(lags, true);
-        let all = parts.iter().skip(1).fold(parts[0].clone(), |all, part| all.plus(part));
-        let (unknowns, _) = all.solved().ok_or("shows no lag")?;
-        let step = |which: usize| unknowns[LAGS + which].clamp(-LAG_STEP_S, LAG_STEP_S);
+        let solved = self.parts(lags, true).whole().and_then(|whole| whole.solved());
+        let (unknowns, _) = solved.ok_or("shows no lag")?;
+        let step = |which: usize| unknowns[LAGS_INDEX + which].clamp(-LAG_STEP_S, LAG_STEP_S);
         Ok([0, 1].map(|which| (lags[which] + step(which)).max(0.0)))
     }
 
     fn drag_across(&self, axis: usize) -> Result<Shown, String> {
-        let mut parts = vec![Sums::new(2); PART_COUNT];
-        for sample in UNKNOWN_START..self.samples.len() {
+        let mut parts = Parts::new(2);
+        for sample in UNKNOWN_START_SAMPLES..self.samples.len() {
             let row = DVector::from_vec(vec![-self.velocities[sample][axis], 1.0]);
-            parts[part_of(sample, self.samples.len())].add(&row, self.forces[sample][axis]);
+            parts.add(sample, self.samples.len(), &row, self.forces[sample][axis]);
         }
-        let all = parts.iter().skip(1).fold(parts[0].clone(), |all, part| all.plus(part));
-        let (unknowns, _) = all.solved().ok_or("shows no drag")?;
-        let without: Vec<f64> = parts.iter().filter_map(|part| Some(all.without(part).solved()?.0[0])).collect();
-        Ok(Shown::of_parts(unknowns[0], &without))
+        Ok(parts.shown(|unknowns| unknowns[0]).ok_or("shows no drag")?)
     }
 
     /// RMS of f_z about its mean, m/s^2.

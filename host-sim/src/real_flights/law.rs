@@ -25,7 +25,7 @@ use crate::vehicle::reality::RealVehicle;
 use controller_core::extended::measured::Measured;
 use controller_core::law::Law;
 use controller_core::state::State;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::body::BodyState;
 
@@ -117,19 +117,22 @@ pub fn beside(
         acting: acting.get(path.samples.clone()).ok_or("is empty")?,
         errors: estimated.and_then(|estimated| estimated.errors.get(path.samples.clone())),
     };
-    let mut result = beside_it(&day, forces, path, law()?);
+    let (thrust, degrees) = beside_it(&day, forces, path, law()?);
     let (ours, clipped) = instead(&day, forces, path, law()?)?;
     let was: Vec<Vector3<f64>> = samples.iter().map(|sample| sample.position).collect();
     let asked: Vec<Vector3<f64>> =
         (0..samples.len()).map(|sample| path.reference(sample + path.lead_in).position.map(f64::from)).collect();
-    result.certified = path.verdict.refusal().is_none();
-    result.flown = tracking(&path.smoothed, &was);
-    result.reference = tracking(&path.smoothed, &asked);
-    result.ours = tracking(&path.smoothed, &ours);
-    (result.clipped, result.ticks) = (clipped, ours.len() + path.lead_in);
-    result.track =
-        path.smoothed.iter().zip(&was).zip(&ours).map(|((wanted, was), ours)| [*wanted, *was, *ours]).collect();
-    Ok(result)
+    Ok(LawBeside {
+        certified: path.verdict.refusal().is_none(),
+        flown: tracking(&path.smoothed, &was),
+        reference: tracking(&path.smoothed, &asked),
+        ours: tracking(&path.smoothed, &ours),
+        thrust,
+        degrees,
+        clipped,
+        ticks: ours.len() + path.lead_in,
+        track: path.smoothed.iter().zip(&was).zip(&ours).map(|((wanted, was), ours)| [*wanted, *was, *ours]).collect(),
+    })
 }
 
 /// What there was on that day, sample by sample: with thrusts behind their lag, N, and what our estimator was off.
@@ -139,20 +142,25 @@ struct Day<'a> {
     errors: Option<&'a [Option<[Vector3<f64>; 4]>]>,
 }
 
-/// What the law commands on the recorded states.
-fn beside_it(day: &Day, forces: &Forces, path: &SetpointPath, mut law: Law) -> LawBeside {
-    let scenario = &path.scenario;
-    let (weight, scale) = (weight(scenario), forces.strength.value * f64::from(scenario.configuration.vehicle().mass));
+/// What the law commands on the recorded states: thrusts over weight, and degrees, as [`LawBeside`] has them.
+fn beside_it(day: &Day, forces: &Forces, path: &SetpointPath, mut law: Law) -> ([f64; 3], f64) {
+    let vehicle = path.scenario.configuration.vehicle();
+    let (mass, gravity) = (f64::from(vehicle.mass), f64::from(vehicle.gravity));
     let mut sums = [0.0; 4];
     let mut count = 0.0;
     for (number, (sample, thrusts)) in day.samples.iter().zip(day.acting).enumerate() {
-        let Ok((wrench, diagnostics)) = law.step(&measured(sample), &path.reference(number + path.lead_in)) else {
+        let state = BodyState {
+            position: sample.position,
+            velocity: sample.velocity,
+            attitude: sample.attitude.into_inner(),
+            angular_velocity: sample.rates,
+        };
+        let Ok((wrench, diagnostics)) = law.step(&state.measured(), &path.reference(number + path.lead_in)) else {
             continue;
         };
-        let was = scale * thrusts.iter().sum::<f64>() / weight;
-        let ours = f64::from(wrench.thrust) / weight;
-        let wanted =
-            UnitQuaternion::new_normalize(Quaternion::from(diagnostics.desired_attitude.coords.map(f64::from)));
+        let was = forces.strength.value * thrusts.iter().sum::<f64>() / gravity;
+        let ours = f64::from(wrench.thrust) / (mass * gravity);
+        let wanted = UnitQuaternion::new_normalize(diagnostics.desired_attitude.cast::<f64>());
         let angle = (wanted * Vector3::z()).angle(&(sample.attitude * Vector3::z()));
         for (sum, number) in sums.iter_mut().zip([was, ours, (was - ours).powi(2), angle.powi(2)]) {
             *sum += number;
@@ -160,31 +168,7 @@ fn beside_it(day: &Day, forces: &Forces, path: &SetpointPath, mut law: Law) -> L
         count += 1.0;
     }
     let [was, ours, apart, angle] = sums.map(|sum| sum / f64::max(count, 1.0));
-    LawBeside {
-        certified: false,
-        flown: Tracking::default(),
-        reference: Tracking::default(),
-        ours: Tracking::default(),
-        thrust: [was, ours, apart.sqrt()],
-        degrees: angle.sqrt().to_degrees(),
-        clipped: 0,
-        ticks: 0,
-        track: Vec::new(),
-    }
-}
-
-fn weight(scenario: &Scenario) -> f64 {
-    let vehicle = scenario.configuration.vehicle();
-    f64::from(vehicle.mass * vehicle.gravity)
-}
-
-fn measured(sample: &Sample) -> State {
-    State {
-        position: sample.position.map(|number| number as f32),
-        velocity: sample.velocity.map(|number| number as f32),
-        attitude: Quaternion::from(sample.attitude.coords.map(|number| number as f32)),
-        angular_velocity: sample.rates.map(|number| number as f32),
-    }
+    ([was, ours, apart.sqrt()], angle.sqrt().to_degrees())
 }
 
 /// Where our law would have been at each sample, and how often a command was cut.
@@ -241,12 +225,13 @@ fn unexplained_force(sample: &Sample, thrusts: &[f64], forces: &Forces) -> Vecto
 /// The state as an estimator knows it that is so far off.
 fn known(state: &BodyState, [position, velocity, turn, rates]: &[Vector3<f64>; 4]) -> State {
     let attitude = UnitQuaternion::new_normalize(state.attitude) * UnitQuaternion::from_scaled_axis(*turn);
-    State {
-        position: (state.position + position).map(|number| number as f32),
-        velocity: (state.velocity + velocity).map(|number| number as f32),
-        attitude: Quaternion::from(attitude.coords.map(|number| number as f32)),
-        angular_velocity: (state.angular_velocity + rates).map(|number| number as f32),
-    }
+    let known = BodyState {
+        position: state.position + position,
+        velocity: state.velocity + velocity,
+        attitude: attitude.into_inner(),
+        angular_velocity: state.angular_velocity + rates,
+    };
+    known.measured()
 }
 
 /// J omega' + omega x J omega - tau, N m, its mean about each sample.

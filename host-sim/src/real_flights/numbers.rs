@@ -33,7 +33,7 @@ impl<'a> Files<'a> {
         Self { first, names, read: BTreeMap::new() }
     }
 
-    /// A stream's rows in its file's order. A row with an empty cell in one of its columns is none of this stream's.
+    /// A stream's rows in its file's order. A row with an empty cell in one of its columns is left out.
     ///
     /// # Errors
     /// Names the file, the line and the column that cannot be used.

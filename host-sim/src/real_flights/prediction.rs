@@ -9,7 +9,8 @@
 //! | gyro | by the model | as the gyro measured it: what is left is thrust's and drag's |
 //! | hover | the weight's, no drag | goes on as it is, without torque |
 //!
-//! What is left of the start's own errors is in all three.
+//! What is left of the start's own errors is in all three. The times of poses, their tilt and the gyro's bias are those
+//! of the whole flight: they say how it was measured, not how it flew.
 
 use super::flown::{Flown, PERIOD_S, Sample};
 use super::forces::lagged;
@@ -20,10 +21,32 @@ use nalgebra::Vector3;
 /// How far ahead, s.
 pub const HORIZONS_S: [f64; 3] = [0.1, 0.5, 1.0];
 /// Between two starts, samples.
-const EVERY: usize = 10;
+const START_SPACING_SAMPLES: usize = 10;
 
-/// The ways, by name.
-pub const WAYS: [&str; 3] = ["commands", "gyro", "hover"];
+/// What foretells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Thrust and turning by the model.
+    Commands,
+    /// Thrust by the model, turning as measured.
+    Gyro,
+    /// The weight carried, turning going on.
+    Hover,
+}
+
+impl Way {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Commands, Self::Gyro, Self::Hover];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Commands => "commands",
+            Self::Gyro => "gyro",
+            Self::Hover => "hover",
+        }
+    }
+}
 
 /// RMS errors.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -55,19 +78,13 @@ pub fn foretold(flown: &Flown, first: usize, vehicle: &FoundVehicle, rotors: &Ro
     let farthest = steps.iter().copied().max().unwrap_or(0);
     let mut squares = [[[0.0; 4]; 3]; 3];
     let mut starts = 0;
-    for start in (first..samples.len().saturating_sub(farthest)).step_by(EVERY) {
+    for start in (first..samples.len().saturating_sub(farthest)).step_by(START_SPACING_SAMPLES) {
         starts += 1;
-        for (way, squares) in squares.iter_mut().enumerate() {
+        for (way, squares) in Way::ALL.into_iter().zip(&mut squares) {
             let mut motion = Motion::of_sample(&samples[start]);
             for step in 1..=farthest {
-                motion = moved(
-                    way,
-                    &motion,
-                    &samples[start + step - 1..=start + step],
-                    &acting[start + step - 1..=start + step],
-                    vehicle,
-                    rotors,
-                );
+                let until = start + step - 1..=start + step;
+                motion = moved(way, &motion, &samples[until.clone()], &acting[until], vehicle, rotors);
                 if let Some(horizon) = steps.iter().position(|horizon| *horizon == step) {
                     let apart = apart(&motion, &samples[start + step]);
                     squares[horizon].iter_mut().zip(apart).for_each(|(sum, apart)| *sum += apart * apart);
@@ -85,22 +102,19 @@ pub fn foretold(flown: &Flown, first: usize, vehicle: &FoundVehicle, rotors: &Ro
 
 /// One sample on.
 fn moved(
-    way: usize,
+    way: Way,
     motion: &Motion,
     samples: &[Sample],
     acting: &[Vec<f64>],
     vehicle: &FoundVehicle,
     rotors: &Rotors,
 ) -> Motion {
-    if way == 2 {
-        return advanced(motion, &(Vector3::z() * vehicle.gravity), &Vector3::zeros(), vehicle.gravity);
-    }
     let thrusts: Vec<f64> = acting[0].iter().zip(&acting[1]).map(|(a, b)| (a + b) * 0.5).collect();
-    let force = vehicle.force(&thrusts, &motion.attitude.inverse_transform_vector(&motion.velocity));
-    let turned = if way == 1 {
-        (samples[1].rates - motion.rates) / PERIOD_S
-    } else {
-        vehicle.turned(&thrusts, rotors, &motion.rates)
+    let by_model = || vehicle.force(&thrusts, &motion.attitude.inverse_transform_vector(&motion.velocity));
+    let (force, turned) = match way {
+        Way::Commands => (by_model(), vehicle.turned(&thrusts, rotors, &motion.rates)),
+        Way::Gyro => (by_model(), (samples[1].rates - motion.rates) / PERIOD_S),
+        Way::Hover => (Vector3::z() * vehicle.gravity, Vector3::zeros()),
     };
     advanced(motion, &force, &turned, vehicle.gravity)
 }

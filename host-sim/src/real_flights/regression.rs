@@ -2,8 +2,8 @@
 //!
 //! A flight's noise is not white: gusts and drifts last. So uncertainty is the jackknife's: the fit is made again
 //! without each of G parts of the flight, and the standard uncertainty is the root of (G - 1)/G times the sum of
-//! squares of how far each of these fits is from their mean. Intervals are Student's t of G - 1 degrees of freedom, 95
-//! %.
+//! squares of how far each of these fits is from their mean. Intervals are Student's t of G - 1 degrees of freedom,
+//! 95 %.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -62,7 +62,7 @@ impl Sums {
     }
 
     /// The sums of all but `others`.
-    pub fn without(&self, others: &Self) -> Self {
+    fn without(&self, others: &Self) -> Self {
         Self {
             squares: &self.squares - &others.squares,
             products: &self.products - &others.products,
@@ -71,7 +71,7 @@ impl Sums {
         }
     }
 
-    pub fn plus(&self, others: &Self) -> Self {
+    fn plus(&self, others: &Self) -> Self {
         Self {
             squares: &self.squares + &others.squares,
             products: &self.products + &others.products,
@@ -80,7 +80,7 @@ impl Sums {
         }
     }
 
-    /// The unknowns, and the sum of squares of what is left; none where the rows do not show them apart. An unknown of
+    /// The unknowns, and the sum of squared remainders; none where the rows do not show them apart. An unknown of
     /// which there is nothing in the rows is zero.
     pub fn solved(&self) -> Option<(DVector<f64>, f64)> {
         let scale = self.squares.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
@@ -91,6 +91,36 @@ impl Sums {
         let solution = scaled.cholesky()?.solve(&self.products.component_mul(&scale)).component_mul(&scale);
         let left = self.outputs - self.products.dot(&solution);
         Some((solution, left.max(0.0)))
+    }
+}
+
+/// The sums of each part of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts(Vec<Sums>);
+
+impl Parts {
+    pub fn new(unknowns: usize) -> Self {
+        Self(vec![Sums::new(unknowns); PART_COUNT])
+    }
+
+    /// Adds a row to the part of `sample` among `count`.
+    pub fn add(&mut self, sample: usize, count: usize, row: &DVector<f64>, output: f64) {
+        if let Some(part) = self.0.get_mut(part_of(sample, count)) {
+            part.add(row, output);
+        }
+    }
+
+    /// The sums of the whole flight.
+    pub fn whole(&self) -> Option<Sums> {
+        let (first, others) = self.0.split_first()?;
+        Some(others.iter().fold(first.clone(), |all, part| all.plus(part)))
+    }
+
+    /// What `of` makes of the unknowns; none where the flight does not show them apart.
+    pub fn shown(&self, of: impl Fn(&DVector<f64>) -> f64) -> Option<Shown> {
+        let whole = self.whole()?;
+        let without = self.0.iter().filter_map(|part| Some(of(&whole.without(part).solved()?.0)));
+        Some(Shown::of_parts(of(&whole.solved()?.0), &without.collect::<Vec<_>>()))
     }
 }
 

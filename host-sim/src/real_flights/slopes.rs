@@ -9,14 +9,14 @@
 use nalgebra::Vector3;
 
 /// Samples to either side.
-const REACH: usize = 5;
+const REACH_SAMPLES: usize = 5;
 
 /// Of each sample, one each `period`, s; zero at the ends, where there are too few.
 pub fn slopes(series: &[Vector3<f64>], period: f64) -> Vec<Vector3<f64>> {
-    let squares: f64 = (1..=REACH).map(|i| 2.0 * (i * i) as f64).sum();
+    let squares: f64 = (1..=REACH_SAMPLES).map(|i| 2.0 * (i * i) as f64).sum();
     let slope = |sample: usize| {
         let at = |place: usize| series.get(place).copied();
-        let pairs = (1..=REACH).map(|i| Some((at(sample + i)? - at(sample.checked_sub(i)?)?) * i as f64));
+        let pairs = (1..=REACH_SAMPLES).map(|i| Some((at(sample + i)? - at(sample.checked_sub(i)?)?) * i as f64));
         pairs.sum::<Option<Vector3<f64>>>().unwrap_or_default() / (squares * period)
     };
     (0..series.len()).map(slope).collect()
@@ -28,8 +28,8 @@ pub fn softened(series: &[f64]) -> Vec<f64> {
 }
 
 fn once(series: &[f64]) -> Vec<f64> {
-    let squares: f64 = (1..=REACH).map(|i| 2.0 * (i * i) as f64).sum();
-    let reach = REACH as i64;
+    let squares: f64 = (1..=REACH_SAMPLES).map(|i| 2.0 * (i * i) as f64).sum();
+    let reach = REACH_SAMPLES as i64;
     // g_j: of the mean of samples j and j + 1.
     let weight = |j: i64| ((j + 1).max(-j)..=reach).map(|i| i as f64).sum::<f64>() / squares;
     let last = series.len() as i64 - 1;

@@ -20,7 +20,7 @@ use together::{AXES, SCALE_FACTOR, median};
 
 /// What is left of the turning beside what there was, of streams that fit.
 const LEFT_MAX_SHARE: f64 = 0.6;
-/// Another order must leave at most this share of what the file's leaves.
+/// Another order must leave at most this share of the remainder that the file's order leaves.
 const BETTER_MAX_SHARE: f64 = 0.6;
 /// Less turning than this, rad within a window, tells nothing apart.
 const TURNED_MIN_RAD: f64 = 0.004;
@@ -102,8 +102,8 @@ fn rotated(imu: &Series, matrix: &Matrix3<f64>) -> Series {
 /// What this order of the gyro's axes means.
 fn named_order(matrix: &Matrix3<f64>, map: &ColumnMap) -> String {
     if *matrix == -Matrix3::identity() {
-        return "pose.attitude: turns against the gyro about every axis: it looks like world to body; the columns must be \
-                body to world (write a minus before qx, qy and qz)"
+        return "pose.attitude: turns against the gyro about every axis: it looks like world to body; the columns must \
+                be body to world (write a minus before qx, qy and qz)"
             .to_owned();
     }
     let name = |row: usize| {

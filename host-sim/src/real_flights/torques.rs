@@ -9,10 +9,10 @@
 //! least squares, is taken out of both sides; what is left of the torque is x, of omega y. If x is noisy as y is, the
 //! slope of y over x is too small, and one over that of x over y too great: the true one lies between (R. Frisch,
 //! 1934). Their ratio is r^2, the share of the turning that the commands explain. Where it is near 1 the two say the
-//! same, and the inertia is known; where it is not, no number is given.
+//! same, and the inertia is known; where it is not, the inertia is refused.
 //!
-//! The usual reason is the log: a loop of 500 Hz writes commands that change between a log's samples, and of what
-//! happened between them nothing is known. Such commands change from sample to sample as noise does: the ratio of von
+//! The usual reason is the log: a loop of 500 Hz writes commands that change between a log's samples, and the log does
+//! not have them. Such commands change from sample to sample as noise does: the ratio of von
 //! Neumann, mean squared change over twice the variance, is near 1 for noise and near 0 for a signal that the log
 //! shows.
 //!
@@ -21,7 +21,7 @@
 
 use super::flown::{Flown, PERIOD_S, Sample};
 use super::forces::lagged;
-use super::regression::{PART_COUNT, Shown, Sums, part_of};
+use super::regression::{PART_COUNT, Parts, Shown, Sums, part_of};
 use controller_core::allocation::Rotors;
 use nalgebra::{DVector, Vector3};
 
@@ -99,14 +99,12 @@ pub fn moments_of_speed(flown: &Flown, rotors: &Rotors, lags: [f64; 2]) -> [Show
     [0, 1].map(|axis| {
         let torques: Vec<f64> = acting.iter().map(|thrusts| torque(thrusts, rotors)[axis]).collect();
         let torques = smoothed(&torques, (STANDING_S / PERIOD_S) as usize);
-        let mut parts = vec![Sums::new(2); PART_COUNT];
+        let mut parts = Parts::new(2);
         for (number, (sample, torque)) in flown.samples.iter().zip(&torques).enumerate() {
             let velocity = sample.attitude.inverse_transform_vector(&sample.velocity)[1 - axis];
-            parts[part_of(number, torques.len())].add(&DVector::from_vec(vec![velocity, 1.0]), *torque);
+            parts.add(number, torques.len(), &DVector::from_vec(vec![velocity, 1.0]), *torque);
         }
-        let all = parts.iter().skip(1).fold(parts[0].clone(), |all, part| all.plus(part));
-        let slope = |sums: &Sums| sums.solved().map_or(0.0, |(unknowns, _)| unknowns[0]);
-        Shown::of_parts(slope(&all), &parts.iter().map(|part| slope(&all.without(part))).collect::<Vec<_>>())
+        parts.shown(|unknowns| unknowns[0]).unwrap_or(Shown { value: 0.0, uncertainty: f64::INFINITY })
     })
 }
 
@@ -143,13 +141,12 @@ pub fn without(series: &[f64], others: &[Vec<f64>]) -> Vec<f64> {
 
 /// The torque of some thrusts, N m.
 pub fn torque(thrusts: &[f64], rotors: &Rotors) -> Vector3<f64> {
-    rotors.iter().zip(thrusts).map(|(rotor, thrust)| arm(rotor) * *thrust).sum()
+    arms(rotors).zip(thrusts).map(|(arm, thrust)| arm * *thrust).sum()
 }
 
-/// The torque of one newton of a rotor, m.
-fn arm(rotor: &controller_core::allocation::geometry::Rotor) -> Vector3<f64> {
-    let turn = f64::from(rotor.spin.sign()) * f64::from(rotor.drag_coefficient) / f64::from(rotor.thrust_coefficient);
-    Vector3::new(f64::from(rotor.position.y), -f64::from(rotor.position.x), turn)
+/// The torque of one newton of each rotor, m.
+pub fn arms(rotors: &Rotors) -> impl Iterator<Item = Vector3<f64>> + '_ {
+    rotors.effectiveness().iter().map(|column| column.fixed_rows::<3>(1).into_owned())
 }
 
 fn turning(torques: &[f64], rates: &[f64], commanded: &[f64]) -> Turning {
@@ -174,7 +171,7 @@ fn turning(torques: &[f64], rates: &[f64], commanded: &[f64]) -> Turning {
     }
 }
 
-/// Von Neumann's ratio of what is quicker than a second.
+/// Von Neumann's ratio of the part quicker than a second.
 fn noisy(series: &[f64]) -> f64 {
     let slow = smoothed(series, (SLOW_S / PERIOD_S) as usize);
     let quick: Vec<f64> = series.iter().zip(&slow).map(|(here, slow)| here - slow).collect();

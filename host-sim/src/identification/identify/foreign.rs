@@ -3,7 +3,8 @@
 /// What a file must have that is written from another log.
 pub const READABLE_LOGS: &str = "identify reads ULog, of this firmware or of PX4, and a CSV with the columns t, est_vx to \
 est_vz, est_qw to est_qz, est_wx to est_wz, thrust, tau_x to tau_z, pdx to pdz in the frames and units of docs/log.md; \
-write that from your log; or say with --columns FILE which column of a real flight's CSV is what (docs/real-flights.md)";
+write that from your log; or say with --columns FILE which column of a real flight's CSV is what \
+(docs/real-flights.md)";
 
 /// How the log begins that some program writes, at which byte, and what is to be said of it.
 const OTHER_LOGS: [(usize, &[u8], &str); 9] = [

@@ -5,7 +5,7 @@ use crate::real_flights::columns::{ColumnMap, MotorMeasure};
 use crate::real_flights::flown::{Flown, PERIOD_S};
 use crate::real_flights::forces::lagged;
 use crate::real_flights::recording::Recording;
-use crate::real_flights::torques::{banded, integrals, passing, torque, without};
+use crate::real_flights::torques::{arms, banded, integrals, passing, without};
 use controller_core::allocation::Rotors;
 use nalgebra::Vector3;
 
@@ -50,8 +50,8 @@ pub fn carried(recording: &Recording, flown: &Flown, weight: f64) -> Option<Stri
     };
     (!(CARRIED[0]..CARRIED[1]).contains(&ratio)).then(|| {
         format!(
-            "motors: by the scenario's rotors they would carry {ratio:.3} of the weight{hint}; look at motors.unit, full, \
-             full_voltage, at the scenario's rotors and its mass"
+            "motors: by the scenario's rotors they would carry {ratio:.3} of the weight{hint}; look at motors.unit, \
+             full, full_voltage, at the scenario's rotors and its mass"
         )
     })
 }
@@ -75,8 +75,8 @@ pub fn motor_times(flown: &Flown) -> Option<String> {
     let late = late as f64 * PERIOD_S;
     (correlation > CORRELATED_MIN && !(ACTING_S[0]..=ACTING_S[1]).contains(&late)).then(|| {
         format!(
-            "motors: thrust fits commands best {:.0} ms {} they were written (correlation {correlation:.2}): their times \
-             are off; write motors.offset = {:.2}",
+            "motors: thrust fits commands best {:.0} ms {} they were written (correlation {correlation:.2}): their \
+             times are off; write motors.offset = {:.2}",
             1e3 * late.abs(),
             if late < 0.0 { "BEFORE" } else { "after" },
             late - USUAL_LAG_S
@@ -99,9 +99,7 @@ pub fn motor_order(flown: &Flown, map: &ColumnMap, rotors: &Rotors) -> Option<St
         let together = motors.iter().map(|a| motors.iter().map(|b| dot(a, b)).collect()).collect();
         (together, motors.iter().map(|motor| dot(motor, &rates)).collect(), dot(&rates, &rates).sqrt())
     });
-    let arms: Vec<Vector3<f64>> = (0..count)
-        .map(|rotor| torque(&(0..count).map(|other| f64::from(u8::from(other == rotor))).collect::<Vec<_>>(), rotors))
-        .collect();
+    let arms: Vec<Vector3<f64>> = arms(rotors).collect();
     let score = |order: &[usize]| -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let (together, with_rates, size) = &axes[axis];
@@ -134,8 +132,8 @@ pub fn motor_order(flown: &Flown, map: &ColumnMap, rotors: &Rotors) -> Option<St
         let likely = tried.iter().take_while(|(there, _)| *there > best - ORDER_BETTER_MIN).take(ORDERS_NAMED_MAX);
         let orders = likely.map(|(_, order)| format!("[{}]", order.iter().map(name).collect::<Vec<_>>().join(", ")));
         return Some(format!(
-            "motors.columns: the vehicle turns as if rotors were in another order (correlations of {best:.2} in all, {:.2} \
-             as written): write columns = {}",
+            "motors.columns: the vehicle turns as if rotors were in another order (correlations of {best:.2} in all, \
+             {:.2} as written): write columns = {}",
             of(here),
             orders.collect::<Vec<_>>().join(", or ")
         ));
@@ -149,7 +147,7 @@ pub fn motor_order(flown: &Flown, map: &ColumnMap, rotors: &Rotors) -> Option<St
     })
 }
 
-/// Calls `see` with each order of what stands from `first` on.
+/// Calls `see` with each order of the elements from `first` on.
 fn permuted(order: &mut Vec<usize>, first: usize, see: &mut impl FnMut(&[usize])) {
     if first + 1 >= order.len() {
         return see(order);

@@ -79,15 +79,15 @@ pub fn places(flown: &Flown) -> Option<String> {
     if !flown.is_felt {
         return None;
     }
-    const SPAN: usize = 20;
+    const SPAN_SAMPLES: usize = 20;
     let mut both: [[Vec<f64>; 2]; 2] = Default::default();
-    for window in flown.samples.windows(SPAN + 1).step_by(SPAN / 2) {
-        let felt = window.iter().take(SPAN).map(|sample| {
+    for window in flown.samples.windows(SPAN_SAMPLES + 1).step_by(SPAN_SAMPLES / 2) {
+        let felt = window.iter().take(SPAN_SAMPLES).map(|sample| {
             let attitude = sample.attitude * flown.tilt.inverse();
             Some((attitude * sample.force? - Vector3::z() * STANDARD_GRAVITY) * PERIOD_S)
         });
         let felt: Vector3<f64> = felt.sum::<Option<_>>()?;
-        let seen = window[SPAN].velocity - window[0].velocity;
+        let seen = window[SPAN_SAMPLES].velocity - window[0].velocity;
         for (axis, [all_felt, all_seen]) in both.iter_mut().enumerate() {
             all_felt.push(felt[axis]);
             all_seen.push(seen[axis]);
