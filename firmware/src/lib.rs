@@ -7,6 +7,7 @@
 //! | [`card`] | every flight as a file on a memory card |
 //! | [`configuration`] | the scenario this build embeds |
 //! | [`control`] | the control task: pilot in, motors out, on time |
+//! | [`crtp`] | CRTP, which the tools of the Crazyflie speak |
 //! | [`deadline`] | bounds in time for everything that is waited for |
 //! | [`dshot`] | motor commands as pulse widths |
 //! | [`esc`] | what the motors' controllers answer |
@@ -48,6 +49,7 @@ pub mod boot;
 pub mod card;
 pub mod configuration;
 pub mod control;
+pub mod crtp;
 pub mod deadline;
 pub mod dshot;
 pub mod esc;

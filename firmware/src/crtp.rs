@@ -1,0 +1,3 @@
+//! CRTP, which the tools of the Crazyflie speak, beside MAVLink.
+
+pub mod packet;
