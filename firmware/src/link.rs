@@ -29,7 +29,7 @@
 pub mod acknowledgement;
 pub mod bench_report;
 pub mod command;
-mod commander;
+pub mod commander;
 pub mod download;
 pub mod files;
 pub mod frame;

@@ -28,6 +28,7 @@ mod flag;
 mod latest;
 mod library;
 mod mission;
+mod protocol;
 mod queue;
 mod recent_texts;
 mod reply;
@@ -44,6 +45,7 @@ pub use flag::Flag;
 pub use latest::Latest;
 pub use library::{Answer, Bytes, LOG_CHUNK_BYTES, Library, Question};
 pub use mission::Mission;
+pub use protocol::Protocol;
 pub use queue::{Full, Queue};
 pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
 pub use report::{Calibrated, MissionReport, Report, Started, Timing, Traffic, Verdict};
@@ -57,10 +59,12 @@ use crate::last_words::LastWords;
 use crate::link::acknowledgement::Order;
 use crate::link::origin::Origin;
 use crate::link::signing::{Key, Signing, Stamp};
-use crate::parameters::Parameters;
+use crate::parameters::table::Name;
+use crate::parameters::{Parameters, ValueRefusal};
 use crate::recorder::Recorder;
 use crate::recorder::gyro::GyroLog;
 use controller_core::governor::Setpoint;
+use core::fmt::Display;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use estimation::estimator::{Increment, PoseMeasurement};
@@ -105,6 +109,8 @@ views! {
     ReceiveView = for_receive;
     /// What the link's sending half may do.
     TransmitView = for_transmit;
+    /// What may be done by the task that speaks [CRTP](crate::crtp).
+    CrtpView = for_crtp;
     /// What may be done by the task that watches the computer's [port](crate::link::port).
     PortView = for_port;
     /// What the [radio](crate::radio)'s task may do.
@@ -123,7 +129,9 @@ views! {
 values! {
     /// The newest inertial sample, calibrated and low-passed, with its data-ready time. [`flight`] decides how old it
     /// may be.
-    pub imu: Latest<M, ImuSample> { Write: SamplesView; Read: ControlView, StatusView, TransmitView }
+    pub imu: Latest<M, ImuSample> {
+        Write: SamplesView; Read: ControlView, StatusView, TransmitView, CrtpView
+    }
     /// How much the accelerometer is shaken.
     pub vibration: Latest<M, VibrationReport> { Write: SamplesView; Read: TransmitView }
     /// Raised once the gyro's bias was found since the boot.
@@ -142,17 +150,19 @@ values! {
     /// [`estimator`](estimation::estimator) decides how old they may be. Without room a pose is dropped: the next will
     /// do.
     pub poses: Queue<M, Stamped<PoseMeasurement>, POSES_CAPACITY> {
-        Write: ReceiveView, SimulatorView; Take: ControlView
+        Write: ReceiveView, SimulatorView, CrtpView; Take: ControlView
     }
+    /// The protocol that brings poses, and when it last did: another's are refused while they come.
+    pub pose_protocol: Latest<M, Protocol> { Write: ReceiveView, CrtpView }
     /// Raised while poses come whose delay neither TIMESYNC nor `POSE_DELAY` gives.
-    pub pose_delay_unknown: Flag { Write: ReceiveView; Read: ControlView }
+    pub pose_delay_unknown: Flag { Write: ReceiveView, CrtpView; Read: ControlView }
     /// Its time is that of the last heartbeat of a ground station.
-    pub ground_station: Latest<M, ()> { Write: ReceiveView, RadioView; Read: ControlView, StatusView }
+    pub ground_station: Latest<M, ()> { Write: ReceiveView, RadioView, CrtpView; Read: ControlView, StatusView }
     /// The newest setpoint. An unread one is replaced: only the last counts.
-    pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView; Take: ControlView }
+    pub setpoint: Latest<M, Setpoint> { Write: ReceiveView, RadioView, CrtpView; Take: ControlView }
     /// How fast the rotors turn, while their controllers answer. [`flight`] decides how old it may be.
     pub rotor_speeds: Latest<M, RotorSpeeds> {
-        Write: MotorsView, SimulatorView; Read: SamplesView, ControlView, TransmitView
+        Write: MotorsView, SimulatorView; Read: SamplesView, ControlView, TransmitView, CrtpView
     }
     /// Raised where notches on the gyro may follow the rotors.
     pub follows_rotors: Flag { Write: BootView; Read: SamplesView }
@@ -166,15 +176,19 @@ values! {
     pub killed: Latest<M, bool> { Write: RadioView; Read: ControlView }
     /// Whether a radio's sticks fly, by its switch. Latched through silence until a client on the link requests to fly
     /// setpoints.
-    pub sticks: Latest<M, bool> { Write: RadioView, ReceiveView }
+    pub sticks: Latest<M, bool> { Write: RadioView, ReceiveView; Read: CrtpView }
     /// What the last control tick did. More views read from it whether the vehicle [is armed](Values::is_armed) or a
     /// motor [turns](Values::is_turning).
-    pub report: Latest<M, Report> { Write: ControlView; Read: RadioView, ReceiveView, TransmitView, StatusView }
+    pub report: Latest<M, Report> {
+        Write: ControlView; Read: RadioView, ReceiveView, TransmitView, CrtpView, StatusView
+    }
     /// The station on the link that armed the vehicle, by system and component, and when; none if none did.
-    pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView }
+    pub commander: Latest<M, Option<(u8, u8)>> { Write: ControlView; Read: ReceiveView, CrtpView }
+    /// Its time is when that station was last received.
+    pub commander_heard: Latest<M, ()> { Write: ReceiveView; Read: CrtpView }
     /// Whose setpoints are flown, or will be once they come, by system and component; none without such a request on
     /// the link.
-    pub setpoint_owner: SetpointOwner { Write: ControlView; Read: ReceiveView }
+    pub setpoint_owner: SetpointOwner { Write: ControlView; Read: ReceiveView, CrtpView }
     /// The mission's items. They are replaced while it is not flown.
     pub mission: Mission<M> { Write: ReceiveView; Read: ControlView, TransmitView }
     /// Answers to requests. Put in with [`Values::answer`].
@@ -185,6 +199,10 @@ values! {
     pub events: Queue<M, Event, EVENTS_CAPACITY> { Take: TransmitView }
     /// The same events on their way to the log.
     pub log: Queue<M, Event, EVENTS_CAPACITY> { Take: StatusView }
+    /// Raised while a client that speaks CRTP is there.
+    pub has_console: Flag { Write: CrtpView }
+    /// The same events on their way to its console.
+    pub console: Queue<M, Event, EVENTS_CAPACITY> { Take: CrtpView }
     /// The same events on their way to the card, while that is ready.
     pub card_events: Queue<M, Event, CARD_EVENTS_CAPACITY> { Take: CardView }
     /// Events that found one of the queues full.
@@ -196,16 +214,16 @@ values! {
     /// Where the local frame is on the globe, if a ground station has set it.
     pub origin: Latest<M, Origin> { Write: ReceiveView; Read: ControlView, TransmitView }
     /// The battery, V. It counts for 1 s.
-    pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView }
+    pub voltage: Latest<M, f32> { Write: StatusView; Read: ControlView, TransmitView, CrtpView }
     /// Raised (while disarmed, until reboot) by a command to take sensors from a simulator and give it the motors.
-    pub hil: Flag { Write: ReceiveView, BootView; Read: ControlView, ImuView, MotorsView, TransmitView }
+    pub hil: Flag { Write: ReceiveView, BootView; Read: ControlView, ImuView, MotorsView, TransmitView, CrtpView }
     /// Whether the link is on a computer's port, and not on the serial line: see [`crate::link::port`].
     pub on_port: Flag { Write: PortView; Read: ReceiveView, TransmitView }
     /// Raised while parameters are written to flash: nothing begins to turn. Control reads this and the next two with
     /// [`Values::is_busy`].
     pub saving: Flag { Write: StorageView; Read: ReceiveView, RestartView }
     /// Raised while a changed configuration is certified: nothing begins to turn.
-    pub judging: Flag { Write: ReceiveView }
+    pub judging: Flag {}
     /// Raised by a command to restart: nothing begins to turn any more.
     pub restarting: Flag { Write: ReceiveView, RestartView }
     /// Raised with it where a bootloader is to start and not the firmware.
@@ -224,11 +242,11 @@ values! {
     pub last_words: Latest<M, LastWords> { Write: BootView; Read: StatusView }
     /// What may be set from the ground.
     pub parameters: Parameters<M> {
-        All: BootView, StorageView; Write: ImuView, ReceiveView;
-        Read: ControlView, SimulatorView, MotorsView, TransmitView, StatusView, CardView
+        All: BootView, StorageView; Write: ImuView;
+        Read: ControlView, SimulatorView, MotorsView, ReceiveView, TransmitView, CrtpView, StatusView, CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
-    pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
+    pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView, CrtpView }
     /// The last seconds of the last flight. The card reads on while control writes; the link reads once that ended.
     pub recorder: Recorder<M> { All: BootView; Write: ControlView; Take: ReceiveView; Read: TransmitView, CardView }
     /// The raw gyro on its way to the card, where `LOG_GYRO` asks for it and the board has memory for it.
@@ -253,10 +271,17 @@ offers! {
         fn request_disarm();
         fn reply(reply: Reply);
         fn set_signing(key: Option<Key>, stamp: Stamp, now: u64);
+        fn set_parameter(name: Name, value: f32);
         fn is_armed() -> bool;
         fn is_turning() -> bool;
     }
     [M: RawMutex] TransmitView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
+    [M: RawMutex] CrtpView<'_, M> {
+        fn request(asked: QueuedRequest);
+        fn request_disarm();
+        fn set_parameter(name: Name, value: f32);
+        fn is_armed() -> bool;
+    }
     [M: RawMutex] RadioView<'_, M> { fn request(asked: QueuedRequest); }
     [M: RawMutex] ImuView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
     [M: RawMutex] StatusView<'_, M> { fn is_armed() -> bool; }
@@ -333,10 +358,41 @@ impl<M: RawMutex> Values<M> {
             return;
         }
         let is_logged = self.card.state() != CardState::Ready || self.card_events.put(event.clone()).is_ok();
-        if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged {
+        let is_shown = !self.has_console.is_raised() || self.console.put(event.clone()).is_ok();
+        if self.events.put(event.clone()).is_err() | self.log.put(event).is_err() | !is_logged | !is_shown {
             self.lost_events.add();
         }
         self.outgoing.signal(());
+    }
+
+    /// Sets a parameter as an operator wishes, or announces why not. One of the configuration is certified first, here,
+    /// while arming is refused.
+    pub fn set_parameter(&self, name: Name, value: f32) {
+        let warn = |words: &dyn Display| self.announce(Event::new(Severity::Warning, words));
+        // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
+        self.judging.raise();
+        if self.is_armed() {
+            warn(&"Parameters change only while disarmed");
+        } else if name.is_tuned() && self.is_turning() {
+            warn(&format_args!("{}: not while a motor turns", name.row().name));
+        } else {
+            match self.parameters.set(name, value) {
+                Ok(()) => {
+                    self.parameters.set_again();
+                    if name.is_tuned() {
+                        let words = format_args!("{}: may be flown, from the next boot on", name.row().name);
+                        self.announce(Event::new(Severity::Information, words));
+                    }
+                }
+                Err(error) => {
+                    warn(&error);
+                    if let ValueRefusal::Unfit(_, unfit) = error {
+                        warn(&unfit);
+                    }
+                }
+            }
+        }
+        self.judging.lower();
     }
 
     /// Has frames signed with a key from `now`, us, on, or not any more, and keeps that: see [`Signing::set`].

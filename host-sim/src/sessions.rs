@@ -14,5 +14,6 @@ pub mod hil;
 pub(crate) mod input;
 pub(crate) mod messages;
 pub(crate) mod pace;
+pub mod crtp_port;
 pub mod ports;
 pub mod sitl;

@@ -31,11 +31,13 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// Notes a frame of a station at `now`, us.
-    pub fn receive(&mut self, sender: Sender, armed: Armed, now: u64) {
-        if armed.is_some_and(|armed| armed.value == Some(sender)) {
+    /// Notes a frame of a station at `now`, us; whether it is the commanding one.
+    pub fn receive(&mut self, sender: Sender, armed: Armed, now: u64) -> bool {
+        let commands = armed.is_some_and(|armed| armed.value == Some(sender));
+        if commands {
             self.received = now;
         }
+        commands
     }
 
     /// Notes a ground station's heartbeat.

@@ -8,12 +8,12 @@
 use super::COMPONENT_ID;
 use super::commander::Commander;
 use super::frame::{Frame, Parser};
-use super::pose::{Poses, is_pose};
+use super::pose::{PoseRefusal, Poses, SOURCE_TIMEOUT_US, is_pose};
 use super::repetitions::Repetitions;
 use super::set_mode::SetMode;
 use crate::hardware::Clock;
 use crate::parameters::table::Name;
-use crate::shared::{Event, Ping, ReceiveView, Reply, Severity, Traffic};
+use crate::shared::{Event, Ping, Protocol, ReceiveView, Reply, Severity, Traffic};
 use addressed::Addressed;
 use core::fmt::Display;
 use embassy_futures::select::{Either, select};
@@ -174,7 +174,9 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
     fn dispatch(&mut self, frame: &Frame<'_>) {
         let sender = (frame.header.system, frame.header.component);
         self.retry_upload(frame.time);
-        self.commander.receive(sender, self.shared.commander().get(), frame.time);
+        if self.commander.receive(sender, self.shared.commander().get(), frame.time) {
+            self.shared.commander_heard().put((), frame.time);
+        }
         match frame.message {
             HEARTBEAT_DATA::ID => self.decoded(frame, Self::heartbeat),
             message if is_pose(message) => self.pose(frame),
@@ -257,6 +259,10 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
         if self.shared.hil().is_raised() {
             return;
         }
+        let heard = self.shared.pose_protocol().get();
+        if heard.is_some_and(|heard| heard.value != Protocol::Mavlink && heard.age(frame.time) <= SOURCE_TIMEOUT_US) {
+            return self.pose_refused(frame.time, PoseRefusal::SecondSource);
+        }
         // Milliseconds, within 0 and 150, as the table has it.
         let delay = (self.shared.parameters().get(Name::PoseDelay) * 1e3) as u64;
         match self.poses.take(frame, delay) {
@@ -266,15 +272,18 @@ impl<'a, M: RawMutex> Receiver<'a, M> {
                 } else {
                     self.shared.pose_delay_unknown().lower();
                 }
+                self.shared.pose_protocol().put(Protocol::Mavlink, frame.time);
                 // Where control does not take them, one more or less makes no difference.
                 let _ = self.shared.poses().put(pose);
             }
             Ok(None) => {}
-            Err(refusal) => {
-                self.refused();
-                self.pose_refused.warn(self.shared, frame.time, format_args!("Pose refused: {refusal}"));
-            }
+            Err(refusal) => self.pose_refused(frame.time, refusal),
         }
+    }
+
+    fn pose_refused(&mut self, now: u64, refusal: PoseRefusal) {
+        self.refused();
+        self.pose_refused.warn(self.shared, now, format_args!("Pose refused: {refusal}"));
     }
 
     /// Back to its sender. One with a target is itself an answer.

@@ -231,6 +231,11 @@ impl<M: RawMutex> Signing<M> {
         self.with(|state| state.admit(id, number(stamp), frame.time)).unwrap_or(Err(Refusal::Replayed))
     }
 
+    /// Whether what cannot be signed is kept out, where everything must be: there is a key, or it is lost.
+    pub fn keeps_out_unsigned(&self, must_be_signed: bool) -> bool {
+        must_be_signed && (self.key().is_some() || self.is_lost())
+    }
+
     /// Signs a frame that goes out now, us, if there is a key.
     pub fn sign(&self, frame: &mut MAVLinkV2MessageRaw, now: u64) {
         let next = |state: &mut State| {

@@ -98,6 +98,7 @@ offers! {
         fn count() -> u16;
     }
     [M: RawMutex] Read<'_, Signing<M>> {
+        fn keeps_out_unsigned(must_be_signed: bool) -> bool;
         fn judge(frame: &Frame<'_>, must_be_signed: bool) -> Result<(), Refusal>;
         fn sign(frame: &mut MAVLinkV2MessageRaw, now: u64);
         fn is_lost() -> bool;

@@ -9,7 +9,7 @@
 //! |---|---|
 //! | [`clock`], [`mod@memory_line`] | time that moves when every task waits; bytes in memory |
 //! | [`simulated_hardware`] | vehicle, air, ground, sensors and the camera that sends poses |
-//! | `downlink` | the vehicle's frames to the clients ([`crate::sessions::ports`]) |
+//! | `downlink` | the vehicle's frames to the clients ([`crate::sessions::ports`]); CRTP is [`crate::sessions::crtp_port`] |
 //! | [`faults`] | simulated faults and their times |
 //! | `flash` | the parameters' memory |
 //! | [`key`] | the key that signs frames |
@@ -35,6 +35,7 @@ mod truth;
 
 use crate::output::interrupt::Interrupt;
 use crate::reports::recording::session::SessionMoment;
+use crate::sessions::crtp_port::CrtpPort;
 use crate::sessions::input;
 use crate::sessions::pace::Pace;
 use crate::sessions::ports::{ClientPort, Ports};
@@ -56,7 +57,7 @@ use firmware::parameters::tuned::Built;
 use firmware::recorder::ring::{Ring, SLOT_BYTES};
 use firmware::repeat::FRAME_INTERVAL_US;
 use firmware::shared::Shared;
-use firmware::{boot, imu, link, restart, status};
+use firmware::{boot, crtp, imu, link, restart, status};
 use flash::DeskFlash;
 use futures::executor::{LocalPool, LocalSpawner};
 use futures::task::LocalSpawnExt;
@@ -88,6 +89,7 @@ pub struct Sitl {
     hardware: SimulatedHardware,
     shared: &'static Shared<NoopRawMutex>,
     port: Rc<RefCell<ClientPort>>,
+    crtp: Option<CrtpPort>,
     up: MemoryLine,
     faults: Faults,
     texts: Rc<RefCell<Vec<(u64, String)>>>,
@@ -141,6 +143,7 @@ impl Sitl {
             SimulatedHardware::new(scenario, session.poses, &clock, faults.clone(), up.clone()).map_err(in_file)?;
         let flash = DeskFlash::open(session.parameters.clone())?;
         let port = Rc::new(RefCell::new(ClientPort::open(&session.ports).map_err(|error| error.to_string())?));
+        let crtp = session.crtp.map(CrtpPort::open).transpose()?;
         say(&format!("{}: starting; its loops and its model's flights are judged first, some seconds", scenario.name));
         let warning = board::check(scenario, &session.file)?;
 
@@ -156,6 +159,7 @@ impl Sitl {
             hardware,
             shared: Box::leak(Box::new(Shared::new())),
             port,
+            crtp,
             up,
             faults,
             texts: Rc::default(),
@@ -228,6 +232,10 @@ impl Sitl {
         spawn(&spawner, async move { link::receive::receive(ear, &time, shared.for_receive()).await });
         let time = clock.clone();
         spawn(&spawner, async move { link::transmit::transmit(downlink, &time, shared.for_transmit()).await });
+        if let Some(port) = &self.crtp {
+            let (receiver, sender, time) = (port.clone(), port.clone(), clock.clone());
+            spawn(&spawner, async move { crtp::task::run(receiver, sender, &time, shared.for_crtp()).await });
+        }
         let (light, battery, time) = (hardware.clone(), hardware.clone(), clock.clone());
         spawn(&spawner, async move { status::run(light, battery, &time, shared.for_status()).await });
         let time = clock.clone();
@@ -247,6 +255,7 @@ impl Sitl {
                 up.push(frame);
             }
         });
+        self.crtp.iter().for_each(|port| port.receive(silent));
     }
 
     /// Lays a person's hands on the vehicle, and on a kill switch.
@@ -325,6 +334,9 @@ pub fn run(
         "{}: MAVLink from udp 127.0.0.1:{local} to {offboard} (offboard) and {ground} (ground stations); Ctrl-C ends it",
         scenario.name
     ));
+    if let Some(address) = session.crtp {
+        show(&format!("{}: CRTP at udp://{address}", scenario.name));
+    }
     let end = session.duration.map(|duration| (duration * 1e6).round() as u64);
     let mut truth = session.truth.map(Truth::open).transpose().map_err(SitlError::Input)?;
     let mut pace = Pace::new(session.speed);

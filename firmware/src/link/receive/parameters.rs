@@ -1,9 +1,7 @@
-//! Parameters in: read, listed, set while disarmed. Setting one of the configuration certifies it, here, while arming
-//! is refused.
+//! Parameters in: read, listed, set.
 
 use super::Receiver;
 use crate::link::frame::Frame;
-use crate::parameters::ValueRefusal;
 use crate::parameters::table::Name;
 use crate::shared::{Event, Reply, Severity};
 use core::fmt::Display;
@@ -47,37 +45,11 @@ impl<M: RawMutex> Receiver<'_, M> {
         }
     }
 
-    pub(super) fn set(&mut self, name: Name, value: f32, kind: MavParamType) {
-        let shared = self.shared;
-        let warn = |words: &dyn Display| shared.announce(Event::new(Severity::Warning, words));
-        if kind != MavParamType::MAV_PARAM_TYPE_REAL32 {
-            return warn(&format_args!("{}: is a REAL32", name.row().name));
+    fn set(&self, name: Name, value: f32, kind: MavParamType) {
+        if kind == MavParamType::MAV_PARAM_TYPE_REAL32 {
+            return self.shared.set_parameter(name, value);
         }
-        // Raised first and checked afterwards: control either sees it, or has already reported that a motor turns.
-        shared.judging().raise();
-        if shared.is_armed() {
-            warn(&"Parameters change only while disarmed");
-        } else if name.is_tuned() && shared.is_turning() {
-            warn(&format_args!("{}: not while a motor turns", name.row().name));
-        } else {
-            let result = shared.parameters().set(name, value);
-            if result.is_ok() {
-                shared.parameters().set_again();
-            }
-            match result {
-                Ok(()) if name.is_tuned() => {
-                    let words = format_args!("{}: may be flown, from the next boot on", name.row().name);
-                    shared.announce(Event::new(Severity::Information, words));
-                }
-                Ok(()) => {}
-                Err(error) => {
-                    warn(&error);
-                    if let ValueRefusal::Unfit(_, unfit) = error {
-                        warn(&unfit);
-                    }
-                }
-            }
-        }
-        shared.judging().lower();
+        let words = format_args!("{}: is a REAL32", name.row().name);
+        self.shared.announce(Event::new(Severity::Warning, words));
     }
 }

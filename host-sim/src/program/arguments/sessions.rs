@@ -1,12 +1,14 @@
 //! The arguments of sessions with another program, `sitl` and `hil`, in clap's terms, and their checks.
 
 use clap::{ArgGroup, Args, ValueEnum};
+use host_sim::sessions::crtp_port::DEFAULT_ADDRESS;
 use host_sim::sessions::hil::HilSession;
 use host_sim::sessions::hil::port::Address;
 use host_sim::sessions::ports::Ports;
 use host_sim::sessions::sitl;
 use host_sim::sessions::sitl::faults::Fault;
 use host_sim::sessions::sitl::simulated_hardware::PoseSource;
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -51,6 +53,11 @@ pub struct SitlArguments {
     /// a bridge to be tried on
     #[arg(long, value_name = "PORT")]
     truth_port: Option<u16>,
+    /// Take clients of the Crazyflie as well, cflib and cfclient, by UDP at this address: docs/crazyflie.md. They look at
+    /// ports 19850 to 19859; each vehicle needs its own, and its own three ports below
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = DEFAULT_ADDRESS,
+        value_parser = address)]
+    crtp: Option<SocketAddr>,
     #[command(flatten)]
     ports: PortArguments,
 }
@@ -119,6 +126,14 @@ pub struct HilArguments {
     ports: PortArguments,
 }
 
+/// An address of this machine: a host's name, or its numbers, and a port.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let found = text.to_socket_addrs().map_err(|error| format!("{error}; an address is written 127.0.0.1:19850"))?;
+    let mut found: Vec<SocketAddr> = found.collect();
+    found.sort_by_key(SocketAddr::is_ipv6);
+    found.into_iter().next().ok_or_else(|| "no such address".to_owned())
+}
+
 /// A session's speed, if it is in range.
 fn speed(speed: f64) -> Result<f64, String> {
     let possible = (SPEED_MIN..=SPEED_MAX).contains(&speed);
@@ -157,6 +172,7 @@ impl SitlArguments {
         Ok(sitl::SitlSession {
             file,
             ports: self.ports.ports()?,
+            crtp: self.crtp,
             speed,
             duration: self.duration,
             poses: match self.poses {

@@ -6,6 +6,7 @@ use crate::sessions::ports::Ports;
 use firmware::link::signing::Key;
 use flight::Mode;
 use std::fmt;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 /// How a session is run.
@@ -15,6 +16,8 @@ pub struct SitlSession {
     pub file: String,
     /// Where the clients are.
     pub ports: Ports,
+    /// Where clients find it that speak CRTP.
+    pub crtp: Option<SocketAddr>,
     /// How many times as fast as the desk's the vehicle's time passes.
     pub speed: f64,
     /// Vehicle time after which it ends, s; none: at a signal.

@@ -306,6 +306,7 @@ fn what_no_board_could_fly_is_refused_by_name() {
     let session = SitlSession {
         file: "a file".to_owned(),
         ports: Ports { local: 0, ..Ports::default() },
+        crtp: None,
         speed: 1.0,
         duration: None,
         poses: PoseSource::Camera,

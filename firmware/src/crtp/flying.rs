@@ -1,0 +1,278 @@
+//! What a client has flown: a stream of its setpoints, or the path of one of its commands.
+//!
+//! Both go to the governor as setpoints of one sender, and so within the certified bounds, however far or fast they
+//! are. A path is flown by the vehicle's clock: a governor that cannot follow it comes later, to the same place. A
+//! stream takes over from a path, and a command from a stream. Whatever else ends the flight of setpoints (a landing, a
+//! failure, another client) ends the path.
+
+use super::errors::{BUSY, INVALID, NOT_THERE};
+use super::high_level::{Command, Pace, Vertical};
+use super::parameters::Settings;
+use super::path::{Along, Path, Spiral};
+use super::pieces::Pieces;
+use super::polynomial::{Moving, Point, Segment};
+use super::setpoint::Streamed;
+use crate::shared::{CrtpView, Event, QueuedRequest, Report, Severity};
+use controller_core::governor::Setpoint;
+use core::f32::consts::{FRAC_PI_2, PI, TAU};
+use embassy_sync::blocking_mutex::raw::RawMutex;
+use flight::{Mode, Request, SETPOINT_AGE_MAX_US, Stamped};
+use nalgebra::{RealField, Vector3};
+
+/// The sender of its setpoints, as other senders are known by system and component. No system has this number.
+pub const SENDER: (u8, u8) = (0, 1);
+
+/// Time between the setpoints of a path.
+pub const SETPOINT_INTERVAL_US: u64 = 10_000;
+
+/// How long it may take until setpoints are flown.
+const BEGINNING_MAX_US: u64 = 500_000;
+
+/// The shortest and the longest that a command may take, s.
+const DURATION_MIN_S: f32 = 0.1;
+const DURATION_MAX_S: f32 = 3_600.0;
+
+/// How many times as long as it was uploaded a trajectory may take, and how many times as short.
+const TIMESCALE_MAX: f32 = 100.0;
+
+/// A path under way.
+#[derive(Debug, Clone, Copy)]
+struct Begun {
+    path: Path,
+    /// us.
+    began: u64,
+    /// Whether the vehicle lands at its end.
+    lands: bool,
+}
+
+/// What is flown.
+pub struct Flying<'a, M: RawMutex> {
+    shared: CrtpView<'a, M>,
+    /// Trajectories.
+    pub pieces: Pieces,
+    path: Option<Begun>,
+    /// Whether the last path was flown to its end.
+    is_over: bool,
+    /// When the last setpoint of a stream came, us.
+    streamed: Option<u64>,
+}
+
+impl<'a, M: RawMutex> Flying<'a, M> {
+    /// Nothing.
+    pub const fn new(shared: CrtpView<'a, M>) -> Self {
+        Self { shared, pieces: Pieces::new(), path: None, is_over: false, streamed: None }
+    }
+
+    /// Whether a path is flown (false) or was, to its end (true).
+    pub fn path(&self) -> Option<bool> {
+        if self.path.is_some() { Some(false) } else { self.is_over.then_some(true) }
+    }
+
+    /// Whether pieces in memory are flown.
+    pub fn flies_pieces(&self) -> bool {
+        self.path.is_some_and(|begun| matches!(begun.path, Path::Pieces(_)))
+    }
+
+    /// When the next setpoint of a path is due, us.
+    pub fn due(&self, now: u64) -> u64 {
+        if self.path.is_some() { (now / SETPOINT_INTERVAL_US + 1) * SETPOINT_INTERVAL_US } else { u64::MAX }
+    }
+
+    fn request(&self, request: Request) {
+        let setpoints = (request == Request::FlySetpoints).then_some(SENDER);
+        self.shared.request(QueuedRequest { request, order: None, setpoints });
+    }
+
+    fn report(&self) -> Option<Report> {
+        self.shared.report().get().map(|report| report.value)
+    }
+
+    /// Takes what a client streams.
+    pub fn stream(&mut self, streamed: &Streamed, now: u64) {
+        match streamed {
+            Streamed::Setpoint(setpoint) => {
+                (self.path, self.is_over) = (None, false);
+                let is_new = self.streamed.is_none_or(|last| now.saturating_sub(last) > SETPOINT_AGE_MAX_US);
+                self.streamed = Some(now);
+                self.put(setpoint, is_new, now);
+            }
+            Streamed::Stop => self.stop(),
+            Streamed::End | Streamed::Nothing => {
+                // A hand off the sticks ends a stream, and no command.
+                if self.streamed.take().is_some() && self.report().is_some_and(|report| report.mode == Mode::Flying) {
+                    self.request(Request::Hold);
+                }
+            }
+        }
+    }
+
+    /// Hands a setpoint to control, unless others' are flown; with a request to fly it.
+    fn put(&self, setpoint: &Setpoint, with_request: bool, now: u64) {
+        let is_anothers = self.shared.setpoint_owner().get().is_some_and(|owner| owner != SENDER);
+        let refusal = if self.shared.sticks().get().is_some_and(|sticks| sticks.value) {
+            "the sticks fly"
+        } else if is_anothers && !with_request {
+            "another sender's are flown"
+        } else {
+            self.shared.setpoint().put(*setpoint, now);
+            if with_request {
+                self.request(Request::FlySetpoints);
+            }
+            return;
+        };
+        self.shared.announce(Event::new(Severity::Warning, format_args!("Setpoint refused: {refusal}")));
+    }
+
+    /// Disarms a vehicle that stands, and lands one that flies: the emergency stop alone drops it.
+    pub fn stop(&mut self) {
+        (self.path, self.streamed) = (None, None);
+        let Some(report) = self.report().filter(|report| report.mode.is_armed()) else { return };
+        self.request(if report.is_airborne { Request::Land } else { Request::Disarm });
+    }
+
+    /// Forgets what is flown, without a word to control.
+    pub fn forget(&mut self) {
+        (self.path, self.streamed, self.is_over) = (None, None, false);
+    }
+
+    /// Begins what a command asks for.
+    /// Errors: a number of [`super::errors`].
+    pub fn command(&mut self, command: &Command, settings: &Settings, now: u64) -> Result<(), u8> {
+        let (path, lands) = match *command {
+            Command::Define { number, kind, address, count } => {
+                return self.pieces.define(number, kind, address, count);
+            }
+            Command::Stop => {
+                self.stop();
+                return Ok(());
+            }
+            // Whose groups change is the session's.
+            Command::SetGroup(_) => return Ok(()),
+            _ => self.planned(command, settings)?,
+        };
+        let Some(first) = path.at(0.0, &self.pieces) else { return Err(INVALID) };
+        (self.streamed, self.is_over) = (None, false);
+        self.path = Some(Begun { path, began: now, lands });
+        self.put(&first.setpoint(false), true, now);
+        Ok(())
+    }
+
+    /// The path of a command from where the vehicle is now, and whether the vehicle lands at its end.
+    fn planned(&self, command: &Command, settings: &Settings) -> Result<(Path, bool), u8> {
+        let here = self.here().ok_or(BUSY)?;
+        let (place, yaw) = (here.position(), here.yaw.value);
+        Ok(match *command {
+            Command::TakeOff(vertical) => (vertically(&here, &vertical, settings.take_off_speed)?, false),
+            Command::Land(vertical) => (vertically(&here, &vertical, settings.landing_speed)?, true),
+            Command::GoTo { is_relative, is_straight, place: goal, yaw: turned, duration } => {
+                let (goal, turned) = if is_relative { (place + goal, yaw + turned) } else { (goal, turned) };
+                let duration = granted(duration)?;
+                let to = if is_straight { Segment::straight } else { Segment::to_rest };
+                (Path::Segment(to(&here, &goal, turned, duration)), false)
+            }
+            Command::Spiral { is_sideways, is_clockwise, angle, radii, ascent, duration } => {
+                let (first, last) = (radii.0.max(0.0), radii.1.max(0.0));
+                let sign = if is_clockwise { -1.0 } else { 1.0 };
+                let outward = match (is_sideways, is_clockwise) {
+                    (false, _) => -sign * FRAC_PI_2,
+                    (true, true) => PI,
+                    (true, false) => 0.0,
+                };
+                let begin = yaw + outward;
+                let spiral = Spiral {
+                    centre: place,
+                    begin,
+                    angle: sign * angle.clamp(-TAU, TAU),
+                    radii: (first, last),
+                    ascent,
+                    yaw,
+                    duration: granted(duration)?,
+                };
+                // The centre is where the way begins here.
+                let begun = spiral.at(0.0).position();
+                (Path::Spiral(Spiral { centre: place + place - begun, ..spiral }), false)
+            }
+            Command::Start { is_shifted, is_turned, is_reversed, number, timescale } => {
+                let (definition, length) = self.pieces.defined(number).ok_or(NOT_THERE)?;
+                if !(1.0 / TIMESCALE_MAX..=TIMESCALE_MAX).contains(&timescale) {
+                    return Err(INVALID);
+                }
+                let mut along =
+                    Along { definition, length, timescale, is_reversed, shift: Vector3::zeros(), turn: 0.0 };
+                let begun = |along: &Along| Path::Pieces(*along).at(0.0, &self.pieces).ok_or(INVALID);
+                if is_turned {
+                    along.turn = yaw - begun(&along)?.yaw.value;
+                }
+                if is_shifted {
+                    along.shift = place - begun(&along)?.position();
+                }
+                (Path::Pieces(along), false)
+            }
+            Command::Define { .. } | Command::Stop | Command::SetGroup(_) => return Err(INVALID),
+        })
+    }
+
+    /// Where a path begins: where the vehicle is led now, or else where it is; none while it is not armed.
+    fn here(&self) -> Option<Point> {
+        let report = self.report().filter(|report| report.mode.is_armed())?;
+        let yaw = |direction: nalgebra::Vector2<f32>| RealField::atan2(direction.y, direction.x);
+        if let Some(reference) = report.reference.filter(|_| report.mode.is_guided()) {
+            let (p, v, a) = (reference.position, reference.velocity, reference.acceleration);
+            let along = |value, rate, acceleration| Moving { value, rate, acceleration };
+            let axes = [along(p.x, v.x, a.x), along(p.y, v.y, a.y), along(p.z, v.z, a.z)];
+            let heading = reference.heading;
+            return Some(Point { axes, yaw: along(yaw(heading.direction()), heading.rate(), 0.0) });
+        }
+        let state = report.state?;
+        let ahead = nalgebra::UnitQuaternion::new_unchecked(state.attitude) * Vector3::x();
+        Some(Point::resting(&state.position, yaw(ahead.xy())))
+    }
+
+    /// Leads the vehicle along its path at `now`, us.
+    pub fn lead(&mut self, now: u64) {
+        let Some(begun) = self.path else { return };
+        let is_flown = self.report().is_some_and(|report| report.mode == Mode::Flying)
+            && self.shared.setpoint_owner().get() == Some(SENDER);
+        let time = Stamped { value: (), time: begun.began }.age(now);
+        if !is_flown && time > BEGINNING_MAX_US {
+            self.path = None;
+            return;
+        }
+        let time = time as f32 * 1e-6;
+        let is_last = time >= begun.path.duration();
+        let Some(point) = begun.path.at(time, &self.pieces) else {
+            self.path = None;
+            return;
+        };
+        self.put(&point.setpoint(is_last), false, now);
+        if is_last && is_flown {
+            (self.path, self.is_over) = (None, true);
+            if begun.lands {
+                self.request(Request::Land);
+            }
+        }
+    }
+}
+
+/// A duration that is granted, s.
+fn granted(duration: f32) -> Result<f32, u8> {
+    if duration <= DURATION_MAX_S { Ok(duration.max(DURATION_MIN_S)) } else { Err(INVALID) }
+}
+
+/// Straight up or down; at a speed, m/s, where a command says nothing of how fast.
+fn vertically(here: &Point, vertical: &Vertical, speed: f32) -> Result<Path, u8> {
+    let place = here.position();
+    let height = if vertical.is_relative { place.z + vertical.height } else { vertical.height };
+    let way = (height - place.z).abs();
+    let duration = match vertical.pace {
+        Pace::Within(duration) if duration > 0.0 => duration,
+        Pace::At(speed) if speed > 0.0 => way / speed,
+        _ => way / speed,
+    };
+    let yaw = vertical.yaw.unwrap_or(here.yaw.value);
+    let goal = Vector3::new(place.x, place.y, height);
+    Ok(Path::Segment(Segment::to_rest(here, &goal, yaw, granted(duration)?)))
+}
+
+#[cfg(test)]
+mod tests;
