@@ -7,7 +7,7 @@
 //! | [`contents`] | tables of contents, which clients keep by their checksum |
 //! | [`log`], [`parameters`], [`memories`] | what is logged, set and uploaded |
 //! | [`setpoint`], [`high_level`] | what a client has flown: streams, and commands of a place and a time |
-//! | [`flying`], [`path`], [`polynomial`], [`pieces`] | how that is led |
+//! | [`flying`], [`path`], [`polynomial`], [`pieces`], [`limits`] | how that is led, and how fast |
 //! | [`localisation`] | poses from outside |
 //! | [`supervisor`], [`platform`] | arming and the emergency stop; what the vehicle is |
 //! | [`quaternion`], [`errors`] | attitudes in 32 bits; errors in answers |
@@ -21,6 +21,7 @@ pub mod errors;
 mod fields;
 pub mod flying;
 pub mod high_level;
+pub mod limits;
 pub mod localisation;
 pub mod log;
 pub mod memories;

@@ -237,7 +237,7 @@ values! {
     /// What made the chip start, and the board's name; a desktop has neither.
     pub started: Latest<M, Started> { Write: BootView; Read: TransmitView }
     /// The certificate's verdict on what is to be flown.
-    pub verdict: Latest<M, Verdict> { Write: BootView; Read: TransmitView }
+    pub verdict: Latest<M, Verdict> { Write: BootView; Read: TransmitView, CrtpView }
     /// Why the vehicle restarted by itself, where it did.
     pub last_words: Latest<M, LastWords> { Write: BootView; Read: StatusView }
     /// What may be set from the ground.

@@ -9,11 +9,11 @@
 //! | `answer`, `messages` | the simulator's side of the lock-step |
 
 pub(crate) mod answer;
+pub mod crtp_port;
 pub mod first_flight;
 pub mod hil;
 pub(crate) mod input;
 pub(crate) mod messages;
 pub(crate) mod pace;
-pub mod crtp_port;
 pub mod ports;
 pub mod sitl;

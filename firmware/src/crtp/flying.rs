@@ -7,14 +7,14 @@
 
 use super::errors::{BUSY, INVALID, NOT_THERE};
 use super::high_level::{Command, Pace, Vertical};
+use super::limits::Limits;
 use super::parameters::Settings;
-use super::path::{Along, Path, Spiral};
+use super::path::{Along, Path};
 use super::pieces::Pieces;
 use super::polynomial::{Moving, Point, Segment};
 use super::setpoint::Streamed;
 use crate::shared::{CrtpView, Event, QueuedRequest, Report, Severity};
 use controller_core::governor::Setpoint;
-use core::f32::consts::{FRAC_PI_2, PI, TAU};
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::{Mode, Request, SETPOINT_AGE_MAX_US, Stamped};
 use nalgebra::{RealField, Vector3};
@@ -31,6 +31,9 @@ const BEGINNING_MAX_US: u64 = 500_000;
 /// The shortest and the longest that a command may take, s.
 const DURATION_MIN_S: f32 = 0.1;
 const DURATION_MAX_S: f32 = 3_600.0;
+
+/// How often a path is slowed until it fits.
+const REPLANNED_MAX: u32 = 8;
 
 /// How many times as long as it was uploaded a trajectory may take, and how many times as short.
 const TIMESCALE_MAX: f32 = 100.0;
@@ -150,6 +153,7 @@ impl<'a, M: RawMutex> Flying<'a, M> {
             Command::SetGroup(_) => return Ok(()),
             _ => self.planned(command, settings)?,
         };
+        let path = self.within_limits(path)?;
         let Some(first) = path.at(0.0, &self.pieces) else { return Err(INVALID) };
         (self.streamed, self.is_over) = (None, false);
         self.path = Some(Begun { path, began: now, lands });
@@ -169,28 +173,6 @@ impl<'a, M: RawMutex> Flying<'a, M> {
                 let duration = granted(duration)?;
                 let to = if is_straight { Segment::straight } else { Segment::to_rest };
                 (Path::Segment(to(&here, &goal, turned, duration)), false)
-            }
-            Command::Spiral { is_sideways, is_clockwise, angle, radii, ascent, duration } => {
-                let (first, last) = (radii.0.max(0.0), radii.1.max(0.0));
-                let sign = if is_clockwise { -1.0 } else { 1.0 };
-                let outward = match (is_sideways, is_clockwise) {
-                    (false, _) => -sign * FRAC_PI_2,
-                    (true, true) => PI,
-                    (true, false) => 0.0,
-                };
-                let begin = yaw + outward;
-                let spiral = Spiral {
-                    centre: place,
-                    begin,
-                    angle: sign * angle.clamp(-TAU, TAU),
-                    radii: (first, last),
-                    ascent,
-                    yaw,
-                    duration: granted(duration)?,
-                };
-                // The centre is where the way begins here.
-                let begun = spiral.at(0.0).position();
-                (Path::Spiral(Spiral { centre: place + place - begun, ..spiral }), false)
             }
             Command::Start { is_shifted, is_turned, is_reversed, number, timescale } => {
                 let (definition, length) = self.pieces.defined(number).ok_or(NOT_THERE)?;
@@ -212,16 +194,38 @@ impl<'a, M: RawMutex> Flying<'a, M> {
         })
     }
 
+    /// The path as slow as the vehicle's limits need it; says so if that is slower than was asked for.
+    fn within_limits(&self, path: Path) -> Result<Path, u8> {
+        let Some(Stamped { value: Ok(certified), .. }) = self.shared.verdict().get() else { return Err(BUSY) };
+        let governor = self.shared.parameters().governor_limits();
+        let speeds = [governor.horizontal_speed, governor.vertical_speed];
+        let limits = Limits { bounds: *certified.configuration().bounds(), speeds };
+        let mut granted = path;
+        // Where it begins in motion, slower is another path: looked at again, a few times.
+        for _ in 0..REPLANNED_MAX {
+            let slower = limits.slower(&granted, &self.pieces).ok_or(INVALID)?;
+            if slower <= 1.0 {
+                break;
+            }
+            granted = granted.slowed(slower);
+        }
+        if granted != path {
+            let (asked, granted) = (path.duration(), granted.duration());
+            let words = format_args!("Flown in {granted:.1} s: {asked:.1} s would be too fast");
+            self.shared.announce(Event::new(Severity::Information, words));
+        }
+        Ok(granted)
+    }
+
     /// Where a path begins: where the vehicle is led now, or else where it is; none while it is not armed.
     fn here(&self) -> Option<Point> {
         let report = self.report().filter(|report| report.mode.is_armed())?;
         let yaw = |direction: nalgebra::Vector2<f32>| RealField::atan2(direction.y, direction.x);
         if let Some(reference) = report.reference.filter(|_| report.mode.is_guided()) {
             let (p, v, a) = (reference.position, reference.velocity, reference.acceleration);
-            let along = |value, rate, acceleration| Moving { value, rate, acceleration };
-            let axes = [along(p.x, v.x, a.x), along(p.y, v.y, a.y), along(p.z, v.z, a.z)];
+            let axes = [Moving::new(p.x, v.x, a.x), Moving::new(p.y, v.y, a.y), Moving::new(p.z, v.z, a.z)];
             let heading = reference.heading;
-            return Some(Point { axes, yaw: along(yaw(heading.direction()), heading.rate(), 0.0) });
+            return Some(Point { axes, yaw: Moving::new(yaw(heading.direction()), heading.rate(), 0.0) });
         }
         let state = report.state?;
         let ahead = nalgebra::UnitQuaternion::new_unchecked(state.attitude) * Vector3::x();

@@ -9,12 +9,11 @@
 //! | 3 | stop |
 //! | 4 | go to: whether from here, p (m), yaw, within |
 //! | 12 | the same: whether from here, whether straight, p, yaw, within |
-//! | 11 | a spiral: whether sideways, whether clockwise, angle (rad), radii (m), ascent (m), within |
 //! | 5 | a trajectory: whether from here, whether reversed, its number, how many times as slow |
 //! | 13 | the same: whether from here, whether turned to the present yaw, reversed, number, how many times as slow |
 //! | 6 | (no group) defines one: number, 1, kind, address (4 bytes), pieces |
 //!
-//! A command is for every vehicle if its group is 0, and else for those that belong to one of its groups. The answer
+//! Command 11, a spiral, is not flown. A command is for every vehicle if its group is 0, and else for those that belong to one of its groups. The answer
 //! repeats its first three bytes, with 0 or an error behind.
 
 use super::fields::Fields;
@@ -66,21 +65,6 @@ pub enum Command {
         /// s.
         duration: f32,
     },
-    /// Go around.
-    Spiral {
-        /// Whether the centre is ahead, not to the side.
-        is_sideways: bool,
-        /// Seen from above.
-        is_clockwise: bool,
-        /// rad.
-        angle: f32,
-        /// m.
-        radii: (f32, f32),
-        /// m.
-        ascent: f32,
-        /// s.
-        duration: f32,
-    },
     /// Fly a trajectory that was defined.
     Start {
         /// Whether it begins here.
@@ -129,14 +113,6 @@ pub fn read(data: &[u8]) -> Option<(u8, Command)> {
         3 => Command::Stop,
         4 => go_to(fields.flag()?, false, &mut fields)?,
         12 => go_to(fields.flag()?, fields.flag()?, &mut fields)?,
-        11 => Command::Spiral {
-            is_sideways: fields.flag()?,
-            is_clockwise: fields.flag()?,
-            angle: number(&mut fields)?,
-            radii: (number(&mut fields)?, number(&mut fields)?),
-            ascent: number(&mut fields)?,
-            duration: number(&mut fields)?,
-        },
         5 => start(fields.flag()?, false, &mut fields)?,
         13 => start(fields.flag()?, fields.flag()?, &mut fields)?,
         _ => return None,

@@ -64,7 +64,9 @@ pub fn localised(packet: &Packet, number: u8, settings: &Settings, report: Optio
     Some(Localised::Pose(Pose::new(position, still, turned).map(|pose| {
         let measured = PoseMeasurement::new(&pose);
         match (attitude, settings.position_deviation, settings.attitude_deviation) {
-            (Some(_), position, attitude) if position > 0.0 && attitude > 0.0 => measured.deviations(position, attitude),
+            (Some(_), position, attitude) if position > 0.0 && attitude > 0.0 => {
+                measured.deviations(position, attitude)
+            }
             (Some(_), ..) => measured,
             (None, position, _) if position > 0.0 => measured.deviations(position, ATTITUDE_UNKNOWN_RAD),
             (None, ..) => measured.deviations(POSITION_DEVIATION_M, ATTITUDE_UNKNOWN_RAD),

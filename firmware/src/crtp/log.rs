@@ -24,6 +24,7 @@ mod variables;
 
 /// Blocks at a time, and variables in all of them.
 pub const BLOCKS_MAX: usize = 16;
+/// See [`BLOCKS_MAX`].
 pub const ENTRIES_MAX: usize = 128;
 
 /// Data of a block: what its number and the time leave.
@@ -51,8 +52,7 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 8] =
-        [Self::U8, Self::U16, Self::U32, Self::I8, Self::I16, Self::I32, Self::Float, Self::Half];
+    const ALL: [Self; 8] = [Self::U8, Self::U16, Self::U32, Self::I8, Self::I16, Self::I32, Self::Float, Self::Half];
 
     fn read(byte: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| *kind as u8 == byte & 0xF)

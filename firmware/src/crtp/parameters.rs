@@ -73,13 +73,8 @@ pub struct Settings {
 
 impl Settings {
     /// As at boot.
-    pub const DEFAULT: Self = Self {
-        group: 0.0,
-        take_off_speed: 0.5,
-        landing_speed: 0.5,
-        position_deviation: 0.0,
-        attitude_deviation: 0.0,
-    };
+    pub const DEFAULT: Self =
+        Self { group: 0.0, take_off_speed: 0.5, landing_speed: 0.5, position_deviation: 0.0, attitude_deviation: 0.0 };
 
     fn place(&mut self, kept: Kept) -> &mut f32 {
         match kept {
@@ -220,9 +215,8 @@ impl<'a, M: RawMutex> Desk<'a, M> {
         let answer = answer.with(&[0]).with(names.get(..group.len() + name.len() + 2)?);
         fields = Fields::new(rest);
         let kind = fields.u8()?;
-        let is_it = |((_, its_group, its_name), _): &(Entry, Use)| {
-            (its_group.as_bytes(), its_name.as_bytes()) == (group, name)
-        };
+        let is_it =
+            |((_, its_group, its_name), _): &(Entry, Use)| (its_group.as_bytes(), its_name.as_bytes()) == (group, name);
         let error = match (0..Settable::COUNT).filter_map(entry).find(is_it) {
             None => NOT_THERE,
             Some(((its_kind, ..), _)) if its_kind & !CANNOT_BE_SET != kind => INVALID,

@@ -20,7 +20,7 @@ pub const COEFFICIENTS: usize = 8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial(pub [f32; COEFFICIENTS]);
 
-/// A value with its first two derivatives by time.
+/// A value with its first four derivatives by time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moving {
     /// The value.
@@ -29,6 +29,48 @@ pub struct Moving {
     pub rate: f32,
     /// And that one's.
     pub acceleration: f32,
+    /// The third.
+    pub jerk: f32,
+    /// The fourth.
+    pub snap: f32,
+}
+
+impl Moving {
+    /// Of a value that moves, and nothing known beyond its acceleration.
+    pub const fn new(value: f32, rate: f32, acceleration: f32) -> Self {
+        Self { value, rate, acceleration, jerk: 0.0, snap: 0.0 }
+    }
+
+    /// At rest.
+    pub const fn resting(value: f32) -> Self {
+        Self::new(value, 0.0, 0.0)
+    }
+
+    /// The same as time passes `rate` times as fast, backwards if that is negative.
+    #[must_use]
+    pub fn paced(self, rate: f32) -> Self {
+        let square = rate * rate;
+        Self {
+            value: self.value,
+            rate: self.rate * rate,
+            acceleration: self.acceleration * square,
+            jerk: self.jerk * square * rate,
+            snap: self.snap * square * square,
+        }
+    }
+
+    /// This much of it and that much of another.
+    #[must_use]
+    pub fn mixed(&self, share: f32, other: &Self, others: f32) -> Self {
+        let mix = |one: f32, two: f32| share * one + others * two;
+        Self {
+            value: mix(self.value, other.value),
+            rate: mix(self.rate, other.rate),
+            acceleration: mix(self.acceleration, other.acceleration),
+            jerk: mix(self.jerk, other.jerk),
+            snap: mix(self.snap, other.snap),
+        }
+    }
 }
 
 impl Polynomial {
@@ -57,6 +99,8 @@ impl Polynomial {
     pub fn at(&self, time: f32) -> Moving {
         // Horner's rule, and its derivatives.
         self.0.iter().rev().fold(Moving::default(), |sum, coefficient| Moving {
+            snap: sum.snap * time + 4.0 * sum.jerk,
+            jerk: sum.jerk * time + 3.0 * sum.acceleration,
             acceleration: sum.acceleration * time + 2.0 * sum.rate,
             rate: sum.rate * time + sum.value,
             value: sum.value * time + coefficient,
@@ -76,8 +120,7 @@ pub struct Point {
 impl Point {
     /// At rest.
     pub fn resting(position: &Vector3<f32>, yaw: f32) -> Self {
-        let rest = |value| Moving { value, ..Moving::default() };
-        Self { axes: [position.x, position.y, position.z].map(rest), yaw: rest(yaw) }
+        Self { axes: [position.x, position.y, position.z].map(Moving::resting), yaw: Moving::resting(yaw) }
     }
 
     /// m.
@@ -117,7 +160,7 @@ impl Segment {
     pub fn to_rest(from: &Point, goal: &Vector3<f32>, yaw: f32, duration: f32) -> Self {
         let [x, y, z] = from.axes;
         let to = |axis: Moving, goal| Polynomial::to_rest(&axis, goal, duration);
-        let yaw = Polynomial::to_rest(&from.yaw, nearest(yaw, from.yaw.value), duration);
+        let yaw = to(from.yaw, nearest(yaw, from.yaw.value));
         Self { axes: [to(x, goal.x), to(y, goal.y), to(z, goal.z)], yaw, duration }
     }
 
@@ -125,8 +168,15 @@ impl Segment {
     pub fn straight(from: &Point, goal: &Vector3<f32>, yaw: f32, duration: f32) -> Self {
         let [x, y, z] = from.axes;
         let to = |axis: Moving, goal| Polynomial::straight(axis.value, goal, duration);
-        let yaw = Polynomial::straight(from.yaw.value, nearest(yaw, from.yaw.value), duration);
+        let yaw = to(from.yaw, nearest(yaw, from.yaw.value));
         Self { axes: [to(x, goal.x), to(y, goal.y), to(z, goal.z)], yaw, duration }
+    }
+
+    /// From the same beginning to rest at the same end, within another duration, s.
+    #[must_use]
+    pub fn within(&self, duration: f32) -> Self {
+        let end = self.at(self.duration);
+        Self::to_rest(&self.at(0.0), &end.position(), end.yaw.value, duration)
     }
 
     /// Whether every number is finite.
@@ -146,7 +196,13 @@ impl Segment {
 /// The same angle, rad, as close to another as whole turns bring it.
 fn nearest(angle: f32, other: f32) -> f32 {
     let apart = (angle - other) % TAU;
-    let apart = if apart > PI { apart - TAU } else if apart < -PI { apart + TAU } else { apart };
+    let apart = if apart > PI {
+        apart - TAU
+    } else if apart < -PI {
+        apart + TAU
+    } else {
+        apart
+    };
     other + apart
 }
 

@@ -194,7 +194,11 @@ impl<'a, M: RawMutex> Session<'a, M> {
             Some((_, command)) => self.flying.command(&command, &self.desk.settings, now),
         };
         if let Err(error) = result {
-            self.warn(format_args!("Command {} refused: {}", packet.data().first().unwrap_or(&0), errors::words(error)));
+            self.warn(format_args!(
+                "Command {} refused: {}",
+                packet.data().first().unwrap_or(&0),
+                errors::words(error)
+            ));
         }
         // Three bytes of the command, whether it has as many or not.
         let said = [0, 1, 2].map(|place| packet.data().get(place).copied().unwrap_or(0));
@@ -218,8 +222,7 @@ impl<'a, M: RawMutex> Session<'a, M> {
             return;
         }
         let heard = shared.pose_protocol().get();
-        let is_second =
-            heard.is_some_and(|heard| heard.value != Protocol::Crtp && heard.age(now) <= SOURCE_TIMEOUT_US);
+        let is_second = heard.is_some_and(|heard| heard.value != Protocol::Crtp && heard.age(now) <= SOURCE_TIMEOUT_US);
         let value = match pose {
             _ if is_second => return self.warn(format_args!("Pose refused: {}", PoseRefusal::SecondSource)),
             Err(error) => return self.warn(format_args!("Pose refused: {error}")),

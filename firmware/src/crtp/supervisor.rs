@@ -16,12 +16,16 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// The number of the question for all bits, and what is added to a question's number in its answer.
 pub const ALL_BITS: u8 = 12;
+/// See [`ALL_BITS`].
 pub const ANSWERED: u8 = 0x80;
 
-/// Commands on channel 1.
+/// Commands on channel 1: arm, or disarm.
 pub const ARM: u8 = 1;
+/// The inspection after a crash is over.
 pub const RECOVER: u8 = 2;
+/// Stop the motors.
 pub const EMERGENCY_STOP: u8 = 3;
+/// Stop them unless this comes again in time.
 pub const FEED_WATCHDOG: u8 = 4;
 
 /// The cosine of the lean from which on a vehicle lies on its side.

@@ -22,6 +22,7 @@ use crate::recorder::Recorder;
 use crate::recorder::follow::{Followed, Follower};
 use crate::recorder::gyro::{Block, GyroLog};
 use crate::recorder::tick::Tick;
+use controller_core::governor::GovernorLimits;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use embassy_sync::signal::Signal;
 use flight::{FlightSettings, Stamped};
@@ -83,13 +84,12 @@ offers! {
     [M: RawMutex] Read<'_, Parameters<M>> {
         fn get(name: Name) -> f32;
         fn flight_settings() -> FlightSettings;
+        fn governor_limits() -> GovernorLimits;
         fn lost() -> Option<&'static str>;
     }
     [M: RawMutex] Write<'_, Parameters<M>> {
         fn set(name: Name, value: f32) -> Result<(), ValueRefusal>;
-        fn set_again();
         fn get(name: Name) -> f32;
-        fn flight_settings() -> FlightSettings;
     }
     [M: RawMutex] Read<'_, Mission<M>> { fn item(number: u16) -> Option<Item>; }
     [M: RawMutex] Write<'_, Mission<M>> {

@@ -4,12 +4,12 @@
 //! counter-clockwise from x. A float that is not known is NaN, a whole number then 0.
 
 use super::Kind;
+use crate::crtp::quaternion::packed;
 use crate::esc::controller::RotorSpeeds;
 use crate::shared::Report;
+use crate::status::{Euler, euler};
 use controller_core::reference::Reference;
 use controller_core::state::State;
-use crate::crtp::quaternion::packed;
-use crate::status::{Euler, euler};
 use flight::ImuSample;
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 
