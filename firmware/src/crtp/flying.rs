@@ -1,9 +1,10 @@
 //! What a client has flown: a stream of its setpoints, or the path of one of its commands.
 //!
 //! Both go to the governor as setpoints of one sender, and so within the certified bounds, however far or fast they
-//! are. A path is flown by the vehicle's clock: a governor that cannot follow it comes later, to the same place. A
-//! stream takes over from a path, and a command from a stream. Whatever else ends the flight of setpoints (a landing, a
-//! failure, another client) ends the path.
+//! are. A command that leaves a vehicle the time it needs is flown by the clock. One that does not becomes a place to go
+//! to, as fast as the bounds allow, which are proven for that and not for haste; a trajectory takes as much longer as it
+//! needs. A stream takes over from a path, and a command from a stream. Whatever else ends the flight of setpoints (a
+//! landing, a failure, another client) ends the path.
 
 use super::errors::{BUSY, INVALID, NOT_THERE};
 use super::high_level::{Command, Pace, Vertical};
@@ -14,7 +15,8 @@ use super::pieces::Pieces;
 use super::polynomial::{Moving, Point, Segment};
 use super::setpoint::Streamed;
 use crate::shared::{CrtpView, Event, QueuedRequest, Report, Severity};
-use controller_core::governor::Setpoint;
+use controller_core::governor::{HeadingSetpoint, Motion, Setpoint};
+use controller_core::reference::Reference;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use flight::{Mode, Request, SETPOINT_AGE_MAX_US, Stamped};
 use nalgebra::{RealField, Vector3};
@@ -32,20 +34,28 @@ const BEGINNING_MAX_US: u64 = 500_000;
 const DURATION_MIN_S: f32 = 0.1;
 const DURATION_MAX_S: f32 = 3_600.0;
 
-/// How often a path is slowed until it fits.
-const REPLANNED_MAX: u32 = 8;
-
 /// How many times as long as it was uploaded a trajectory may take, and how many times as short.
 const TIMESCALE_MAX: f32 = 100.0;
 
-/// A path under way.
+/// How long a vehicle is led at rest before it is led by the clock: the governor follows what moves as it is sent once it
+/// has caught up with it.
+const LEAD_IN_US: u64 = 2_000_000;
+
+/// How near its end a reference is there, m, and how slow it is then, m/s.
+const ARRIVED_M: f32 = 0.01;
+const ARRIVED_M_PER_S: f32 = 0.02;
+
+/// A path under way. Behind its end the vehicle is led at rest.
 #[derive(Debug, Clone, Copy)]
 struct Begun {
     path: Path,
-    /// us.
-    began: u64,
+    /// When the command came, us, and when the path begins.
+    asked: u64,
+    begins: u64,
     /// Whether the vehicle lands at its end.
     lands: bool,
+    /// When that was reached, us.
+    over: Option<u64>,
 }
 
 /// What is flown.
@@ -54,7 +64,7 @@ pub struct Flying<'a, M: RawMutex> {
     /// Trajectories.
     pub pieces: Pieces,
     path: Option<Begun>,
-    /// Whether the last path was flown to its end.
+    /// Whether the last path was flown to its end, and none began since.
     is_over: bool,
     /// When the last setpoint of a stream came, us.
     streamed: Option<u64>,
@@ -68,12 +78,12 @@ impl<'a, M: RawMutex> Flying<'a, M> {
 
     /// Whether a path is flown (false) or was, to its end (true).
     pub fn path(&self) -> Option<bool> {
-        if self.path.is_some() { Some(false) } else { self.is_over.then_some(true) }
+        if self.path.is_some_and(|begun| begun.over.is_none()) { Some(false) } else { self.is_over.then_some(true) }
     }
 
     /// Whether pieces in memory are flown.
     pub fn flies_pieces(&self) -> bool {
-        self.path.is_some_and(|begun| matches!(begun.path, Path::Pieces(_)))
+        self.path.is_some_and(|begun| begun.over.is_none() && matches!(begun.path, Path::Pieces(_)))
     }
 
     /// When the next setpoint of a path is due, us.
@@ -153,12 +163,55 @@ impl<'a, M: RawMutex> Flying<'a, M> {
             Command::SetGroup(_) => return Ok(()),
             _ => self.planned(command, settings)?,
         };
-        let path = self.within_limits(path)?;
-        let Some(first) = path.at(0.0, &self.pieces) else { return Err(INVALID) };
+        let is_led = self.path.is_some() && self.is_flown();
+        let (path, begins) = self.paced(path, is_led, now)?;
+        let first = path.at(0.0, &self.pieces).ok_or(INVALID)?;
         (self.streamed, self.is_over) = (None, false);
-        self.path = Some(Begun { path, began: now, lands });
-        self.put(&first.setpoint(false), true, now);
+        self.path = Some(Begun { path, asked: now, begins, lands, over: None });
+        self.put(&setpoint(&path, &first.at_rest()), !is_led, now);
         Ok(())
+    }
+
+    /// A path as the vehicle can fly it, and when it begins, us.
+    fn paced(&self, path: Path, is_led: bool, now: u64) -> Result<(Path, u64), u8> {
+        let asked = path.duration().unwrap_or(0.0);
+        let slower = self.limits()?.slower(&path, &self.pieces).ok_or(INVALID)?;
+        let is_in_time = slower <= 1.0;
+        if !is_in_time {
+            let words = format_args!("{asked:.1} s is too short: as fast as certified");
+            self.shared.announce(Event::new(Severity::Information, words));
+        }
+        // Since when it has been led by the clock, or at rest.
+        let since = match self.path.filter(|_| is_led) {
+            Some(Begun { path: Path::Place(..), over, .. }) => over,
+            Some(begun) => Some(begun.begins),
+            None => None,
+        };
+        let rests = since.is_none() && self.report().is_some_and(|report| !report.is_airborne || is_resting(&report));
+        match path {
+            Path::Segment(segment) if !is_in_time || since.is_none() && !rests => {
+                let end = segment.at(segment.duration);
+                Ok((Path::Place(end.position(), end.yaw.value), now))
+            }
+            Path::Pieces(along) => {
+                let path = Path::Pieces(Along { timescale: along.timescale * slower, ..along });
+                Ok((path, begins(since, now)))
+            }
+            path => Ok((path, begins(since, now))),
+        }
+    }
+
+    fn limits(&self) -> Result<Limits, u8> {
+        let Some(Stamped { value: Ok(certified), .. }) = self.shared.verdict().get() else { return Err(BUSY) };
+        let governor = self.shared.parameters().governor_limits();
+        let speeds = [governor.horizontal_speed, governor.vertical_speed];
+        Ok(Limits { bounds: *certified.configuration().bounds(), speeds })
+    }
+
+    /// Whether its setpoints are flown.
+    fn is_flown(&self) -> bool {
+        self.report().is_some_and(|report| report.mode == Mode::Flying)
+            && self.shared.setpoint_owner().get() == Some(SENDER)
     }
 
     /// The path of a command from where the vehicle is now, and whether the vehicle lands at its end.
@@ -194,29 +247,6 @@ impl<'a, M: RawMutex> Flying<'a, M> {
         })
     }
 
-    /// The path as slow as the vehicle's limits need it; says so if that is slower than was asked for.
-    fn within_limits(&self, path: Path) -> Result<Path, u8> {
-        let Some(Stamped { value: Ok(certified), .. }) = self.shared.verdict().get() else { return Err(BUSY) };
-        let governor = self.shared.parameters().governor_limits();
-        let speeds = [governor.horizontal_speed, governor.vertical_speed];
-        let limits = Limits { bounds: *certified.configuration().bounds(), speeds };
-        let mut granted = path;
-        // Where it begins in motion, slower is another path: looked at again, a few times.
-        for _ in 0..REPLANNED_MAX {
-            let slower = limits.slower(&granted, &self.pieces).ok_or(INVALID)?;
-            if slower <= 1.0 {
-                break;
-            }
-            granted = granted.slowed(slower);
-        }
-        if granted != path {
-            let (asked, granted) = (path.duration(), granted.duration());
-            let words = format_args!("Flown in {granted:.1} s: {asked:.1} s would be too fast");
-            self.shared.announce(Event::new(Severity::Information, words));
-        }
-        Ok(granted)
-    }
-
     /// Where a path begins: where the vehicle is led now, or else where it is; none while it is not armed.
     fn here(&self) -> Option<Point> {
         let report = self.report().filter(|report| report.mode.is_armed())?;
@@ -235,27 +265,60 @@ impl<'a, M: RawMutex> Flying<'a, M> {
     /// Leads the vehicle along its path at `now`, us.
     pub fn lead(&mut self, now: u64) {
         let Some(begun) = self.path else { return };
-        let is_flown = self.report().is_some_and(|report| report.mode == Mode::Flying)
-            && self.shared.setpoint_owner().get() == Some(SENDER);
-        let time = Stamped { value: (), time: begun.began }.age(now);
-        if !is_flown && time > BEGINNING_MAX_US {
+        let is_flown = self.is_flown();
+        if !is_flown && now.saturating_sub(begun.asked) > BEGINNING_MAX_US {
             self.path = None;
             return;
         }
-        let time = time as f32 * 1e-6;
-        let is_last = time >= begun.path.duration();
+        let time = now.saturating_sub(begun.begins) as f32 * 1e-6;
         let Some(point) = begun.path.at(time, &self.pieces) else {
             self.path = None;
             return;
         };
-        self.put(&point.setpoint(is_last), false, now);
-        if is_last && is_flown {
-            (self.path, self.is_over) = (None, true);
+        let is_there = match begun.path.duration() {
+            Some(duration) => time >= duration,
+            None => self.report().is_some_and(|report| is_flown && has_arrived(&report, &point.position())),
+        };
+        let led = match begun.over {
+            Some(_) => point.at_rest().setpoint(),
+            None if is_there || now < begun.begins => setpoint(&begun.path, &point.at_rest()),
+            None => setpoint(&begun.path, &point),
+        };
+        self.put(&led, false, now);
+        if is_there && begun.over.is_none() {
+            self.is_over = true;
+            self.path = Some(Begun { over: Some(now), ..begun });
             if begun.lands {
                 self.request(Request::Land);
             }
         }
     }
+}
+
+/// The setpoint of a point of a path: a place is gone to, along another the vehicle is led.
+fn setpoint(path: &Path, point: &Point) -> Setpoint {
+    match path {
+        Path::Place(place, yaw) => {
+            Setpoint { motion: Motion::Position(*place), turn: HeadingSetpoint::Angle { angle: *yaw, rate: 0.0 } }
+        }
+        Path::Segment(_) | Path::Pieces(_) => point.setpoint(),
+    }
+}
+
+/// When a path begins for a vehicle that has been led since then, us, if it has.
+fn begins(since: Option<u64>, now: u64) -> u64 {
+    since.unwrap_or(now).saturating_add(LEAD_IN_US).max(now)
+}
+
+/// Whether a reference is at rest.
+fn is_resting(report: &Report) -> bool {
+    report.reference.is_none_or(|reference| reference.velocity.norm_squared() < ARRIVED_M_PER_S * ARRIVED_M_PER_S)
+}
+
+/// Whether it is at rest at a place, m.
+fn has_arrived(report: &Report, place: &Vector3<f32>) -> bool {
+    let is_near = |reference: Reference| (reference.position - place).norm_squared() < ARRIVED_M * ARRIVED_M;
+    report.reference.is_some_and(is_near) && is_resting(report)
 }
 
 /// A duration that is granted, s.
@@ -277,6 +340,3 @@ fn vertically(here: &Point, vertical: &Vertical, speed: f32) -> Result<Path, u8>
     let goal = Vector3::new(place.x, place.y, height);
     Ok(Path::Segment(Segment::to_rest(here, &goal, yaw, granted(duration)?)))
 }
-
-#[cfg(test)]
-mod tests;

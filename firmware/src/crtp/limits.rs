@@ -10,8 +10,9 @@ use super::polynomial::Point;
 use controller_core::math;
 use controller_core::reference::ReferenceBounds;
 
-/// The share of the bounds that a path may use: the rest is for what the governor adds while it catches up.
-const SHARE: f32 = 0.9;
+/// How many times as slow as the bounds need it a path is: the rest is for the governor's feedback, which follows one
+/// like that as it is sent.
+const ROOM: f32 = 1.1;
 
 /// Time between the places that are looked at, s, and how many there are at most.
 const INTERVAL_S: f32 = 0.05;
@@ -60,6 +61,7 @@ impl Peaks {
     /// Whether all of it is within the limits, so many times as slow.
     fn fits(&self, limits: &Limits, slower: f32) -> bool {
         let Limits { bounds, speeds: [across, vertical] } = limits;
+        let slower = slower / ROOM;
         let (square, cube) = (slower * slower, slower * slower * slower);
         let [speed, climb] = self.speeds;
         let [acceleration, lift] = self.accelerations;
@@ -74,7 +76,7 @@ impl Peaks {
             (self.turning_acceleration / square, bounds.heading_second_derivative),
         ]
         .iter()
-        .all(|(peak, bound)| *peak <= SHARE * bound)
+        .all(|(peak, bound)| peak <= bound)
     }
 }
 
@@ -83,14 +85,18 @@ fn greater([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
 }
 
 impl Limits {
-    /// How many times as slow a path has to be, in steps of a twentieth; none where a hundred times is not enough, or
-    /// its pieces are gone.
+    /// How many times as slow a path has to be, in steps of a twentieth; none where a hundred times is not enough, its
+    /// numbers are not finite, or its pieces are gone.
     pub fn slower(&self, path: &Path, pieces: &Pieces) -> Option<f32> {
-        let duration = path.duration();
+        let duration = path.duration()?;
         let count = ((duration / INTERVAL_S) as u32).clamp(20, PLACES_MAX);
         let mut peaks = Peaks::default();
         for place in 0..=count {
-            peaks = peaks.with(&path.at(duration * place as f32 / count as f32, pieces)?);
+            let point = path.at(duration * place as f32 / count as f32, pieces)?;
+            if !point.is_finite() {
+                return None;
+            }
+            peaks = peaks.with(&point);
         }
         let mut slower = 1.0;
         while !peaks.fits(self, slower) {
@@ -102,3 +108,6 @@ impl Limits {
         Some(slower)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,7 +8,9 @@ use nalgebra::Vector3;
 /// A path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Path {
-    /// To rest at a place.
+    /// To rest at a place, m, with a yaw, rad, as fast as the governor goes.
+    Place(Vector3<f32>, f32),
+    /// To rest at a place within a time.
     Segment(Segment),
     /// Along pieces in memory.
     Pieces(Along),
@@ -49,27 +51,20 @@ impl Along {
 }
 
 impl Path {
-    /// How long it takes, s.
-    pub fn duration(&self) -> f32 {
+    /// How long it takes, s; none where the governor knows.
+    pub fn duration(&self) -> Option<f32> {
         match self {
-            Self::Segment(segment) => segment.duration,
-            Self::Pieces(along) => along.length * along.timescale,
-        }
-    }
-
-    /// The same way, so many times as long.
-    #[must_use]
-    pub fn slowed(&self, slower: f32) -> Self {
-        match *self {
-            Self::Segment(segment) => Self::Segment(segment.within(segment.duration * slower)),
-            Self::Pieces(along) => Self::Pieces(Along { timescale: along.timescale * slower, ..along }),
+            Self::Place(..) => None,
+            Self::Segment(segment) => Some(segment.duration),
+            Self::Pieces(along) => Some(along.length * along.timescale),
         }
     }
 
     /// Where it is at `time`, s, and not beyond its end; none where its pieces are gone.
     pub fn at(&self, time: f32, pieces: &Pieces) -> Option<Point> {
-        let time = time.clamp(0.0, self.duration());
+        let time = time.clamp(0.0, self.duration().unwrap_or(0.0));
         match self {
+            Self::Place(place, yaw) => Some(Point::resting(place, *yaw)),
             Self::Segment(segment) => Some(segment.at(time)),
             Self::Pieces(along) => along.at(time, pieces),
         }

@@ -128,15 +128,24 @@ impl Point {
         self.axes.map(|axis| axis.value).into()
     }
 
-    /// For the governor: a point that moves, or one to go to and to rest at.
-    pub fn setpoint(&self, is_last: bool) -> Setpoint {
-        let position = self.position();
-        if is_last {
-            let turn = HeadingSetpoint::Angle { angle: self.yaw.value, rate: 0.0 };
-            return Setpoint { motion: Motion::Position(position), turn };
-        }
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        let [x, y, z] = &self.axes;
+        [x, y, z, &self.yaw].iter().all(|axis| {
+            [axis.value, axis.rate, axis.acceleration, axis.jerk, axis.snap].iter().all(|number| number.is_finite())
+        })
+    }
+
+    /// There, and not moving.
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        Self::resting(&self.position(), self.yaw.value)
+    }
+
+    /// For the governor.
+    pub fn setpoint(&self) -> Setpoint {
         let motion = Motion::PositionVelocityAcceleration {
-            position,
+            position: self.position(),
             velocity: self.axes.map(|axis| axis.rate).into(),
             acceleration: self.axes.map(|axis| axis.acceleration).into(),
         };
@@ -170,13 +179,6 @@ impl Segment {
         let to = |axis: Moving, goal| Polynomial::straight(axis.value, goal, duration);
         let yaw = to(from.yaw, nearest(yaw, from.yaw.value));
         Self { axes: [to(x, goal.x), to(y, goal.y), to(z, goal.z)], yaw, duration }
-    }
-
-    /// From the same beginning to rest at the same end, within another duration, s.
-    #[must_use]
-    pub fn within(&self, duration: f32) -> Self {
-        let end = self.at(self.duration);
-        Self::to_rest(&self.at(0.0), &end.position(), end.yaw.value, duration)
     }
 
     /// Whether every number is finite.
