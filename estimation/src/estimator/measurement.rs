@@ -16,6 +16,10 @@ pub struct PoseMeasurement {
     pub(super) deviations: Option<(f32, f32)>,
     /// Whether the sender reports failed tracking.
     pub(super) failed: bool,
+    /// Whether it was rounded to millimetres on its way.
+    pub(super) is_rounded: bool,
+    /// Whether its sender gave a place alone.
+    pub(super) is_place: bool,
     /// Counts the times that the sender's frame has moved.
     pub(super) resets: u8,
 }
@@ -24,7 +28,16 @@ impl PoseMeasurement {
     /// Position and attitude of `pose`, with deviations as in the settings, from a frame that never moved.
     pub fn new(pose: &Pose) -> Self {
         let (position, attitude) = (pose.position(), pose.attitude());
-        Self { position, attitude, velocity: None, deviations: None, failed: false, resets: 0 }
+        Self {
+            position,
+            attitude,
+            velocity: None,
+            deviations: None,
+            failed: false,
+            is_rounded: false,
+            is_place: false,
+            resets: 0,
+        }
     }
 
     /// p, m, world.
@@ -61,14 +74,27 @@ impl PoseMeasurement {
         Self { failed: quality < 0, ..self }
     }
 
+    /// The same, of a sender that gives a place alone, so exactly (m): its attitude is the receiver's own, worth so much
+    /// (rad).
+    #[must_use]
+    pub fn place(self, position: f32, attitude: f32) -> Self {
+        Self { is_place: true, ..self.deviations(position, attitude) }
+    }
+
+    /// The same, rounded to millimetres on its way: standing still is less suspicious then.
+    #[must_use]
+    pub fn rounded(self) -> Self {
+        Self { is_rounded: true, ..self }
+    }
+
     /// The same with MAVLink's reset counter.
     #[must_use]
     pub fn reset_counter(self, resets: u8) -> Self {
         Self { resets, ..self }
     }
 
-    /// Whether its values equal those of `other`, to the last bit.
+    /// Whether what its sender gave equals what that of `other` gave, to the last bit.
     pub(super) fn is_identical(&self, other: &Self) -> bool {
-        self.position == other.position && self.attitude == other.attitude
+        self.position == other.position && (self.attitude == other.attitude || self.is_place)
     }
 }

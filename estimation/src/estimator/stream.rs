@@ -7,7 +7,7 @@
 //!   meanwhile. A simulated vehicle that stands still may send such poses for ever; a camera never does. In the air the
 //!   least of the IMU's noise is motion enough: a vehicle that hovers well hardly moves, and poses that stand still
 //!   would be believed while it drifts away. What counted as motion in the air only says nothing about a vehicle that
-//!   has come to stand since.
+//!   has come to stand since. Poses that were rounded on their way may be the same [`ROUNDED_IDENTICAL_MAX`] times.
 
 use super::measurement::PoseMeasurement;
 use super::verdict::Rejected;
@@ -19,6 +19,9 @@ const STAMPS_KEPT: usize = 32;
 
 /// Poses in a row that may be the same.
 pub const IDENTICAL_MAX: u16 = 9;
+
+/// And if they were rounded, to millimetres: a second of them at 100 Hz.
+pub const ROUNDED_IDENTICAL_MAX: u16 = 99;
 
 /// Increments that must have moved for identical poses to be frozen ones: a single one may be a knock against the
 /// table.
@@ -56,9 +59,10 @@ impl Stream {
         }
         self.remember(pose.time)?;
         self.compare(pose);
+        let identical_max = if pose.value.is_rounded { ROUNDED_IDENTICAL_MAX } else { IDENTICAL_MAX };
         if pose.value.failed {
             Err(Rejected::Quality)
-        } else if self.identical >= IDENTICAL_MAX && self.moved >= MOVED_MIN {
+        } else if self.identical >= identical_max && self.moved >= MOVED_MIN {
             Err(Rejected::Frozen)
         } else {
             Ok(())

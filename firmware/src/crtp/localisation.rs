@@ -43,6 +43,7 @@ pub enum Localised {
 /// What a packet brings to the vehicle with this number; none where it says nothing of it.
 pub fn localised(packet: &Packet, number: u8, settings: &Settings, report: Option<&Report>) -> Option<Localised> {
     let mut fields = Fields::new(packet.data());
+    let mut is_rounded = false;
     let (position, attitude) = match packet.channel {
         0 => (fields.vector()?, None),
         1 => match fields.u8()? {
@@ -53,23 +54,28 @@ pub fn localised(packet: &Packet, number: u8, settings: &Settings, report: Optio
                 let (x, y, z, w) = (fields.f32()?, fields.f32()?, fields.f32()?, fields.f32()?);
                 (position, Some(Quaternion::new(w, x, y, z)))
             }
-            9 => own(&mut fields, number, |fields| Some((fields.thousandths()?, Some(fields.quaternion()?))))?,
+            9 => {
+                is_rounded = true;
+                own(&mut fields, number, |fields| Some((fields.thousandths()?, Some(fields.quaternion()?))))?
+            }
             _ => return None,
         },
-        2 => own(&mut fields, number, |fields| Some((fields.thousandths()?, None)))?,
+        2 => {
+            is_rounded = true;
+            own(&mut fields, number, |fields| Some((fields.thousandths()?, None)))?
+        }
         _ => return None,
     };
     let still = Velocity::World(Vector3::zeros());
     let turned = attitude.unwrap_or_else(|| presumed(report));
     Some(Localised::Pose(Pose::new(position, still, turned).map(|pose| {
         let measured = PoseMeasurement::new(&pose);
-        match (attitude, settings.position_deviation, settings.attitude_deviation) {
-            (Some(_), position, attitude) if position > 0.0 && attitude > 0.0 => {
-                measured.deviations(position, attitude)
-            }
-            (Some(_), ..) => measured,
-            (None, position, _) if position > 0.0 => measured.deviations(position, ATTITUDE_UNKNOWN_RAD),
-            (None, ..) => measured.deviations(POSITION_DEVIATION_M, ATTITUDE_UNKNOWN_RAD),
+        let measured = if is_rounded { measured.rounded() } else { measured };
+        let Settings { position_deviation: exact, attitude_deviation: turn, .. } = *settings;
+        match attitude {
+            Some(_) if exact > 0.0 && turn > 0.0 => measured.deviations(exact, turn),
+            Some(_) => measured,
+            None => measured.place(if exact > 0.0 { exact } else { POSITION_DEVIATION_M }, ATTITUDE_UNKNOWN_RAD),
         }
     })))
 }

@@ -22,3 +22,7 @@ pub const SUPERVISOR: u8 = 9;
 pub const PLATFORM: u8 = 13;
 /// The link itself.
 pub const LINK: u8 = 15;
+
+/// Every port on which a vehicle listens.
+pub const ALL: [u8; 10] =
+    [PARAMETERS, COMMANDER, MEMORY, LOG, LOCALISATION, SETPOINT, HIGH_LEVEL, SUPERVISOR, PLATFORM, LINK];

@@ -113,6 +113,9 @@ impl<'a, M: RawMutex> Session<'a, M> {
         if (packet.port, packet.channel) == NOTHING {
             return self.send(Some(packet.clone()));
         }
+        if !ports::ALL.contains(&packet.port) {
+            return;
+        }
         self.heard = Some(now);
         self.shared.has_console().raise();
         self.shared.ground_station().put((), now);

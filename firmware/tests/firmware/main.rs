@@ -9,6 +9,7 @@ mod card;
 mod card_cuts;
 mod card_link;
 mod control;
+mod crtp;
 mod embedded;
 mod guards;
 mod hil_answers;

@@ -1,10 +1,12 @@
 //! Clients that speak CRTP: a packet in each datagram, as cflib's driver for simulations has it.
 //!
-//! One client at a time: the address that sent last is answered. A datagram of one byte without meaning, with which
-//! clients look for vehicles, is answered where it came from, and the client that there is stays. What is no packet is
-//! dropped.
+//! One client at a time. Another one is heard once the first has been silent for `CLIENT_TIMEOUT`, or at once where it
+//! asks what clients ask first, what the vehicle is: that begins a connection. A datagram of one byte without meaning,
+//! with which clients look for vehicles, is answered where it came from, and the client that there is stays. What is no
+//! packet is dropped.
 
 use firmware::crtp::packet::{DATA_MAX_BYTES, Packet, ReceivePackets, SendPackets};
+use firmware::crtp::ports;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::future::poll_fn;
@@ -12,12 +14,16 @@ use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::rc::Rc;
 use std::task::{Poll, Waker};
+use std::time::{Duration, Instant};
 
 /// The address at which cflib looks first; it looks at nine more ports behind it.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:19850";
 
 /// What a client sends that looks for vehicles.
 const PROBE: [u8; 1] = [0xFF];
+
+/// How long a client is silent until another is heard.
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A flood must not stop time.
 const DATAGRAMS_AT_ONCE_MAX: usize = 64;
@@ -32,7 +38,8 @@ pub struct CrtpPort(Rc<RefCell<Inner>>);
 #[derive(Debug)]
 struct Inner {
     socket: UdpSocket,
-    client: Option<SocketAddr>,
+    /// The client, and when it last sent.
+    client: Option<(SocketAddr, Instant)>,
     waiting: VecDeque<Packet>,
     reader: Option<Waker>,
     /// Whether nothing gets through.
@@ -76,8 +83,8 @@ impl CrtpPort {
                 }
                 Ok((count, from)) => {
                     let packet = Packet::from_bytes(&datagram[..count]).filter(|_| !is_silent);
-                    if let Some(packet) = packet.filter(|_| inner.waiting.len() < WAITING_MAX) {
-                        inner.client = Some(from);
+                    if let Some(packet) = packet.filter(|packet| inner.hears(packet, from)) {
+                        inner.client = Some((from, Instant::now()));
                         inner.waiting.push_back(packet);
                     }
                 }
@@ -89,6 +96,15 @@ impl CrtpPort {
         if !inner.waiting.is_empty() {
             inner.reader.take().into_iter().for_each(Waker::wake);
         }
+    }
+}
+
+impl Inner {
+    /// Whether a packet from an address is the client's, or begins a connection; and whether there is room for it.
+    fn hears(&self, packet: &Packet, from: SocketAddr) -> bool {
+        let begins = matches!((packet.port, packet.channel), (ports::LINK, 1) | (ports::PLATFORM, 1));
+        let is_free = self.client.is_none_or(|(client, last)| client == from || last.elapsed() > CLIENT_TIMEOUT);
+        (is_free || begins) && self.waiting.len() < WAITING_MAX
     }
 }
 
@@ -111,7 +127,7 @@ impl ReceivePackets for CrtpPort {
 impl SendPackets for CrtpPort {
     async fn send(&mut self, packet: &Packet) {
         let inner = self.0.borrow();
-        if let Some(client) = inner.client.filter(|_| !inner.is_silent) {
+        if let Some((client, _)) = inner.client.filter(|_| !inner.is_silent) {
             // What does not go out is lost, as on any radio.
             let _ = inner.socket.send_to(&packet.to_bytes(), client);
         }
@@ -123,7 +139,6 @@ mod tests {
     use super::*;
     use futures::FutureExt;
     use std::net::Ipv4Addr;
-    use std::time::Duration;
 
     /// A client on a port that the system chooses.
     fn client() -> UdpSocket {
@@ -164,16 +179,23 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_packet_is_dropped_and_the_next_client_takes_over() {
+    fn what_is_no_packet_is_dropped_and_the_next_client_takes_over_by_asking_who_is_there() {
         let ((mut port, address), first, second) = (port(), client(), client());
         first.send_to(&[0x20; 32], address).unwrap();
         first.send_to(&[], address).unwrap();
         first.send_to(&[0x20; 31], address).unwrap();
         assert_eq!(taken(&mut port), [Packet::new(2, 0).with(&[0x20; 30])]);
         second.send_to(&[0x50], address).unwrap();
-        assert_eq!(taken(&mut port), [Packet::new(5, 0)]);
+        assert_eq!(taken(&mut port), []);
+        second.send_to(&[0xF1], address).unwrap();
+        second.send_to(&[0x50], address).unwrap();
+        assert_eq!(taken(&mut port), [Packet::new(15, 1), Packet::new(5, 0)]);
         port.send(&Packet::new(5, 0)).now_or_never().unwrap();
         assert_eq!(received(&second), [0x5C]);
+        // And without a word, once it has been silent.
+        std::thread::sleep(CLIENT_TIMEOUT);
+        first.send_to(&[0x50], address).unwrap();
+        assert_eq!(taken(&mut port), [Packet::new(5, 0)]);
     }
 
     #[test]

@@ -45,6 +45,30 @@ fn a_failed_tracking_is_no_pose() {
 }
 
 #[test]
+fn rounded_poses_may_be_identical_for_a_second() {
+    let mut stream = Stream::EMPTY;
+    for n in 0..200_u64 {
+        stream.note(true);
+        let Stamped { value, time } = pose(1.0, n * 10_000);
+        let expected = if n >= u64::from(ROUNDED_IDENTICAL_MAX) { Err(Rejected::Frozen) } else { Ok(()) };
+        assert_eq!(stream.admit(&Stamped { value: value.rounded(), time }, time), expected, "{n}");
+    }
+}
+
+#[test]
+fn a_place_that_stands_still_is_frozen_whatever_attitude_goes_with_it() {
+    let mut stream = Stream::EMPTY;
+    for n in 0..20_u64 {
+        stream.note(true);
+        let mut stamped = pose(1.0, n * 10_000);
+        stamped.value.attitude.i += n as f32 * 1e-3;
+        stamped.value = stamped.value.place(0.01, 1.0);
+        let expected = if n >= u64::from(IDENTICAL_MAX) { Err(Rejected::Frozen) } else { Ok(()) };
+        assert_eq!(stream.admit(&stamped, stamped.time), expected, "{n}");
+    }
+}
+
+#[test]
 fn identical_poses_are_frozen_once_the_vehicle_has_moved() {
     for (moves, frozen) in [(false, false), (true, true)] {
         let mut stream = Stream::EMPTY;
