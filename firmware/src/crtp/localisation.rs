@@ -96,5 +96,5 @@ fn own<T>(fields: &mut Fields<'_>, number: u8, mut read: impl FnMut(&mut Fields<
 fn presumed(report: Option<&Report>) -> Quaternion<f32> {
     let known = report.and_then(|report| report.state.map(|state| state.attitude));
     let leaning = report.and_then(|report| report.lean).map(|lean| lean.attitude);
-    known.or(leaning).unwrap_or_else(|| Quaternion::identity())
+    known.or(leaning).unwrap_or_else(Quaternion::identity)
 }

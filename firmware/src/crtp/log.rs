@@ -15,11 +15,12 @@ use super::errors::{ALREADY_THERE, NOT_THERE, TOO_LARGE, TOO_MANY, UNKNOWN_COMMA
 use super::fields::Fields;
 use super::packet::{DATA_MAX_BYTES, Packet};
 use super::ports;
-use half::f16;
 use heapless::Vec;
+use kind::Kind;
 pub use variables::View;
 use variables::{VARIABLES, Variable};
 
+mod kind;
 mod variables;
 
 /// Blocks at a time, and variables in all of them.
@@ -36,51 +37,6 @@ const PERIOD_MIN_US: u64 = 10_000;
 /// Channels.
 const CONTROL: u8 = 1;
 const DATA: u8 = 2;
-
-/// Kinds of numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-enum Kind {
-    U8 = 1,
-    U16,
-    U32,
-    I8,
-    I16,
-    I32,
-    Float,
-    Half,
-}
-
-impl Kind {
-    const ALL: [Self; 8] = [Self::U8, Self::U16, Self::U32, Self::I8, Self::I16, Self::I32, Self::Float, Self::Half];
-
-    fn read(byte: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as u8 == byte & 0xF)
-    }
-
-    /// Bytes.
-    const fn size(self) -> usize {
-        match self {
-            Self::U8 | Self::I8 => 1,
-            Self::U16 | Self::I16 | Self::Half => 2,
-            Self::U32 | Self::I32 | Self::Float => 4,
-        }
-    }
-
-    /// The packet with a value behind it.
-    fn write(self, packet: Packet, value: f64) -> Packet {
-        match self {
-            Self::U8 => packet.with(&(value as u8).to_le_bytes()),
-            Self::U16 => packet.with(&(value as u16).to_le_bytes()),
-            Self::U32 => packet.with(&(value as u32).to_le_bytes()),
-            Self::I8 => packet.with(&(value as i8).to_le_bytes()),
-            Self::I16 => packet.with(&(value as i16).to_le_bytes()),
-            Self::I32 => packet.with(&(value as i32).to_le_bytes()),
-            Self::Float => packet.with(&(value as f32).to_le_bytes()),
-            Self::Half => packet.with(&f16::from_f64(value).to_le_bytes()),
-        }
-    }
-}
 
 /// What there is to log.
 pub struct Variables;

@@ -3,7 +3,7 @@
 //! World: x east, y north, z up, as the law's; angles in degrees, roll to the right, pitch with the nose up, yaw
 //! counter-clockwise from x. A float that is not known is NaN, a whole number then 0.
 
-use super::Kind;
+use super::kind::Kind;
 use crate::crtp::quaternion::packed;
 use crate::esc::controller::RotorSpeeds;
 use crate::shared::Report;

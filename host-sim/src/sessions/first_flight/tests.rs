@@ -54,6 +54,7 @@ impl Desk {
             let session = SitlSession {
                 file: "a file".to_owned(),
                 ports,
+                crtp: None,
                 speed: 1.0,
                 duration: None,
                 poses: PoseSource::Camera,

@@ -45,6 +45,7 @@ impl Flown {
         let session = SitlSession {
             file: "a file".to_owned(),
             ports,
+            crtp: None,
             speed: 1.0,
             duration: None,
             poses,
