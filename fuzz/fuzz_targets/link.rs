@@ -95,7 +95,7 @@ fn built() -> &'static Built {
     BUILT.get_or_init(|| {
         let configuration = firmware::configuration::embedded().unwrap();
         let (motor, period) = (firmware::configuration::MOTOR, firmware::configuration::PERIOD_US);
-        Built { configuration, motor, loops, identity: 7, period }
+        Built { configuration, motor, loops, identity: 7, period, follows_rotors: false }
     })
 }
 
@@ -106,10 +106,10 @@ fn named(set: &mut PARAM_SET_DATA, choice: u8) {
     }
     let row = &PARAMETERS[usize::from(choice) % PARAMETERS.len()];
     let part = f32::from(set.param_value.to_bits() as u8) / 255.0;
-    let above = part * (row.most - row.least);
+    let above = part * (row.max - row.min);
     let above = if row.step > 0.0 { (above / row.step).round() * row.step } else { above };
     *set = PARAM_SET_DATA {
-        param_value: row.least + above,
+        param_value: row.min + above,
         param_id: row.name.into(),
         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
         ..set.clone()

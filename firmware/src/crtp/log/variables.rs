@@ -165,8 +165,9 @@ variables! {
         "varPY": |view| variance(view),
         "varPZ": |view| variance(view),
     }
+    // 0 where it is not measured: clients count with a number.
     "pm" Float {
-        "vbat": |view| known(view.voltage),
+        "vbat": |view| f64::from(view.voltage.unwrap_or(0.0)),
     }
     "pm" U16 {
         "vbatMV": |view| 1e3 * known(view.voltage),
