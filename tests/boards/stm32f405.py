@@ -23,8 +23,8 @@ PARAMETERS = 0x080C_0000
 # Table 42: what a stream listens to, by its channel.
 _REQUESTS = {(1, 3): "TIM2_UP", (3, 0): "SPI2_RX", (4, 0): "SPI2_TX", (5, 4): "USART2_RX", (6, 4): "USART2_TX",
              (7, 3): "TIM2_UP"}
-# And table 43, of the second controller. On channel 0 the requests of two more channels, which are off, come with it.
-_REQUESTS_2 = {(1, 7): "TIM8_UP", (2, 7): "TIM8_CH1", (2, 0): "TIM8_CH1"}
+# And table 43, of the second controller.
+_REQUESTS_2 = {(1, 7): "TIM8_UP", (3, 7): "TIM8_CH2"}
 
 
 class _Clocks(ResetAndClocks):

@@ -26,7 +26,7 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
-    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH1, DMA2_CH2, TIM2, TIM8, USART2, USART3, USB_OTG_FS,
+    DMA1_CH1, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH1, DMA2_CH3, TIM2, TIM8, USART2, USART3, USB_OTG_FS,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::usart::{BufferedUart, Uart};
@@ -44,7 +44,7 @@ bind_interrupts!(
         DMA1_STREAM5 => Errors<DMA1_CH5>, dma::InterruptHandler<DMA1_CH5>;
         DMA1_STREAM6 => Errors<DMA1_CH6>, dma::InterruptHandler<DMA1_CH6>;
         DMA2_STREAM1 => Errors<DMA2_CH1>, dma::InterruptHandler<DMA2_CH1>;
-        DMA2_STREAM2 => Errors<DMA2_CH2>, dma::InterruptHandler<DMA2_CH2>;
+        DMA2_STREAM3 => Errors<DMA2_CH3>, dma::InterruptHandler<DMA2_CH3>;
         EXTI15_10 => Stamps, exti::InterruptHandler<interrupt::typelevel::EXTI15_10>;
         OTG_FS => embassy_stm32::usb::InterruptHandler<USB_OTG_FS>;
         USART2 => usart::InterruptHandler<USART2>;
@@ -95,7 +95,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
     let lines = [Line::direct(p.PA1), Line::direct(p.PB11), Line::direct(p.PA15), Line::direct(p.PB10)].map(Some);
     let outputs = OnTimer::new(p.TIM2, lines, p.DMA1_CH1, Interrupts);
     let ears = Ears::on_a_port(p.TIM8, MOTOR_PINS, pac::GPIOA, p.DMA2_CH1, Interrupts);
-    let motors = Dshot::new(outputs, ears.and(pac::GPIOB, p.DMA2_CH2, Interrupts));
+    let motors = Dshot::new(outputs, ears.and(pac::GPIOB, p.DMA2_CH3, Interrupts));
     // The controllers have power for as long as these are held: for ever.
     forget([
         Output::new(p.PA0, Level::High, Speed::Low),
