@@ -109,6 +109,8 @@ views! {
     PortView = for_port;
     /// What the [radio](crate::radio)'s task may do.
     RadioView = for_radio;
+    /// What the [line](crate::syslink) to a radio chip may do.
+    PacketRadioView = for_packet_radio;
     /// What the memory [card](crate::card)'s task may do.
     CardView = for_card;
     /// What the [status](crate::status) task may do.
@@ -225,7 +227,7 @@ values! {
     /// What may be set from the ground.
     pub parameters: Parameters<M> {
         All: BootView, StorageView; Write: ImuView, ReceiveView;
-        Read: ControlView, SimulatorView, MotorsView, TransmitView, StatusView, CardView
+        Read: ControlView, SimulatorView, MotorsView, TransmitView, PacketRadioView, StatusView, CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView }
@@ -258,6 +260,7 @@ offers! {
     }
     [M: RawMutex] TransmitView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
     [M: RawMutex] RadioView<'_, M> { fn request(asked: QueuedRequest); }
+    [M: RawMutex] PacketRadioView<'_, M> { fn is_armed() -> bool; }
     [M: RawMutex] ImuView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
     [M: RawMutex] StatusView<'_, M> { fn is_armed() -> bool; }
     [M: RawMutex] PortView<'_, M> { fn is_turning() -> bool; }

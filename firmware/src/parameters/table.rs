@@ -183,6 +183,14 @@ parameters! {
     MotorProtocol: row("MOT_DSHOT", [0.0, 2.0], 0.0, "", 1.0);
     /// The motors' magnetic poles. Taken over at once.
     MotorPoles: row("MOT_POLES", [2.0, 60.0], 14.0, "", 2.0);
+    /// The channel of a radio that carries packets, above 2,400 MHz. This row and the next two are taken over at the
+    /// next boot.
+    RadioChannel: row("RADIO_CHAN", [0.0, 125.0], 80.0, "MHz", 1.0);
+    /// Its data rate: 0 250 kbit/s; 1 1 Mbit/s; 2 2 Mbit/s.
+    RadioDataRate: row("RADIO_RATE", [0.0, 2.0], 2.0, "", 1.0);
+    // A value holds 24 bits, an address 40.
+    /// The last byte of its address, whose other four are 0xE7: 231 is 0xE7 as well.
+    RadioAddress: row("RADIO_ADDR", [0.0, 255.0], 231.0, "", 1.0);
 }
 
 impl Name {

@@ -42,4 +42,5 @@ mod repeat;
 mod restart;
 mod status;
 mod support;
+mod syslink;
 mod tuned;
