@@ -32,6 +32,7 @@
 //! | [`shared`] | the values that tasks exchange, each with its time, and which task may write and read it |
 //! | [`spi`] | devices on a bus that several may share |
 //! | [`status`] | a light, the battery, the log |
+//! | [`syslink`] | the line to a chip that carries packets over the radio and measures the battery |
 //! | `words` | enumerations in words |
 //!
 //! The tasks are plain `async fn`s, generic over a board's peripherals; `boards::stm32::tasks` and `src/bin/mps2.rs`
@@ -75,6 +76,7 @@ pub mod shared;
 pub mod spi;
 pub mod status;
 pub mod stop_sequence;
+pub mod syslink;
 mod words;
 
 #[cfg(test)]

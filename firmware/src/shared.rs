@@ -115,6 +115,8 @@ views! {
     PortView = for_port;
     /// What the [radio](crate::radio)'s task may do.
     RadioView = for_radio;
+    /// What the [line](crate::syslink) to a radio chip may do.
+    PacketRadioView = for_packet_radio;
     /// What the memory [card](crate::card)'s task may do.
     CardView = for_card;
     /// What the [status](crate::status) task may do.
@@ -243,7 +245,8 @@ values! {
     /// What may be set from the ground.
     pub parameters: Parameters<M> {
         All: BootView, StorageView; Write: ImuView;
-        Read: ControlView, SimulatorView, MotorsView, ReceiveView, TransmitView, CrtpView, StatusView, CardView
+        Read: ControlView, SimulatorView, MotorsView, ReceiveView, TransmitView, CrtpView, PacketRadioView, StatusView,
+            CardView
     }
     /// The link's signing. Its key is set with [`Values::set_signing`].
     pub signing: Signing<M> { All: StorageView; Read: ControlView, ReceiveView, TransmitView, CrtpView }
@@ -283,6 +286,7 @@ offers! {
         fn is_armed() -> bool;
     }
     [M: RawMutex] RadioView<'_, M> { fn request(asked: QueuedRequest); }
+    [M: RawMutex] PacketRadioView<'_, M> { fn is_armed() -> bool; }
     [M: RawMutex] ImuView<'_, M> { fn reply(reply: Reply); fn is_armed() -> bool; }
     [M: RawMutex] StatusView<'_, M> { fn is_armed() -> bool; }
     [M: RawMutex] PortView<'_, M> { fn is_turning() -> bool; }

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from card import Card
 from chip import Chip
 from escs import INTERVAL_MAX_NS, Escs, Output
+from radio import RadioChip
 from schedule import NS_PER_MS, Schedule
 from sensors.bmi088 import Accelerometer, Gyroscope
 from sensors.bmi270 import Bmi270
@@ -48,6 +49,8 @@ class Wires:
     battery_counts: int | None = None
     # Whether a memory card is in its slot: of the two boards that have one, one flies with it and one without.
     has_card: bool = False
+    # The line to its radio chip, where it has one.
+    radio: str | None = None
 
 
 MICOAIR = Wires(
@@ -93,8 +96,9 @@ BOLT = Wires(
     motors=(Output("TIM2", 2, False, "A1", 1), Output("TIM2", 4, False, "B11", 1),
             Output("TIM2", 1, False, "A15", 1), Output("TIM2", 3, False, "B10", 1)),
     link="USART2",
-    functions={"B13": 5, "B14": 5, "B15": 5, "A2": 7, "A3": 7},
+    functions={"B13": 5, "B14": 5, "B15": 5, "A2": 7, "A3": 7, "C6": 8, "C7": 8},
     levels={"A0": 1, "B12": 1, "C8": 1, "C15": 1},
+    radio="USART6",
 )
 BOARDS = {"micoair": MICOAIR, "matek": MATEK, "bolt": BOLT}
 
@@ -112,6 +116,8 @@ class Board:
         self._selects = {sensor.select: sensor for sensor in self.sensors}
         chip.on_pin = self._pin
         self.link = chip.uarts[self.wires.link]
+        radio = self.wires.radio
+        self.radio = None if radio is None else RadioChip(chip.uarts[radio], chip.core.schedule)
         if self.wires.battery_counts is not None:
             chip.converter.counts = self.wires.battery_counts
         if self.wires.has_card:
@@ -193,6 +199,8 @@ class Board:
             wrong.append(f"{self.escs.longest_interval_ns / 1e6:.2f} ms between two frames")
         if abs(self.link.baud / 921_600 - 1) > 0.02:
             wrong.append(f"{self.link.baud:.0f} baud")
+        if self.radio is not None:
+            wrong += self.radio.complaints()
         if self.chip.watchdog.longest_wait_ns > 30 * NS_PER_MS:
             wrong.append(f"{self.chip.watchdog.longest_wait_ns / 1e6:.1f} ms between two feeds of the watchdog")
         return wrong

@@ -1,6 +1,6 @@
 """A timer whose events have DMA copy a port's pins to memory: what the firmware hears of the motors' controllers by.
 
-The update event has one stream copy, and the first compare event another, half a period later.
+The update event has one stream copy, and the second compare event another, half a period later.
 """
 
 from collections import Counter
@@ -14,7 +14,8 @@ from schedule import NS_PER_S
 from timers import ARR, CCR1, CR1, DIER, PSC
 
 # What asks for a transfer, and its enabling bit in DIER.
-_EVENTS = {"UP": 1 << 8, "CH1": 1 << 9}
+_EVENTS = {"UP": 1 << 8, "CH2": 1 << 10}
+_CCR2 = CCR1 + 4
 
 
 class SamplingTimer(Peripheral):
@@ -54,7 +55,7 @@ class SamplingTimer(Peripheral):
                 if event == "UP":
                     self.wrong["no stream waits for its updates"] += 1
                 continue
-            first_ns = self.core.schedule.now + (period_ns if event == "UP" else self.values.get(CCR1, 0) * tick_ns)
+            first_ns = self.core.schedule.now + (period_ns if event == "UP" else self.values.get(_CCR2, 0) * tick_ns)
             last_ns = first_ns + (stream.count - 1) * period_ns
             self.core.schedule.at(round(last_ns), self._sampled, stream, first_ns, period_ns, self._generation)
 

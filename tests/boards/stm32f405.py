@@ -1,5 +1,5 @@
 """The STM32F405RG (RM0090): where its peripherals are, at the clocks that the firmware sets (168 MHz for the core, 84
-and 168 MHz for timers, 42 MHz for serial lines and the sensor).
+and 168 MHz for timers, 42 MHz for serial lines and the sensor, 84 MHz for the radio chip's).
 """
 
 from unicorn import arm_const as arm
@@ -23,8 +23,8 @@ PARAMETERS = 0x080C_0000
 # Table 42: what a stream listens to, by its channel.
 _REQUESTS = {(1, 3): "TIM2_UP", (3, 0): "SPI2_RX", (4, 0): "SPI2_TX", (5, 4): "USART2_RX", (6, 4): "USART2_TX",
              (7, 3): "TIM2_UP"}
-# And table 43, of the second controller. On channel 0 the requests of two more channels, which are off, come with it.
-_REQUESTS_2 = {(1, 7): "TIM8_UP", (2, 7): "TIM8_CH1", (2, 0): "TIM8_CH1"}
+# And table 43, of the second controller.
+_REQUESTS_2 = {(1, 7): "TIM8_UP", (2, 5): "USART6_RX", (3, 7): "TIM8_CH2", (7, 5): "USART6_TX"}
 
 
 class _Clocks(ResetAndClocks):
@@ -38,7 +38,7 @@ class _Clocks(ResetAndClocks):
         0x10: {**{bit: f"GPIO{'ABCDEFGHI'[bit]}" for bit in range(9)}, 21: "DMA1", 22: "DMA2"},
         0x14: {7: "OTG_FS"},
         0x20: {0: "TIM2", 3: "TIM5", 14: "SPI2", 17: "USART2", 18: "USART3"},
-        0x24: {1: "TIM8", 14: "SYSCFG"},
+        0x24: {1: "TIM8", 5: "USART6", 14: "SYSCFG"},
     }
 
     def read(self, offset: int) -> int:
@@ -83,6 +83,9 @@ class Stm32F405(Chip):
         self.spis["SPI2"] = self.add(MasterV1("SPI2", 0x4000_3800, core, self.dma[0], _SERIAL_HZ))
         for name, base, interrupt in (("USART2", 0x4000_4400, 38), ("USART3", 0x4000_4800, 39)):
             self.uarts[name] = self.add(UartV1(name, base, core, self.dma[0], _SERIAL_HZ, interrupt))
+        # On the faster bus.
+        line = UartV1("USART6", 0x4001_1400, core, self.dma[1], 2 * _SERIAL_HZ, 71)
+        self.uarts["USART6"] = self.add(line)
         made = lambda pulses: self.on_pulses(pulses)  # noqa: E731
         timer = PulseTimer("TIM2", 0x4000_0000, core, self.dma[0], _TIMER_HZ, False, made)
         self.pulse_timers["TIM2"] = self.add(timer)

@@ -3,6 +3,7 @@
 //!
 //! ArduPilot has motors 3 and 4 on TIM5, which is the scheduler's here; the same pins are TIM2's as well.
 
+use super::stm32::absent::NoPacketRadio;
 use super::stm32::battery::DividedBattery;
 use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
@@ -14,7 +15,7 @@ use super::stm32::imu::{self, BoardIcm42688, Bus, SLOW_EDGES, SharedBus};
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
-use super::stm32::restart;
+use super::stm32::started;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
 use super::stm32::usb;
@@ -26,6 +27,7 @@ use crate::redundant::Redundant;
 use core::mem::forget;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
+use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA1_CH7, DMA2_CH0, DMA2_CH1, SDMMC1, TIM2,
@@ -100,6 +102,12 @@ pub type BoardBattery = DividedBattery;
 /// The slot for a memory card.
 pub type BoardCard = CardSlot;
 
+/// There is no chip that carries packets over a radio.
+pub type BoardPacketRadio = NoPacketRadio;
+
+/// No bootloader looks at a line.
+pub const BOOT_LINE: Option<(Gpio, usize)> = None;
+
 /// What it is called.
 pub const NAME: &str = "Matek H743";
 
@@ -108,8 +116,8 @@ pub const NAME: &str = "Matek H743";
 /// # Panics
 /// The second time, and where a clock makes no 921,600 or 420,000 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
-    let restart = restart::cause();
+pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard, BoardPacketRadio> {
+    let restart = started::cause();
     let (p, has_crystal) = chip::start();
 
     // The motors first: their lines float until here.
@@ -165,6 +173,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         simulator_receiver,
         simulator_transmitter,
         radio: Some(radio),
+        packet_radio: None,
         card: Some(CardSlot::new(card)),
         storage: ParameterFlash::new(p.FLASH),
         has_crystal,

@@ -1,6 +1,7 @@
 //! MicoAir H743 V2: STM32H743VI (Cortex-M7), BMI088 and BMI270, TIM1 for the motors, USART1 for the link,
 //! SDMMC1 for the log.
 
+use super::stm32::absent::NoPacketRadio;
 use super::stm32::battery::DividedBattery;
 use super::stm32::board::Board;
 use super::stm32::card::{self, CardSlot};
@@ -12,7 +13,7 @@ use super::stm32::imu::{self, BoardBmi088, BoardBmi270, Bus, FAST_EDGES, SharedB
 use super::stm32::light::Lamp;
 use super::stm32::link;
 use super::stm32::motors::{Dshot, Line, OnTimer};
-use super::stm32::restart;
+use super::stm32::started;
 use super::stm32::storage::ParameterFlash;
 use super::stm32::transfers::Errors;
 use super::stm32::usb;
@@ -24,6 +25,7 @@ use crate::mounting::Mounting;
 use crate::redundant::Redundant;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
+use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::peripherals::{
     DMA1_CH0, DMA1_CH1, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA1_CH6, DMA2_CH0, SDMMC1, TIM1, TIM4, USART1, USART2,
@@ -92,6 +94,12 @@ pub type BoardBattery = DividedBattery;
 /// The slot for a memory card.
 pub type BoardCard = CardSlot;
 
+/// There is no chip that carries packets over a radio.
+pub type BoardPacketRadio = NoPacketRadio;
+
+/// No bootloader looks at a line.
+pub const BOOT_LINE: Option<(Gpio, usize)> = None;
+
 /// What it is called.
 pub const NAME: &str = "MicoAir H743 V2";
 
@@ -100,8 +108,8 @@ pub const NAME: &str = "MicoAir H743 V2";
 /// # Panics
 /// The second time, and where a clock makes no 921,600 or 420,000 baud.
 #[must_use]
-pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
-    let restart = restart::cause();
+pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard, BoardPacketRadio> {
+    let restart = started::cause();
     let (p, has_crystal) = chip::start();
 
     // The motors first: their lines float until here.
@@ -152,6 +160,7 @@ pub fn take() -> Board<BoardImu, BoardMotors, BoardBattery, BoardCard> {
         simulator_receiver,
         simulator_transmitter,
         radio: Some(radio),
+        packet_radio: None,
         card: Some(CardSlot::new(card)),
         storage: ParameterFlash::new(p.FLASH),
         has_crystal,

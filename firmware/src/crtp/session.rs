@@ -110,10 +110,7 @@ impl<'a, M: RawMutex> Session<'a, M> {
 
     /// Acts on a packet that came at `now`, us.
     pub fn take(&mut self, packet: &Packet, now: u64) {
-        if (packet.port, packet.channel) == NOTHING {
-            return self.send(Some(packet.clone()));
-        }
-        if !ports::ALL.contains(&packet.port) {
+        if (packet.port, packet.channel) == NOTHING || !ports::ALL.contains(&packet.port) {
             return;
         }
         self.heard = Some(now);

@@ -100,17 +100,21 @@ fn a_transfer_error_is_taken_away_before_the_handler_that_panics_at_it() {
 fn an_edge_is_stamped_before_the_handler_that_ends_it() {
     for board in boards() {
         let source = source(&board);
-        let bound: Vec<_> = source.lines().filter(|line| line.contains("exti::InterruptHandler<")).collect();
-        assert!(!bound.is_empty(), "{board}");
-        for line in bound {
-            assert!(line.contains("=> Stamps, exti::InterruptHandler<"), "{board}: {line}");
-        }
+        let stamped: Vec<_> = source.split("StampedPin { pin: ExtiInput::new(p.P").skip(1).collect();
+        assert!(!stamped.is_empty(), "{board}");
         // A pin's line is its number in its port, and the channel's.
-        for pin in source.split("ExtiInput::new(p.P").skip(1) {
+        for pin in stamped {
             let number = |text: &str| text.chars().take_while(char::is_ascii_digit).collect::<String>();
             let port = number(&pin[1..]);
             let numbers = ["p.EXTI", "line: "].map(|mark| pin.split(mark).nth(1).map(number));
-            assert_eq!(numbers, [Some(port.clone()), Some(port)], "{board}");
+            assert_eq!(numbers, [Some(port.clone()), Some(port.clone())], "{board}");
+            let interrupt = match port.parse::<u8>().unwrap() {
+                line @ 0..5 => format!("EXTI{line}"),
+                5..10 => "EXTI9_5".to_owned(),
+                _ => "EXTI15_10".to_owned(),
+            };
+            let is_stamped = source.contains(&format!("{interrupt} => Stamps, exti::InterruptHandler<"));
+            assert!(is_stamped, "{board}: {interrupt}");
         }
     }
 }

@@ -473,7 +473,7 @@ fn a_trajectory_is_uploaded_read_back_and_flown_but_not_changed_meanwhile() {
 fn who_is_there_is_told_and_a_probe_is_no_client() {
     let shared = Local::new();
     let mut client = Client::new(&shared);
-    assert!(client.ask(15, 3, &[]).is_empty());
+    assert!(client.send(15, 3, &[]).is_empty() && client.send(1, 0, &[0]).is_empty());
     assert!(shared.ground_station.get().is_none() && !shared.has_console.is_raised());
     assert_eq!(client.ask(15, 0, &[1, 2, 3]), [1, 2, 3]);
     assert_eq!(client.ask(15, 1, &[0]), b"Bitcraze Crazyflie");

@@ -43,4 +43,5 @@ mod repeat;
 mod restart;
 mod status;
 mod support;
+mod syslink;
 mod tuned;

@@ -1,6 +1,7 @@
 //! What a board may lack.
 
-use crate::hardware::{Battery, Card, Fault, SECTOR_BYTES};
+use super::packet_radio::PacketRadio;
+use crate::hardware::{Card, Fault, SECTOR_BYTES};
 
 /// The slot that there is not.
 pub enum NoCard {}
@@ -23,11 +24,11 @@ impl Card for NoCard {
     }
 }
 
-/// Nothing measures the battery.
-pub struct NoBattery;
+/// The radio chip that there is not. The image has no code for it.
+pub enum NoPacketRadio {}
 
-impl Battery for NoBattery {
-    async fn voltage(&mut self) -> Option<f32> {
-        None
+impl From<NoPacketRadio> for PacketRadio {
+    fn from(none: NoPacketRadio) -> Self {
+        match none {}
     }
 }

@@ -8,7 +8,7 @@ use super::usb::Controller;
 use super::watchdog::ChipWatchdog;
 
 /// Everything on the board, each part ready for the task that will own it.
-pub struct Board<Imu, Motors, Battery, Card> {
+pub struct Board<Imu, Motors, Battery, Card, PacketRadio> {
     /// The inertial sensors, each powered up at its first sample.
     pub imu: Imu,
     /// The motors, silent.
@@ -31,6 +31,8 @@ pub struct Board<Imu, Motors, Battery, Card> {
     pub simulator_transmitter: SimulatorTransmitter,
     /// Bytes from a radio's receiver, where the board has a line for it.
     pub radio: Option<RadioReceiver>,
+    /// The chip that carries packets over the radio, where the board has one.
+    pub packet_radio: Option<PacketRadio>,
     /// The slot for a memory card, where the board has one.
     pub card: Option<Card>,
     /// Where parameters live.

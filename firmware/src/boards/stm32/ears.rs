@@ -4,7 +4,7 @@
 //! a while, pulled up, and a timer has DMA copy the port's pins to memory, [`SAMPLES_PER_BIT`] times in a bit of the
 //! answer; then the timer's channel drives the pin again. So any pin will do, on whichever channel its frames come out,
 //! complementary outputs too, which cannot capture. Pins on two ports take two streams, at the timer's update and at
-//! its first compare event, half a sample later.
+//! its second compare event, half a sample later. (The Bolt needs the first one's stream for its radio chip.)
 //!
 //! Modes of pins are changed by reading and writing a register that a port's pins share. Nothing but this changes one
 //! once the tasks run.
@@ -27,10 +27,13 @@ use embassy_stm32::pac::gpio::vals::{Moder, Pupdr};
 use embassy_stm32::pac::timer::TimGp16;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{RoundTo, Timer};
-use embassy_stm32::timer::{Ch1, Dma, GeneralInstance4Channel, UpDma};
+use embassy_stm32::timer::{Ch2, Dma, GeneralInstance4Channel, UpDma};
 
 /// The longest it may take; it takes 107 us.
 const LISTENING_TIMEOUT_US: u64 = 200;
+
+/// The channel whose compare event has the second port's pins copied, from 0.
+const COMPARE: usize = 1;
 
 /// A motor's pin: its port, and its number there.
 #[derive(Clone, Copy)]
@@ -95,15 +98,15 @@ impl<T: GeneralInstance4Channel> Ears<T> {
         let timer = Timer::new(timer);
         timer.set_frequency(Hertz(SAMPLE_RATE_HZ), RoundTo::Slower);
         let registers = timer.regs_gp16();
-        registers.ccr(0).write(|w| w.set_ccr(registers.arr().read().arr() / 2));
+        registers.ccr(COMPARE).write(|w| w.set_ccr(registers.arr().read().arr() / 2));
         let request = dma.request();
         let channel = Channel::new(dma, interrupts);
         Self { timer, pins, first: Ear { port, channel, request, samples: [0; SAMPLE_COUNT] }, second: None }
     }
 
-    /// And for those on a second one; `dma` is the timer's first compare request.
+    /// And for those on a second one; `dma` is the timer's second compare request.
     #[must_use]
-    pub fn and<D: Dma<T, Ch1>>(
+    pub fn and<D: Dma<T, Ch2>>(
         mut self,
         port: Gpio,
         dma: Peri<'static, D>,
@@ -162,7 +165,7 @@ impl Listening {
         timer.sr().write(|w| w.0 = 0);
         timer.dier().modify(|w| {
             w.set_ude(true);
-            w.set_ccde(0, true);
+            w.set_ccde(COMPARE, true);
         });
         release(&pins);
         Self(timer, pins)
@@ -174,7 +177,7 @@ impl Drop for Listening {
         self.0.cr1().modify(|w| w.set_cen(false));
         self.0.dier().modify(|w| {
             w.set_ude(false);
-            w.set_ccde(0, false);
+            w.set_ccde(COMPARE, false);
         });
         drive(&self.1);
     }

@@ -32,6 +32,7 @@
 use super::chip::{FRAME_PAUSE_CYCLES, WATCHDOG};
 use super::ears::{drive, release};
 use super::motors::{protocol, rest};
+use super::restart::restart;
 use crate::boards::chosen::{MOTOR_PINS, MOTOR_TIMERS};
 use crate::boards::fault::Fault;
 use crate::boards::kept;
@@ -40,7 +41,7 @@ use crate::hardware::MOTOR_COUNT;
 use crate::last_words::LastWords;
 use crate::stop_sequence::{STOP_FRAMES_AFTER, STOP_FRAMES_BEFORE, StopSequence};
 use core::panic::PanicInfo;
-use cortex_m::peripheral::{SCB, SYST};
+use cortex_m::peripheral::SYST;
 use cortex_m_rt::exception;
 use embassy_stm32::pac::iwdg::vals::Key;
 use embassy_stm32::pac::timer::TimGp16;
@@ -81,7 +82,7 @@ fn end(words: impl FnOnce() -> LastWords) -> ! {
         kept::keep(&words);
         defmt::error!("{=str}", words.as_str());
     });
-    SCB::sys_reset()
+    restart()
 }
 
 /// Sends so many stop frames to every motor and leaves the lines low; takes as long where their timers do not run.

@@ -10,6 +10,7 @@ use super::clock::SystemClock;
 use super::executors::{CONTROL, SENSOR, SERVICES};
 use super::light::Lamp;
 use super::link::{RadioReceiver, Receiver, SimulatorReceiver, SimulatorTransmitter, Transmitter};
+use super::packet_radio::{self, PacketRadio};
 use super::restart::Chip;
 use super::storage::ParameterFlash;
 use super::usb::{Controller, Device, PortReceiver, PortTransmitter, Usb, UsbPort};
@@ -29,10 +30,11 @@ use crate::recorder::gyro::{BLOCK_BYTES, Block};
 use crate::recorder::ring::Ring;
 use crate::repeat::{self, Repeater};
 use crate::shared::{
-    self, CardView, ControlView, Event, ImuView, MotorsView, PortView, RadioView, ReceiveView, RestartView, Severity,
-    SimulatorView, StatusView, StorageView, TransmitView,
+    self, CardView, ControlView, CrtpView, Event, ImuView, MotorsView, PacketRadioView, PortView, RadioView,
+    ReceiveView, RestartView, Severity, SimulatorView, StatusView, StorageView, TransmitView,
 };
-use crate::{boot, card, configuration, imu, link, radio, status};
+use crate::syslink::{self, Wire};
+use crate::{boot, card, configuration, crtp, imu, link, radio, status};
 use embassy_executor::{Executor, Spawner};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -115,6 +117,10 @@ pub fn run() -> ! {
     spawner.spawn(simulated_motors(shared.for_simulator(), hil, board.simulator_transmitter).unwrap());
     if let Some(radio) = board.radio {
         spawner.spawn(listen(shared.for_radio(), radio).unwrap());
+    }
+    if let Some(radio) = packet_radio::present(board.packet_radio) {
+        spawner.spawn(answer_packets(shared.for_crtp(), radio.wire).unwrap());
+        spawner.spawn(carry_packets(shared.for_packet_radio(), radio).unwrap());
     }
     spawner.spawn(show(shared.for_status(), board.light, board.battery).unwrap());
     spawner.spawn(keep(shared.for_storage(), parameters).unwrap());
@@ -206,6 +212,17 @@ async fn simulated_motors(shared: SimulatorView<'static, Raw>, hil: &'static Hil
 #[embassy_executor::task]
 async fn listen(shared: RadioView<'static, Raw>, line: RadioReceiver) {
     radio::receive(line, &SystemClock, shared).await;
+}
+
+#[embassy_executor::task]
+async fn carry_packets(shared: PacketRadioView<'static, Raw>, radio: PacketRadio) {
+    let PacketRadio { receiver, transmitter, stop, wire } = radio;
+    syslink::run((receiver, transmitter), stop, &SystemClock, wire, shared).await;
+}
+
+#[embassy_executor::task]
+async fn answer_packets(shared: CrtpView<'static, Raw>, wire: &'static Wire<Raw>) {
+    crtp::task::run(wire.receiver(), wire.sender(), &SystemClock, shared).await;
 }
 
 #[embassy_executor::task]
