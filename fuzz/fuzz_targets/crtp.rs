@@ -11,6 +11,7 @@ use controller_core::state::State;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::crtp::flying::SENDER;
 use firmware::crtp::packet::Packet;
+use firmware::crtp::pieces::MEMORY_BYTES;
 use firmware::crtp::session::Session;
 use firmware::shared::{Report, Shared};
 use flight::Mode;
@@ -36,7 +37,8 @@ fuzz_target!(|events: Vec<Event>| {
     let verdict = Box::leak(Box::new(Certified::new(firmware::configuration::embedded().unwrap())));
     shared.verdict.put(verdict, 0);
     shared.commander.put(None, 0);
-    let mut session = Box::new(Session::new(shared.for_crtp()));
+    let mut memory = [0; MEMORY_BYTES];
+    let mut session = Box::new(Session::new(shared.for_crtp(), &mut memory));
     let (mut now, mut may_stop) = (1_000_000_u64, false);
     for event in events {
         let packet = match event {

@@ -62,7 +62,7 @@ struct Begun {
 pub struct Flying<'a, M: RawMutex> {
     shared: CrtpView<'a, M>,
     /// Trajectories.
-    pub pieces: Pieces,
+    pub pieces: Pieces<'a>,
     path: Option<Begun>,
     /// Whether the last path was flown to its end, and none began since.
     is_over: bool,
@@ -71,9 +71,9 @@ pub struct Flying<'a, M: RawMutex> {
 }
 
 impl<'a, M: RawMutex> Flying<'a, M> {
-    /// Nothing.
-    pub const fn new(shared: CrtpView<'a, M>) -> Self {
-        Self { shared, pieces: Pieces::new(), path: None, is_over: false, streamed: None }
+    /// Nothing, with memory for trajectories.
+    pub const fn new(shared: CrtpView<'a, M>, memory: &'a mut [u8]) -> Self {
+        Self { shared, pieces: Pieces::new(memory), path: None, is_over: false, streamed: None }
     }
 
     /// Whether a path is flown (false) or was, to its end (true).

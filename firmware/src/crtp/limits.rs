@@ -87,7 +87,7 @@ fn greater([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
 impl Limits {
     /// How many times as slow a path has to be, in steps of a twentieth; none where a hundred times is not enough, its
     /// numbers are not finite, or its pieces are gone.
-    pub fn slower(&self, path: &Path, pieces: &Pieces) -> Option<f32> {
+    pub fn slower(&self, path: &Path, pieces: &Pieces<'_>) -> Option<f32> {
         let duration = path.duration()?;
         let count = ((duration / INTERVAL_S) as u32).clamp(20, PLACES_MAX);
         let mut peaks = Peaks::default();

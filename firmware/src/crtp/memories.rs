@@ -10,7 +10,7 @@
 use super::errors::{BUSY, FAILED};
 use super::fields::Fields;
 use super::packet::{DATA_MAX_BYTES, Packet};
-use super::pieces::{MEMORY_BYTES, Pieces};
+use super::pieces::Pieces;
 use super::ports;
 
 /// The memory of trajectories: its number, and its kind.
@@ -24,7 +24,7 @@ pub const WRITE: u8 = 2;
 const ANSWER_HEAD_BYTES: usize = 6;
 
 /// The answer to a packet. Nothing is written while `is_flown`, nor where a client may not write.
-pub fn answer(packet: &Packet, pieces: &mut Pieces, is_flown: bool, may_write: bool) -> Option<Packet> {
+pub fn answer(packet: &Packet, pieces: &mut Pieces<'_>, is_flown: bool, may_write: bool) -> Option<Packet> {
     let mut fields = Fields::new(packet.data());
     let first = fields.u8()?;
     let answer = Packet::new(ports::MEMORY, packet.channel).with(&[first]);
@@ -35,7 +35,7 @@ pub fn answer(packet: &Packet, pieces: &mut Pieces, is_flown: bool, may_write: b
                 let memory = fields.u8()?;
                 let answer = answer.with(&[memory]);
                 let described = [KIND_TRAJECTORIES];
-                let size = (MEMORY_BYTES as u32).to_le_bytes();
+                let size = pieces.size().to_le_bytes();
                 Some(if memory == TRAJECTORIES { answer.with(&described).with(&size).with(&[0; 8]) } else { answer })
             }
             _ => None,

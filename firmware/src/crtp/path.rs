@@ -34,7 +34,7 @@ pub struct Along {
 }
 
 impl Along {
-    fn at(&self, time: f32, pieces: &Pieces) -> Option<Point> {
+    fn at(&self, time: f32, pieces: &Pieces<'_>) -> Option<Point> {
         let run = time / self.timescale;
         let (run, sign) = if self.is_reversed { (self.length - run, -1.0) } else { (run, 1.0) };
         let Point { axes: [x, y, z], yaw } = pieces.at(&self.definition, run)?;
@@ -61,7 +61,7 @@ impl Path {
     }
 
     /// Where it is at `time`, s, and not beyond its end; none where its pieces are gone.
-    pub fn at(&self, time: f32, pieces: &Pieces) -> Option<Point> {
+    pub fn at(&self, time: f32, pieces: &Pieces<'_>) -> Option<Point> {
         let time = time.clamp(0.0, self.duration().unwrap_or(0.0));
         match self {
             Self::Place(place, yaw) => Some(Point::resting(place, *yaw)),

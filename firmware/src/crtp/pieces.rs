@@ -11,7 +11,7 @@ use super::errors::{INVALID, NOT_THERE, UNKNOWN_COMMAND};
 use super::fields::Fields;
 use super::polynomial::{COEFFICIENTS, Point, Polynomial, Segment};
 
-/// As much as Bitcraze's vehicles have: 31 pieces of kind 0.
+/// As much memory as Bitcraze's vehicles have: 31 pieces of kind 0.
 pub const MEMORY_BYTES: usize = 4096;
 
 /// Trajectories that are defined at a time.
@@ -40,15 +40,20 @@ pub struct Definition {
 }
 
 /// The memory, and the trajectories in it.
-pub struct Pieces {
-    memory: [u8; MEMORY_BYTES],
+pub struct Pieces<'m> {
+    memory: &'m mut [u8],
     definitions: [Option<Definition>; DEFINITIONS_MAX],
 }
 
-impl Pieces {
-    /// Nothing uploaded.
-    pub const fn new() -> Self {
-        Self { memory: [0; MEMORY_BYTES], definitions: [None; _] }
+impl<'m> Pieces<'m> {
+    /// Nothing uploaded to this memory.
+    pub const fn new(memory: &'m mut [u8]) -> Self {
+        Self { memory, definitions: [None; _] }
+    }
+
+    /// Bytes of memory.
+    pub fn size(&self) -> u32 {
+        u32::try_from(self.memory.len()).unwrap_or(u32::MAX)
     }
 
     /// So many bytes from an address on, as far as it has all of them.
@@ -127,7 +132,7 @@ struct Walk<'m> {
 const STEPS: [f32; 4] = [1e-3, 1e-3, 1e-3, 0.1 * core::f32::consts::PI / 180.0];
 
 impl<'m> Walk<'m> {
-    fn new(pieces: &'m Pieces, definition: &Definition) -> Option<Self> {
+    fn new(pieces: &'m Pieces<'_>, definition: &Definition) -> Option<Self> {
         let mut fields = Fields::new(pieces.memory.get(definition.offset..)?);
         let mut ends = [0.0; 4];
         if definition.form == Form::Curves {

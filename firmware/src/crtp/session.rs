@@ -80,13 +80,13 @@ pub struct Session<'a, M: RawMutex> {
 }
 
 impl<'a, M: RawMutex> Session<'a, M> {
-    /// No client yet.
-    pub const fn new(shared: CrtpView<'a, M>) -> Self {
+    /// No client yet; trajectories are uploaded to `memory`.
+    pub const fn new(shared: CrtpView<'a, M>, memory: &'a mut [u8]) -> Self {
         Self {
             shared,
             log: Log::new(),
             desk: Desk::new(shared),
-            flying: Flying::new(shared),
+            flying: Flying::new(shared, memory),
             outgoing: Deque::new(),
             text: Vec::new(),
             heard: None,

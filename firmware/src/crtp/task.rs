@@ -19,14 +19,16 @@ pub const SEND_TIMEOUT_US: u64 = 100_000;
 /// The longest wait for a packet, or for room for its answer. Nothing hangs on it: it keeps the wait a bounded one.
 const WAIT_MAX_US: u64 = 1_000_000;
 
-/// Speaks to one client at a time, for ever.
+/// Speaks to one client at a time, for ever. Its trajectories are uploaded to `memory`, of
+/// [`MEMORY_BYTES`](super::pieces::MEMORY_BYTES) where there is room.
 pub async fn run<R: ReceivePackets, S: SendPackets, M: RawMutex>(
     mut receiver: R,
     mut sender: S,
     clock: &impl Clock,
     shared: CrtpView<'_, M>,
+    memory: &mut [u8],
 ) {
-    let session = RefCell::new(Session::new(shared));
+    let session = RefCell::new(Session::new(shared, memory));
     let (taken, sent) = (Signal::<NoopRawMutex, ()>::new(), Signal::<NoopRawMutex, ()>::new());
     let receive = async {
         loop {

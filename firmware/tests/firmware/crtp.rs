@@ -8,6 +8,7 @@ use controller_core::reference::Reference;
 use controller_core::state::State;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use firmware::crtp::packet::Packet;
+use firmware::crtp::pieces::MEMORY_BYTES;
 use firmware::crtp::session::Session;
 use firmware::link::commander::COMMANDER_TIMEOUT_US;
 use firmware::link::signing::Key;
@@ -29,7 +30,8 @@ struct Client<'a> {
 
 impl<'a> Client<'a> {
     fn new(shared: &'a Local) -> Self {
-        Self { session: Box::new(Session::new(shared.for_crtp())), now: SECOND }
+        let memory = Box::leak(Box::new([0; MEMORY_BYTES]));
+        Self { session: Box::new(Session::new(shared.for_crtp(), memory)), now: SECOND }
     }
 
     /// Sends a packet; what comes back at once.

@@ -14,7 +14,7 @@ use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embedded_hal_async::digital::Wait;
 use embedded_io_async::{ErrorKind, ErrorType, Write};
 use firmware::crtp::packet::{Packet, ReceivePackets, SendPackets};
-use firmware::crtp::session;
+use firmware::crtp::task;
 use firmware::hardware::Battery;
 use firmware::parameters::table::Name;
 use firmware::syslink::battery::ReportedBattery;
@@ -107,7 +107,8 @@ impl Chip {
     fn run(&self, duration: u64, mut each: impl FnMut(u64)) {
         let line =
             run((self.says.clone(), Line(self)), Pin(self), &self.clock, &self.wire, self.shared.for_packet_radio());
-        let answers = session::run(self.wire.receiver(), self.wire.sender(), &self.clock);
+        let (receiver, sender) = (self.wire.receiver(), self.wire.sender());
+        let answers = task::run(receiver, sender, &self.clock, self.shared.for_crtp(), &mut []);
         self.clock.run(duration, join(line, answers), |now| {
             each(now);
             self.play(now);

@@ -48,6 +48,7 @@ use downlink::Downlink;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use faults::{Faults, FaultyPart};
 use firmware::control::Control;
+use firmware::crtp::pieces::MEMORY_BYTES;
 use firmware::esc::Published;
 use firmware::hardware::{Clock, Restart};
 use firmware::link::frame::Parser;
@@ -234,7 +235,10 @@ impl Sitl {
         spawn(&spawner, async move { link::transmit::transmit(downlink, &time, shared.for_transmit()).await });
         if let Some(port) = &self.crtp {
             let (receiver, sender, time) = (port.clone(), port.clone(), clock.clone());
-            spawn(&spawner, async move { crtp::task::run(receiver, sender, &time, shared.for_crtp()).await });
+            spawn(&spawner, async move {
+                let mut memory = [0; MEMORY_BYTES];
+                crtp::task::run(receiver, sender, &time, shared.for_crtp(), &mut memory).await;
+            });
         }
         let (light, battery, time) = (hardware.clone(), hardware.clone(), clock.clone());
         spawn(&spawner, async move { status::run(light, battery, &time, shared.for_status()).await });

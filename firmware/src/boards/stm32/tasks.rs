@@ -19,6 +19,7 @@ use crate::boards::chosen::{self, BoardBattery, BoardCard, BoardImu, BoardMotors
 use crate::boards::{guard, handover, kept, recorder};
 use crate::configuration::{PERIOD_US, Pilot};
 use crate::control::Control;
+use crate::crtp::pieces::MEMORY_BYTES;
 use crate::esc::Published;
 use crate::hil::{self, SelectedMotors};
 use crate::last_words::LastWords;
@@ -27,7 +28,7 @@ use crate::outputs::{self, Outputs};
 use crate::parameters::storage::Storage;
 use crate::parameters::table::Name;
 use crate::recorder::gyro::{BLOCK_BYTES, Block};
-use crate::recorder::ring::Ring;
+use crate::recorder::ring::{Ring, SLOT_BYTES};
 use crate::repeat::{self, Repeater};
 use crate::shared::{
     self, CardView, ControlView, CrtpView, Event, ImuView, MotorsView, PacketRadioView, PortView, RadioView,
@@ -89,7 +90,14 @@ pub fn run() -> ! {
         static GYRO_MEMORY: ConstStaticCell<[Block; chip::GYRO_BLOCKS]> = ConstStaticCell::new([[0; BLOCK_BYTES]; _]);
         booting.gyro_log().attach(GYRO_MEMORY.take());
     }
+    let packet_radio = packet_radio::present(board.packet_radio);
+    let mut trajectories: &mut [u8] = &mut [];
     if let Some(memory) = recorder::take(board.restart.is_power()) {
+        // A client's trajectories have the end of that memory: DMA does not reach it, and need not.
+        let count = if packet_radio.is_some() { MEMORY_BYTES.div_ceil(SLOT_BYTES) } else { 0 };
+        let (memory, end) = memory.split_at_mut(memory.len().saturating_sub(count));
+        trajectories = end.as_flattened_mut();
+        trajectories.fill(0);
         booting.recorder().attach(Ring::recover(memory), configuration::NAME);
     }
     static PLACE: boot::Place = boot::Place::new();
@@ -118,8 +126,8 @@ pub fn run() -> ! {
     if let Some(radio) = board.radio {
         spawner.spawn(listen(shared.for_radio(), radio).unwrap());
     }
-    if let Some(radio) = packet_radio::present(board.packet_radio) {
-        spawner.spawn(answer_packets(shared.for_crtp(), radio.wire).unwrap());
+    if let Some(radio) = packet_radio {
+        spawner.spawn(answer_packets(shared.for_crtp(), radio.wire, trajectories).unwrap());
         spawner.spawn(carry_packets(shared.for_packet_radio(), radio).unwrap());
     }
     spawner.spawn(show(shared.for_status(), board.light, board.battery).unwrap());
@@ -221,8 +229,8 @@ async fn carry_packets(shared: PacketRadioView<'static, Raw>, radio: PacketRadio
 }
 
 #[embassy_executor::task]
-async fn answer_packets(shared: CrtpView<'static, Raw>, wire: &'static Wire<Raw>) {
-    crtp::task::run(wire.receiver(), wire.sender(), &SystemClock, shared).await;
+async fn answer_packets(shared: CrtpView<'static, Raw>, wire: &'static Wire<Raw>, memory: &'static mut [u8]) {
+    crtp::task::run(wire.receiver(), wire.sender(), &SystemClock, shared, memory).await;
 }
 
 #[embassy_executor::task]

@@ -17,7 +17,7 @@ const LIMITS: Limits = Limits {
 
 fn slower(goal: Vector3<f32>, yaw: f32, duration: f32) -> Option<f32> {
     let path = Path::Segment(Segment::to_rest(&Point::resting(&Vector3::zeros(), 0.0), &goal, yaw, duration));
-    LIMITS.slower(&path, &Pieces::new())
+    LIMITS.slower(&path, &Pieces::new(&mut []))
 }
 
 #[test]
@@ -48,5 +48,5 @@ fn what_no_slowness_makes_fit_is_refused() {
     assert_eq!(slower(Vector3::x() * 1e6, 0.0, 1.0), None);
     let moving = Point { yaw: Moving::resting(0.0), axes: [Moving::new(0.0, f32::NAN, 0.0); 3] };
     let path = Path::Segment(Segment::to_rest(&moving, &Vector3::zeros(), 0.0, 1.0));
-    assert_eq!(LIMITS.slower(&path, &Pieces::new()), None);
+    assert_eq!(LIMITS.slower(&path, &Pieces::new(&mut [])), None);
 }

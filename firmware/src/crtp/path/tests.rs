@@ -2,8 +2,8 @@ use super::*;
 use std::f32::consts::FRAC_PI_2;
 
 /// One piece: along x at 1 m/s for 2 s, from (1, 2, 3), the yaw turning from 0.4 rad at 0.1 rad/s.
-fn uploaded() -> Box<Pieces> {
-    let mut pieces = Box::new(Pieces::new());
+fn uploaded() -> Pieces<'static> {
+    let mut pieces = Pieces::new(Box::leak(Box::new([0; 256])));
     let mut bytes = Vec::new();
     for [zeroth, first] in [[1.0_f32, 1.0], [2.0, 0.0], [3.0, 0.0], [0.4, 0.1]] {
         let all = [zeroth, first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -15,7 +15,7 @@ fn uploaded() -> Box<Pieces> {
     pieces
 }
 
-fn along(pieces: &Pieces) -> Along {
+fn along(pieces: &Pieces<'_>) -> Along {
     let (definition, length) = pieces.defined(0).unwrap();
     Along { definition, length, timescale: 1.0, is_reversed: false, shift: Vector3::zeros(), turn: 0.0 }
 }

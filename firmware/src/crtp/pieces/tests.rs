@@ -11,8 +11,8 @@ fn polynomial_piece(coefficients: [[f32; 2]; 4], duration: f32) -> Vec<u8> {
     bytes
 }
 
-fn with(address: usize, bytes: &[u8]) -> Box<Pieces> {
-    let mut pieces = Box::new(Pieces::new());
+fn with(address: usize, bytes: &[u8]) -> Pieces<'static> {
+    let mut pieces = Pieces::new(Box::leak(Box::new([0; MEMORY_BYTES])));
     assert!(bytes.chunks(24).enumerate().all(|(chunk, bytes)| pieces.write(address + 24 * chunk, bytes)));
     pieces
 }
