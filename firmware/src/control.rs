@@ -137,11 +137,11 @@ impl<'a, M: RawMutex> Control<'a, M> {
         }
         self.report_the_battery(inputs.battery == Battery::Missing && outcome.mode.is_armed());
         self.report_the_estimate(&outcome, now);
-        let report = self.report(&inputs, &outcome);
-        self.shared.report().put(report, now);
         let (parameters, voltage) = (self.shared.parameters(), self.shared.voltage().get());
         let ratio = voltage_ratio(parameters.get(Name::BatteryNominal), voltage, now);
         let command = self.outputs.command(&outcome.output, ratio);
+        let report = Report { motors: command.levels(), ..self.report(&inputs, &outcome) };
+        self.shared.report().put(report, now);
         let voltage = self.shared.voltage().recent(VOLTAGE_AGE_MAX_US, now);
         let turned = self.shared.rotor_speeds().recent(SPEED_AGE_MAX_US, now).unwrap_or_default();
         self.shared.recorder().record(report.mode.is_armed(), || report.tick(now, command, turned, voltage));
@@ -318,6 +318,7 @@ impl<'a, M: RawMutex> Control<'a, M> {
             mission: self.mission,
             flies_policy: outcome.flies_policy,
             timing: self.timing,
+            ..Report::NONE
         }
     }
 

@@ -45,6 +45,9 @@ const LEAD_IN_US: u64 = 2_000_000;
 const ARRIVED_M: f32 = 0.01;
 const ARRIVED_M_PER_S: f32 = 0.02;
 
+/// How far above its goal a landing goes on by itself, m, until it finds the ground: sooner than to hover down there.
+const LANDING_M: f32 = 0.1;
+
 /// A path under way. Behind its end the vehicle is led at rest.
 #[derive(Debug, Clone, Copy)]
 struct Begun {
@@ -275,9 +278,13 @@ impl<'a, M: RawMutex> Flying<'a, M> {
             self.path = None;
             return;
         };
-        let is_there = match begun.path.duration() {
-            Some(duration) => time >= duration,
-            None => self.report().is_some_and(|report| is_flown && has_arrived(&report, &point.position())),
+        let end = begun.path.at(f32::MAX, &self.pieces).unwrap_or(point).position();
+        let is_low = |report: &Report| report.reference.is_some_and(|at| at.position.z - end.z < LANDING_M);
+        let is_there = match (self.report().filter(|_| is_flown), begun.path.duration()) {
+            (Some(report), _) if begun.lands && now > begun.begins && is_low(&report) => true,
+            (_, Some(duration)) => time >= duration,
+            (Some(report), None) => has_arrived(&report, &end),
+            (None, None) => false,
         };
         let led = match begun.over {
             Some(_) => point.at_rest().setpoint(),

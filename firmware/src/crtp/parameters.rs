@@ -36,6 +36,8 @@ const MISCELLANEOUS: u8 = 3;
 enum Use {
     /// It is always that, and a client may read it.
     Is(u8),
+    /// Whether the vehicle knows where it is: scripts ask for a deck that measures it.
+    KnowsItsPlace,
     /// It is always that: the same value is taken, another refused.
     Only(u8),
     /// Any value is taken, and nothing follows from it.
@@ -100,7 +102,7 @@ const fn row(group: &'static str, name: &'static str, kind: u8, purpose: Use) ->
 }
 
 /// What scripts and clients ask for by name.
-const KNOWN: [Row; 27] = [
+const KNOWN: [Row; 29] = [
     row("commander", "enHighLevel", U8, Use::Only(1)),
     row("stabilizer", "estimator", U8, Use::Only(2)),
     row("stabilizer", "controller", U8, Use::Only(0)),
@@ -118,7 +120,9 @@ const KNOWN: [Row; 27] = [
     row("locSrv", "extQuatStdDev", FLOAT, Use::Kept(Kept::AttitudeDeviation, 0.0, 1.0)),
     row("pm", "lowVoltage", FLOAT, Use::Ours(Name::BatteryLow)),
     row("pm", "criticalLowVoltage", FLOAT, Use::Ours(Name::BatteryCritical)),
-    row("deck", "bcFlow2", U8, Use::Is(0)),
+    row("deck", "bcDWM1000", U8, Use::Is(0)),
+    row("deck", "bcFlow", U8, Use::Is(0)),
+    row("deck", "bcFlow2", U8, Use::KnowsItsPlace),
     row("deck", "bcLighthouse4", U8, Use::Is(0)),
     row("deck", "bcLoco", U8, Use::Is(0)),
     row("deck", "bcMultiranger", U8, Use::Is(0)),
@@ -133,7 +137,7 @@ const KNOWN: [Row; 27] = [
 /// A parameter of the table: its kind, its group and name, and what it is for.
 fn entry(index: usize) -> Option<(Entry, Use)> {
     if let Some(Row { group, name, kind, purpose }) = KNOWN.get(index) {
-        let kind = kind | if matches!(purpose, Use::Is(_)) { CANNOT_BE_SET } else { 0 };
+        let kind = kind | if matches!(purpose, Use::Is(_) | Use::KnowsItsPlace) { CANNOT_BE_SET } else { 0 };
         return Some(((kind, group, name), *purpose));
     }
     let name = Name::from_index(index - KNOWN.len())?;
@@ -220,7 +224,7 @@ impl<'a, M: RawMutex> Desk<'a, M> {
         let error = match (0..Settable::COUNT).filter_map(entry).find(is_it) {
             None => NOT_THERE,
             Some(((its_kind, ..), _)) if its_kind & !CANNOT_BE_SET != kind => INVALID,
-            Some((_, Use::Is(_))) => READ_ONLY,
+            Some((_, Use::Is(_) | Use::KnowsItsPlace)) => READ_ONLY,
             Some((entry, purpose)) => {
                 let value = read(kind, &mut fields)?;
                 if may_set {
@@ -240,6 +244,7 @@ impl<'a, M: RawMutex> Desk<'a, M> {
         match purpose {
             Use::Ours(name) => self.shared.set_parameter(name, value),
             Use::Taken => {}
+            Use::KnowsItsPlace => refuse(format_args!("is read-only")),
             Use::Only(only) if value == f32::from(only) => {}
             Use::Is(only) | Use::Only(only) => refuse(format_args!("only {only} here")),
             Use::Kept(kept, min, max) if (min..=max).contains(&value) => *self.settings.place(kept) = value,
@@ -251,9 +256,14 @@ impl<'a, M: RawMutex> Desk<'a, M> {
         match purpose {
             Use::Is(value) | Use::Only(value) => value.into(),
             Use::Taken => 0.0,
+            Use::KnowsItsPlace => f32::from(self.knows_its_place()),
             Use::Kept(kept, ..) => *{ self.settings }.place(kept),
             Use::Ours(name) => self.shared.parameters().get(name),
         }
+    }
+
+    fn knows_its_place(&self) -> u8 {
+        self.shared.report().get().is_some_and(|report| report.value.state.is_some()).into()
     }
 
     fn with_value(&self, packet: Packet, (kind, ..): Entry, purpose: Use) -> Packet {
@@ -265,7 +275,7 @@ impl<'a, M: RawMutex> Desk<'a, M> {
 fn default(purpose: Use) -> f32 {
     match purpose {
         Use::Is(value) | Use::Only(value) => value.into(),
-        Use::Taken => 0.0,
+        Use::Taken | Use::KnowsItsPlace => 0.0,
         Use::Kept(kept, ..) => *{ Settings::DEFAULT }.place(kept),
         Use::Ours(name) => name.row().default,
     }

@@ -36,7 +36,7 @@ worded! {
         /// A kind that is not flown.
         Kind = "of a kind that is not flown",
         /// Rates of roll and pitch.
-        Rates = "rates of roll and pitch are not flown",
+        Rates = "no rates of roll and pitch",
         /// One that is meant from where the vehicle points, and it points straight up or down, or nobody knows.
         NotHere = "where the vehicle points is not known",
     }

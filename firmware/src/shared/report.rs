@@ -59,6 +59,8 @@ pub struct Report {
     pub reference: Option<Reference>,
     /// The commanded wrench; none while the law does not fly.
     pub wrench: Option<Wrench>,
+    /// The motors' commands, 0 to 1, in the rotors' order; 0 where one stops.
+    pub motors: [f32; MOTOR_COUNT],
     /// What the rotors are believed to give of it; none while the law does not fly.
     pub thrust_scale: Option<f32>,
     /// How far the mission is.
@@ -97,6 +99,7 @@ impl Report {
         home: None,
         reference: None,
         wrench: None,
+        motors: [0.0; MOTOR_COUNT],
         thrust_scale: None,
         mission: MissionReport { next: 0, is_flown: false, done: (0, 0) },
         flies_policy: false,

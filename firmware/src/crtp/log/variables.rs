@@ -6,6 +6,7 @@
 use super::kind::Kind;
 use crate::crtp::quaternion::packed;
 use crate::esc::controller::RotorSpeeds;
+use crate::hardware::MOTOR_COUNT;
 use crate::shared::Report;
 use crate::status::{Euler, euler};
 use controller_core::reference::Reference;
@@ -123,11 +124,8 @@ variables! {
         "roll": |view| known(view.angles().map(|angles| angles.roll)),
         "pitch": |view| known(view.angles().map(|angles| -angles.pitch)),
         "yaw": |view| known(view.angles().map(|angles| angles.yaw)),
-        // N, and 0 while the law does not fly.
-        "thrust": |view| {
-            let wrench = view.report.and_then(|report| report.wrench);
-            wrench.map_or(0.0, |wrench| f64::from(wrench.thrust))
-        },
+        // The mean of the motors' commands, 65,535 for all there is.
+        "thrust": |view| (0..MOTOR_COUNT).map(|motor| command(view, motor)).sum::<f64>() / MOTOR_COUNT as f64,
     }
     "ctrltarget" Float {
         "x": |view| known(view.reference().map(|reference| reference.position.x)),
@@ -197,6 +195,13 @@ variables! {
     "law" U8 {
         "mode": |view| view.report.map_or(0.0, |report| f64::from(report.mode as u8)),
     }
+    // The command, 65,535 for all there is.
+    "motor" U16 {
+        "m1": |view| command(view, 0),
+        "m2": |view| command(view, 1),
+        "m3": |view| command(view, 2),
+        "m4": |view| command(view, 3),
+    }
     // rad/s, by the motors' controllers.
     "rotor" Float {
         "speed1": |view| speed(view, 0),
@@ -215,6 +220,11 @@ variables! {
 fn variance(view: &View) -> f64 {
     let (position, ..) = view.report.map_or((f32::NAN, 0.0, 0.0), |report| report.health.deviations);
     f64::from(position * position / 3.0)
+}
+
+fn command(view: &View, motor: usize) -> f64 {
+    let level = view.report.and_then(|report| report.motors.get(motor).copied());
+    f64::from(level.unwrap_or(0.0)) * f64::from(u16::MAX)
 }
 
 fn speed(view: &View, rotor: usize) -> f64 {
