@@ -139,12 +139,15 @@ class Vehicle:
 
 
 class Desk(Vehicle):
-    """The firmware's library in `host-sim sitl`."""
+    """The firmware's library in `host-sim sitl`; with `crtp` clients of the Crazyflie find it at `uri`."""
 
-    def __init__(self, speed, *arguments):
+    def __init__(self, speed, *arguments, crtp=False):
         self.key = key_file() if SIGNED else None
         signed = ["--signing-key", self.key.name] if SIGNED else []
-        super().__init__("sitl", "--speed", speed, *signed, *arguments)
+        address = f"127.0.0.1:{free_ports(1)[0]}"
+        self.uri = f"udp://{address}" if crtp else None
+        packets = ["--crtp", address] if crtp else []
+        super().__init__("sitl", "--speed", speed, *signed, *packets, *arguments)
 
 
 class Board(Vehicle):
