@@ -556,7 +556,7 @@ def streams():
         commander.send_notify_setpoint_stop()
         client.in_mode("holding", 2.0)
         commander.send_setpoint_manual(0.0, 0.0, 0.0, 50.0, True)
-        client.wait_for("rates of roll and pitch are not", 2.0)
+        client.wait_for("no rates of roll and pitch", 2.0)
         # A stream that breaks off: the vehicle holds.
         with Stream(lambda _: commander.send_velocity_world_setpoint(0.2, 0.0, 0.0, 0.0), 20):
             client.in_mode("flying", 2.0)

@@ -75,6 +75,8 @@ pub struct Session<'a, M: RawMutex> {
     /// When the client was last heard, us.
     heard: Option<u64>,
     wished: Option<Wished>,
+    /// When the last pose was true, us.
+    posed: Option<u64>,
     /// When the watchdog of the emergency stop was fed, us; none before the first time.
     fed: Option<u64>,
 }
@@ -91,6 +93,7 @@ impl<'a, M: RawMutex> Session<'a, M> {
             text: Vec::new(),
             heard: None,
             wished: None,
+            posed: None,
             fed: None,
         }
     }
@@ -215,7 +218,7 @@ impl<'a, M: RawMutex> Session<'a, M> {
         }
     }
 
-    fn pose(&self, pose: Result<PoseMeasurement, PoseError>, now: u64) {
+    fn pose(&mut self, pose: Result<PoseMeasurement, PoseError>, now: u64) {
         let shared = self.shared;
         // In a simulation the simulator sends the poses.
         if shared.hil().is_raised() {
@@ -236,8 +239,13 @@ impl<'a, M: RawMutex> Session<'a, M> {
             shared.pose_delay_unknown().lower();
         }
         shared.pose_protocol().put(Protocol::Crtp, now);
-        // Where control does not take them, one more or less makes no difference.
-        let _ = shared.poses().put(Stamped { value, time: now.saturating_sub(delay) });
+        let time = now.saturating_sub(delay);
+        // Of two that a busy sender sends at once the first will do.
+        if self.posed.is_none_or(|last| last < time) {
+            self.posed = Some(time);
+            // Where control does not take them, one more or less makes no difference.
+            let _ = shared.poses().put(Stamped { value, time });
+        }
     }
 
     /// Stops the motors, in the air as well.

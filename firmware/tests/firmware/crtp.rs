@@ -361,16 +361,21 @@ fn poses_are_taken_whole_packed_and_without_an_attitude() {
     let mut client = Client::new(&shared);
     let number = shared.parameters.get(Name::RadioAddress) as u8;
     let pose = |client: &mut Client<'_>, channel: u8, data: &[u8]| {
+        client.now += 20_000;
         client.send(6, channel, data);
-        shared.poses.take().map(|pose| (pose.time, pose.value))
+        // Of two at once the first will do.
+        client.send(6, channel, data);
+        let (pose, second) = (shared.poses.take(), shared.poses.take());
+        assert_eq!(second, None);
+        pose.map(|pose| (client.now - pose.time, pose.value))
     };
     let whole = [&[8][..], &floats([1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0])].concat();
-    let (time, found) = pose(&mut client, 1, &whole).unwrap();
-    assert_eq!((time, found.position()), (SECOND, Vector3::new(1.0, 2.0, 3.0)));
+    let (age, found) = pose(&mut client, 1, &whole).unwrap();
+    assert_eq!((age, found.position()), (0, Vector3::new(1.0, 2.0, 3.0)));
     assert_eq!(found.attitude(), Quaternion::new(0.0, 0.0, 0.0, 1.0));
     assert!(shared.pose_delay_unknown.is_raised());
     shared.parameters.set(Name::PoseDelay, 10.0).unwrap();
-    assert_eq!(pose(&mut client, 1, &whole).unwrap().0, SECOND - 10_000);
+    assert_eq!(pose(&mut client, 1, &whole).unwrap().0, 10_000);
     assert!(!shared.pose_delay_unknown.is_raised());
 
     let item = |id: u8, x: i16| [&[id][..], &x.to_le_bytes(), &[0; 4]].concat();
