@@ -31,7 +31,7 @@
 //! - The chip says nothing before it has understood a frame.
 //! - It has room for few packets and tells nobody that it dropped one: one is sent for each that came, no more.
 //! - Its receiver holds six bytes. A pin is high while there is room for no more than four of them, and what is sent
-//!   then may be lost. See [`transmit`].
+//!   then may be lost. See [`mod@transmit`].
 //! - What it is told at boot it forgets with its power only, which is this chip's power too: see [`boot_order`].
 //!
 //! The line's task is not the one that answers packets: a task that waits until it may send must go on receiving, since
