@@ -172,7 +172,8 @@ def simulated(program):
                 file.write_text(f"{VEHICLE.read_text()}\n[initial]\nposition = [{x}, {y}, 0.0]\n")
                 crtp, truth, offboard, ground, local = (next(ports) for _ in range(5))
                 command = [program, "sitl", file, "--crtp", f"127.0.0.1:{crtp}", "--poses", "link"]
-                command += ["--truth-port", truth, "--offboard-port", offboard, "--ground-port", ground, "--local-port", local]
+                command += ["--truth-port", truth, "--local-port", local]
+                command += ["--offboard-port", offboard, "--ground-port", ground]
                 processes.append(subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL))
                 uris.append(f"udp://127.0.0.1:{crtp}")
                 truths.append(truth)

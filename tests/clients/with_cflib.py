@@ -56,9 +56,9 @@ FLOAT = 6  # as parameters have it
 NO_ROOM = 12  # as errors have it
 MODES = "boot checks ready motor_test idling taking_off flying holding landing descending stopped locked".split()
 
-# How far a figure may really be left, m, by its number: of plain pieces, and of those whose points are whole millimetres:
-# their velocity jumps from piece to piece, and the governor does not follow that as it is sent.
-FIGURE_WITHIN = {1: 0.03, 2: 0.35}
+# How far a figure may be left, m, by its number: of plain pieces; and of those whose points are whole millimetres, whose steps the
+# governor does not follow as they come.
+FIGURE_WITHIN = {1: 0.03, 2: 0.3}
 
 LOGGED = [("stateEstimate", "xyz"), ("ctrltarget", "xyz")]
 
