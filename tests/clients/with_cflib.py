@@ -720,7 +720,8 @@ def hover_on(kind):
             off = max(math.dist(place, (0.5, 0.3, 0.8)) for place in capture.places[first:])
             client.land()
             assert off < 0.1, (kind, off)
-            assert not client.said("Pose refused") and not client.said("Pose lost"), client.heard
+            # One that is refused, because a busy machine sent it late, changes nothing.
+            assert not any(client.said(never) for never in ("frozen", "no believable pose", "Pose lost")), client.heard
             client.set("POSE.DELAY", 5.0)
             capture.over = True
             capture.thread.join(2.0)
