@@ -102,7 +102,7 @@ const fn row(group: &'static str, name: &'static str, kind: u8, purpose: Use) ->
 }
 
 /// What scripts and clients ask for by name.
-const KNOWN: [Row; 29] = [
+const KNOWN: [Row; 30] = [
     row("commander", "enHighLevel", U8, Use::Only(1)),
     row("stabilizer", "estimator", U8, Use::Only(2)),
     row("stabilizer", "controller", U8, Use::Only(0)),
@@ -127,6 +127,7 @@ const KNOWN: [Row; 29] = [
     row("deck", "bcLoco", U8, Use::Is(0)),
     row("deck", "bcMultiranger", U8, Use::Is(0)),
     row("deck", "bcUSD", U8, Use::Is(0)),
+    row("deck", "bcZRanger", U8, Use::Is(0)),
     row("deck", "bcZRanger2", U8, Use::Is(0)),
     row("firmware", "modified", U8, Use::Is(1)),
     row("imu_tests", "MPU6500", U8, Use::Is(1)),
@@ -204,8 +205,11 @@ impl<'a, M: RawMutex> Desk<'a, M> {
         Some(match command {
             2 => answer.with(&[0]),
             7 => answer.with(&[0, 0]),
-            6 => written(answer, entry.0, default(purpose)),
-            8 => written(answer.with(&[0]), entry.0, default(purpose)),
+            6 | 8 => match default(purpose) {
+                None => answer.with(&[NOT_THERE]),
+                Some(value) if command == 8 => written(answer.with(&[0]), entry.0, value),
+                Some(value) => written(answer, entry.0, value),
+            },
             // To be kept, no more kept, and whether it is kept.
             3..=5 => answer.with(&[NOT_THERE]),
             _ => answer.with(&[UNKNOWN_COMMAND]),
@@ -271,14 +275,14 @@ impl<'a, M: RawMutex> Desk<'a, M> {
     }
 }
 
-/// As at boot; NaN for one of ours that is as built.
-fn default(purpose: Use) -> f32 {
-    match purpose {
+/// As at boot; none of one of ours that is as built, which no number says.
+fn default(purpose: Use) -> Option<f32> {
+    Some(match purpose {
         Use::Is(value) | Use::Only(value) => value.into(),
         Use::Taken | Use::KnowsItsPlace => 0.0,
         Use::Kept(kept, ..) => *{ Settings::DEFAULT }.place(kept),
-        Use::Ours(name) => name.row().default,
-    }
+        Use::Ours(name) => Some(name.row().default).filter(|default| default.is_finite())?,
+    })
 }
 
 /// The packet with a value of that kind behind it.
