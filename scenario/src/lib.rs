@@ -66,6 +66,7 @@ pub mod stability;
 pub mod text;
 pub mod timing;
 pub mod trajectory;
+pub mod tube;
 pub mod vehicle;
 pub mod verdict;
 

@@ -22,6 +22,7 @@
 
 mod chain;
 mod compensator;
+pub(crate) mod disturbed;
 mod gains;
 mod lag;
 mod law;
@@ -33,9 +34,10 @@ use chain::SampledLoop;
 use controller_core::configuration::LawParameters;
 use controller_core::error::{ParameterError, Reason};
 use controller_core::vehicle::Vehicle;
+use disturbed::DisturbedLoop;
 use law::{Law, Tracker};
 use slopes::Slopes;
-pub(crate) use spectral_radius::spectral_radius;
+pub(crate) use spectral_radius::{balance, spectral_radius};
 
 /// The law's own limit.
 const PERIOD_MAX_S: f32 = 0.1;
@@ -206,6 +208,13 @@ impl LoopModel {
         let law = self.law(axis);
         let compensator = law.compensator();
         SampledLoop::new(&compensator, law.integrators(), rotor_lag / period, delay_samples).spectral_radius()
+    }
+
+    /// One loop with what comes to it from outside, the actuator's lag and gain being so many times those that the law
+    /// believes in.
+    pub(crate) fn disturbed(&self, axis: Axis, lag_factor: f64, gain: f64) -> DisturbedLoop {
+        let LoopTiming { period, rotor_lag, delay_samples } = self.timing;
+        DisturbedLoop::new(&self.law(axis), lag_factor * rotor_lag / period, delay_samples, gain)
     }
 
     fn law(&self, axis: Axis) -> Law {

@@ -38,13 +38,27 @@ impl<'a> SampledLoop<'a> {
         spectral_radius(self.closed_loop())
     }
 
+    /// The same loop whose actuator makes so much more of its commands. The law knows nothing of that either.
+    pub fn with_gain(&self, gain: f64) -> Self {
+        Self { arrival: self.arrival.times(gain), ..*self }
+    }
+
+    /// The places of the actuator, of the law's states and of the commands that are under way.
+    pub fn places(&self) -> [usize; 3] {
+        let law = self.integrators + 1;
+        [self.integrators, law, law + self.law.size()]
+    }
+
+    /// How commands arrive.
+    pub fn arrival(&self) -> &Arrival {
+        &self.arrival
+    }
+
     /// From one tick's state to the next.
-    fn closed_loop(&self) -> DMatrix<f64> {
+    pub fn closed_loop(&self) -> DMatrix<f64> {
         let Arrival { whole_delay, free, newer, older } = &self.arrival;
         let integrators = self.integrators;
-        let actuator = integrators;
-        let law = actuator + 1;
-        let held = law + self.law.size();
+        let [actuator, law, held] = self.places();
         let size = held + self.arrival.earlier_commands();
 
         // The row of w_k, and where w_(k-j) is read: computed now, or from the delay line.

@@ -18,6 +18,13 @@ pub(super) struct PositionGains {
     pub k_d: Option<f64>,
 }
 
+impl PositionGains {
+    /// What position feedback makes of z_1 and z_2.
+    pub fn feedback(&self, [z_1, z_2]: [f64; 2]) -> f64 {
+        -(self.k_p * z_1 + self.k_v * z_2)
+    }
+}
+
 /// Gains of the attitude law about one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TorqueGains {
@@ -25,6 +32,13 @@ pub(super) struct TorqueGains {
     pub angle: f64,
     /// B = k_omega h / J.
     pub rate: f64,
+}
+
+impl TorqueGains {
+    /// What attitude feedback makes of the errors of angle and rate.
+    pub fn feedback(&self, [angle, rate]: [f64; 2]) -> f64 {
+        -(self.angle * angle + self.rate * rate)
+    }
 }
 
 /// Gains of the force estimate along one axis.

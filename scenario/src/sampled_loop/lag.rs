@@ -80,6 +80,12 @@ impl Arrival {
         Self { whole_delay: whole_delay as usize, free: full.free, newer: late.forced, older }
     }
 
+    /// The same with so much more of every command.
+    pub fn times(&self, gain: f64) -> Self {
+        let scaled = |weights: [f64; INTEGRATORS_MAX + 1]| weights.map(|weight| gain * weight);
+        Self { newer: scaled(self.newer), older: scaled(self.older), ..*self }
+    }
+
     /// How many commands before the present one still count.
     pub fn earlier_commands(&self) -> usize {
         self.whole_delay + usize::from(self.older.iter().any(|older| *older != 0.0))

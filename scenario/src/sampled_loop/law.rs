@@ -60,12 +60,38 @@ pub(super) struct Law {
     tracker: Option<Tracker>,
 }
 
-/// A number and its derivatives, per sample.
-#[derive(Debug, Clone, Copy)]
-struct Moving {
-    value: f64,
-    rate: f64,
-    acceleration: f64,
+/// What comes to the law's own results in a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Added {
+    /// To ubar.
+    pub feedback: f64,
+    /// To the command.
+    pub command: f64,
+    /// To the force that the last interval shows.
+    pub force: f64,
+    /// To what moves the vehicle in the next interval without being seen by the force's estimate.
+    pub unseen: f64,
+    /// To the desired tilt's acceleration, which the command has as well.
+    pub bend: f64,
+    /// To the torque bias that the next interval shows.
+    pub bias: f64,
+}
+
+/// What goes through the law in a tick; zero where an axis has no such thing.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Signals {
+    /// z_1 and z_2.
+    pub errors: [f64; 2],
+    /// d.
+    pub force: f64,
+    /// u_f (c) and its derivatives; along the extended law's vertical y after its step, and the step.
+    pub desired: [f64; 3],
+    /// The attitude's errors, projected: angle and rate.
+    pub projected: [f64; 2],
+    /// The torque bias.
+    pub bias: f64,
+    /// w.
+    pub command: f64,
 }
 
 /// What the law remembers of an axis. An average of differences from tick to tick, x += share (now + past - x), is
@@ -124,21 +150,41 @@ impl Law {
         }
     }
 
+    /// The gains of its position law, if it has one.
+    pub fn position(&self) -> Option<&PositionGains> {
+        match &self.chain {
+            Chain::Attitude(_) => None,
+            Chain::Vertical(gains) | Chain::Lateral(gains, _) => Some(gains),
+        }
+    }
+
     /// The law as matrices.
     pub fn compensator(&self) -> Compensator {
-        let fresh = Memory { commanded: vec![0.0; self.actuator.earlier_commands()], ..Memory::default() };
-        let size = self.used(&mut fresh.clone()).len();
-        Compensator::from_tick(size, |states, measured| {
-            let mut memory = fresh.clone();
-            for (place, state) in self.used(&mut memory).into_iter().zip(states.iter()) {
-                *place = *state;
-            }
-            let command = self.tick(&mut memory, measured);
-            for (state, place) in states.iter_mut().zip(self.used(&mut memory)) {
-                *state = *place;
-            }
-            command
+        Compensator::from_tick(self.size(), |states, measured| {
+            self.tick_of_states(states, measured, &Added::default()).command
         })
+    }
+
+    /// The number of its states.
+    pub fn size(&self) -> usize {
+        self.used(&mut self.fresh()).len()
+    }
+
+    /// One tick of the states.
+    pub fn tick_of_states(&self, states: &mut [f64], measured: &[f64; INTEGRATORS_MAX], added: &Added) -> Signals {
+        let mut memory = self.fresh();
+        for (place, state) in self.used(&mut memory).into_iter().zip(states.iter()) {
+            *place = *state;
+        }
+        let signals = self.tick(&mut memory, measured, added);
+        for (state, place) in states.iter_mut().zip(self.used(&mut memory)) {
+            *state = *place;
+        }
+        signals
+    }
+
+    fn fresh(&self) -> Memory {
+        Memory { commanded: vec![0.0; self.actuator.earlier_commands()], ..Memory::default() }
     }
 
     /// The part of the memory that this law has.
@@ -178,8 +224,8 @@ impl Law {
         used
     }
 
-    /// One tick: the command for `measured`, the memory as it is at the next tick.
-    fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS_MAX]) -> f64 {
+    /// One tick: the command for `measured`, and what leads to it; the memory as it is at the next tick.
+    fn tick(&self, memory: &mut Memory, measured: &[f64; INTEGRATORS_MAX], added: &Added) -> Signals {
         let EstimateGains { force, torque: bias, late } = &self.estimates;
         let share = force.map_or(0.0, |force| force.averaging);
         let bias_share = bias.unwrap_or(0.0);
@@ -187,40 +233,44 @@ impl Law {
             Chain::Attitude(torque) => {
                 let [rate, angle, ..] = *measured;
                 let bias = memory.torque + bias_share * rate;
-                let projected = rate + self.pending(memory) + late.time() * bias;
-                let command = -torque.rate * projected - torque.angle * (angle + late.time() * rate) - bias;
+                let projected = [angle + late.time() * rate, rate + self.pending(memory) + late.time() * bias];
+                let command = torque.feedback(projected) - bias + added.command;
                 memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
-                command
+                Signals { projected, bias, command, ..Signals::default() }
             }
             Chain::Vertical(position) => {
                 let [velocity, height, ..] = *measured;
                 let velocity = self.tracked(memory, velocity, height);
-                let average = memory.average + share * velocity;
-                let command = match position.k_d {
-                    Some(k_d) => at_once(position, k_d, memory, [height, velocity], average),
-                    None => filters(position, memory, [height, velocity], average).value,
+                let force = memory.average + share * (velocity + added.force);
+                let Feedback { errors, desired } = match position.k_d {
+                    Some(k_d) => at_once(position, k_d, memory, [height, velocity], force, added),
+                    None => filters(position, memory, [height, velocity], force, added),
                 };
+                let command = desired[0] + added.command;
                 let past = -velocity - self.acted(memory, command);
-                memory.average = averaged(average, share, past);
-                command
+                memory.average = averaged(force, share, past - added.unseen);
+                Signals { errors, force, desired, command, ..Signals::default() }
             }
             Chain::Lateral(position, torque) => {
                 let [rate, tilt, velocity, place] = *measured;
                 let velocity = self.tracked(memory, velocity, place);
                 let half_drag = force.map_or(0.0, |force| 0.5 * force.drag);
-                let average = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt);
+                let force = memory.average + share * (velocity * (1.0 + half_drag) - 0.5 * tilt + added.force);
                 let bias = memory.torque + bias_share * rate;
-                let desired = filters(position, memory, [place, velocity], average);
-                let (angle_error, rate_error) = (tilt - desired.value, rate - desired.rate);
-                let projected = rate_error + self.pending(memory) + late.time() * (bias - memory.desired_acceleration);
-                let command = desired.acceleration
-                    - torque.rate * projected
-                    - torque.angle * (angle_error + late.time() * rate_error)
-                    - bias;
-                memory.desired_acceleration = desired.acceleration;
-                memory.average = averaged(average, share, velocity * (half_drag - 1.0) - 0.5 * tilt);
-                memory.torque = averaged(bias, bias_share, -rate - self.acted(memory, command));
-                command
+                let Feedback { errors, desired } = filters(position, memory, [place, velocity], force, added);
+                let [lean, leaning, bend] = desired;
+                let forward = bend + added.bend;
+                let (angle_error, rate_error) = (tilt - lean, rate - leaning);
+                let projected = [
+                    angle_error + late.time() * rate_error,
+                    rate_error + self.pending(memory) + late.time() * (bias - memory.desired_acceleration),
+                ];
+                let command = forward + torque.feedback(projected) - bias + added.command;
+                memory.desired_acceleration = forward;
+                memory.average = averaged(force, share, velocity * (half_drag - 1.0) - 0.5 * tilt - added.unseen);
+                memory.torque =
+                    averaged(bias, bias_share, -rate - self.acted(memory, command)) + bias_share * added.bias;
+                Signals { errors, force, desired, projected, bias, command }
             }
         }
     }
@@ -266,23 +316,45 @@ fn averaged(x: f64, share: f64, past: f64) -> f64 {
     x + share * (past - x)
 }
 
+/// What the position law makes of a position, m, and a velocity.
+struct Feedback {
+    /// z_1 and z_2.
+    errors: [f64; 2],
+    /// Its output and the output's derivatives, per sample.
+    desired: [f64; 3],
+}
+
 /// y after its step, against the force d: the extended law's thrust along the vertical.
-fn at_once(gains: &PositionGains, k_d: f64, memory: &mut Memory, [position, velocity]: [f64; 2], force: f64) -> f64 {
+fn at_once(
+    gains: &PositionGains,
+    k_d: f64,
+    memory: &mut Memory,
+    [position, velocity]: [f64; 2],
+    force: f64,
+    added: &Added,
+) -> Feedback {
     let y = memory.smoothed;
-    let (z_1, z_2) = (position + velocity / k_d, velocity + (y + force) / k_d);
-    let ubar = -(gains.k_p * z_1 + gains.k_v * z_2) - force;
+    let errors = [position + velocity / k_d, velocity + (y + force) / k_d];
+    let ubar = gains.feedback(errors) - force + added.feedback;
     memory.smoothed = y - (-k_d).exp_m1() * (ubar - y);
-    memory.smoothed
+    Feedback { errors, desired: [memory.smoothed, memory.smoothed - y, 0.0] }
 }
 
 /// u_f as it stands, with its derivatives, against the force d; then the filters advance, ubar or the drive held.
-fn filters(gains: &PositionGains, memory: &mut Memory, [position, velocity]: [f64; 2], force: f64) -> Moving {
-    let PositionGains { k_p, k_v, k_f, k_s, k_d } = *gains;
+fn filters(
+    gains: &PositionGains,
+    memory: &mut Memory,
+    [position, velocity]: [f64; 2],
+    force: f64,
+    added: &Added,
+) -> Feedback {
+    let PositionGains { k_f, k_s, k_d, .. } = *gains;
     let (u_f, u_s, y) = (memory.filtered, memory.intermediate, memory.smoothed);
     let (c, x, last) = (1.0 / k_f, 1.0 / k_s, k_d.map_or(0.0, |k_d| 1.0 / k_d));
     let z_1 = position + (c + x + last) * velocity + (x + last) * c * (u_f + force) + x * last * (u_s + force);
     let z_2 = velocity + c * (u_f + force) + x * (u_s + force) + last * (y + force);
-    let ubar = -(k_p * z_1 + k_v * z_2) - force;
+    let errors = [z_1, z_2];
+    let ubar = gains.feedback(errors) - force + added.feedback;
     let rate = k_f * (u_s - u_f);
     let (keep_filtered, keep_intermediate) = ((-k_f).exp(), (-k_s).exp());
     if let Some(k_d) = k_d {
@@ -290,7 +362,7 @@ fn filters(gains: &PositionGains, memory: &mut Memory, [position, velocity]: [f6
         let drive = (1.0 - keep_intermediate) * (memory.smoothed - u_s);
         memory.filtered = u_f + (1.0 - keep_filtered) * (u_s - u_f) + (1.0 - (1.0 - keep_filtered) / k_f) * drive;
         memory.intermediate = u_s + drive;
-        return Moving { value: u_f, rate, acceleration: k_f * (drive - rate) };
+        return Feedback { errors, desired: [u_f, rate, k_f * (drive - rate)] };
     }
     // k_f (e^-k_f - e^-k_s) / (k_s - k_f), from the slower exponential so that nothing overflows.
     let spread = (k_s - k_f).abs();
@@ -298,7 +370,7 @@ fn filters(gains: &PositionGains, memory: &mut Memory, [position, velocity]: [f6
     let mixed = k_f * (-k_f.min(k_s)).exp() * mean;
     memory.filtered = keep_filtered * u_f + mixed * u_s + (1.0 - keep_filtered - mixed) * ubar;
     memory.intermediate = keep_intermediate * u_s + (1.0 - keep_intermediate) * ubar;
-    Moving { value: u_f, rate, acceleration: k_f * (k_s * (ubar - u_s) - rate) }
+    Feedback { errors, desired: [u_f, rate, k_f * (k_s * (ubar - u_s) - rate)] }
 }
 
 #[cfg(test)]

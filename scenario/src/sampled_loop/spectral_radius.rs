@@ -35,9 +35,12 @@ pub(crate) fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
 /// Scales the states by powers of two, which costs no digit, until each one's row and column are about as large as each
 /// other: a square's rounding is relative to its largest entries, and with fast ticks what a slow loop feeds back is
 /// far below them. (nalgebra's balancing does not end where an entry is infinite.)
-fn balance(matrix: &mut DMatrix<f64>) {
+///
+/// Returns the factors: the matrix becomes D^-1 A D.
+pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> Vec<f64> {
     /// Enough for any file's; each sweep takes time as one column of a square does.
     const SWEEPS_MAX: usize = 20;
+    let mut factors = vec![1.0; matrix.nrows()];
     for _ in 0..SWEEPS_MAX {
         let mut scaled = false;
         for state in 0..matrix.nrows() {
@@ -52,13 +55,15 @@ fn balance(matrix: &mut DMatrix<f64>) {
                 let factor = exponent.exp2();
                 matrix.row_mut(state).scale_mut(1.0 / factor);
                 matrix.column_mut(state).scale_mut(factor);
+                factors[state] *= factor;
                 scaled = true;
             }
         }
         if !scaled {
-            return;
+            break;
         }
     }
+    factors
 }
 
 #[cfg(test)]

@@ -1,0 +1,425 @@
+//! One closed loop in samples with what comes to it from outside: a force on the vehicle, an error of its actuator, and
+//! whatever a law that saturates does otherwise than the linear one.
+//!
+//! ```text
+//! x+ = A x + sum over j of the integral of k_j(t) u_j(t) over the tick,   |signals| <= |C x| + D |u|
+//! ```
+//!
+//! t is the time that is left of the tick. The law's two differences are held: their kernels are columns. A force and an
+//! error of the actuator may be anything in between. Per unit and per time that is left,
+//!
+//! | | a | y_1 ... |
+//! |---|---|---|
+//! | a force, as the change of the velocity per sample | | 1 in the velocity, t in the position |
+//! | an error of what the actuator follows | forced_0' = e^(-t/lag) / lag | forced_m' = forced_(m-1) |
+//!
+//! with `forced` as in [`super::lag`]. The time of a tick is cut into [`Stretch`]es: in each a kernel is its mean and at
+//! most `swing` beside it, as its entries are monotone. Everything in samples, as in [`super::law`].
+
+use super::balance;
+use super::chain::SampledLoop;
+use super::lag::{INTEGRATORS_MAX, INVERSE_FACTORIAL, LagResponse};
+use super::law::{Added, Law, Signals};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// Stretches of a tick.
+const STRETCHES: usize = 8;
+
+/// What comes from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// A force, as an acceleration along the axis; laterally over g.
+    Force,
+    /// What the actuator follows beside its command.
+    Actuator,
+    /// ubar beside the linear one.
+    Feedback,
+    /// The command beside the linear one.
+    Command,
+    /// The force that an interval shows beside the linear one.
+    Estimate,
+    /// A force that the estimate does not see, because it knows the thrust that makes it: its mean over a tick, of
+    /// which it is never more than twice as much.
+    Unseen,
+    /// The same in one tick, and taken back in the next.
+    Shaken,
+    /// How the desired tilt bends beside c'', the mean over a tick: fed forward, and missing in how the tilt turns, both
+    /// counted from c. The torque bias does not see it.
+    Bend,
+    /// What is fed forward beside that in one tick, and taken back in the next.
+    Late,
+    /// What is fed forward beside both.
+    Stray,
+    /// How far the bend, or along the vertical an unseen force, changes within a tick.
+    Uneven,
+}
+
+impl Input {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Force,
+        Self::Actuator,
+        Self::Feedback,
+        Self::Command,
+        Self::Estimate,
+        Self::Unseen,
+        Self::Shaken,
+        Self::Bend,
+        Self::Late,
+        Self::Stray,
+        Self::Uneven,
+    ];
+}
+
+/// What is bounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// Of the vehicle, laterally over g.
+    Position,
+    Velocity,
+    /// Of the thrust axis, rad; laterally alone.
+    Tilt,
+    /// How fast the tilt turns faster than c'' lets it, as a tick begins: by what the actuator delivers, and by what it
+    /// follows before and after the next command arrives. In between it delivers something between these.
+    BentActual,
+    BentOlder,
+    BentNewer,
+    /// What the actuator delivers.
+    Actual,
+    /// What the actuator follows less what it delivers, as a tick begins.
+    BehindAtTick,
+    /// The same as the next command arrives.
+    BehindAtArrival,
+    Z1,
+    Z2,
+    /// k_p z_1 + k_v z_2.
+    Wanted,
+    /// d.
+    Force,
+    /// c; along the vertical y.
+    Desired,
+    /// c'.
+    DesiredRate,
+    /// c''.
+    DesiredAcceleration,
+    /// How far c'' jumps at the next tick.
+    Jump,
+    /// The tilt less c.
+    Error,
+    /// How fast it turns less c'.
+    ErrorRate,
+    /// The tilt's error, projected.
+    Angle,
+    /// Its rate, projected.
+    Rate,
+    /// The torque bias.
+    Bias,
+    /// w.
+    Command,
+}
+
+impl Signal {
+    /// All of them, in the order of [`DisturbedLoop::signals`].
+    pub const ALL: [Self; 23] = [
+        Self::Position,
+        Self::Velocity,
+        Self::Tilt,
+        Self::BentActual,
+        Self::BentOlder,
+        Self::BentNewer,
+        Self::Actual,
+        Self::BehindAtTick,
+        Self::BehindAtArrival,
+        Self::Z1,
+        Self::Z2,
+        Self::Wanted,
+        Self::Force,
+        Self::Desired,
+        Self::DesiredRate,
+        Self::DesiredAcceleration,
+        Self::Jump,
+        Self::Error,
+        Self::ErrorRate,
+        Self::Angle,
+        Self::Rate,
+        Self::Bias,
+        Self::Command,
+    ];
+}
+
+/// A part of a tick in which a unit of an input moves the state by `column` at most in all, and by no more than `swing`
+/// beside that: entries for a and y_m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stretch {
+    pub column: DVector<f64>,
+    pub swing: Vec<(usize, f64)>,
+    /// Seen by the next tick alone.
+    pub once: bool,
+}
+
+impl Stretch {
+    /// The same in the whole tick.
+    fn held(column: DVector<f64>) -> Self {
+        Self { column, swing: Vec::new(), once: false }
+    }
+
+    /// At most what `row` shows of it.
+    fn seen(&self, row: &RowDVector<f64>) -> f64 {
+        self.swing.iter().fold(row.tr_dot(&self.column).abs(), |sum, (place, most)| sum + row[*place].abs() * most)
+    }
+}
+
+/// The loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisturbedLoop {
+    /// A.
+    pub transition: DMatrix<f64>,
+    /// The stretches of each of [`Input::ALL`].
+    pub inputs: [Vec<Stretch>; Input::ALL.len()],
+    /// C, a row for each of [`Signal::ALL`].
+    pub signals: Vec<RowDVector<f64>>,
+    /// |D|: what a unit of an input changes at once.
+    pub direct: Vec<[f64; Input::ALL.len()]>,
+}
+
+impl DisturbedLoop {
+    /// `law` through an actuator of this lag and delay that makes `gain` times its commands.
+    pub(super) fn new(law: &Law, lag: f64, delay: f64, gain: f64) -> Self {
+        let compensator = law.compensator();
+        let chain = SampledLoop::new(&compensator, law.integrators(), lag, delay).with_gain(gain);
+        let transition = chain.closed_loop();
+        let size = transition.nrows();
+        let none = Added::default();
+        let [feedback, command] = [Added { feedback: 1.0, ..none }, Added { command: 1.0, ..none }];
+        let [estimate, bend] = [Added { force: 1.0, ..none }, Added { bend: 1.0, bias: 1.0, ..none }];
+        let column = |added: &Added| added_column(law, &chain, size, added);
+        let held = |added: &Added| vec![Stretch::held(column(added))];
+        let fed = column(&Added { bend: 1.0, ..none });
+        let unseen = unseen(law, column(&Added { unseen: 1.0, ..none }));
+        let returning = |column: &DVector<f64>| {
+            vec![Stretch { once: true, ..Stretch::held(column.clone()) }, Stretch::held(&transition * column - column)]
+        };
+        let inputs = [
+            force(law, size),
+            actuator(law, lag, size),
+            held(&feedback),
+            held(&command),
+            held(&estimate),
+            vec![unseen.clone()],
+            returning(&unseen.column),
+            vec![Stretch::held(column(&bend) - turned(law, size))],
+            returning(&fed),
+            vec![Stretch::held(fed)],
+            uneven(law, size),
+        ];
+
+        let kept = if lag > 0.0 { (-delay.fract() / lag).exp() } else { 0.0 };
+        let actuation = Actuation { gain, kept };
+        let columns: Vec<_> = (0..size).map(|state| at_unit(law, &chain, &actuation, size, state)).collect();
+        let mut signals: Vec<RowDVector<f64>> = (0..Signal::ALL.len())
+            .map(|signal| RowDVector::from_iterator(size, columns.iter().map(|column| column[signal])))
+            .collect();
+        let changed = [none, none, feedback, command, estimate, none, none, bend, bend, bend, none].map(|added| {
+            let mut states = vec![0.0; law.size()];
+            listed(law, &law.tick_of_states(&mut states, &[0.0; INTEGRATORS_MAX], &added))
+        });
+        let mut direct: Vec<_> =
+            (0..Signal::ALL.len()).map(|signal| changed.map(|listed| listed[signal].abs())).collect();
+        // c'' of the next tick less what this one's comes to until then.
+        if let Some(gains) = law.position() {
+            let kept = (-gains.k_f).exp();
+            let bending = signals[Signal::DesiredAcceleration as usize].clone();
+            let at_once = direct[Signal::DesiredAcceleration as usize];
+            direct[Signal::Jump as usize] = core::array::from_fn(|input| {
+                let through: f64 = inputs[input].iter().map(|stretch| stretch.seen(&bending)).sum();
+                through + (1.0 + kept) * at_once[input]
+            });
+            signals[Signal::Jump as usize] = &bending * &transition - bending * kept;
+        }
+        Self { transition, inputs, signals, direct }
+    }
+
+    /// The same with its states counted in units that make them about as large as each other: powers of two, so nothing
+    /// is rounded.
+    pub fn balanced(mut self) -> Self {
+        let factors = DVector::from_vec(balance(&mut self.transition));
+        for row in &mut self.signals {
+            row.component_mul_assign(&factors.transpose());
+        }
+        for stretch in self.inputs.iter_mut().flatten() {
+            stretch.column.component_div_assign(&factors);
+            for (place, most) in &mut stretch.swing {
+                *most /= factors[*place];
+            }
+        }
+        self
+    }
+}
+
+/// What a tick's state becomes by what is added in it alone.
+fn added_column(law: &Law, chain: &SampledLoop<'_>, size: usize, added: &Added) -> DVector<f64> {
+    let mut states = vec![0.0; law.size()];
+    let command = law.tick_of_states(&mut states, &[0.0; INTEGRATORS_MAX], added).command;
+    let [actuator, first, held] = chain.places();
+    let mut column = DVector::zeros(size);
+    column.rows_mut(first, states.len()).copy_from_slice(&states);
+    if chain.arrival().whole_delay == 0 {
+        for m in 0..=law.integrators() {
+            column[place(m, actuator)] += chain.arrival().newer[m] * command;
+        }
+    }
+    if held < size {
+        column[held] = command;
+    }
+    column
+}
+
+/// Where y_m stands, and a = y_0 behind them.
+fn place(m: usize, actuator: usize) -> usize {
+    if m == 0 { actuator } else { m - 1 }
+}
+
+/// How the actuator answers.
+struct Actuation {
+    gain: f64,
+    /// What it keeps of a difference until the tick's command arrives.
+    kept: f64,
+}
+
+/// The signals of a state that is one in one place.
+fn at_unit(
+    law: &Law,
+    chain: &SampledLoop<'_>,
+    actuation: &Actuation,
+    size: usize,
+    state: usize,
+) -> [f64; Signal::ALL.len()] {
+    let [actuator, first, held] = chain.places();
+    let unit = |place: usize| f64::from(u8::from(place == state));
+    let measured: [f64; INTEGRATORS_MAX] = core::array::from_fn(|m| if m < actuator { unit(m) } else { 0.0 });
+    let mut states: Vec<f64> = (first..held).map(unit).collect();
+    let signals = law.tick_of_states(&mut states, &measured, &Added::default());
+    let mut listed = listed(law, &signals);
+
+    let arrival = chain.arrival();
+    let command = |age: usize| match age {
+        0 => signals.command,
+        _ if held + age - 1 < size => unit(held + age - 1),
+        _ => 0.0,
+    };
+    // What arrives later in the tick, and what was there as it began.
+    let [newer, older] = [command(arrival.whole_delay), command(arrival.whole_delay + 1)];
+    let actual = unit(actuator);
+    let at_arrival = actuation.kept * actual + (1.0 - actuation.kept) * actuation.gain * older;
+    listed[Signal::Position as usize] = measured[law.integrators() - 1];
+    listed[Signal::Velocity as usize] = measured[law.integrators() - 2];
+    if law.integrators() == INTEGRATORS_MAX {
+        let [rate, tilt, ..] = measured;
+        listed[Signal::Tilt as usize] = tilt;
+        listed[Signal::Error as usize] = tilt - signals.desired[0];
+        listed[Signal::ErrorRate as usize] = rate - signals.desired[1];
+        for (signal, turned) in [
+            (Signal::BentActual, actual),
+            (Signal::BentOlder, actuation.gain * older),
+            (Signal::BentNewer, actuation.gain * newer),
+        ] {
+            listed[signal as usize] = turned - signals.desired[2];
+        }
+    }
+    listed[Signal::Actual as usize] = actual;
+    listed[Signal::BehindAtTick as usize] = actuation.gain * older - actual;
+    listed[Signal::BehindAtArrival as usize] = actuation.gain * newer - at_arrival;
+    listed
+}
+
+/// The law's signals, in the order of [`Signal::ALL`]; the vehicle's are zero.
+fn listed(law: &Law, signals: &Signals) -> [f64; Signal::ALL.len()] {
+    let Signals { errors: [z_1, z_2], force, desired: [c, rate, acceleration], projected: [angle, turning], .. } =
+        *signals;
+    let wanted = law.position().map_or(0.0, |gains| gains.feedback([z_1, z_2]));
+    let Signals { bias, command, .. } = *signals;
+    let mut listed = [0.0; Signal::ALL.len()];
+    for (signal, value) in [
+        (Signal::Z1, z_1),
+        (Signal::Z2, z_2),
+        (Signal::Wanted, wanted),
+        (Signal::Force, force),
+        (Signal::Desired, c),
+        (Signal::DesiredRate, rate),
+        (Signal::DesiredAcceleration, acceleration),
+        (Signal::Angle, angle),
+        (Signal::Rate, turning),
+        (Signal::Bias, bias),
+        (Signal::Command, command),
+    ] {
+        listed[signal as usize] = value;
+    }
+    listed
+}
+
+/// How far a unit of acceleration, held for a tick, moves y_1 and what follows it.
+fn turned(law: &Law, size: usize) -> DVector<f64> {
+    let mut column = DVector::zeros(size);
+    for m in 1..=law.integrators() {
+        column[m - 1] = INVERSE_FACTORIAL[m];
+    }
+    column
+}
+
+/// What the change of an acceleration within a tick adds beside its mean: nothing to y_1; to y_m at most the integral
+/// of |t^(m-1) - 1/m| / (m-1)!, t from 0 to 1, times half of the change, for it is at most so far from its mean.
+fn uneven(law: &Law, size: usize) -> Vec<Stretch> {
+    let swing = (2..=law.integrators()).map(|m| (m - 1, 0.25 * INVERSE_FACTORIAL[m - 1])).collect();
+    vec![Stretch { swing, ..Stretch::held(DVector::zeros(size)) }]
+}
+
+/// The ends of the stretches, in time that is left.
+fn ends() -> impl Iterator<Item = [f64; 2]> {
+    (0..STRETCHES).map(|stretch| [stretch, stretch + 1].map(|end| end as f64 / STRETCHES as f64))
+}
+
+/// A force whose mean over a tick is one, and at most two, moves the velocity by that, and the position by half of it,
+/// with at most a quarter of the greatest beside; `besides` is what it does in the law.
+fn unseen(law: &Law, mut besides: DVector<f64>) -> Stretch {
+    let [velocity, position] = [law.integrators() - 2, law.integrators() - 1];
+    besides[velocity] += 1.0;
+    besides[position] += 0.5;
+    Stretch { swing: vec![(position, 0.5)], ..Stretch::held(besides) }
+}
+
+/// A force moves the velocity, y_(M-1), and with it the position, y_M.
+fn force(law: &Law, size: usize) -> Vec<Stretch> {
+    let [velocity, position] = [law.integrators() - 2, law.integrators() - 1];
+    ends()
+        .map(|[from, to]| {
+            let mut column = DVector::zeros(size);
+            column[velocity] = to - from;
+            column[position] = 0.5 * (to * to - from * from);
+            Stretch { column, swing: vec![(position, (to - from) * (to - from))], once: false }
+        })
+        .collect()
+}
+
+/// What the actuator follows besides.
+fn actuator(law: &Law, lag: f64, size: usize) -> Vec<Stretch> {
+    let last = law.integrators();
+    // The kernel of each y_m: forced_m', the slope of `forced`.
+    let slope = |time: f64, forced: &[f64], m: usize| match m {
+        0 if lag > 0.0 => (-time / lag).exp() / lag,
+        0 => 0.0,
+        _ => forced[m - 1],
+    };
+    ends()
+        .map(|[from, to]| {
+            let [before, after] = [from, to].map(|time| LagResponse::over(time, lag).forced);
+            let mut column = DVector::zeros(size);
+            let mut swing = Vec::new();
+            for m in 0..=last {
+                let place = place(m, last);
+                column[place] = after[m] - before[m];
+                swing.push((place, (to - from) * (slope(to, &after, m) - slope(from, &before, m)).abs()));
+            }
+            Stretch { column, swing, once: false }
+        })
+        .collect()
+}
