@@ -3,6 +3,7 @@
 use super::super::gust::{Gust, Step};
 use super::super::tests::flyer;
 use super::*;
+use nalgebra::Quaternion;
 
 /// Full thrust over mass of the Hummingbird's rotors, m/s^2, rounded up.
 const THRUST_PER_MASS_MAX_M_PER_S2: f64 = 101.0;
@@ -26,10 +27,10 @@ fn a_vehicle_at_rest_is_back_at_once_and_a_dive_costs_no_less_than_full_thrust_a
     let flyer = flyer(&Sets::default());
     let rest = flyer.flown(&Start::at_rest());
     assert!(rest.height_lost < 1e-3 && rest.settled_after == Some(0.0), "{rest:?}");
-    let dive = Start { velocity: Vector3::new(0.0, 0.0, -3.0), ..Start::at_rest() };
+    let dive = Start { velocity: Vector3::new(0.0, 0.0, -6.0), ..Start::at_rest() };
     let flown = flyer.flown(&dive);
-    let least = 4.5 / (THRUST_PER_MASS_MAX_M_PER_S2 - 9.81);
-    assert!(flown.height_lost > least && flown.height_lost < 2.0, "{flown:?}");
+    let least = 18.0 / (THRUST_PER_MASS_MAX_M_PER_S2 - 9.81);
+    assert!(flown.height_lost > least && flown.height_lost < 4.0, "{flown:?}");
     assert!(flown.settled_after.is_some_and(|time| time > flown.lowest_at), "{flown:?}");
     let pushed = Start { gust: Gust { axes: [vec![], vec![], vec![Step { from: 0.0, share: -1.0 }]] }, ..dive };
     assert!(flyer.flown(&pushed).height_lost > flown.height_lost + 0.01);
@@ -38,7 +39,8 @@ fn a_vehicle_at_rest_is_back_at_once_and_a_dive_costs_no_less_than_full_thrust_a
 #[test]
 fn lag_inertia_and_force_that_the_law_does_not_know_change_the_flight() {
     let flyer = flyer(&Sets::default());
-    let start = Start { rates: Vector3::new(4.0, 1.0, 0.0), ..Start::at_rest() };
+    let (attitude, rates) = (Quaternion::new(0.1, 0.7, 0.7, 0.1).normalize(), Vector3::new(4.0, 1.0, 0.0));
+    let start = Start { attitude, rates, ..Start::at_rest() };
     let others = [
         Start { lag: 1.3, ..start.clone() },
         Start { inertia: Vector3::new(1.1, 1.0, 1.0), ..start.clone() },
