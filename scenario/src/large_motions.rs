@@ -1,13 +1,8 @@
 //! Large motions: the law flies a model of its vehicle, from far away, fast, upside down and spinning.
 //!
 //! The [sampled loops](crate::sampled_loop) are linear: a limit cycle far from the target is beyond them. Here the law
-//! itself flies the vehicle that it is made for, at the scenario's rate, from eleven starts to a hover:
-//!
-//! ```text
-//! p' = v                     v' = -g e3 + R(q) e3 T/m             world frame, z up
-//! q' = q (0, omega) / 2      J omega' = (J omega) x omega + tau   body frame
-//! T' = (T_cmd(t - delay) - T) / lag, tau likewise
-//! ```
+//! itself flies a [model](crate::model) of the vehicle that it is made for, at the scenario's rate, from eleven starts
+//! to a hover.
 //!
 //! A start is refused, by its name, if the law's own [fallback](controller_core::extended::fallback) comes before the
 //! vehicle is there, or if half an hour passes. This is no proof: it says nothing about any other start. It shows
@@ -17,16 +12,14 @@
 pub mod on_path;
 
 use crate::body::BodyState;
+use crate::model::Model;
 use crate::sampled_loop::LoopTiming;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
-use controller_core::state::Wrench;
-use controller_core::vehicle::Vehicle;
 use nalgebra::{Quaternion, Vector3};
-use std::collections::VecDeque;
 use std::fmt;
 
 /// Where a flight begins: metres, metres per second, radians about a body axis, radians per second.
@@ -64,8 +57,6 @@ const ARRIVAL_DISTANCE_M: f64 = 0.05;
 const ARRIVAL_SPEED_M_PER_S: f64 = 0.1;
 const ARRIVAL_ANGLE_RAD: f64 = 0.05;
 const ARRIVAL_TIME_S: f64 = 1.0;
-
-const STEP_MAX_S: f64 = 2e-3;
 
 /// The flight that was farthest from its target on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,113 +101,45 @@ pub fn flown(certified: &Certified, timing: &LoopTiming) -> Result<Result<Farthe
     let law = Law::new(certified, timing.period as f32)?;
     let vehicle = certified.configuration().vehicle();
     Ok(STARTS.iter().try_fold(Farthest { start: "", distance: 0.0 }, |farthest, start| {
-        let distance = Model::new(vehicle, timing, start).flown(law.clone(), start.name)?;
+        let distance = arrives(Model::new(vehicle, timing, start.body()), law.clone(), start.name)?;
         Ok(if distance > farthest.distance { Farthest { start: start.name, distance } } else { farthest })
     }))
 }
 
-/// The model in flight.
-struct Model {
-    mass: f64,
-    gravity: f64,
-    inertia: Vector3<f64>,
-    /// Across, per velocity, 1/s.
-    drag: f64,
-    step: f64,
-    steps: u32,
-    /// What a step keeps of the difference to the command.
-    kept: f64,
-    body: BodyState,
-    /// T, N, and tau, N m, as they act.
-    thrust: f64,
-    torque: Vector3<f64>,
-    /// Commands under way, one for each step.
-    coming: VecDeque<(f64, Vector3<f64>)>,
-}
-
-impl Model {
-    fn new(vehicle: &Vehicle, timing: &LoopTiming, start: &Start) -> Self {
-        let steps = (timing.period / STEP_MAX_S).ceil();
-        let step = timing.period / steps;
-        let thrust = f64::from(vehicle.mass) * f64::from(vehicle.gravity);
-        let waiting = (timing.delay_samples * steps).round() as usize;
-        let turned = Vector3::from(start.turned);
+impl Start {
+    fn body(&self) -> BodyState {
+        let turned = Vector3::from(self.turned);
         let half = 0.5 * turned.norm();
         let axis = turned.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        Self {
-            mass: f64::from(vehicle.mass),
-            gravity: f64::from(vehicle.gravity),
-            inertia: vehicle.inertia.map(f64::from),
-            drag: 0.0,
-            step,
-            steps: steps as u32,
-            kept: if timing.rotor_lag > 0.0 { (-step / timing.rotor_lag).exp() } else { 0.0 },
-            body: BodyState {
-                position: Vector3::from(start.position),
-                velocity: Vector3::from(start.velocity),
-                attitude: Quaternion::from_parts(half.cos(), axis * half.sin()),
-                angular_velocity: Vector3::from(start.turning),
-            },
-            thrust,
-            torque: Vector3::zeros(),
-            coming: VecDeque::from(vec![(thrust, Vector3::zeros()); waiting]),
+        BodyState {
+            position: Vector3::from(self.position),
+            velocity: Vector3::from(self.velocity),
+            attitude: Quaternion::from_parts(half.cos(), axis * half.sin()),
+            angular_velocity: Vector3::from(self.turning),
         }
     }
+}
 
-    /// How far it was from its target on the way, m, or where it was when it had not arrived.
-    fn flown(mut self, mut law: Law, start: &'static str) -> Result<f64, NotArrived> {
-        let reference = Reference::resting(Vector3::zeros(), Heading::FORWARD);
-        let period = self.step * f64::from(self.steps);
-        let (mut time, mut stayed, mut farthest) = (0.0, 0.0, 0.0_f64);
-        loop {
-            let command = law.command(&self.body.measured(), &reference);
-            let [distance, turned] = [self.body.position.norm(), self.body.heading_error(&reference.heading)];
-            let (Ok(command), 0, true) = (command, law.fallback_times(), time < FLIGHT_DURATION_MAX_S) else {
-                return Err(NotArrived { start, time, distance, turned });
-            };
-            farthest = farthest.max(distance);
-            self.advance(&command.wrench);
-            time += period;
-            let near = distance < ARRIVAL_DISTANCE_M && self.body.velocity.norm() < ARRIVAL_SPEED_M_PER_S;
-            let arrived = near && turned < ARRIVAL_ANGLE_RAD && self.body.thrust_axis().z > ARRIVAL_ANGLE_RAD.cos();
-            stayed = if arrived { stayed + period } else { 0.0 };
-            if stayed > ARRIVAL_TIME_S {
-                return Ok(farthest);
-            }
-        }
-    }
-
-    /// Holds a command for a period.
-    fn advance(&mut self, wrench: &Wrench) {
-        let command = (f64::from(wrench.thrust), wrench.torque.map(f64::from));
-        for _ in 0..self.steps {
-            self.coming.push_back(command);
-            let (thrust, torque) = self.coming.pop_front().unwrap_or(command);
-            self.thrust = thrust + (self.thrust - thrust) * self.kept;
-            self.torque = torque + (self.torque - torque) * self.kept;
-            self.step();
-        }
-    }
-
-    /// One step by the midpoint rule.
-    fn step(&mut self) {
-        let (h, BodyState { attitude, angular_velocity, .. }) = (self.step, self.body);
-        let accelerated = |omega: &Vector3<f64>| {
-            let momentum = self.inertia.component_mul(omega);
-            (momentum.cross(omega) + self.torque).component_div(&self.inertia)
+/// How far `model` was from its target on the way, m, or where it was when it had not arrived.
+fn arrives(mut model: Model, mut law: Law, start: &'static str) -> Result<f64, NotArrived> {
+    let reference = Reference::resting(Vector3::zeros(), Heading::FORWARD);
+    let period = model.period();
+    let (mut time, mut stayed, mut farthest) = (0.0, 0.0, 0.0_f64);
+    loop {
+        let command = law.command(&model.body.measured(), &reference);
+        let [distance, turned] = [model.body.position.norm(), model.body.heading_error(&reference.heading)];
+        let (Ok(command), 0, true) = (command, law.fallback_times(), time < FLIGHT_DURATION_MAX_S) else {
+            return Err(NotArrived { start, time, distance, turned });
         };
-        let turned = |omega: &Vector3<f64>, time: f64| {
-            let next = attitude + attitude * Quaternion::from_imag(omega * (0.5 * time));
-            next / next.norm()
-        };
-        let middle = angular_velocity + accelerated(&angular_velocity) * (0.5 * h);
-        let between = BodyState { attitude: turned(&angular_velocity, 0.5 * h), ..self.body };
-        let drag = Vector3::new(self.body.velocity.x, self.body.velocity.y, 0.0) * self.drag;
-        let acceleration = between.thrust_axis() * (self.thrust / self.mass) - Vector3::z() * self.gravity - drag;
-        self.body.attitude = turned(&middle, h);
-        self.body.angular_velocity += accelerated(&middle) * h;
-        self.body.position += (self.body.velocity + acceleration * (0.5 * h)) * h;
-        self.body.velocity += acceleration * h;
+        farthest = farthest.max(distance);
+        model.advance(&command.wrench);
+        time += period;
+        let near = distance < ARRIVAL_DISTANCE_M && model.body.velocity.norm() < ARRIVAL_SPEED_M_PER_S;
+        let arrived = near && turned < ARRIVAL_ANGLE_RAD && model.body.thrust_axis().z > ARRIVAL_ANGLE_RAD.cos();
+        stayed = if arrived { stayed + period } else { 0.0 };
+        if stayed > ARRIVAL_TIME_S {
+            return Ok(farthest);
+        }
     }
 }
 

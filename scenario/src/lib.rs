@@ -23,8 +23,8 @@
 //! the law's types take them.
 //!
 //! [`verdict`] says whether a scenario may fly: from the certificate, which is about commands, from [`stability`],
-//! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a model, and from what the
-//! reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
+//! which is about the small motions of the [`sampled_loop`], from the [`large_motions`] of a [`model`], and from what
+//! the reference takes [along itself](along); [`board`], whether the firmware can; [`rotor_loss`], what to expect of it
 //! without one of its rotors.
 //!
 //! [`plausibility`] refuses numbers that no vehicle has, as those in other units; [`resolution`] says how far from the
@@ -49,6 +49,7 @@ pub mod initial;
 pub mod judge;
 pub mod key;
 pub mod large_motions;
+pub mod model;
 pub mod number;
 pub mod path;
 pub mod plausibility;

@@ -196,3 +196,28 @@ fn unusable_requirements_exit_with_2_and_name_the_argument() {
     assert_eq!(status(&host_sim(&directory, &["tune", "nowhere.toml"])), 2);
     assert_eq!(files(&directory), ["start.toml"]);
 }
+
+#[test]
+fn a_recovery_is_three_lines_and_a_status_of_1_because_no_height_is_proven() {
+    let directory = directory("recovery");
+    std::fs::write(directory.join("v.toml"), include_str!("../../vehicles/hummingbird.toml")).unwrap();
+    let few = ["certify", "v.toml", "--recovery", "--flights", "20", "--search", "10"];
+    let output = host_sim(&directory, &few);
+    let text = stdout(&output);
+    for line in ["\nH ", "\nT ", "\nr "] {
+        assert_eq!(text.matches(line).count(), 1, "{line:?}: {text}");
+    }
+    let reason = stderr(&output);
+    assert!(status(&output) == 1 && reason.lines().count() == 1 && reason.contains("NOT proven"), "{reason}");
+    let calm = host_sim(&directory, &[&few[..], &["--gust", "0", "--spin", "0"]].concat());
+    assert!(status(&calm) == 1 && stdout(&calm) != text && stdout(&calm).contains("|omega| <= 0 rad/s"));
+    std::fs::write(directory.join("paper.toml"), STUDY).unwrap();
+    let refused = host_sim(&directory, &["certify", "paper.toml", "--recovery"]);
+    assert_eq!((status(&refused), stdout(&refused)), (1, String::new()));
+    assert!(stderr(&refused).starts_with("error: paper.toml: control.law: "), "{}", stderr(&refused));
+    for arguments in [&["--recovery", "--flights", "0"][..], &["--recovery", "--gust=nan"], &["--gust", "1"]] {
+        let output = host_sim(&directory, &[&["certify", "v.toml"], arguments].concat());
+        assert_eq!((status(&output), stdout(&output)), (2, String::new()), "{arguments:?}");
+        assert!(stderr(&output).contains("--"), "{}", stderr(&output));
+    }
+}

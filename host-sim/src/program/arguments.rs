@@ -1,6 +1,7 @@
 //! The command line, in clap's terms, and its checks.
 
 mod campaign;
+mod certify;
 mod compare;
 mod first_flight;
 mod identify;
@@ -14,6 +15,7 @@ mod tune;
 mod vehicle;
 
 pub use campaign::{CampaignArguments, MergeArguments};
+pub use certify::CertifyArguments;
 use clap::{Parser, Subcommand};
 pub use compare::{CompareArguments, GainsWanted};
 pub use first_flight::FirstFlightArguments;
@@ -99,23 +101,6 @@ claims that fail. A waypoint path that leaves the box of its points is said,
 with place and time; a reference that goes below the ground is refused. While it
 flies, no other run writes into the directory. Interrupted, it leaves no file.";
 
-const CERTIFY_HELP: &str = "\
-CERTIFIED means two things. The commands are proven to stay within every limit,
-whatever the vehicle does: that is the certificate, and it says nothing about
-stability. And small motions about hover die out at this rate, delay and rotor
-lag: that is an analysis of the sampled loops, each of which must be stable with
-1.5 times its gain, with 1 / 1.5 of it, and with 2 ms more delay.
-docs/certificate.md and docs/sampled-loop.md explain the tables.
-
-Under the extended law the report ends with the vehicle's abilities, and with
-the inequality that limits it or those that fail: their meaning, and which
-number to change in which direction. Constants that the file leaves out follow
-from the vehicle's numbers; --show prints them all.
-
---rigorous adds what rounding can have changed, in shares of each figure, and
-exits with 1 if that can have decided an inequality: then CERTIFIED rests on the
-last digits of double precision.";
-
 /// One command.
 #[derive(Subcommand)]
 pub enum Command {
@@ -141,17 +126,8 @@ pub enum Command {
     #[command(after_help = reference::HELP)]
     Reference(ReferenceArguments),
     /// Say whether a scenario may fly: prove its commands' limits, down to each rotor, and judge its sampled loops.
-    #[command(after_help = CERTIFY_HELP)]
-    Certify {
-        /// Scenario file [default: the paper's, built in]
-        file: Option<PathBuf>,
-        /// Print the law's constants and the reference's bounds instead, as sections to paste into a scenario file
-        #[arg(long)]
-        show: bool,
-        /// Work every inequality out once more, each operation rounded outwards, and show both figures
-        #[arg(long, conflicts_with = "show")]
-        rigorous: bool,
-    },
+    #[command(after_help = certify::HELP)]
+    Certify(CertifyArguments),
     /// Refine a vehicle's constants by trial flights: certified first, then pleasant to fly. About a minute.
     #[command(after_help = tune::HELP)]
     Tune(TuneArguments),

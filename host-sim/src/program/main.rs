@@ -7,8 +7,8 @@ mod searches;
 mod terminal;
 
 use arguments::{
-    Arguments, CampaignArguments, Command, FirstFlightArguments, HilArguments, ManArguments, MergeArguments,
-    ReferenceArguments, ReplayArguments, SitlArguments, completions, manual,
+    Arguments, CampaignArguments, CertifyArguments, Command, FirstFlightArguments, HilArguments, ManArguments,
+    MergeArguments, ReferenceArguments, ReplayArguments, SitlArguments, completions, manual,
 };
 use clap::{CommandFactory, Parser};
 use host_sim::commands::certify::rigorous::{self, Rigorous};
@@ -37,6 +37,7 @@ use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::summary::Summary;
 use host_sim::studies::campaign::written::above;
 use host_sim::studies::campaign::{self, CampaignError};
+use host_sim::studies::recovery::{Refused, recovery};
 use readers::{given_or_study, run_identify, run_log, run_vehicle};
 use real_flights::{run_replay_estimator, run_replay_law, run_replay_model};
 use scenario::verdict::Verdict;
@@ -58,7 +59,8 @@ fn main() -> ExitCode {
             Some(Command::Fly { file, out, mcap, large_log }) => run_fly(file.as_deref(), out, mcap, large_log),
             Some(Command::Replay(arguments)) => run_replay(&arguments),
             Some(Command::Reference(arguments)) => run_reference(&arguments),
-            Some(Command::Certify { file, show, rigorous }) => run_certify(file.as_deref(), show, rigorous),
+            Some(Command::Certify(arguments)) if arguments.recovery => run_recovery(&arguments),
+            Some(Command::Certify(arguments)) => run_certify(&arguments),
             Some(Command::Tune(arguments)) => run_tune(&arguments),
             Some(Command::Identify(arguments)) => run_identify(&arguments),
             Some(Command::ReplayModel(arguments)) => run_replay_model(&arguments),
@@ -354,10 +356,10 @@ fn run_man(ManArguments { out }: &ManArguments) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCode, String> {
-    let scenario = load(file)?;
+fn run_certify(CertifyArguments { file, show, rigorous, .. }: &CertifyArguments) -> Result<ExitCode, String> {
+    let scenario = load(file.as_deref())?;
     let (mut text, mut certified) = certify(&scenario).map_err(|error| error.to_string())?;
-    if rigorous {
+    if *rigorous {
         let rigorous = Rigorous::new(&scenario.configuration).map_err(|error| error.to_string())?;
         text += &format!("\n{}", rigorous.report());
         certified &= rigorous.holds();
@@ -368,7 +370,7 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
     }
     let may_fly = may_fly::lines(&scenario);
     text += &format!("\n{may_fly}");
-    if show {
+    if *show {
         // Sections to paste are never folded.
         let constants = constants::constants(&scenario);
         let may_fly: String = may_fly.lines().map(|line| format!("# {line}\n")).collect();
@@ -377,4 +379,22 @@ fn run_certify(file: Option<&Path>, show: bool, rigorous: bool) -> Result<ExitCo
         print_text(&text)?;
     }
     Ok(status(certified, None))
+}
+
+fn run_recovery(arguments: &CertifyArguments) -> Result<ExitCode, String> {
+    let scenario = load(arguments.file.as_deref())?;
+    let (sets, orders, interrupt) = (arguments.sets()?, arguments.orders()?, watch()?);
+    match recovery(&scenario, &sets, &orders, &interrupt) {
+        Ok(report) => {
+            print_text(&report.to_string())?;
+            complain(format_args!("error: {}", report.reason()));
+            Ok(status(false, None))
+        }
+        Err(refused) => {
+            let name = arguments.file.as_ref().map_or(scenario.name, |file| file.display().to_string());
+            complain(format_args!("error: {name}: {refused}"));
+            let signal = if let Refused::Interrupted(signal) = refused { Some(signal) } else { None };
+            Ok(status(false, signal))
+        }
+    }
 }

@@ -5,7 +5,8 @@
 //! behind that leaves the heading. The model has the drag across that the law counts with, and starts on the reference.
 //! A motion that repeats is measured once it has flown for `SETTLING_TIME_S`.
 
-use super::{AT_REST, Model, NotArrived, Start};
+use super::{AT_REST, NotArrived, Start};
+use crate::model::Model;
 use crate::sampled_loop::LoopTiming;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::LawParameters;
@@ -64,9 +65,9 @@ impl Path<'_> {
             turned: [0.0, 0.0, y.atan2(x)],
             ..AT_REST
         };
-        let mut model = Model::new(certified.configuration().vehicle(), timing, &start);
+        let mut model = Model::new(certified.configuration().vehicle(), timing, start.body());
         if let LawParameters::Extended(law) = certified.configuration().law() {
-            model.drag = f64::from(law.parameters.drag_across);
+            model.drag_across = f64::from(law.parameters.drag_across);
         }
         let settled = if self.repeats { SETTLING_TIME_S } else { 0.0 };
         let end = (settled + self.end_us as f64 * 1e-6).min(FLIGHT_DURATION_MAX_S);

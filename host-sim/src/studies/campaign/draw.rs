@@ -53,8 +53,7 @@ const WHOLE_TOLERANCE: f64 = 1e-9;
 /// `scenario` in the circumstances of flight `number` of the campaign with this `seed`. Its configuration stays as it
 /// is: what is certified for the scenario is certified for all of its flights.
 pub fn circumstances(scenario: &Scenario, ranges: &Ranges, seed: u64, number: u64) -> Scenario {
-    let mut drawn = Drawn(ChaCha8Rng::seed_from_u64(number));
-    drawn.0.set_stream(seed);
+    let mut drawn = Drawn::new(seed, number);
     let mut thrown = scenario.clone();
     let hovers = match ranges.reference {
         Task::File => false,
@@ -182,21 +181,33 @@ fn fail(scenario: &mut Scenario, ranges: &FailureRanges, latest: f64, drawn: &mu
 }
 
 /// A flight's own random numbers.
-struct Drawn(ChaCha8Rng);
+pub(crate) struct Drawn(ChaCha8Rng);
 
 impl Drawn {
+    /// Those of flight `number` of this `seed`.
+    pub(crate) fn new(seed: u64, number: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(number);
+        random.set_stream(seed);
+        Self(random)
+    }
+
     /// Evenly from -1 to 1.
-    fn side(&mut self) -> f64 {
+    pub(crate) fn side(&mut self) -> f64 {
         self.0.random_range(-1.0..1.0)
     }
 
     /// Evenly from 0 to 1.
-    fn part(&mut self) -> f64 {
+    pub(crate) fn part(&mut self) -> f64 {
         self.0.random_range(0.0..1.0)
     }
 
+    /// Evenly from 0 to below `count`; 0 if that is none.
+    pub(crate) fn index(&mut self, count: usize) -> usize {
+        self.0.random_range(0..count.max(1))
+    }
+
     /// Evenly within the unit ball.
-    fn ball(&mut self) -> Vector3<f64> {
+    pub(crate) fn ball(&mut self) -> Vector3<f64> {
         loop {
             let v = Vector3::from_fn(|_, _| self.side());
             if v.norm() <= 1.0 {
@@ -206,7 +217,7 @@ impl Drawn {
     }
 
     /// Of all attitudes alike.
-    fn attitude(&mut self) -> Quaternion<f64> {
+    pub(crate) fn attitude(&mut self) -> Quaternion<f64> {
         let mut normal = || StandardNormal.sample(&mut self.0);
         let four = Quaternion::new(normal(), normal(), normal(), normal());
         UnitQuaternion::from_quaternion(four).into_inner()
