@@ -423,3 +423,6 @@ fn actuator(law: &Law, lag: f64, size: usize) -> Vec<Stretch> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

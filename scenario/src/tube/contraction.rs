@@ -222,3 +222,6 @@ pub fn responses(system: &DisturbedLoop) -> Vec<f64> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

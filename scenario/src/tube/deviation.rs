@@ -199,7 +199,6 @@ impl<'a> Plane<'a> {
     /// What differs across and along the vertical, for signals within these bounds.
     pub fn deviations(&self, across: &Peaks, vertical: &Peaks) -> [Deviation; 2] {
         let p = &self.law.parameters;
-        let g = self.gravity();
         let [level_across, level_vertical] = self.levels(across, vertical);
         let gains = |k_p: f32, k_v: f32| [k_p.into(), k_v.into()];
         let speed = f64::from(p.v_up.min(p.v_down));
