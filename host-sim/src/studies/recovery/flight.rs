@@ -107,8 +107,8 @@ impl Flyer {
         outcome
     }
 
-    /// Flies from `start`, and in `gust` instead of the start's: a share of the greatest force for each tick. Shows each
-    /// tick's last position, m. Returns the law as the flight left it, or as it was when it refused the state.
+    /// Flies from `start`, and in `gust` instead of the start's: a share of the greatest force for each tick. Shows
+    /// each tick's last position, m. Returns the law as the flight left it, or as it was when it refused the state.
     pub fn fly(
         &self,
         start: &Start,

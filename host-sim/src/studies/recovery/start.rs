@@ -148,8 +148,8 @@ impl fmt::Display for Sets {
             f,
             "any attitude, |omega| <= {spin} rad/s and |v| <= {speed} m/s at the place where it is to hover, the law \
              freshly reset; rotors' lag within {} % of the file's and each moment of inertia within {} %, while \
-             the law believes the file's; a force per mass that changes at any time, of at most {gust} m/s^2 along each \
-             axis; no air, and the true state in the law",
+             the law believes the file's; a force per mass that changes at any time, of at most {gust} m/s^2 along \
+             each axis; no air, and the true state in the law",
             100.0 * lag,
             100.0 * inertia
         )
