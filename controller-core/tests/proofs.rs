@@ -70,7 +70,7 @@ const NOT_COMPUTED: &str = "no code computes it: tests/law/extended_flows differ
 const ONLY_PROOFS_NEED_IT: &str = "only a proof needs it: where a bound is reached, or by which weights it is shown";
 
 /// What stands in no number of the code: the file, the names, and the reason.
-const NOT_COMPARED: [(&str, &[&str], &str); 37] = [
+const NOT_COMPARED: [(&str, &[&str], &str); 39] = [
     ("Allocation", &["torque_fits"], "the rows imply it: rows_suffice; nothing asks for it"),
     (
         "Allocation",
@@ -111,6 +111,12 @@ const NOT_COMPARED: [(&str, &[&str], &str); 37] = [
     ("Heading", &["energy", "energy_falls"], NOT_COMPUTED),
     ("Fallback", &["filter_stays"], OF_ALL_FUNCTIONS),
     ("Fallback", &["progress", "progress_ends", "progress_is_bounded"], OF_WHAT_IS_COMPARED),
+    ("Tube", &["response", "response_bounded", "rest_bounded", "bounds_hold"], OF_ALL_FUNCTIONS),
+    (
+        "Tube",
+        &["thrust_across", "thrust_along", "small_tilt", "squared_length", "turn", "tilt_turns", "tilt_bends"],
+        "scenario::tube counts with them, and is held against flights of the law",
+    ),
     ("Mrp", &["both_lifts", "rotation_of_phi", "rotation_of_shadow"], OF_WHAT_IS_COMPARED),
     ("Adjoint", &["flight", "greatest_linear_function"], OF_ALL_FUNCTIONS),
     ("Reachable", &["G", "W", "peak"], ONLY_PROOFS_NEED_IT),

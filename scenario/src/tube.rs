@@ -100,6 +100,8 @@ pub enum NoTube {
     OtherLaw,
     /// The cells leave something of the tolerances out.
     LeftOut,
+    /// It was not to go on.
+    Stopped,
     /// A loop does not settle for a lag and a moment of inertia within the tolerances.
     Unsettled {
         /// Which.
@@ -133,6 +135,7 @@ impl fmt::Display for NoTube {
         match self {
             Self::OtherLaw => write!(f, "there is no such proof for the paper's law; fly law = \"extended\""),
             Self::LeftOut => write!(f, "the cells of the tolerances leave something out"),
+            Self::Stopped => write!(f, "stopped before its end"),
             Self::Unsettled { axis, lag_factor, gain } => write!(
                 f,
                 "the loop {} is not shown to settle with {lag_factor:.2} times the rotors' lag and {gain:.2} times its gain",
@@ -188,8 +191,8 @@ impl Cells {
     }
 }
 
-/// Cells of the lag and of the gain: the more, the less is an error of the actuator.
-const CELLS: [usize; 2] = [48, 24];
+/// How much of the lag and of the gain is in a cell at most: the less, the less is an error of the actuator.
+const CELL_WIDTHS: [f64; 2] = [0.0125, 0.0085];
 
 /// The loops of a vehicle with all that moves them: worked out once, for any gust.
 #[derive(Clone)]
@@ -211,17 +214,18 @@ enum Counted {
 }
 
 impl<'a> Loops<'a> {
-    /// Of `scenario`; `progress` hears how much is done, from 0 to 1.
+    /// Of `scenario`; `progress` hears how much is done, from 0 to 1, and says whether to go on.
     ///
     /// # Errors
     /// If there is no such proof for the law, or a loop does not settle.
     pub fn new(
         scenario: &'a Scenario,
         tolerances: &Tolerances,
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Self, NoTube> {
-        let [lag, gain] = [(tolerances.lag, CELLS[0]), (tolerances.inertia, CELLS[1])]
-            .map(|(tolerance, count)| Cells::new(tolerance, count));
+        let [lag_width, gain_width] = CELL_WIDTHS;
+        let [lag, gain] = [(tolerances.lag, lag_width), (tolerances.inertia, gain_width)]
+            .map(|(tolerance, width)| Cells::new(tolerance, (2.0 * tolerance / width).ceil().max(1.0) as usize));
         Self::in_cells(scenario, tolerances, [&lag, &gain], progress)
     }
 
@@ -230,7 +234,7 @@ impl<'a> Loops<'a> {
         scenario: &'a Scenario,
         tolerances: &Tolerances,
         [lag, gain]: [&Cells; 2],
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Self, NoTube> {
         let LawParameters::Extended(law) = scenario.configuration.law() else { return Err(NoTube::OtherLaw) };
         if !(lag.cover(tolerances.lag) && gain.cover(tolerances.inertia)) {
@@ -239,7 +243,7 @@ impl<'a> Loops<'a> {
         let one = Cells { middles: vec![1.0], share: 0.0 };
         // Without a lag there is none to be off.
         let lag = if scenario.rotor_lag > 0.0 { lag } else { &one };
-        let vertical = AxisNorms::new(scenario, law, Axis::Vertical, [lag, &one], &|_| ())?;
+        let vertical = AxisNorms::new(scenario, law, Axis::Vertical, [lag, &one], &|_| progress(0.0))?;
         let along_x = AxisNorms::new(scenario, law, Axis::LateralX, [lag, gain], &|done| progress(0.5 * done))?;
         let inertia = scenario.configuration.vehicle().inertia;
         let along_y = if inertia.x == inertia.y {

@@ -201,7 +201,8 @@ fn unusable_requirements_exit_with_2_and_name_the_argument() {
 fn a_recovery_is_three_lines_and_a_status_of_1_because_no_height_is_proven() {
     let directory = directory("recovery");
     std::fs::write(directory.join("v.toml"), include_str!("../../vehicles/hummingbird.toml")).unwrap();
-    let few = ["certify", "v.toml", "--recovery", "--flights", "20", "--search", "10"];
+    let few =
+        ["certify", "v.toml", "--recovery", "--flights=20", "--search=10", "--lag-error=0.02", "--inertia-error=0.01"];
     let output = host_sim(&directory, &few);
     let text = stdout(&output);
     for line in ["\nH ", "\nT ", "\nr "] {

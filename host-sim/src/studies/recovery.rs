@@ -11,7 +11,7 @@
 //! | [`flight`] | one flight, and what it showed |
 //! | [`many`] | random flights on all cores |
 //! | [`search`] | hill climbing for a start that is worse still |
-//! | [`tube`] | how near it stays: proven, and flown at rest for comparison |
+//! | [`tube`] | how near it stays: the worst gusts of the proof, flown |
 //! | [`report`] | the lines H, T and r |
 
 pub mod flight;
@@ -23,24 +23,27 @@ pub mod start;
 pub mod tube;
 
 use crate::output::interrupt::Interrupt;
+use crate::output::progress::Progress;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use flight::{Flyer, Outcome};
 use many::{Interrupted, Work};
 use report::Report;
 use scenario::Scenario;
+use scenario::tube::{Loops, NoTube, Tolerances, Tube};
 use scenario::verdict::Verdict;
 use search::Wanted;
 use start::Sets;
 use std::fmt;
-use tube::{Radii, Tolerances};
+use std::sync::Mutex;
+use tube::Beside;
 
 /// How much is flown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orders {
     /// Flights drawn at random.
     pub flights: u64,
-    /// Flights of each of the two searches.
+    /// Flights of each of the three searches.
     pub search: u64,
     /// Of all draws.
     pub seed: u64,
@@ -95,21 +98,27 @@ pub fn recovery(scenario: &Scenario, sets: &Sets, orders: &Orders, interrupt: &I
     let Some(certified) = verdict.certified() else {
         return Err(Refused::Scenario("not certified".to_owned()));
     };
-    let tolerances = Tolerances { lag: sets.lag, inertia: sets.inertia };
-    let tube = tube::judge(scenario, sets.gust, &tolerances);
-    let radii =
-        tube.as_ref().map_or(Radii::UNPROVEN, |tube| Radii { across: tube.across(), vertical: tube.vertical() });
-    let flyer = Flyer::new(certified, &scenario.loop_timing(), sets, radii).map_err(Refused::Undefined)?;
-    let beside = tube.as_ref().ok().map(|tube| tube::beside_the_tube(&flyer, tube::worst_gusts(tube)));
+    let Proof { tube, gust_max } = proof(scenario, sets, interrupt)?;
+    let radius = tube.as_ref().map_or(RADIUS_UNPROVEN_M, Tube::greatest);
+    let flyer = Flyer::new(certified, &scenario.loop_timing(), sets, radius).map_err(Refused::Undefined)?;
     let interrupted = |Interrupted(signal)| Refused::Interrupted(signal);
-    let work = Work::new(orders.flights + 2 * orders.search, interrupt);
+    let work = Work::new(orders.flights + 3 * orders.search, interrupt);
     let random = many::flights(&flyer, orders, &work).map_err(interrupted)?;
     let climb = |wanted| search::worst(&flyer, wanted, &random, orders, &work).map_err(interrupted);
+    let beside = match &tube {
+        Ok(tube) => {
+            let gusts = tube::worst_gusts(tube);
+            let searched = tube::searched(&flyer, gusts, orders, &work).map_err(interrupted)?;
+            let beside = tube::beside_the_tube(&flyer, gusts);
+            Some(Beside { searched: beside.searched.max(searched), ..beside })
+        }
+        Err(_) => None,
+    };
     let count = |what: fn(&Outcome) -> bool| random.iter().filter(|outcome| what(outcome)).count() as u64;
     Ok(Report {
         name: scenario.name.clone(),
         sets: *sets,
-        radii,
+        radius,
         height: report::Found::new(Wanted::Height, &random, climb(Wanted::Height)?),
         time: report::Found::new(Wanted::Time, &random, climb(Wanted::Time)?),
         not_arrived: count(|outcome| outcome.settled_after.is_none()),
@@ -118,8 +127,40 @@ pub fn recovery(scenario: &Scenario, sets: &Sets, orders: &Orders, interrupt: &I
         flights: orders.flights,
         search: orders.search,
         tube,
+        gust_max,
         beside,
     })
+}
+
+/// What counts as back where no radius is proven, m.
+const RADIUS_UNPROVEN_M: f64 = 0.5;
+
+/// The greatest gust that a radius is looked for, m/s^2.
+const GUST_MAX_M_PER_S2: f64 = 10.0;
+
+/// What is proven about the radius.
+struct Proof {
+    tube: Result<Tube, NoTube>,
+    /// The greatest gust that has one, m/s^2.
+    gust_max: f64,
+}
+
+/// Proves the radius, or finds why there is none.
+fn proof(scenario: &Scenario, sets: &Sets, interrupt: &Interrupt) -> Result<Proof, Refused> {
+    let tolerances = Tolerances { lag: sets.lag, inertia: sets.inertia };
+    let progress = Mutex::new(Progress::new("proving r", 1000));
+    let show = |done: f64| {
+        if let Ok(mut progress) = progress.try_lock() {
+            progress.show((1e3 * done) as u64);
+        }
+        interrupt.signal().is_none()
+    };
+    let loops = match Loops::new(scenario, &tolerances, &show) {
+        Ok(loops) => loops,
+        Err(NoTube::Stopped) => return Err(Refused::Interrupted(interrupt.signal().unwrap_or_default())),
+        Err(none) => return Ok(Proof { tube: Err(none), gust_max: 0.0 }),
+    };
+    Ok(Proof { tube: loops.tube(sets.gust), gust_max: loops.greatest_gust(GUST_MAX_M_PER_S2) })
 }
 
 #[cfg(test)]

@@ -30,14 +30,16 @@ type Norms = Vec<[f64; Input::ALL.len()]>;
 fn greatest_of(
     cells: &[[f64; 2]],
     of_cell: impl Fn([f64; 2]) -> Result<Norms, NoTube> + Sync,
-    progress: &(dyn Fn(f64) + Sync),
+    progress: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<Norms, NoTube> {
     let (next, threads) = (AtomicUsize::new(0), available_parallelism().map_or(1, NonZero::get));
     let worker = || {
         let mut greatest = vec![[0.0_f64; Input::ALL.len()]; Signal::ALL.len()];
         while let Some(cell) = cells.get(next.fetch_add(1, Ordering::Relaxed)) {
             raise(&mut greatest, &of_cell(*cell)?);
-            progress(next.load(Ordering::Relaxed).min(cells.len()) as f64 / cells.len() as f64);
+            if !progress(next.load(Ordering::Relaxed).min(cells.len()) as f64 / cells.len() as f64) {
+                return Err(NoTube::Stopped);
+            }
         }
         Ok(greatest)
     };
@@ -77,7 +79,7 @@ impl AxisNorms {
         law: &ExtendedLaw,
         axis: Axis,
         [lag, gain]: [&Cells; 2],
-        progress: &(dyn Fn(f64) + Sync),
+        progress: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Self, NoTube> {
         let k_f = f64::from(law.parameters.k_f);
         let period = scenario.timing.period();

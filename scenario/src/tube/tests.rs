@@ -22,7 +22,7 @@ fn vehicle(name: &str) -> Scenario {
 
 fn quick(scenario: &Scenario) -> Loops<'_> {
     let [lag, gain] = [Cells::new(FEW.lag, 4), Cells::new(FEW.inertia, 4)];
-    Loops::in_cells(scenario, &FEW, [&lag, &gain], &|_| ()).unwrap()
+    Loops::in_cells(scenario, &FEW, [&lag, &gain], &|_| true).unwrap()
 }
 
 /// How far the vehicle comes from its hover while `gust`, a force for each tick, pushes it along `axis`, m, with so many
@@ -92,7 +92,7 @@ fn no_vehicle_leaves_its_tube_within_the_usual_tolerances() {
         ["hummingbird", "study", "published/x500", "published/pelican", "published/racer-pybullet", "published/iris"];
     for name in names {
         let scenario = vehicle(name);
-        let loops = Loops::new(&scenario, &Tolerances::USUAL, &|_| ()).unwrap();
+        let loops = Loops::new(&scenario, &Tolerances::USUAL, &|_| true).unwrap();
         compare(&scenario, &loops, &Tolerances::USUAL, 0.1, 2.0);
         compare(&scenario, &loops, &Tolerances::USUAL, loops.greatest_gust(2.0), 2.5);
     }
@@ -121,7 +121,7 @@ fn cells_that_leave_something_out_are_refused() {
     let all = Cells::new(FEW.lag, 4);
     let gain = Cells::new(FEW.inertia, 4);
     let refused = |lag: &Cells, gain: &Cells| {
-        matches!(Loops::in_cells(&scenario, &FEW, [lag, gain], &|_| ()), Err(NoTube::LeftOut))
+        matches!(Loops::in_cells(&scenario, &FEW, [lag, gain], &|_| true), Err(NoTube::LeftOut))
     };
     for left_out in 0..4 {
         let mut fewer = all.clone();
@@ -139,6 +139,6 @@ fn cells_that_leave_something_out_are_refused() {
 #[test]
 fn the_papers_law_has_none() {
     let scenario = Scenario::parse(include_str!("../../../vehicles/hummingbird-paper-law.toml"), "paper's").unwrap();
-    let refused = Loops::new(&scenario, &FEW, &|_| ()).err().unwrap();
+    let refused = Loops::new(&scenario, &FEW, &|_| true).err().unwrap();
     assert_eq!(refused, NoTube::OtherLaw);
 }

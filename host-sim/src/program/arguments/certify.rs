@@ -25,7 +25,7 @@ pub struct CertifyArguments {
     /// Recoveries from random starts
     #[arg(long, requires = "recovery", default_value_t = Orders::default().flights)]
     flights: u64,
-    /// Recoveries that each search for a worse start may fly: one for H, one for T
+    /// Flights of each search for something worse: one for H, one for T, one for r
     #[arg(long, requires = "recovery", default_value_t = Orders::default().search)]
     search: u64,
     /// Seed of all starts
@@ -37,7 +37,7 @@ pub struct CertifyArguments {
     /// Greatest speed there, m/s
     #[arg(long, requires = "recovery", default_value_t = Sets::default().speed)]
     speed: f64,
-    /// Greatest force per mass along each axis during a recovery, changing at any time, m/s^2
+    /// Greatest force per mass during a recovery, along x, y or z, changing at any time, m/s^2
     #[arg(long, requires = "recovery", default_value_t = Sets::default().gust)]
     gust: f64,
     /// By how much the rotors' lag may be off while the law does not know, as a fraction
@@ -69,11 +69,12 @@ last digits of double precision.
 --recovery says instead what a recovery to a hover costs, from any attitude, in
 three lines: H, the height that it may lose; T, the time until the vehicle is
 back for good; r, how near it then stays. S is what they are for; --spin to
---inertia-error change it. r is proven. H and T are not proven for every start:
-each is the worst of random flights and of a search that climbs from the worst
-of these, with what the random flights prove of starts drawn like them. So the
-exit status is 1, with the reason on stderr. The same seed gives the same
-flights, whatever the number of threads.
+--inertia-error change it. r is proven, for gusts up to some strength, which it
+names. H and T are not proven for every start: each is the worst of random
+flights and of a search that climbs from the worst of these, with what the
+random flights prove of starts drawn like them. So the exit status is 1, with
+the reason on stderr. The same seed gives the same flights, whatever the number
+of threads. docs/recovery.md has the proof, and what it does not speak of.
 
   host-sim certify vehicles/hummingbird.toml --recovery --flights 100000";
 

@@ -1,7 +1,6 @@
 //! One flight: the law flies a [model](scenario::model) from a start, and what that showed.
 
 use super::start::{Sets, Start};
-use super::tube::Radii;
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -23,7 +22,7 @@ pub struct Outcome {
     pub height_lost: f64,
     /// When that was, s.
     pub lowest_at: f64,
-    /// From when on it stayed within the radii to the flight's end, s; none if it is not there at the end.
+    /// From when on it stayed within the radius to the flight's end, s; none if it is not there at the end.
     pub settled_after: Option<f64>,
     /// How far away it was on the way, m.
     pub farthest: f64,
@@ -48,13 +47,13 @@ impl Outcome {
     };
 
     /// Takes in where the vehicle was at a time, s, the reference at the origin.
-    fn see(&mut self, time: f64, position: &Vector3<f64>, radii: &Radii) {
+    fn see(&mut self, time: f64, position: &Vector3<f64>, radius: f64) {
         if -position.z > self.height_lost {
             (self.height_lost, self.lowest_at) = (-position.z, time);
         }
-        let within = radii.hold(position);
-        self.settled_after = within.then(|| self.settled_after.unwrap_or(time));
         self.distance_at_end = position.norm();
+        let within = self.distance_at_end <= radius;
+        self.settled_after = within.then(|| self.settled_after.unwrap_or(time));
         self.farthest = self.farthest.max(self.distance_at_end);
     }
 }
@@ -65,23 +64,29 @@ pub struct Flyer {
     vehicle: Vehicle,
     timing: LoopTiming,
     sets: Sets,
-    radii: Radii,
+    radius: f64,
 }
 
 impl Flyer {
-    /// Flights under the law of `certified`, at its reference once within `radii`.
+    /// Flights under the law of `certified`, at its reference once within `radius`, m.
     ///
     /// # Errors
     /// If the law refuses the period or the delay.
-    pub fn new(certified: &Certified, timing: &LoopTiming, sets: &Sets, radii: Radii) -> Result<Self, ParameterError> {
+    pub fn new(certified: &Certified, timing: &LoopTiming, sets: &Sets, radius: f64) -> Result<Self, ParameterError> {
         let law = Law::new(certified, timing.period as f32)?;
-        Ok(Self { law, vehicle: *certified.configuration().vehicle(), timing: *timing, sets: *sets, radii })
+        Ok(Self { law, vehicle: *certified.configuration().vehicle(), timing: *timing, sets: *sets, radius })
     }
 
     /// What the law flies.
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
+    }
+
+    /// Of the law, s.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.timing.period
     }
 
     /// What the starts are from.
@@ -99,7 +104,7 @@ impl Flyer {
         let mut flown = 0;
         let law = self.fly(start, gust, |position| {
             flown += 1;
-            outcome.see(flown as f64 * self.timing.period, position, &self.radii);
+            outcome.see(flown as f64 * self.timing.period, position, self.radius);
         });
         outcome.settled_after = outcome.settled_after.filter(|_| flown == ticks);
         outcome.fell_back = law.fallback_times() > 0;

@@ -32,16 +32,24 @@ impl<'a> Work<'a> {
     /// # Errors
     /// If a signal has come.
     pub fn fly(&self, flyer: &Flyer, start: &Start) -> Result<Outcome, Interrupted> {
+        self.count()?;
+        Ok(flyer.flown(start))
+    }
+
+    /// Counts one more flight.
+    ///
+    /// # Errors
+    /// If a signal has come.
+    pub fn count(&self) -> Result<(), Interrupted> {
         if let Some(signal) = self.interrupt.signal() {
             return Err(Interrupted(signal));
         }
-        let outcome = flyer.flown(start);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         // A thread that cannot draw at once leaves it to the next.
         if let Ok(mut progress) = self.progress.try_lock() {
             progress.show(done);
         }
-        Ok(outcome)
+        Ok(())
     }
 }
 

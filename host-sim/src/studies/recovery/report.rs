@@ -4,9 +4,9 @@ use super::flight::{FLIGHT_DURATION_S, Outcome};
 use super::many::share_beyond;
 use super::search::Wanted;
 use super::start::{Sets, Start};
-use super::tube::{NoTube, Radii, Tube};
+use super::tube::Beside;
 use crate::output::table::short;
-use nalgebra::Vector3;
+use scenario::tube::{NoTube, Tube};
 use std::fmt;
 
 /// The worst of one figure.
@@ -52,8 +52,8 @@ pub struct Report {
     pub name: String,
     /// What it is for.
     pub sets: Sets,
-    /// What counts as back.
-    pub radii: Radii,
+    /// What counts as back, m.
+    pub radius: f64,
     /// The worst heights lost.
     pub height: Found,
     /// The worst times.
@@ -70,8 +70,10 @@ pub struct Report {
     pub search: u64,
     /// The proof of r.
     pub tube: Result<Tube, NoTube>,
-    /// How far the proof's worst gusts took the vehicle along each axis, m.
-    pub beside: Option<Vector3<f64>>,
+    /// The greatest gust that has a radius, m/s^2.
+    pub gust_max: f64,
+    /// How far the proof's worst gusts took the vehicle.
+    pub beside: Option<Beside>,
 }
 
 impl Report {
@@ -107,29 +109,29 @@ impl Report {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, sets, radii, height, time, tube, .. } = self;
+        let Self { name, sets, radius, height, time, tube, .. } = self;
         writeln!(f, "{name}: recovery to a hover from starts in S\nS: {sets}\n")?;
-        let back = format!("within {} m across and {} m of height", short(radii.across), short(radii.vertical));
+        let back = format!("within {} m", short(*radius));
         f.write_str(&self.line("H", "height lost", height))?;
         f.write_str(&self.line("T", &format!("time until it is back for good, {back}"), time))?;
+        let greatest = format!("The greatest gust with a proven radius: {} m/s^2", short(self.gust_max));
         match (tube, self.beside) {
-            (Ok(tube), beside) => {
-                let flown = beside.map_or(String::new(), |p| {
-                    format!(
-                        "; flown in the worst gusts of the proof {} m across, {} m of height",
-                        short(p.x.max(p.y)),
-                        short(p.z)
-                    )
-                });
-                writeln!(
-                    f,
-                    "r {} m along each horizontal axis, {} m of height, proven for forces, lag and moments of inertia \
-                     in S{flown}",
-                    short(tube.across()),
-                    short(tube.vertical())
-                )?;
-            }
-            (Err(why), _) => writeln!(f, "r none is proven for S: {why}; T counts with {back}")?,
+            (Ok(tube), Some(Beside { alone, searched, together })) => writeln!(
+                f,
+                "r {} m in S, from hover: how far a gust along one axis may take the vehicle for ever, {} m across and \
+                 {} m up or down. PROVEN for the law in exact arithmetic, its thrust scale at rest (docs/recovery.md). \
+                 Flown in the proof's worst gusts: {} m; the worst that a search of {} flights found from there: {} m. \
+                 In the worst gusts of all axes at once, of which the proof does not speak: {} m. {greatest}",
+                short(tube.greatest()),
+                short(tube.across()),
+                short(tube.vertical()),
+                short(alone),
+                grouped(self.search),
+                short(searched),
+                short(together),
+            )?,
+            (Err(why), _) => writeln!(f, "r none is proven for S: {why}. {greatest}. T counts with {back}")?,
+            (Ok(_), None) => {}
         }
         let odd =
             [(self.fell_back, "the law's fallback comes"), (self.blamed_a_rotor, "the law takes a rotor for lost")];

@@ -1,4 +1,5 @@
-//! Hill climbing for the worst start: the worst random ones change a little, and what is worse stays.
+//! Hill climbing for the worst start: the worst random ones change a little, and what is worse stays. Every second one
+//! begins at the ends of its set: few random starts are there.
 //!
 //! Each climb has random numbers of its own, so that the number of threads changes nothing. A change is as large as has
 //! worked lately: larger after each that made it worse, smaller after each that did not.
@@ -71,7 +72,13 @@ pub fn worst(
         let flights = orders.search / climbs + u64::from(climb < orders.search % climbs);
         // No flight has this number: none is drawn from the same random numbers.
         let mut drawn = Drawn::new(orders.seed, u64::MAX - 2 * climb - u64::from(wanted == Wanted::Time));
-        climbed(flyer, wanted, from(climb), flights, &mut drawn, work)
+        let (start, outcome) = from(climb);
+        if climb % 2 == 1 && flights > 0 {
+            let start = start.at_the_ends(flyer.sets());
+            let outcome = work.fly(flyer, &start)?;
+            return climbed(flyer, wanted, (start, outcome), flights - 1, &mut drawn, work);
+        }
+        climbed(flyer, wanted, (start, outcome), flights, &mut drawn, work)
     };
     let climbed: Vec<(Start, Outcome)> = (0..climbs).into_par_iter().map(climb).collect::<Result<_, _>>()?;
     let worse = |one: (Start, Outcome), other: (Start, Outcome)| {

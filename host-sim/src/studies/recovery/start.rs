@@ -21,7 +21,7 @@ pub struct Sets {
     pub spin: f64,
     /// Greatest |v|, m/s.
     pub speed: f64,
-    /// Greatest force per mass along each world axis, m/s^2.
+    /// Greatest force per mass along an axis of the world, m/s^2.
     pub gust: f64,
     /// By how much the rotors' lag may be off, as a share.
     pub lag: f64,
@@ -31,7 +31,7 @@ pub struct Sets {
 
 impl Default for Sets {
     fn default() -> Self {
-        Self { spin: 5.0, speed: 3.0, gust: 1.0, lag: 0.3, inertia: 0.1 }
+        Self { spin: 5.0, speed: 3.0, gust: 0.1, lag: 0.3, inertia: 0.1 }
     }
 }
 
@@ -62,7 +62,7 @@ impl Start {
             velocity: Vector3::zeros(),
             lag: 1.0,
             inertia: Vector3::repeat(1.0),
-            gust: Gust { axes: [(); 3].map(|()| Vec::new()) },
+            gust: Gust::NONE,
         }
     }
 
@@ -79,6 +79,14 @@ impl Start {
             }
         };
         Self { attitude, rates, velocity, lag, inertia, gust: Gust::drawn(drawn, FLIGHT_DURATION_S) }
+    }
+
+    /// The same start, turning and moving as fast as the sets have it, and with the slowest rotors.
+    #[must_use]
+    pub fn at_the_ends(self, sets: &Sets) -> Self {
+        let long = |v: &Vector3<f64>, length: f64| v.try_normalize(0.0).map_or(*v, |v| v * length);
+        let (rates, velocity) = (long(&self.rates, sets.spin), long(&self.velocity, sets.speed));
+        Self { rates, velocity, lag: 1.0 + sets.lag, ..self }
     }
 
     /// Another start near this one, changed in some of what it consists of; `scale` is 1 for changes as large as the
@@ -148,8 +156,8 @@ impl fmt::Display for Sets {
             f,
             "any attitude, |omega| <= {spin} rad/s and |v| <= {speed} m/s at the place where it is to hover, the law \
              freshly reset; rotors' lag within {} % of the file's and each moment of inertia within {} %, while \
-             the law believes the file's; a force per mass that changes at any time, of at most {gust} m/s^2 along \
-             each axis; no air, and the true state in the law",
+             the law believes the file's; a force per mass of at most {gust} m/s^2 along x, y or z, which changes at \
+             any time; no air, and the true state in the law",
             100.0 * lag,
             100.0 * inertia
         )

@@ -1,89 +1,25 @@
-//! How near the vehicle stays once it is there: the radius that is proven, and the worst gusts flown beside it.
+//! How near the vehicle stays once it is there: the worst gusts of the [proof](scenario::tube), flown beside it.
 
+use super::Orders;
 use super::flight::Flyer;
+use super::gust::Gust;
+use super::many::{Interrupted, Work};
 use super::start::Start;
+use crate::studies::campaign::draw::Drawn;
 use nalgebra::Vector3;
-use scenario::Scenario;
+use rayon::prelude::*;
 use scenario::sampled_loop::Axis;
-use std::fmt;
+use scenario::tube::Tube;
 
-/// As shares of the file's.
+/// How far the vehicle comes from a hover, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerances {
-    /// Of the rotors' lag.
-    pub lag: f64,
-    /// Of each moment of inertia.
-    pub inertia: f64,
-}
-
-/// A proven tube about the hover.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tube {
-    across: f64,
-    vertical: f64,
-    gusts: [Vec<f64>; 3],
-}
-
-/// Why there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NoTube(&'static str);
-
-impl fmt::Display for NoTube {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0)
-    }
-}
-
-/// The tube of `scenario`.
-///
-/// # Errors
-/// Why there is none.
-pub fn judge(_scenario: &Scenario, _gust: f64, _tolerances: &Tolerances) -> Result<Tube, NoTube> {
-    Err(NoTube("not there yet"))
-}
-
-impl Tube {
-    /// m, along each horizontal axis.
-    #[must_use]
-    pub fn across(&self) -> f64 {
-        self.across
-    }
-
-    /// m.
-    #[must_use]
-    pub fn vertical(&self) -> f64 {
-        self.vertical
-    }
-
-    /// -1 or 1 for each tick, oldest first.
-    #[must_use]
-    pub fn worst_gust(&self, axis: Axis) -> &[f64] {
-        match axis {
-            Axis::LateralX => &self.gusts[0],
-            Axis::LateralY => &self.gusts[1],
-            _ => &self.gusts[2],
-        }
-    }
-}
-
-/// Where a vehicle counts as back: a box about its reference.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Radii {
-    /// m, along each horizontal axis.
-    pub across: f64,
-    /// m.
-    pub vertical: f64,
-}
-
-impl Radii {
-    /// What counts where nothing is proven.
-    pub const UNPROVEN: Self = Self { across: 0.5, vertical: 0.5 };
-
-    /// Whether a position, m, is within.
-    #[must_use]
-    pub fn hold(&self, position: &Vector3<f64>) -> bool {
-        position.x.abs().max(position.y.abs()) <= self.across && position.z.abs() <= self.vertical
-    }
+pub struct Beside {
+    /// In the worst gust of one axis.
+    pub alone: f64,
+    /// In whatever gust along one axis a search found from there.
+    pub searched: f64,
+    /// In the worst gusts of all axes at once: the proof does not speak of these.
+    pub together: f64,
 }
 
 /// The worst gust of a tube along each axis.
@@ -92,28 +28,76 @@ pub fn worst_gusts(tube: &Tube) -> [&[f64]; 3] {
     [Axis::LateralX, Axis::LateralY, Axis::Vertical].map(|axis| tube.worst_gust(axis))
 }
 
-/// How far the vehicle comes from a hover, m, along each axis, in these gusts (-1 or 1 for each tick, oldest first),
-/// each along its own axis alone, and all at once: with lag and moments of inertia as they are, and at both ends.
+/// How far the vehicle comes from a hover in these gusts (-1 or 1 for each tick, oldest first): with lag and moments of
+/// inertia as they are, and at both ends.
 #[must_use]
-pub fn beside_the_tube(flyer: &Flyer, gusts: [&[f64]; 3]) -> Vector3<f64> {
+pub fn beside_the_tube(flyer: &Flyer, gusts: [&[f64]; 3]) -> Beside {
     let ticks = gusts.map(<[f64]>::len).into_iter().max().unwrap_or(0);
     // All end together: the last gust counts most.
     let at = |axis: usize, tick: usize| {
         let waits = ticks - gusts[axis].len();
         tick.checked_sub(waits).and_then(|tick| gusts[axis].get(tick)).copied().unwrap_or(0.0)
     };
-    let factors = |share: f64| [1.0 - share, 1.0, 1.0 + share];
-    let mut farthest = Vector3::zeros();
-    for lag in factors(flyer.sets().lag) {
-        for inertia in factors(flyer.sets().inertia) {
-            let start = Start { lag, inertia: Vector3::repeat(inertia), ..Start::at_rest() };
-            for alone in [Some(0), Some(1), Some(2), None] {
-                let blows = |axis: usize| alone.is_none_or(|alone| alone == axis);
-                let gust =
-                    (0..ticks).map(|tick| Vector3::from_fn(|axis, _| if blows(axis) { at(axis, tick) } else { 0.0 }));
-                flyer.fly(&start, gust, |position| farthest = farthest.sup(&position.abs()));
+    let mut beside = Beside { alone: 0.0, searched: 0.0, together: 0.0 };
+    for start in corners(flyer) {
+        for axis in 0..3 {
+            let distance = farthest(flyer, &start, gusts[axis].iter().map(|share| Vector3::ith(axis, *share)));
+            beside.alone = beside.alone.max(distance);
+        }
+        let all = (0..ticks).map(|tick| Vector3::from_fn(|axis, _| at(axis, tick)));
+        beside.together = beside.together.max(farthest(flyer, &start, all));
+    }
+    Beside { searched: beside.alone, ..beside }
+}
+
+/// The greatest distance that a search finds, by climbing from each of these gusts at each corner of the tolerances.
+///
+/// # Errors
+/// If a signal came.
+pub fn searched(flyer: &Flyer, gusts: [&[f64]; 3], orders: &Orders, work: &Work) -> Result<f64, Interrupted> {
+    let begins: Vec<Start> = (0..3)
+        .flat_map(|axis| {
+            let gust = Gust::of_ticks(axis, gusts[axis], flyer.period());
+            corners(flyer).map(move |start| Start { gust: gust.clone(), ..start })
+        })
+        .collect();
+    let each = orders.search / begins.len() as u64;
+    let climb = |(number, begin): (usize, &Start)| {
+        // No flight and no other climb has this number.
+        let mut drawn = Drawn::new(orders.seed, u64::MAX / 2 - number as u64);
+        let ticks = (begin.gust.steps.last().map_or(0.0, |step| step.from) / flyer.period()).ceil() as u64 + 100;
+        let flown =
+            |start: &Start| farthest(flyer, start, (0..ticks).map(|tick| start.gust.at(tick as f64 * flyer.period())));
+        let (mut best, mut distance) = (begin.clone(), flown(begin));
+        for _ in 0..each {
+            work.count()?;
+            let tried = best.mutated(flyer.sets(), flyer.vehicle(), &mut drawn, SCALE);
+            let tried = Start { lag: tried.lag, inertia: tried.inertia, gust: tried.gust, ..Start::at_rest() };
+            let after = flown(&tried);
+            if after >= distance {
+                (best, distance) = (tried, after);
             }
         }
-    }
+        Ok(distance)
+    };
+    let distances: Vec<f64> = begins.par_iter().enumerate().map(climb).collect::<Result<_, _>>()?;
+    Ok(distances.into_iter().fold(0.0, f64::max))
+}
+
+/// How large a change is.
+const SCALE: f64 = 0.02;
+
+/// At rest, with lag and moments of inertia as they are and at both ends.
+fn corners(flyer: &Flyer) -> impl Iterator<Item = Start> {
+    let factors = |share: f64| [1.0 - share, 1.0, 1.0 + share];
+    let (lags, inertias) = (factors(flyer.sets().lag), factors(flyer.sets().inertia));
+    lags.into_iter().flat_map(move |lag| {
+        inertias.map(|inertia| Start { lag, inertia: Vector3::repeat(inertia), ..Start::at_rest() })
+    })
+}
+
+fn farthest(flyer: &Flyer, start: &Start, gust: impl IntoIterator<Item = Vector3<f64>>) -> f64 {
+    let mut farthest = 0.0_f64;
+    flyer.fly(start, gust, |position| farthest = farthest.max(position.norm()));
     farthest
 }

@@ -1,7 +1,7 @@
 //! The lines, and the share that statistics prove.
 
 use super::super::many::DOUBT;
-use super::super::tests::hummingbird;
+use super::super::tests::{hummingbird, sets};
 use super::super::{Orders, recovery};
 use super::*;
 use crate::output::interrupt::Interrupt;
@@ -23,7 +23,7 @@ fn thousands_are_apart() {
 
 fn report() -> Report {
     let orders = Orders { flights: 20, search: 4, seed: 1 };
-    recovery(&hummingbird(), &Sets::default(), &orders, &Interrupt::default()).unwrap()
+    recovery(&hummingbird(), &sets(), &orders, &Interrupt::default()).unwrap()
 }
 
 fn line(text: &str, start: &str) -> String {
@@ -40,10 +40,26 @@ fn height_and_time_say_that_they_are_not_proven_and_what_is() {
         assert!(line.contains("from S: ") && line.contains("NOT proven for every start"), "{line}");
         assert!(line.contains("of 20 random flights") && line.contains("fewer than 1 in 2 "), "{line}");
     }
-    assert!(line(&text, "r ").contains("none is proven for S"), "{text}");
+    let radius = line(&text, "r ");
+    assert_eq!(radius.split(' ').nth(2), Some("m"), "{radius}");
+    assert!(radius.contains("PROVEN") && radius.contains("greatest gust"), "{radius}");
     assert!(report.reason().contains("H and T are NOT proven"));
     let height: f64 = line(&text, "H ").split(' ').nth(1).unwrap().parse().unwrap();
     assert!(height >= report.height.worst() && height < report.height.worst() + 0.01, "{text}");
+}
+
+#[test]
+fn a_gust_without_a_radius_is_said_with_the_reason_and_the_greatest_that_has_one() {
+    let orders = Orders { flights: 5, search: 0, seed: 1 };
+    let strong = Sets { gust: 5.0, ..sets() };
+    let report = recovery(&hummingbird(), &strong, &orders, &Interrupt::default()).unwrap();
+    let text = report.to_string();
+    let radius = line(&text, "r ");
+    assert!(
+        radius.starts_with("r none is proven for S: lateral x: ") && radius.contains("T counts with within 0.5 m"),
+        "{radius}"
+    );
+    assert!(report.reason().contains("no r is proven") && report.gust_max > 0.3 && report.gust_max < 1.0);
 }
 
 #[test]
