@@ -99,7 +99,7 @@ pub fn recovery(scenario: &Scenario, sets: &Sets, orders: &Orders, interrupt: &I
         return Err(Refused::Scenario("not certified".to_owned()));
     };
     let Proof { tube, gust_max } = proof(scenario, sets, interrupt)?;
-    let radius = tube.as_ref().map_or(RADIUS_UNPROVEN_M, Tube::greatest);
+    let radius = tube.as_ref().map_or(RADIUS_UNPROVEN_M, |tube| RADIUS_MIN_M.max(2.0 * tube.greatest()));
     let flyer = Flyer::new(certified, &scenario.loop_timing(), sets, radius).map_err(Refused::Undefined)?;
     let interrupted = |Interrupted(signal)| Refused::Interrupted(signal);
     let work = Work::new(orders.flights + 3 * orders.search, interrupt);
@@ -131,6 +131,10 @@ pub fn recovery(scenario: &Scenario, sets: &Sets, orders: &Orders, interrupt: &I
         beside,
     })
 }
+
+/// What counts as back at least, m, and otherwise twice the proven radius: r is for a law that knows its thrust, and a
+/// recovery can leave it in error about that (`docs/recovery.md`).
+const RADIUS_MIN_M: f64 = 0.1;
 
 /// What counts as back where no radius is proven, m.
 const RADIUS_UNPROVEN_M: f64 = 0.5;

@@ -119,7 +119,8 @@ impl fmt::Display for Report {
             (Ok(tube), Some(Beside { alone, searched, together })) => writeln!(
                 f,
                 "r {} m in S, from hover: how far a gust along one axis may take the vehicle for ever, {} m across and \
-                 {} m up or down. PROVEN for the law in exact arithmetic, its thrust scale at rest (docs/recovery.md). \
+                 {} m up or down. PROVEN for the law in exact arithmetic while its thrust scale is right and stands \
+                 still (docs/recovery.md). \
                  Flown in the proof's worst gusts: {} m; the worst that a search of {} flights found from there: {} m. \
                  In the worst gusts of all axes at once, of which the proof does not speak: {} m. {greatest}",
                 short(tube.greatest()),
