@@ -122,7 +122,8 @@ Theorem tilt_bends : is_derive turn t
 Proof.
   pose proof (length_positive t) as Hl. unfold squared_length in Hl. unfold turn, squared_length.
   assert (Hc : ex_derive c t) by (eexists; apply c_moves). assert (Hw : ex_derive w t) by (eexists; apply w_moves).
-  assert (Hc' : ex_derive c' t) by (eexists; apply c'_moves). assert (Hw' : ex_derive w' t) by (eexists; apply w'_moves).
+  assert (Hc' : ex_derive c' t) by (eexists; apply c'_moves).
+  assert (Hw' : ex_derive w' t) by (eexists; apply w'_moves).
   auto_derive; [repeat split; try assumption; lra|].
   rewrite (is_derive_unique (fun x : R => c x) t _ (c_moves t) : Derive (fun x : R => c x) t = _),
     (is_derive_unique (fun x : R => w x) t _ (w_moves t) : Derive (fun x : R => w x) t = _),

@@ -1,46 +1,39 @@
 //! How far a gust takes a vehicle from where it hovers: a tube that it does not leave.
 //!
-//! The force per mass acts along x, y or z, is never above a level and may be anything else at any time. The rotors' lag
-//! and the moments of inertia may be off by a share, and the law believes the file's. Then |p| never exceeds a radius,
-//! which [`Loops::tube`] proves. `docs/recovery.md` has the derivation:
+//! The force per mass acts along x, y or z, is never above a level and may be anything else at any time. The rotors'
+//! lag and the moments of inertia may be off by a share, and the law believes the file's. Then |p| never exceeds a
+//! radius, which [`Loops::tube`] proves. `docs/recovery.md` has the derivation:
 //!
 //! 1. The vehicle, the law and their saturations in the plane of the gust are the [linear loops](crate::sampled_loop)
 //!    with what comes to them from outside: the gust, and all by which vehicle and law differ from them
 //!    ([`deviation`]).
 //! 2. How much a signal is at most for inputs within one is a sum over the loop's responses, bounded from above
 //!    ([`contraction`]). So bounds on what differs give bounds on the signals, and these bound what differs.
-//! 3. If what the signals then make is no more than what was taken, they stay within their bounds for ever: a signal of a
-//!    tick depends on what differed before it alone. Where nothing of that kind is found, or a limit of the law is
+//! 3. If what the signals then make is no more than what was taken, they stay within their bounds for ever: a signal of
+//!    a tick depends on what differed before it alone. Where nothing of that kind is found, or a limit of the law is
 //!    reached, there is no radius, and the reason is said.
 //! 4. The lag and the moment of inertia are cut into cells. In a cell they are those of its middle, and the rest is an
 //!    error of what the actuator follows (`Cells`).
 
+mod bounds;
+mod cells;
 mod contraction;
 mod deviation;
+mod limits;
+mod refusal;
 mod signals;
 
 use crate::file::Scenario;
 use crate::sampled_loop::Axis;
+use bounds::{Deviation, Peaks};
+use cells::Cells;
+pub use cells::Tolerances;
 use controller_core::configuration::{ExtendedLaw, LawParameters};
 use controller_core::extended::fallback::NEAR_DISTANCE_M;
-pub use deviation::Reached;
-use deviation::{Ages, Deviation, Peaks, Plane};
+use deviation::{Ages, Plane};
+pub use limits::Reached;
+pub use refusal::NoTube;
 use signals::AxisNorms;
-use std::fmt;
-
-/// By what shares rotor lag and moments of inertia may be off, either way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerances {
-    /// Of the rotors' lag.
-    pub lag: f64,
-    /// Of the moments of inertia, as they are in what a torque turns.
-    pub inertia: f64,
-}
-
-impl Tolerances {
-    /// What `certify --recovery` proves.
-    pub const USUAL: Self = Self { lag: 0.3, inertia: 0.1 };
-}
 
 /// How far a gust along an axis takes the vehicle, m: along x, y and z, in the gust's plane or along the vertical.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,104 +83,6 @@ fn place(axis: Axis) -> usize {
         Axis::LateralX | Axis::Pitch => 0,
         Axis::LateralY | Axis::Roll => 1,
         Axis::Vertical | Axis::Yaw => 2,
-    }
-}
-
-/// Why there is no radius.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum NoTube {
-    /// The law is the paper's.
-    OtherLaw,
-    /// The cells leave something of the tolerances out.
-    LeftOut,
-    /// It was not to go on.
-    Stopped,
-    /// A loop does not settle for a lag and a moment of inertia within the tolerances.
-    Unsettled {
-        /// Which.
-        axis: Axis,
-        /// Times the file's lag.
-        lag_factor: f64,
-        /// Times the file's torque over moment of inertia.
-        gain: f64,
-    },
-    /// What differs from the loops makes more of itself.
-    Grows {
-        /// The gust's.
-        axis: Axis,
-    },
-    /// A limit of the law is reached.
-    Reached {
-        /// The gust's.
-        axis: Axis,
-        /// Which.
-        limit: Reached,
-    },
-    /// The fallback could take over.
-    Fallback {
-        /// The gust's.
-        axis: Axis,
-    },
-}
-
-impl fmt::Display for NoTube {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OtherLaw => write!(f, "there is no such proof for the paper's law; fly law = \"extended\""),
-            Self::LeftOut => write!(f, "the cells of the tolerances leave something out"),
-            Self::Stopped => write!(f, "stopped before its end"),
-            Self::Unsettled { axis, lag_factor, gain } => write!(
-                f,
-                "the loop {} is not shown to settle with {lag_factor:.2} times the rotors' lag and {gain:.2} times its gain",
-                axis.name()
-            ),
-            Self::Grows { axis } => write!(
-                f,
-                "{}: what saturations and large angles add grows without end at this gust; a smaller --gust may have one",
-                axis.name()
-            ),
-            Self::Reached { axis, limit: Reached { what, unit, needed, available } } => write!(
-                f,
-                "{}: {what} may be reached, {needed:.3} of {available:.3} {unit}; a smaller --gust may have a radius",
-                axis.name()
-            ),
-            Self::Fallback { axis } => write!(
-                f,
-                "{}: the fallback may take over, so far does this gust carry it; a smaller --gust may have a radius",
-                axis.name()
-            ),
-        }
-    }
-}
-
-/// The cells of a tolerance: their middles as factors, and by what share the factor differs from a cell's middle at most.
-#[derive(Debug, Clone, PartialEq)]
-struct Cells {
-    middles: Vec<f64>,
-    share: f64,
-}
-
-impl Cells {
-    /// So many for all factors from 1 - `tolerance` to 1 + `tolerance`, each `share` wide either way.
-    fn new(tolerance: f64, count: usize) -> Self {
-        let [low, high] = [1.0 - tolerance, 1.0 + tolerance];
-        // Neighbours meet: middle (1 + share) = next (1 - share).
-        let ratio = (high / low).powf(1.0 / count as f64);
-        let share = (ratio - 1.0) / (ratio + 1.0);
-        let middles = (0..count).map(|cell| low * ratio.powi(cell as i32) / (1.0 - share)).collect();
-        Self { middles, share: share * (1.0 + 1e-9) }
-    }
-
-    /// Whether every factor from 1 - `tolerance` to 1 + `tolerance` is in a cell.
-    fn cover(&self, tolerance: f64) -> bool {
-        let mut reached = 1.0 - tolerance;
-        for middle in &self.middles {
-            if middle * (1.0 - self.share) > reached {
-                return false;
-            }
-            reached = reached.max(middle * (1.0 + self.share));
-        }
-        reached >= 1.0 + tolerance
     }
 }
 
@@ -363,8 +258,8 @@ impl InPlane<'_> {
         let period = self.vertical.period();
         let [x, z] = [(across, accelerations[0]), (vertical, accelerations[1])]
             .map(|(peaks, acceleration)| peaks.position + acceleration * period * period / 8.0);
-        // Along the gust the speed passes zero within every 20 s, or the way would be longer than it is; a tick takes at
-        // most its acceleration to get past it.
+        // Along the gust the speed passes zero within every 20 s, or the way would be longer than it is; a tick takes
+        // at most its acceleration to get past it.
         let speeds = if self.gust[0] > 0.0 {
             [accelerations[0] * period, vertical.velocity]
         } else {

@@ -27,6 +27,7 @@ use crate::output::progress::Progress;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;
 use flight::{Flyer, Outcome};
+pub use many::Orders;
 use many::{Interrupted, Work};
 use report::Report;
 use scenario::Scenario;
@@ -37,24 +38,6 @@ use start::Sets;
 use std::fmt;
 use std::sync::Mutex;
 use tube::Beside;
-
-/// How much is flown.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Orders {
-    /// Flights drawn at random.
-    pub flights: u64,
-    /// Flights of each of the three searches.
-    pub search: u64,
-    /// Of all draws.
-    pub seed: u64,
-}
-
-impl Default for Orders {
-    /// About a minute on two cores, at 100 Hz.
-    fn default() -> Self {
-        Self { flights: 50_000, search: 15_000, seed: 1 }
-    }
-}
 
 /// Why there is no report.
 #[derive(Debug)]

@@ -5,16 +5,16 @@
 //! x+ = A x + sum over j of the integral of k_j(t) u_j(t) over the tick,   |signals| <= |C x| + D |u|
 //! ```
 //!
-//! t is the time that is left of the tick. The law's two differences are held: their kernels are columns. A force and an
-//! error of the actuator may be anything in between. Per unit and per time that is left,
+//! t is the time that is left of the tick. The law's two differences are held: their kernels are columns. A force and
+//! an error of the actuator may be anything in between. Per unit and per time that is left,
 //!
 //! | | a | y_1 ... |
 //! |---|---|---|
 //! | a force, as the change of the velocity per sample | | 1 in the velocity, t in the position |
 //! | an error of what the actuator follows | forced_0' = e^(-t/lag) / lag | forced_m' = forced_(m-1) |
 //!
-//! with `forced` as in [`super::lag`]. The time of a tick is cut into [`Stretch`]es: in each a kernel is its mean and at
-//! most `swing` beside it, as its entries are monotone. Everything in samples, as in [`super::law`].
+//! with `forced` as in [`super::lag`]. The time of a tick is cut into [`Stretch`]es: in each a kernel is its mean and
+//! at most `swing` beside it, as its entries are monotone. Everything in samples, as in [`super::law`].
 
 use super::balance;
 use super::chain::SampledLoop;
@@ -43,8 +43,8 @@ pub enum Input {
     Unseen,
     /// The same in one tick, and taken back in the next.
     Shaken,
-    /// How the desired tilt bends beside c'', the mean over a tick: fed forward, and missing in how the tilt turns, both
-    /// counted from c. The torque bias does not see it.
+    /// How the desired tilt bends beside c'', the mean over a tick: fed forward, and missing in how the tilt turns,
+    /// both counted from c. The torque bias does not see it.
     Bend,
     /// What is fed forward beside that in one tick, and taken back in the next.
     Late,

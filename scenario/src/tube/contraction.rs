@@ -1,7 +1,8 @@
 //! How much at most comes out of a linear system for inputs that may do anything within one.
 //!
 //! ```text
-//! x+ = A x + sum over s of the integral of k_s(t) u(t),  |u| <= 1:   sup |c x| = sum over k of the integral of |c A^k k_s(t)|
+//! x+ = A x + sum over s of the integral of k_s(t) u(t),  |u| <= 1:
+//! sup |c x| = sum over k and s of the integral of |c A^k k_s(t)|
 //! ```
 //!
 //! The sum is taken over the rows c A^k until what follows is small, and what follows and rounding are bounded: with a
@@ -101,9 +102,10 @@ impl Contraction {
 
         let mut now = row * &self.from;
         // How far the computed row is from the true one.
-        let mut off =
-            difference(&[&DMatrix::from_rows(&[now.clone()]), &self.to], &[&DMatrix::from_rows(&[row.clone()])])
-                * self.inverse_norm;
+        let mut off = difference(
+            &[&DMatrix::from_rows(&[now.clone()]), &self.to],
+            &[&DMatrix::from_rows(std::slice::from_ref(row))],
+        ) * self.inverse_norm;
         let mut next = now.clone();
         let mut sums = vec![0.0; inputs.len()];
         for tick in 0..TICKS_MAX {

@@ -4,75 +4,11 @@
 //! The motion is in one vertical plane: along x and z. e is the angle from the desired thrust axis to the thrust axis,
 //! c and y the filters, lambda = atan(c_x / (g + c_z)) the desired tilt.
 
+use super::bounds::{Deviation, Peaks};
 use controller_core::configuration::{Configuration, ExtendedLaw};
-use controller_core::extended::budget::{TORQUE_THRUST_SHARE, TorqueBudget};
-use controller_core::extended::direction_limiter::{END_SOFTNESS_PER_S, PUSH_ACROSS_MAX_M_PER_S2};
+use controller_core::extended::budget::TorqueBudget;
 use core::ops::{Add, Mul};
 use nalgebra::Vector3;
-
-/// Bounds on an axis' signals, SI units: m, m/s, m/s^2, rad; what turns is in rad/s and rad/s^2.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Peaks {
-    pub position: f64,
-    pub velocity: f64,
-    pub z_1: f64,
-    pub z_2: f64,
-    /// |k_p z_1 + k_v z_2|.
-    pub wanted: f64,
-    /// |d|.
-    pub force: f64,
-    /// |c|, |c'| and |c''|; along the vertical the first is |y|.
-    pub desired: [f64; 3],
-    /// How far c'' jumps at a tick.
-    pub jump: f64,
-    /// |e| and |e'| between ticks as well, and the projected errors.
-    pub error: [f64; 2],
-    pub projected: [f64; 2],
-    /// How fast at most the tilt's turn changes.
-    pub turned: f64,
-    /// The torque bias over the moment of inertia.
-    pub bias: f64,
-    /// What the actuator is told, and that less what it delivers.
-    pub command: f64,
-    pub behind: f64,
-}
-
-/// What differs, bounds: entries as [`crate::sampled_loop::disturbed::Input`]. SI units: forces in m/s^2; the actuator,
-/// the command and the bend of a tilt in rad/s^2.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Deviation {
-    pub force: f64,
-    pub actuator: f64,
-    pub feedback: f64,
-    pub command: f64,
-    pub estimate: f64,
-    pub unseen: f64,
-    pub shaken: f64,
-    pub bend: f64,
-    pub late: f64,
-    pub stray: f64,
-    pub uneven: f64,
-}
-
-impl Deviation {
-    /// All, in the order of their declaration.
-    pub fn list(&self) -> [f64; 11] {
-        let Self { force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven } = *self;
-        [force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven]
-    }
-
-    /// Whether each is at most that of `other`.
-    pub fn is_within(&self, other: &Self) -> bool {
-        self.list().iter().zip(other.list()).all(|(own, others)| *own <= others)
-    }
-
-    /// So many times each.
-    pub fn times(&self, factor: f64) -> Self {
-        let [force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven] =
-            self.list().map(|part| factor * part);
-        Self { force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven }
-    }
-}
 
 /// A bound on a number, on its change within a tick, and on h^2 times its second derivative.
 #[derive(Debug, Clone, Copy)]
@@ -102,19 +38,6 @@ impl Add for Moving {
     }
 }
 
-/// A limit of the law that the bounds reach: beyond it the loops say nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
-    /// What it limits, in words.
-    pub what: &'static str,
-    /// The numbers' unit.
-    pub unit: &'static str,
-    /// What the signals may need.
-    pub needed: f64,
-    /// What there is.
-    pub available: f64,
-}
-
 /// Forces that the loops do not have, m/s^2: the estimate knows of the thrust that makes them, but for `mistaken`;
 /// across and along the vertical. There one comes and goes, and is uneven within a tick.
 struct Forces {
@@ -127,12 +50,12 @@ struct Forces {
 /// A vehicle and its law.
 #[derive(Debug, Clone)]
 pub struct Plane<'a> {
-    configuration: &'a Configuration,
-    law: &'a ExtendedLaw,
-    budget: TorqueBudget,
+    pub(super) configuration: &'a Configuration,
+    pub(super) law: &'a ExtendedLaw,
+    pub(super) budget: TorqueBudget,
     /// J about the axis that tilts in this plane, kg m^2.
-    inertia: f64,
-    ages: Ages,
+    pub(super) inertia: f64,
+    pub(super) ages: Ages,
 }
 
 /// Times, s.
@@ -140,7 +63,8 @@ pub struct Plane<'a> {
 pub struct Ages {
     /// Of a tick.
     pub period: f64,
-    /// How long ago, on average over a tick, what an actuator delivers was commanded, and at most half of a tick before.
+    /// How long ago, on average over a tick, what an actuator delivers was commanded, and at most half of a tick
+    /// before.
     pub acting: f64,
     /// By how much the law's model of that is off.
     pub unknown: f64,
@@ -157,12 +81,12 @@ impl<'a> Plane<'a> {
         vertical.wanted + f64::from(self.law.parameters.k_p_vertical) * vertical.z_1 + vertical.force
     }
 
-    fn gravity(&self) -> f64 {
+    pub(super) fn gravity(&self) -> f64 {
         self.configuration.vehicle().gravity.into()
     }
 
     /// U, m/s^2, beside the bias that is estimated at most.
-    fn acceleration_max(&self, across: &Peaks) -> f64 {
+    pub(super) fn acceleration_max(&self, across: &Peaks) -> f64 {
         let bias = Vector3::new((across.bias * self.inertia) as f32, 0.0, 0.0);
         let ceiling = self.budget.ceiling(self.configuration.vehicle(), self.configuration.limits());
         f64::from(ceiling.at(1.0, &bias))
@@ -179,7 +103,7 @@ impl<'a> Plane<'a> {
     }
 
     /// The levels of feedback across and along the vertical.
-    fn levels(&self, across: &Peaks, vertical: &Peaks) -> [f64; 2] {
+    pub(super) fn levels(&self, across: &Peaks, vertical: &Peaks) -> [f64; 2] {
         let p = &self.law.parameters;
         let [a_across, a_down, tilt_max] = [p.a_across, p.a_down, p.tilt_max].map(f64::from);
         let max = self.acceleration_max(across);
@@ -280,8 +204,8 @@ impl<'a> Plane<'a> {
         // An interval's mean, and that of its two ends: a twelfth of h^2 times a second derivative.
         let turned = across.turned + bend + c_acceleration / g;
         let uneven = h * h / 12.0;
-        // Along the vertical the thrust's part that lags behind the tilt is g (1 - cos beta), between zero and this, later
-        // less now; the rest of the thrust lags behind it as well.
+        // Along the vertical the thrust's part that lags behind the tilt is g (1 - cos beta), between zero and this,
+        // later less now; the rest of the thrust lags behind it as well.
         let sunk = 0.5 * g * lean * lean;
         let lifted = (g + y) * e * e
             + (c + beside) * e
@@ -302,7 +226,7 @@ impl<'a> Plane<'a> {
 
     /// |y|, |c_z'| and |c_z''| of the filters behind y: x and c follow it, so they stay within its bound, and change no
     /// faster.
-    fn vertical_filters(&self, vertical: &Peaks) -> [f64; 3] {
+    pub(super) fn vertical_filters(&self, vertical: &Peaks) -> [f64; 3] {
         let [y, y_rate, _] = vertical.desired;
         [y, y_rate, 2.0 * f64::from(self.law.parameters.k_f) * y_rate]
     }
@@ -393,82 +317,8 @@ impl<'a> Plane<'a> {
         level.min(0.999 * self.budget.radius(1.0) - across.bias * self.inertia - self.reserve()).max(0.05 * level)
     }
 
-    fn reserve(&self) -> f64 {
+    pub(super) fn reserve(&self) -> f64 {
         let inertia = self.configuration.vehicle().inertia;
         f64::from(inertia.x.max(inertia.y)) * f64::from(self.law.parameters.turn_reserve)
-    }
-
-    /// Section 7: the limits that the loops do not know, first those that are reached.
-    pub fn reached(&self, across: &Peaks, vertical: &Peaks) -> Option<Reached> {
-        let p = &self.law.parameters;
-        let g = self.gravity();
-        let mass = f64::from(self.configuration.vehicle().mass);
-        let max = self.acceleration_max(across);
-        let [y, z_rate, z_acceleration] = self.vertical_filters(vertical);
-        let [c, rate, acceleration] = across.desired;
-        let least = g - y;
-        let tangent = c / least;
-        let [turning, bending] = [
-            (rate + z_rate * tangent) / least,
-            (acceleration
-                + z_acceleration * tangent
-                + 2.0 * (rate * tangent + z_rate) * (rate + z_rate * tangent) / least)
-                / least,
-        ];
-        let radius = 0.999 * self.budget.radius(1.0);
-        let [k_tilt, damping] = [p.k_tilt, p.k_omega_t].map(f64::from);
-        // What a tick spends before it turns the frame, and in all.
-        let [angle, rate_error] = across.projected;
-        let spent = across.bias * self.inertia + 1.01 * 0.25 * k_tilt * angle + damping * rate_error;
-        let inertia_max = self.reserve() / f64::from(p.turn_reserve);
-        let whole = spent + inertia_max * bending;
-        let [bottom, margin] = [self.budget.ends[0], self.budget.margin];
-        let floor = bottom + margin + self.budget.reach[0] * whole;
-        let lean = (p.tilt_max as f64).tan();
-        let [level_across, level_vertical] = self.levels(across, vertical);
-        let limit = |what, unit, needed, available| Reached { what, unit, needed, available };
-        let share = 1.0 - TORQUE_THRUST_SHARE;
-        let sine = tangent / 1.0f64.hypot(tangent);
-        let cosine_left = 1.0 / 1.0f64.hypot(tangent) - 1.0 / 1.0f64.hypot(lean);
-        let alpha = radius / inertia_max;
-        // The ends of c_z and |u|.
-        let k = f64::from(END_SOFTNESS_PER_S).min(0.5 / self.ages.period);
-        let n = (g + y) * 1.0f64.hypot(tangent);
-        // What moves c along the vertical moves nothing while c points up: the thrust takes y.
-        let tilts = f64::from(u8::from(c > 0.0));
-        let growing = rate * sine + z_rate;
-        let swelling = acceleration * sine + z_acceleration + n * turning * turning;
-        [
-            limit("feedback's level across", "m/s^2", 0.3, level_across),
-            limit("feedback's level along the vertical", "m/s^2", 0.3, level_vertical),
-            limit("the estimate of a force across", "m/s^2", across.force, p.force_across.into()),
-            limit("the estimate of a force up and down", "m/s^2", vertical.force, p.force_up.min(p.force_down).into()),
-            limit("the force that thrust holds", "m/s^2", across.force.hypot(g + vertical.force), 0.99 * max),
-            limit("the torque bias", "N m", across.bias * self.inertia, p.torque_tilt.into()),
-            limit("the tilt's error", "rad", across.error[0], 0.3),
-            limit("the desired tilt's tangent", "", tangent, lean),
-            limit(
-                "the desired tilt's cone",
-                "rad/s",
-                sine * (turning + self.ages.period * bending),
-                (0.5 * alpha).sqrt() * cosine_left,
-            ),
-            limit("the turning rate", "rad/s", turning + self.ages.period * bending, p.turn_rate.into()),
-            limit("the turning acceleration", "rad/s^2", bending, alpha),
-            limit("the tilt's feedback beside the reserve", "N m", spent + self.reserve(), radius),
-            limit("the torque about the tilt's axes", "N m", whole, radius),
-            limit("the thrust's floor", "N", floor, share * mass * least),
-            limit("the thrust", "m/s^2", n + self.budget.reach[0] * whole / mass, max),
-            limit("what thrust pushes across", "m/s^2", 2.0 * y * tangent, PUSH_ACROSS_MAX_M_PER_S2.into()),
-            limit(
-                "the fall's end",
-                "m/s^4",
-                tilts * (z_acceleration + 2.0 * k * z_rate),
-                k * k * (f64::from(p.a_down) - y),
-            ),
-            limit("the thrust's end", "m/s^4", tilts * (swelling + 2.0 * k * growing), k * k * (max - n)),
-        ]
-        .into_iter()
-        .find(|limit| !(limit.needed < limit.available))
     }
 }

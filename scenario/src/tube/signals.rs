@@ -1,8 +1,9 @@
 //! Bounds on an axis' signals in SI units, from bounds on what comes to its loop from outside.
 
+use super::bounds::{Deviation, Peaks};
+use super::cells::Cells;
 use super::contraction::{norms, responses};
-use super::deviation::{Deviation, Peaks};
-use super::{Cells, NoTube};
+use super::refusal::NoTube;
 use crate::file::Scenario;
 use crate::sampled_loop::Axis;
 use crate::sampled_loop::disturbed::{Input, Signal};

@@ -25,8 +25,8 @@ fn quick(scenario: &Scenario) -> Loops<'_> {
     Loops::in_cells(scenario, &FEW, [&lag, &gain], &|_| true).unwrap()
 }
 
-/// How far the vehicle comes from its hover while `gust`, a force for each tick, pushes it along `axis`, m, with so many
-/// times its rotors' lag and moments of inertia.
+/// How far the vehicle comes from its hover while `gust`, a force for each tick, pushes it along `axis`, m, with so
+/// many times its rotors' lag and moments of inertia.
 fn flown(scenario: &Scenario, axis: Axis, gust: &[f64], [lag, inertia]: [f64; 2]) -> f64 {
     let certified = Certified::new(scenario.configuration.clone()).unwrap();
     let timing = scenario.loop_timing();

@@ -1,6 +1,6 @@
 //! One flight: the law flies a [model](scenario::model) from a start, and what that showed.
 
-use super::start::{Sets, Start};
+use super::start::{FLIGHT_DURATION_S, Sets, Start};
 use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use controller_core::heading::Heading;
@@ -11,9 +11,6 @@ use nalgebra::Vector3;
 use scenario::body::BodyState;
 use scenario::model::Model;
 use scenario::sampled_loop::LoopTiming;
-
-/// How long every flight is.
-pub const FLIGHT_DURATION_S: f64 = 20.0;
 
 /// What a flight showed.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,5 @@
 //! Random flights on all cores: each from seed and number alone, so that the number of threads changes nothing.
 
-use super::Orders;
 use super::flight::{Flyer, Outcome};
 use super::start::Start;
 use crate::output::interrupt::Interrupt;
@@ -8,6 +7,24 @@ use crate::output::progress::Progress;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How much is flown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orders {
+    /// Flights drawn at random.
+    pub flights: u64,
+    /// Flights of each of the three searches.
+    pub search: u64,
+    /// Of all draws.
+    pub seed: u64,
+}
+
+impl Default for Orders {
+    /// About a minute on two cores, at 100 Hz.
+    fn default() -> Self {
+        Self { flights: 50_000, search: 15_000, seed: 1 }
+    }
+}
 
 /// The signal that came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

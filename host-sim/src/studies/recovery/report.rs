@@ -1,9 +1,9 @@
 //! The lines H, T and r: each a value, its unit, the set that it is for, and what makes it known.
 
-use super::flight::{FLIGHT_DURATION_S, Outcome};
+use super::flight::Outcome;
 use super::many::share_beyond;
 use super::search::Wanted;
-use super::start::{Sets, Start};
+use super::start::{FLIGHT_DURATION_S, Sets, Start};
 use super::tube::Beside;
 use crate::output::table::short;
 use scenario::tube::{NoTube, Tube};

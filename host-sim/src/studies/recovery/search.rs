@@ -4,10 +4,9 @@
 //! Each climb has random numbers of its own, so that the number of threads changes nothing. A change is as large as has
 //! worked lately: larger after each that made it worse, smaller after each that did not.
 
-use super::Orders;
-use super::flight::{FLIGHT_DURATION_S, Flyer, Outcome};
-use super::many::{Interrupted, Work};
-use super::start::Start;
+use super::flight::{Flyer, Outcome};
+use super::many::{Interrupted, Orders, Work};
+use super::start::{FLIGHT_DURATION_S, Start};
 use crate::studies::campaign::draw::Drawn;
 use rayon::prelude::*;
 

@@ -7,12 +7,14 @@
 //! | lag, each moment of inertia | evenly on both sides; moments that no body has are drawn again |
 //! | force | steps ([`super::gust`]) |
 
-use super::flight::FLIGHT_DURATION_S;
 use super::gust::Gust;
 use crate::studies::campaign::draw::Drawn;
 use controller_core::vehicle::{Vehicle, VehicleParameters};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::fmt;
+
+/// How long every flight is.
+pub const FLIGHT_DURATION_S: f64 = 20.0;
 
 /// What a recovery has to bear, beside any attitude.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,8 @@
 //! How near the vehicle stays once it is there: the worst gusts of the [proof](scenario::tube), flown beside it.
 
-use super::Orders;
 use super::flight::Flyer;
 use super::gust::Gust;
-use super::many::{Interrupted, Work};
+use super::many::{Interrupted, Orders, Work};
 use super::start::Start;
 use crate::studies::campaign::draw::Drawn;
 use nalgebra::Vector3;
@@ -40,8 +39,8 @@ pub fn beside_the_tube(flyer: &Flyer, gusts: [&[f64]; 3]) -> Beside {
     };
     let mut beside = Beside { alone: 0.0, searched: 0.0, together: 0.0 };
     for start in corners(flyer) {
-        for axis in 0..3 {
-            let distance = farthest(flyer, &start, gusts[axis].iter().map(|share| Vector3::ith(axis, *share)));
+        for (axis, gust) in gusts.iter().enumerate() {
+            let distance = farthest(flyer, &start, gust.iter().map(|share| Vector3::ith(axis, *share)));
             beside.alone = beside.alone.max(distance);
         }
         let all = (0..ticks).map(|tick| Vector3::from_fn(|axis, _| at(axis, tick)));
