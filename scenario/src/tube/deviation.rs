@@ -177,8 +177,8 @@ impl<'a> Plane<'a> {
         taken: &[Deviation; 2],
         [gust_across, gust_vertical]: [f64; 2],
     ) -> [f64; 2] {
-        let pushed = across.desired[0] + self.gravity() * across.error[0] + taken[0].unseen + gust_across;
-        let lifted = vertical.desired[0] + vertical.behind + taken[1].unseen + gust_vertical;
+        let pushed = across.desired[0] + self.gravity() * across.error[0] + 2.0 * taken[0].unseen + gust_across;
+        let lifted = vertical.desired[0] + vertical.behind + 2.0 * taken[1].unseen + taken[1].uneven + gust_vertical;
         [pushed, lifted]
     }
 
@@ -219,7 +219,8 @@ impl<'a> Plane<'a> {
         Forces {
             unseen: [pushed, lifted],
             mistaken: [mistaken, mislifted],
-            shaken: 0.5 * sunk * acting / h,
+            // Held over a tick, it is off a straight line by an eighth of h^2 times how fast it changes.
+            shaken: 0.5 * sunk * acting / h + 0.125 * h * g * lean * leaning,
             uneven: 2.0 * thrust * lean * leaning * acting,
         }
     }

@@ -114,7 +114,8 @@ impl fmt::Display for Report {
         let back = format!("within {} m", short(*radius));
         f.write_str(&self.line("H", "height lost", height))?;
         f.write_str(&self.line("T", &format!("time until it is back for good, {back}"), time))?;
-        let greatest = format!("The greatest gust with a proven radius: {} m/s^2", short(self.gust_max));
+        let greatest =
+            format!("The greatest gust with a proven radius: {:.2} m/s^2", (100.0 * self.gust_max).floor() / 100.0);
         match (tube, self.beside) {
             (Ok(tube), Some(Beside { alone, searched, together })) => writeln!(
                 f,
@@ -123,9 +124,9 @@ impl fmt::Display for Report {
                  still (docs/recovery.md). \
                  Flown in the proof's worst gusts: {} m; the worst that a search of {} flights found from there: {} m. \
                  In the worst gusts of all axes at once, of which the proof does not speak: {} m. {greatest}",
-                short(tube.greatest()),
-                short(tube.across()),
-                short(tube.vertical()),
+                raised(tube.greatest()),
+                raised(tube.across()),
+                raised(tube.vertical()),
                 short(alone),
                 grouped(self.search),
                 short(searched),
@@ -145,6 +146,11 @@ impl fmt::Display for Report {
         }
         Ok(())
     }
+}
+
+/// Metres, rounded up to a tenth of a millimetre.
+fn raised(distance: f64) -> String {
+    format!("{:.4}", (1e4 * distance).ceil() / 1e4)
 }
 
 /// A number with its thousands apart.

@@ -31,9 +31,7 @@ fn integrated(
         let slope = |y: &[f64]| -> Vec<f64> {
             let mut slope = vec![0.0; last + 1];
             slope[0] = y[last];
-            for m in 1..last {
-                slope[m] = y[m - 1];
-            }
+            slope[1..last].copy_from_slice(&y[..last - 1]);
             slope[last - 2] += force(time);
             slope[last] = (follows - y[last]) / lag;
             slope
@@ -79,7 +77,7 @@ fn a_force_and_an_error_of_the_actuator_move_the_chain_as_integrated() {
 #[test]
 fn an_input_that_changes_within_a_stretch_stays_within_the_swing() {
     let system = model("hummingbird").disturbed(Axis::LateralX, 1.0, 1.0);
-    let signs = |time: f64| if (time * 2.0 * STRETCHES as f64) as usize % 2 == 0 { 1.0 } else { -1.0 };
+    let signs = |time: f64| if ((time * 2.0 * STRETCHES as f64) as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
     let moved = integrated(vec![0.0; 5], 0.5, 0.0, signs, |_| 0.0);
     for (place, value) in moved.iter().enumerate() {
         let swing =
