@@ -99,15 +99,6 @@ pub struct Loops<'a> {
     ages: Ages,
 }
 
-/// What is counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Counted {
-    /// The vehicle as it moves in a plane.
-    Plane,
-    /// The loops with their saturations, as if large tilts were small ones.
-    Saturations,
-}
-
 impl<'a> Loops<'a> {
     /// Of `scenario`; `progress` hears how much is done, from 0 to 1, and says whether to go on.
     ///
@@ -160,15 +151,17 @@ impl<'a> Loops<'a> {
     /// # Errors
     /// Why there is no such radius.
     pub fn tube(&self, gust: f64) -> Result<Tube, NoTube> {
-        self.bounded(gust, Counted::Plane)
-    }
-
-    /// The same of the loops with their saturations alone, as if a tilt's sine were the tilt: no proof about a vehicle.
-    ///
-    /// # Errors
-    /// Likewise.
-    pub fn analysed(&self, gust: f64) -> Result<Tube, NoTube> {
-        self.bounded(gust, Counted::Saturations)
+        let inertia = self.scenario.configuration.vehicle().inertia;
+        let [along_x, along_y, vertical] = &self.norms;
+        let still = AxisNorms::still();
+        let in_plane = |axis, inertia: f32, across: &AxisNorms, gust| {
+            let plane = Plane::new(&self.scenario.configuration, self.law, inertia.into(), self.ages);
+            InPlane { axis, plane: &plane, across, vertical, gust }.bounded()
+        };
+        let x = in_plane(Axis::LateralX, inertia.y, along_x, [gust, 0.0])?;
+        let y = in_plane(Axis::LateralY, inertia.x, along_y, [gust, 0.0])?;
+        let z = in_plane(Axis::Vertical, inertia.y, &still, [0.0, gust])?;
+        Ok(Tube { radii: [x, y, z], worst: [along_x, along_y, vertical].map(AxisNorms::worst_gust) })
     }
 
     /// The greatest gust with a radius, m/s^2, to a hundredth of itself and at most `max`; zero if there is none.
@@ -184,20 +177,6 @@ impl<'a> Loops<'a> {
         }
         proven
     }
-
-    fn bounded(&self, gust: f64, counted: Counted) -> Result<Tube, NoTube> {
-        let inertia = self.scenario.configuration.vehicle().inertia;
-        let [along_x, along_y, vertical] = &self.norms;
-        let still = AxisNorms::still();
-        let in_plane = |axis, inertia: f32, across: &AxisNorms, gust| {
-            let plane = Plane::new(&self.scenario.configuration, self.law, inertia.into(), self.ages);
-            InPlane { axis, plane: &plane, across, vertical, gust, counted }.bounded()
-        };
-        let x = in_plane(Axis::LateralX, inertia.y, along_x, [gust, 0.0])?;
-        let y = in_plane(Axis::LateralY, inertia.x, along_y, [gust, 0.0])?;
-        let z = in_plane(Axis::Vertical, inertia.y, &still, [0.0, gust])?;
-        Ok(Tube { radii: [x, y, z], worst: [along_x, along_y, vertical].map(AxisNorms::worst_gust) })
-    }
 }
 
 /// A gust in a plane.
@@ -208,7 +187,6 @@ struct InPlane<'a> {
     vertical: &'a AxisNorms,
     /// Across and along the vertical, m/s^2.
     gust: [f64; 2],
-    counted: Counted,
 }
 
 impl InPlane<'_> {
@@ -243,10 +221,6 @@ impl InPlane<'_> {
     /// What differs while that is so.
     fn made(&self, across: &Peaks, vertical: &Peaks, taken: &[Deviation; 2]) -> [Deviation; 2] {
         let mut made = self.plane.deviations(across, vertical);
-        if self.counted == Counted::Saturations {
-            made =
-                made.map(|Deviation { feedback, command, .. }| Deviation { feedback, command, ..Deviation::default() });
-        }
         made[0].actuator = self.across.actuator_error(across, &taken[0]);
         made[1].actuator = self.vertical.actuator_error(vertical, &taken[1]);
         made

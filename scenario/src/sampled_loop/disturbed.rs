@@ -77,8 +77,6 @@ pub enum Signal {
     /// Of the vehicle, laterally over g.
     Position,
     Velocity,
-    /// Of the thrust axis, rad; laterally alone.
-    Tilt,
     /// How fast the tilt turns faster than c'' lets it, as a tick begins: by what the actuator delivers, and by what it
     /// follows before and after the next command arrives. In between it delivers something between these.
     BentActual,
@@ -120,10 +118,9 @@ pub enum Signal {
 
 impl Signal {
     /// All of them, in the order of [`DisturbedLoop::signals`].
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 22] = [
         Self::Position,
         Self::Velocity,
-        Self::Tilt,
         Self::BentActual,
         Self::BentOlder,
         Self::BentNewer,
@@ -315,7 +312,6 @@ fn at_unit(
     listed[Signal::Velocity as usize] = measured[law.integrators() - 2];
     if law.integrators() == INTEGRATORS_MAX {
         let [rate, tilt, ..] = measured;
-        listed[Signal::Tilt as usize] = tilt;
         listed[Signal::Error as usize] = tilt - signals.desired[0];
         listed[Signal::ErrorRate as usize] = rate - signals.desired[1];
         for (signal, turned) in [
