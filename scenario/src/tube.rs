@@ -6,9 +6,9 @@
 //!
 //! 1. The vehicle, the law and their saturations in the plane of the gust are the [linear loops](crate::sampled_loop)
 //!    with what comes to them from outside: the gust, and all by which vehicle and law differ from them
-//!    ([`deviation`]).
+//!    (`deviation`).
 //! 2. How much a signal is at most for inputs within one is a sum over the loop's responses, bounded from above
-//!    ([`contraction`]). So bounds on what differs give bounds on the signals, and these bound what differs.
+//!    (`contraction`). So bounds on what differs give bounds on the signals, and these bound what differs.
 //! 3. If what the signals then make is no more than what was taken, they stay within their bounds for ever: a signal of
 //!    a tick depends on what differed before it alone. Where nothing of that kind is found, or a limit of the law is
 //!    reached, there is no radius, and the reason is said.
