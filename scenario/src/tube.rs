@@ -29,7 +29,7 @@ use bounds::{Deviation, Peaks};
 use cells::Cells;
 pub use cells::Tolerances;
 use controller_core::configuration::{ExtendedLaw, LawParameters};
-use controller_core::extended::fallback::NEAR_DISTANCE_M;
+use controller_core::extended::fallback::{NEAR_DISTANCE_M, PROGRESS_WINDOW_S};
 use deviation::{Ages, Plane};
 pub use limits::Reached;
 pub use refusal::NoTube;
@@ -110,8 +110,9 @@ impl<'a> Loops<'a> {
         progress: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Self, NoTube> {
         let [lag_width, gain_width] = CELL_WIDTHS;
-        let [lag, gain] = [(tolerances.lag, lag_width), (tolerances.inertia, gain_width)]
-            .map(|(tolerance, width)| Cells::new(tolerance, (2.0 * tolerance / width).ceil().max(1.0) as usize));
+        let [lag, gain] = tolerances.ranges();
+        let [lag, gain] = [(lag, lag_width), (gain, gain_width)]
+            .map(|([low, high], width)| Cells::new([low, high], ((high - low) / width).ceil().max(1.0) as usize));
         Self::in_cells(scenario, tolerances, [&lag, &gain], progress)
     }
 
@@ -123,7 +124,8 @@ impl<'a> Loops<'a> {
         progress: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Self, NoTube> {
         let LawParameters::Extended(law) = scenario.configuration.law() else { return Err(NoTube::OtherLaw) };
-        if !(lag.cover(tolerances.lag) && gain.cover(tolerances.inertia)) {
+        let [lag_range, gain_range] = tolerances.ranges();
+        if !(lag.cover(lag_range) && gain.cover(gain_range)) {
             return Err(NoTube::LeftOut);
         }
         let one = Cells { middles: vec![1.0], share: 0.0 };
@@ -232,13 +234,10 @@ impl InPlane<'_> {
         let period = self.vertical.period();
         let [x, z] = [(across, accelerations[0]), (vertical, accelerations[1])]
             .map(|(peaks, acceleration)| peaks.position + acceleration * period * period / 8.0);
-        // Along the gust the speed passes zero within every 20 s, or the way would be longer than it is; a tick takes
-        // at most its acceleration to get past it.
-        let speeds = if self.gust[0] > 0.0 {
-            [accelerations[0] * period, vertical.velocity]
-        } else {
-            [across.velocity, accelerations[1] * period]
-        };
+        // Along the gust some tick of every window has a speed of at most 2 r over the window, or the way would be longer
+        // than it is.
+        let slowest = |radius: f64| 2.0 * radius / f64::from(PROGRESS_WINDOW_S);
+        let speeds = if self.gust[0] > 0.0 { [slowest(x), vertical.velocity] } else { [across.velocity, slowest(z)] };
         let distance = [x, z, speeds[0], speeds[1]].iter().map(|part| part * part).sum::<f64>().sqrt();
         if distance < NEAR_DISTANCE_M.into() { Ok([x, z]) } else { Err(NoTube::Fallback { axis: self.axis }) }
     }

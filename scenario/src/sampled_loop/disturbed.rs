@@ -222,6 +222,23 @@ impl DisturbedLoop {
         });
         let mut direct: Vec<_> =
             (0..Signal::ALL.len()).map(|signal| changed.map(|listed| listed[signal].abs())).collect();
+        // What is taken back in the next tick may add to what comes then.
+        for direct in &mut direct {
+            direct[Input::Late as usize] *= 2.0;
+        }
+        let arrives = if chain.arrival().whole_delay == 0 { gain } else { 0.0 };
+        for input in 0..Input::ALL.len() {
+            let bends = direct[Signal::DesiredAcceleration as usize][input];
+            let told = arrives * direct[Signal::Command as usize][input];
+            for (signal, at_once) in [
+                (Signal::BentActual, bends),
+                (Signal::BentOlder, bends),
+                (Signal::BentNewer, bends + told),
+                (Signal::BehindAtArrival, told),
+            ] {
+                direct[signal as usize][input] = at_once;
+            }
+        }
         // c'' of the next tick less what this one's comes to until then.
         if let Some(gains) = law.position() {
             let kept = (-gains.k_f).exp();

@@ -12,6 +12,12 @@ pub struct Tolerances {
 impl Tolerances {
     /// What `certify --recovery` proves.
     pub const USUAL: Self = Self { lag: 0.3, inertia: 0.1 };
+
+    /// The least and the greatest factor on the lag, and on what a command makes: the inverse of that on the inertia.
+    pub fn ranges(&self) -> [[f64; 2]; 2] {
+        let Self { lag, inertia } = *self;
+        [[1.0 - lag, 1.0 + lag], [1.0 / (1.0 + inertia), 1.0 / (1.0 - inertia)]]
+    }
 }
 
 /// The cells of a tolerance: their middles as factors, and by what share the factor differs from a cell's middle at
@@ -23,9 +29,8 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// So many for all factors from 1 - `tolerance` to 1 + `tolerance`, each `share` wide either way.
-    pub fn new(tolerance: f64, count: usize) -> Self {
-        let [low, high] = [1.0 - tolerance, 1.0 + tolerance];
+    /// So many for all factors of a range, each `share` wide either way.
+    pub fn new([low, high]: [f64; 2], count: usize) -> Self {
         // Neighbours meet: middle (1 + share) = next (1 - share).
         let ratio = (high / low).powf(1.0 / count as f64);
         let share = (ratio - 1.0) / (ratio + 1.0);
@@ -33,15 +38,15 @@ impl Cells {
         Self { middles, share: share * (1.0 + 1e-9) }
     }
 
-    /// Whether every factor from 1 - `tolerance` to 1 + `tolerance` is in a cell.
-    pub fn cover(&self, tolerance: f64) -> bool {
-        let mut reached = 1.0 - tolerance;
+    /// Whether every factor of a range is in a cell.
+    pub fn cover(&self, [low, high]: [f64; 2]) -> bool {
+        let mut reached = low;
         for middle in &self.middles {
             if middle * (1.0 - self.share) > reached {
                 return false;
             }
             reached = reached.max(middle * (1.0 + self.share));
         }
-        reached >= 1.0 + tolerance
+        reached >= high
     }
 }

@@ -178,7 +178,8 @@ impl<'a> Plane<'a> {
         [gust_across, gust_vertical]: [f64; 2],
     ) -> [f64; 2] {
         let pushed = across.desired[0] + self.gravity() * across.error[0] + 2.0 * taken[0].unseen + gust_across;
-        let lifted = vertical.desired[0] + vertical.behind + 2.0 * taken[1].unseen + taken[1].uneven + gust_vertical;
+        let Deviation { actuator, unseen, uneven, .. } = taken[1];
+        let lifted = vertical.desired[0] + vertical.behind + actuator + 2.0 * unseen + uneven + gust_vertical;
         [pushed, lifted]
     }
 
@@ -201,6 +202,8 @@ impl<'a> Plane<'a> {
         let thrust_rate = per_cosine * (y_rate + (g + y) * (tangent * turning + e_rate * e));
         let beside = 2.0 * y * tangent;
         let pushed = beside + c * e * e + y * e + 0.67 * g * e * e * e + thrust_rate * acting * lean;
+        // How far the thrust is from g, either way.
+        let beside_g = (thrust - g).max(y + 0.5 * g * e * e);
         // An interval's mean, and that of its two ends: a twelfth of h^2 times a second derivative.
         let turned = across.turned + bend + c_acceleration / g;
         let uneven = h * h / 12.0;
@@ -209,10 +212,11 @@ impl<'a> Plane<'a> {
         let sunk = 0.5 * g * lean * lean;
         let lifted = (g + y) * e * e
             + (c + beside) * e
-            + (thrust - g) * lean * leaning * acting
+            + beside_g * lean * leaning * acting
             + g * uneven * (leaning * leaning + lean * turned);
         let mistaken = thrust_rate * (unknown * lean + 0.25 * h * h * leaning)
-            + g * uneven * (0.5 * lean * lean * turned + lean * leaning * leaning + bend);
+            + g * uneven * (0.5 * lean * lean * turned + lean * leaning * leaning + bend)
+            + beside_g * uneven * (turned + lean * leaning * leaning);
         let mislifted = unknown * (thrust_rate * lean * lean + thrust * (tangent * turning + e * e_rate))
             + 0.25 * h * h * thrust_rate * lean * leaning
             + thrust * uneven * (leaning * leaning + lean * turned);
