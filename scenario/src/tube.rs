@@ -234,8 +234,8 @@ impl InPlane<'_> {
         let period = self.vertical.period();
         let [x, z] = [(across, accelerations[0]), (vertical, accelerations[1])]
             .map(|(peaks, acceleration)| peaks.position + acceleration * period * period / 8.0);
-        // Along the gust some tick of every window has a speed of at most 2 r over the window, or the way would be longer
-        // than it is.
+        // Along the gust some tick of every window has a speed of at most 2 r over the window, or the way would be
+        // longer than it is.
         let slowest = |radius: f64| 2.0 * radius / f64::from(PROGRESS_WINDOW_S);
         let speeds = if self.gust[0] > 0.0 { [slowest(x), vertical.velocity] } else { [across.velocity, slowest(z)] };
         let distance = [x, z, speeds[0], speeds[1]].iter().map(|part| part * part).sum::<f64>().sqrt();
