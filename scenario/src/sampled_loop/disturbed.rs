@@ -227,18 +227,12 @@ impl DisturbedLoop {
             direct[Input::Late as usize] *= 2.0;
         }
         let arrives = if chain.arrival().whole_delay == 0 { gain } else { 0.0 };
-        for input in 0..Input::ALL.len() {
-            let bends = direct[Signal::DesiredAcceleration as usize][input];
-            let told = arrives * direct[Signal::Command as usize][input];
-            for (signal, at_once) in [
-                (Signal::BentActual, bends),
-                (Signal::BentOlder, bends),
-                (Signal::BentNewer, bends + told),
-                (Signal::BehindAtArrival, told),
-            ] {
-                direct[signal as usize][input] = at_once;
-            }
-        }
+        let bends = direct[Signal::DesiredAcceleration as usize];
+        let told = direct[Signal::Command as usize].map(|command| arrives * command);
+        direct[Signal::BentActual as usize] = bends;
+        direct[Signal::BentOlder as usize] = bends;
+        direct[Signal::BentNewer as usize] = core::array::from_fn(|input| bends[input] + told[input]);
+        direct[Signal::BehindAtArrival as usize] = told;
         // c'' of the next tick less what this one's comes to until then.
         if let Some(gains) = law.position() {
             let kept = (-gains.k_f).exp();
