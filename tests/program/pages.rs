@@ -263,7 +263,7 @@ fn sources(folder: &Path, found: &mut String) {
 #[test]
 fn what_is_not_host_sim_is_run_by_ci_or_excused() {
     let mut tests = String::new();
-    for folder in ["tests", "host-sim/src", "controller-core/src", "firmware"] {
+    for folder in ["tests", "host-sim/src", "controller-core/src", "scenario/src", "firmware"] {
         sources(&Path::new(ROOT).join(folder), &mut tests);
     }
     let names: Vec<&str> = tests.lines().filter(|line| line.contains("fn ") || line.contains("mod ")).collect();
