@@ -13,7 +13,7 @@
 //!    a tick depends on what differed before it alone. Where nothing of that kind is found, or a limit of the law is
 //!    reached, there is no radius, and the reason is said.
 //! 4. The lag and the moment of inertia are cut into cells. In a cell they are those of its middle, and the rest is an
-//!    error of what the actuator follows (`Cells`).
+//!    error beside the actuator's command (`Cells`).
 
 mod bounds;
 mod cells;
@@ -25,6 +25,7 @@ mod signals;
 
 use crate::file::Scenario;
 use crate::sampled_loop::Axis;
+use crate::sampled_loop::disturbed::Input;
 use bounds::{Deviation, Peaks};
 use cells::Cells;
 pub use cells::Tolerances;
@@ -129,7 +130,7 @@ impl<'a> Loops<'a> {
             return Err(NoTube::LeftOut);
         }
         let one = Cells { middles: vec![1.0], share: 0.0 };
-        // Without a lag there is none to be off.
+        // Nothing can be off about a lag of zero.
         let lag = if scenario.rotor_lag > 0.0 { lag } else { &one };
         let vertical = AxisNorms::new(scenario, law, Axis::Vertical, [lag, &one], &|_| progress(0.0))?;
         let along_x = AxisNorms::new(scenario, law, Axis::LateralX, [lag, gain], &|done| progress(0.5 * done))?;
@@ -166,7 +167,7 @@ impl<'a> Loops<'a> {
         Ok(Tube { radii: [x, y, z], worst: [along_x, along_y, vertical].map(AxisNorms::worst_gust) })
     }
 
-    /// The greatest gust with a radius, m/s^2, to a hundredth of itself and at most `max`; zero if there is none.
+    /// The greatest gust with a radius, m/s^2, to a hundredth of itself and at most `max`; zero without one.
     #[must_use]
     pub fn greatest_gust(&self, max: f64) -> f64 {
         let (mut proven, mut beyond) = (0.0, max);
@@ -197,7 +198,7 @@ impl InPlane<'_> {
         /// Each takes what the last one made.
         const ROUNDS_MAX: usize = 400;
         /// How much more is taken than the rounds come to.
-        const TAKEN: f64 = 1.001;
+        const TAKEN_FACTOR: f64 = 1.001;
         let mut taken = [Deviation::default(); 2];
         for _ in 0..ROUNDS_MAX {
             let (across, vertical) = self.peaks(&taken);
@@ -209,7 +210,7 @@ impl InPlane<'_> {
             if made.iter().zip(&taken).all(|(made, taken)| made.is_within(taken)) {
                 return self.radii(&across, &vertical, &taken);
             }
-            taken = made.map(|deviation| deviation.times(TAKEN));
+            taken = made.map(|deviation| deviation.times(TAKEN_FACTOR));
         }
         Err(NoTube::Grows { axis: self.axis })
     }
@@ -222,10 +223,11 @@ impl InPlane<'_> {
 
     /// What differs while that is so.
     fn made(&self, across: &Peaks, vertical: &Peaks, taken: &[Deviation; 2]) -> [Deviation; 2] {
-        let mut made = self.plane.deviations(across, vertical);
-        made[0].actuator = self.across.actuator_error(across, &taken[0]);
-        made[1].actuator = self.vertical.actuator_error(vertical, &taken[1]);
-        made
+        let [made_across, made_vertical] = self.plane.deviations(across, vertical);
+        [
+            made_across.with(Input::Actuator, self.across.actuator_error(across, &taken[0])),
+            made_vertical.with(Input::Actuator, self.vertical.actuator_error(vertical, &taken[1])),
+        ]
     }
 
     /// The distances, between ticks as well; and no fallback on the way.

@@ -6,7 +6,7 @@ use crate::support::line::Live;
 use crate::support::receiver::{Local, report, texts};
 use core::cell::{Cell, RefCell};
 use core::convert::Infallible;
-use core::future::poll_fn;
+use core::future::{pending, poll_fn};
 use core::task::Poll;
 use embassy_futures::block_on;
 use embassy_futures::join::join;
@@ -182,19 +182,19 @@ impl Wait for Pin<'_> {
     }
 
     async fn wait_for_high(&mut self) -> Result<(), Infallible> {
-        unimplemented!()
+        pending().await
     }
 
     async fn wait_for_rising_edge(&mut self) -> Result<(), Infallible> {
-        unimplemented!()
+        pending().await
     }
 
     async fn wait_for_falling_edge(&mut self) -> Result<(), Infallible> {
-        unimplemented!()
+        pending().await
     }
 
     async fn wait_for_any_edge(&mut self) -> Result<(), Infallible> {
-        unimplemented!()
+        pending().await
     }
 }
 

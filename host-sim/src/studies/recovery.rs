@@ -1,9 +1,9 @@
 //! How much height a recovery costs, how long it takes, and how near the vehicle then stays: what flights show of it.
 //!
 //! A [model](scenario::model) of the vehicle is at its reference, a hover, with any attitude and some speed and spin,
-//! and its law is freshly reset. The law sees the true state. Forces come and go; rotors' lag and moments of inertia are
-//! not what the law believes. Nothing here is proven for every start: flights give the worst that was found, and what
-//! statistics prove of starts drawn alike.
+//! and its law is freshly reset. The law sees the true state. Forces come and go; rotors' lag and moments of inertia
+//! are not as the law believes. Nothing here is proven for every start: flights give the worst that was found, and a
+//! bound from statistics on starts drawn alike.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -37,7 +37,6 @@ use search::Wanted;
 use start::Sets;
 use std::fmt;
 use std::sync::Mutex;
-use tube::Beside;
 
 /// Why there is no report.
 #[derive(Debug)]
@@ -88,15 +87,8 @@ pub fn recovery(scenario: &Scenario, sets: &Sets, orders: &Orders, interrupt: &I
     let work = Work::new(orders.flights + 3 * orders.search, interrupt);
     let random = many::flights(&flyer, orders, &work).map_err(interrupted)?;
     let climb = |wanted| search::worst(&flyer, wanted, &random, orders, &work).map_err(interrupted);
-    let beside = match &tube {
-        Ok(tube) => {
-            let gusts = tube::worst_gusts(tube);
-            let searched = tube::searched(&flyer, gusts, orders, &work).map_err(interrupted)?;
-            let beside = tube::beside_the_tube(&flyer, gusts);
-            Some(Beside { searched: beside.searched.max(searched), ..beside })
-        }
-        Err(_) => None,
-    };
+    let beside = tube.as_ref().ok().map(|tube| tube::beside(&flyer, tube, orders, &work)).transpose();
+    let beside = beside.map_err(interrupted)?;
     let count = |what: fn(&Outcome) -> bool| random.iter().filter(|outcome| what(outcome)).count() as u64;
     Ok(Report {
         name: scenario.name.clone(),
@@ -132,7 +124,7 @@ struct Proof {
     gust_max: f64,
 }
 
-/// Proves the radius, or finds why there is none.
+/// Proves the radius, or finds why that fails.
 fn proof(scenario: &Scenario, sets: &Sets, interrupt: &Interrupt) -> Result<Proof, Refused> {
     let tolerances = Tolerances { lag: sets.lag, inertia: sets.inertia };
     let progress = Mutex::new(Progress::new("proving r", 1000));

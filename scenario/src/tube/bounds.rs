@@ -1,5 +1,7 @@
 //! Bounds on what goes through an axis' loop, and on what comes to it from outside.
 
+use crate::sampled_loop::disturbed::Input;
+
 /// Bounds on an axis' signals, SI units: m, m/s, m/s^2, rad; what turns is in rad/s and rad/s^2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Peaks {
@@ -22,44 +24,40 @@ pub struct Peaks {
     pub turned: f64,
     /// The torque bias over the moment of inertia.
     pub bias: f64,
-    /// What the actuator is told, and that less what it delivers.
+    /// The actuator's command, and that less what it delivers.
     pub command: f64,
     pub behind: f64,
 }
 
-/// What differs, bounds: entries as [`crate::sampled_loop::disturbed::Input`]. SI units: forces in m/s^2; the actuator,
-/// the command and the bend of a tilt in rad/s^2.
+/// What differs: a bound for each [`Input`], zero where nothing is said. SI units: forces in m/s^2; the actuator, the
+/// command and the bend of a tilt in rad/s^2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Deviation {
-    pub force: f64,
-    pub actuator: f64,
-    pub feedback: f64,
-    pub command: f64,
-    pub estimate: f64,
-    pub unseen: f64,
-    pub shaken: f64,
-    pub bend: f64,
-    pub late: f64,
-    pub stray: f64,
-    pub uneven: f64,
-}
+pub struct Deviation([f64; Input::ALL.len()]);
 
 impl Deviation {
-    /// All, in the order of their declaration.
-    pub fn list(&self) -> [f64; 11] {
-        let Self { force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven } = *self;
-        [force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven]
+    /// With these bounds.
+    pub fn of<const N: usize>(bounds: [(Input, f64); N]) -> Self {
+        bounds.into_iter().fold(Self::default(), |deviation, (input, bound)| deviation.with(input, bound))
+    }
+
+    /// With another bound.
+    pub fn with(mut self, input: Input, bound: f64) -> Self {
+        self.0[input as usize] = bound;
+        self
+    }
+
+    /// One of them.
+    pub fn at(&self, input: Input) -> f64 {
+        self.0[input as usize]
     }
 
     /// Whether each is at most that of `other`.
     pub fn is_within(&self, other: &Self) -> bool {
-        self.list().iter().zip(other.list()).all(|(own, others)| *own <= others)
+        Input::ALL.iter().all(|input| self.at(*input) <= other.at(*input))
     }
 
     /// So many times each.
     pub fn times(&self, factor: f64) -> Self {
-        let [force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven] =
-            self.list().map(|part| factor * part);
-        Self { force, actuator, feedback, command, estimate, unseen, shaken, bend, late, stray, uneven }
+        Self(self.0.map(|bound| factor * bound))
     }
 }

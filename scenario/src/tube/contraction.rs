@@ -17,13 +17,13 @@ use crate::sampled_loop::spectral_radius;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// What one operation in double precision rounds at most, relative.
-const ROUNDING: f64 = f64::EPSILON;
+const ROUNDING_SHARE: f64 = f64::EPSILON;
 
 /// What a decomposition must leave, per row: far more than it rounds.
 const TO_SPARE: f64 = 1e-10;
 
 /// Of the sum so far, how little may be left when it ends.
-const REST: f64 = 1e-3;
+const REST_SHARE: f64 = 1e-3;
 
 /// The longest sum, ticks.
 const TICKS_MAX: usize = 200_000;
@@ -97,7 +97,7 @@ impl Contraction {
             .map(|stretches| stretches.iter().map(|stretch| Sighted::new(&self.to, stretch)).collect())
             .collect();
         let longest = columns.iter().flatten().map(|stretch| stretch.length).fold(0.0, f64::max);
-        let operations = 4.0 * size as f64 * ROUNDING;
+        let operations = 4.0 * size as f64 * ROUNDING_SHARE;
         let step_error = self.error + operations * self.matrix.norm();
 
         let mut now = row * &self.from;
@@ -117,7 +117,7 @@ impl Contraction {
             }
             let rest = (length + off) * longest / (1.0 - self.rho);
             // An input that moves nothing has no part in it.
-            if rest <= REST * sums.iter().copied().filter(|sum| *sum > 0.0).fold(f64::INFINITY, f64::min) {
+            if rest <= REST_SHARE * sums.iter().copied().filter(|sum| *sum > 0.0).fold(f64::INFINITY, f64::min) {
                 for (sum, stretches) in sums.iter_mut().zip(&columns) {
                     let all: f64 = stretches.iter().map(|stretch| stretch.length).sum();
                     *sum += self.rho * (length + off) * all / (1.0 - self.rho);
@@ -182,7 +182,7 @@ fn difference(left: &[&DMatrix<f64>], right: &[&DMatrix<f64>]) -> f64 {
     let product = |factors: &[&DMatrix<f64>]| factors.iter().skip(1).fold(factors[0].clone(), |all, next| all * *next);
     let sizes =
         |factors: &[&DMatrix<f64>]| factors.iter().skip(1).fold(factors[0].abs(), |all, next| all * next.abs()).norm();
-    let operations = 4.0 * left[0].ncols().max(right[0].ncols()) as f64 * ROUNDING;
+    let operations = 4.0 * left[0].ncols().max(right[0].ncols()) as f64 * ROUNDING_SHARE;
     (product(left) - product(right)).norm() * (1.0 + 1e-9) + operations * (sizes(left) + sizes(right))
 }
 

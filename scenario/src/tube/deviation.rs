@@ -5,6 +5,7 @@
 //! c and y the filters, lambda = atan(c_x / (g + c_z)) the desired tilt.
 
 use super::bounds::{Deviation, Peaks};
+use crate::sampled_loop::disturbed::Input;
 use controller_core::configuration::{Configuration, ExtendedLaw};
 use controller_core::extended::budget::TorqueBudget;
 use core::ops::{Add, Mul};
@@ -146,27 +147,25 @@ impl<'a> Plane<'a> {
         let Forces { unseen, mistaken, shaken, uneven } = self.forces(across, vertical, bend.value);
         let [feedback_across, feedback_vertical] = feedback;
         [
-            Deviation {
-                feedback: feedback_across,
-                command: self.torque(across),
-                estimate: mistaken[0],
-                unseen: unseen[0],
-                bend: bend.value,
-                // What a tick begins with is its mean less half of what it changes by until the next begins: half of
-                // that is taken back then. Beside it there is a trapezoid's error, and half of a jump.
-                late: 0.5 * bend.value,
-                stray: bend.bend / 12.0 + 0.5 * self.jump(across, vertical),
-                uneven: bend.step,
-                ..Deviation::default()
-            },
-            Deviation {
-                feedback: feedback_vertical,
-                estimate: mistaken[1],
-                unseen: unseen[1],
-                shaken,
-                uneven,
-                ..Deviation::default()
-            },
+            Deviation::of([
+                (Input::Feedback, feedback_across),
+                (Input::Command, self.torque(across)),
+                (Input::Estimate, mistaken[0]),
+                (Input::Unseen, unseen[0]),
+                (Input::Bend, bend.value),
+                // A tick begins with the mean less half of the change until the next begins: half of that is taken back
+                // then. Beside it there is a trapezoid's error, and half of a jump.
+                (Input::Late, 0.5 * bend.value),
+                (Input::Stray, bend.bend / 12.0 + 0.5 * self.jump(across, vertical)),
+                (Input::Uneven, bend.step),
+            ]),
+            Deviation::of([
+                (Input::Feedback, feedback_vertical),
+                (Input::Estimate, mistaken[1]),
+                (Input::Unseen, unseen[1]),
+                (Input::Shaken, shaken),
+                (Input::Uneven, uneven),
+            ]),
         ]
     }
 
@@ -177,10 +176,13 @@ impl<'a> Plane<'a> {
         taken: &[Deviation; 2],
         [gust_across, gust_vertical]: [f64; 2],
     ) -> [f64; 2] {
-        let pushed = across.desired[0] + self.gravity() * across.error[0] + 2.0 * taken[0].unseen + gust_across;
-        let Deviation { actuator, unseen, uneven, .. } = taken[1];
-        let lifted = vertical.desired[0] + vertical.behind + actuator + 2.0 * unseen + uneven + gust_vertical;
-        [pushed, lifted]
+        // An unseen force is at most twice its mean.
+        let [pushed, lifted] = taken.map(|taken| 2.0 * taken.at(Input::Unseen));
+        let delivered = vertical.behind + taken[1].at(Input::Actuator) + taken[1].at(Input::Uneven);
+        [
+            across.desired[0] + self.gravity() * across.error[0] + pushed + gust_across,
+            vertical.desired[0] + delivered + lifted + gust_vertical,
+        ]
     }
 
     /// Section 4: the forces that the loops do not have, and by how much the estimate mistakes them, across and along

@@ -17,7 +17,7 @@ use std::thread::{self, available_parallelism};
 pub struct Units {
     /// Of a force, per m/s^2.
     force: f64,
-    /// Of what the actuator makes, per rad/s^2 or m/s^2.
+    /// Of the actuator's result, per rad/s^2 or m/s^2.
     actuator: f64,
     period: f64,
     /// Of the last filter, 1/s.
@@ -125,12 +125,15 @@ impl AxisNorms {
         if h == 0.0 {
             return Peaks::default();
         }
-        let forces = [force, actuator, force, actuator, force, force, force, actuator, actuator, actuator, actuator];
-        let mut inputs = taken.list();
-        inputs[0] += gust;
+        let inputs = Input::ALL.map(|input| match input {
+            Input::Force => (taken.at(input) + gust) * force,
+            Input::Feedback | Input::Estimate | Input::Unseen | Input::Shaken => taken.at(input) * force,
+            Input::Actuator | Input::Command | Input::Bend | Input::Late | Input::Stray | Input::Uneven => {
+                taken.at(input) * actuator
+            }
+        });
         let peak = |signal: Signal| -> f64 {
-            let norms = &self.norms[signal as usize];
-            norms.iter().zip(inputs).zip(forces).map(|((norm, input), unit)| norm * input * unit).sum()
+            self.norms[signal as usize].iter().zip(inputs).map(|(norm, input)| norm * input).sum()
         };
         let force_of = |signal: Signal| peak(signal) / force;
         let turn = |signal: Signal| peak(signal) / actuator;
@@ -138,11 +141,12 @@ impl AxisNorms {
             [Signal::Desired, Signal::DesiredRate, Signal::DesiredAcceleration].map(force_of);
         let desired = [c, c_rate / h, c_acceleration / (h * h)];
         // Across: how e and c move between ticks. A chord is off by an eighth of h^2 times the second derivative.
-        let delivered = turn(Signal::Actual).max(self.gain_max * turn(Signal::Command)) + taken.actuator;
+        let delivered = turn(Signal::Actual).max(self.gain_max * turn(Signal::Command)) + taken.at(Input::Actuator);
         // Within a tick c'' fades, and the rest is as much as the tick's bend and its change.
         let fading = h * self.units.k_f * desired[2] * force;
         let bent = turn(Signal::BentActual).max(turn(Signal::BentOlder)).max(turn(Signal::BentNewer));
-        let e_bend = bent + taken.actuator + fading + taken.bend + taken.uneven;
+        let changed = [Input::Actuator, Input::Bend, Input::Uneven].map(|input| taken.at(input));
+        let e_bend = bent + fading + changed.iter().sum::<f64>();
         let [e, e_rate] = [peak(Signal::Error), peak(Signal::ErrorRate) / h];
         Peaks {
             position: force_of(Signal::Position) * h * h,
@@ -171,6 +175,6 @@ impl AxisNorms {
         // The middle's lag over the true one, less one.
         let faster = lag / (1.0 - lag);
         let told = self.gain_max * peaks.command;
-        gain * (1.0 + faster) * told + faster * (peaks.behind + taken.actuator)
+        gain * (1.0 + faster) * told + faster * (peaks.behind + taken.at(Input::Actuator))
     }
 }

@@ -84,13 +84,14 @@ fn no_worst_gust_takes_a_vehicle_out_of_its_tube() {
     }
 }
 
-/// With the usual tolerances, and in the greatest gust that has a radius: minutes.
+/// With the usual tolerances, and in the greatest gust that has a radius: of the vehicle that has no lag, and if
+/// `TUBES=all`, as `.ci/nightly` has it, of six.
 #[test]
-#[ignore = "minutes; .ci/nightly runs it"]
 fn no_vehicle_leaves_its_tube_within_the_usual_tolerances() {
     let names =
         ["hummingbird", "study", "published/x500", "published/pelican", "published/racer-pybullet", "published/iris"];
-    for name in names {
+    let everything = std::env::var("TUBES").is_ok_and(|tubes| tubes == "all");
+    for name in names.into_iter().filter(|name| everything || name.ends_with("racer-pybullet")) {
         let scenario = vehicle(name);
         let loops = Loops::new(&scenario, &Tolerances::USUAL, &|_| true).unwrap();
         compare(&scenario, &loops, &Tolerances::USUAL, 0.1, 2.0);
@@ -126,7 +127,7 @@ fn a_stronger_gust_takes_it_farther_until_there_is_no_radius() {
     assert!(matches!(refused, NoTube::Reached { .. } | NoTube::Grows { .. }), "{refused}");
 }
 
-/// A proof that ignores a part of what it is for is none.
+/// A proof that ignores a part of its tolerances proves nothing.
 #[test]
 fn cells_that_leave_something_out_are_refused() {
     let scenario = vehicle("published/x500");

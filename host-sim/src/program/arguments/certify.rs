@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// As many as a campaign may have.
 const FLIGHTS_MAX: u64 = 1_000_000_000;
 
-/// What is asked of a scenario.
+/// Which questions about a scenario to answer.
 #[derive(Args)]
 pub struct CertifyArguments {
     /// Scenario file [default: the paper's, built in]

@@ -201,7 +201,7 @@ impl Drawn {
         self.0.random_range(0.0..1.0)
     }
 
-    /// Evenly from 0 to below `count`; 0 if that is none.
+    /// Evenly from 0 to below `count`; 0 for a count of 0.
     pub(crate) fn index(&mut self, count: usize) -> usize {
         self.0.random_range(0..count.max(1))
     }

@@ -83,8 +83,8 @@ pub fn flights(flyer: &Flyer, orders: &Orders, work: &Work) -> Result<Vec<Outcom
 /// worst of so many flights.
 #[must_use]
 pub fn share_beyond(flights: u64) -> f64 {
-    -(DOUBT.ln() / flights as f64).exp_m1()
+    -(DOUBT_PROBABILITY.ln() / flights as f64).exp_m1()
 }
 
 /// 1 minus the confidence.
-pub const DOUBT: f64 = 1e-6;
+pub const DOUBT_PROBABILITY: f64 = 1e-6;

@@ -11,7 +11,7 @@ use crate::studies::campaign::draw::Drawn;
 use rayon::prelude::*;
 
 /// Climbs of a search, if it has as many flights.
-const CLIMBS: u64 = 32;
+const CLIMB_COUNT: u64 = 32;
 
 /// The scale of changes at first, at least, and from one to the next.
 const SCALE_START: f64 = 0.2;
@@ -66,7 +66,7 @@ pub fn worst(
         let (number, outcome) = ranked[rank as usize % ranked.len()];
         (Start::drawn(flyer.sets(), flyer.vehicle(), orders.seed, number), *outcome)
     };
-    let climbs = CLIMBS.min(orders.search);
+    let climbs = CLIMB_COUNT.min(orders.search);
     let climb = |climb: u64| {
         let flights = orders.search / climbs + u64::from(climb < orders.search % climbs);
         // No flight has this number: none is drawn from the same random numbers.

@@ -91,7 +91,7 @@ impl Start {
         Self { rates, velocity, lag: 1.0 + sets.lag, ..self }
     }
 
-    /// Another start near this one, changed in some of what it consists of; `scale` is 1 for changes as large as the
+    /// Another start near this one, changed in some of its parts; `scale` is 1 for changes as large as the
     /// sets.
     pub(crate) fn mutated(&self, sets: &Sets, vehicle: &Vehicle, drawn: &mut Drawn, scale: f64) -> Self {
         let mut start = self.clone();

@@ -67,15 +67,20 @@ fn starts_stay_within_the_sets_however_they_are_changed() {
 #[test]
 fn a_gust_at_rest_takes_the_vehicle_away() {
     let flyer = flyer(&Sets { gust: 1.0, ..Sets::default() });
+    let interrupt = Interrupt::default();
+    let beside = |flyer: &Flyer, gusts| {
+        let orders = Orders { search: 0, ..FEW };
+        tube::beside_gusts(flyer, gusts, &orders, &Work::new(0, &interrupt)).unwrap_or_else(|_| panic!("interrupted"))
+    };
     let second = [1.0; 100];
-    let one = tube::beside_the_tube(&flyer, [&second, &[], &[]]);
+    let one = beside(&flyer, [&second, &[], &[]]);
     assert!(one.alone > 0.01 && one.alone < 0.5 && one.alone == one.together, "{one:?}");
-    let all = tube::beside_the_tube(&flyer, [&second, &second, &second[..50]]);
+    let all = beside(&flyer, [&second, &second, &second[..50]]);
     assert!(all.alone >= one.alone && all.together > 1.3 * all.alone, "{all:?}");
-    let none = tube::beside_the_tube(&flyer, [&[0.0; 100], &[], &[]]);
+    let none = beside(&flyer, [&[0.0; 100], &[], &[]]);
     assert!(none.together < 1e-3, "{none:?}");
     let sure = self::flyer(&Sets { gust: 1.0, lag: 0.0, inertia: 0.0, ..Sets::default() });
-    assert!(tube::beside_the_tube(&sure, [&second, &[], &[]]).alone < one.alone);
+    assert!(beside(&sure, [&second, &[], &[]]).alone < one.alone);
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The columns beside the loop as it is integrated in small steps.
 
+use super::columns::STRETCH_COUNT;
 use super::*;
 use crate::Scenario;
 use crate::sampled_loop::{Axis, LoopModel};
 use controller_core::configuration::LawParameters;
 
-const STEPS: usize = 20_000;
+const STEPS_PER_TICK: usize = 20_000;
 
 fn model(name: &str) -> LoopModel {
     let text = std::fs::read_to_string(format!("../vehicles/{name}.toml")).unwrap();
@@ -22,8 +23,8 @@ fn integrated(
     force: impl Fn(f64) -> f64,
 ) -> Vec<f64> {
     let last = y.len() - 1;
-    let step = 1.0 / STEPS as f64;
-    for place in 0..STEPS {
+    let step = 1.0 / STEPS_PER_TICK as f64;
+    for place in 0..STEPS_PER_TICK {
         let time = (place as f64 + 0.5) * step;
         let follows = told + error(time);
         let before = y.clone();
@@ -60,7 +61,8 @@ fn a_force_and_an_error_of_the_actuator_move_the_chain_as_integrated() {
         let lag = lag_factor * 0.5;
         // Of the stretches in time that is left, the last comes first.
         let inputs = [3.0, -1.0, 0.5, 2.0, -2.0, 0.0, 1.0, -0.25];
-        let at = |time: f64| inputs[STRETCHES - 1 - ((time * STRETCHES as f64) as usize).min(STRETCHES - 1)];
+        let at =
+            |time: f64| inputs[STRETCH_COUNT - 1 - ((time * STRETCH_COUNT as f64) as usize).min(STRETCH_COUNT - 1)];
         let still = vec![0.0; integrators + 1];
         let pushed = integrated(still.clone(), lag, 0.0, |_| 0.0, at);
         let followed = integrated(still, lag, 0.0, at, |_| 0.0);
@@ -77,7 +79,7 @@ fn a_force_and_an_error_of_the_actuator_move_the_chain_as_integrated() {
 #[test]
 fn an_input_that_changes_within_a_stretch_stays_within_the_swing() {
     let system = model("hummingbird").disturbed(Axis::LateralX, 1.0, 1.0);
-    let signs = |time: f64| if ((time * 2.0 * STRETCHES as f64) as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
+    let signs = |time: f64| if ((time * 2.0 * STRETCH_COUNT as f64) as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
     let moved = integrated(vec![0.0; 5], 0.5, 0.0, signs, |_| 0.0);
     for (place, value) in moved.iter().enumerate() {
         let swing =
@@ -103,7 +105,7 @@ fn the_estimates_know_what_is_fed_to_them() {
         };
         let seen = shown(Signal::Force, Input::Force);
         assert!(seen > 0.05, "{axis:?} {seen}");
-        // Across, half of the known drag of what moves.
+        // Across, half of the drag that the law knows.
         let unseen = shown(Signal::Force, Input::Unseen);
         assert!(unseen.abs() <= 0.51 * drag * seen + 1e-12, "{axis:?} {unseen}");
         if axis != Axis::Vertical {

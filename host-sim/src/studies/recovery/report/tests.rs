@@ -1,6 +1,6 @@
 //! The lines, and the share that statistics prove.
 
-use super::super::many::DOUBT;
+use super::super::many::DOUBT_PROBABILITY;
 use super::super::tests::{hummingbird, sets};
 use super::super::{Orders, recovery};
 use super::*;
@@ -11,7 +11,7 @@ fn the_share_is_the_one_that_so_many_flights_would_miss_with_the_doubt() {
     for flights in [1, 10, 20_000, 100_000_000] {
         let p = share_beyond(flights);
         let missed = (flights as f64 * (-p).ln_1p()).exp();
-        assert!((missed / DOUBT - 1.0).abs() < 1e-6, "{flights}: {p}");
+        assert!((missed / DOUBT_PROBABILITY - 1.0).abs() < 1e-6, "{flights}: {p}");
     }
     assert_eq!((1.0 / share_beyond(20_000)) as u64, 1_448);
 }
