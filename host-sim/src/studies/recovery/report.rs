@@ -121,8 +121,8 @@ impl fmt::Display for Report {
                 f,
                 "r {} m in S, from hover: how far a gust along one axis may take the vehicle for ever, {} m across and \
                  {} m up or down. PROVEN for the law in exact arithmetic, on the premise that its thrust scale is \
-                 right and stands still: gusts that go on can teach it a false one, and then a vehicle has come 1.1 times as \
-                 far (docs/recovery.md, 9). \
+                 right and stands still: gusts that go on can teach it a false one, and then a vehicle has come 1.1 times \
+                 as far (docs/recovery.md, 9). \
                  Flown in the proof's worst gusts: {} m; the worst that a search of {} flights found from there: {} m. \
                  In the worst gusts of all axes at once, of which the proof does not speak: {} m. {greatest}",
                 raised(tube.greatest()),

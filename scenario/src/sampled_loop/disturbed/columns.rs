@@ -5,10 +5,10 @@
 //! | | a | y_1 ... |
 //! |---|---|---|
 //! | a force, as the change of the velocity per sample | | 1 in the velocity, t in the position |
-//! | an error, beside the command, in how the actuator moves | forced_0' = e^(-t/lag) / lag | forced_m' = forced_(m-1) |
+//! | an error beside the actuator's command | forced_0' = e^(-t/lag) / lag | forced_m' = forced_(m-1) |
 //!
-//! with `forced` as in [`LagResponse`]. The time of a tick is cut into [`Stretch`]es: in each a kernel is its mean and at
-//! most `swing` beside it, as its entries are monotone.
+//! with `forced` as in [`LagResponse`]. The time of a tick is cut into [`Stretch`]es: in each a kernel is its mean and
+//! at most `swing` beside it, as its entries are monotone.
 
 use crate::sampled_loop::lag::{INVERSE_FACTORIAL, LagResponse};
 use crate::sampled_loop::law::Law;
