@@ -7,5 +7,7 @@
 //! | [`law`] | the controller alone, for simulators that others wrote |
 
 pub mod certify;
+#[cfg(feature = "desk")]
 pub mod fly;
+#[cfg(feature = "desk")]
 pub mod law;

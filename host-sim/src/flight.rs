@@ -7,8 +7,9 @@
 //! |---|---|
 //! | [`controller`] | our law or a rival, in the loop |
 //! | `estimation` | the core's estimator on the simulated instruments |
-//! | `law_on_vehicle` | a law on a vehicle, ready for any number of flights |
+//! | [`law_on_vehicle`] | a law on a vehicle, ready for any number of flights |
 //! | [`course`] | a flight's figures: height lost, overshoot, settling time |
+//! | [`tasks`] | tasks that every study flies |
 //! | [`least_command`] | the least command of any rotor in it |
 //! | [`extremes`], [`claims`] | a flight's extremes; its claims and verdicts |
 
@@ -17,8 +18,9 @@ pub mod controller;
 pub mod course;
 pub(crate) mod estimation;
 pub mod extremes;
-pub(crate) mod law_on_vehicle;
+pub mod law_on_vehicle;
 pub mod least_command;
+pub mod tasks;
 
 use crate::flight::controller::Controller;
 use crate::flight::estimation::{Estimation, NoEstimate};

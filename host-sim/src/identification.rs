@@ -6,6 +6,8 @@
 //! | [`import`] | from files of other programs: URDF, SDF, MJCF, Betaflight, PX4 and others |
 //! | [`ulog`] | ULog, read and written |
 
+#[cfg(feature = "desk")]
 pub mod identify;
 pub mod import;
+#[cfg(feature = "desk")]
 pub mod ulog;

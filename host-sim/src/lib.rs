@@ -17,6 +17,8 @@
 //! | [`sessions`] | the firmware in closed loop with the vehicle: `sitl`, `hil` |
 //! | [`studies`] | many flights: `tune`, `campaign`, `compare` |
 //! | [`commands`] | `fly`, `certify`, `law` |
+//!
+//! Without the feature `desk` there is what also runs in a browser: what needs neither files nor threads nor sockets.
 
 #[cfg(doc)]
 #[allow(unused_imports)] // what the page's links name
@@ -31,9 +33,13 @@ pub mod commands;
 pub mod flight;
 pub mod identification;
 pub mod output;
+#[cfg(feature = "desk")]
 pub mod real_flights;
+#[cfg(feature = "desk")]
 pub mod reports;
 pub mod rivals;
+#[cfg(feature = "desk")]
 pub mod sessions;
+#[cfg(feature = "desk")]
 pub mod studies;
 pub mod vehicle;

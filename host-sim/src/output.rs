@@ -8,8 +8,12 @@
 //! | [`progress`] | a bar on a terminal, elsewhere a line now and then |
 //! | [`interrupt`] | SIGINT, SIGTERM and SIGHUP end long work at its next step |
 
+#[cfg(feature = "desk")]
 pub(crate) mod directory_lock;
+#[cfg(feature = "desk")]
 pub mod interrupt;
+#[cfg(feature = "desk")]
 pub mod progress;
 pub mod table;
+#[cfg(feature = "desk")]
 pub mod whole_file;

@@ -18,7 +18,7 @@
 //! | [`rival`], [`pilot`] | a rival's inputs and outputs; its place in a flight |
 //! | [`jet`], `frame`, `low_pass`, [`quaternion_feedback`] | parts that several of them share |
 //! | [`kind`], [`gains`] | the list of them; their gains, from a file |
-//! | `start` | where the search for them starts ([`crate::studies::tune::rivals`]) |
+//! | [`start`] | where the search for them starts ([`crate::studies::tune::rivals`]) |
 //! | [`choice`] | which law flies, ours or one of these |
 //! | [`rate`] | a scenario under a law of another rate |
 
@@ -39,7 +39,7 @@ pub mod pilot;
 pub mod quaternion_feedback;
 pub mod rate;
 pub mod rival;
-pub(crate) mod start;
+pub mod start;
 
 #[cfg(test)]
 mod tests;

@@ -5,14 +5,14 @@
 //! | [`plant`] | the paper's rigid body, eq. (2) |
 //! | [`actuators`] | delay, allocation and rotors that lag |
 //! | [`reality`] | the vehicle as it really is: drag, wind, wrong mass, sagging battery, failing rotor |
-//! | `ground` | level ground, for flights that start and end there |
+//! | [`ground`] | level ground, for flights that start and end there |
 //! | [`sensors`], [`sensed`] | the measured state; what an IMU and motor controllers say beside it |
 //! | [`instruments`] | an IMU at 1 kHz and late poses, for an estimator |
 //!
 //! The model's body and actuators fly wherever the file leaves reality out, bit for bit as if there were nothing else.
 
 pub mod actuators;
-pub(crate) mod ground;
+pub mod ground;
 pub mod instruments;
 pub mod plant;
 pub mod reality;

@@ -4,7 +4,7 @@
 
 use crate::support::extended::vehicle;
 use host_sim::flight::{Cause, Flight};
-use host_sim::studies::tune::trials::{hover, recovery};
+use host_sim::flight::tasks::{hover, recovery};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::reality::estimator::{Estimator, Outage};

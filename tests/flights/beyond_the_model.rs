@@ -10,7 +10,7 @@ use estimation::estimator::{Clipped, Estimator, Increment, PoseMeasurement, Sett
 use flight::{FlightSettings, Inputs, Memory, Output, Pilot, Pose, Request, Stamped, Velocity};
 use host_sim::flight::Flight;
 use host_sim::flight::course::Course;
-use host_sim::studies::tune::trials::hover;
+use host_sim::flight::tasks::hover;
 use nalgebra::{Quaternion, Vector3};
 use scenario::Scenario;
 use scenario::reality::battery::Battery;

@@ -5,7 +5,7 @@ use controller_core::certificate::Certificate;
 use host_sim::flight::Flight;
 use host_sim::flight::claims::{PUBLISHED_MRP_ERROR, PUBLISHED_POSITION_ERROR_M};
 use host_sim::flight::extremes::FlightExtremes;
-use host_sim::studies::tune::trials::recovery;
+use host_sim::flight::tasks::recovery;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;
 use std::path::Path;

@@ -6,7 +6,7 @@ use crate::support::extended::{published, vehicle};
 use controller_core::configuration::Configuration;
 use host_sim::flight::Flight;
 use host_sim::flight::course::Course;
-use host_sim::studies::tune::trials::{hover, recovery};
+use host_sim::flight::tasks::{hover, recovery};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::body::attitude_from_euler;

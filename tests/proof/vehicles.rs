@@ -12,7 +12,7 @@ use controller_core::certificate::form::ARITHMETIC_ALLOWANCE;
 use controller_core::gains::{GainParameters, Gains};
 use controller_core::state::Wrench;
 use host_sim::flight::Flight;
-use host_sim::studies::tune::trials::recovery;
+use host_sim::flight::tasks::recovery;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
 use scenario::Scenario;

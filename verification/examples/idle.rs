@@ -13,7 +13,7 @@ use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::outcome::Outcome;
 use host_sim::studies::campaign::quantile;
 use host_sim::studies::campaign::step::with_longest_step;
-use host_sim::studies::tune::trials::recovery;
+use host_sim::flight::tasks::recovery;
 use scenario::Scenario;
 use std::error::Error;
 use std::fs;

@@ -8,7 +8,7 @@ use firmware::replay::recovery::{self, Recovery};
 use firmware::replay::shielded::Shielded;
 use firmware::replay::{FLIGHT_TICKS, PERIODS_US, STATE_BYTES, record};
 use host_sim::flight::Flight;
-use host_sim::studies::tune::trials;
+use host_sim::flight::tasks;
 use scenario::Scenario;
 use std::error::Error;
 use std::path::Path;
@@ -49,7 +49,7 @@ fn recovery(period: u64) -> Result<Vec<[u8; STATE_BYTES]>, Box<dyn Error>> {
     let text = EMBEDDED.replace("rate = 100.0 ", &format!("rate = {}.0 ", 1_000_000 / period));
     let text = text.replace("delay = 0.010 ", &format!("delay = {} ", period as f64 * 1e-6));
     let embedded = Scenario::parse(&text, "vehicles/study.toml")?;
-    let mut flight = Flight::new(&trials::recovery(&embedded, recovery::RECOVERY_DURATION_US as f64 * 1e-6)?)?;
+    let mut flight = Flight::new(&tasks::recovery(&embedded, recovery::RECOVERY_DURATION_US as f64 * 1e-6)?)?;
     states(&mut flight, recovery::RECOVERY_DURATION_US / period)
 }
 

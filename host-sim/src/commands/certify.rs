@@ -5,7 +5,7 @@
 //! hold ([`scenario::verdict`]). The certificate itself is about limits, not about how well a vehicle flies. What
 //! becomes of it without a rotor (`rotor_failure`) decides nothing. What may be flown comes last ([`may_fly`]).
 
-mod advice;
+pub mod advice;
 mod blame;
 pub mod constants;
 pub mod may_fly;
@@ -36,24 +36,33 @@ const PUBLISHED_BOUNDS: &str = "published (Section VI): thrust in [3.51, 6.19] N
 /// If a number of the scenario is beyond what the certificate or the loops can work with.
 pub fn certify(scenario: &Scenario) -> Result<(String, bool), ParameterError> {
     let verdict = Verdict::judge(scenario)?;
+    Ok((report(scenario, &verdict)?, verdict.refusal().is_none()))
+}
+
+/// The report on `scenario`, whose verdict this is.
+///
+/// # Errors
+/// As [`certify`]'s.
+pub fn report(scenario: &Scenario, verdict: &Verdict) -> Result<String, ParameterError> {
     let certificate = verdict.certificate();
-    let mut text = head(scenario, &verdict);
+    let mut text = head(scenario, verdict);
     text += "\n";
     match certificate {
         Certificate::Paper(certificate) => text += &papers(scenario, certificate)?,
         Certificate::Extended(certificate) => text += &extended(certificate),
     }
     text += "\n";
-    text += &loops(scenario, &verdict)?;
+    text += &loops(scenario, verdict)?;
     text += &scenario.least_command.map_or(String::new(), |least| format!("rotors: {least}\n"));
     if let LawParameters::Extended(law) = scenario.configuration.law() {
-        text += &format!("\n{}\n{}", pilot::terms(&scenario.configuration, law), limits(&verdict));
+        let limits: String = limits(verdict).iter().map(|line| format!("{line}\n")).collect();
+        text += &format!("\n{}\n{limits}", pilot::terms(&scenario.configuration, law));
     }
     let gone = rotor_failure::lines(scenario, verdict.certified())?;
     if !gone.is_empty() {
         text += &format!("\n{gone}");
     }
-    Ok((text, verdict.refusal().is_none()))
+    Ok(text)
 }
 
 /// The verdict and its reasons alone.
@@ -61,8 +70,8 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::judge(scenario)?))
 }
 
-/// The failing inequalities, loop and flight; without any, the tightest inequality.
-fn limits(verdict: &Verdict) -> String {
+/// Under the extended law: the failing inequalities, loop and flight; without any, the tightest inequality. A line each.
+pub fn limits(verdict: &Verdict) -> Vec<String> {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();
     let what = |inequality: &Inequality| advice::for_inequality(inequality.name).to_owned();
@@ -74,7 +83,7 @@ fn limits(verdict: &Verdict) -> String {
     all.extend(verdict.not_arrived().map(|_| advice::FOR_FLIGHT.to_owned()));
     let reference = verdict.along().filter(|along| !along.holds());
     all.extend(reference.map(|along| advice::for_path(along.taken.row).to_owned()));
-    all.iter().map(|what| format!("{begins}: {what}\n")).collect()
+    all.iter().map(|what| format!("{begins}: {what}")).collect()
 }
 
 /// The paper's law: both forms side by side, then the rotors.
@@ -117,7 +126,7 @@ fn extended(certificate: &ExtendedCertificate) -> String {
 }
 
 /// The verdict, its reasons, and the figures that a reader looks for first.
-fn head(scenario: &Scenario, verdict: &Verdict) -> String {
+pub fn head(scenario: &Scenario, verdict: &Verdict) -> String {
     let failing = |inequalities: &[Inequality]| {
         let names: Vec<&str> = inequalities.iter().filter(|i| !i.holds()).map(|i| i.name).collect();
         if names.is_empty() { "every inequality holds".to_owned() } else { format!("fails in {}", names.join(", ")) }

@@ -11,6 +11,7 @@ use controller_core::certificate::certified::Certified;
 use controller_core::error::ParameterError;
 use scenario::Scenario;
 
+/// A law on a vehicle.
 #[derive(Debug)]
 pub enum LawOnVehicle {
     /// The scenario's own, with what certifies it, if anything does.
@@ -29,6 +30,7 @@ impl LawOnVehicle {
         })
     }
 
+    /// Its name beside others.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Ours(_) => OUR_LAW,

@@ -9,9 +9,11 @@
 /// Which loop a gain belongs to, and by which power of that loop's speed it grows: one in 1/s^n by the n-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
+    /// Of the attitude.
     Attitude(i32),
     /// Of the attitude, and a torque: it grows with the vehicle's inertia as well.
     Torque(i32),
+    /// Of the position.
     Position(i32),
     /// Of neither: a limit, a share or a filter.
     Kept,
@@ -53,6 +55,7 @@ impl Speed {
 /// A rival's START on a vehicle.
 #[derive(Debug, Clone, Copy)]
 pub struct Start {
+    /// START.
     pub gains: &'static [f64],
     /// The speed that each of them scales with.
     pub paces: &'static [Pace],

@@ -10,7 +10,7 @@ use crate::flight::{Flight, Tick};
 use crate::output::interrupt::Interrupt;
 use crate::studies::tune::candidate::Judging;
 use crate::studies::tune::rivals::RivalJudge;
-use crate::studies::tune::trials::{hover, recovery};
+use crate::flight::tasks::{hover, recovery};
 use nalgebra::{UnitQuaternion, Vector3};
 use scenario::Scenario;
 use scenario::timing::Timing;

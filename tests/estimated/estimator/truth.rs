@@ -2,7 +2,7 @@
 
 use controller_core::certificate::certified::Certified;
 use controller_core::law::Law;
-use host_sim::studies::tune::trials::recovery;
+use host_sim::flight::tasks::recovery;
 use host_sim::vehicle::SimulatedVehicle;
 use host_sim::vehicle::actuators::ActuatorDemand;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};

@@ -194,7 +194,7 @@ pub fn rates(claims: &mut Claims, paper: &Scenario) {
 
 /// Torque that noise makes: what the derivatives cost that need the measured attitude and velocity.
 pub fn noise(claims: &mut Claims, paper: &Scenario) -> Result<(), Box<dyn Error>> {
-    let mut noisy = host_sim::studies::tune::trials::hover(paper, Vector3::zeros(), 10.0)?;
+    let mut noisy = host_sim::flight::tasks::hover(paper, Vector3::zeros(), 10.0)?;
     noisy.reality.sensors = Some(Sensors {
         pose_delay_ticks: 0,
         imu_delay: 0.0,

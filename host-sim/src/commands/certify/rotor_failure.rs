@@ -7,7 +7,7 @@
 
 use crate::flight::Flight;
 use crate::output::table::{aligned, short};
-use crate::studies::tune::trials::hover;
+use crate::flight::tasks::hover;
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;

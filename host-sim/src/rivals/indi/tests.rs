@@ -6,7 +6,7 @@ use crate::flight::Flight;
 use crate::flight::course::Course;
 use crate::rivals::gains::{BUILT_IN, Set};
 use crate::rivals::kind::RivalKind;
-use crate::studies::tune::trials::hover;
+use crate::flight::tasks::hover;
 use scenario::Scenario;
 use scenario::reality::truth::Truth;
 

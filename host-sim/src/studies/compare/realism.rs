@@ -19,9 +19,9 @@
 
 use super::rows::FigureRow;
 use super::scene_figures::{SceneFigures, fly_scene_within};
-use super::scenes::{DEFAULT_DRAG_PER_S, Scene};
+use super::scenes::Scene;
 use crate::flight::law_on_vehicle::LawOnVehicle;
-use crate::studies::tune::trials::{hover, recovery};
+use crate::flight::tasks::{drag, hover, recovery};
 use controller_core::error::ParameterError;
 use nalgebra::Vector3;
 use scenario::Scenario;
@@ -100,8 +100,7 @@ fn really(file: &Scenario, different: &Different) -> Scenario {
         deadband: different.deadband,
         ..model
     });
-    let own = reality.drag.unwrap_or(Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() });
-    reality.drag = Some(more(&own, different.drag, file));
+    reality.drag = Some(more(&drag(file), different.drag, file));
     reality.wind = (different.wind > 0.0).then(|| Wind {
         steady: Vector3::x() * different.wind,
         gust: None,

@@ -14,9 +14,9 @@
 //! lands. Drag is as in [`super::scenes`].
 
 use super::rows::FigureRow;
-use super::scenes::{Scene, in_still_air};
+use super::scenes::Scene;
 use crate::flight::law_on_vehicle::LawOnVehicle;
-use crate::studies::tune::trials::{hover, recovery};
+use crate::flight::tasks::{hover, in_still_air, recovery};
 use controller_core::error::ParameterError;
 use controller_core::reference::knot::Knot;
 use controller_core::reference::spline::{self, Stage};

@@ -14,18 +14,10 @@
 //!
 //! Drag is the file's, or 0.5 1/s. The file's wind, disturbances and failures are left out, but for its own flight.
 
-use crate::studies::tune::trials::{hover, noise, recovery};
+use crate::flight::tasks::{hover, in_still_air, in_wind, of_mass_and_thrust, recovery};
+use crate::studies::tune::trials::noise;
 use controller_core::error::ParameterError;
-use nalgebra::Vector3;
 use scenario::Scenario;
-use scenario::reality::drag::Drag;
-use scenario::reality::truth::Truth;
-use scenario::reality::wind::{Gust, Shape, Wind};
-
-/// Of a vehicle whose file gives none.
-pub const DEFAULT_DRAG_PER_S: f64 = 0.5;
-/// When a wind begins.
-const WIND_START_S: f64 = 1.0;
 
 #[derive(Clone)]
 pub struct Scene {
@@ -37,32 +29,11 @@ pub struct Scene {
     pub scenario: Scenario,
 }
 
-/// The vehicle of `file` in still air, with nothing that happens to it.
-pub fn in_still_air(file: &Scenario) -> Scenario {
-    let mut still_air = file.clone();
-    let mass = f64::from(file.configuration.vehicle().mass);
-    let reality = &mut still_air.reality;
-    (reality.wind, reality.disturbance, reality.failure, reality.sensors, reality.estimator) =
-        (None, None, None, None, None);
-    reality.drag.get_or_insert(Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() });
-    still_air
-}
-
 /// All scenes, in the order of the table.
 pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
     let still_air = in_still_air(file);
     let at = |position: [f64; 3], duration: f64| hover(&still_air, position.into(), duration);
-    let windy = |speed: f64, duration: f64| {
-        let mut windy = at([0.0; 3], duration)?;
-        let gust = Gust { shape: Shape::Step, start: WIND_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
-        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-        Ok::<_, ParameterError>(windy)
-    };
-    let really = |mut scenario: Scenario, mass: f64, thrust: f64| {
-        let truth = Truth::model(file.configuration.vehicle());
-        scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale: thrust, ..truth });
-        scenario
-    };
+    let windy = |speed: f64, duration: f64| Ok::<_, ParameterError>(in_wind(&at([0.0; 3], duration)?, speed));
     let mut noisy = at([0.0; 3], 10.0)?;
     noisy.reality.sensors = Some(noise(file.timing.period()));
     let upside_down = recovery(&still_air, 20.0)?;
@@ -74,8 +45,8 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
         ("gust", "hover; 5 m/s of wind begin after a second", windy(5.0, 12.0)?),
         ("storm", "hover; 12 m/s of wind begin after a second", windy(12.0, 20.0)?),
         ("noise", "hover; noise of gyro and poses, all 20 ms late", noisy),
-        ("weak rotors", "1 m step with rotors that deliver 60 %", really(at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
-        ("heavy", "upside down with 1.6 times the mass", really(upside_down, 1.6, 1.0)),
+        ("weak rotors", "1 m step with rotors that deliver 60 %", of_mass_and_thrust(&at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
+        ("heavy", "upside down with 1.6 times the mass", of_mass_and_thrust(&upside_down, 1.6, 1.0)),
     ];
     Ok(scenes.map(|(name, task, scenario)| Scene { name, task, scenario }).into())
 }

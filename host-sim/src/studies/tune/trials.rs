@@ -19,25 +19,14 @@ use super::figures::{HarderTrialFigures, TrialFigures};
 use super::models::{COST_MODELS, Model};
 use crate::flight::Flight;
 use crate::flight::course::Course;
-use controller_core::error::ParameterError;
-use controller_core::heading::Heading;
-use controller_core::reference::hover::Hover;
+use crate::flight::tasks::{hover, in_wind, of_mass_and_thrust, turned_over};
 use nalgebra::Vector3;
 use scenario::Scenario;
-use scenario::body::{BodyState, attitude_from_euler};
-use scenario::reality::drag::Drag;
 use scenario::reality::sensors::{Sensors, VelocitySource};
 use scenario::reality::truth::Truth;
-use scenario::reality::wind::{Gust, Shape, Wind};
-use scenario::timing::Timing;
-use std::sync::Arc;
 
 const ARRIVAL_DISTANCE_M: f64 = 0.1;
-/// The time at which the gust begins.
-const GUST_START_S: f64 = 1.0;
-/// Wind of the gust; and the drag of a vehicle whose file gives none, 1/s.
 const GUST_M_PER_S: f64 = 5.0;
-const DEFAULT_DRAG_PER_S: f64 = 0.5;
 const STORM_M_PER_S: f64 = 12.0;
 /// The greatest duration of each trial.
 const GUST_FLIGHT_S: f64 = 6.0;
@@ -120,13 +109,7 @@ impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<'_, Start> {
 
     /// Hovering in wind that sets in.
     fn windy(&self, speed: f64, duration: f64) -> Option<Course> {
-        let mut windy = self.hovering(Vector3::zeros(), duration)?;
-        let mass = f64::from(self.scenario.configuration.vehicle().mass);
-        let unknown = Drag { linear: Vector3::repeat(DEFAULT_DRAG_PER_S * mass), ..Drag::default() };
-        windy.reality.drag = self.scenario.reality.drag.or(Some(unknown));
-        let gust = Gust { shape: Shape::Step, start: GUST_START_S, velocity: Vector3::new(speed, 0.0, 0.0) };
-        windy.reality.wind = Some(Wind { gust: Some(gust), ..Wind::default() });
-        self.course(&windy)
+        self.course(&in_wind(&self.hovering(Vector3::zeros(), duration)?, speed))
     }
 
     /// From `position` to the origin.
@@ -138,13 +121,10 @@ impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<'_, Start> {
     fn harder(&self) -> Option<(Option<HarderTrialFigures>, u64)> {
         let storm = self.windy(STORM_M_PER_S, STORM_FLIGHT_S)?;
         let far = self.stepped(FAR_STEP_M)?;
-        let truth = Truth::model(self.scenario.configuration.vehicle());
-        let other = |mut scenario: Scenario, mass: f64, thrust_scale: f64| {
-            scenario.reality.truth = Some(Truth { mass: truth.mass * mass, thrust_scale, ..truth.clone() });
-            self.settled(&scenario)
-        };
-        let weak = other(self.hovering(NEAR_STEP_M, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE)?;
-        let heavy = other(turned_over(&self.hovering(Vector3::zeros(), self.recovery)?), HEAVY_MASS_FACTOR, 1.0)?;
+        let weak = of_mass_and_thrust(&self.hovering(NEAR_STEP_M, STEP_FLIGHT_S)?, 1.0, WEAK_THRUST_SCALE);
+        let turned = turned_over(&self.hovering(Vector3::zeros(), self.recovery)?);
+        let weak = self.settled(&weak)?;
+        let heavy = self.settled(&of_mass_and_thrust(&turned, HEAVY_MASS_FACTOR, 1.0))?;
         let figures = HarderTrialFigures {
             storm: storm.excursion,
             far: far.settled.unwrap_or(STEP_FLIGHT_S),
@@ -161,31 +141,6 @@ fn hovering_thrust(scenario: &Scenario) -> f64 {
     let vehicle = scenario.configuration.vehicle();
     let rotors = scenario.configuration.rotors().map_or(4, |rotors| rotors.len());
     f64::from(vehicle.mass * vehicle.gravity) / rotors as f64
-}
-
-/// The recovery that height is measured in: the attitude the paper starts from (roll -179 degrees, yaw 100 degrees off
-/// the reference's heading), at rest, hovering where it starts, for `duration` s. Table I loses 23.3 m in it.
-pub fn recovery(scenario: &Scenario, duration: f64) -> Result<Scenario, ParameterError> {
-    Ok(turned_over(&hover(scenario, Vector3::zeros(), duration)?))
-}
-
-fn turned_over(scenario: &Scenario) -> Scenario {
-    let attitude = attitude_from_euler((-179.0_f64).to_radians(), 0.0, 100.0_f64.to_radians());
-    let initial = BodyState { attitude, ..scenario.initial };
-    let mut recovery = Scenario { name: "recovery".to_owned(), initial, ..scenario.clone() };
-    // Height can only be lost where there is no ground.
-    recovery.reality.ground = None;
-    recovery
-}
-
-/// Level and at rest at `position`, to hover at the origin.
-pub fn hover(scenario: &Scenario, position: Vector3<f64>, duration: f64) -> Result<Scenario, ParameterError> {
-    let zero = Vector3::zeros();
-    let attitude = attitude_from_euler(0.0, 0.0, 0.0);
-    let initial = BodyState { position, velocity: zero, attitude, angular_velocity: zero };
-    let timing = Timing { ticks: (duration / scenario.timing.period()) as u64, ..scenario.timing };
-    let trajectory = Arc::new(Hover::new(Vector3::zeros(), Heading::FORWARD)?);
-    Ok(Scenario { initial, timing, trajectory, ..scenario.clone() })
 }
 
 /// The scenario's vehicle as `model` says that it is.
