@@ -3,8 +3,8 @@
 //! in `docs/measured.md`.
 
 use crate::support::extended::vehicle;
-use host_sim::flight::{Cause, Flight};
 use host_sim::flight::tasks::{hover, recovery};
+use host_sim::flight::{Cause, Flight};
 use nalgebra::Vector3;
 use scenario::Scenario;
 use scenario::reality::estimator::{Estimator, Outage};

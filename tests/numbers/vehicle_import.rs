@@ -4,9 +4,9 @@
 
 use crate::support::binary::{self, files, host_sim, status, stderr, stdout};
 use crate::support::random;
+use host_sim::flight::tasks::recovery;
 use host_sim::identification::import::written::{Wishes, written};
 use host_sim::identification::import::{Format, read};
-use host_sim::flight::tasks::recovery;
 use rand::RngExt;
 use scenario::Scenario;
 use std::fs;

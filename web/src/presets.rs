@@ -1,4 +1,4 @@
-//! Vehicles to begin with: those of `vehicles/`, and of `vehicles/published/` some of each size.
+//! Vehicles to begin with: those of `vehicles/`, of `vehicles/published/` some of each size, and the paper's.
 
 use serde::Serialize;
 
@@ -30,7 +30,7 @@ macro_rules! preset {
 }
 
 /// All of them, in the order of the menu.
-pub fn all() -> [Preset; 9] {
+pub fn all() -> [Preset; 10] {
     [
         preset!("hummingbird", "", "Hummingbird, 0.5 kg", "AscTec's research quadrotor, with RotorPy's numbers."),
         preset!("cf2x-pybullet", "published/", "Crazyflie 2, 27 g", "With the numbers of gym-pybullet-drones."),
@@ -41,5 +41,11 @@ pub fn all() -> [Preset; 9] {
         preset!("firefly", "published/", "firefly, 1.5 kg", "AscTec's hexacopter, from rotors_simulator."),
         preset!("racer-pybullet", "published/", "racer, 0.8 kg", "A racing frame, from gym-pybullet-drones."),
         preset!("study", "", "design study, 0.46 kg", "The paper's body with slow rotors: no vehicle that exists."),
+        preset!(
+            "paper",
+            "../scenarios/",
+            "the paper's vehicle, 0.46 kg",
+            "Under the paper's law. It has no rotors: thrust and torque act at once."
+        ),
     ]
 }

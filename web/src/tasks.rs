@@ -96,15 +96,15 @@ pub enum LawName {
 /// # Errors
 /// One line: the file or the slider, and what is wrong.
 pub fn scenario(file: &str, text: &str, request: &FlightRequest) -> Result<(Scenario, bool), String> {
-    let read = |text: &str| Scenario::parse(text, file).map_err(|error| error.to_string());
+    let read = |text: &str, file: &str| Scenario::parse(text, file).map_err(|error| error.to_string());
     let of_parameter = |error: controller_core::error::ParameterError| format!("{file}: {error}");
-    let vehicle = in_still_air(&read(text)?);
+    let vehicle = in_still_air(&read(text, file)?);
     let (flight, holds) = match request.task {
         Task::UpsideDown => (recovery(&vehicle, RECOVERY_S).map_err(of_parameter)?, true),
         Task::Wind => (hover(&vehicle, Vector3::zeros(), WIND_S).map_err(of_parameter)?, false),
         Task::Step => (hover(&vehicle, STEP_START_M, STEP_S).map_err(of_parameter)?, true),
         Task::Circle => (round(&vehicle).map_err(|what| format!("{file}: {what}"))?, false),
-        Task::Own => (own(&vehicle, &read(&along(text, request)?)?)?, false),
+        Task::Own => (own(&vehicle, &read(&along(text, request)?, &request.trajectory_file)?)?, false),
     };
     Ok((circumstances(flight, request)?, holds))
 }
