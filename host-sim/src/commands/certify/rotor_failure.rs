@@ -6,8 +6,8 @@
 //! vehicle comes to, and the sampled loop about it ([`scenario::rotor_loss`]). None of this decides whether it may fly.
 
 use crate::flight::Flight;
-use crate::output::table::{aligned, short};
 use crate::flight::tasks::hover;
+use crate::output::table::{aligned, short};
 use controller_core::certificate::certified::Certified;
 use controller_core::configuration::LawParameters;
 use controller_core::error::ParameterError;

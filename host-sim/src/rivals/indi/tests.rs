@@ -4,9 +4,9 @@
 use super::*;
 use crate::flight::Flight;
 use crate::flight::course::Course;
+use crate::flight::tasks::hover;
 use crate::rivals::gains::{BUILT_IN, Set};
 use crate::rivals::kind::RivalKind;
-use crate::flight::tasks::hover;
 use scenario::Scenario;
 use scenario::reality::truth::Truth;
 

@@ -45,7 +45,11 @@ pub fn all(file: &Scenario) -> Result<Vec<Scene>, ParameterError> {
         ("gust", "hover; 5 m/s of wind begin after a second", windy(5.0, 12.0)?),
         ("storm", "hover; 12 m/s of wind begin after a second", windy(12.0, 20.0)?),
         ("noise", "hover; noise of gyro and poses, all 20 ms late", noisy),
-        ("weak rotors", "1 m step with rotors that deliver 60 %", of_mass_and_thrust(&at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6)),
+        (
+            "weak rotors",
+            "1 m step with rotors that deliver 60 %",
+            of_mass_and_thrust(&at([-1.0, 0.0, 0.0], 20.0)?, 1.0, 0.6),
+        ),
         ("heavy", "upside down with 1.6 times the mass", of_mass_and_thrust(&upside_down, 1.6, 1.0)),
     ];
     Ok(scenes.map(|(name, task, scenario)| Scene { name, task, scenario }).into())
