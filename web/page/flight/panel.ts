@@ -42,7 +42,7 @@ export class FlightPanel {
   async show(answer: FlightAnswer, request: FlightRequest, verdict: Verdict): Promise<void> {
     this.body.hidden = false;
     this.body.classList.remove("stale");
-    showFigures(answer.flights, `${verdict.name}, ${described(request)}`);
+    showFigures(answer.flights, `${verdict.name}, ${described(request)}`, verdict.rate);
     const what = `${verdict.name} ${request.task}`;
     await this.replay.show({ answer, rotors: verdict.rotors, mass: verdict.mass }, what !== this.shown);
     this.shown = what;

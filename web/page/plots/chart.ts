@@ -72,7 +72,8 @@ export class Chart {
   private options(width: number): uPlot.Options {
     const { plan } = this;
     const ink = () => colour("--quiet");
-    const axis = { stroke: ink, grid: { stroke: () => colour("--line"), width: 1 }, ticks: { show: false }, font: FONT };
+    const grid = { stroke: () => colour("--line"), width: 1 };
+    const axis = { stroke: ink, grid, ticks: { show: false }, font: FONT };
     return {
       width,
       height: HEIGHT,

@@ -36,7 +36,7 @@ export class Share {
     this.field.value = link;
     const done = await copy(link);
     const words = done ? "Copied." : "The browser does not allow copying: select the link below and copy it.";
-    const long = ` It has ${link.length} characters: some programs cut such a link. Send the file if it arrives damaged.`;
+    const long = ` It has ${link.length} characters, and some programs cut such a link: then send the file.`;
     say(this.said, words + (link.length > SAFE ? long : ""));
     if (!done) this.field.focus();
   }

@@ -78,9 +78,8 @@ export class Craft extends Group {
       color: tint, side: DoubleSide, transparent: true, opacity: DISC_OPACITY, depthWrite: false,
     });
     const disc = new Mesh(new CircleGeometry(radius, SIDES), blur);
-    const rim = new Mesh(
-      new RingGeometry((1 - DISC_RIM) * radius, radius, SIDES), new MeshBasicMaterial({ color: tint, side: DoubleSide }),
-    );
+    const edge = new MeshBasicMaterial({ color: tint, side: DoubleSide });
+    const rim = new Mesh(new RingGeometry((1 - DISC_RIM) * radius, radius, SIDES), edge);
     disc.position.copy(at);
     rim.position.copy(at);
     this.add(beam, disc, rim);

@@ -70,7 +70,7 @@ export class Space implements View {
 
   /** Throws where the browser has no WebGL. `note` is told what a reader has to know about the picture. */
   constructor(private readonly place: HTMLElement, private readonly note: (words: string) => void) {
-    const canvas = make("canvas", { tabindex: "0", role: "img" });
+    const canvas = make("canvas", { tabindex: "0", role: "img", "aria-describedby": "view-note" });
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.orbit = new Orbit(canvas, () => this.draw(this.time));
     this.camera.up.set(0, 0, 1);

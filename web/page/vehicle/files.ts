@@ -36,7 +36,7 @@ export function onChoice(id: string, take: Take): void {
 async function read(file: File | undefined, take: Take): Promise<void> {
   if (file === undefined) return take({ refused: "no file was dropped: drop a file, not a folder or a text" });
   if (file.size > GREATEST_FILE) {
-    return take({ refused: `${file.name}: has ${Math.round(file.size / 1e6)} MB, and no vehicle's file has over 2 MB` });
+    return take({ refused: `${file.name}: has over 2 MB, and no vehicle's file is so large` });
   }
   try {
     const text = decode(await file.arrayBuffer());

@@ -113,9 +113,10 @@ export class Source {
     this.error.scrollIntoView({ block: "nearest" });
   }
 
-  /** Forgets the last refusal. */
+  /** Forgets what was said about the text before. */
   clear(): void {
     say(this.error, null);
+    this.converted.hidden = true;
     this.editor.point(null);
   }
 

@@ -10,7 +10,8 @@ const MS_PER_S = 1000;
 export function row({ name, meaning, margin, holds, required, available, unit }: Row): HTMLTableRowElement {
   const what = make("th", { scope: "row" }, name);
   if (meaning) what.append(make("span", { class: "meaning" }, meaning));
-  const left = make("td", { class: "number" }, judged(holds, holds ? "holds" : "FAILS"), `, ${percent(margin)}`, bar(margin));
+  const words = judged(holds, holds ? "holds" : "FAILS");
+  const left = make("td", { class: "number" }, words, `, ${percent(margin)}`, bar(margin));
   const needed = make("td", { class: "number" }, quantity(required, unit));
   const there = make("td", { class: "number" }, quantity(available, unit));
   return make("tr", { class: holds ? "holds" : "fails" }, what, left, needed, there);
