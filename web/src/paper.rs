@@ -1,7 +1,7 @@
 //! The paper's flight as one number, computed here: the one that desktop and boards have.
 
-use firmware::replay::{FLIGHT_TICKS, Replay, record};
 use host_sim::flight::Flight;
+use paper_flight::{FLIGHT_TICKS, Replay, record};
 use scenario::Scenario;
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub struct Number {
     pub same: bool,
 }
 
-/// Flies the paper's scenario and has [`firmware::replay`] make its number.
+/// Flies the paper's scenario and has [`paper_flight`] make its number.
 ///
 /// # Errors
 /// If a machine computes so wrongly that the flight ends.

@@ -62,7 +62,7 @@ pub fn fly_trials(
     model: &Model,
     recovery: f64,
 ) -> Option<TrialFigures> {
-    let trials = Trials { scenario, real: really(scenario, model), start, recovery };
+    let trials = Trials { real: really(scenario, model), start, recovery };
     let recovered = trials.settled(&turned_over(&trials.hovering(Vector3::zeros(), recovery)?))?;
     let gusty = trials.windy(GUST_M_PER_S, GUST_FLIGHT_S)?;
     let step = trials.stepped(NEAR_STEP_M)?;
@@ -85,8 +85,7 @@ pub fn fly_trials(
 }
 
 /// The vehicle and the law of all trials.
-struct Trials<'a, Start> {
-    scenario: &'a Scenario,
+struct Trials<Start> {
     /// The vehicle as it really is.
     real: Scenario,
     start: Start,
@@ -94,7 +93,7 @@ struct Trials<'a, Start> {
     recovery: f64,
 }
 
-impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<'_, Start> {
+impl<Start: Fn(&Scenario) -> Option<Flight>> Trials<Start> {
     fn course(&self, scenario: &Scenario) -> Option<Course> {
         Course::fly(scenario, (self.start)(scenario)?, ARRIVAL_DISTANCE_M).ok()
     }
