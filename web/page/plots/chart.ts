@@ -38,6 +38,7 @@ export class Chart {
     this.place.setAttribute("role", "img");
     this.place.setAttribute("aria-label", summary(plan));
     this.plot = new uPlot(this.options(width), [plan.times, ...plan.lines.map(({ values }) => values)], this.place);
+    this.plot.ctx.canvas.setAttribute("aria-hidden", "true");
     const pick = (event: PointerEvent) => {
       const { left } = this.plot.over.getBoundingClientRect();
       choose(this.plot.posToVal(event.clientX - left, "x"), event.buttons > 0);
