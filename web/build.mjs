@@ -38,6 +38,8 @@ function compile() {
 try {
   copyFileSync(join(compile(), TARGET, PROFILE, "web.wasm"), join(here, "vehicle.wasm"));
 } catch (failure) {
-  console.error(`no WebAssembly: ${failure.message}. A compiler comes by "rustup target add ${TARGET}".`);
+  // A compiler that ran has said itself what is wrong.
+  const advice = failure.status === undefined ? `; "rustup target add ${TARGET}" installs a compiler` : "";
+  console.error(`no WebAssembly: ${failure.message}${advice}`);
   process.exit(1);
 }

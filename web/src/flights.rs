@@ -111,11 +111,13 @@ struct Ticks {
 ///
 /// # Errors
 /// One line: the file or the field, and what is wrong.
-pub fn fly(VehicleFile { file, text }: &VehicleFile, request: &FlightRequest) -> Result<Flights, String> {
-    let (scenario, holds) = tasks::scenario(file, text, request)?;
+pub fn fly(file: &VehicleFile, request: &FlightRequest) -> Result<Flights, String> {
+    let vehicle = tasks::vehicle(file)?;
+    let (scenario, holds) = tasks::scenario(&vehicle, file, request)?;
+    let said = |what: String| format!("{}: {what}", file.file);
     let mut laws: Vec<Ticks> = Vec::new();
     for &law in &request.laws {
-        laws.push(ticks(&scenario, law).map_err(|what| format!("{file}: {what}"))?);
+        laws.push(ticks(&vehicle, &scenario, law).map_err(said)?);
     }
     let end = if holds { end(&scenario, &laws) } else { usize::MAX };
     let every = ROW_PERIOD_US.div_ceil(scenario.timing.period_us) as usize;
@@ -123,18 +125,19 @@ pub fn fly(VehicleFile { file, text }: &VehicleFile, request: &FlightRequest) ->
     let reference = longest.into_iter().flatten().take(end).step_by(every);
     Ok(Flights {
         reference: reference.map(|tick| tick.reference.position.into()).collect(),
-        bounds: bounds(&scenario).map_err(|what| format!("{file}: {what}"))?,
+        bounds: bounds(&scenario).map_err(said)?,
         wind: [request.wind, 0.0, 0.0],
         wind_start: WIND_START_S,
         flights: laws.into_iter().map(|law| flown(law, end, every)).collect(),
     })
 }
 
-fn ticks(scenario: &Scenario, law: LawName) -> Result<Ticks, String> {
+/// Flies `scenario` with a law that knows of the vehicle what `vehicle` says.
+fn ticks(vehicle: &Scenario, scenario: &Scenario, law: LawName) -> Result<Ticks, String> {
     let (mut flight, note) = match law {
         LawName::Ours => (Flight::new(scenario).map_err(|error| error.to_string())?, ""),
         LawName::Indi => {
-            let (rival, note) = indi::on_vehicle(scenario).ok_or("INDI is undefined on this vehicle")?;
+            let (rival, note) = indi::on_vehicle(vehicle).ok_or("INDI is undefined on this vehicle")?;
             (Flight::of_rival(scenario, rival), note)
         }
     };

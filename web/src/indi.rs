@@ -3,7 +3,7 @@
 
 use host_sim::flight::Flight;
 use host_sim::flight::course::Course;
-use host_sim::flight::tasks::{hover, in_still_air};
+use host_sim::flight::tasks::{drag, hover};
 use host_sim::rivals::choice::LawChoice;
 use host_sim::rivals::gains::Set;
 use host_sim::rivals::kind::RivalKind;
@@ -11,6 +11,7 @@ use host_sim::rivals::rival::Rival;
 use host_sim::rivals::start::Speed;
 use nalgebra::Vector3;
 use scenario::Scenario;
+use std::cell::RefCell;
 
 /// What is tried here: a step of 1 m, for so long.
 const STEP_START_M: Vector3<f64> = Vector3::new(-0.6, 0.6, -0.5);
@@ -25,21 +26,50 @@ const OTHER_RATE_NOTE: &str = "INDI's gains were found at another rate.";
 /// Said of gains that were found for this vehicle.
 const TUNED_NOTE: &str = "INDI's gains were found for this vehicle by host-sim compare --tune.";
 
-/// The law on the vehicle of `scenario`, and where its gains come from; none if it is undefined.
-pub fn on_vehicle(scenario: &Scenario) -> Option<(Box<dyn Rival>, &'static str)> {
+thread_local! {
+    /// The gains that were tried last, and for which gains' start and vehicle: a slider flies the same vehicle again.
+    static TRIED: RefCell<Option<(Vec<f64>, Vec<f64>)>> = const { RefCell::new(None) };
+}
+
+/// The law on the vehicle of `vehicle`, and where its gains come from; none if it is undefined.
+pub fn on_vehicle(vehicle: &Scenario) -> Option<(Box<dyn Rival>, &'static str)> {
     let kind = RivalKind::Indi;
-    if let Some(set) = Set::built_in(scenario, &[kind])
+    if let Some(set) = Set::built_in(vehicle, &[kind])
         && let Some(LawChoice::Rival(_, gains)) = set.law(kind)
     {
         let note = if set.from_other_rates.is_empty() { TUNED_NOTE } else { OTHER_RATE_NOTE };
-        return Some((kind.build(scenario, &gains)?, note));
+        return Some((kind.build(vehicle, &gains)?, note));
     }
-    let start = kind.start(scenario);
-    let step = hover(&in_still_air(scenario), STEP_START_M, TRIED_S).ok()?;
-    let cost = |speed: &Speed| cost(&step, kind.build(scenario, &start.at(*speed)));
-    let best = |speeds: Vec<Speed>| speeds.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let known = TRIED.with_borrow(|tried| tried.clone()).filter(|(model, _)| *model == numbers(vehicle));
+    let gains = match known {
+        Some((_, gains)) => gains,
+        None => tried(vehicle)?,
+    };
+    TRIED.set(Some((numbers(vehicle), gains.clone())));
+    Some((kind.build(vehicle, &gains)?, TRIED_NOTE))
+}
+
+/// What gains depend on.
+fn numbers(vehicle: &Scenario) -> Vec<f64> {
+    let (model, drag) = (vehicle.configuration.vehicle(), drag(vehicle));
+    let rotors = vehicle.configuration.rotors().into_iter().flat_map(|rotors| rotors.iter());
+    let mut numbers = vec![f64::from(model.mass), vehicle.rotor_lag, vehicle.delay(), vehicle.timing.period()];
+    numbers.extend(model.inertia.iter().map(|&inertia| f64::from(inertia)));
+    numbers.extend(drag.linear.iter());
+    numbers.extend(rotors.flat_map(|rotor| [rotor.position.x, rotor.position.y, rotor.thrust_max]).map(f64::from));
+    numbers
+}
+
+/// The best of a few gains.
+fn tried(vehicle: &Scenario) -> Option<Vec<f64>> {
+    let (kind, start) = (RivalKind::Indi, RivalKind::Indi.start(vehicle));
+    let step = hover(vehicle, STEP_START_M, TRIED_S).ok()?;
+    let cost = |speed: &Speed| cost(&step, kind.build(vehicle, &start.at(*speed)));
+    let best = |speeds: Vec<Speed>| {
+        speeds.into_iter().map(|speed| (cost(&speed), speed)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, speed)| speed)
+    };
     let speed = best(best(start.attitudes())?.positions())?;
-    Some((kind.build(scenario, &start.at(speed))?, TRIED_NOTE))
+    Some(start.at(speed))
 }
 
 /// RMS of the distance over the last half, m, after the time until it arrives, s.

@@ -10,6 +10,7 @@
 //!
 //! The wind sets in after a second. The file's own wind, disturbances, failures and noise are left out.
 
+use crate::VehicleFile;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use host_sim::commands::certify::may_fly::{CIRCLE_RADIUS_M, circle};
 use host_sim::flight::tasks::{hover, in_still_air, in_wind, of_mass_and_thrust, recovery};
@@ -91,20 +92,33 @@ pub enum LawName {
     Indi,
 }
 
-/// The flight of `file`, whose text is `text`; whether it ends in a place to hold.
+/// The vehicle of a file, in still air.
+///
+/// # Errors
+/// One line: the file, the field, and what is wrong.
+pub fn vehicle(VehicleFile { file, text }: &VehicleFile) -> Result<Scenario, String> {
+    Ok(in_still_air(&Scenario::parse(text, file).map_err(|error| error.to_string())?))
+}
+
+/// The flight of that vehicle; whether it ends in a place to hold.
 ///
 /// # Errors
 /// One line: the file or the slider, and what is wrong.
-pub fn scenario(file: &str, text: &str, request: &FlightRequest) -> Result<(Scenario, bool), String> {
-    let read = |text: &str, file: &str| Scenario::parse(text, file).map_err(|error| error.to_string());
+pub fn scenario(
+    vehicle: &Scenario,
+    VehicleFile { file, text }: &VehicleFile,
+    request: &FlightRequest,
+) -> Result<(Scenario, bool), String> {
     let of_parameter = |error: controller_core::error::ParameterError| format!("{file}: {error}");
-    let vehicle = in_still_air(&read(text, file)?);
     let (flight, holds) = match request.task {
-        Task::UpsideDown => (recovery(&vehicle, RECOVERY_S).map_err(of_parameter)?, true),
-        Task::Wind => (hover(&vehicle, Vector3::zeros(), WIND_S).map_err(of_parameter)?, false),
-        Task::Step => (hover(&vehicle, STEP_START_M, STEP_S).map_err(of_parameter)?, true),
-        Task::Circle => (round(&vehicle).map_err(|what| format!("{file}: {what}"))?, false),
-        Task::Own => (own(&vehicle, &read(&along(text, request)?, &request.trajectory_file)?)?, false),
+        Task::UpsideDown => (recovery(vehicle, RECOVERY_S).map_err(of_parameter)?, true),
+        Task::Wind => (hover(vehicle, Vector3::zeros(), WIND_S).map_err(of_parameter)?, false),
+        Task::Step => (hover(vehicle, STEP_START_M, STEP_S).map_err(of_parameter)?, true),
+        Task::Circle => (round(vehicle).map_err(|what| format!("{file}: {what}"))?, false),
+        Task::Own => {
+            let along = Scenario::parse(&along(text, request)?, &request.trajectory_file);
+            (own(vehicle, &along.map_err(|error| error.to_string())?)?, false)
+        }
     };
     Ok((circumstances(flight, request)?, holds))
 }
