@@ -10,6 +10,9 @@ const GREATEST_PLAIN = 1e5;
 const LEAST_METRES = 0.1;
 const MM_PER_M = 1000;
 
+/** No smaller distance is of interest. */
+const NOTHING_METRES = 1e-5;
+
 /** A number with three significant digits. */
 export function short(value: number): string {
   if (value === 0) return "0";
@@ -25,6 +28,7 @@ export function quantity(value: number, unit: string): string {
 
 /** Metres, or millimetres where that reads better. */
 export function distance(metres: number): string {
+  if (Math.abs(metres) < NOTHING_METRES) return `below ${quantity(MM_PER_M * NOTHING_METRES, "mm")}`;
   return Math.abs(metres) < LEAST_METRES ? quantity(MM_PER_M * metres, "mm") : quantity(metres, "m");
 }
 
@@ -40,5 +44,5 @@ export function percent(share: number): string {
 }
 
 function minus(text: string): string {
-  return text.replace("-", "−");
+  return text.replaceAll("-", "−");
 }

@@ -34,6 +34,6 @@ export function showFigures(flights: Flown[], what: string, rate: number): void 
 function notes({ law, note, ended }: Flown): string[] {
   const said = [];
   if (ended !== null) said.push(`${LAWS[law]}: the flight ended early: ${ended}`);
-  if (note) said.push(`${LAWS[law]}: ${note}`);
+  if (note) said.push(note);
   return said;
 }

@@ -21,6 +21,9 @@ const FAR = 3;
 /** Of the range of values, above and below them. */
 const ROOM = 0.08;
 
+/** Of the greatest value: less is written as zero. */
+const NOTHING = 1e-4;
+
 const FONT = "11px system-ui, sans-serif";
 
 /** The reader pressed the plot at this time, or only points at it. */
@@ -73,6 +76,7 @@ export class Chart {
   private options(width: number): uPlot.Options {
     const { plan } = this;
     const ink = () => colour("--quiet");
+    const nothing = NOTHING * greatest(plan);
     const grid = { stroke: () => colour("--line"), width: 1 };
     const axis = { stroke: ink, grid, ticks: { show: false }, font: FONT };
     return {
@@ -99,7 +103,10 @@ export class Chart {
           width: LINE_WIDTH,
           ...(line.dashed && { dash: DASHES }),
           points: { show: false },
-          value: (_: uPlot, value: number | null) => (value === null ? "–" : quantity(value, plan.unit)),
+          value: (_: uPlot, value: number | null) => {
+            if (value === null) return "–";
+            return quantity(Math.abs(value) < nothing ? 0 : value, plan.unit);
+          },
         })),
       ],
       hooks: { drawAxes: [(plot) => drawBounds(plot, plan)] },
@@ -125,6 +132,10 @@ function range({ lines, bounds, within }: Plan): [number, number] {
   }
   const room = ROOM * (most - least || 1);
   return [least < 0 ? least - room : least, most + room];
+}
+
+function greatest({ lines }: Plan): number {
+  return lines.reduce((most, { values }) => values.reduce<number>((a, b) => Math.max(a, Math.abs(b ?? 0)), most), 0);
 }
 
 /** Draws every bound as a line of its own pattern, named where it begins. */

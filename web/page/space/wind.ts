@@ -13,7 +13,7 @@ export const ONSET = 1;
 /** Of the radius that is seen: length for the strongest wind, thickness, and place from the target. */
 const LENGTH = 0.9;
 const THICKNESS = 0.35;
-const PLACE = new Vector3(-0.7, 0.5, 0.15);
+const PLACE = new Vector3(-0.8, 0.5, 0.5);
 
 /** m/s: as long as the arrow becomes. */
 const STRONGEST = 12;

@@ -9,7 +9,8 @@ const MS_PER_S = 1000;
 /** A row: what it is, how much is left of the available, as a bar and in words, and the two numbers. */
 export function row({ name, meaning, margin, holds, required, available, unit }: Row): HTMLTableRowElement {
   const what = make("th", { scope: "row" }, name);
-  if (meaning) what.append(make("span", { class: "meaning" }, meaning));
+  const told = holds ? subject(meaning) : meaning;
+  if (told) what.append(make("span", { class: "meaning" }, told));
   const words = judged(holds, holds ? "holds" : "FAILS");
   const left = make("td", { class: "number" }, words, `, ${percent(margin)}`, bar(margin));
   const needed = make("td", { class: "number" }, quantity(required, unit));
@@ -28,6 +29,11 @@ export function loop({ axis, verdict, holds, gain_down, gain_up, delay, radius }
     number(delay === null ? "—" : quantity(delay * MS_PER_S, "ms")),
     number(short(radius)),
   );
+}
+
+/** What a row is about. The rest of its meaning is what to change, which only a row that fails needs. */
+function subject(meaning: string): string {
+  return meaning.split(/[.:;](?:\s|$)/, 1)[0] ?? "";
 }
 
 function number(text: string): HTMLElement {
