@@ -128,7 +128,8 @@ class Visitor:
     def shoot(self, folder, what):
         self.script("scrollTo({top: 0, behavior: 'instant'})")
         height = self.script("return document.documentElement.scrollHeight")
-        clip = {"x": 0, "y": 0, "width": SIZES[self.size][0], "height": height, "scale": 1}
+        clip = {"x": 0, "y": 0, "width": SIZES[self.size][0], "height": height,
+                "scale": 0.5 if self.size == "phone" else 1}
         shot = self.chrome.execute_cdp_cmd("Page.captureScreenshot", {"format": "png", "captureBeyondViewport": True, "clip": clip})
         (folder / f"{self.name}-{what}.png").write_bytes(base64.b64decode(shot["data"]))
 
@@ -142,7 +143,7 @@ class Visitor:
             message = json.loads(entry["message"])["message"]
             if message["method"] == "Network.requestWillBeSent":
                 asked.append(message["params"]["request"]["url"])
-        home = self.address.split("#")[0]
+        home = self.address.rsplit("/", 1)[0]
         elsewhere = [url for url in asked if not url.startswith((home, "data:", "blob:", "about:"))]
         self.expect(asked and not elsewhere, f"fetched from elsewhere: {elsewhere}")
         return len(asked)

@@ -78,7 +78,7 @@ export type Task = "upside_down" | "wind" | "circle" | "step" | "own";
 
 export interface FlightRequest {
   task: Task;
-  /** m/s along world x; a gust that sets in after 1 s. */
+  /** m/s along world x; it sets in at `wind_start` of the answer. */
   wind: number;
   /** The real mass, as a factor of the file's. */
   mass: number;
@@ -141,6 +141,8 @@ export interface FlightAnswer {
   };
   /** m/s, world, while it blows. */
   wind: [number, number, number];
+  /** When it sets in, s. */
+  wind_start: number;
 }
 
 /** The paper's flight, as one number. */

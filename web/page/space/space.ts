@@ -101,7 +101,7 @@ export class Space implements View {
     this.ball = new Mesh(new SphereGeometry(REFERENCE_BALL), new MeshBasicMaterial({ color: grey }));
     this.content.add(this.ball, new Trail(shown.answer.reference, grey, REFERENCE_WIDTH));
     this.actors = shown.answer.flights.map((flown) => this.actor(flown, shown));
-    this.wind = Wind.of(shown.answer.wind, this.labels);
+    this.wind = Wind.of(shown.answer.wind, shown.answer.wind_start, this.labels);
     if (this.wind) this.content.add(this.wind);
     this.scene.add(this.content);
     this.describe(shown);
