@@ -37,6 +37,11 @@ type Pick = (flown: Flown, tick: number) => number | undefined;
 /** Colours for rotors, in order; more rotors begin anew. */
 const ROTOR_COLOURS = 8;
 
+/** What a plot shows at least, so that rounding does not fill it: m, degrees, and of a torque's limit. */
+const LEAST_ERROR = 1e-3;
+const LEAST_TILT = 1;
+const LEAST_SHARE = 1e-2;
+
 const AXES = ["roll", "pitch", "yaw"] as const;
 
 export function plans(answer: FlightAnswer): Plan[] {
@@ -61,8 +66,9 @@ export function plans(answer: FlightAnswer): Plan[] {
   if (proven) thrust.words += `, proven ${short(proven.thrust[0])} to ${quantity(proven.thrust[1], "N")}`;
 
   const torques = AXES.map((axis, k) => {
-    const made = plan(`Torque, ${axis}`, "N m", (flown, i) => flown.torque[i]?.[k]);
     const most = bounds.torque_max[k] ?? 0;
+    const least = LEAST_SHARE * most;
+    const made = plan(`Torque, ${axis}`, "N m", (flown, i) => flown.torque[i]?.[k], [-least, least]);
     const held = proven?.torque[k];
     made.bounds = [limit(most), limit(-most), ...(held === undefined ? [] : [provenBound(held), provenBound(-held)])];
     made.words = `limit ±${quantity(most, "N m")}${held === undefined ? "" : `, proven ±${quantity(held, "N m")}`}`;
@@ -70,8 +76,8 @@ export function plans(answer: FlightAnswer): Plan[] {
   });
 
   return [
-    plan("Position error", "m", (flown, i) => flown.position_error[i]),
-    plan("Tilt", "°", (flown, i) => flown.tilt[i]),
+    plan("Position error", "m", (flown, i) => flown.position_error[i], [0, LEAST_ERROR]),
+    plan("Tilt", "°", (flown, i) => flown.tilt[i], [0, LEAST_TILT]),
     thrust,
     ...torques,
     ...flights.filter(({ rotors }) => (rotors[0]?.length ?? 0) > 0).map((flown) => rotorPlan(flown, times, bounds)),
