@@ -2,9 +2,10 @@
 
     browse.py CHROMIUM DRIVER DIST SCREENSHOTS
 
-Serves DIST on this machine, and checks: the paper flight's number; a preset's verdict; flights with their figures; a bad file's
-message; a file of another program; a link that carries the file, and a damaged one; that no page is wider than its screen; that the
-keyboard reaches what matters; that nothing is fetched from elsewhere and nothing stands on the console. Prints sizes and times.
+Serves DIST on this machine, and checks: the paper flight's number; a preset's verdict; flights with their figures; a
+bad file's message; a file of another program; a link that carries the file, and a damaged one; that no page is wider
+than its screen; that the keyboard reaches what matters; that nothing is fetched from elsewhere and nothing stands on
+the console. Prints sizes and times.
 """
 
 import base64
@@ -43,9 +44,9 @@ def browser(chromium, driver):
     options = webdriver.ChromeOptions()
     options.binary_location = chromium
     # As root, in a container; 3-D without a graphics card.
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars", "--use-angle=swiftshader",
-                     "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update",
-                     "--disable-quic", "--disable-sync", "--no-first-run"):
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking",
+                     "--disable-component-update", "--disable-quic", "--disable-sync", "--no-first-run"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     found = webdriver.Chrome(options=options, service=Service(driver))
@@ -62,8 +63,10 @@ class Visitor:
         self.name = f"{size}-{scheme}"
         width, height = SIZES[size]
         chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": height, "deviceScaleFactor": 2 if size == "phone" else 1, "mobile": size == "phone"})
-        features = [{"name": "prefers-color-scheme", "value": scheme}, {"name": "prefers-reduced-motion", "value": "reduce"}]
+            "width": width, "height": height, "deviceScaleFactor": 2 if size == "phone" else 1,
+            "mobile": size == "phone"})
+        features = [{"name": "prefers-color-scheme", "value": scheme},
+                    {"name": "prefers-reduced-motion", "value": "reduce"}]
         chrome.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": features})
         self.open(address)
 
@@ -130,7 +133,8 @@ class Visitor:
         height = self.script("return document.documentElement.scrollHeight")
         clip = {"x": 0, "y": 0, "width": SIZES[self.size][0], "height": height,
                 "scale": 0.5 if self.size == "phone" else 1}
-        shot = self.chrome.execute_cdp_cmd("Page.captureScreenshot", {"format": "png", "captureBeyondViewport": True, "clip": clip})
+        wanted = {"format": "png", "captureBeyondViewport": True, "clip": clip}
+        shot = self.chrome.execute_cdp_cmd("Page.captureScreenshot", wanted)
         (folder / f"{self.name}-{what}.png").write_bytes(base64.b64decode(shot["data"]))
 
     def quiet(self):
@@ -151,11 +155,11 @@ class Visitor:
 
 def verdict_and_number(visitor):
     visitor.expect(visitor.text("verdict").startswith("CERTIFIED"), f"the first verdict is {visitor.text('verdict')!r}")
-    visitor.expect(visitor.script("return document.querySelectorAll('#rows tbody tr').length") >= 8, "the certificate has few rows")
+    rows = visitor.script("return document.querySelectorAll('#rows tbody tr').length")
+    visitor.expect(rows >= 8, f"the certificate has {rows} rows")
     visitor.until(lambda: len(visitor.text("paper-hash")) == 64, "the paper's flight has no number")
     visitor.expect(visitor.text("paper-hash") == PUBLISHED_HASH, f"the paper's flight is {visitor.text('paper-hash')}")
-    visitor.expect("agree" in visitor.text("paper-same").lower() or "same" in visitor.text("paper-same").lower(),
-                   f"beside it stands {visitor.text('paper-same')!r}")
+    visitor.expect("the same" in visitor.text("paper-same").lower(), f"beside it stands {visitor.text('paper-same')!r}")
 
 
 def presets_and_bad_files(visitor, folder):
@@ -171,12 +175,13 @@ def presets_and_bad_files(visitor, folder):
     visitor.shoot(folder, "bad-file")
     slow = good.replace("lag = ", "lag = 1.0 # ")
     visitor.write(slow)
-    visitor.until(lambda: visitor.text("verdict").startswith("NOT certified"), "a vehicle with rotors of 1 s is not refused")
+    visitor.until(lambda: visitor.text("verdict").startswith("NOT certified"), "a rotor lag of 1 s is not refused")
     visitor.expect(not error.is_displayed(), "the error stays")
     # The file of another program, which lacks a number.
     visitor.chrome.find_element(By.ID, "file").send_keys(str(TOP / "tests/numbers/vehicle_import/cf2x.urdf"))
     visitor.until(lambda: "rotors.lag" in visitor.text("converted"), "the importer does not say what is missing")
-    visitor.expect('lag = "missing"' in visitor.script("return document.getElementById('editor').value"), "it is not marked")
+    written = visitor.script("return document.getElementById('editor').value")
+    visitor.expect('lag = "missing"' in written, "the missing number is not marked")
     visitor.shoot(folder, "imported")
 
 
@@ -206,7 +211,8 @@ def links(visitor):
     address = link()
     visitor.expect(address.startswith(visitor.address + "#"), f"the link is {address[:80]}")
     visitor.open(address)
-    visitor.until(lambda: "mass = 0.55" in visitor.script("return document.getElementById('editor').value"), "the link lost the file")
+    written = "return document.getElementById('editor').value"
+    visitor.until(lambda: "mass = 0.55" in visitor.script(written), "the link lost the file")
     visitor.open(address[:-9])
     error = visitor.chrome.find_element(By.ID, "error")
     visitor.until(error.is_displayed, "a damaged link is taken")

@@ -41,6 +41,6 @@ pub fn import(VehicleFile { file, text }: &VehicleFile) -> Result<Imported, Stri
     Ok(Imported { format, text: vehicle.text, missing: vehicle.missing })
 }
 
-/// What a file that nothing reads is told.
+/// Said of a file that nothing reads.
 const NO_FORMAT: &str = "is no vehicle file; expected TOML with a section [vehicle], URDF, SDF, MuJoCo's XML, \
     RotorPy's dictionary in Python or JSON, or PX4's parameters";

@@ -70,7 +70,7 @@ pub struct FlightRequest {
     pub mass: f64,
     /// The weak rotor, numbered from 1; 0: none.
     pub weak_rotor: usize,
-    /// What it delivers of what is commanded.
+    /// The share of its command that it delivers.
     pub weak_share: f64,
     /// A trajectory file's text, for the task own.
     #[serde(default)]
