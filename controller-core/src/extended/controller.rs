@@ -40,6 +40,8 @@ enum FeedbackSource<'a> {
     /// The law, with these levels at most.
     Law(&'a FeedbackLimits),
     Policy(&'a Demand),
+    /// From what this wrench, which flies in place of the law's, makes of the vehicle.
+    Wrench(&'a Wrench),
 }
 
 /// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
@@ -179,7 +181,33 @@ impl Controller {
         demand: &Demand,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         demand.check()?;
+        if matches!(demand, Demand::Rotors { .. }) {
+            return Err(InputError::OutOfRange { field: "demand.speeds" });
+        }
         self.shielded_tick(state, reference, &FeedbackSource::Policy(demand))
+    }
+
+    /// One tick in which `wrench` flies, in place of the law's: it is what comes back, unless a rotor is lost. The law
+    /// goes through its tick beside it: it learns from what flew, and its filters are put where the acceleration by
+    /// this thrust is, with the rate at which the vehicle turns it, both cut to the envelope. So the law can take over
+    /// at any tick from a memory that its own flights could have. The reference as for a demand.
+    ///
+    /// The caller sees to it that the wrench is finite, and within limits and rotors.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s.
+    pub fn step_on_wrench(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        wrench: &Wrench,
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        self.shielded_tick(state, reference, &FeedbackSource::Wrench(wrench))
+    }
+
+    /// The newest command, (T, tau) divided by the thrust scale: what the rotors were told, N and N m.
+    pub fn commanded(&self) -> Vector4<f32> {
+        self.memory.actuators.newest()
     }
 
     /// One tick whose feedback keeps to `limits`. Every theorem on feedback holds for lower levels as well.
@@ -230,8 +258,11 @@ impl Controller {
         let rest = self.acceleration_command(reference, &Vector3::zeros());
         let force = held(&force, &rest, acceleration_max);
 
-        let filters = self.memory.filters;
-        let feedback = self.feedback(state, reference, &force, acceleration_max, source);
+        let filters = match source {
+            FeedbackSource::Wrench(wrench) => self.filters_beside(state, &axis, wrench, acceleration_max),
+            _ => self.memory.filters,
+        };
+        let feedback = self.feedback(state, reference, &filters, &force, acceleration_max, source);
         let direction = self.direction_command(reference, &filters, &feedback, acceleration_max);
         let errors = self.attitude_errors(state, reference, &direction, &self.late(scale, &bias, &pending));
         let tilt = self.tilt_torque(state, &direction, &errors, &bias, scale);
@@ -256,7 +287,8 @@ impl Controller {
 
         let yaw = self.yaw_torque(&state.angular_velocity, &errors, &motion, bias.z);
         let along = self.vehicle.mass * direction.length * direction.command.dot(&axis) / direction.turn.magnitude;
-        let (wrench, yaw_torque_left) = self.range.limited(along, &tilt.torque, [yaw.torque, yaw.braking], scale);
+        let (own, yaw_torque_left) = self.range.limited(along, &tilt.torque, [yaw.torque, yaw.braking], scale);
+        let wrench = if let FeedbackSource::Wrench(wrench) = source { **wrench } else { own };
         self.memory.yaw_torque_left = yaw_torque_left;
         self.memory.wrench_offset = lasting;
         let forward = Vector3::new(tilt.acceleration.x, tilt.acceleration.y, yaw.forward);

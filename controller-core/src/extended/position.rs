@@ -255,7 +255,7 @@ impl PositionLaw {
     }
 
     /// A demand cut to the envelope: the vertical first, then what it leaves across.
-    fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
+    pub fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
         let vertical = math::max(math::min(wanted.z, max - self.gravity), -self.a_down);
         let reach = math::max(self.reach(self.gravity + vertical, max), 0.0);
         let length = math::sqrt(wanted.xy().norm_squared());

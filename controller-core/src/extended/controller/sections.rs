@@ -83,11 +83,12 @@ impl Controller {
         &self,
         state: &State,
         reference: &Reference,
+        filters: &Filters,
         force: &Vector3<f32>,
         acceleration_max: f32,
         source: &FeedbackSource,
     ) -> PositionFeedback {
-        let (law, filters) = (self.position_law(), &self.memory.filters);
+        let law = self.position_law();
         match source {
             FeedbackSource::Law(limits) => {
                 let limits = if self.memory.fallback.is_slow() { &self.slow } else { *limits };
@@ -97,7 +98,32 @@ impl Controller {
                 let feedback = self.demanded_feedback(state, demand, force);
                 law.feedback_on_demand(state, reference, filters, force, acceleration_max, &feedback)
             }
+            FeedbackSource::Wrench(_) => {
+                law.feedback_on_demand(state, reference, filters, force, acceleration_max, &filters.smoothed)
+            }
         }
+    }
+
+    /// c, x and y as the law would have them if it had commanded the acceleration that `wrench` makes, and the rate at
+    /// which the vehicle turns it across: c at that acceleration, x where c' = k_f (x - c) is that rate, y at x, each
+    /// cut to the envelope.
+    pub(super) fn filters_beside(
+        &self,
+        state: &State,
+        axis: &Vector3<f32>,
+        wrench: &Wrench,
+        acceleration_max: f32,
+    ) -> Filters {
+        let law = self.position_law();
+        let push = axis * (wrench.thrust / self.vehicle.mass);
+        let mut wanted = push;
+        wanted.z -= self.vehicle.gravity;
+        let command = law.within(&wanted, acceleration_max);
+        // The world's rates, of which the part along the axis turns nothing.
+        let rates = rotate_back(&state.attitude.conjugate(), &state.angular_velocity);
+        let turning = rates.cross(&push) * (1.0 / law.k_f());
+        let intermediate = law.within(&(wanted + Vector3::new(turning.x, turning.y, 0.0)), acceleration_max);
+        Filters { command, intermediate, smoothed: intermediate }
     }
 
     /// Section 3: where u points, and how it would turn.
@@ -217,6 +243,8 @@ impl Controller {
                 feedback.z -= self.vehicle.gravity;
                 feedback
             }
+            // Refused before.
+            Demand::Rotors { .. } => -force,
         }
     }
 
